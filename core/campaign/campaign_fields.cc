@@ -2,7 +2,7 @@
 #include <cmath>
 
 #include "core/campaign/campaign.h"
-#include "core/input/map_reader.h"
+#include "core/input/read_value.h"
 #include "core/math/functions.h"
 
 namespace dispersa {
@@ -18,7 +18,7 @@ constexpr std::uint64_t kMaxLooks = 100;
 constexpr std::int64_t kMaxCornerFactors = 20;
 
 // How often one requirement, or all of them, may be looked at. `plan` is what holds without these keys.
-void DescribePlan(Fields& fields, VerdictPlan& plan) {
+void DescribeLooks(Fields& fields, VerdictPlan& plan) {
   fields.Either({{Has("looks"),
                   [&] {
                     fields.Misplaced("anytime", {}, "'looks' and 'anytime' are both given",
@@ -40,6 +40,10 @@ void DescribePlan(Fields& fields, VerdictPlan& plan) {
     if (plan.kind != PlanKind::kGroupSequential)
       fields.Refuse("spending", "one look has nothing to share", "looks: 2 or more");
   });
+}
+
+void DescribePlan(Fields& fields, VerdictPlan& plan) {
+  fields.Group("plan", "verdict", [&](Fields& group) { DescribeLooks(group, plan); });
 }
 
 // To the digits that people write: 1 - 0.95 is 0.05.
@@ -230,11 +234,12 @@ void Describe(Fields& fields, Correlation& correlation, std::vector<Dispersion>&
   fields.Either({{Has("covariance"),
                   [&] {
                     correlation.is_covariance = true;
-                    fields.Rows("covariance", 2, SIZE_MAX, correlation.matrix,
+                    fields.Rows("covariance", 2, SIZE_MAX, 0, correlation.matrix, "a list of numbers",
                                 "in the squares of the units of cases.csv, in place of the matrix");
                   }},
                  {Else(), [&] {
-                    fields.Rows("matrix", 2, SIZE_MAX, correlation.matrix, "of correlations, a row a name");
+                    fields.Rows("matrix", 2, SIZE_MAX, 0, correlation.matrix, "a list of numbers",
+                                "of correlations, a row a name");
                   }}});
   fields.Check([&fields, &correlation, members, &dispersions] {
     Correlate(fields, correlation, members, dispersions);

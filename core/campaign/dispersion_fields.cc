@@ -142,8 +142,11 @@ class DispersionFields {
     fields.MapOrMaps(row.key, "a map, or a list of maps with stage", row.meaning, [&](Fields& map) {
       ++maps_;
       Selection of;
-      map.Several("stage", first, last, "stage", "that this disperses", of.stages,
-                  "these stages alone; without, all");
+      map.Group("choice_of_stages", std::to_string(first) + "_to_" + std::to_string(last),
+                [&](Fields& group) {
+                  group.Several("stage", first, last, "stage", "that this disperses", of.stages,
+                                "these stages alone; without, all");
+                });
       of.all = of.stages.empty();
       for (int stage = first; of.all && stage <= last; ++stage) of.stages.push_back(stage);
       for (const int stage : of.stages) {

@@ -3,6 +3,7 @@
 #include <algorithm>
 
 #include "core/input/number_text.h"
+#include "core/input/read_value.h"
 #include "core/math/functions.h"
 
 namespace dispersa {
@@ -47,12 +48,24 @@ class DistributionFields {
                                {"empirical", Distribution::kEmpirical, &D::Empirical}};
     std::vector<std::pair<std::string, Distribution>> choices;
     std::vector<Fields::Alternative> alternatives;
+    std::vector<std::string> offered, refused;
     for (const Kind& kind : kKinds) {
-      if (!Offers(kind.kind)) continue;
+      if (!Offers(kind.kind)) {
+        refused.emplace_back(kind.word);
+        continue;
+      }
+      offered.emplace_back(kind.word);
       choices.emplace_back(kind.word, kind.kind);
       alternatives.push_back(
           {Is("distribution", {kind.word}), [this, describe = kind.describe] { (this->*describe)(); }});
     }
+    for (const std::string& word : refused)
+      if (scalar_.IsFactor())
+        fields_.NoChoice("distribution", word, "a factor is no magnitude",
+                         "rayleigh for an angle, a length, a speed or a rate");
+      else
+        fields_.NoChoice("distribution", word, "'" + word + "' is not among those of this quantity",
+                         "one of " + JoinWords(offered));
     fields_.Choice("distribution", choices, distribution_.kind, "what \"±\" means");
     fields_.Either(alternatives);
     fields_.Check([&fields = fields_, scalar = scalar_, distribution = distribution_] {
@@ -258,7 +271,9 @@ ScalarDistribution Uniform(double low, double high) {
 }
 
 void DescribeDistribution(Fields& fields, const DispersedScalar& scalar, ScalarDistribution& distribution) {
-  DistributionFields(fields, scalar, distribution).Describe();
+  const std::string of = scalar.IsFactor() ? "factor" : std::string(scalar.dimension.front().suffix);
+  fields.Group("distribution", of,
+               [&](Fields& group) { DistributionFields(group, scalar, distribution).Describe(); });
 }
 
 void DescribeDirection(Fields& fields, const char* key, ScalarDistribution& direction, const char* meaning) {

@@ -10,7 +10,4 @@ namespace dispersa {
 /// YAML text of a map. It parses to a tree with the same canonical text.
 std::string CanonicalText(const InputNode& map);
 
-/// A text as a YAML scalar that reads back as itself, quoted if it must be.
-std::string TextScalar(const std::string& text);
-
 }  // namespace dispersa

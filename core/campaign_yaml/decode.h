@@ -1,4 +1,4 @@
-// Trees with everything inlined to the engine's structs.
+// Trees to the engine's structs. The files that a tree names are put in the place of their names.
 //
 // `path` is the tree's own in its file: empty when it is a whole file, e.g. "vehicle" when it is inlined.
 // A result is complete only if no problem was recorded.
@@ -7,34 +7,32 @@
 #include <string>
 #include <vector>
 
-#include "core/campaign/campaign.h"
-#include "core/flight/scenario.h"
-#include "core/input/fields.h"
-#include "core/input/input_error.h"
-#include "core/input/input_node.h"
+#include "core/control/autopilot_config.h"
+#include "core/input/field_reader.h"
+#include "core/vehicle/vehicle.h"
 
 namespace dispersa {
 
 /// `warnings`, if given, receives what is possible but unusual (core/vehicle/plausibility.h).
-Vehicle DecodeVehicle(const InputNode& node, const std::string& path, std::vector<InputProblem>& problems,
-                      std::vector<InputProblem>* warnings = nullptr);
-void DescribeVehicleFile(Fields& fields, Vehicle& vehicle);
+Vehicle DecodeVehicle(InputNode& node, const std::string& path, std::vector<InputProblem>& problems,
+                      FileSource* files, std::vector<InputProblem>* warnings = nullptr);
+
 /// A control law written in Python is named in a file, not contained: to fly it, it must be here
 /// (OfferedLaw).
 enum class PythonLaws { kMustBeHere, kMayBeAbsent };
-
-void DescribeAutopilotFile(Fields& fields, AutopilotConfig& autopilot, const Fields::ReadNode& plugin);
-/// `stages`: of the vehicle that it flies, 0 if that is unknown (then nothing is checked against it).
-AutopilotConfig DecodeAutopilot(const InputNode& node, const std::string& path, int stages,
-                                std::vector<InputProblem>& problems,
+/// `stages`: of the vehicle that it flies, 0 if that is unknown (then nothing is checked against it). A
+/// plug-in is asked, in a child process, what it says of itself.
+AutopilotConfig DecodeAutopilot(InputNode& node, const std::string& path, int stages,
+                                std::vector<InputProblem>& problems, FileSource* files,
                                 PythonLaws laws = PythonLaws::kMustBeHere);
-/// An autopilot's `plugin`, its library inlined; what the library says of itself is asked in a child process.
-PluginConfig DecodePlugin(const InputNode& node, const std::string& path, PythonLaws laws,
-                          std::vector<InputProblem>& problems);
-Scenario DecodeScenario(const InputNode& node, const std::string& path, std::vector<InputProblem>& problems);
-void DescribeScenarioFile(Fields& fields, Scenario& scenario);
-Reference DecodeReference(const InputNode& node, const std::string& path,
-                          std::vector<InputProblem>& problems);
-void DescribeReferenceFile(Fields& fields, Reference& reference);
+
+/// Of a file that nothing but its description checks.
+template <class T, class F>
+T DecodeFile(InputNode& node, const std::string& path, std::vector<InputProblem>& problems, FileSource* files,
+             F describe) {
+  T value;
+  ReadFields(node, path, problems, files, [&](Fields& fields) { describe(fields, value); });
+  return value;
+}
 
 }  // namespace dispersa

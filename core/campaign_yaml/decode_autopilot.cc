@@ -1,27 +1,94 @@
+#include "core/campaign_yaml/base64.h"
 #include "core/campaign_yaml/decode.h"
-#include "core/campaign_yaml/inline_files.h"
-#include "core/control/autopilot_fields.h"
-#include "core/input/field_reader.h"
+#include "core/campaign_yaml/describe_file.h"
+#include "core/campaign_yaml/load.h"
+#include "core/campaign_yaml/text_problems.h"
+#include "core/containment/contained.h"
+#include "core/control/law_here.h"
 #include "core/input/struct_problems.h"
 
 namespace dispersa {
+namespace {
 
-void DescribeAutopilotFile(Fields& fields, AutopilotConfig& autopilot, const Fields::ReadNode& plugin) {
-  fields.Schema(kAutopilotSchema);
-  Describe(fields, autopilot, plugin);
+bool IsUtf8(const PluginDescription& description) {
+  std::string all = description.name + description.version;
+  for (const std::string& name : description.parameters) all += name;
+  std::vector<InputProblem> ignored;
+  return CheckUtf8(all, "", ignored);
 }
 
-AutopilotConfig DecodeAutopilot(const InputNode& node, const std::string& path, int stages,
-                                std::vector<InputProblem>& problems, PythonLaws laws) {
+bool IsSha256(const std::string& text) {
+  return text.size() == 64 && text.find_first_not_of("0123456789abcdef") == std::string::npos;
+}
+
+// What a campaign that was flown under a law in Python says of it. No file of a user's own has it.
+void OpenPythonLaw(Fields& fields, PythonLaws laws, PluginConfig& plugin) {
+  if (!IsSha256(plugin.sha256)) {
+    fields.Refuse("sha256", "is no SHA-256", "64 hexadecimal digits");
+  } else if (std::optional<PluginConfig> here = OfferedLaw(plugin.sha256)) {
+    plugin.library = std::move(here->library);
+    plugin.parameters = std::move(here->parameters);
+  } else if (laws == PythonLaws::kMustBeHere) {
+    fields.Refuse("",
+                  "flown with a Python law, '" + plugin.name +
+                      "', which is not in the file: without it the campaign cannot be flown",
+                  "dispersa.run(..., workers=0, law=...) in Python, with that law");
+  }
+}
+
+// What is wrong with the object, or what it says of itself.
+std::optional<PluginDescription> DescribeLibrary(Fields& fields, PluginConfig& plugin) {
+  const auto refuse = [&fields](const std::string& why, const char* allowed = "") {
+    fields.Refuse("library", "the control law " + why, allowed);
+    return std::nullopt;
+  };
+  if (const std::string refusal = PluginRefusal(plugin.sha256); !refusal.empty()) return refuse(refusal);
+  try {
+    PluginDescription description = DescribeContained(plugin);
+    if (!IsUtf8(description))
+      return refuse("describes itself in bytes that are no UTF-8", "name, version, parameters in UTF-8");
+    return description;
+  } catch (const std::runtime_error& error) {
+    return refuse(error.what(), "a shared object with the functions of dispersa/control_law.h");
+  }
+}
+
+// Asks a plug-in, in a child process, what it says of itself.
+OpenPlugin PluginOpener(PythonLaws laws) {
+  return [laws](Fields& fields, const std::string& base64,
+                PluginConfig& plugin) -> std::optional<std::vector<std::string>> {
+    if (plugin.in_python) {
+      OpenPythonLaw(fields, laws, plugin);
+      return std::nullopt;
+    }
+    if (base64.empty()) return std::nullopt;  // a file that could not be read
+    std::optional<std::string> bytes = FromBase64(base64);
+    if (!bytes) {
+      fields.Refuse("library.base64", "is not base64 (RFC 4648)", "");
+      return std::nullopt;
+    }
+    if (const std::string sha256 = Sha256Hex(*bytes); sha256 != plugin.sha256) {
+      fields.Refuse("library.sha256", "is not that of the bytes beside it", sha256);
+      return std::nullopt;
+    }
+    plugin.library = std::make_shared<const std::string>(*std::move(bytes));
+    const std::optional<PluginDescription> description = DescribeLibrary(fields, plugin);
+    if (!description) return std::nullopt;
+    plugin.name = description->name;
+    plugin.version = description->version;
+    return description->parameters;
+  };
+}
+
+}  // namespace
+
+AutopilotConfig DecodeAutopilot(InputNode& node, const std::string& path, int stages,
+                                std::vector<InputProblem>& problems, FileSource* files, PythonLaws laws) {
   const std::size_t before = problems.size();
   AutopilotConfig autopilot;
   if (node.file == nullptr) return autopilot;  // already reported
-  if (!CheckSchema(node, kAutopilotSchema, !path.empty(), path, problems)) return autopilot;
-  const auto read_plugin = [&](const InputNode& plugin, const std::string& plugin_path) {
-    autopilot.plugin = DecodePlugin(plugin, plugin_path, laws, problems);
-  };
-  ReadFields(node, path, problems,
-             [&](Fields& fields) { DescribeAutopilotFile(fields, autopilot, read_plugin); });
+  ReadFields(node, path, problems, files,
+             [&](Fields& fields) { DescribeAutopilotFile(fields, autopilot, PluginOpener(laws)); });
   if (stages == 0) stages = static_cast<int>(autopilot.pitch.gains.size());
   if (problems.size() == before) AddStructProblems(Problems(autopilot, stages), node, path, problems);
   return autopilot;

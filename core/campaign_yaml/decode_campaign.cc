@@ -9,13 +9,14 @@
 #include "core/campaign/plausible_dispersions.h"
 #include "core/campaign_yaml/campaign_ids.h"
 #include "core/campaign_yaml/decode.h"
-#include "core/campaign_yaml/inline_files.h"
+#include "core/campaign_yaml/describe_file.h"
+#include "core/campaign_yaml/named_files.h"
 #include "core/flight/metrics.h"
 #include "core/flight/sensor_model.h"
 #include "core/flight/step_limits.h"
 #include "core/flight/structural_limits.h"
-#include "core/input/field_reader.h"
 #include "core/input/number_text.h"
+#include "core/input/read_value.h"
 #include "core/input/struct_problems.h"
 #include "core/math/constants.h"
 
@@ -25,29 +26,22 @@ namespace {
 using ProblemList = std::vector<InputProblem>;
 
 // The columns of a list's table, each an input by its name in cases.csv without the prefix.
-void DecodeListTable(const InputNode& table, const std::string& path, Campaign& campaign,
-                     ProblemList& problems) {
-  if (table.file == nullptr) return;  // already reported
+void DescribeListTable(Fields& fields, const InputNode& table, Campaign& campaign) {
   std::vector<std::string> names;
   const std::size_t count = InputCount(campaign.vehicle.stages.size());
   for (std::size_t i = 0; i < count; ++i) names.push_back(InputColumns()[i].name);
-  MapReader map(table, path, problems);
-  std::size_t length = 0;
   for (const InputMember& member : table.members) {
+    const char* key = member.key.c_str();
     const int input = FindInput(member.key);
     if (input < 0 || static_cast<std::size_t>(input) >= count) {
-      map.Ignore(member.key);
-      InputNode at = MapAt(member.value);
-      AddProblem(problems, at, map.PathOf(member.key),
-                 "'" + member.key + "' is not an input" + DidYouMean(member.key, names),
-                 "a column of cases.csv without its prefix 'input_'");
+      fields.Misplaced(key, {}, ("'{}' is not an input" + DidYouMean(member.key, names)).c_str(),
+                       "a column of cases.csv without its prefix 'input_'");
       continue;
     }
     ScalarDistribution values;
     values.kind = Distribution::kValues;
-    values.values = map.Numbers(member.key, kAnyNumber, 1);
+    fields.Numbers(key, kAnyNumber, 1, SIZE_MAX, values.values, "in the unit of its name");
     for (double& value : values.values) value *= InputColumns()[static_cast<std::size_t>(input)].unit;
-    length = std::max(length, values.values.size());
     campaign.dispersions.push_back({"list/" + member.key, std::move(values), {input}, false, {}});
   }
 }
@@ -137,7 +131,7 @@ void CheckGuidance(Fields& fields, const GuidanceConfig& guidance, const Vehicle
 
 // A value of the campaign that may be a file of its own.
 struct Part {
-  const InputNode* node = nullptr;
+  InputNode* node = nullptr;
   std::string path;
 };
 
@@ -145,13 +139,14 @@ struct Part {
 // nothing is read.
 class CampaignDescription {
  public:
-  CampaignDescription(const InputNode* root, CampaignUse use, DecodedCampaign& decoded, ProblemList& problems,
-                      ProblemList* warnings)
+  CampaignDescription(InputNode* root, CampaignUse use, DecodedCampaign& decoded, ProblemList& problems,
+                      FileSource* files, ProblemList* warnings)
       : root_(root),
         use_(use),
         decoded_(decoded),
         campaign_(decoded.campaign),
         problems_(problems),
+        files_(files),
         warnings_(warnings) {}
 
   void Describe(Fields& fields) {
@@ -161,9 +156,9 @@ class CampaignDescription {
     std::string description;
     fields.Text("description", description, "what it is for", "");
     fields.Document("vehicle", kVehicleSchema, true, "a vehicle file", "what flies",
-                    [this](const InputNode& node, const std::string& path) {
+                    [this](InputNode& node, const std::string& path) {
                       vehicle_ = {&node, path};
-                      campaign_.vehicle = DecodeVehicle(node, path, problems_, warnings_);
+                      campaign_.vehicle = DecodeVehicle(node, path, problems_, files_, warnings_);
                     });
     DescribeTrajectory(fields);
     fields.Either({{Has("optimize"), [&] { DescribeFlights(fields, false); }},
@@ -232,9 +227,10 @@ class CampaignDescription {
 
   void DescribeTrajectory(Fields& fields) {
     fields.Document("reference", kReferenceSchema, false, "a reference file", "the trajectory that is flown",
-                    [this](const InputNode& node, const std::string& path) {
+                    [this](InputNode& node, const std::string& path) {
                       reference_ = {&node, path};
-                      campaign_.reference = DecodeReference(node, path, problems_);
+                      campaign_.reference =
+                          DecodeFile<Reference>(node, path, problems_, files_, DescribeReferenceFile);
                     });
     TrajectoryProblem problem;
     bool is_sought = false;
@@ -283,7 +279,7 @@ class CampaignDescription {
   // A trajectory that is yet to be found needs nothing that flies it.
   void DescribeFlights(Fields& fields, bool needed) {
     fields.Document("autopilot", kAutopilotSchema, needed, "an autopilot file", "what flies the trajectory",
-                    [this](const InputNode& node, const std::string& path) { ReadAutopilotOf(node, path); });
+                    [this](InputNode& node, const std::string& path) { ReadAutopilotOf(node, path); });
     bool is_guided = false;
     fields.OptionalMap("guidance", is_guided,
                        "how a flight is guided; without, it flies the reference as it is",
@@ -297,7 +293,7 @@ class CampaignDescription {
                    [&] {
                      map.Columns("table",
                                  "the cases of a list, a column of cases.csv an input; or a CSV file",
-                                 [this](const InputNode& node, const std::string& path) {
+                                 [this](InputNode& node, const std::string& path) {
                                    list_ = {&node, path};
                                  });
                    }},
@@ -310,9 +306,9 @@ class CampaignDescription {
     else
       fields.OptionalMap("sampling", has_sampling_, "which cases are flown", sampling);
   }
-  void ReadAutopilotOf(const InputNode& node, const std::string& path) {
+  void ReadAutopilotOf(InputNode& node, const std::string& path) {
     campaign_.autopilot =
-        DecodeAutopilot(node, path, static_cast<int>(campaign_.vehicle.stages.size()), problems_,
+        DecodeAutopilot(node, path, static_cast<int>(campaign_.vehicle.stages.size()), problems_, files_,
                         use_ == CampaignUse::kRead ? PythonLaws::kMayBeAbsent : PythonLaws::kMustBeHere);
     has_autopilot_ = problems_.empty();
     if (problems_.empty())
@@ -327,7 +323,9 @@ class CampaignDescription {
     bool has_dispersions = false;
     fields.OptionalMap("dispersions", has_dispersions, "what differs from case to case",
                        [&](Fields& map) { dispersa::DescribeDispersions(map, before == 0, campaign_); });
-    if (list_.node != nullptr) DecodeListTable(*list_.node, list_.path, campaign_, problems_);
+    if (list_.node != nullptr)
+      ReadFields(*list_.node, list_.path, problems_, files_,
+                 [this](Fields& map) { DescribeListTable(map, *list_.node, campaign_); });
     std::vector<Correlation> correlations;
     fields.List(
         "correlations", 0, SIZE_MAX, correlations, "groups of normal dispersions that are drawn together",
@@ -362,11 +360,12 @@ class CampaignDescription {
     if (HasLimits(campaign_.vehicle.limits)) RequireLimitsKept(plan, campaign_.requirements);
   }
 
-  const InputNode* const root_;  // null: there is none
+  InputNode* const root_;  // null: there is none
   const CampaignUse use_;
   DecodedCampaign& decoded_;
   Campaign& campaign_;
   ProblemList& problems_;
+  FileSource* const files_;
   ProblemList* const warnings_;
   Part vehicle_, reference_, optimize_, list_;
   bool has_sampling_ = false;
@@ -375,12 +374,11 @@ class CampaignDescription {
 
 }  // namespace
 
-DecodedCampaign DecodeCampaign(const InputNode& root, CampaignUse use, std::vector<InputProblem>& problems,
-                               std::vector<InputProblem>* warnings) {
+DecodedCampaign DecodeCampaign(InputNode& root, CampaignUse use, std::vector<InputProblem>& problems,
+                               FileSource* files, std::vector<InputProblem>* warnings) {
   DecodedCampaign decoded;
-  if (!CheckSchema(root, kCampaignSchema, false, "", problems)) return decoded;
-  CampaignDescription description(&root, use, decoded, problems, warnings);
-  ReadFields(root, "", problems, [&](Fields& fields) { description.Describe(fields); });
+  CampaignDescription description(&root, use, decoded, problems, files, warnings);
+  ReadFields(root, "", problems, files, [&](Fields& fields) { description.Describe(fields); });
   description.Warn();
   return decoded;
 }
@@ -388,7 +386,7 @@ DecodedCampaign DecodeCampaign(const InputNode& root, CampaignUse use, std::vect
 void DescribeCampaignFile(Fields& fields) {
   DecodedCampaign decoded;
   ProblemList problems;
-  CampaignDescription(nullptr, CampaignUse::kCheck, decoded, problems, nullptr).Describe(fields);
+  CampaignDescription(nullptr, CampaignUse::kCheck, decoded, problems, nullptr, nullptr).Describe(fields);
 }
 
 }  // namespace dispersa

@@ -1,12 +1,12 @@
-// A campaign's tree with everything inlined to what is flown or optimised.
+// A campaign's tree to what is flown or optimised. The files that it names are put in the place of their
+// names.
 #pragma once
 
 #include <optional>
 #include <vector>
 
 #include "core/campaign/campaign.h"
-#include "core/input/input_error.h"
-#include "core/input/input_node.h"
+#include "core/input/field_reader.h"
 
 namespace dispersa {
 
@@ -25,8 +25,8 @@ enum class CampaignUse {
   kCheck,     ///< the first if it has a reference, else the second
 };
 
-DecodedCampaign DecodeCampaign(const InputNode& root, CampaignUse use, std::vector<InputProblem>& problems,
-                               std::vector<InputProblem>* warnings);
+DecodedCampaign DecodeCampaign(InputNode& root, CampaignUse use, std::vector<InputProblem>& problems,
+                               FileSource* files, std::vector<InputProblem>* warnings);
 
 /// The keys of a campaign's file, for those that have none.
 void DescribeCampaignFile(Fields& fields);

@@ -1,6 +1,7 @@
+#include <algorithm>
+
 #include "core/campaign_yaml/decode.h"
-#include "core/campaign_yaml/inline_files.h"
-#include "core/input/field_reader.h"
+#include "core/campaign_yaml/describe_file.h"
 #include "core/input/struct_problems.h"
 #include "core/vehicle/plausibility.h"
 #include "core/vehicle/propulsion.h"
@@ -59,25 +60,6 @@ void Complete(Vehicle& vehicle) {
     vehicle.stages[i].liftoff_mass_kg -= vehicle.boosters.LiftOffMass();
 }
 
-// A motor's table is in a file that could not be read, which has been said: what stands in its place is not
-// the vehicle's.
-bool HasUnreadTable(const InputNode& vehicle) {
-  const auto is_unread = [](const InputNode* map, const char* key) {
-    const InputNode* table = map == nullptr ? nullptr : map->Find(key);
-    return table != nullptr && table->file == nullptr;
-  };
-  if (is_unread(vehicle.Find("structure_beam"), "modes_table")) return true;
-  const InputNode* stages = vehicle.Find("stages");
-  if (stages == nullptr) return false;
-  for (const InputNode& stage : stages->items) {
-    const InputNode* motor = stage.Find("motor");
-    if (motor == nullptr) continue;
-    if (is_unread(motor->Find("thrust_curve"), "table") || is_unread(motor->Find("liquid"), "throttle"))
-      return true;
-  }
-  return false;
-}
-
 void CheckPlausibility(const Vehicle& vehicle, const InputNode& node, const std::string& path,
                        ProblemList& problems, ProblemList* warnings) {
   std::vector<PlausibilityFinding> impossible, unusual;
@@ -90,24 +72,33 @@ void CheckPlausibility(const Vehicle& vehicle, const InputNode& node, const std:
   for (std::size_t i = before; i < warnings->size(); ++i) (*warnings)[i].unusual = true;
 }
 
-}  // namespace
-
-void DescribeVehicleFile(Fields& fields, Vehicle& vehicle) {
-  fields.Schema(kVehicleSchema);
-  fields.Base("based_on", "a vehicle file, whose keys stand where this one has none");
-  Describe(fields, vehicle);
+// A file could not be read, which a value names.
+bool HasUnread(const InputNode& node) {
+  return node.file == nullptr || std::any_of(node.items.begin(), node.items.end(), HasUnread) ||
+         std::any_of(node.members.begin(), node.members.end(),
+                     [](const InputMember& member) { return HasUnread(member.value); });
 }
 
-Vehicle DecodeVehicle(const InputNode& node, const std::string& path, std::vector<InputProblem>& problems,
-                      std::vector<InputProblem>* warnings) {
-  const std::size_t before = problems.size();
+// All that its relations are about was read; nothing but a flight needs the tables of its aerodynamics.
+bool HasRelations(const InputNode& vehicle) {
+  return vehicle.file != nullptr &&
+         std::none_of(vehicle.members.begin(), vehicle.members.end(), [](const InputMember& member) {
+           return member.key != "aerodynamics" && HasUnread(member.value);
+         });
+}
+
+}  // namespace
+
+Vehicle DecodeVehicle(InputNode& node, const std::string& path, std::vector<InputProblem>& problems,
+                      FileSource* files, std::vector<InputProblem>* warnings) {
+  const std::size_t before = problems.size(), files_before = files == nullptr ? 0 : files->problems();
   Vehicle vehicle;
   if (node.file == nullptr) return vehicle;  // already reported
-  if (!CheckSchema(node, kVehicleSchema, !path.empty(), path, problems)) return vehicle;
-  ReadFields(node, path, problems, [&](Fields& fields) { DescribeVehicleFile(fields, vehicle); });
-  if (problems.size() == before) Complete(vehicle);
-  if (HasUnreadTable(node)) return vehicle;
-  if (problems.size() == before) AddStructProblems(Problems(vehicle), node, path, problems);
+  ReadFields(node, path, problems, files, [&](Fields& fields) { DescribeVehicleFile(fields, vehicle); });
+  const std::size_t of_files = files == nullptr ? 0 : files->problems() - files_before;
+  if (problems.size() > before + of_files || !HasRelations(node)) return vehicle;
+  Complete(vehicle);
+  AddStructProblems(Problems(vehicle), node, path, problems);
   if (problems.size() == before) CheckPlausibility(vehicle, node, path, problems, warnings);
   return vehicle;
 }

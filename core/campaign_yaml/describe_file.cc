@@ -1,37 +1,53 @@
 #include "core/campaign_yaml/describe_file.h"
 
-#include "core/campaign_yaml/decode.h"
 #include "core/campaign_yaml/decode_campaign.h"
+#include "core/campaign_yaml/named_files.h"
 
 namespace dispersa {
+namespace {
+
+template <class T, class F>
+void OfOne(F describe) {
+  T value;
+  describe(value);
+}
+
+}  // namespace
+
+void DescribeVehicleFile(Fields& fields, Vehicle& vehicle) {
+  fields.Schema(kVehicleSchema);
+  fields.Base("based_on", kVehicleSchema, "a vehicle file, whose keys stand where this one has none");
+  Describe(fields, vehicle);
+}
+
+void DescribeReferenceFile(Fields& fields, Reference& reference) {
+  fields.Schema(kReferenceSchema);
+  Describe(fields, reference);
+}
+
+void DescribeAutopilotFile(Fields& fields, AutopilotConfig& autopilot, const OpenPlugin& open) {
+  fields.Schema(kAutopilotSchema);
+  Describe(fields, autopilot, open);
+}
+
+void DescribeScenarioFile(Fields& fields, Scenario& scenario) {
+  fields.Schema(kScenarioSchema);
+  Describe(fields, scenario);
+}
 
 void DescribeFile(FileKind kind, Fields& fields) {
   switch (kind) {
-    case FileKind::kVehicle: {
-      Vehicle vehicle;
-      DescribeVehicleFile(fields, vehicle);
-      break;
-    }
     case FileKind::kCampaign:
-      DescribeCampaignFile(fields);
-      break;
-    case FileKind::kReference: {
-      Reference reference;
-      DescribeReferenceFile(fields, reference);
-      break;
-    }
-    case FileKind::kScenario: {
-      Scenario scenario;
-      DescribeScenarioFile(fields, scenario);
-      break;
-    }
-    case FileKind::kAutopilot: {
-      AutopilotConfig autopilot;
-      DescribeAutopilotFile(fields, autopilot, nullptr);
-      break;
-    }
-    default:
-      break;
+      return DescribeCampaignFile(fields);
+    case FileKind::kVehicle:
+      return OfOne<Vehicle>([&](Vehicle& vehicle) { DescribeVehicleFile(fields, vehicle); });
+    case FileKind::kReference:
+      return OfOne<Reference>([&](Reference& reference) { DescribeReferenceFile(fields, reference); });
+    case FileKind::kAutopilot:
+      return OfOne<AutopilotConfig>(
+          [&](AutopilotConfig& autopilot) { DescribeAutopilotFile(fields, autopilot, {}); });
+    case FileKind::kScenario:
+      return OfOne<Scenario>([&](Scenario& scenario) { DescribeScenarioFile(fields, scenario); });
   }
 }
 

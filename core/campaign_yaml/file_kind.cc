@@ -2,7 +2,7 @@
 
 #include <cstddef>
 
-#include "core/campaign_yaml/inline_files.h"
+#include "core/campaign_yaml/named_files.h"
 
 namespace dispersa {
 

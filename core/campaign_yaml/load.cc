@@ -2,17 +2,17 @@
 
 #include <algorithm>
 #include <filesystem>
-#include <functional>
 #include <tuple>
 
 #include "core/campaign_yaml/campaign_ids.h"
 #include "core/campaign_yaml/canonical.h"
 #include "core/campaign_yaml/decode.h"
 #include "core/campaign_yaml/decode_campaign.h"
-#include "core/campaign_yaml/inline_files.h"
+#include "core/campaign_yaml/describe_file.h"
+#include "core/campaign_yaml/named_files.h"
 #include "core/campaign_yaml/parse_yaml.h"
 #include "core/campaign_yaml/standard_input.h"
-#include "core/input/map_reader.h"
+#include "core/input/read_value.h"
 
 namespace dispersa {
 namespace {
@@ -28,9 +28,10 @@ InputNode Read(const InputSource& source, ProblemList& problems) {
   return source.text ? ParseYaml(*source.text, source.name, problems) : ReadYamlFile(source.name, problems);
 }
 
-// In the order of the text, file by file as they were met first.
-void SortByPlace(ProblemList& problems) {
+// In the order of the text, file by file: the tree's own, then those that it names as they were met first.
+void SortByPlace(ProblemList& problems, const InputNode& root) {
   std::vector<std::string> files;
+  if (root.file != nullptr) files.push_back(*root.file);
   for (const InputProblem& problem : problems) {
     if (std::find(files.begin(), files.end(), problem.file) == files.end()) files.push_back(problem.file);
   }
@@ -42,9 +43,9 @@ void SortByPlace(ProblemList& problems) {
                    [&](const InputProblem& a, const InputProblem& b) { return place(a) < place(b); });
 }
 
-void ThrowIfAny(ProblemList problems) {
+void ThrowIfAny(ProblemList problems, const InputNode& root) {
   if (problems.empty()) return;
-  SortByPlace(problems);
+  SortByPlace(problems, root);
   throw InputError(std::move(problems));
 }
 
@@ -75,16 +76,39 @@ void OverrideAutopilot(InputNode& root, const CampaignOverrides& overrides, Prob
 Campaign FinishCampaign(InputNode root, FileNames names, const CampaignOverrides& overrides, CampaignUse use,
                         ProblemList problems, std::vector<InputProblem>* warnings) {
   OverrideAutopilot(root, overrides, problems);
-  InlineCampaignFiles(root, names, problems);
   Override(root, overrides);
-  DecodedCampaign decoded = DecodeCampaign(root, use, problems, warnings);
-  ThrowIfAny(std::move(problems));
+  NamedFiles files(names);
+  DecodedCampaign decoded = DecodeCampaign(root, use, problems, &files, warnings);
+  ThrowIfAny(std::move(problems), root);
   Campaign& campaign = decoded.campaign;
   campaign.canonical_yaml = CanonicalText(root);
   campaign.id = Sha256Hex(campaign.canonical_yaml);
   campaign.flight_id = FlightId(root, campaign.sampling.method);
   campaign.requirements_id = RequirementsId(root);
   return std::move(campaign);
+}
+
+// decode(tree, problems, files) of a text.
+template <class F>
+auto Decode(const InputSource& source, F decode) {
+  ProblemList problems;
+  InputNode root = Read(source, problems);
+  NamedFiles files(source.text ? FileNames::kRefused : FileNames::kAllowed);
+  auto value = decode(root, problems, &files);
+  ThrowIfAny(std::move(problems), root);
+  return value;
+}
+
+AutopilotConfig DecodeAutopilotFile(const InputSource& source) {
+  return Decode(source, [](InputNode& root, ProblemList& problems, FileSource* files) {
+    return DecodeAutopilot(root, "", 0, problems, files);
+  });
+}
+
+Reference DecodeReferenceFile(const InputSource& source) {
+  return Decode(source, [](InputNode& root, ProblemList& problems, FileSource* files) {
+    return DecodeFile<Reference>(root, "", problems, files, DescribeReferenceFile);
+  });
 }
 
 }  // namespace
@@ -115,9 +139,9 @@ OptimizationInput LoadOptimization(const InputSource& source, std::optional<std:
                                    std::vector<InputProblem>* warnings) {
   ProblemList problems;
   InputNode root = Read(source, problems);
-  InlineCampaignFiles(root, FileNames::kAllowed, problems);
-  DecodedCampaign decoded = DecodeCampaign(root, CampaignUse::kOptimize, problems, warnings);
-  ThrowIfAny(std::move(problems));
+  NamedFiles files;
+  DecodedCampaign decoded = DecodeCampaign(root, CampaignUse::kOptimize, problems, &files, warnings);
+  ThrowIfAny(std::move(problems), root);
   OptimizationInput input;
   input.name = decoded.campaign.name;
   input.vehicle = std::move(decoded.campaign.vehicle);
@@ -130,38 +154,25 @@ OptimizationInput LoadOptimization(const InputSource& source, std::optional<std:
 }
 
 Vehicle LoadVehicle(const std::string& path, std::vector<InputProblem>* warnings) {
-  ProblemList problems;
-  InputNode root = ReadYamlFile(path, problems);
-  InlineVehicleFiles(root, FileNames::kAllowed, problems);
-  Vehicle vehicle = DecodeVehicle(root, "", problems, warnings);
-  ThrowIfAny(std::move(problems));
-  return vehicle;
-}
-
-AutopilotConfig LoadAutopilot(const std::string& path) {
-  ProblemList problems;
-  InputNode root = ReadYamlFile(path, problems);
-  InlineAutopilotFiles(root, "", FileNames::kAllowed, problems);
-  AutopilotConfig autopilot = DecodeAutopilot(root, "", 0, problems);
-  ThrowIfAny(std::move(problems));
-  return autopilot;
-}
-
-Reference LoadReference(const std::string& path) {
-  ProblemList problems;
-  const InputNode root = ReadYamlFile(path, problems);
-  Reference reference = DecodeReference(root, "", problems);
-  ThrowIfAny(std::move(problems));
-  return reference;
+  return Decode(path, [&](InputNode& root, ProblemList& problems, FileSource* files) {
+    return DecodeVehicle(root, "", problems, files, warnings);
+  });
 }
 
 Scenario LoadScenario(const std::string& path) {
-  ProblemList problems;
-  InputNode root = ReadYamlFile(path, problems);
-  InlineScenarioFiles(root, FileNames::kAllowed, problems);
-  Scenario scenario = DecodeScenario(root, "", problems);
-  ThrowIfAny(std::move(problems));
-  return scenario;
+  return Decode(path, [](InputNode& root, ProblemList& problems, FileSource* files) {
+    return DecodeFile<Scenario>(root, "", problems, files, DescribeScenarioFile);
+  });
+}
+
+AutopilotConfig LoadAutopilot(const std::string& path) { return DecodeAutopilotFile(path); }
+AutopilotConfig ReadAutopilot(const std::string& yaml_text, const std::string& display_name) {
+  return DecodeAutopilotFile({display_name, yaml_text});
+}
+
+Reference LoadReference(const std::string& path) { return DecodeReferenceFile(path); }
+Reference ReadReference(const std::string& yaml_text, const std::string& display_name) {
+  return DecodeReferenceFile({display_name, yaml_text});
 }
 
 bool IsScenarioFile(const std::string& path) {
@@ -171,46 +182,28 @@ bool IsScenarioFile(const std::string& path) {
   return schema != nullptr && schema->text == kScenarioSchema;
 }
 
-Reference ReadReference(const std::string& yaml_text, const std::string& display_name) {
-  ProblemList problems;
-  const InputNode root = ParseYaml(yaml_text, display_name, problems);
-  Reference reference = DecodeReference(root, "", problems);
-  ThrowIfAny(std::move(problems));
-  return reference;
-}
-
-AutopilotConfig ReadAutopilot(const std::string& yaml_text, const std::string& display_name) {
-  ProblemList problems;
-  const InputNode root = ParseYaml(yaml_text, display_name, problems);
-  AutopilotConfig autopilot = DecodeAutopilot(root, "", 0, problems);
-  ThrowIfAny(std::move(problems));
-  return autopilot;
-}
-
 FileCheck CheckFile(const InputSource& source) {
   FileCheck check;
   ProblemList& problems = check.errors;
   InputNode root = Read(source, problems);
+  NamedFiles files;
   const InputNode* schema = root.Find("schema");
   if (root.file == nullptr) {
     // Unreadable or not YAML: reported.
   } else if (schema == nullptr) {
     AddProblem(problems, root, "", "missing key 'schema'", SchemaNames());
   } else if (schema->text == kCampaignSchema) {
-    InlineCampaignFiles(root, FileNames::kAllowed, problems);
-    check.vehicle = DecodeCampaign(root, CampaignUse::kCheck, problems, &check.warnings).campaign.vehicle;
+    check.vehicle =
+        DecodeCampaign(root, CampaignUse::kCheck, problems, &files, &check.warnings).campaign.vehicle;
   } else if (schema->text == kVehicleSchema) {
-    InlineVehicleFiles(root, FileNames::kAllowed, problems);
-    check.vehicle = DecodeVehicle(root, "", problems, &check.warnings);
+    check.vehicle = DecodeVehicle(root, "", problems, &files, &check.warnings);
     check.is_vehicle = true;
   } else if (schema->text == kAutopilotSchema) {
-    InlineAutopilotFiles(root, "", FileNames::kAllowed, problems);
-    DecodeAutopilot(root, "", 0, problems);
+    DecodeAutopilot(root, "", 0, problems, &files);
   } else if (schema->text == kReferenceSchema) {
-    DecodeReference(root, "", problems);
+    DecodeFile<Reference>(root, "", problems, &files, DescribeReferenceFile);
   } else if (schema->text == kScenarioSchema) {
-    InlineScenarioFiles(root, FileNames::kAllowed, problems);
-    DecodeScenario(root, "", problems);
+    DecodeFile<Scenario>(root, "", problems, &files, DescribeScenarioFile);
   } else {
     AddProblem(problems, *schema, "schema", schema->Describe() + " is not a schema", SchemaNames());
   }
@@ -218,8 +211,8 @@ FileCheck CheckFile(const InputSource& source) {
     check.vehicle.reset();
     check.warnings.clear();
   }
-  SortByPlace(problems);
-  SortByPlace(check.warnings);
+  SortByPlace(problems, root);
+  SortByPlace(check.warnings, root);
   return check;
 }
 

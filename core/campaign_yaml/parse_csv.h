@@ -10,10 +10,8 @@
 namespace dispersa {
 
 /// Comma-separated; lines that begin with '#' and empty lines do not count; the first other line names the
-/// columns, which must be exactly those `wanted`, in any order; any if that is empty; `optional` ones may be
-/// there besides. Cells are not checked here. A table of another form is a problem and an absent node
-/// (without file), which the readers ignore.
-InputNode ParseCsv(const std::string& text, const std::string& file, const std::vector<std::string>& wanted,
-                   std::vector<InputProblem>& problems, const std::vector<std::string>& optional = {});
+/// columns, in any order. Which there must be, and what their cells are, is for the reader of the map to say.
+/// A table of another form is a problem and an absent node (without file), which the readers ignore.
+InputNode ParseCsv(const std::string& text, const std::string& file, std::vector<InputProblem>& problems);
 
 }  // namespace dispersa

@@ -66,6 +66,7 @@ class RaspReader {
     if (failed_) return {};
     place_.line = 1;
     InputNode table = MapAt(place_);
+    table.is_table = true;
     SetMember(table, "time_s", std::move(times_));
     SetMember(table, "thrust_n", std::move(thrusts_));
     return table;

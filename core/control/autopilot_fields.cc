@@ -1,61 +1,32 @@
 #include "core/control/autopilot_fields.h"
 
-#include <array>
-
 #include "core/math/stages.h"
 
 namespace dispersa {
 namespace {
 
-// What is declared to a visitor, declared to Fields.
-class AxisFields {
- public:
-  explicit AxisFields(Fields& fields) : fields_(fields) {}
+// Of actuators and delays: a second would be another program.
+constexpr Range kLead = Between(0.0, 1.0);
 
-  void Quantity(const char* stem, Dimension dimension, const Range& range, double& value,
-                const char* meaning) {
-    fields_.Quantity(stem, dimension, range, value, meaning);
-  }
-  void Guard(const char* stem, Dimension dimension, const Range& range, double& value, const char* meaning) {
-    fields_.Quantity(stem, dimension, range, value, meaning, 0.0);
-  }
-  void Number(const char* key, const Range& range, double& value, const char* meaning) {
-    fields_.Number(key, range, value, meaning);
-  }
-  void NumberGuard(const char* key, const Range& range, double& value, const char* meaning) {
-    fields_.Number(key, range, value, meaning, 0.0);
-  }
-  void Flag(const char* key, bool& value, const char* meaning) { fields_.Flag(key, value, false, meaning); }
-  void EachStage(const char* key, const Range& range, std::vector<double>& values, const char* meaning) {
-    fields_.Numbers(key, range, 1, kMaxStages, values, meaning);
-  }
-  void Stage(const char* key, int& stage, const char* meaning) {
-    fields_.Integer(key, 1, kMaxStages, stage, meaning, 0);
-  }
-  void Sections(const char* key, std::vector<FilterSection>& sections, const char* meaning) {
-    fields_.List(key, 0, kFilterSections, sections, meaning, [](Fields& fields, FilterSection& section) {
-      AxisFields visitor(fields);
-      VisitSection(visitor, section);
-    });
-  }
-  void OfOtherLaws(const char* key, const char* meaning) {
-    std::optional<double> ignored;
-    fields_.OptionalNumber(key, kNonNegative, ignored, meaning);
-  }
-  void Matrix(const char* key, Matrix2& value, const char* meaning) {
-    std::array<std::array<double, 2>, 2> rows{};
-    fields_.TwoByTwo(key, rows, "[[q11, q12], [q12, q22]]", meaning);
-    value << rows[0][0], rows[0][1], rows[1][0], rows[1][1];
-  }
-  void OptionalPair(const char* key, std::optional<Vector2>& value, const char* meaning) {
-    std::vector<double> pair;
-    fields_.OptionalNumbers(key, kAnyNumber, 2, 2, pair, meaning);
-    if (pair.size() == 2) value = Vector2(pair[0], pair[1]);
-  }
+void DescribeGains(Fields& fields, AxisGains& gains) {
+  fields.Quantity("kp", kPerTimeSquared, kPositive, gains.kp_1_s2, "of the error dynamics s^2 + kd s + kp");
+  fields.Quantity("kd", kPerTime, kPositive, gains.kd_1_s, "of those dynamics");
+}
 
- private:
-  Fields& fields_;
-};
+void DescribeSection(Fields& fields, FilterSection& section) {
+  fields.Quantity("zeros", kFrequency, kPositive, section.zeros_rad_s, "of a notch; without, a low pass",
+                  0.0);
+  fields.Number("zeros_damping", kNonNegative, section.zeros_damping, "of them", 0.0);
+  fields.Quantity("poles", kFrequency, kPositive, section.poles_rad_s, "of the section");
+  fields.Number("poles_damping", kPositive, section.poles_damping, "of them");
+}
+
+void DescribeFilter(Fields& fields, FilterSection& section) {
+  DescribeSection(fields, section);
+  fields.Integer("stage", 1, kMaxStages, section.stage, "in whose burn it acts; without, in all", 0);
+}
+
+// ---- schedule ----
 
 // What a schedule's next entry has if it names no filters: those of the entry before, else the stage's own.
 std::vector<FilterSection> FiltersBefore(const AxisConfig& axis, std::size_t entry) {
@@ -69,104 +40,184 @@ std::vector<FilterSection> FiltersBefore(const AxisConfig& axis, std::size_t ent
 void DescribeEntry(Fields& fields, AxisConfig& axis, ScheduleEntry& entry) {
   bool has_filters = false;
   fields.When(HasList("filters"), [&] { has_filters = true; });
-  AxisFields visitor(fields);
-  VisitScheduleEntry(visitor, InfoOf(axis.law), entry);
+  fields.Integer("stage", 1, kMaxStages, entry.stage, "whose burn it is", 0);
+  fields.Quantity("at", kTime, kPositive, entry.at_s, "since its ignition");
+  DescribeGains(fields, entry.gains);
+  constexpr const char* kOfIntegral = "gain of the integral, of a law that has one";
+  std::optional<double> of_other_laws;
+  if (InfoOf(axis.law).integral)
+    fields.Number("ki_1_s3", kNonNegative, entry.ki_1_s3, kOfIntegral);
+  else
+    fields.OptionalNumber("ki_1_s3", kNonNegative, of_other_laws, kOfIntegral);
+  fields.List("filters", 0, kFilterSections, entry.filters,
+              "in place of those before, as many and in their order", DescribeSection);
   if (!has_filters)
     entry.filters = FiltersBefore(axis, static_cast<std::size_t>(&entry - axis.schedule.data()));
 }
 
-// The blocks that a law reads must be there; others may be (the same file with another law is a comparison).
-void DescribeBlocks(Fields& fields, AxisConfig& axis) {
-  EachBlock(axis, [&](const char* key, bool LawInfo::*needs, auto visit, const char* meaning) {
-    std::vector<std::string> laws;
-    for (const LawInfo& law : kLaws)
-      if (law.*needs) laws.emplace_back(law.name);
-    const auto describe = [&] {
-      bool is_there = false;
-      fields.OptionalMap(key, is_there, meaning, [&](Fields& block) {
-        AxisFields visitor(block);
-        visit(visitor);
-      });
-    };
-    fields.Either({{Has(key), describe},
-                   {Is("law", laws), [&] { fields.Missing({key}, "a map, which this law needs"); }}});
-  });
+// ---- blocks of a law ----
+
+void Describe(Fields& fields, FuzzyRules& rules) {
+  fields.Quantity("error_range", kAngle, kPositive, rules.error_range_rad,
+                  "outer set centres of the error, +-");
+  fields.Quantity("rate_range", kAngularRate, kPositive, rules.rate_range_rad_s,
+                  "outer set centres of its rate, +-");
 }
+
+void Describe(Fields& fields, Adaptation& adaptation) {
+  fields.Numbers("gamma", kNonNegative, 1, kMaxStages, adaptation.gamma, "adaptation gain, one a stage");
+  Matrix2& q = adaptation.q;
+  std::vector<std::vector<double>> rows = {{q(0, 0), q(0, 1)}, {q(1, 0), q(1, 1)}};
+  fields.Rows("q", 2, 2, 2, rows, "[[q11, q12], [q12, q22]]",
+              "Q of the Lyapunov equation, symmetric positive definite");
+  if (rows.size() == 2 && rows[0].size() == 2 && rows[1].size() == 2)
+    q << rows[0][0], rows[0][1], rows[1][0], rows[1][1];
+  std::vector<double> p_n;
+  if (adaptation.p_n) p_n = {adaptation.p_n->x(), adaptation.p_n->y()};
+  fields.OptionalNumbers("p_n", kAnyNumber, 2, 2, p_n,
+                         "last column of P; it follows from gains and Q, and must agree with them");
+  if (p_n.size() == 2) adaptation.p_n = Vector2(p_n[0], p_n[1]);
+  fields.Flag("allow_unproven", adaptation.allow_unproven, false,
+              "a P_n that does not follow from gains and Q is flown");
+  fields.Quantity("projection_bound", kAngularAcceleration, kNonNegative, adaptation.projection_bound_rad_s2,
+                  "each consequent stays within this distance of its start; 0: anywhere", 0.0);
+  fields.Quantity("leakage", kPerTime, kNonNegative, adaptation.leakage_1_s,
+                  "sigma modification: pulls the consequents to their start", 0.0);
+  fields.Quantity("spread", kPerTime, kNonNegative, adaptation.spread_1_s,
+                  "pulls departures from the start to their mean over the rules", 0.0);
+  fields.Quantity("dead_zone", kAngle, kNonNegative, adaptation.dead_zone_rad,
+                  "no adaptation while |e' P_n| / p12 is below", 0.0);
+  fields.Flag("normalized", adaptation.normalized, false, "the regressor of (32) over its squared norm");
+  fields.Number("composite", kNonNegative, adaptation.composite,
+                "so many p22 of the prediction's error drive (32) besides", 0.0);
+  fields.Quantity("predictor", kPerTime, kNonNegative, adaptation.predictor_1_s,
+                  "how fast the prediction is drawn to what is measured", 0.0);
+  fields.Flag("freeze_when_saturated", adaptation.freeze_when_saturated, false,
+              "no adaptation into a deflection limit");
+  fields.Flag("reset_at_ignition", adaptation.reset_at_ignition, false,
+              "consequents start anew with each stage");
+  fields.Number("supervisory_bound", kNonNegative, adaptation.supervisory_bound,
+                "the supervisory term acts while V exceeds it; 0: never", 0.0);
+}
+
+void Describe(Fields& fields, IntegralAction& integral) {
+  fields.Numbers("ki_1_s3", kNonNegative, 1, kMaxStages, integral.ki_1_s3,
+                 "gain of the integral, one a stage");
+  fields.Quantity("bound", kAngularAcceleration, kNonNegative, integral.bound_rad_s2,
+                  "of the integral's share; 0: none", 0.0);
+  fields.Flag("reset_at_ignition", integral.reset_at_ignition, false, "it starts anew with each stage");
+}
+
+void Describe(Fields& fields, AdaptiveAugmentation& augmentation) {
+  fields.Quantity("adaptive_gain", kPerTime, kNonNegative, augmentation.adaptive_gain_1_s,
+                  "on the square of the departure from the reference model, in rad");
+  fields.Quantity("leakage", kPerTime, kNonNegative, augmentation.leakage_1_s, "draws the total gain to 1");
+  fields.Quantity("spectral_gain", kPerTime, kNonNegative, augmentation.spectral_gain_1_s,
+                  "on the square of the command's fast part, in rad/s^2");
+  fields.Quantity("high_pass", kFrequency, kPositive, augmentation.high_pass_rad_s,
+                  "of the spectral damper, above the loop's bandwidth");
+  fields.Quantity("low_pass", kFrequency, kPositive, augmentation.low_pass_rad_s, "of the spectral damper");
+  fields.Number("minimum_total_gain", kPositive, augmentation.minimum_total_gain, "floor");
+  fields.Number("maximum_total_gain", kPositive, augmentation.maximum_total_gain, "ceiling");
+}
+
+// The blocks that a law reads must be there; others may be (the same file with another law is a comparison).
+template <class Block>
+void DescribeBlock(Fields& fields, const char* key, ControlLaw law, bool LawInfo::*needs, Block& block,
+                   const char* meaning) {
+  std::vector<std::string> laws;
+  for (const LawInfo& info : kLaws)
+    if (info.*needs) laws.emplace_back(info.name);
+  const auto describe = [&] {
+    bool is_there = InfoOf(law).*needs;
+    fields.OptionalMap(key, is_there, meaning, [&](Fields& map) { Describe(map, block); });
+  };
+  fields.Either({{Has(key), describe, InfoOf(law).*needs},
+                 {Is("law", laws), [&] { fields.Missing({key}, "a map, which this law needs"); }}});
+}
+
+// ---- the file ----
 
 void Describe(Fields& fields, AxisConfig& axis) {
   std::vector<std::pair<std::string, ControlLaw>> laws;
   for (const LawInfo& law : kLaws) laws.emplace_back(law.name, law.law);
   fields.Choice<ControlLaw>("law", laws, axis.law, "of the axis");
-  fields.List("gains", 1, kMaxStages, axis.gains, "one a stage", [](Fields& map, AxisGains& gains) {
-    AxisFields visitor(map);
-    VisitGains(visitor, gains);
-  });
-  fields.List("filters", 0, kFilterSections, axis.filters, "in series, behind the law",
-              [](Fields& map, FilterSection& section) {
-                AxisFields visitor(map);
-                VisitFilter(visitor, section);
-              });
+  fields.List("gains", 1, kMaxStages, axis.gains, "one a stage", DescribeGains);
+  fields.List("filters", 0, kFilterSections, axis.filters, "in series, behind the law", DescribeFilter);
   fields.List("schedule", 0, SIZE_MAX, axis.schedule, "what the law holds at times within a stage's burn",
               [&axis](Fields& map, ScheduleEntry& entry) { DescribeEntry(map, axis, entry); });
-  bool feeds_forward = false;
+  bool feeds_forward = axis.feed_forward.has_value();
   fields.OptionalMap("feed_forward", feeds_forward, "the program's own angular acceleration, behind the law",
                      [&](Fields& map) {
-                       AxisFields visitor(map);
-                       VisitFeedForward(visitor, axis.feed_forward.emplace());
+                       if (!axis.feed_forward) axis.feed_forward.emplace();
+                       map.Quantity("lead", kTime, kLead, axis.feed_forward->lead_s,
+                                    "by what the program is read ahead: delay and actuators");
                      });
-  DescribeBlocks(fields, axis);
+  DescribeBlock(fields, "rules", axis.law, &LawInfo::rules, axis.rules, "fuzzy sets");
+  DescribeBlock(fields, "adaptation", axis.law, &LawInfo::adaptation, axis.adaptation, "equation (32)");
+  DescribeBlock(fields, "integral", axis.law, &LawInfo::integral, axis.integral, "of a PID law");
+  DescribeBlock(fields, "augmentation", axis.law, &LawInfo::augmentation, axis.augmentation,
+                "adaptive augmenting control");
 }
 
 void Describe(Fields& fields, ReactionControlLogic& logic) {
   fields.Quantity("deadband", kAngle, kPositive, logic.deadband_rad, "no firing within");
   fields.Quantity("rate_gain", kTime, kNonNegative, logic.rate_gain_s,
                   "of the switching line e + rate_gain de/dt");
-  fields.Integer("cycle_ticks", 1, 100, logic.cycle_ticks,
-                 "between decisions: thrusters open for whole cycles");
   fields.Number("hysteresis", {0.0, 1.0, false, true}, logic.hysteresis,
                 "fraction of the deadband by which a firing overshoots into it");
+  fields.Integer("cycle_ticks", 1, 100, logic.cycle_ticks,
+                 "between decisions: thrusters open for whole cycles");
 }
 
-void Describe(Fields& fields, GyroShare& share) {
+void DescribeShare(Fields& fields, GyroShare& share) {
   fields.Text("gyro", share.gyro, "of the vehicle's sensors");
   fields.Number("weight", Between(-10.0, 10.0), share.weight, "of what it measures", 1.0);
   fields.Integer("stage", 0, kMaxStages, share.stage, "in whose burn it counts; 0: in all", 0);
 }
 
-// The library is asked which parameters it has.
-void DescribePlugin(Fields& fields) {
-  std::string text;
-  const auto digest = [&text](Fields& map, const char* of) { map.Text("sha256", text, of); };
-  fields.Either({{Has("python"),
-                  [&] {
-                    fields.Map("python", "a law in Python, of a campaign that was flown under it",
-                               [&](Fields& law) {
-                                 law.Text("name", text, "of the law");
-                                 digest(law, "of its source");
-                               });
-                  }},
-                 {Else(), [&] {
-                    fields.Table("library", "the file name of a shared object",
-                                 "a shared object, or its bytes", [&](Fields& library) {
-                                   digest(library, "of the bytes");
-                                   library.Text("base64", text, "the bytes");
-                                 });
-                    fields.AnyNumbers("parameters", "a number for each parameter that the law names");
-                  }}});
+void Describe(Fields& fields, PluginConfig& plugin, const OpenPlugin& open) {
+  const auto python = [&] {
+    plugin.in_python = true;
+    fields.Map("python", "a law in Python, of a campaign that was flown under it", [&](Fields& law) {
+      law.Text("name", plugin.name, "of the law");
+      law.Text("sha256", plugin.sha256, "of its source");
+      law.Check([&] { open(law, "", plugin); });
+    });
+  };
+  const auto library = [&] {
+    std::string base64;
+    std::optional<std::vector<std::string>> names;
+    fields.Group("", "", [&](Fields&) {
+      fields.Bytes("library", "the file name of a shared object", "a shared object, or its bytes",
+                   [&](Fields& object) {
+                     object.Text("sha256", plugin.sha256, "of the bytes");
+                     object.Text("base64", base64, "the bytes");
+                   });
+      fields.Check([&] { names = open(fields, base64, plugin); });
+    });
+    std::vector<double> values;
+    fields.NamedNumbers("parameters", names, values, "a number for each parameter that the law names");
+    for (std::size_t i = 0; i < values.size(); ++i) plugin.parameters.emplace_back((*names)[i], values[i]);
+  };
+  fields.Either({{Has("python"), python}, {Else(), library}});
 }
 
 }  // namespace
 
-void Describe(Fields& fields, AutopilotConfig& autopilot, const Fields::ReadNode& plugin) {
+void Describe(Fields& fields, AutopilotConfig& autopilot, const OpenPlugin& open) {
   fields.Text("name", autopilot.name, "of the autopilot");
   fields.Quantity("tick", kTime, Between(1e-4, 0.1), autopilot.tick_s, "between two commands");
-  fields.Map("pitch", "axis", [&](Fields& axis) { Describe(axis, autopilot.pitch); });
-  fields.Map("yaw", "axis", [&](Fields& axis) { Describe(axis, autopilot.yaw); });
-  fields.Map("roll", "axis", [&](Fields& axis) { Describe(axis, autopilot.roll); });
+  for (const auto& [key, config] :
+       {std::pair("pitch", &autopilot.pitch), {"yaw", &autopilot.yaw}, {"roll", &autopilot.roll}})
+    fields.Map(key, "the law of this axis", [config = config](Fields& map) {
+      map.Group("axis", "law", [config](Fields& axis) { Describe(axis, *config); });
+    });
   fields.List("rate_gyros", 0, SIZE_MAX, autopilot.rate_gyros,
-              "whose measurements are the rates; without, the inertial unit's",
-              [](Fields& share, GyroShare& gyro) { Describe(share, gyro); });
-  fields.MapByHand("plugin", "a control law of your own", DescribePlugin, plugin);
+              "whose measurements are the rates; without, the inertial unit's", DescribeShare);
+  bool has_plugin = false;
+  fields.OptionalMap("plugin", has_plugin, "a control law of your own",
+                     [&](Fields& plugin) { Describe(plugin, autopilot.plugin.emplace(), open); });
   fields.Map("reaction_control", "in unpowered flight",
              [&](Fields& logic) { Describe(logic, autopilot.reaction_control); });
 }

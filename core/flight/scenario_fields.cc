@@ -220,11 +220,13 @@ void CheckProblems(Fields& fields, const T& checked) {
   });
 }
 
-void Describe(Fields& fields, ScenarioStage& stage, bool is_body) {
+void DescribeAnyStage(Fields& fields, ScenarioStage& stage) {
   fields.Text("name", stage.name, "of the stage", "body");
   fields.Table("mass_properties", "a map, or a CSV file", "of the whole vehicle as it is then",
                [&](Fields& mass) {
-                 mass.Either({{Has("propellant", kMass), [&] { DescribeMassTable(mass, stage.mass); }},
+                 const auto table = [&] { DescribeMassTable(mass, stage.mass); };
+                 mass.Either({{Has("propellant", kMass), table},
+                              {IsList("mass", kMass), table},
                               {Else(), [&] { DescribeConstantMass(mass, stage.mass); }}});
                });
   const double propellant_kg = stage.mass.propellant_kg.empty() ? 0.0 : stage.mass.propellant_kg.back();
@@ -233,6 +235,10 @@ void Describe(Fields& fields, ScenarioStage& stage, bool is_body) {
                      [&](Fields& map) { DescribeAerodynamics(map, stage); });
   fields.OptionalMap("motor", is_there, "constant thrust along the body axis",
                      [&](Fields& map) { Describe(map, stage.motor.emplace(), propellant_kg); });
+}
+
+void Describe(Fields& fields, ScenarioStage& stage, bool is_body) {
+  fields.Group("body", "scenario", [&](Fields& group) { DescribeAnyStage(group, stage); });
   if (!is_body)
     fields.OptionalQuantity("separation_time", kTime, kPositive, stage.separation_time_s,
                             "without, at burnout; the last stage has none");

@@ -1,142 +1,106 @@
 #include "core/input/field_reader.h"
 
 #include <algorithm>
+#include <map>
 #include <set>
+#include <utility>
 
 #include "core/input/number_text.h"
+#include "core/input/read_value.h"
 #include "core/input/struct_problems.h"
 
 namespace dispersa {
 namespace {
 
+using Kind = InputNode::Kind;
+
+std::string Quoted(const std::vector<std::string>& words) {
+  std::string text;
+  for (const std::string& word : words) text += (text.empty() ? "'" : " or '") + word + "'";
+  return text;
+}
+
+std::string CountText(std::size_t low, std::size_t high) {
+  if (low == high) return "a list of " + std::to_string(low);
+  if (high == SIZE_MAX) return "a list of " + std::to_string(low) + " or more";
+  return "a list of " + std::to_string(low) + " to " + std::to_string(high);
+}
+
+// {} stands for the key.
+std::string About(std::string message, const std::string& key) {
+  if (const std::size_t at = message.find("{}"); at != std::string::npos) message.replace(at, 2, key);
+  return message;
+}
+
+std::string Item(const std::string& path, std::size_t index) {
+  return path + "[" + std::to_string(index) + "]";
+}
+
+// The key among `keys` that a unit written otherwise stands for, or empty.
+std::string MeantKey(const std::string& stem, std::string suffix, const std::vector<std::string>& keys) {
+  for (char& c : suffix) c = c >= 'A' && c <= 'Z' ? static_cast<char>(c - 'A' + 'a') : c;
+  std::vector<std::string> candidates = {stem + "_" + suffix};
+  for (const UnitSpelling& spelling : kUnitSpellings)
+    if (spelling.written == suffix) candidates.push_back(stem + "_" + std::string(spelling.meant));
+  for (const std::string& candidate : candidates)
+    if (std::find(keys.begin(), keys.end(), candidate) != keys.end()) return candidate;
+  return "";
+}
+
 class FieldReader : public Fields {
  public:
-  FieldReader(const InputNode& node, std::string path, std::vector<InputProblem>& problems)
-      : map_(node, std::move(path), problems) {}
-
-  void Schema(const char*) override { map_.Allow("schema"); }  // it decided who reads this
-  void Base(const char*, const char*) override {}              // its keys stand here already
-  void Text(const char* key, std::string& value, const char*, std::optional<std::string> absent) override {
-    value = absent ? map_.Text(key, *absent) : map_.Text(key);
-  }
-  void Flag(const char* key, bool& value, bool absent, const char*) override {
-    value = map_.Flag(key, absent);
-  }
-  void Number(const char* key, const Range& range, double& value, const char*,
-              std::optional<double> absent) override {
-    value = map_.Number(key, range, absent);
-  }
-  void Quantity(const char* stem, Dimension dimension, const Range& range, double& value, const char*,
-                std::optional<double> absent) override {
-    value = map_.Quantity(stem, dimension, range, absent);
-  }
-  void OptionalNumber(const char* key, const Range& range, std::optional<double>& value,
-                      const char*) override {
-    const double number = map_.Number(key, range, 0.0);
-    if (map_.node().Find(key) != nullptr) value = number;
-  }
-  void OptionalQuantity(const char* stem, Dimension dimension, const Range& range,
-                        std::optional<double>& value, const char*) override {
-    value = map_.OptionalQuantity(stem, dimension, range);
-  }
-  void Numbers(const char* key, const Range& range, std::size_t low_count, std::size_t high_count,
-               std::vector<double>& values, const char*) override {
-    values = map_.Numbers(key, range, low_count, high_count);
-  }
-  void Quantities(const char* stem, Dimension dimension, const Range& range, std::size_t low_count,
-                  std::size_t high_count, std::vector<double>& values, const char*) override {
-    values = map_.Quantities(stem, dimension, range, low_count, high_count);
+  FieldReader(InputNode& node, std::string path, std::vector<InputProblem>& problems, FileSource* files)
+      : node_(&node), path_(std::move(path)), problems_(problems), files_(files), before_(problems.size()) {
+    if (node.file != nullptr && node.kind != Kind::kMap)
+      AddProblem(problems_, node, path_, node.Describe() + " is not a map", "a map of keys and values");
   }
 
-  void OptionalQuantities(const char* stem, Dimension dimension, const Range& range, std::size_t low_count,
-                          std::size_t high_count, std::vector<double>& values, const char*) override {
-    if (map_.Has(stem, dimension))
-      values = map_.Quantities(stem, dimension, range, low_count, high_count);
-    else
-      map_.OptionalQuantity(stem, dimension, range);
+  // ---- the whole file ----
+
+  void Schema(const char* name) override {
+    Optional("schema");
+    if (!HasSchema(*node_, path_, name)) node_ = &absent_;
   }
-  void Several(const char* key, int low, int high, const char* noun, const char* which,
-               std::vector<int>& values, const char*) override {
-    const InputNode* node = map_.Optional(key);
-    if (node == nullptr) return;
-    const std::string allowed = low > high    ? "no " + std::string(noun)
-                                : low == high ? std::to_string(low)
-                                              : "one of " + std::to_string(low) + " to " +
-                                                    std::to_string(high) + ", or a list of them";
-    const auto read = [&](const InputNode& item, const std::string& path) {
-      const bool plain = item.kind == InputNode::Kind::kScalar && !item.quoted;
-      const auto number = plain ? ParseInteger(item.text) : std::nullopt;
-      if (!number || *number < static_cast<std::uint64_t>(low) ||
-          *number > static_cast<std::uint64_t>(high)) {
-        AddProblem(map_.problems(), item, path, item.Describe() + " is no " + noun + " " + which, allowed);
-      } else if (std::find(values.begin(), values.end(), static_cast<int>(*number)) != values.end()) {
-        AddProblem(map_.problems(), item, path, noun + (" " + item.text) + " is given twice",
-                   "each " + std::string(noun) + " once");
-      } else {
-        values.push_back(static_cast<int>(*number));
-      }
-    };
-    if (node->kind != InputNode::Kind::kList) return read(*node, map_.PathOf(key));
-    if (node->items.empty())
-      AddProblem(map_.problems(), *node, map_.PathOf(key), "the list is empty", allowed);
-    for (std::size_t i = 0; i < node->items.size(); ++i)
-      read(node->items[i], map_.PathOf(key) + "[" + std::to_string(i) + "]");
-    std::sort(values.begin(), values.end());
-  }
-  void OptionalNumbers(const char* key, const Range& range, std::size_t low_count, std::size_t high_count,
-                       std::vector<double>& values, const char*) override {
-    if (map_.Optional(key) != nullptr) values = map_.Numbers(key, range, low_count, high_count);
-  }
-  void TwoByTwo(const char* key, std::array<std::array<double, 2>, 2>& rows, const char* allowed,
-                const char*) override {
-    std::size_t count = 0;
-    map_.Each(key, 2, 2, [&](const InputNode& row, const std::string& path) {
-      std::array<double, 2>& numbers = rows[std::min<std::size_t>(count++, 1)];
-      if (row.kind != InputNode::Kind::kList || row.items.size() != 2) {
-        AddProblem(map_.problems(), row, path, row.Describe() + " is not a row of two numbers", allowed);
-        return;
-      }
-      for (std::size_t i = 0; i < 2; ++i)
-        numbers[i] = ReadNumber(row.items[i], path + "[" + std::to_string(i) + "]", map_.problems());
-    });
-  }
-  void AnyNumbers(const char* key, const char*) override { map_.Allow(key); }
-  void Rows(const char* key, std::size_t low_count, std::size_t high_count,
-            std::vector<std::vector<double>>& rows, const char*) override {
-    map_.Each(key, low_count, high_count, [&](const InputNode& row, const std::string& path) {
-      std::vector<double>& numbers = rows.emplace_back();
-      for (const InputNode& number : row.items) numbers.push_back(ReadNumber(number, path, map_.problems()));
-    });
-  }
-  void ColumnsAndRows(const std::vector<std::string>& columns, std::size_t low_count,
-                      std::vector<std::vector<double>>& rows, const char*) override {
-    const std::size_t count = columns.size();
-    std::size_t column = 0;
-    map_.Each("columns", count, count, [&](const InputNode& item, const std::string& path) {
-      const std::string& expected = columns[column++];
-      if (item.text != expected)
-        AddProblem(map_.problems(), item, path, item.Describe() + " is not the column", expected);
-    });
-    map_.Each("rows", low_count, SIZE_MAX, [&](const InputNode& row, const std::string& path) {
-      std::vector<double>& numbers = rows.emplace_back();
-      if (row.kind != InputNode::Kind::kList || row.items.size() != count) {
-        AddProblem(map_.problems(), row, path, row.Describe() + " is not a row",
-                   "a list of " + std::to_string(count) + " numbers: " + JoinWords(columns));
-        return;
-      }
-      for (std::size_t c = 0; c < count; ++c)
-        numbers.push_back(ReadNumber(row.items[c], path + "[" + std::to_string(c) + "]", map_.problems()));
-    });
-  }
-  void Ends(const char* stem, Dimension dimension, const Range& range, double& first, double& second,
-            bool needed, const char*) override {
-    if (!needed && !map_.Has(stem, dimension)) {
-      map_.OptionalQuantity(stem, dimension, range);
-      return;
+  void Base(const char* key, const char* schema, const char* /*meaning*/) override {
+    const auto is_base = [&](const InputMember& member) { return member.key == key; };
+    const auto found = std::find_if(node_->members.begin(), node_->members.end(), is_base);
+    Known& known = Knows(key);
+    if (found == node_->members.end()) return;
+    known.needed = false;
+    InputNode base = std::move(found->value);
+    node_->members.erase(found);
+    const std::string path = PathOf(key);
+    const bool is_named = base.kind == Kind::kScalar;
+    Load(base, path, FileSource::Holds::kDocument);
+    if (base.file == nullptr || (is_named && !HasSchema(base, "", schema))) {
+      *node_ = InputNode();
+    } else if (base.kind != Kind::kMap) {
+      AddProblem(problems_, base, path, base.Describe() + " is not a vehicle", "the name of a vehicle file");
+      *node_ = InputNode();
+    } else if (const InputNode* deeper = base.Find(key)) {
+      AddProblem(problems_, *deeper, path, "the vehicle that another is based on is based on a third",
+                 "a vehicle file without based_on");
+      *node_ = InputNode();
+    } else {
+      for (InputMember& member : base.members)
+        if (node_->Find(member.key) == nullptr) node_->members.push_back(std::move(member));
     }
-    const auto ends = map_.Ends(stem, dimension, range);
-    first = ends[0];
-    second = ends[1];
+  }
+  void Document(const char* key, const char*, bool needed, const char* allowed, const char*,
+                const ReadNode& read) override {
+    ReadByHand({key, "", needed, allowed}, FileSource::Holds::kDocument, read);
+  }
+
+  // ---- single values ----
+
+  void Flag(const char* key, bool& value, bool absent, const char*) override {
+    value = absent;
+    const InputNode* node = Optional(key);
+    if (node == nullptr) return;
+    if (node->kind == Kind::kScalar && !node->quoted && IsTruthValue(node->text))
+      value = node->text == "true";
+    else
+      AddProblem(problems_, *node, PathOf(key), node->Describe() + " is not a truth value", "true or false");
   }
   void OneOf(const std::vector<OneQuantity>& quantities, std::size_t& which, double& value) override {
     std::vector<std::string> keys;  // in the first unit each
@@ -145,238 +109,549 @@ class FieldReader : public Fields {
     std::string given;
     for (std::size_t i = 0; i < quantities.size(); ++i) {
       const OneQuantity& one = quantities[i];
-      std::string key;
-      const auto found = map_.OptionalQuantity(one.stem, one.dimension, one.range, &key);
-      if (!found) continue;
+      const Found found = FindQuantity(one.stem, one.dimension);
+      if (found.node == nullptr) continue;
+      const double number = ReadNumber(*found.node, PathOf(found.key), problems_, one.range, found.unit);
       if (!given.empty()) {
-        Refuse(key, "'" + given + "' and '" + key + "' are both given", "one of " + JoinWords(keys));
+        Refuse(found.key, "'" + given + "' and '" + found.key + "' are both given",
+               "one of " + JoinWords(keys));
         continue;
       }
-      given = key;
+      given = found.key;
       which = i;
-      value = *found;
+      value = number;
     }
-    if (given.empty()) map_.ReportMissing(keys, "one of them");
+    if (given.empty()) ReportMissing(keys, "one of them");
+  }
+
+  // ---- lists ----
+
+  void NamedNumbers(const char* key, const std::optional<std::vector<std::string>>& names,
+                    std::vector<double>& values, const char*) override {
+    InputNode* node = Optional(key);
+    if (!names) return;
+    InputNode empty = MapAt(*node_);
+    ReadFields(node != nullptr ? *node : empty, PathOf(key), problems_, files_, [&](Fields& map) {
+      for (const std::string& name : *names) map.Number(name.c_str(), kAnyNumber, values.emplace_back(), "");
+    });
   }
   void Texts(const char* key, std::size_t low_count, std::size_t high_count, std::vector<std::string>& values,
              const char*) override {
-    map_.Each(key, low_count, high_count, [&](const InputNode& item, const std::string& path) {
-      values.push_back(ReadText(item, path, map_.problems()));
+    Each(key, low_count > 0, low_count, high_count, [&](const InputNode& item, const std::string& path) {
+      values.push_back(ReadText(item, path, problems_));
     });
-  }
-  void Name(const char* key, const std::vector<std::string>& names, const char* what, std::string& value,
-            const char*) override {
-    const InputNode& node = map_.Required(key, std::string("the name of ") + what);
-    value = ReadText(node, map_.PathOf(key), map_.problems());
-    if (names.empty()) return;
-    if (node.kind == InputNode::Kind::kScalar &&
-        std::find(names.begin(), names.end(), node.text) == names.end())
-      AddProblem(map_.problems(), node, map_.PathOf(key),
-                 node.Describe() + " is not " + what + DidYouMean(node.text, names),
-                 "one of " + JoinWords(names));
   }
   void Words(const char* key, const std::vector<std::string>& words, std::vector<std::size_t>& values,
              const char*) override {
-    map_.Each(key, 1, SIZE_MAX, [&](const InputNode& item, const std::string& path) {
+    Each(key, true, 1, SIZE_MAX, [&](const InputNode& item, const std::string& path) {
       const auto found = std::find(words.begin(), words.end(), item.text);
       if (found == words.end())
-        AddProblem(map_.problems(), item, path, item.Describe() + " is not a choice",
-                   "one of " + JoinWords(words));
+        AddProblem(problems_, item, path, item.Describe() + " is not a choice", "one of " + JoinWords(words));
       values.push_back(found == words.end() ? 0 : static_cast<std::size_t>(found - words.begin()));
     });
   }
-
-  void Map(const char* key, const char*, const Part& part) override {
-    ReadFields(map_.Required(key, "a map"), PathOfValue(key), map_.problems(), part);
-  }
-  void OptionalMap(const char* key, bool& is_there, const char*, const Part& part) override {
-    const InputNode* value = map_.Optional(key);
-    is_there = value != nullptr;
-    if (is_there) ReadFields(*value, PathOfValue(key), map_.problems(), part);
-  }
-  void WordOrMap(const char* key, const char* word, const char* what, const char* allowed, bool& is_word,
-                 const char*, const Part& part) override {
-    const InputNode& value = map_.Required(key, allowed);
-    is_word = value.kind == InputNode::Kind::kScalar;
-    if (!is_word)
-      ReadFields(value, PathOfValue(key), map_.problems(), part);
-    else if (value.text != word)
-      AddProblem(map_.problems(), value, map_.PathOf(key), value.Describe() + " is not " + what, allowed);
-  }
-  void NumberOrTable(const char* key, std::optional<double>& number, const char*, const Part& part) override {
-    const InputNode* value = map_.Optional(key);
-    if (value == nullptr || value->file == nullptr) return;
-    if (value->kind == InputNode::Kind::kMap)
-      ReadFields(*value, PathOfValue(key), map_.problems(), part);
-    else
-      number = ReadNumber(*value, map_.PathOf(key), map_.problems());
-  }
-  void MapOrMaps(const char* key, const char* allowed, const char*, const Part& part) override {
-    const InputNode* value = map_.Optional(key);
-    if (value == nullptr) return;
-    if (value->kind != InputNode::Kind::kList)
-      return ReadFields(*value, PathOfValue(key), map_.problems(), part);
-    if (value->items.empty())
-      AddProblem(map_.problems(), *value, map_.PathOf(key), "the list is empty", allowed);
-    for (std::size_t i = 0; i < value->items.size(); ++i)
-      ReadFields(value->items[i], map_.PathOf(key) + "[" + std::to_string(i) + "]", map_.problems(), part);
-  }
-  void Table(const char* key, const char* allowed, const char*, const Part& part) override {
-    ReadFields(map_.Required(key, allowed), PathOfValue(key), map_.problems(), part);
-  }
-  void OptionalTable(const char* key, bool& is_there, const char* meaning, const Part& part) override {
-    OptionalMap(key, is_there, meaning, part);
-  }
-
-  void MapByHand(const char* key, const char*, const Part&, const ReadNode& read) override {
-    if (const InputNode* value = map_.Optional(key)) read(*value, map_.PathOf(key));
-  }
   void Columns(const char* key, const char*, const ReadNode& read) override {
-    const InputNode* value = map_.Optional(key);
-    if (value != nullptr && value->file != nullptr) read(*value, PathOfValue(key));
-  }
-  void Document(const char* key, const char*, bool needed, const char* allowed, const char*,
-                const ReadNode& read) override {
-    const InputNode* value = needed ? &map_.Required(key, allowed) : map_.Optional(key);
-    if (value != nullptr && value->file != nullptr) read(*value, PathOfValue(key));
+    ReadByHand({key, "", false}, FileSource::Holds::kTable, read);
   }
 
+  // ---- which keys go together ----
+
+  void Group(const char*, const std::string&, const Part& part) override {
+    const std::size_t problems = problems_.size(), missing = missing_.size(), first = relations_.size();
+    part(*this);
+    const std::vector<std::function<void()>> own(relations_.begin() + static_cast<std::ptrdiff_t>(first),
+                                                 relations_.end());
+    relations_.resize(first);
+    if (problems_.size() > problems || missing_.size() > missing) return;
+    for (const auto& relation : own) relation();
+  }
   void Either(const std::vector<Alternative>& alternatives) override {
     if (IsUndecided(alternatives)) {
-      for (const Alternative& alternative : alternatives) map_.Spare(alternative.describe);
+      for (const Alternative& alternative : alternatives) Spare(alternative.describe);
       return;
     }
     for (const Alternative& alternative : alternatives)
       if (Holds(alternative.condition)) return alternative.describe();
   }
   void Missing(const std::vector<std::string>& keys, const char* allowed) override {
-    map_.ReportMissing(keys, allowed);
+    ReportMissing(keys, allowed);
   }
   void Misplaced(const char* stem, Dimension dimension, const char* message, const char* allowed) override {
-    std::string key = stem;
-    if (!dimension.empty())
-      map_.OptionalQuantity(stem, dimension, kAnyNumber, &key);
-    else if (map_.Optional(stem) == nullptr)
-      key.clear();
-    if (key.empty()) return;
-    Refuse(key, About(message, key), allowed);
+    const Found found = FindQuantity(stem, dimension);
+    if (found.node != nullptr) Refuse(found.key, About(message, found.key), allowed);
   }
-
+  void NoChoice(const char* key, const std::string& word, const std::string& message,
+                const std::string& allowed) override {
+    no_choices_[{key, word}] = {message, allowed};
+  }
   void Unclear(const std::vector<std::string>& unclear, const char* message, const std::string& allowed,
                const std::function<void()>& describe) override {
     bool is_clear = true;
-    for (const InputMember& member : map_.node().members) {
+    for (const InputMember& member : node_->members) {
       if (std::find(unclear.begin(), unclear.end(), member.key) == unclear.end()) continue;
       is_clear = false;
-      map_.Ignore(member.key);
-      AddProblem(map_.problems(), KeyOf(member), map_.PathOf(member.key), About(message, member.key),
-                 allowed);
+      spoken_of_.insert(member.key);
+      AddProblem(problems_, KeyOf(member), PathOf(member.key), About(message, member.key), allowed);
     }
-    is_clear ? describe() : map_.Spare(describe);
+    is_clear ? describe() : Spare(describe);
   }
 
-  void Check(const std::function<void()>& relation) override { relations_.push_back(relation); }
+  // ---- what does not fit ----
+
+  void Check(const std::function<void()>& relation) override {
+    if (node_->kind == Kind::kMap) relations_.push_back(relation);
+  }
   void Refuse(const std::string& key, const std::string& message, const std::string& allowed) override {
-    if (map_.node().kind != InputNode::Kind::kMap) return;  // refused as a whole
+    if (node_->kind != Kind::kMap) return;  // refused as a whole
     std::string path;
-    const InputNode& at = FindField(map_.node(), key, &path);
-    AddProblem(map_.problems(), at, path.empty() ? map_.path() : map_.PathOf(path), message, allowed);
+    const InputNode& at = FindField(*node_, key, &path);
+    AddProblem(problems_, at, path.empty() ? path_ : PathOf(path), message, allowed);
   }
   void Hint(const char* key, const Range& mistaken, const char* what, double (*meant)(double)) override {
-    std::vector<InputProblem>& problems = map_.problems();
-    const InputNode* node = map_.node().Find(key);
-    if (node == nullptr || problems.empty() || problems.back().path != map_.PathOf(key)) return;
+    const InputNode* node = node_->Find(key);
+    if (node == nullptr || problems_.empty() || problems_.back().path != PathOf(key)) return;
     const std::optional<double> value = ParseNumber(node->text);
     if (value && mistaken.Contains(*value))
-      problems.back().message +=
+      problems_.back().message +=
           std::string(", it is ") + what + " (did you mean " + FormatNumber(meant(*value)) + "?)";
   }
   std::string Quote(const std::string& key) const override {
     std::string path;
-    return FindField(map_.node(), key, &path).Describe();
+    return FindField(*node_, key, &path).Describe();
   }
 
-  void Finish() { map_.Finish(); }
-  const std::vector<std::function<void()>>& relations() const { return relations_; }
+  void Finish() {
+    if (node_->kind == Kind::kMap) {
+      const std::set<std::string> explained = ReportUnknown();
+      for (const MissingKeys& missing : missing_) {
+        if (std::any_of(missing.keys.begin(), missing.keys.end(),
+                        [&](const std::string& key) { return explained.contains(key); }))
+          continue;
+        if (node_->is_table)
+          AddProblem(problems_, *node_, path_, "missing column '" + missing.keys.front() + "'",
+                     ColumnNames());
+        else
+          AddProblem(problems_, *node_, path_, "missing key " + Quoted(missing.keys), missing.allowed);
+      }
+    }
+    if (node_->file == nullptr || problems_.size() > before_) return;  // absent or refused
+    for (const auto& relation : relations_) relation();
+  }
 
  protected:
-  void Whole(const char* key, std::uint64_t low, std::uint64_t high, std::uint64_t& value, const char*,
-             std::optional<std::uint64_t> absent) override {
-    value = map_.Integer(key, low, high, absent);
+  void VisitText(const TextKey& key, std::string& value) override {
+    if (const InputNode* node = Find(key, "text"))
+      value = ReadText(*node, PathOf(key.name), problems_);
+    else
+      value = key.absent.value_or("");
   }
-  void Word(const char* key, const Choices& choices, const char*,
-            std::optional<std::size_t> absent) override {
-    std::vector<std::pair<std::string, std::size_t>> words;
-    for (std::size_t i = 0; i < choices.words.size(); ++i) words.emplace_back(choices.words[i], i);
-    const std::size_t before = map_.problems().size();
-    choices.set(map_.Choice<std::size_t>(key, words, absent));
-    if (map_.problems().size() > before || (!absent && map_.node().Find(key) == nullptr))
-      undecided_.insert(key);
+  void VisitWhole(const WholeKey& key, std::uint64_t& value) override {
+    const std::string allowed =
+        "a whole number from " + std::to_string(key.low) + " to " + std::to_string(key.high);
+    const InputNode* node = Find(key, allowed);
+    value = node == nullptr && key.absent ? *key.absent : key.low;
+    if (node == nullptr) return;
+    const bool is_plain = node->kind == Kind::kScalar && !node->quoted;
+    const std::optional<std::uint64_t> number = is_plain ? ParseInteger(node->text) : std::nullopt;
+    if (number && *number >= key.low && *number <= key.high) {
+      value = *number;
+      return;
+    }
+    const bool is_number = is_plain && ParseNumber(node->text);
+    AddProblem(problems_, *node, PathOf(key.name),
+               number ? node->text + " is out of range"
+                      : node->Describe() + (is_number ? " is not a whole number" : " is not a number"),
+               allowed);
   }
-  void Maps(const char* key, bool needed, std::size_t low_count, std::size_t high_count, const Items& items,
-            const char*) override {
-    if (!needed && map_.Optional(key) == nullptr) return;
+  void VisitNumber(const NumberKey& key, std::optional<double>& value) override {
+    const Found found = FindNumber(key);
+    if (found.node != nullptr)
+      value = ReadNumber(*found.node, PathOf(found.key), problems_, key.range, found.unit);
+    else if (key.needed)
+      value = 0.0;
+    else
+      value = key.absent;
+  }
+  void VisitNumbers(const NumbersKey& key, std::vector<double>& values) override {
+    if (!key.or_one) values.clear();
+    const Found found = FindNumber(key, key.or_one ? "" : CountText(key.low_count, key.high_count));
+    if (found.node == nullptr) return;
+    const std::string path = PathOf(found.key);
+    if (key.or_one && found.node->kind != Kind::kList) {
+      values.assign(2, ReadNumber(*found.node, path, problems_, key.range, found.unit));
+      return;
+    }
+    if (key.or_file) LoadColumn(*found.node, found.key);
+    if (found.node->file == nullptr) return;
+    std::vector<double> read;
+    Items(*found.node, path, key.low_count, key.high_count,
+          [&](const InputNode& item, const std::string& item_path) {
+            read.push_back(ReadNumber(item, item_path, problems_, key.range, found.unit));
+          });
+    values = std::move(read);
+  }
+  void VisitSeveral(const SeveralKey& key, std::vector<int>& values) override {
+    const InputNode* node = Optional(key.name);
+    if (node == nullptr) return;
+    const std::string noun = key.noun, path = PathOf(key.name);
+    const std::string allowed = key.low > key.high    ? "no " + noun
+                                : key.low == key.high ? std::to_string(key.low)
+                                                      : "one of " + std::to_string(key.low) + " to " +
+                                                            std::to_string(key.high) + ", or a list of them";
+    const auto read = [&](const InputNode& item, const std::string& item_path) {
+      const bool is_plain = item.kind == Kind::kScalar && !item.quoted;
+      const auto number = is_plain ? ParseInteger(item.text) : std::nullopt;
+      if (!number || *number < static_cast<std::uint64_t>(key.low) ||
+          *number > static_cast<std::uint64_t>(key.high))
+        AddProblem(problems_, item, item_path, item.Describe() + " is no " + noun + " " + key.which, allowed);
+      else if (std::find(values.begin(), values.end(), static_cast<int>(*number)) != values.end())
+        AddProblem(problems_, item, item_path, noun + " " + item.text + " is given twice",
+                   "each " + noun + " once");
+      else
+        values.push_back(static_cast<int>(*number));
+    };
+    if (node->kind != Kind::kList) return read(*node, path);
+    if (node->items.empty()) AddProblem(problems_, *node, path, "the list is empty", allowed);
+    for (std::size_t i = 0; i < node->items.size(); ++i) read(node->items[i], Item(path, i));
+    std::sort(values.begin(), values.end());
+  }
+  void VisitRows(const RowsKey& key, std::vector<std::vector<double>>& rows) override {
+    std::vector<std::string> names;
+    for (const RowsKey::Column& column : key.columns) names.emplace_back(column.name);
+    if (!names.empty()) {
+      std::size_t next = 0;
+      Each("columns", true, names.size(), names.size(), [&](const InputNode& item, const std::string& path) {
+        const std::string& expected = names[next++];
+        if (item.text != expected)
+          AddProblem(problems_, item, path, item.Describe() + " is not the column", expected);
+      });
+    }
+    rows.clear();
+    Each(key.name, key.needed, key.low_count, key.high_count,
+         [&](const InputNode& row, const std::string& path) {
+           std::vector<double>& numbers = rows.emplace_back();
+           if (row.kind != Kind::kList || (key.width > 0 && row.items.size() != key.width)) {
+             const std::string count = key.width > 0 ? std::to_string(key.width) + " numbers" : "numbers";
+             AddProblem(problems_, row, path, row.Describe() + " is not a row of " + count,
+                        names.empty() ? key.allowed : "a list of " + count + ": " + JoinWords(names));
+             return;
+           }
+           for (std::size_t c = 0; c < row.items.size(); ++c)
+             numbers.push_back(ReadNumber(row.items[c], Item(path, c), problems_, kAnyNumber,
+                                          {"", names.empty() ? 1.0 : key.columns[c].scale}));
+         });
+  }
+  void VisitName(const NameKey& key, std::string& value) override {
+    const InputNode* node = Find(key, std::string("the name of ") + key.what);
+    if (node == nullptr) return;
+    value = ReadText(*node, PathOf(key.name), problems_);
+    if (key.names.empty() || node->kind != Kind::kScalar ||
+        std::find(key.names.begin(), key.names.end(), node->text) != key.names.end())
+      return;
+    AddProblem(problems_, *node, PathOf(key.name),
+               node->Describe() + " is not " + key.what + DidYouMean(node->text, key.names),
+               "one of " + JoinWords(key.names));
+  }
+  void VisitWord(const WordKey& key, std::size_t& index) override {
+    const std::string allowed = "one of " + JoinWords(key.words);
+    const InputNode* node = Find(key, allowed);
+    index = key.absent.value_or(0);
+    if (node == nullptr) {
+      if (key.needed) undecided_.insert(key.name);
+      return;
+    }
+    const auto found = node->kind == Kind::kScalar ? std::find(key.words.begin(), key.words.end(), node->text)
+                                                   : key.words.end();
+    if (found != key.words.end()) {
+      index = static_cast<std::size_t>(found - key.words.begin());
+      return;
+    }
+    undecided_.insert(key.name);
+    if (const auto reason = no_choices_.find({key.name, node->text}); reason != no_choices_.end())
+      AddProblem(problems_, *node, PathOf(key.name), reason->second.first, reason->second.second);
+    else
+      AddProblem(problems_, *node, PathOf(key.name),
+                 node->Describe() + " is not a choice" +
+                     (node->kind == Kind::kScalar ? DidYouMean(node->text, key.words) : ""),
+                 allowed);
+  }
+  void VisitMap(const MapKey& key, MapValue& value, const Part& part) override {
+    InputNode* const found = Find(key, key.allowed);
+    value.is_there = found != nullptr;
+    if (found == nullptr && !key.needed) return;
+    InputNode& node = found == nullptr ? absent_ : *found;
+    const std::string path = PathOf(key.name);
+    if (key.or_list && node.kind == Kind::kList) {
+      if (node.items.empty()) AddProblem(problems_, node, path, "the list is empty", key.allowed);
+      for (std::size_t i = 0; i < node.items.size(); ++i)
+        ReadFields(node.items[i], Item(path, i), problems_, files_, part);
+      return;
+    }
+    const bool is_number = key.or_number && node.kind == Kind::kScalar && ParseNumber(node.text);
+    if (key.file != MapKey::File::kNone && !is_number)
+      Load(node, path,
+           key.file == MapKey::File::kTable ? FileSource::Holds::kTable : FileSource::Holds::kBytes);
+    if (key.or_number && node.kind != Kind::kMap) {
+      if (node.file != nullptr) value.number = ReadNumber(node, path, problems_);
+      return;
+    }
+    value.is_word = key.word != nullptr && node.kind == Kind::kScalar;
+    if (!value.is_word)
+      ReadFields(node, PathOfValue(key.name), problems_, files_, part);
+    else if (node.text != key.word)
+      AddProblem(problems_, node, path, node.Describe() + " is not " + key.what, key.allowed);
+  }
+  void VisitMaps(const Key& key, std::size_t low_count, std::size_t high_count,
+                 const Fields::Items& items) override {
+    InputNode* list = Find(key, CountText(low_count, high_count));
+    if (list == nullptr) return;
     items.resize(0);
     std::size_t count = 0;
-    map_.Each(key, low_count, high_count, [&](const InputNode& item, const std::string& path) {
+    Items(*list, PathOf(key.name), low_count, high_count, [&](InputNode& item, const std::string& path) {
       items.resize(count + 1);
-      ReadFields(item, path, map_.problems(), [&](Fields& fields) { items.describe(fields, count); });
+      ReadFields(item, path, problems_, files_, [&](Fields& fields) { items.describe(fields, count); });
       ++count;
     });
   }
 
  private:
+  // A key that was asked for.
+  struct Known {
+    std::string stem;
+    std::vector<std::string> keys;  ///< in each unit, or the key itself
+    bool has_units = false;
+    bool needed = true;
+  };
+  struct Found {
+    InputNode* node = nullptr;
+    std::string key;
+    Unit unit = kNoUnit;
+  };
+  struct MissingKeys {
+    std::vector<std::string> keys;
+    std::string allowed;
+  };
+
+  std::string PathOf(const std::string& key) const { return path_.empty() ? key : path_ + "." + key; }
   // A value that was read from a file of its own has paths of its own.
   std::string PathOfValue(const char* key) const {
-    const InputNode* value = map_.node().Find(key);
-    return value == nullptr || value->file == map_.node().file ? map_.PathOf(key) : "";
+    const InputNode* value = node_->Find(key);
+    return value == nullptr || value->file == node_->file ? PathOf(key) : "";
   }
-  // {} stands for the key.
-  static std::string About(std::string message, const std::string& key) {
-    if (const std::size_t at = message.find("{}"); at != std::string::npos) message.replace(at, 2, key);
-    return message;
+
+  Known& Knows(const std::string& stem, Dimension dimension = {}) {
+    Known known{stem, {}, !dimension.empty()};
+    for (const Unit& unit : dimension) known.keys.push_back(stem + "_" + std::string(unit.suffix));
+    if (dimension.empty()) known.keys.push_back(stem);
+    return known_.emplace_back(std::move(known));
   }
+  InputNode* Optional(const std::string& key) {
+    Knows(key).needed = false;
+    return node_->Find(key);
+  }
+  // The value of a key that was named needed or not, or null.
+  InputNode* Find(const Key& key, const std::string& allowed) {
+    Knows(key.name).needed = key.needed;
+    InputNode* node = node_->Find(key.name);
+    if (node == nullptr && key.needed) ReportMissing({key.name}, allowed);
+    return node;
+  }
+  // The value of a quantity in any unit.
+  Found FindQuantity(const std::string& stem, Dimension dimension, bool needed = false) {
+    const std::vector<std::string> keys = [&] {
+      Known& known = Knows(stem, dimension);
+      known.needed = needed;
+      return known.keys;
+    }();
+    Found found;
+    for (std::size_t i = 0; i < keys.size(); ++i) {
+      InputNode* value = node_->Find(keys[i]);
+      if (value == nullptr) continue;
+      if (found.node != nullptr)
+        AddProblem(problems_, *value, PathOf(keys[i]), "'" + found.key + "' is given too", "one of the two");
+      else
+        found = {value, keys[i], dimension.empty() ? kNoUnit : dimension[i]};
+    }
+    return found;
+  }
+  // One that is needed or not; `allowed`: what a list should be.
+  Found FindNumber(const NumberKey& key, const std::string& allowed = "") {
+    const Found found = FindQuantity(key.name, key.dimension, key.needed);
+    if (found.node != nullptr || !key.needed) return found;
+    std::string number = TextIn(key.dimension.empty() ? kNoUnit : key.dimension.front(), key.range);
+    // Where any number will do, only its meaning says which.
+    if (number == kAnyNumber.Text() && *key.meaning != 0) number += std::string(": ") + key.meaning;
+    ReportMissing(known_.back().keys, allowed.empty() ? number : allowed);
+    return found;
+  }
+  bool Has(const std::string& stem, Dimension dimension) const {
+    return std::any_of(dimension.begin(), dimension.end(), [&](const Unit& unit) {
+      return node_->Find(stem + "_" + std::string(unit.suffix)) != nullptr;
+    });
+  }
+
+  // f(item, path) for each item of a list of so many.
+  template <typename F>
+  void Items(InputNode& list, const std::string& path, std::size_t low_count, std::size_t high_count, F f) {
+    const std::size_t count = list.items.size();
+    if (list.kind != Kind::kList)
+      AddProblem(problems_, list, path, list.Describe() + " is not a list", CountText(low_count, high_count));
+    else if (count < low_count || count > high_count)
+      AddProblem(problems_, list, path,
+                 count == 0 ? "the list is empty" : "the list has " + std::to_string(count),
+                 CountText(low_count, high_count));
+    else
+      for (std::size_t i = 0; i < count; ++i) f(list.items[i], Item(path, i));
+  }
+  template <typename F>
+  void Each(const char* key, bool needed, std::size_t low_count, std::size_t high_count, F f) {
+    if (InputNode* list = Find({key, "", needed}, CountText(low_count, high_count)))
+      Items(*list, PathOf(key), low_count, high_count, f);
+  }
+
+  void Load(InputNode& value, const std::string& path, FileSource::Holds holds) {
+    if (files_ != nullptr && value.kind == Kind::kScalar) files_->Load(value, path, holds, problems_);
+  }
+  void LoadColumn(InputNode& value, const std::string& key) {
+    const bool is_named = value.kind == Kind::kScalar;
+    Load(value, PathOf(key), FileSource::Holds::kTable);
+    if (!is_named || value.kind != Kind::kMap) return;
+    InputNode column;
+    ReadFields(value, "", problems_, files_, [&](Fields& fields) {
+      auto& table = static_cast<FieldReader&>(fields);
+      if (InputNode* found = table.Find({key.c_str(), ""}, "")) column = std::move(*found);
+    });
+    value = std::move(column);
+  }
+  void ReadByHand(const Key& key, FileSource::Holds holds, const ReadNode& read) {
+    InputNode* value = Find(key, key.allowed);
+    if (value == nullptr) return;
+    Load(*value, PathOf(key.name), holds);
+    if (value->file != nullptr) read(*value, PathOfValue(key.name));
+  }
+  // Whether a file is of this kind; a map that stands inside another file need not say so.
+  bool HasSchema(const InputNode& node, const std::string& path, const std::string& schema) {
+    if (node.kind != Kind::kMap) return true;  // refused as what it is
+    const InputNode* value = node.Find("schema");
+    const std::string allowed = "schema: " + schema;
+    if (value == nullptr && path.empty())
+      AddProblem(problems_, node, path, "missing key 'schema'", allowed);
+    else if (value != nullptr && value->text != schema)
+      AddProblem(problems_, *value, path.empty() ? "schema" : path + ".schema",
+                 value->Describe() + " is not the schema of this kind of file", allowed);
+    else
+      return true;
+    return false;
+  }
+
   // The word that decides was refused, or there is no map.
   bool IsUndecided(const std::vector<Alternative>& alternatives) const {
-    return map_.node().kind != InputNode::Kind::kMap ||
+    return node_->kind != Kind::kMap ||
            std::any_of(alternatives.begin(), alternatives.end(), [&](const Alternative& alternative) {
              return undecided_.contains(alternative.condition.key);
            });
   }
   bool Holds(const Condition& condition) const {
     if (condition.key.empty()) return true;
-    const std::size_t dot = condition.key.find('.');
-    if (!condition.dimension.empty() && dot == std::string::npos)
-      return map_.Has(condition.key, condition.dimension);
-    const InputNode* value = map_.Peek(condition.key.substr(0, dot));
-    if (value != nullptr && dot != std::string::npos) {
-      const std::string key = condition.key.substr(dot + 1);
-      for (const Unit& unit : condition.dimension)
-        if (value->Find(key + "_" + std::string(unit.suffix)) != nullptr) return true;
-      value = value->Find(key);
+    const InputNode* map = node_;
+    std::string key = condition.key;
+    if (const std::size_t dot = key.find('.'); dot != std::string::npos) {
+      map = node_->Find(key.substr(0, dot));
+      key = key.substr(dot + 1);
     }
+    const InputNode* value = map == nullptr ? nullptr : map->Find(key);
+    for (const Unit& unit : condition.dimension)
+      if (map != nullptr && value == nullptr) value = map->Find(key + "_" + std::string(unit.suffix));
     if (value == nullptr) return false;
-    if (value->kind == InputNode::Kind::kList && value->items.empty()) return condition.empty_counts;
-    if (condition.is_map) return value->kind == InputNode::Kind::kMap;
+    if (condition.is_list) return value->kind == Kind::kList;
+    if (!condition.dimension.empty()) return true;
+    if (value->kind == Kind::kList && value->items.empty()) return condition.empty_counts;
+    if (condition.is_map) return value->kind == Kind::kMap;
     return condition.words.empty() ||
            std::find(condition.words.begin(), condition.words.end(), value->text) != condition.words.end();
   }
+  // Nothing is said of the keys that are described: what decides whether they belong here was refused.
+  void Spare(const std::function<void()>& describe) {
+    InputNode* const node = std::exchange(node_, &absent_);
+    describe();
+    node_ = node;
+  }
 
-  MapReader map_;
+  // None of the keys, any of which would do, is there. Not said if an unknown key evidently means one.
+  void ReportMissing(std::vector<std::string> keys, const std::string& allowed) {
+    if (node_->kind == Kind::kMap) missing_.push_back({std::move(keys), allowed});
+  }
+  // What a table may have, in the order of the description.
+  std::string ColumnNames() const {
+    std::vector<std::string> needed, optional;
+    for (const Known& known : known_) {
+      std::vector<std::string>& of = known.needed ? needed : optional;
+      if (std::find(of.begin(), of.end(), known.keys.front()) == of.end()) of.push_back(known.keys.front());
+    }
+    return "the columns " + JoinWords(needed) +
+           (optional.empty() ? "" : ", and " + JoinWords(optional) + " if there is one");
+  }
+  // Returns the keys that an unknown one evidently stands for.
+  std::set<std::string> ReportUnknown() {
+    std::set<std::string> all = spoken_of_, explained;
+    for (const Known& known : known_) all.insert(known.keys.begin(), known.keys.end());
+    const std::vector<std::string> keys(all.begin(), all.end());
+    for (const InputMember& member : node_->members) {
+      const auto add = [&](const std::string& message, const std::string& allowed) {
+        AddProblem(problems_, KeyOf(member), node_->is_table ? path_ : PathOf(member.key), message, allowed);
+      };
+      if (all.contains(member.key)) {
+        if (&member.value != node_->Find(member.key))
+          add("the column '" + member.key + "' is given twice", ColumnNames());
+        continue;
+      }
+      std::string meant;
+      const auto quantity = std::find_if(known_.begin(), known_.end(), [&](const Known& known) {
+        if (!known.has_units) return false;
+        if (member.key == known.stem) meant = known.keys.front();
+        if (!member.key.starts_with(known.stem + "_")) return member.key == known.stem;
+        const std::string suffix = member.key.substr(known.stem.size() + 1);
+        meant = MeantKey(known.stem, suffix, known.keys);
+        return !meant.empty() ||
+               std::find(std::begin(kUnitLike), std::end(kUnitLike), suffix) != std::end(kUnitLike);
+      });
+      if (quantity != known_.end()) {
+        add((member.key == quantity->stem ? "missing unit"
+                                          : "the unit of '" + member.key + "' is not known here") +
+                (meant.empty() ? "" : " (did you mean '" + meant + "'?)"),
+            JoinWords(quantity->keys));
+        explained.insert(quantity->keys.begin(), quantity->keys.end());
+        continue;
+      }
+      explained.insert(Nearest(member.key, keys));
+      add((node_->is_table ? "unknown column '" : "unknown key '") + member.key + "'" +
+              DidYouMean(member.key, keys),
+          node_->is_table ? ColumnNames() : JoinWords(keys));
+    }
+    return explained;
+  }
+
+  InputNode absent_;
+  InputNode* node_;
+  std::string path_;
+  std::vector<InputProblem>& problems_;
+  FileSource* const files_;
+  const std::size_t before_;  // so many problems before this map
+  std::vector<Known> known_;
+  std::vector<MissingKeys> missing_;
+  std::set<std::string> spoken_of_;  // keys of which something was said already
   std::set<std::string> undecided_;  // keys whose words were refused
+  std::map<std::pair<std::string, std::string>, std::pair<std::string, std::string>> no_choices_;
   std::vector<std::function<void()>> relations_;
 };
 
 }  // namespace
 
-void ReadFields(const InputNode& node, const std::string& path, std::vector<InputProblem>& problems,
-                const Fields::Part& describe) {
-  const std::size_t before = problems.size();
-  FieldReader reader(node, path, problems);
+void ReadFields(InputNode& node, const std::string& path, std::vector<InputProblem>& problems,
+                FileSource* files, const Fields::Part& describe) {
+  FieldReader reader(node, path, problems, files);
   describe(reader);
   reader.Finish();
-  if (node.file == nullptr || problems.size() > before) return;  // absent or refused
-  for (const auto& relation : reader.relations()) relation();
 }
 
 bool CheckIncreasing(Fields& fields, const std::string& stem, const std::vector<double>& values) {

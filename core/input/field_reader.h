@@ -6,21 +6,38 @@
 #include <vector>
 
 #include "core/input/fields.h"
-#include "core/input/map_reader.h"
+#include "core/input/input_error.h"
+#include "core/input/input_node.h"
 
 namespace dispersa {
 
-/// Reads the map at `node`. Every problem is recorded with its place, and reading goes on; what was read
-/// counts only if there is none. `path` is the node's own in its file.
-void ReadFields(const InputNode& node, const std::string& path, std::vector<InputProblem>& problems,
-                const Fields::Part& describe);
+/// Where the files are that a tree names.
+class FileSource {
+ public:
+  enum class Holds { kDocument, kTable, kBytes };
 
-/// The same of a struct with a description.
-template <class T>
-T ReadStruct(const InputNode& node, const std::string& path, std::vector<InputProblem>& problems) {
-  T value;
-  ReadFields(node, path, problems, [&](Fields& fields) { Describe(fields, value); });
-  return value;
-}
+  virtual ~FileSource() = default;
+  /// Replaces a scalar, a file's name, by what the file holds; by an absent node after a problem. `path` is
+  /// the scalar's own.
+  void Load(InputNode& name, const std::string& path, Holds holds, std::vector<InputProblem>& problems) {
+    const std::size_t before = problems.size();
+    Read(name, path, holds, problems);
+    problems_ += problems.size() - before;
+  }
+  /// So many problems were those of the files as texts, not of their values.
+  std::size_t problems() const { return problems_; }
+
+ private:
+  virtual void Read(InputNode& name, const std::string& path, Holds holds,
+                    std::vector<InputProblem>& problems) = 0;
+
+  std::size_t problems_ = 0;
+};
+
+/// Reads the map at `node`. Every problem is recorded with its place, and reading goes on; what was read
+/// counts only if there is none. `path` is the node's own in its file. The names of files at keys that take
+/// them are replaced by what the files hold; without `files` they are left.
+void ReadFields(InputNode& node, const std::string& path, std::vector<InputProblem>& problems,
+                FileSource* files, const Fields::Part& describe);
 
 }  // namespace dispersa

@@ -28,12 +28,17 @@ struct Condition {
   Dimension dimension = {};        ///< not empty: the key ends in any unit of it
   std::vector<std::string> words;  ///< empty: whatever its value
   bool is_map = false;             ///< its value is a map
+  bool is_list = false;            ///< its value is a list
   bool empty_counts = false;       ///< an empty list is one, too
 };
 inline Condition Has(std::string key) { return {std::move(key), {}, {}}; }
 inline Condition Has(std::string stem, Dimension dimension) { return {std::move(stem), dimension, {}}; }
 /// The same, an empty list too.
-inline Condition HasList(std::string key) { return {std::move(key), {}, {}, false, true}; }
+inline Condition HasList(std::string key) { return {std::move(key), {}, {}, false, false, true}; }
+/// A quantity whose value is a list.
+inline Condition IsList(std::string stem, Dimension dimension) {
+  return {std::move(stem), dimension, {}, false, true};
+}
 inline Condition Is(std::string key, std::vector<std::string> words) {
   return {std::move(key), {}, std::move(words)};
 }
@@ -42,23 +47,81 @@ inline Condition HasMap(std::string key) { return {std::move(key), {}, {}, true}
 /// All maps for which no alternative before holds.
 inline Condition Else() { return {}; }
 
+/// What is declared of a key. Numbers are inside in SI and radians, limits and defaults too.
+struct Key {
+  const char* name;     ///< of a quantity its stem: an underscore and one of the dimension's units follow
+  const char* meaning;  ///< what documentation says of it, one line
+  bool needed = true;   ///< else the key need not be there
+  const char* allowed = "";  ///< what a message says should be there
+};
+struct TextKey : Key {
+  std::optional<std::string> absent;  ///< the value where the key is not there
+};
+struct WholeKey : Key {
+  std::uint64_t low, high;
+  std::optional<std::uint64_t> absent;
+};
+struct NumberKey : Key {
+  Dimension dimension;  ///< empty: without unit
+  Range range;
+  std::optional<double> absent;
+};
+/// A list of numbers.
+struct NumbersKey : NumberKey {
+  std::size_t low_count, high_count;
+  bool or_one = false;   ///< one number stands for two
+  bool or_file = false;  ///< or a CSV file's only column, of the key's name
+};
+/// One of a list of words.
+struct WordKey : Key {
+  std::vector<std::string> words;
+  std::optional<std::size_t> absent;
+};
+/// The name of one of many things; none: another file has them.
+struct NameKey : Key {
+  const std::vector<std::string>& names;
+  const char* what;  ///< "a metric"
+};
+/// Whole numbers, each once; a single one needs no list.
+struct SeveralKey : Key {
+  int low, high;
+  const char* noun;   ///< of what, in the words of a message: "stage"
+  const char* which;  ///< "that this disperses"
+};
+/// A list of lists of numbers.
+struct RowsKey : Key {
+  struct Column {
+    const char* name;
+    double scale;  ///< value inside = value in the file * scale
+  };
+  std::size_t low_count, high_count;
+  std::size_t width = 0;             ///< of each row; 0: any
+  std::vector<Column> columns = {};  ///< which the key `columns` beside it names
+};
+struct MapKey : Key {
+  enum class File { kNone, kTable, kBytes };
+  const char* word = nullptr;  ///< this word may stand in its place; what is neither is not `what`
+  const char* what = nullptr;
+  bool or_number = false;
+  File file = File::kNone;  ///< of which the map may be made, by the columns of a table or of bytes
+  bool or_list = false;     ///< of such maps
+};
+/// What stands at the key of a map.
+struct MapValue {
+  bool is_there = false;
+  bool is_word = false;
+  std::optional<double> number = {};
+};
+
 class Fields {
  public:
   using Part = std::function<void(Fields&)>;
   /// Reads a value by hand; `path` is its own in its file.
-  using ReadNode = std::function<void(const InputNode& value, const std::string& path)>;
-  /// A list's items: how to have a number of them, and what item k holds.
-  struct Items {
-    std::function<void(std::size_t)> resize;
-    std::function<void(Fields&, std::size_t)> describe;
-  };
-  struct Choices {
-    std::vector<std::string> words;
-    std::function<void(std::size_t)> set;
-  };
+  using ReadNode = std::function<void(InputNode& value, const std::string& path)>;
   struct Alternative {
     Condition condition;
     std::function<void()> describe;
+    bool is_so = false;  ///< what is described is of this alternative: for those who write it
   };
   struct OneQuantity {
     const char* stem;
@@ -72,78 +135,111 @@ class Fields {
   Fields(const Fields&) = delete;
   Fields& operator=(const Fields&) = delete;
 
-  // A key each. `meaning` is what documentation says of it, one line. With `absent` the key need not be
-  // there, and its value is then that. Numbers are inside in SI and radians, limits and `absent` too.
+  // A key each. `meaning` is what documentation says of it. With `absent` the key need not be there, and its
+  // value is then that.
 
   /// Of a whole file: the kind of file that it is.
   virtual void Schema(const char* name) = 0;
   /// Of a whole file: the key of another one of its kind, whose keys stand where this one has none.
-  virtual void Base(const char* key, const char* meaning) = 0;
-  virtual void Text(const char* key, std::string& value, const char* meaning,
-                    std::optional<std::string> absent = {}) = 0;
+  virtual void Base(const char* key, const char* schema, const char* meaning) = 0;
+  void Text(const char* key, std::string& value, const char* meaning,
+            std::optional<std::string> absent = {}) {
+    VisitText({{key, meaning, !absent}, std::move(absent)}, value);
+  }
   virtual void Flag(const char* key, bool& value, bool absent, const char* meaning) = 0;
   /// Whole numbers, of any type, not below 0.
   template <class T>
   void Integer(const char* key, std::uint64_t low, std::uint64_t high, T& value, const char* meaning,
                std::type_identity_t<std::optional<T>> absent = {}) {
     auto whole = static_cast<std::uint64_t>(value);
-    Whole(key, low, high, whole, meaning,
-          absent ? std::optional(static_cast<std::uint64_t>(*absent)) : std::nullopt);
+    VisitWhole({{key, meaning, !absent},
+                low,
+                high,
+                absent ? std::optional(static_cast<std::uint64_t>(*absent)) : std::nullopt},
+               whole);
     value = static_cast<T>(whole);
   }
-  /// A number without unit.
-  virtual void Number(const char* key, const Range& range, double& value, const char* meaning,
-                      std::optional<double> absent = {}) = 0;
   /// The key is `stem`, an underscore and one of the dimension's units.
-  virtual void Quantity(const char* stem, Dimension dimension, const Range& range, double& value,
-                        const char* meaning, std::optional<double> absent = {}) = 0;
-  /// One of which nothing is said where the key is absent.
-  virtual void OptionalNumber(const char* key, const Range& range, std::optional<double>& value,
-                              const char* meaning) = 0;
-  virtual void OptionalQuantity(const char* stem, Dimension dimension, const Range& range,
-                                std::optional<double>& value, const char* meaning) = 0;
-  /// A list of so many of them; if `low_count` is 0 the key need not be there.
-  virtual void Numbers(const char* key, const Range& range, std::size_t low_count, std::size_t high_count,
-                       std::vector<double>& values, const char* meaning) = 0;
-  virtual void Quantities(const char* stem, Dimension dimension, const Range& range, std::size_t low_count,
-                          std::size_t high_count, std::vector<double>& values, const char* meaning) = 0;
-  /// The same, of which the key need not be there.
-  virtual void OptionalQuantities(const char* stem, Dimension dimension, const Range& range,
-                                  std::size_t low_count, std::size_t high_count, std::vector<double>& values,
-                                  const char* meaning) = 0;
-  /// A list that may be a CSV file's only column, of the key's name.
-  virtual void Column(const char* stem, Dimension dimension, const Range& range, std::size_t low_count,
-                      std::vector<double>& values, const char* meaning) {
-    Quantities(stem, dimension, range, low_count, SIZE_MAX, values, meaning);
+  void Quantity(const char* stem, Dimension dimension, const Range& range, double& value, const char* meaning,
+                std::optional<double> absent = {}) {
+    std::optional<double> number = value;
+    VisitNumber({{stem, meaning, !absent}, dimension, range, absent}, number);
+    value = number.value_or(0.0);
   }
-  /// A whole number, or a list of several, each once; the key need not be there. `noun` and `which` say of
-  /// what, in the words of a message: "stage", "that this disperses".
-  virtual void Several(const char* key, int low, int high, const char* noun, const char* which,
-                       std::vector<int>& values, const char* meaning) = 0;
-  /// A list of so many numbers, of which the key need not be there.
-  virtual void OptionalNumbers(const char* key, const Range& range, std::size_t low_count,
-                               std::size_t high_count, std::vector<double>& values, const char* meaning) = 0;
-  /// A list of two rows of two numbers; `allowed` shows one.
-  virtual void TwoByTwo(const char* key, std::array<std::array<double, 2>, 2>& rows, const char* allowed,
-                        const char* meaning) = 0;
-  /// Numbers under any names; the key need not be there. Whoever reads the map by hand knows the names.
-  virtual void AnyNumbers(const char* key, const char* meaning) = 0;
-  /// A list of lists of numbers.
-  virtual void Rows(const char* key, std::size_t low_count, std::size_t high_count,
-                    std::vector<std::vector<double>>& rows, const char* meaning) = 0;
-  /// The keys `columns`, a list of just these names, and `rows`, a list of lists of a number for each.
-  virtual void ColumnsAndRows(const std::vector<std::string>& columns, std::size_t low_count,
-                              std::vector<std::vector<double>>& rows, const char* meaning) = 0;
+  /// One of which nothing is said where the key is absent.
+  void OptionalQuantity(const char* stem, Dimension dimension, const Range& range,
+                        std::optional<double>& value, const char* meaning) {
+    VisitNumber({{stem, meaning, false}, dimension, range, {}}, value);
+  }
+  /// Numbers without unit.
+  void Number(const char* key, const Range& range, double& value, const char* meaning,
+              std::optional<double> absent = {}) {
+    Quantity(key, {}, range, value, meaning, absent);
+  }
+  void OptionalNumber(const char* key, const Range& range, std::optional<double>& value,
+                      const char* meaning) {
+    OptionalQuantity(key, {}, range, value, meaning);
+  }
+  /// A list of so many of them; if `low_count` is 0 the key need not be there.
+  void Quantities(const char* stem, Dimension dimension, const Range& range, std::size_t low_count,
+                  std::size_t high_count, std::vector<double>& values, const char* meaning) {
+    VisitNumbers({{{stem, meaning, low_count > 0}, dimension, range, {}}, low_count, high_count}, values);
+  }
+  void Numbers(const char* key, const Range& range, std::size_t low_count, std::size_t high_count,
+               std::vector<double>& values, const char* meaning) {
+    Quantities(key, {}, range, low_count, high_count, values, meaning);
+  }
+  /// The same, of which the key need not be there.
+  void OptionalQuantities(const char* stem, Dimension dimension, const Range& range, std::size_t low_count,
+                          std::size_t high_count, std::vector<double>& values, const char* meaning) {
+    VisitNumbers({{{stem, meaning, false}, dimension, range, {}}, low_count, high_count}, values);
+  }
+  void OptionalNumbers(const char* key, const Range& range, std::size_t low_count, std::size_t high_count,
+                       std::vector<double>& values, const char* meaning) {
+    OptionalQuantities(key, {}, range, low_count, high_count, values, meaning);
+  }
+  /// A list that may be a CSV file's only column, of the key's name.
+  void Column(const char* stem, Dimension dimension, const Range& range, std::size_t low_count,
+              std::vector<double>& values, const char* meaning) {
+    VisitNumbers({{{stem, meaning}, dimension, range, {}}, low_count, SIZE_MAX, false, true}, values);
+  }
   /// A number for both ends of something, or a list of two.
-  virtual void Ends(const char* stem, Dimension dimension, const Range& range, double& first, double& second,
-                    bool needed, const char* meaning) = 0;
+  void Ends(const char* stem, Dimension dimension, const Range& range, double& first, double& second,
+            bool needed, const char* meaning) {
+    std::vector<double> ends = {first, second};
+    VisitNumbers({{{stem, meaning, needed}, dimension, range, {}}, 2, 2, true}, ends);
+    if (ends.size() != 2) return;
+    first = ends[0];
+    second = ends[1];
+  }
   /// Exactly one of several quantities; `which` is its place among them.
   virtual void OneOf(const std::vector<OneQuantity>& quantities, std::size_t& which, double& value) = 0;
+  /// A whole number, or a list of several, each once; the key need not be there.
+  void Several(const char* key, int low, int high, const char* noun, const char* which,
+               std::vector<int>& values, const char* meaning) {
+    VisitSeveral({{key, meaning, false}, low, high, noun, which}, values);
+  }
+  /// A list of lists of numbers, of `width` each, or of any number.
+  void Rows(const char* key, std::size_t low_count, std::size_t high_count, std::size_t width,
+            std::vector<std::vector<double>>& rows, const char* allowed, const char* meaning) {
+    VisitRows({{key, meaning, low_count > 0, allowed}, low_count, high_count, width}, rows);
+  }
+  /// The keys `columns`, a list of just these names, and `rows`, a list of lists of a number for each.
+  void ColumnsAndRows(std::vector<RowsKey::Column> columns, std::size_t low_count,
+                      std::vector<std::vector<double>>& rows, const char* meaning) {
+    const std::size_t width = columns.size();
+    VisitRows({{"rows", meaning}, low_count, SIZE_MAX, width, std::move(columns)}, rows);
+  }
+  /// Numbers under `names`; without, under any, of which nothing is read.
+  virtual void NamedNumbers(const char* key, const std::optional<std::vector<std::string>>& names,
+                            std::vector<double>& values, const char* meaning) = 0;
   virtual void Texts(const char* key, std::size_t low_count, std::size_t high_count,
                      std::vector<std::string>& values, const char* meaning) = 0;
   /// The name of one of many things; `what` says of which: "a metric". Without `names` another file has them.
-  virtual void Name(const char* key, const std::vector<std::string>& names, const char* what,
-                    std::string& value, const char* meaning) = 0;
+  void Name(const char* key, const std::vector<std::string>& names, const char* what, std::string& value,
+            const char* meaning) {
+    VisitName({{key, meaning}, names, what}, value);
+  }
   /// A list of words, each one of `words`; `values` are their places.
   virtual void Words(const char* key, const std::vector<std::string>& words, std::vector<std::size_t>& values,
                      const char* meaning) = 0;
@@ -151,33 +247,62 @@ class Fields {
   template <class Enum>
   void Choice(const char* key, const std::vector<std::pair<std::string, Enum>>& choices, Enum& value,
               const char* meaning, std::optional<Enum> absent = {}) {
-    const auto index_of = [&](Enum wanted) {
-      std::size_t index = 0;
-      while (index + 1 < choices.size() && choices[index].second != wanted) ++index;
-      return index;
-    };
-    Choices all{{}, [&](std::size_t i) { value = choices[i].second; }};
-    for (const auto& choice : choices) all.words.push_back(choice.first);
-    Word(key, all, meaning, absent ? std::optional(index_of(*absent)) : std::nullopt);
+    WordKey all{{key, meaning, !absent}, {}, {}};
+    std::size_t index = 0;
+    for (std::size_t i = 0; i < choices.size(); ++i) {
+      all.words.push_back(choices[i].first);
+      if (choices[i].second == value) index = i;
+      if (absent && choices[i].second == *absent) all.absent = i;
+    }
+    VisitWord(all, index);
+    value = choices[index].second;
   }
 
   /// A map that must be there.
-  virtual void Map(const char* key, const char* meaning, const Part& part) = 0;
-  /// A map that need not be there; `is_there` receives whether it is.
-  virtual void OptionalMap(const char* key, bool& is_there, const char* meaning, const Part& part) = 0;
+  void Map(const char* key, const char* meaning, const Part& part) {
+    MapValue value{true};
+    VisitMap({{key, meaning, true, "a map"}}, value, part);
+  }
+  /// A map that need not be there; `is_there` says whether it is.
+  void OptionalMap(const char* key, bool& is_there, const char* meaning, const Part& part) {
+    MapValue value{is_there};
+    VisitMap({{key, meaning, false}}, value, part);
+    is_there = value.is_there;
+  }
   /// A word, or a map. What is neither is refused as not `what`: "a direction".
-  virtual void WordOrMap(const char* key, const char* word, const char* what, const char* allowed,
-                         bool& is_word, const char* meaning, const Part& part) = 0;
+  void WordOrMap(const char* key, const char* word, const char* what, const char* allowed, bool& is_word,
+                 const char* meaning, const Part& part) {
+    MapValue value{true, is_word};
+    VisitMap({{key, meaning, true, allowed}, word, what}, value, part);
+    is_word = value.is_word;
+  }
   /// A number, or a table; the key need not be there.
-  virtual void NumberOrTable(const char* key, std::optional<double>& number, const char* meaning,
-                             const Part& part) = 0;
+  void NumberOrTable(const char* key, std::optional<double>& number, const char* meaning, const Part& part) {
+    MapValue value;
+    VisitMap({{key, meaning, false}, nullptr, nullptr, true, MapKey::File::kTable}, value, part);
+    number = value.number;
+  }
   /// A map, or a list of such maps; the key need not be there. `allowed` says what an empty list should be.
-  virtual void MapOrMaps(const char* key, const char* allowed, const char* meaning, const Part& part) = 0;
-  /// The columns of a table: a map of lists, or the CSV file of which it was made; `allowed` says which.
-  virtual void Table(const char* key, const char* allowed, const char* meaning, const Part& part) = 0;
-  virtual void OptionalTable(const char* key, bool& is_there, const char* meaning, const Part& part) = 0;
-  /// A map that need not be there, and is read by hand; `part` names its keys to those who have no file.
-  virtual void MapByHand(const char* key, const char* meaning, const Part& part, const ReadNode& read) = 0;
+  void MapOrMaps(const char* key, const char* allowed, const char* meaning, const Part& part) {
+    MapValue value;
+    VisitMap({{key, meaning, false, allowed}, nullptr, nullptr, false, MapKey::File::kNone, true}, value,
+             part);
+  }
+  /// The columns of a table, or the file of which they are made; `allowed` says which.
+  void Table(const char* key, const char* allowed, const char* meaning, const Part& part) {
+    MapValue value{true};
+    VisitMap({{key, meaning, true, allowed}, nullptr, nullptr, false, MapKey::File::kTable}, value, part);
+  }
+  void OptionalTable(const char* key, bool& is_there, const char* meaning, const Part& part) {
+    MapValue value{is_there};
+    VisitMap({{key, meaning, false}, nullptr, nullptr, false, MapKey::File::kTable}, value, part);
+    is_there = value.is_there;
+  }
+  /// The bytes of a file, as a map, or its name; `allowed` says which.
+  void Bytes(const char* key, const char* allowed, const char* meaning, const Part& part) {
+    MapValue value{true};
+    VisitMap({{key, meaning, true, allowed}, nullptr, nullptr, false, MapKey::File::kBytes}, value, part);
+  }
   /// Columns of numbers under any names, or the CSV file of them; the key need not be there.
   virtual void Columns(const char* key, const char* meaning, const ReadNode& read) = 0;
   /// What a file of a kind holds, in place or by the file's name. If it is not `needed` the key need not be
@@ -189,7 +314,7 @@ class Fields {
   template <class T, class F>
   void List(const char* key, std::size_t low_count, std::size_t high_count, std::vector<T>& items,
             const char* meaning, F describe) {
-    Maps(key, low_count > 0, low_count, high_count, ItemsOf(items, describe), meaning);
+    VisitMaps({key, meaning, low_count > 0}, low_count, high_count, ItemsOf(items, describe));
   }
   template <class T>
   void List(const char* key, std::size_t low_count, std::size_t high_count, std::vector<T>& items,
@@ -200,9 +325,12 @@ class Fields {
   template <class T, class F>
   void OptionalList(const char* key, std::size_t low_count, std::size_t high_count, std::vector<T>& items,
                     const char* meaning, F describe) {
-    Maps(key, false, low_count, high_count, ItemsOf(items, describe), meaning);
+    VisitMaps({key, meaning, false}, low_count, high_count, ItemsOf(items, describe));
   }
 
+  /// Keys that stand in several maps: the `name` of what they are, "distribution", and of what, "an angle".
+  /// Two groups of one name and `of` have the same keys.
+  virtual void Group(const char* /*name*/, const std::string& /*of*/, const Part& part) { part(*this); }
   /// Keys of the first alternative whose condition holds. Conditions are about keys that are named before, or
   /// that alternatives have.
   virtual void Either(const std::vector<Alternative>& alternatives) = 0;
@@ -225,6 +353,9 @@ class Fields {
   /// key.
   virtual void Misplaced(const char* /*stem*/, Dimension /*dimension*/, const char* /*message*/,
                          const char* /*allowed*/) {}
+  /// Before a Choice: a word that is one elsewhere; `message` says why it is none here.
+  virtual void NoChoice(const char* /*key*/, const std::string& /*word*/, const std::string& /*message*/,
+                        const std::string& /*allowed*/) {}
 
   /// Keys of maps that have none of `unclear`: people write these, but they say too little. In `message` {}
   /// stands for the key.
@@ -235,8 +366,8 @@ class Fields {
 
   // What only a reader does: the others have no file.
 
-  /// `relation` is called when the whole map was read without a problem, and says by Refuse() what does not
-  /// fit together.
+  /// `relation` is called when the map, or the group of its keys, was read without a problem, and says by
+  /// Refuse() what does not fit together.
   virtual void Check(const std::function<void()>& /*relation*/) {}
   /// Refuses the value of a key, such as "time[3]" or "at.delay"; a quantity's unit need not be named.
   virtual void Refuse(const std::string& /*key*/, const std::string& /*message*/,
@@ -249,17 +380,30 @@ class Fields {
   virtual std::string Quote(const std::string& /*key*/) const { return {}; }
 
  protected:
-  virtual void Whole(const char* key, std::uint64_t low, std::uint64_t high, std::uint64_t& value,
-                     const char* meaning, std::optional<std::uint64_t> absent) = 0;
-  virtual void Word(const char* key, const Choices& choices, const char* meaning,
-                    std::optional<std::size_t> absent) = 0;
-  virtual void Maps(const char* key, bool needed, std::size_t low_count, std::size_t high_count,
-                    const Items& items, const char* meaning) = 0;
+  /// A list's items: how to have a number of them, and what item k holds.
+  struct Items {
+    std::size_t count;
+    std::function<void(std::size_t)> resize;
+    std::function<void(Fields&, std::size_t)> describe;
+  };
+
+  // Each takes what the value is, and leaves in it what it was given.
+  virtual void VisitText(const TextKey& key, std::string& value) = 0;
+  virtual void VisitWhole(const WholeKey& key, std::uint64_t& value) = 0;
+  virtual void VisitNumber(const NumberKey& key, std::optional<double>& value) = 0;
+  virtual void VisitNumbers(const NumbersKey& key, std::vector<double>& values) = 0;
+  virtual void VisitSeveral(const SeveralKey& key, std::vector<int>& values) = 0;
+  virtual void VisitRows(const RowsKey& key, std::vector<std::vector<double>>& rows) = 0;
+  virtual void VisitName(const NameKey& key, std::string& value) = 0;
+  virtual void VisitWord(const WordKey& key, std::size_t& index) = 0;
+  virtual void VisitMap(const MapKey& key, MapValue& value, const Part& part) = 0;
+  virtual void VisitMaps(const Key& key, std::size_t low_count, std::size_t high_count,
+                         const Items& items) = 0;
 
  private:
   template <class T, class F>
   static Items ItemsOf(std::vector<T>& items, F& describe) {
-    return {[&items](std::size_t count) { items.resize(count); },
+    return {items.size(), [&items](std::size_t count) { items.resize(count); },
             [&items, &describe](Fields& fields, std::size_t i) {
               if constexpr (std::is_invocable_v<F, Fields&, T&, std::size_t>)
                 describe(fields, items[i], items.size());

@@ -15,10 +15,12 @@ struct InputNode {
   enum class Kind { kNull, kScalar, kList, kMap };
 
   Kind kind = Kind::kNull;
-  std::string text;                  ///< of a scalar
-  bool quoted = false;               ///< a quoted scalar is text, even if it looks like a number
-  std::vector<InputNode> items;      ///< of a list
-  std::vector<InputMember> members;  ///< of a map, in file order; the parser refuses duplicate keys
+  std::string text;              ///< of a scalar
+  bool quoted = false;           ///< a quoted scalar is text, even if it looks like a number
+  std::vector<InputNode> items;  ///< of a list
+  std::vector<InputMember>
+      members;            ///< of a map, in file order; a key is there once, of a table its reader says so
+  bool is_table = false;  ///< a map that was a table's file: its keys are columns
   std::shared_ptr<const std::string> file;
   int line = 1;
   int column = 1;

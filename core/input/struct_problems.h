@@ -5,7 +5,7 @@
 #include <vector>
 
 #include "core/input/input_node.h"
-#include "core/input/map_reader.h"
+#include "core/input/read_value.h"
 
 namespace dispersa {
 

@@ -14,6 +14,8 @@ struct Unit {
   double offset = 0.0;
 };
 
+inline constexpr Unit kNoUnit = {"", 1.0};
+
 using Dimension = std::span<const Unit>;
 
 inline constexpr Unit kLength[] = {{"m", 1.0}, {"km", 1e3}, {"mm", 1e-3}, {"um", 1e-6}};

@@ -1,7 +1,7 @@
 #include <cmath>
 
 #include "core/environment/earth.h"
-#include "core/trajectory/attitude_columns.h"
+#include "core/trajectory/optimize.h"
 #include "core/trajectory/reference.h"
 
 namespace dispersa {
@@ -16,20 +16,14 @@ std::string StageKey(std::size_t stage, const char* what) {
 }
 
 // The two limits of a decision variable, which are one list in the file.
-using Describing = void (*)(Fields&, const char*, Dimension, const Range&, std::vector<double>&, const char*);
-void DescribeLimits(Fields& fields, const char* stem, Dimension dimension, const Range& range,
-                    std::vector<double>& limits, const char* meaning) {
-  fields.Quantities(stem, dimension, range, 2, 2, limits, meaning);
-}
-void DescribeOptionalLimits(Fields& fields, const char* stem, Dimension dimension, const Range& range,
-                            std::vector<double>& limits, const char* meaning) {
-  fields.OptionalQuantities(stem, dimension, range, 2, 2, limits, meaning);
-}
-
 void DescribeBounds(Fields& fields, const std::string& stem, Dimension dimension, const Range& range,
-                    Bounds& bounds, const char* meaning, Describing describe = DescribeLimits) {
+                    Bounds& bounds, const char* meaning, bool needed = true) {
   std::vector<double> limits;
-  describe(fields, stem.c_str(), dimension, range, limits, meaning);
+  if (needed || bounds.high > 0.0) limits = {bounds.low, bounds.high};
+  if (needed)
+    fields.Quantities(stem.c_str(), dimension, range, 2, 2, limits, meaning);
+  else
+    fields.OptionalQuantities(stem.c_str(), dimension, range, 2, 2, limits, meaning);
   if (limits.size() != 2) return;
   bounds = {limits[0], limits[1]};
   if (limits[0] > limits[1]) fields.Refuse(stem, "the lower bound is above the upper one", "[low, high]");
@@ -37,7 +31,7 @@ void DescribeBounds(Fields& fields, const std::string& stem, Dimension dimension
 
 // Bounds that fall go through north, [350, 10] as [350, 370] does.
 void DescribeAzimuthBounds(Fields& fields, Bounds& bounds) {
-  std::vector<double> limits;
+  std::vector<double> limits = {bounds.low, bounds.high};
   fields.Quantities("launch_azimuth", kAngle, Between(0.0, 2.0 * kTwoPi), 2, 2, limits,
                     "[low, high], clockwise from north; [350, 10] goes through north");
   if (limits.size() != 2) return;
@@ -56,7 +50,8 @@ double PerigeeSpeed(double perigee_m, double apogee_m) {
 }
 
 void DescribeEllipse(Fields& fields, TrajectoryProblem& problem) {
-  double& apogee_m = problem.target_apogee_m.emplace();
+  if (!problem.target_apogee_m) problem.target_apogee_m.emplace();
+  double& apogee_m = *problem.target_apogee_m;
   fields.Quantity("perigee_altitude", kLength, kPositive, problem.target_altitude_m,
                   "of an ellipse that is entered at its perigee, over the equator's radius");
   fields.Quantity("apogee_altitude", kLength, kPositive, apogee_m, "of that ellipse");
@@ -72,28 +67,37 @@ void DescribeInjection(Fields& fields, TrajectoryProblem& problem) {
     fields.Quantity("velocity", kSpeed, kPositive, problem.target_velocity_m_s,
                     "inertial; a target with an inclination may leave it open");
   };
-  fields.Either({{Has("velocity", kSpeed), velocity},
-                 {Has("inclination", kAngle), [&] { problem.velocity_is_free = true; }},
-                 {Else(), velocity}});
+  fields.Either(
+      {{Has("velocity", kSpeed), velocity, !problem.velocity_is_free},
+       {Has("inclination", kAngle), [&] { problem.velocity_is_free = true; }, problem.velocity_is_free},
+       {Else(), velocity}});
   fields.Quantity("flight_path_angle", kAngle, Inside(-kPi / 2.0, kPi / 2.0),
                   problem.target_flight_path_angle_rad, "inertial");
 }
 
 void DescribeTarget(Fields& fields, TrajectoryProblem& problem) {
+  const auto ellipse = [&] { DescribeEllipse(fields, problem); };
+  fields.Either({{Has("perigee_altitude", kLength), ellipse, problem.target_apogee_m.has_value()},
+                 {Has("apogee_altitude", kLength), ellipse},
+                 {Else(), [&] { DescribeInjection(fields, problem); }}});
   fields.OptionalQuantity("inclination", kAngle, Between(0.0, kPi), problem.target_inclination_rad,
                           "of the orbit");
   fields.OptionalQuantity("node", kAngle, Between(0.0, kTwoPi), problem.target_node_rad,
                           "right ascension; the time of day of the lift-off meets it");
   fields.OptionalQuantity("argument_of_perigee", kAngle, Between(0.0, kTwoPi),
                           problem.target_argument_of_perigee_rad, "of an ellipse, with an inclination");
-  const auto ellipse = [&] { DescribeEllipse(fields, problem); };
-  fields.Either({{Has("perigee_altitude", kLength), ellipse},
-                 {Has("apogee_altitude", kLength), ellipse},
-                 {Else(), [&] { DescribeInjection(fields, problem); }}});
   if (problem.target_argument_of_perigee_rad && !(problem.target_inclination_rad && problem.target_apogee_m))
     fields.Refuse(
         "", "an argument of perigee counts along an ellipse from its node",
         "argument_of_perigee_deg beside perigee_altitude_km, apogee_altitude_km and inclination_deg");
+}
+
+// Keys of a stage that steers, which come together.
+void DescribeSteering(Fields& fields, std::size_t stage, bool steers,
+                      const std::function<void(const std::string& begin, const std::string& end)>& describe) {
+  const std::string begin = StageKey(stage, "incidence_begin"), end = StageKey(stage, "incidence_end");
+  const auto both = [&] { describe(begin, end); };
+  fields.Either({{Has(begin, kAngle), both, steers}, {Has(end, kAngle), both}});
 }
 
 void DescribeDecisionBounds(Fields& fields, TrajectoryProblem& problem) {
@@ -108,18 +112,17 @@ void DescribeDecisionBounds(Fields& fields, TrajectoryProblem& problem) {
   DescribeBounds(fields, "coast", kTime, kNonNegative, problem.coast_s,
                  "[low, high] of the coast before the last stage ignites");
   DescribeAzimuthBounds(fields, problem.launch_azimuth_rad);
-  for (std::size_t stage = 1; stage < kMaxStages; ++stage) {
+  for (std::size_t stage = 1; stage < kMaxStages; ++stage)
     DescribeBounds(fields, StageKey(stage, "coast"), kTime, kNonNegative, problem.earlier_coast_s[stage],
-                   "[low, high] of the coast before this stage, which a timer ignites",
-                   DescribeOptionalLimits);
-    const std::string begin = StageKey(stage, "incidence_begin"), end = StageKey(stage, "incidence_end");
-    const auto steering = [&] {
-      DescribeBounds(fields, begin, kAngle, kSteered, problem.steering[stage].begin_rad,
+                   "[low, high] of the coast before this stage, which a timer ignites", false);
+  for (std::size_t stage = 1; stage < kMaxStages; ++stage) {
+    auto& steering = problem.steering[stage];
+    DescribeSteering(fields, stage, !steering.empty(), [&](const std::string& begin, const std::string& end) {
+      DescribeBounds(fields, begin, kAngle, kSteered, steering.begin_rad,
                      "[low, high] of this stage's incidence in the plane of ascent at ignition");
-      DescribeBounds(fields, end, kAngle, kSteered, problem.steering[stage].end_rad,
+      DescribeBounds(fields, end, kAngle, kSteered, steering.end_rad,
                      "[low, high] of it where the propellant would be used up");
-    };
-    fields.Either({{Has(begin, kAngle), steering}, {Has(end, kAngle), steering}});
+    });
   }
 }
 
@@ -164,22 +167,23 @@ void DescribeProgram(Fields& fields, Reference& reference) {
   fields.Quantity("last_ignition", kTime, kNonNegative, reference.last_ignition_s,
                   "timer since lift-off of the last stage; 0 of a single one");
   for (std::size_t stage = 1; stage < kMaxStages; ++stage) {
-    const std::string begin = StageKey(stage, "incidence_begin"), end = StageKey(stage, "incidence_end");
-    const auto steering = [&] {
-      fields.Quantity(begin.c_str(), kAngle, kSteered, program.steering[stage].begin_rad,
-                      "this stage's incidence in the plane of ascent at ignition");
-      fields.Quantity(end.c_str(), kAngle, kSteered, program.steering[stage].end_rad,
-                      "and where the propellant would be used up");
-    };
-    fields.Either({{Has(begin, kAngle), steering}, {Has(end, kAngle), steering}});
     const std::string coast = StageKey(stage, "coast"), ignition = StageKey(stage, "ignition");
+    double& ignition_s = reference.earlier_ignition_s[stage];
     const auto timer = [&] {
       fields.Quantity(coast.c_str(), kTime, kNonNegative, program.earlier_coast_s[stage],
                       "before this stage, which a timer ignites");
-      fields.Quantity(ignition.c_str(), kTime, kPositive, reference.earlier_ignition_s[stage],
-                      "that timer since lift-off");
+      fields.Quantity(ignition.c_str(), kTime, kPositive, ignition_s, "that timer since lift-off");
     };
-    fields.Either({{Has(coast, kTime), timer}, {Has(ignition, kTime), timer}});
+    fields.Either({{Has(coast, kTime), timer, ignition_s > 0.0}, {Has(ignition, kTime), timer}});
+  }
+  for (std::size_t stage = 1; stage < kMaxStages; ++stage) {
+    auto& steering = program.steering[stage];
+    DescribeSteering(fields, stage, !steering.empty(), [&](const std::string& begin, const std::string& end) {
+      fields.Quantity(begin.c_str(), kAngle, kSteered, steering.begin_rad,
+                      "this stage's incidence in the plane of ascent at ignition");
+      fields.Quantity(end.c_str(), kAngle, kSteered, steering.end_rad,
+                      "and where the propellant would be used up");
+    });
   }
   fields.Check([&fields, &program] {
     if (!(program.t1_s < program.t3_s && program.t3_s < program.t2_s))
@@ -200,18 +204,22 @@ void DescribeOrbit(Fields& fields, Orbit& orbit) {
 }
 
 // They follow from orbit and target; the file repeats them for its reader.
-void DescribeErrors(Fields& fields) {
-  double repeated = 0.0;
-  std::optional<double> if_wanted;
-  fields.Quantity("altitude", kLength, kAnyNumber, repeated, "orbit less target");
-  fields.Quantity("velocity", kSpeed, kAnyNumber, repeated, "orbit less target");
-  fields.Quantity("flight_path_angle", kAngle, kAnyNumber, repeated, "orbit less target");
-  fields.OptionalQuantity("inclination", kAngle, kAnyNumber, if_wanted, "orbit less target");
-  fields.OptionalQuantity("argument_of_perigee", kAngle, kAnyNumber, if_wanted, "orbit less target");
+void DescribeErrors(Fields& fields, const Reference& reference) {
+  const TrajectoryProblem& problem = reference.problem;
+  OrbitErrors errors = ErrorsOf(problem, reference.orbit);
+  std::optional<double> inclination_rad, argument_rad;
+  if (problem.target_inclination_rad) inclination_rad = errors.inclination_rad;
+  if (problem.target_argument_of_perigee_rad) argument_rad = errors.argument_of_perigee_rad;
+  constexpr const char* kMeaning = "orbit less target";
+  fields.Quantity("altitude", kLength, kAnyNumber, errors.altitude_m, kMeaning);
+  fields.Quantity("velocity", kSpeed, kAnyNumber, errors.velocity_m_s, kMeaning);
+  fields.Quantity("flight_path_angle", kAngle, kAnyNumber, errors.flight_path_angle_rad, kMeaning);
+  fields.OptionalQuantity("inclination", kAngle, kAnyNumber, inclination_rad, kMeaning);
+  fields.OptionalQuantity("argument_of_perigee", kAngle, kAnyNumber, argument_rad, kMeaning);
 }
 
 void DescribeConstraint(Fields& fields, ConstraintMargin& constraint) {
-  fields.Text("name", constraint.name, "what is limited, unit in the name");
+  fields.Name("name", {}, "a constraint", constraint.name, "what is limited, unit in the name");
   fields.Number("value", kAnyNumber, constraint.value, "that the trajectory has");
   fields.Number("limit", kAnyNumber, constraint.limit, "of the problem");
   fields.Number("margin", kAnyNumber, constraint.margin, "limit less value");
@@ -225,14 +233,35 @@ void DescribeProvenance(Fields& fields, Reference& reference) {
                  "trajectories that were flown to find it");
 }
 
+struct AttitudeColumn {
+  const char* name;
+  double AttitudeKnot::*field;
+  double scale;  ///< value inside = value in the file * scale
+};
+constexpr AttitudeColumn kAttitudeColumns[] = {
+    {"time_s", &AttitudeKnot::time_s, 1.0},
+    {"pitch_deg", &AttitudeKnot::pitch, kRadPerDeg},
+    {"yaw_deg", &AttitudeKnot::yaw, kRadPerDeg},
+    {"roll_deg", &AttitudeKnot::roll, kRadPerDeg},
+    {"pitch_rate_deg_s", &AttitudeKnot::pitch_rate, kRadPerDeg},
+    {"yaw_rate_deg_s", &AttitudeKnot::yaw_rate, kRadPerDeg},
+    {"roll_rate_deg_s", &AttitudeKnot::roll_rate, kRadPerDeg},
+};
+
 void DescribeAttitude(Fields& fields, AttitudeProgram& attitude) {
+  std::vector<RowsKey::Column> columns;
+  for (const AttitudeColumn& column : kAttitudeColumns) columns.push_back({column.name, column.scale});
   std::vector<std::vector<double>> rows;
-  fields.ColumnsAndRows(AttitudeColumnNames(), 2, rows, "attitude in the launch-inertial frame");
+  for (const AttitudeKnot& knot : attitude.knots) {
+    std::vector<double>& row = rows.emplace_back();
+    for (const AttitudeColumn& column : kAttitudeColumns) row.push_back(knot.*column.field);
+  }
+  fields.ColumnsAndRows(std::move(columns), 2, rows, "attitude in the launch-inertial frame");
+  attitude.knots.clear();
   for (std::size_t i = 0; i < rows.size(); ++i) {
     if (rows[i].empty()) continue;  // refused
     AttitudeKnot knot;
-    for (std::size_t c = 0; c < rows[i].size(); ++c)
-      knot.*kAttitudeColumns[c].field = rows[i][c] * kAttitudeColumns[c].scale;
+    for (std::size_t c = 0; c < rows[i].size(); ++c) knot.*kAttitudeColumns[c].field = rows[i][c];
     if (!attitude.knots.empty() && knot.time_s <= attitude.knots.back().time_s)
       fields.Refuse("rows[" + std::to_string(i) + "][0]", "the time is not after the row before",
                     "strictly increasing times");
@@ -240,15 +269,15 @@ void DescribeAttitude(Fields& fields, AttitudeProgram& attitude) {
   }
 }
 
-}  // namespace
-
-void Describe(Fields& fields, TrajectoryProblem& problem) {
+void DescribeProblem(Fields& fields, TrajectoryProblem& problem) {
   fields.Map("target", "the orbit", [&](Fields& target) { DescribeTarget(target, problem); });
   fields.Map("bounds", "of the decision variables",
              [&](Fields& bounds) { DescribeDecisionBounds(bounds, problem); });
   fields.Either(
-      {{Has("target.argument_of_perigee", kAngle), [&] { DescribeWeights(fields, problem, true, true); }},
-       {Has("target.inclination", kAngle), [&] { DescribeWeights(fields, problem, true, false); }},
+      {{Has("target.argument_of_perigee", kAngle), [&] { DescribeWeights(fields, problem, true, true); },
+        problem.target_argument_of_perigee_rad.has_value()},
+       {Has("target.inclination", kAngle), [&] { DescribeWeights(fields, problem, true, false); },
+        problem.target_inclination_rad.has_value()},
        {Else(), [&] { DescribeWeights(fields, problem, false, false); }}});
   fields.Map("limits", "constraints", [&](Fields& limits) { DescribeConstraints(limits, problem); });
   fields.Quantity("velocity_reserve", kSpeed, Between(0.0, 1000.0), problem.velocity_reserve_m_s,
@@ -260,6 +289,12 @@ void Describe(Fields& fields, TrajectoryProblem& problem) {
   fields.Integer("seed", 0, UINT64_MAX, problem.seed, "of its draws");
 }
 
+}  // namespace
+
+void Describe(Fields& fields, TrajectoryProblem& problem) {
+  fields.Group("trajectory_problem", "launch", [&](Fields& group) { DescribeProblem(group, problem); });
+}
+
 void Describe(Fields& fields, Reference& reference) {
   fields.Text("name", reference.name, "of the reference");
   fields.Text("target_missed", reference.target_missed, "how far the search got when it missed its target",
@@ -269,7 +304,7 @@ void Describe(Fields& fields, Reference& reference) {
              [&](Fields& program) { DescribeProgram(program, reference); });
   fields.Map("orbit", "that is reached, by the optimiser's own simulation",
              [&](Fields& orbit) { DescribeOrbit(orbit, reference.orbit); });
-  fields.Map("errors", "of that orbit", DescribeErrors);
+  fields.Map("errors", "of that orbit", [&](Fields& errors) { DescribeErrors(errors, reference); });
   fields.List("constraints", 0, SIZE_MAX, reference.constraints, "how they are kept", DescribeConstraint);
   fields.Map("provenance", "who found it, for what",
              [&](Fields& provenance) { DescribeProvenance(provenance, reference); });

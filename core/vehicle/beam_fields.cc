@@ -95,18 +95,21 @@ struct ModeRows {
   std::vector<std::size_t> plane;
 };
 
+// As people state a mode's.
+constexpr Unit kModeFrequency[] = {{"hz", kTwoPi}, {"rad_s", 1.0}};
+
 void Describe(Fields& fields, ModeRows& rows, std::size_t stages) {
   const double last_stage = static_cast<double>(stages > 0 ? stages : kMaxStages);
   fields.Numbers("stage", Between(1.0, last_stage), 1, SIZE_MAX, rows.stage, "the stack's lowest, from 1");
   fields.Quantities("propellant", kMass, kNonNegative, 1, SIZE_MAX, rows.propellant_kg, "of that stage");
+  fields.Words("plane", {"y", "z"}, rows.plane, "y alone stands for both");
   fields.Numbers("mode", Between(1.0, 20.0), 1, SIZE_MAX, rows.mode, "from 1");
-  fields.Quantities("frequency", kFrequency, kPositive, 1, SIZE_MAX, rows.frequency_rad_s, "of the mode");
+  fields.Quantities("frequency", kModeFrequency, kPositive, 1, SIZE_MAX, rows.frequency_rad_s, "of the mode");
   fields.Quantities("generalized_mass", kMass, kPositive, 1, SIZE_MAX, rows.mass_kg, "of the mode");
   fields.Quantities("station", kLength, kNonNegative, 1, SIZE_MAX, rows.station_m, "increasing");
   fields.Numbers("deflection", kAnyNumber, 1, SIZE_MAX, rows.deflection, "there");
   fields.Numbers("slope_1_m", kAnyNumber, 1, SIZE_MAX, rows.slope_1_m,
                  "there, by the station, which grows aft");
-  fields.Words("plane", {"y", "z"}, rows.plane, "y alone stands for both");
 }
 
 using ModeKey =

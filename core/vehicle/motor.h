@@ -1,6 +1,7 @@
 // The motor or engine of a stage, as its file describes it.
 #pragma once
 
+#include <algorithm>
 #include <cstddef>
 #include <vector>
 
@@ -34,7 +35,12 @@ inline void Describe(Fields& fields, Throttle& throttle) {
                     "there are " + std::to_string(throttle.time_s.size()) + " times and " +
                         std::to_string(throttle.level.size()) + " levels",
                     "one level for each time");
+    if (throttle.time_s[0] != 0.0)
+      fields.Refuse("time[0]", fields.Quote("time[0]") + " is not the time of ignition",
+                    "0 as the first time");
     CheckIncreasing(fields, "time", throttle.time_s);
+    if (std::all_of(throttle.level.begin(), throttle.level.end(), [](double level) { return level == 0.0; }))
+      fields.Refuse("level", "the level is 0 at all times", "a level above 0 somewhere");
   });
 }
 

@@ -48,8 +48,6 @@ std::vector<VehicleProblem> ProfileProblems(const std::vector<ProfileSection>& p
     const auto require = [&](bool ok, const char* key, const char* message, const char* allowed) {
       if (!ok) problems.push_back({path + key, message, allowed});
     };
-    require(section.length_m > 0.0, "length_m", "is not positive", "a number above 0");
-    require(section.aft_diameter_m > 0.0, "aft_diameter_m", "is not positive", "a number above 0");
     if (i == 0) {
       require(section.shape == ProfileShape::kTangentOgive || section.shape == ProfileShape::kCone, "shape",
               "has no tip", "tangent_ogive or cone for the first section");

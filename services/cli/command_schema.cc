@@ -10,7 +10,7 @@
 #include <vector>
 
 #include "core/input/input_error.h"
-#include "core/input/map_reader.h"
+#include "core/input/read_value.h"
 #include "core/results/output_file.h"
 #include "services/cli/command.h"
 #include "services/client/writable.h"

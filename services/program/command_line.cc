@@ -9,7 +9,7 @@
 #include <vector>
 
 #include "core/input/input_error.h"
-#include "core/input/map_reader.h"
+#include "core/input/read_value.h"
 #include "services/log/log.h"
 #include "services/program/completion_words.h"
 #include "services/program/error_json.h"

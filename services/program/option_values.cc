@@ -6,7 +6,7 @@
 #include <limits>
 #include <sstream>
 
-#include "core/input/map_reader.h"
+#include "core/input/read_value.h"
 #include "services/program/completion_words.h"
 
 namespace dispersa {

@@ -11,8 +11,11 @@
 #include <vector>
 
 #include "core/campaign/dispersion_table.h"
-#include "core/campaign_yaml/inline_files.h"
+#include "core/campaign_yaml/decode.h"
+#include "core/campaign_yaml/decode_campaign.h"
+#include "core/campaign_yaml/describe_file.h"
 #include "core/campaign_yaml/load.h"
+#include "core/campaign_yaml/named_files.h"
 #include "core/cases/campaign_flights.h"
 #include "core/flight/flight_inputs.h"
 #include "core/flight/history.h"
@@ -114,16 +117,31 @@ py::object ValueOf(const InputNode& node) {
   }
 }
 
-/// The content of a file as dicts, lists and scalars. `inlined`: file contents replace their names.
+/// Keeps the problems of files as texts apart from those of their values.
+class FilesAlone : public NamedFiles {
+ public:
+  std::vector<InputProblem> own;
+
+ private:
+  void Read(InputNode& name, const std::string& path, Holds holds, std::vector<InputProblem>&) override {
+    NamedFiles::Read(name, path, holds, own);
+  }
+};
+
+/// The content of a file as dicts, lists and scalars. `inlined`: file contents replace their names. The
+/// values are not checked.
 py::object ReadTree(const std::string& path, bool inlined) {
-  std::vector<InputProblem> problems;
-  InputNode root = ReadYamlFile(path, problems);
-  const InputNode* schema = root.Find("schema");
-  const std::string kind = schema == nullptr ? "" : schema->text;
-  if (inlined && kind == kCampaignSchema) InlineCampaignFiles(root, FileNames::kAllowed, problems);
-  if (inlined && kind == kVehicleSchema) InlineVehicleFiles(root, FileNames::kAllowed, problems);
-  if (inlined && kind == kScenarioSchema) InlineScenarioFiles(root, FileNames::kAllowed, problems);
-  if (!problems.empty()) throw InputError(std::move(problems));
+  FilesAlone files;
+  InputNode root = ReadYamlFile(path, files.own);
+  if (inlined) {
+    std::vector<InputProblem> ignored;
+    const InputNode* schema = root.Find("schema");
+    const std::string kind = schema == nullptr ? "" : schema->text;
+    if (kind == kCampaignSchema) DecodeCampaign(root, CampaignUse::kRead, ignored, &files, nullptr);
+    if (kind == kVehicleSchema) DecodeVehicle(root, "", ignored, &files);
+    if (kind == kScenarioSchema) DecodeFile<Scenario>(root, "", ignored, &files, DescribeScenarioFile);
+  }
+  if (!files.own.empty()) throw InputError(std::move(files.own));
   return ValueOf(root);
 }
 

@@ -1,9 +1,11 @@
 #include "services/schema/map_schema.h"
 
+#include <algorithm>
 #include <cmath>
 #include <map>
 
 #include "core/input/number_text.h"
+#include "core/input/read_value.h"
 
 namespace dispersa {
 namespace {
@@ -38,8 +40,6 @@ std::string UnitText(std::string_view unit) {
   return found == kTexts.end() ? std::string(unit) : found->second;
 }
 
-constexpr Unit kNoUnit = {"", 1.0};
-
 // An empty list counts as none.
 constexpr std::size_t kLeastOfAList = 1;
 
@@ -58,18 +58,10 @@ Json NumberIn(const Range& range, const Unit& unit) {
 
 // "km, above 0: meaning"
 std::string Description(const Range& range, const Unit& unit, const std::string& meaning) {
-  const std::string number = range.Less(unit.offset).Text(unit.scale).substr(std::string("a number").size());
+  const std::string number = TextIn(unit, range).substr(kAnyNumber.Text().size());
   std::string text = unit.suffix.empty() ? "" : UnitText(unit.suffix);
   if (!number.empty()) text += text.empty() ? number.substr(1) : "," + number;
-  return text.empty() ? meaning : text + ": " + meaning;
-}
-
-Json DescribedNumber(const Range& range, const Unit& unit, const char* meaning,
-                     std::optional<double> absent) {
-  Json number = NumberIn(range, unit);
-  number["description"] = Description(range, unit, meaning);
-  if (absent) number["default"] = InUnit(*absent, unit);
-  return number;
+  return text.empty() || meaning.empty() ? text + meaning : text + ": " + meaning;
 }
 
 Json ListOf(Json item, std::size_t low_count, std::size_t high_count) {
@@ -79,23 +71,29 @@ Json ListOf(Json item, std::size_t low_count, std::size_t high_count) {
   return list;
 }
 
-Json DescribedNumbers(const Range& range, const Unit& unit, std::size_t low_count, std::size_t high_count,
-                      const char* meaning) {
-  Json list = ListOf(NumberIn(range, unit), low_count, high_count);
-  list["description"] = Description(range, unit, meaning);
-  return list;
-}
-
-Json Described(Json value, const char* meaning) {
+Json Described(Json value, const std::string& meaning) {
   value["description"] = meaning;
   return value;
 }
 
-Json ATextThat(const char* meaning) {
-  return {{"type", "string"}, {"minLength", 1}, {"description", meaning}};
+Json AText() { return {{"type", "string"}, {"minLength", 1}}; }
+
+// Another one may stand in its place.
+Json Or(Json other, Json value) { return {{"anyOf", Json::array({std::move(other), std::move(value)})}}; }
+
+// "m|km"
+std::string UnitsOf(Dimension dimension) {
+  std::string units;
+  for (const Unit& unit : dimension) units += (units.empty() ? "" : "|") + std::string(unit.suffix);
+  return units;
 }
 
 Json Required(const std::string& key) { return {{"required", Json::array({key})}}; }
+
+// Of a pattern: "(a|b)", or "a".
+std::string Alternatives(const std::string& texts) {
+  return texts.find('|') == std::string::npos ? texts : "(" + texts + ")";
+}
 
 // One of the schemas holds, or exactly one.
 Json Combined(const char* how, std::vector<Json> schemas) {
@@ -108,12 +106,30 @@ Json Combined(const char* how, std::vector<Json> schemas) {
 // ---- Which keys a map has ----
 
 void MapSchema::Keys::AddTo(Json& schema) const {
+  if (schema.empty() && required.empty() && rules.size() == 1) {
+    schema = rules.front();
+    return;
+  }
   if (!required.empty()) schema["required"] = required;
   if (!rules.empty()) schema["allOf"] = rules;
 }
 
 MapSchema::Json MapSchema::Finish() const {
-  Json schema = {{"type", "object"}, {"properties", keys_.values}, {"additionalProperties", false}};
+  Json schema = {{"type", "object"}};
+  if (keys_.groups.empty()) {
+    schema["properties"] = keys_.values;
+    schema["additionalProperties"] = false;
+  } else {  // names that a group has are said by it
+    Json own = Json::object(), names = Json::array();
+    for (const auto& [key, value] : keys_.values.items())
+      if (!keys_.of_groups.contains(key)) own[key] = value;
+    for (const auto& [key, value] : own.items()) names.push_back(key);
+    Json any = Json::array();
+    if (!names.empty()) any.push_back({{"enum", std::move(names)}});
+    for (const std::string& group : keys_.groups) any.push_back({{"$ref", "#/$defs/" + group}});
+    schema["properties"] = std::move(own);
+    schema["propertyNames"] = any.size() == 1 ? any.front() : Json{{"anyOf", any}};
+  }
   if (base_.empty()) {
     keys_.AddTo(schema);
   } else {  // what is missing here stands in the other file
@@ -126,38 +142,41 @@ MapSchema::Json MapSchema::Finish() const {
 }
 
 MapSchema::Json MapSchema::MapOf(const Part& part) const {
-  MapSchema map(document_);
+  MapSchema map(shared_);
   part(map);
   return map.Finish();
 }
 
-void MapSchema::Add(const char* key, Json value, bool needed) {
-  if (value.contains("items")) lists_.insert(key);
-  keys_.values[key] = std::move(value);
-  if (needed) keys_.required.push_back(key);
+void MapSchema::Add(const Key& key, Json value) {
+  if (value.contains("items")) lists_.insert(key.name);
+  keys_.values[key.name] = *key.meaning == 0 ? std::move(value) : Described(std::move(value), key.meaning);
+  if (key.needed) keys_.required.push_back(key.name);
 }
 
-void MapSchema::AddUnits(const char* stem, Dimension dimension, bool needed,
-                         const std::function<Json(const Unit& unit)>& value) {
-  std::string units;
-  for (const Unit& unit : dimension) units += (units.empty() ? "" : "|") + std::string(unit.suffix);
+void MapSchema::AddUnits(const NumberKey& key, const std::function<Json(const Unit& unit)>& value) {
+  const Dimension dimension = key.dimension;
+  if (dimension.empty()) return Add({key.name, "", key.needed}, value(kNoUnit));
+  const std::string units = UnitsOf(dimension);
   std::vector<Json> any;
   for (const Unit& unit : dimension) {
-    const std::string key = stem + ("_" + std::string(unit.suffix));
-    Add(key.c_str(), value(unit), needed && dimension.size() == 1);
-    quantities_[key] = {stem, units};
-    any.push_back(Required(key));
+    const std::string name = key.name + ("_" + std::string(unit.suffix));
+    Json number = value(unit);
+    if (&unit != &dimension.front())  // the meaning is said once: keys in other units have a schema in common
+      number["description"] = Description(key.range, unit, "");
+    Add({name.c_str(), "", key.needed && dimension.size() == 1}, std::move(number));
+    quantities_[name] = {key.name, units};
+    any.push_back(Required(name));
   }
   if (dimension.size() == 1) return;
-  if (!needed) {
+  if (!key.needed) {
     Json none = {{"not", Combined("anyOf", any)}};
     any.push_back(std::move(none));
   }
   keys_.rules.push_back(Combined("oneOf", std::move(any)));
 }
 
-// No key of these; quantities by their stems and units, which is a tenth as long as all their keys.
-MapSchema::Json MapSchema::None(const std::vector<std::string>& keys) const {
+// Of just these keys; quantities by their stems and units, which is a tenth as long as all their keys.
+std::string MapSchema::Pattern(const std::vector<std::string>& keys) const {
   std::map<std::string, std::set<std::string>> stems;  // by units
   std::string names;
   for (const std::string& key : keys) {
@@ -169,215 +188,162 @@ MapSchema::Json MapSchema::None(const std::vector<std::string>& keys) const {
   }
   for (const auto& [units, of] : stems) {
     std::string group;
-    for (const std::string& stem : of) group += (group.empty() ? "(" : "|") + stem;
-    names += (names.empty() ? "" : "|") + group + ")_(" + units + ")";
+    for (const std::string& stem : of) group += (group.empty() ? "" : "|") + stem;
+    names += (names.empty() ? "" : "|") + Alternatives(group) + "_" + Alternatives(units);
   }
-  return {{"not", {{"pattern", "^(" + names + ")$"}}}};
+  return "^(" + names + ")$";
 }
 
 // ---- Single values ----
 
 void MapSchema::Schema(const char* name) {
-  Add("schema", {{"const", name}, {"description", "the kind of this file"}}, false);
+  Add({"schema", "the kind of this file", false}, {{"const", name}});
 }
-void MapSchema::Base(const char* key, const char* meaning) {
-  Add(key, ATextThat(meaning), false);
+void MapSchema::Base(const char* key, const char*, const char* meaning) {
+  Add({key, meaning, false}, AText());
   base_ = key;
 }
-void MapSchema::Text(const char* key, std::string&, const char* meaning, std::optional<std::string> absent) {
-  Json text = absent ? Json{{"type", "string"}, {"description", meaning}} : ATextThat(meaning);
-  if (absent && !absent->empty()) text["default"] = *absent;
-  Add(key, std::move(text), !absent);
+void MapSchema::VisitText(const TextKey& key, std::string&) {
+  Json text = key.absent ? Json{{"type", "string"}} : AText();
+  if (key.absent && !key.absent->empty()) text["default"] = *key.absent;
+  Add(key, std::move(text));
 }
 void MapSchema::Flag(const char* key, bool&, bool absent, const char* meaning) {
-  Add(key, {{"type", "boolean"}, {"description", meaning}, {"default", absent}}, false);
+  Add({key, meaning, false}, {{"type", "boolean"}, {"default", absent}});
 }
-void MapSchema::Whole(const char* key, std::uint64_t low, std::uint64_t high, std::uint64_t&,
-                      const char* meaning, std::optional<std::uint64_t> absent) {
-  Json number = {{"type", "integer"}, {"minimum", low}, {"maximum", high}};
-  number["description"] =
-      "a whole number from " + std::to_string(low) + " to " + std::to_string(high) + ": " + meaning;
-  if (absent) number["default"] = *absent;
-  Add(key, std::move(number), !absent);
+void MapSchema::VisitWhole(const WholeKey& key, std::uint64_t&) {
+  Json number = {{"type", "integer"}, {"minimum", key.low}, {"maximum", key.high}};
+  if (key.absent) number["default"] = *key.absent;
+  const std::string text = "a whole number from " + std::to_string(key.low) + " to " +
+                           std::to_string(key.high) + ": " + key.meaning;
+  Add({key.name, text.c_str(), key.needed}, std::move(number));
 }
-void MapSchema::Number(const char* key, const Range& range, double&, const char* meaning,
-                       std::optional<double> absent) {
-  Add(key, DescribedNumber(range, kNoUnit, meaning, absent), !absent);
-}
-void MapSchema::Quantity(const char* stem, Dimension dimension, const Range& range, double&,
-                         const char* meaning, std::optional<double> absent) {
-  AddUnits(stem, dimension, !absent,
-           [&](const Unit& unit) { return DescribedNumber(range, unit, meaning, absent); });
-}
-void MapSchema::OptionalNumber(const char* key, const Range& range, std::optional<double>&,
-                               const char* meaning) {
-  Add(key, DescribedNumber(range, kNoUnit, meaning, {}), false);
-}
-void MapSchema::OptionalQuantity(const char* stem, Dimension dimension, const Range& range,
-                                 std::optional<double>&, const char* meaning) {
-  AddUnits(stem, dimension, false,
-           [&](const Unit& unit) { return DescribedNumber(range, unit, meaning, {}); });
+void MapSchema::VisitNumber(const NumberKey& key, std::optional<double>&) {
+  AddUnits(key, [&](const Unit& unit) {
+    Json number = Described(NumberIn(key.range, unit), Description(key.range, unit, key.meaning));
+    if (key.absent) number["default"] = InUnit(*key.absent, unit);
+    return number;
+  });
 }
 void MapSchema::OneOf(const std::vector<OneQuantity>& quantities, std::size_t&, double&) {
   std::vector<Json> one;
   for (const OneQuantity& quantity : quantities) {
     for (const Unit& unit : quantity.dimension) {
-      const std::string key = quantity.stem + ("_" + std::string(unit.suffix));
-      Add(key.c_str(), DescribedNumber(quantity.range, unit, quantity.meaning, {}), false);
-      one.push_back(Required(key));
+      const std::string name = quantity.stem + ("_" + std::string(unit.suffix));
+      const std::string text = Description(quantity.range, unit, quantity.meaning);
+      quantities_[name] = {quantity.stem, UnitsOf(quantity.dimension)};
+      Add({name.c_str(), text.c_str(), false}, NumberIn(quantity.range, unit));
+      one.push_back(Required(name));
     }
   }
   keys_.rules.push_back(Combined("oneOf", std::move(one)));
 }
-void MapSchema::Name(const char* key, const std::vector<std::string>& names, const char*, std::string&,
-                     const char* meaning) {
-  Add(key, names.empty() ? ATextThat(meaning) : Json{{"enum", names}, {"description", meaning}}, true);
+void MapSchema::VisitName(const NameKey& key, std::string&) {
+  Add(key, key.names.empty() ? AText() : Json{{"enum", key.names}});
 }
-void MapSchema::Word(const char* key, const Choices& choices, const char* meaning,
-                     std::optional<std::size_t> absent) {
-  Json word = {{"enum", choices.words}, {"description", meaning}};
-  if (absent) word["default"] = choices.words[*absent];
-  Add(key, std::move(word), !absent);
+void MapSchema::VisitWord(const WordKey& key, std::size_t&) {
+  Json word = {{"enum", key.words}};
+  if (key.absent) word["default"] = key.words[*key.absent];
+  Add(key, std::move(word));
 }
 
 // ---- Lists ----
 
-void MapSchema::Numbers(const char* key, const Range& range, std::size_t low_count, std::size_t high_count,
-                        std::vector<double>&, const char* meaning) {
-  Add(key, DescribedNumbers(range, kNoUnit, low_count, high_count, meaning), low_count > 0);
-}
-void MapSchema::Quantities(const char* stem, Dimension dimension, const Range& range, std::size_t low_count,
-                           std::size_t high_count, std::vector<double>&, const char* meaning) {
-  AddUnits(stem, dimension, low_count > 0,
-           [&](const Unit& unit) { return DescribedNumbers(range, unit, low_count, high_count, meaning); });
-}
-void MapSchema::OptionalQuantities(const char* stem, Dimension dimension, const Range& range,
-                                   std::size_t low_count, std::size_t high_count, std::vector<double>&,
-                                   const char* meaning) {
-  AddUnits(stem, dimension, false,
-           [&](const Unit& unit) { return DescribedNumbers(range, unit, low_count, high_count, meaning); });
-}
-void MapSchema::Column(const char* stem, Dimension dimension, const Range& range, std::size_t low_count,
-                       std::vector<double>&, const char* meaning) {
-  AddUnits(stem, dimension, true, [&](const Unit& unit) {
-    return Json{{"anyOf", Json::array({Json{{"type", "string"}, {"minLength", 1}},
-                                       ListOf(NumberIn(range, unit), low_count, SIZE_MAX)})},
-                {"description", Description(range, unit, meaning) + "; or a CSV file with this column"}};
+void MapSchema::VisitNumbers(const NumbersKey& key, std::vector<double>&) {
+  AddUnits(key, [&](const Unit& unit) {
+    std::string text = Description(key.range, unit, key.meaning);
+    const Json number = NumberIn(key.range, unit);
+    Json list = ListOf(number, key.low_count, key.high_count);
+    if (key.or_one) {
+      list = Or(number, std::move(list));
+      text += "; a list of two: at either end";
+    } else if (key.or_file) {
+      list = Or(AText(), std::move(list));
+      text += "; or a CSV file with this column";
+    }
+    return Described(std::move(list), text);
   });
 }
-void MapSchema::Several(const char* key, int low, int high, const char*, const char*, std::vector<int>&,
-                        const char* meaning) {
-  const Json one = {{"type", "integer"}, {"minimum", low}, {"maximum", high}};
+void MapSchema::VisitSeveral(const SeveralKey& key, std::vector<int>&) {
+  const Json one = {{"type", "integer"}, {"minimum", key.low}, {"maximum", key.high}};
   Json several = ListOf(one, 1, SIZE_MAX);
   several["uniqueItems"] = true;
-  Add(key, {{"anyOf", Json::array({one, std::move(several)})}, {"description", meaning}}, false);
+  Add(key, Or(one, std::move(several)));
 }
-void MapSchema::OptionalNumbers(const char* key, const Range& range, std::size_t low_count,
-                                std::size_t high_count, std::vector<double>&, const char* meaning) {
-  Add(key, DescribedNumbers(range, kNoUnit, low_count, high_count, meaning), false);
+void MapSchema::VisitRows(const RowsKey& key, std::vector<std::vector<double>>&) {
+  std::vector<std::string> names;
+  for (const RowsKey::Column& column : key.columns) names.emplace_back(column.name);
+  if (!names.empty())
+    Add({"columns", "these names, in this order"}, ListOf({{"enum", names}}, names.size(), names.size()));
+  Json row = key.width > 0 ? ListOf({{"type", "number"}}, key.width, key.width)
+                           : ListOf({{"type", "number"}}, 0, SIZE_MAX);
+  Add(key, ListOf(std::move(row), key.low_count, key.high_count));
 }
-void MapSchema::TwoByTwo(const char* key, std::array<std::array<double, 2>, 2>&, const char*,
-                         const char* meaning) {
-  Add(key, Described(ListOf(ListOf({{"type", "number"}}, 2, 2), 2, 2), meaning), true);
-}
-void MapSchema::AnyNumbers(const char* key, const char* meaning) {
-  Add(key, {{"type", "object"}, {"additionalProperties", {{"type", "number"}}}, {"description", meaning}},
-      false);
-}
-void MapSchema::Rows(const char* key, std::size_t low_count, std::size_t high_count,
-                     std::vector<std::vector<double>>&, const char* meaning) {
-  Json row = {{"type", "array"}, {"items", {{"type", "number"}}}};
-  Add(key, Described(ListOf(std::move(row), low_count, high_count), meaning), low_count > 0);
-}
-void MapSchema::ColumnsAndRows(const std::vector<std::string>& columns, std::size_t low_count,
-                               std::vector<std::vector<double>>&, const char* meaning) {
-  const std::size_t count = columns.size();
-  Add("columns", Described(ListOf({{"enum", columns}}, count, count), "these names, in this order"), true);
-  Add("rows", Described(ListOf(ListOf({{"type", "number"}}, count, count), low_count, SIZE_MAX), meaning),
-      true);
-}
-void MapSchema::Ends(const char* stem, Dimension dimension, const Range& range, double&, double&, bool needed,
-                     const char* meaning) {
-  AddUnits(stem, dimension, needed, [&](const Unit& unit) {
-    const Json number = NumberIn(range, unit);
-    return Json{{"anyOf", Json::array({number, ListOf(number, 2, 2)})},
-                {"description", Description(range, unit, meaning) + "; a list of two: at either end"}};
-  });
+void MapSchema::NamedNumbers(const char* key, const std::optional<std::vector<std::string>>&,
+                             std::vector<double>&, const char* meaning) {
+  Add({key, meaning, false}, {{"type", "object"}, {"additionalProperties", {{"type", "number"}}}});
 }
 void MapSchema::Texts(const char* key, std::size_t low_count, std::size_t high_count,
                       std::vector<std::string>&, const char* meaning) {
-  Add(key, Described(ListOf({{"type", "string"}}, low_count, high_count), meaning), low_count > 0);
+  Add({key, meaning, low_count > 0}, ListOf({{"type", "string"}}, low_count, high_count));
 }
 void MapSchema::Words(const char* key, const std::vector<std::string>& words, std::vector<std::size_t>&,
                       const char* meaning) {
-  Add(key, Described(ListOf({{"enum", words}}, 1, SIZE_MAX), meaning), true);
+  Add({key, meaning}, ListOf({{"enum", words}}, 1, SIZE_MAX));
 }
 
 // ---- Maps ----
 
-void MapSchema::Map(const char* key, const char* meaning, const Part& part) {
-  Add(key, Described(MapOf(part), meaning), true);
+void MapSchema::VisitMap(const MapKey& key, MapValue&, const Part& part) {
+  Json value = MapOf(part);
+  if (key.or_list) value = Or(value, ListOf(value, 1, SIZE_MAX));
+  if (key.word != nullptr) value = Or({{"const", key.word}}, std::move(value));
+  if (key.file != MapKey::File::kNone) value = Or(AText(), std::move(value));
+  const Json number = {{"type", "number"}};
+  if (key.or_number) value["anyOf"].insert(value["anyOf"].begin(), number);
+  Add(key, std::move(value));
 }
-void MapSchema::OptionalMap(const char* key, bool&, const char* meaning, const Part& part) {
-  Add(key, Described(MapOf(part), meaning), false);
-}
-void MapSchema::Maps(const char* key, bool needed, std::size_t low_count, std::size_t high_count,
-                     const Items& items, const char* meaning) {
+void MapSchema::VisitMaps(const Key& key, std::size_t low_count, std::size_t high_count, const Items& items) {
   items.resize(1);
   Json item = MapOf([&](Fields& fields) { items.describe(fields, 0); });
   items.resize(0);  // how many there are decides nothing
-  Add(key, Described(ListOf(std::move(item), low_count, high_count), meaning), needed);
-}
-void MapSchema::WordOrMap(const char* key, const char* word, const char*, const char*, bool&,
-                          const char* meaning, const Part& part) {
-  Add(key, {{"anyOf", Json::array({Json{{"const", word}}, MapOf(part)})}, {"description", meaning}}, true);
-}
-void MapSchema::NumberOrTable(const char* key, std::optional<double>&, const char* meaning,
-                              const Part& part) {
-  Add(key,
-      {{"anyOf",
-        Json::array({Json{{"type", "number"}}, Json{{"type", "string"}, {"minLength", 1}}, MapOf(part)})},
-       {"description", meaning}},
-      false);
-}
-void MapSchema::MapOrMaps(const char* key, const char*, const char* meaning, const Part& part) {
-  const Json one = MapOf(part);
-  Add(key, {{"anyOf", Json::array({one, ListOf(one, 1, SIZE_MAX)})}, {"description", meaning}}, false);
-}
-void MapSchema::AddTable(const char* key, const char* meaning, bool needed, const Part& part) {
-  Add(key,
-      {{"anyOf", Json::array({Json{{"type", "string"}, {"minLength", 1}}, MapOf(part)})},
-       {"description", meaning}},
-      needed);
-}
-void MapSchema::Table(const char* key, const char*, const char* meaning, const Part& part) {
-  AddTable(key, meaning, true, part);
-}
-void MapSchema::OptionalTable(const char* key, bool&, const char* meaning, const Part& part) {
-  AddTable(key, meaning, false, part);
-}
-void MapSchema::MapByHand(const char* key, const char* meaning, const Part& part, const ReadNode&) {
-  Add(key, Described(MapOf(part), meaning), false);
+  Add(key, ListOf(std::move(item), low_count, high_count));
 }
 void MapSchema::Columns(const char* key, const char* meaning, const ReadNode&) {
   const Json column = {{"type", "array"}, {"items", {{"type", "number"}}}};
-  const Json columns = {{"type", "object"}, {"additionalProperties", column}};
-  Add(key,
-      {{"anyOf", Json::array({Json{{"type", "string"}, {"minLength", 1}}, columns})},
-       {"description", meaning}},
-      false);
+  Add({key, meaning, false}, Or(AText(), {{"type", "object"}, {"additionalProperties", column}}));
 }
 void MapSchema::Document(const char* key, const char* schema, bool needed, const char*, const char* meaning,
                          const ReadNode&) {
-  Add(key,
-      {{"anyOf", Json::array({Json{{"type", "string"}, {"minLength", 1}}, document_(schema)})},
-       {"description", meaning}},
-      needed);
+  Add({key, meaning, needed}, Or(AText(), shared_.Document(schema)));
 }
 
 // ---- Which keys go together ----
 
-MapSchema::Json MapSchema::Holds(const Condition& condition) const {
+// Names and schemas of the keys are said once, for all maps that have them.
+void MapSchema::Group(const char* name, const std::string& of, const Part& part) {
+  if (of.empty()) return part(*this);
+  MapSchema group(shared_);
+  part(group);
+  const std::string full = std::string(name) + "_" + of, keys = "keys_of_" + full;
+  std::vector<std::string> names;
+  for (const auto& [key, value] : group.keys_.values.items()) {
+    keys_.values[key] = true;
+    keys_.of_groups.insert(key);
+    names.push_back(key);
+  }
+  quantities_.insert(group.quantities_.begin(), group.quantities_.end());
+  keys_.groups.insert(keys);
+  shared_.Named(keys, [&] { return Json{{"pattern", Pattern(names)}}; });
+  keys_.rules.push_back(shared_.Named(full, [&] {
+    Json schema = {{"properties", group.keys_.values}};
+    group.keys_.AddTo(schema);
+    return schema;
+  }));
+}
+
+// What holds of a map if the condition does, any of these.
+std::vector<MapSchema::Json> MapSchema::Holds(const Condition& condition) const {
   std::vector<std::string> path;
   for (std::size_t start = 0; start <= condition.key.size();) {
     const std::size_t dot = std::min(condition.key.find('.', start), condition.key.size());
@@ -386,32 +352,42 @@ MapSchema::Json MapSchema::Holds(const Condition& condition) const {
   }
   std::vector<Json> any;
   const auto add = [&](const std::string& key) {
-    Json holds = Required(key);
+    const bool is_needed = path.size() == 1 && std::find(keys_.required.begin(), keys_.required.end(), key) !=
+                                                   keys_.required.end();
+    Json holds = is_needed && !condition.words.empty() ? Json::object() : Required(key);
     if (!condition.words.empty()) {
       Json words = Json::array();
       for (const std::string& word : condition.words)
         words.push_back(word == "true" || word == "false" ? Json(word == "true") : Json(word));
-      holds["properties"][key] = {{"enum", std::move(words)}};
-    } else if (condition.is_map) {
-      holds["properties"][key] = {{"type", "object"}};
-    } else if (path.size() == 1 && lists_.contains(key) && !condition.empty_counts) {
+      holds["properties"][key] = words.size() == 1 ? Json{{"const", words[0]}} : Json{{"enum", words}};
+    } else if (condition.is_map || condition.is_list) {
+      holds["properties"][key] = {{"type", condition.is_map ? "object" : "array"}};
+    } else if (IsNoneIfEmpty(condition)) {
       holds["properties"][key] = {{"minItems", kLeastOfAList}};
+    }
+    for (std::size_t i = path.size() - 1; i-- > 0;) {
+      Json outer = Required(path[i]);
+      outer["properties"][path[i]] = std::move(holds);
+      holds = std::move(outer);
     }
     any.push_back(std::move(holds));
   };
   if (condition.dimension.empty()) add(path.back());
   for (const Unit& unit : condition.dimension) add(path.back() + "_" + std::string(unit.suffix));
-  Json holds = Combined("anyOf", std::move(any));
-  for (std::size_t i = path.size() - 1; i-- > 0;) {
-    Json outer = Required(path[i]);
-    outer["properties"][path[i]] = std::move(holds);
-    holds = std::move(outer);
-  }
-  return holds;
+  return any;
+}
+bool MapSchema::IsNoneIfEmpty(const Condition& condition) const {
+  return lists_.contains(condition.key) && !condition.empty_counts;
 }
 
 void MapSchema::Either(const std::vector<Alternative>& alternatives) {
-  std::vector<Keys> branches;
+  struct Branch {
+    std::vector<Json> conditions;      // any of them; none: all maps
+    std::vector<std::string> implied;  // keys that no map has for which the conditions do not hold
+    Keys keys;
+    Json rules;
+  };
+  std::vector<Branch> branches;
   Keys known = std::move(keys_);
   Json all = Json::object();  // keys of any alternative
   for (const Alternative& alternative : alternatives) {
@@ -422,36 +398,52 @@ void MapSchema::Either(const std::vector<Alternative>& alternatives) {
         all[key] = value;
       else if (all[key] != value)
         all[key] = true;  // each alternative says for itself
-    branches.push_back(std::move(keys_));
+    known.groups.insert(keys_.groups.begin(), keys_.groups.end());
+    known.of_groups.insert(keys_.of_groups.begin(), keys_.of_groups.end());
+    branches.push_back({{}, {}, std::move(keys_), {}});
   }
   keys_ = std::move(known);
-  // The conditions of a map to which this alternative applies.
-  const auto rules = [&](const Keys& branch) {
-    Json schema = Json::object();
+  for (std::size_t i = 0; i < alternatives.size(); ++i) {
+    const Condition& condition = alternatives[i].condition;
+    if (condition.key.empty()) continue;
+    branches[i].conditions = Holds(condition);
+    if (condition.words.empty() && !condition.is_map && !condition.is_list && !IsNoneIfEmpty(condition)) {
+      if (condition.dimension.empty()) branches[i].implied.push_back(condition.key);
+      for (const Unit& unit : condition.dimension)
+        branches[i].implied.push_back(condition.key + "_" + std::string(unit.suffix));
+    }
+  }
+  if (branches.empty() || !branches.back().conditions.empty()) branches.emplace_back();  // all others
+  // The conditions of a map to which a branch applies.
+  std::set<std::string> absent;
+  for (Branch& branch : branches) {
+    Json& schema = branch.rules = Json::object();
     std::vector<std::string> foreign;
     for (const auto& [key, value] : all.items()) {
-      if (!branch.values.contains(key)) {
-        if (!keys_.values.contains(key)) foreign.push_back(key);
-      } else if (value != branch.values[key]) {
-        schema["properties"][key] = branch.values[key];
+      if (!branch.keys.values.contains(key)) {
+        if (!keys_.values.contains(key) && !absent.contains(key)) foreign.push_back(key);
+      } else if (value != branch.keys.values[key]) {
+        schema["properties"][key] = branch.keys.values[key];
       }
     }
-    if (!foreign.empty()) schema["propertyNames"] = None(foreign);
-    branch.AddTo(schema);
-    return schema;
-  };
-  // From the last alternative to the first: if its condition holds, its rules, else those of the next.
-  Json chain = rules(Keys{});
-  for (std::size_t i = alternatives.size(); i-- > 0;) {
-    Json own = rules(branches[i]);
-    if (alternatives[i].condition.key.empty()) {
-      chain = std::move(own);
-      continue;
-    }
-    Json choice = {{"if", Holds(alternatives[i].condition)}};
-    if (!own.empty()) choice["then"] = std::move(own);
+    if (!foreign.empty()) schema["propertyNames"] = {{"not", {{"pattern", Pattern(foreign)}}}};
+    branch.keys.AddTo(schema);
+    absent.insert(branch.implied.begin(), branch.implied.end());
+  }
+  // From the last branch to the first: if its conditions hold, its rules, else those of the next. Neighbours
+  // with the same rules are one.
+  Json chain = std::move(branches.back().rules);
+  std::vector<Json> conditions;
+  for (std::size_t i = branches.size() - 1; i-- > 0;) {
+    Branch& branch = branches[i];
+    conditions.insert(conditions.begin(), branch.conditions.begin(), branch.conditions.end());
+    if (i > 0 && branches[i - 1].rules == branch.rules) continue;
+    const std::vector<Json> any = std::exchange(conditions, {});
+    if (branch.rules == chain) continue;
+    Json choice = {{"if", Combined("anyOf", any)}};
+    if (!branch.rules.empty()) choice["then"] = std::move(branch.rules);
     if (!chain.empty()) choice["else"] = std::move(chain);
-    chain = choice.size() > 1 ? std::move(choice) : Json::object();
+    chain = std::move(choice);
   }
   for (const auto& [key, value] : all.items())
     if (!keys_.values.contains(key)) keys_.values[key] = value;

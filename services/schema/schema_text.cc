@@ -13,7 +13,7 @@ using Json = nlohmann::ordered_json;
 
 constexpr std::size_t kColumns = 110;
 constexpr std::size_t kDeepest =
-    4;  // what lies deeper stands on one line: indenting it is a fifth of the file
+    1;  // what lies deeper stands on one line: indenting it is a fifth of the file
 
 // Indented, but what fits stands on one line.
 void Print(const Json& json, std::size_t indent, std::string& out) {
@@ -33,24 +33,25 @@ void Print(const Json& json, std::size_t indent, std::string& out) {
   out += "\n" + std::string(indent, ' ') + (json.is_array() ? "]" : "}");
 }
 
-// The schemas of the files that a file may hold in place.
-class Documents {
+// What the schema of a file refers to.
+class SharedSchemas : public MapSchema::Shared {
  public:
-  Json Of(const std::string& schema) {
-    for (const FileKind kind : kFileKinds) {
-      if (SchemaOf(kind) != schema) continue;
-      if (!schemas_.contains(NameOf(kind))) {
-        schemas_[NameOf(kind)] = nullptr;  // it is being made
-        Json made = File(kind);
-        schemas_[NameOf(kind)] = std::move(made);
-      }
-      return {{"$ref", "#/$defs/" + NameOf(kind)}};
-    }
+  Json Document(const std::string& schema) override {
+    for (const FileKind kind : kFileKinds)
+      if (SchemaOf(kind) == schema) return Named(NameOf(kind), [&] { return File(kind); });
     return true;
+  }
+  Json Named(const std::string& name, const std::function<Json()>& make) override {
+    if (!schemas_.contains(name)) {
+      schemas_[name] = nullptr;  // it is being made
+      Json made = make();
+      schemas_[name] = std::move(made);
+    }
+    return {{"$ref", "#/$defs/" + name}};
   }
 
   Json File(FileKind kind) {
-    MapSchema map([this](const std::string& schema) { return Of(schema); });
+    MapSchema map(*this);
     DescribeFile(kind, map);
     return map.Finish();
   }
@@ -64,8 +65,8 @@ class Documents {
 }  // namespace
 
 std::string SchemaText(FileKind kind) {
-  Documents documents;
-  Json file = documents.File(kind);
+  SharedSchemas shared;
+  Json file = shared.File(kind);
   Json schema = {{"$schema", "http://json-schema.org/draft-07/schema#"},
                  {"title", "dispersa " + NameOf(kind) + " file"},
                  {"description",
@@ -74,7 +75,7 @@ std::string SchemaText(FileKind kind) {
   // Inside another file the key may be missing.
   if (!schema.contains("required")) schema["required"] = Json::array();
   schema["required"].insert(schema["required"].begin(), "schema");
-  schema["$defs"] = documents.schemas();
+  schema["$defs"] = shared.schemas();
   std::string text;
   Print(WithSharedParts(std::move(schema)), 0, text);
   return text + "\n";

@@ -1,7 +1,7 @@
 #include "services/schema/shared_parts.h"
 
+#include <functional>
 #include <map>
-#include <set>
 #include <string>
 #include <utility>
 
@@ -10,24 +10,20 @@ namespace {
 
 using Json = nlohmann::ordered_json;
 
-// A reference and its name take about so much.
-constexpr std::size_t kLeastShared = 80;
+// What a reference takes, one with a description beside it, and the name under "$defs".
+constexpr std::size_t kReference = 30, kDescribed = 45, kName = 16;
 
-bool IsKeyword(const std::string& key) {
-  static const std::set<std::string> kKeywords = {
-      "properties", "items", "additionalProperties", "anyOf", "oneOf", "allOf", "if", "then", "else"};
-  return kKeywords.contains(key);
-}
-
-// A schema and not the map of a schema's properties, which no keyword of these types tells.
-bool IsSchema(const Json& json) {
-  const auto has = [&](const char* keyword, Json::value_t type) {
-    const auto found = json.find(keyword);
-    return found != json.end() && found->type() == type;
-  };
-  return json.is_object() && (has("type", Json::value_t::string) || has("anyOf", Json::value_t::array) ||
-                              has("if", Json::value_t::object) || has("enum", Json::value_t::array) ||
-                              has("oneOf", Json::value_t::array));
+// Calls visit(part, key) of every schema directly inside a schema; `key`: of the properties, else empty.
+void VisitParts(Json& schema, const std::function<void(Json&, const std::string&)>& visit) {
+  if (!schema.is_object()) return;
+  for (const char* keyword : {"properties", "$defs"})
+    if (const auto parts = schema.find(keyword); parts != schema.end())
+      for (auto& [key, part] : parts->items()) visit(part, key);
+  for (const char* keyword : {"anyOf", "oneOf", "allOf"})
+    if (const auto parts = schema.find(keyword); parts != schema.end())
+      for (Json& part : *parts) visit(part, "");
+  for (const char* keyword : {"items", "additionalProperties", "propertyNames", "not", "if", "then", "else"})
+    if (const auto part = schema.find(keyword); part != schema.end()) visit(*part, "");
 }
 
 // Its text without the description, which depends on its place.
@@ -42,66 +38,92 @@ class Sharing {
   Json Apply(Json schema) {
     Json named = std::move(schema["$defs"]);
     schema.erase("$defs");
-    for (const auto& [name, value] : named.items()) {
-      uses_[name] = 1;
-      CountChildren(value);
+    for (const auto& [name, value] : named.items()) uses_[name] = 1;
+    // First all that there are, then without those inside others that are shared.
+    for (int pass = 0; pass < 2; ++pass) {
+      const Counts before = std::exchange(counts_, {});
+      for (auto& [name, value] : named.items()) CountParts(value, before);
+      CountParts(schema, before);
     }
-    CountChildren(schema);
-    ReplaceChildren(schema, "");
-    for (auto& [name, value] : named.items()) ReplaceChildren(value, name);
+    ReplaceParts(schema, "");
+    for (auto& [name, value] : named.items()) ReplaceParts(value, name);
     for (auto& [name, value] : defs_.items()) named[name] = std::move(value);
     if (!named.empty()) schema["$defs"] = std::move(named);
     return schema;
   }
 
  private:
-  void CountChildren(const Json& json) {
-    if (!json.is_structured()) return;
-    for (const Json& child : json) {
-      if (IsSchema(child)) {
-        const std::string part = PartOf(child);
-        if (part.size() >= kLeastShared && ++counts_[part] > 1) continue;
-      }
-      CountChildren(child);
-    }
+  using Counts = std::map<std::string, std::size_t>;
+
+  // It takes less.
+  static bool IsShared(const Counts& counts, const std::string& text, std::size_t reference) {
+    const auto count = counts.find(text);
+    if (count == counts.end()) return false;
+    return count->second * text.size() > text.size() + kName + count->second * reference;
+  }
+
+  void CountParts(Json& schema, const Counts& before) {
+    VisitParts(schema, [&](Json& child, const std::string&) {
+      if (!child.is_object()) return;
+      const std::string whole = child.dump(), part = PartOf(child);
+      const bool is_known = ++counts_[part] > 1 && IsShared(before, part, kDescribed);
+      if (whole != part) ++counts_[whole];
+      if (!is_known) CountParts(child, before);
+    });
   }
 
   // `name`: of the key that holds it.
   void Replace(Json& json, const std::string& name) {
-    const std::string part = IsSchema(json) ? PartOf(json) : "";
-    const auto count = counts_.find(part);
-    if (count == counts_.end() || count->second < 2) return ReplaceChildren(json, name);
+    if (!json.is_object()) return;
+    std::string part = json.dump();
+    const bool is_whole = IsShared(counts_, part, kReference);
+    if (!is_whole) part = PartOf(json);
+    if (!is_whole && !IsShared(counts_, part, kDescribed)) return ReplaceParts(json, name);
     auto [found, is_new] = names_.try_emplace(part);
     if (is_new) {
       const int number = ++uses_[name];
-      found->second = number == 1 ? name : name + "_" + std::to_string(number);
+      found->second = number == 1 ? name : "part_" + std::to_string(++parts_);
       const std::string own = found->second;
       Json shared = Json::parse(part);
-      ReplaceChildren(shared, name);
+      ReplaceParts(shared, name);
       defs_[own] = std::move(shared);
     }
     Json reference = {{"$ref", "#/$defs/" + names_.at(part)}};
-    if (json.contains("description"))  // nothing is read beside a $ref
+    if (!is_whole && json.contains("description"))  // nothing is read beside a $ref
       reference = {{"description", json["description"]}, {"allOf", Json::array({reference})}};
     json = std::move(reference);
   }
-  void ReplaceChildren(Json& json, const std::string& name) {
-    if (!json.is_structured()) return;
-    if (json.is_array()) {
-      for (Json& child : json) Replace(child, name);
-      return;
-    }
-    for (auto& [key, child] : json.items()) Replace(child, IsKeyword(key) ? name : key);
+  void ReplaceParts(Json& schema, const std::string& name) {
+    VisitParts(schema, [&](Json& part, const std::string& key) { Replace(part, key.empty() ? name : key); });
   }
 
-  std::map<std::string, int> counts_;         // of each part
+  Counts counts_;                             // of each schema, and of what it says whoever holds it
   std::map<std::string, std::string> names_;  // of each shared part
   std::map<std::string, int> uses_;           // of each name
+  int parts_ = 0;                             // so many whose name was taken
   Json defs_ = Json::object();
 };
 
+// A single rule needs no list. Nothing is read beside a reference, so one replaces only a schema without
+// other keywords.
+void Simplify(Json& schema) {
+  VisitParts(schema, [](Json& part, const std::string&) { Simplify(part); });
+  const auto rules = schema.find("allOf");
+  if (rules == schema.end() || rules->size() != 1) return;
+  const Json rule = rules->front();
+  if (schema.size() > 1 && rule.contains("$ref")) return;
+  for (const auto& [keyword, value] : rule.items())
+    if (keyword != "allOf" && schema.contains(keyword)) return;
+  schema.erase("allOf");
+  schema.update(rule);
+}
+
 }  // namespace
 
-Json WithSharedParts(Json schema) { return Sharing().Apply(std::move(schema)); }
+Json WithSharedParts(Json schema) {
+  schema = Sharing().Apply(std::move(schema));
+  Simplify(schema);
+  return schema;
+}
 
 }  // namespace dispersa

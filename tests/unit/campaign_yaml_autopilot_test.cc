@@ -7,7 +7,6 @@
 #include <thread>
 
 #include "core/campaign_yaml/load.h"
-#include "core/control/autopilot_fields.h"
 #include "core/control/law_here.h"
 
 namespace dispersa::campaign_yaml_autopilot_test {
@@ -167,29 +166,6 @@ TEST(ReadAutopilot, SaysWhereAScheduleIsWrong) {
             "text:44:7: roll.schedule[0]: missing key 'at_s' or 'at_ms', allowed: a number above 0");
 }
 
-// Reads the names that it visits.
-struct FieldNames {
-  std::vector<std::string> names;
-  void Quantity(const char* stem, Dimension dimension, const Range&, double, const char*) {
-    names.push_back(dimension.size() > 1 ? std::string(stem) + "_*"
-                                         : std::string(stem) + "_" + std::string(dimension[0].suffix));
-  }
-  void Guard(const char* stem, Dimension dimension, const Range& range, double value, const char* meaning) {
-    Quantity(stem, dimension, range, value, meaning);
-  }
-  void Number(const char* key, const Range&, double, const char*) { names.push_back(key); }
-  void NumberGuard(const char* key, const Range&, double, const char*) { names.push_back(key); }
-  void Flag(const char* key, bool, const char*) { names.push_back(key); }
-  void EachStage(const char* key, const Range&, const std::vector<double>&, const char*) {
-    names.push_back(key);
-  }
-  void Stage(const char* key, int, const char*) { names.push_back(key); }
-  void Sections(const char* key, const std::vector<FilterSection>&, const char*) { names.push_back(key); }
-  void OfOtherLaws(const char*, const char*) {}
-  void Matrix(const char* key, const Matrix2&, const char*) { names.push_back(key); }
-  void OptionalPair(const char* key, const std::optional<Vector2>&, const char*) { names.push_back(key); }
-};
-
 TEST(ReadAutopilot, NamesALawInPythonButDoesNotHoldIt) {
   const std::string sha256(64, 'a');
   std::string roll = kPidRoll;
@@ -221,31 +197,6 @@ TEST(ReadAutopilot, NamesALawInPythonButDoesNotHoldIt) {
     std::thread([&] { EXPECT_EQ(problem(), absent) << "an offer is the thread's that makes it"; }).join();
   }
   EXPECT_EQ(problem(), absent);
-}
-
-TEST(AutopilotKeys, AreDocumentedAllAndByTheirBlocks) {
-  std::ifstream file(DISPERSA_CAMPAIGNS "/../core/campaign_yaml/README.md");
-  std::map<std::string, std::string> rows;  // of the tables, by their first cell
-  for (std::string line; std::getline(file, line);)
-    if (line.starts_with("| `")) rows[line.substr(3, line.find('`', 3) - 3)] = line;
-  for (const LawInfo& law : kLaws)
-    EXPECT_NE(rows["law"].find("`" + std::string(law.name) + "`"), std::string::npos) << law.name;
-  const auto expect = [&](const std::string& block, auto visit) {
-    FieldNames fields;
-    visit(fields);
-    for (const std::string& name : fields.names)
-      EXPECT_NE(rows[block].find("`" + name + "`"), std::string::npos) << block << "." << name;
-  };
-  const FilterSection section;
-  expect("filters", [&](auto& fields) { VisitFilter(fields, section); });
-  const ScheduleEntry entry;
-  expect("schedule", [&](auto& fields) { VisitScheduleEntry(fields, InfoOf(ControlLaw::kPid), entry); });
-  const FeedForward feed_forward;
-  expect("feed_forward", [&](auto& fields) { VisitFeedForward(fields, feed_forward); });
-  const AxisConfig axis;
-  EachBlock(axis, [&](const std::string& block, bool LawInfo::*, auto visit, const char*) {
-    expect(block, visit);
-  });
 }
 
 }  // namespace

@@ -216,10 +216,7 @@ TEST_P(BadModesTest, IsReportedInFull) {
 
 constexpr BadInput kBadModes[] = {
     {"UnknownColumn", "frequency_hz", "frequency",
-     "modes.csv:1:1: missing column 'frequency_hz', allowed: the columns stage, propellant_kg, plane, "
-     "mode, frequency_hz, generalized_mass_kg, station_m, deflection, slope_1_m\n"
-     "modes.csv:1:32: unknown column 'frequency', allowed: the columns stage, propellant_kg, plane, "
-     "mode, frequency_hz, generalized_mass_kg, station_m, deflection, slope_1_m\n"},
+     "modes.csv:1:32: missing unit (did you mean 'frequency_hz'?), allowed: frequency_hz, frequency_rad_s\n"},
     {"UnknownPlane", "2,500,z,1,44,220,0,1,-1", "2,500,x,1,44,220,0,1,-1",
      "modes.csv:10:7: plane[8]: 'x' is not a choice, allowed: one of y, z\n"},
     {"HalfAMode", "1,0,y,1,15,300,0,-0.5,0.2", "1,0,y,1.5,15,300,0,-0.5,0.2",

@@ -354,9 +354,8 @@ constexpr BadInput kBadInputs[] = {
      "weight a value\n"},
     {"FactorAsMagnitude", "campaign.yaml", "distribution: normal, three_sigma_percent: 6.7",
      "distribution: rayleigh, sigma_percent: 2", "campaign.yaml",
-     "campaign.yaml:10:36: dispersions.drag_coefficient.distribution: 'rayleigh' is not a choice, allowed: "
-     "one of "
-     "normal, uniform, two_point, values, constant, truncated_normal, triangular, lognormal, empirical\n"},
+     "campaign.yaml:10:36: dispersions.drag_coefficient.distribution: a factor is no magnitude, allowed: "
+     "rayleigh for an angle, a length, a speed or a rate\n"},
     {"EmptyList", "campaign.yaml",
      "requirements:\n  - {metric: pitch_error_peak_deg, below: 0.5, probability: 0.9973, "
      "consumer_risk: 0.10}",
@@ -378,7 +377,7 @@ constexpr BadInput kBadInputs[] = {
      "reference.yaml:39:8: attitude.rows[1][0]: the time is not after the row before, "
      "allowed: strictly increasing times\n"},
     {"ShortRow", "reference.yaml", "- [10, 85.5, ", "- [10, ", "reference.yaml",
-     "reference.yaml:39:7: attitude.rows[1]: a list is not a row, allowed: a list of 7 "
+     "reference.yaml:39:7: attitude.rows[1]: a list is not a row of 7 numbers, allowed: a list of 7 "
      "numbers: time_s, pitch_deg, yaw_deg, roll_deg, pitch_rate_deg_s, yaw_rate_deg_s, "
      "roll_rate_deg_s\n"},
     {"UnknownColumn", "reference.yaml", "[time_s, pitch_deg,", "[time_s, pitch_rad,", "reference.yaml",
@@ -399,7 +398,7 @@ constexpr BadInput kBadInputs[] = {
      "this last column and gives a stable law, allowed: two positive numbers, or "
      "allow_unproven: true to study it\n"},
     {"ShortMatrix", "autopilot.yaml", "q: [[10, 0], [0, 10]]", "q: [[10, 0], [0]]", "campaign.yaml",
-     "autopilot.yaml:10:18: pitch.adaptation.q[1]: a list is not a row of two numbers, "
+     "autopilot.yaml:10:18: pitch.adaptation.q[1]: a list is not a row of 2 numbers, "
      "allowed: [[q11, q12], [q12, q22]]\n"},
     {"AsymmetricMatrix", "autopilot.yaml", "q: [[10, 0], [0, 10]]", "q: [[10, 3], [0, 10]]", "campaign.yaml",
      "autopilot.yaml:10:8: pitch.adaptation.q: is not symmetric positive definite, allowed: a "
@@ -502,9 +501,39 @@ TEST(CampaignYamlErrors, TableWithOtherColumns) {
   files.Write("wind.csv", "altitude_m,north_m_s,eest_m_s\n0,0,0\n1000,0,5\n");
   EXPECT_EQ(
       files.Texts(CheckFile(files.Path("campaign.yaml")).errors),
-      "wind.csv:1:1: missing column 'east_m_s', allowed: the columns altitude_m, north_m_s, east_m_s\n"
       "wind.csv:1:22: unknown column 'eest_m_s' (did you mean 'east_m_s'?), allowed: the columns altitude_m, "
       "north_m_s, east_m_s\n");
+}
+
+TEST(CampaignYamlErrors, ColumnThatIsGivenTwice) {
+  const InputFiles files;
+  files.Edit("campaign.yaml", "requirements:", "  wind_profile: {table: wind.csv}\nrequirements:");
+  files.Write("wind.csv", "altitude_m,north_m_s,altitude_m,east_m_s\n0,0,0,0\n1000,0,1000,5\n");
+  EXPECT_EQ(files.Texts(CheckFile(files.Path("campaign.yaml")).errors),
+            "wind.csv:1:22: the column 'altitude_m' is given twice, allowed: the columns altitude_m, "
+            "north_m_s, east_m_s\n");
+}
+
+// What has nothing to do with an unreadable table is checked all the same.
+TEST(CampaignYamlErrors, RelationsBesideAnUnreadableTable) {
+  const InputFiles files;
+  const std::string unreadable =
+      "vehicle.yaml:35:64: aerodynamics.tables[0].table: cannot read 'none.csv': No such file or directory, "
+      "allowed: a readable file, named relative to this one\n";
+  files.Edit("vehicle.yaml", "surface_roughness_um: 6",
+             "aerodynamics:\n"
+             "  tables:\n"
+             "    - {reference_area_m2: 0.785, reference_length_m: 1, table: none.csv}\n"
+             "    - {reference_area_m2: 0.785, reference_length_m: 1, table: aero.csv}\n");
+  EXPECT_EQ(files.Texts(CheckFile(files.Path("vehicle.yaml")).errors), unreadable);
+  files.Edit("vehicle.yaml", "name: first\n    liftoff_mass_ton: 3",
+             "name: first\n    liftoff_mass_ton: 2.4");
+  EXPECT_EQ(
+      files.Texts(CheckFile(files.Path("vehicle.yaml")).errors),
+      "vehicle.yaml:8:25: stages[0].propellant_mass_kg: leaves the stage no dry mass: lift-off mass less "
+      "what is above it and its propellant is -100.000000 kg, allowed: less propellant than the stage's "
+      "own mass\n" +
+          unreadable);
 }
 
 TEST(CampaignYamlErrors, CampaignToOptimizeCannotBeFlownYet) {

@@ -127,13 +127,12 @@ INSTANTIATE_TEST_SUITE_P(
                   "allowed: one "
                   "level for each time\n"},
         BadLiquid{"StartsLate", With("throttle: {time_s: [1, 9], level_percent: [100, 100]}"), kTanks,
-                  "vehicle.yaml:11:82: stages[0].motor.liquid.throttle.time_s[0]: is not the ignition, "
-                  "allowed: 0 as the "
-                  "first time\n"},
-        BadLiquid{
-            "NoThrust", With("throttle: {time_s: [0, 9], level_percent: [0, 0]}"), kTanks,
-            "vehicle.yaml:11:72: stages[0].motor.liquid.throttle: gives no thrust, allowed: a level above 0 "
-            "somewhere\n"},
+                  "vehicle.yaml:11:82: stages[0].motor.liquid.throttle.time_s[0]: '1' is not the time of "
+                  "ignition, allowed: 0 as the first time\n"},
+        BadLiquid{"NoThrust", With("throttle: {time_s: [0, 9], level_percent: [0, 0]}"), kTanks,
+                  "vehicle.yaml:11:104: stages[0].motor.liquid.throttle.level_percent: the level is 0 at all "
+                  "times, "
+                  "allowed: a level above 0 somewhere\n"},
         BadLiquid{"CutOffByWish", With("cut_off: {at: will}"), kTanks,
                   "vehicle.yaml:11:76: stages[0].motor.liquid.cut_off.at: 'will' is not a choice, allowed: "
                   "one of depletion, "

@@ -120,6 +120,11 @@ constexpr char kEngMotor[] = "{thrust_curve: {reference: vacuum, table: curve.en
 INSTANTIATE_TEST_SUITE_P(
     Curves, BadCurveTest,
     testing::Values(
+        // Without thrust nothing more is known of the stage.
+        BadCurve{
+            "NoFile", kCsvMotor, "", "",
+            "vehicle.yaml:11:54: stages[0].motor.thrust_curve.table: cannot read 'curve.csv': No such file "
+            "or directory, allowed: a readable file, named relative to this one\n"},
         BadCurve{
             "BesideThrust",
             "{thrust_kn: 60, thrust_curve: {reference: vacuum, table: {time_s: [0, 20], thrust_kn: [80, "
@@ -173,8 +178,8 @@ INSTANTIATE_TEST_SUITE_P(
             "but "
             "propellant_mass_kg is 1500.000000, allowed: flows that sum up to the propellant within 1 %\n"},
         BadCurve{"FlowMisspelt", kCsvMotor, "curve.csv", "time_s,thrust_n,mass_flow_kgs\n0,9,1\n5,9,1\n",
-                 "curve.csv:1:17: unknown column 'mass_flow_kgs', allowed: the columns time_s, thrust_n, and "
-                 "mass_flow_kg_s if there is one\n"},
+                 "curve.csv:1:17: unknown column 'mass_flow_kgs' (did you mean 'mass_flow_kg_s'?), "
+                 "allowed: the columns time_s, thrust_n, and mass_flow_kg_s if there is one\n"},
         BadCurve{"ShortHeader", kEngMotor, "curve.eng", Eng(" NOBODY", ""),
                  "curve.eng:2:1: the header has 6 fields in place of 7, allowed: " HEADER "\n"},
         BadCurve{"DiameterOfWords", kEngMotor, "curve.eng", Eng(" 98 ", " wide "),

@@ -10,9 +10,10 @@
 #include <vector>
 
 #include "core/campaign_yaml/parse_yaml.h"
-#include "core/input/map_reader.h"
+#include "core/input/field_reader.h"
 #include "core/input/number_text.h"
 #include "core/input/units.h"
+#include "tests/unit/dimensions.h"
 
 namespace dispersa::campaign_yaml_units_test {
 namespace {
@@ -71,49 +72,16 @@ const std::map<std::string_view, double> kInSi = {{"m", 1.0},
                                                   {"per_deg", 180 / pi},
                                                   {"per_rad", 1.0}};
 
-const std::vector<std::pair<const char*, Dimension>> kDimensions = {
-    {"length", kLength},
-    {"area", kArea},
-    {"time", kTime},
-    {"mass", kMass},
-    {"mass flow", kMassFlow},
-    {"inertia", kInertia},
-    {"mass per length", kMassPerLength},
-    {"modulus", kModulus},
-    {"bending stiffness", kBendingStiffness},
-    {"force", kForce},
-    {"moment", kMoment},
-    {"pressure", kPressure},
-    {"pressure times angle", kPressureAngle},
-    {"heat flux", kHeatFlux},
-    {"speed", kSpeed},
-    {"acceleration", kAcceleration},
-    {"angle", kAngle},
-    {"angular rate", kAngularRate},
-    {"frequency", kFrequency},
-    {"angular acceleration", kAngularAcceleration},
-    {"per time", kPerTime},
-    {"per time squared", kPerTimeSquared},
-    {"per length", kPerLength},
-    {"per speed", kPerSpeed},
-    {"density", kDensity},
-    {"share", kShare},
-    {"temperature difference", kTemperatureDifference},
-    {"per temperature", kPerTemperature},
-    {"per angle", kPerAngle}};
-
 constexpr double kValues[] = {0.0, 1.0, -1.0, 0.1, 7.0, 1.0 / 3.0, 123.456, 6378137.0, 1e-9, -2.5e17};
 
 /// Reads "thing_UNIT: text" as a quantity; problems as a user reads them, one a line.
 double Read(const std::string& key, const std::string& text, Dimension dimension, std::string* problems,
             const Range& range = kAnyNumber) {
   std::vector<InputProblem> found;
-  const InputNode node = ParseYaml(key + ": " + text + "\n", "file", found);
+  InputNode node = ParseYaml(key + ": " + text + "\n", "file", found);
   double value = 0.0;
-  {
-    MapReader map(node, "", found);
-    value = map.Quantity("thing", dimension, range);
-  }
+  ReadFields(node, "", found, nullptr,
+             [&](Fields& fields) { fields.Quantity("thing", dimension, range, value, "of a test"); });
   problems->clear();
   for (const InputProblem& problem : found) *problems += problem.Text() + "\n";
   return value;
@@ -174,9 +142,10 @@ TEST_P(Units, AreGivenOnceAndAreOfTheirDimension) {
   for (const Unit& unit : dimension_) keys += (keys.empty() ? "" : ", ") + Key(unit);
   if (dimension_.size() > 1) {
     std::vector<InputProblem> found;
-    const InputNode node =
-        ParseYaml(Key(dimension_[1]) + ": 1\n" + Key(dimension_[0]) + ": 1\n", "file", found);
-    MapReader(node, "", found).Quantity("thing", dimension_, kAnyNumber);
+    InputNode node = ParseYaml(Key(dimension_[1]) + ": 1\n" + Key(dimension_[0]) + ": 1\n", "file", found);
+    double value = 0.0;
+    ReadFields(node, "", found, nullptr,
+               [&](Fields& fields) { fields.Quantity("thing", dimension_, kAnyNumber, value, "of a test"); });
     ASSERT_EQ(found.size(), 1u);
     EXPECT_EQ(found[0].Text(), "file:1:" + std::to_string(Key(dimension_[1]).size() + 3) + ": " +
                                    Key(dimension_[1]) + ": '" + Key(dimension_[0]) +
@@ -228,15 +197,22 @@ TEST(UnitSpellings, AreUnderstoodWhereTheyAreMeant) {
 
 TEST(UnitsOfLists, CountForEveryItem) {
   std::vector<InputProblem> found;
-  const InputNode node =
-      ParseYaml("times_ms: [0, 250, 1e3]\nwidth_mm: 40\nlength_km: [2, 3]\n", "file", found);
-  MapReader map(node, "", found);
-  std::string key;
-  EXPECT_EQ(map.Quantities("times", kTime, kAnyNumber, 1, 9, &key), (std::vector<double>{0.0, 0.25, 1.0}));
-  EXPECT_EQ(key, "times_ms");
-  EXPECT_EQ(map.Ends("width", kLength, kAnyNumber), (std::array<double, 2>{0.04, 0.04}));
-  EXPECT_EQ(map.Ends("length", kLength, kAnyNumber), (std::array<double, 2>{2000.0, 3000.0}));
-  EXPECT_EQ(map.OptionalQuantity("height", kLength, kAnyNumber), std::nullopt);
+  InputNode node = ParseYaml("times_ms: [0, 250, 1e3]\nwidth_mm: 40\nlength_km: [2, 3]\n", "file", found);
+  std::vector<double> times;
+  double width[2] = {}, length[2] = {};
+  std::optional<double> height;
+  ReadFields(node, "", found, nullptr, [&](Fields& fields) {
+    fields.Quantities("times", kTime, kAnyNumber, 1, 9, times, "of a test");
+    fields.Ends("width", kLength, kAnyNumber, width[0], width[1], true, "of a test");
+    fields.Ends("length", kLength, kAnyNumber, length[0], length[1], true, "of a test");
+    fields.OptionalQuantity("height", kLength, kAnyNumber, height, "of a test");
+  });
+  EXPECT_EQ(times, (std::vector<double>{0.0, 0.25, 1.0}));
+  EXPECT_EQ(width[0], 0.04);
+  EXPECT_EQ(width[1], 0.04);
+  EXPECT_EQ(length[0], 2000.0);
+  EXPECT_EQ(length[1], 3000.0);
+  EXPECT_EQ(height, std::nullopt);
   EXPECT_TRUE(found.empty());
 }
 

@@ -71,8 +71,8 @@ struct Read {
 Read ReadTable(const std::string& yaml) {
   Read read;
   std::vector<InputProblem> problems;
-  const InputNode node = ParseYaml(yaml, "t", problems);
-  ReadFields(node, "", problems, [&](Fields& fields) { Describe(fields, read.table); });
+  InputNode node = ParseYaml(yaml, "t", problems);
+  ReadFields(node, "", problems, nullptr, [&](Fields& fields) { Describe(fields, read.table); });
   for (const InputProblem& problem : problems) read.texts += problem.Text() + "\n";
   return read;
 }

@@ -158,6 +158,10 @@ class SchemaTest(unittest.TestCase):
         self.assertEqual(0, done.returncode)
         self.assertEqual((self.folder / "schemas" / "autopilot.json").read_text(), done.stdout)
 
+    def test_no_schema_is_larger_than_an_editor_reads_at_once(self):
+        for kind in KINDS:
+            self.assertLess((self.folder / "schemas" / f"{kind}.json").stat().st_size, 200_000, kind)
+
     def test_an_unknown_kind_is_refused(self):
         done = subprocess.run([BINARIES / "dispersa", "schema", "vehicel"], capture_output=True, text=True, timeout=TIMEOUT_S)
         self.assertEqual(2, done.returncode)
@@ -199,7 +203,7 @@ class SchemaTest(unittest.TestCase):
                          campaign["properties"]["requirements"]["items"]["properties"]["probability"])
         limit = vehicle["properties"]["stages"]["items"]["properties"]["gimbal"]["properties"]["rate_limit_deg_s"]
         self.assertEqual("°/s, above 0: of each drive", limit["description"])
-        self.assertEqual(6, autopilot["$defs"]["pitch"]["properties"]["gains"]["maxItems"])
+        self.assertEqual(6, autopilot["$defs"]["axis_law"]["properties"]["gains"]["maxItems"])
 
     def test_what_keys_say_of_each_other(self):
         def refuses(name, change):

@@ -279,19 +279,6 @@ std::vector<std::string> TextsOf(const std::function<void(Stage&)>& change) {
 TEST(LiquidProblems, AreNamed) {
   using Texts = std::vector<std::string>;
   EXPECT_EQ(TextsOf([](Stage&) {}), Texts{});
-  EXPECT_EQ(TextsOf([](Stage& s) {
-              s.motor.throttle = {{0.0, 1.0, 1.0}, {1.0, 1.0, 0.5}};
-            }),
-            Texts{"stages[0].motor.liquid.throttle.time_s[2] is not later than the time before it | times "
-                  "that increase"});
-  EXPECT_EQ(TextsOf([](Stage& s) {
-              s.motor.throttle = {{0.5, 1.0}, {1.0, 1.0}};
-            }),
-            Texts{"stages[0].motor.liquid.throttle.time_s[0] is not the ignition | 0 as the first time"});
-  EXPECT_EQ(TextsOf([](Stage& s) {
-              s.motor.throttle = {{0.0, 1.0}, {0.0, 0.0}};
-            }),
-            Texts{"stages[0].motor.liquid.throttle gives no thrust | a level above 0 somewhere"});
   EXPECT_EQ(
       TextsOf([](Stage& s) { s.motor.residual_mass_kg = 4000.0; }),
       Texts{
@@ -302,9 +289,6 @@ TEST(LiquidProblems, AreNamed) {
             "propellant_mass_kg"});
   EXPECT_EQ(TextsOf([](Stage& s) { s.tanks[0].density_kg_m3 *= 0.5; }).at(0).substr(0, 49),
             "stages[0].tanks[0].propellant_mass_kg takes 6.717");
-  EXPECT_EQ(
-      TextsOf([](Stage& s) { s.motor.ignition_rise_s = 0.1; }),
-      Texts{"stages[0].motor has ramps or a thrust curve beside tanks | a throttle, of a liquid stage"});
 }
 
 }  // namespace

@@ -1,0 +1,77 @@
+#include "core/campaign_yaml/named_files.h"
+
+#include <filesystem>
+
+#include "core/campaign_yaml/base64.h"
+#include "core/campaign_yaml/load.h"
+#include "core/campaign_yaml/parse_csv.h"
+#include "core/campaign_yaml/parse_rasp.h"
+#include "core/campaign_yaml/parse_yaml.h"
+#include "core/campaign_yaml/standard_input.h"
+#include "core/input/read_value.h"
+
+namespace dispersa {
+namespace {
+
+// A campaign's text carries it to every worker.
+constexpr std::size_t kLargestFileOfBytes = std::size_t{32} << 20;
+
+// A thrust curve may be what hobby motors have: by the end of its name.
+InputNode ParseTable(const std::string& text, const std::string& file, std::vector<InputProblem>& problems) {
+  std::string end = std::filesystem::path(file).extension().string();
+  for (char& c : end) c = c >= 'A' && c <= 'Z' ? static_cast<char>(c - 'A' + 'a') : c;
+  return end == ".eng" ? ParseRasp(text, file, problems) : ParseCsv(text, file, problems);
+}
+
+InputNode Bytes(const std::string& bytes, const std::string& file, const InputNode& place,
+                const std::string& path, std::vector<InputProblem>& problems) {
+  if (bytes.empty() || bytes.size() > kLargestFileOfBytes) {
+    AddProblem(problems, place, path,
+               "'" + file + "' " + (bytes.empty() ? "is empty" : "is larger than 32 MiB"),
+               "a shared object of at most 32 MiB");
+    return {};
+  }
+  InputNode inlined = MapAt(place);
+  SetMember(inlined, "sha256", TextAt(place, Sha256Hex(bytes)));
+  SetMember(inlined, "base64", TextAt(place, Base64(bytes)));
+  return inlined;
+}
+
+}  // namespace
+
+void NamedFiles::Read(InputNode& name, const std::string& path, Holds holds,
+                      std::vector<InputProblem>& problems) {
+  const InputNode place = std::move(name);
+  name = InputNode();
+  if (names_ == FileNames::kRefused)
+    return AddProblem(problems, place, path, "the file '" + place.text + "' is named in a text without files",
+                      "its contents in its place");
+  if (place.text.empty())
+    return AddProblem(problems, place, path, "the file name is empty", "a file name, relative to this file");
+  const std::string file =
+      (std::filesystem::path(*place.file).parent_path() / place.text).lexically_normal().string();
+  std::string text, reason;
+  if (!ReadFile(file, &text, &reason))
+    AddProblem(problems, place, path, "cannot read '" + file + "': " + reason,
+               "a readable file, named relative to this one");
+  else if (holds == Holds::kDocument)
+    name = ParseYaml(text, file, problems);
+  else if (holds == Holds::kTable)
+    name = ParseTable(text, file, problems);
+  else
+    name = Bytes(text, file, place, path, problems);
+}
+
+InputNode ReadYamlFile(const std::string& path, std::vector<InputProblem>& problems) {
+  std::string text;
+  std::string reason;
+  // Without a folder, so that the names in it are relative to the current one.
+  const std::string file = path == kStandardInput ? kStandardInputName : path;
+  if (!(path == kStandardInput ? ReadStandardInput(&text, &reason) : ReadFile(path, &text, &reason))) {
+    problems.push_back({file, 1, 1, "", "cannot be read: " + reason, "a readable file"});
+    return {};
+  }
+  return ParseYaml(text, file, problems);
+}
+
+}  // namespace dispersa

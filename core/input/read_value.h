@@ -1,0 +1,41 @@
+// Single values of a tree. A problem is recorded with its place, and the value is then a harmless one (0,
+// empty): whoever reads checks that no problem was recorded before it uses it.
+#pragma once
+
+#include <string>
+#include <string_view>
+#include <vector>
+
+#include "core/input/input_error.h"
+#include "core/input/input_node.h"
+#include "core/input/range.h"
+#include "core/input/units.h"
+
+namespace dispersa {
+
+void AddProblem(std::vector<InputProblem>& problems, const InputNode& at, std::string path,
+                std::string message, std::string allowed = "");
+
+/// The place of a member's key.
+InputNode KeyOf(const InputMember& member);
+
+/// What a range allows of a number in a unit: "a number above 0".
+std::string TextIn(const Unit& unit, const Range& range);
+
+/// A scalar that is a finite number in a unit; range and result are in internal units.
+double ReadNumber(const InputNode& node, const std::string& path, std::vector<InputProblem>& problems,
+                  const Range& range = kAnyNumber, const Unit& unit = kNoUnit);
+
+/// The scalar as text; a number or a truth value must be quoted to be one.
+std::string ReadText(const InputNode& node, const std::string& path, std::vector<InputProblem>& problems);
+
+bool IsTruthValue(const std::string& text);
+
+/// "a, b, c"
+std::string JoinWords(const std::vector<std::string>& words);
+/// " (did you mean 'x'?)" for the nearest word within two edits, else empty.
+std::string DidYouMean(const std::string& word, const std::vector<std::string>& words);
+/// That word, or empty.
+std::string Nearest(const std::string& word, const std::vector<std::string>& words);
+
+}  // namespace dispersa
