@@ -22,6 +22,9 @@ struct DensityFactor {
 /// Air with its density multiplied by a factor. Temperature and speed of sound are held. Pressure is
 /// multiplied too, so the perfect-gas law stays satisfied. Dynamic pressure changes, Mach number does not. As
 /// with any density factor at held temperature, the air is no longer in hydrostatic balance.
-AirState Scaled(const AirState& air, double density_factor);
+inline AirState Scaled(const AirState& air, double density_factor) {
+  return {air.temperature_k, density_factor * air.pressure_pa, density_factor * air.density_kg_m3,
+          air.speed_of_sound_m_s};
+}
 
 }  // namespace dispersa

@@ -52,9 +52,6 @@ struct FlightSums : TickSums<double> {
   double step_limit_fraction = 0.0;  ///< known before the flight (step_limits.h)
 };
 
-/// Sums of all stages together. If several stages share a peak, the first stage has it.
-ErrorSums Total(const ErrorSums (&stages)[kMaxStages]);
-
 }  // namespace dispersa
 
 namespace dispersa::lanes {

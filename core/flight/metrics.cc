@@ -264,6 +264,19 @@ constexpr Row kRows[] = {
      kLarger, [](const Measured& m) { return m.sums.step_limit_fraction; }, kNotDigested},
 };
 
+// Sums of all stages together. If several stages share a peak, the first stage has it.
+ErrorSums Total(const ErrorSums (&stages)[kMaxStages]) {
+  ErrorSums total;
+  for (const ErrorSums& stage : stages) {
+    total.squares += stage.squares;
+    total.count += stage.count;
+    if (stage.peak <= total.peak) continue;
+    total.peak = stage.peak;
+    total.peak_time_s = stage.peak_time_s;
+  }
+  return total;
+}
+
 // Phases: 0 all powered flight, then the stages, then the coast.
 constexpr int kPhases = 1 + kMaxStages + 1;
 

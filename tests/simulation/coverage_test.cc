@@ -27,7 +27,6 @@
 #include "core/statistics/planned_verdict.h"
 #include "core/statistics/replicates.h"
 #include "core/statistics/sensitivity.h"
-#include "core/statistics/tolerance.h"
 #include "core/statistics/two_samples.h"
 
 namespace dispersa::coverage_test {
@@ -370,29 +369,10 @@ TEST(Coverage, OfPercentiles) {
       }))
       .IsExactly(Upto(200, allowed, 0.05), kRisk);
   // Wilks' number of cases: the largest value exceeds the quantile but for the risk.
-  const std::int64_t wilks = WilksOneSided(0.95, 0.9);
+  const std::int64_t wilks = CasesNeeded(0.95, kRisk, 0);
   Row("largest of the " + std::to_string(wilks) + " values that Wilks asks for (95 %, 10 %): below the truth",
       Share([&](int k) { return SortedExponential(k, static_cast<std::size_t>(wilks)).back() < truth; }))
       .IsExactly(std::pow(0.95, static_cast<double>(wilks)), kRisk);
-}
-
-TEST(Coverage, OfNormalTolerance) {
-  constexpr int kCases = 50;
-  const double factor = NormalToleranceFactor(kCases, 0.95, 1.0 - kRisk);
-  const double truth = quantile(boost::math::normal_distribution<double>(), 0.95);
-  Row("normal tolerance bound at (95 %, 10 %) of 50 normal values: below the truth", Share([&](int k) {
-        std::mt19937_64 random(static_cast<std::uint64_t>(k) + 3);
-        std::normal_distribution<double> normal;
-        double sum = 0.0, squares = 0.0;
-        for (int i = 0; i < kCases; ++i) {
-          const double value = normal(random);
-          sum += value;
-          squares += value * value;
-        }
-        const double mean = sum / kCases;
-        return mean + factor * std::sqrt((squares - sum * mean) / (kCases - 1)) < truth;
-      }))
-      .IsExactly(kRisk, kRisk);
 }
 
 /// Failures of designs in two inputs: the corner u + v > limit, whose probability is (2 - limit)^2 / 2.
