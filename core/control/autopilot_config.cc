@@ -5,6 +5,7 @@
 #include <string>
 
 #include "core/control/lyapunov.h"
+#include "core/input/fields.h"
 #include "core/math/constants.h"
 
 namespace dispersa {
@@ -48,7 +49,7 @@ void CheckSchedule(const AxisConfig& axis, int stages, double tick_s, const AddP
 }
 
 void CheckAxis(const AxisConfig& axis, const std::string& name, int stages, double tick_s,
-               std::vector<AutopilotProblem>& problems) {
+               std::vector<StructProblem>& problems) {
   const std::size_t before = problems.size();
   const LawInfo& law = InfoOf(axis.law);
   const AddProblem add = [&](const std::string& path, const std::string& message,
@@ -130,8 +131,8 @@ unsigned PluginAxes(const AutopilotConfig& autopilot) {
   return axes;
 }
 
-std::vector<AutopilotProblem> Problems(const AutopilotConfig& autopilot, int stages) {
-  std::vector<AutopilotProblem> problems;
+std::vector<StructProblem> Problems(const AutopilotConfig& autopilot, int stages) {
+  std::vector<StructProblem> problems;
   CheckAxis(autopilot.pitch, "pitch", stages, autopilot.tick_s, problems);
   CheckAxis(autopilot.yaw, "yaw", stages, autopilot.tick_s, problems);
   CheckAxis(autopilot.roll, "roll", stages, autopilot.tick_s, problems);

@@ -10,6 +10,8 @@
 
 namespace dispersa {
 
+struct StructProblem;
+
 enum class ControlLaw { kAdaptiveFuzzy, kFrozenFuzzy, kPd, kPid, kPdAac, kPidAac, kPlugin };
 
 /// A law's name, its properties, and the blocks of its axis that it needs.
@@ -189,12 +191,7 @@ struct AutopilotConfig {
 /// Bits (1 << Axis) of the axes whose law is a plug-in's.
 unsigned PluginAxes(const AutopilotConfig& autopilot);
 
-/// As Problems(Vehicle): what contradicts itself, by path. `stages` is the vehicle's number of stages.
-struct AutopilotProblem {
-  std::string path;
-  std::string message;
-  std::string allowed;
-};
-std::vector<AutopilotProblem> Problems(const AutopilotConfig& autopilot, int stages);
+/// Where it contradicts itself, or the vehicle of so many stages.
+std::vector<StructProblem> Problems(const AutopilotConfig& autopilot, int stages);
 
 }  // namespace dispersa

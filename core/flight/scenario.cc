@@ -30,7 +30,7 @@ bool IsOfABody(const Matrix3& inertia) {
   return IsPositiveDefinite((1.0 + kRounding) * half_trace * Matrix3::Identity() - inertia);
 }
 
-void CheckMass(const ScenarioMass& mass, std::vector<ScenarioProblem>& problems) {
+void CheckMass(const ScenarioMass& mass, std::vector<StructProblem>& problems) {
   const std::string path = "mass_properties.";
   for (std::size_t i = 0; i < mass.propellant_kg.size(); ++i) {
     const double propellant = mass.propellant_kg[i];
@@ -53,7 +53,7 @@ void CheckMass(const ScenarioMass& mass, std::vector<ScenarioProblem>& problems)
   }
 }
 
-void CheckMotor(const ScenarioStage& stage, std::vector<ScenarioProblem>& problems) {
+void CheckMotor(const ScenarioStage& stage, std::vector<StructProblem>& problems) {
   const ScenarioMass& mass = stage.mass;
   if (mass.propellant_kg.size() < 2) {
     problems.push_back(
@@ -80,15 +80,15 @@ double SeparationTime(const ScenarioStage& stage) {
   return stage.motor->ignition_time_s + BurnTime(stage);
 }
 
-std::vector<ScenarioProblem> Problems(const ScenarioStage& stage) {
-  std::vector<ScenarioProblem> problems;
+std::vector<StructProblem> Problems(const ScenarioStage& stage) {
+  std::vector<StructProblem> problems;
   CheckMass(stage.mass, problems);
   if (stage.motor) CheckMotor(stage, problems);
   return problems;
 }
 
-std::vector<ScenarioProblem> Problems(const Scenario& scenario) {
-  std::vector<ScenarioProblem> problems;
+std::vector<StructProblem> Problems(const Scenario& scenario) {
+  std::vector<StructProblem> problems;
   double begin_s = 0.0;
   for (std::size_t i = 0; i < scenario.stages.size(); ++i) {
     const ScenarioStage& stage = scenario.stages[i];

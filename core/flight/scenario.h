@@ -64,17 +64,11 @@ struct Scenario {
 /// The keys of its file.
 void Describe(Fields& fields, Scenario& scenario);
 
-/// A contradiction in a scenario, with the path of the value.
-struct ScenarioProblem {
-  std::string path;
-  std::string message;  ///< what is wrong
-  std::string allowed;
-};
-/// Problems of one stage. Paths start at the stage ("mass_properties.ixx_kg_m2[1]",
+/// Where one stage contradicts itself. Paths start at the stage ("mass_properties.ixx_kg_m2[1]",
 /// "motor.nozzle_station_m").
-std::vector<ScenarioProblem> Problems(const ScenarioStage& stage);
+std::vector<StructProblem> Problems(const ScenarioStage& stage);
 /// Of the stages together and the steps ("stages[1].separation_time_s").
-std::vector<ScenarioProblem> Problems(const Scenario& scenario);
+std::vector<StructProblem> Problems(const Scenario& scenario);
 
 /// Seconds between ignition and burnout: all propellant over the flow.
 double BurnTime(const ScenarioStage& stage);

@@ -215,7 +215,7 @@ void Describe(Fields& fields, ScenarioMotor& motor, double propellant_kg) {
 template <class T>
 void CheckProblems(Fields& fields, const T& checked) {
   fields.Check([&fields, &checked] {
-    for (const ScenarioProblem& problem : Problems(checked))
+    for (const StructProblem& problem : Problems(checked))
       fields.Refuse(problem.path, problem.message, problem.allowed);
   });
 }

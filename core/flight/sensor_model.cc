@@ -70,8 +70,8 @@ SensorModel BuildSensors(const Vehicle& vehicle, const AutopilotConfig& autopilo
   return model;
 }
 
-std::vector<AutopilotProblem> GyroProblems(const Vehicle& vehicle, const AutopilotConfig& autopilot) {
-  std::vector<AutopilotProblem> problems;
+std::vector<StructProblem> GyroProblems(const Vehicle& vehicle, const AutopilotConfig& autopilot) {
+  std::vector<StructProblem> problems;
   std::vector<double> sum(vehicle.stages.size());
   for (std::size_t i = 0; i < autopilot.rate_gyros.size(); ++i) {
     const GyroShare& share = autopilot.rate_gyros[i];

@@ -32,7 +32,7 @@ SensorModel BuildSensors(const Vehicle& vehicle, const AutopilotConfig& autopilo
 
 /// Gyros that the autopilot needs and the vehicle does not have at that place. Paths are those of
 /// Problems(AutopilotConfig).
-std::vector<AutopilotProblem> GyroProblems(const Vehicle& vehicle, const AutopilotConfig& autopilot);
+std::vector<StructProblem> GyroProblems(const Vehicle& vehicle, const AutopilotConfig& autopilot);
 
 /// Second order under an input that is straight between ticks, exactly: ramp invariance.
 DigitalSection RampInvariant(double frequency_rad_s, double damping_ratio, double tick_s);

@@ -104,8 +104,8 @@ std::string RefusalOf(const Vehicle& vehicle, const FlightInputs& in, const Laun
          " Hz";
 }
 
-std::vector<VehicleProblem> StepProblems(const Vehicle& vehicle, double tick_s) {
-  std::vector<VehicleProblem> problems;
+std::vector<StructProblem> StepProblems(const Vehicle& vehicle, double tick_s) {
+  std::vector<StructProblem> problems;
   for (std::size_t i = 0; i < vehicle.stages.size(); ++i) {
     const Gimbal& gimbal = vehicle.stages[i].gimbal;
     const double most_rad_s = ActuatorLimit(gimbal.nozzle_inertia_kg_m2) / tick_s;

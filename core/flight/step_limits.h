@@ -43,6 +43,6 @@ std::string RefusalOf(const Vehicle& vehicle, const FlightInputs& inputs, const 
                       double tick_s);
 
 /// Actuators of a nominal vehicle beyond their limit, by the path in its file.
-std::vector<VehicleProblem> StepProblems(const Vehicle& vehicle, double tick_s);
+std::vector<StructProblem> StepProblems(const Vehicle& vehicle, double tick_s);
 
 }  // namespace dispersa

@@ -22,6 +22,13 @@ namespace dispersa {
 
 struct InputNode;
 
+/// A contradiction in a struct, with the path of the value: "stages[1].propellant_mass_kg".
+struct StructProblem {
+  std::string path;
+  std::string message;  ///< what is wrong
+  std::string allowed;  ///< what is allowed
+};
+
 /// Whether a map has a key, or at a key one of some words. An empty list counts as none.
 struct Condition {
   std::string key;                 ///< of the map, or of a map in it: "motor.liquid"

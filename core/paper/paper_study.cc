@@ -44,7 +44,7 @@ BadPn FlyBadPn(Campaign campaign, double factor) {
   pitch.adaptation.p_n = bad.p_n;
   pitch.adaptation.allow_unproven = false;
   const int stages = static_cast<int>(campaign.vehicle.stages.size());
-  for (const AutopilotProblem& problem : Problems(campaign.autopilot, stages)) {
+  for (const StructProblem& problem : Problems(campaign.autopilot, stages)) {
     bad.refusal += problem.path + ": " + problem.message + ", allowed: " + problem.allowed;
   }
   pitch.adaptation.allow_unproven = true;

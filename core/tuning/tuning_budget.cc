@@ -41,7 +41,7 @@ void CheckTuning(const Campaign& campaign, const AutopilotConfig& autopilot, con
             (IsAugmented(autopilot) ? "stage and the augmentation" : "stage") + ") to 1000000");
   if (options.dispersed < 0 || options.dispersed > 1000)
     add("dispersed", std::to_string(options.dispersed) + " is out of range", "0 to 1000");
-  for (const AutopilotProblem& problem : Problems(autopilot, stages))
+  for (const StructProblem& problem : Problems(autopilot, stages))
     add(problem.path, problem.message, problem.allowed);
   for (const AxisConfig* axis : {&autopilot.pitch, &autopilot.yaw, &autopilot.roll})
     if (InfoOf(axis->law).adaptation && axis->adaptation.p_n)

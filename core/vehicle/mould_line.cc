@@ -39,8 +39,8 @@ double MouldSection::Slope(double station_m) const {
   return ahead_m / Sqrt(Square(arc_radius_m) - Square(ahead_m));
 }
 
-std::vector<VehicleProblem> ProfileProblems(const std::vector<ProfileSection>& profile) {
-  std::vector<VehicleProblem> problems;
+std::vector<StructProblem> ProfileProblems(const std::vector<ProfileSection>& profile) {
+  std::vector<StructProblem> problems;
   double fore_diameter_m = 0.0;
   for (std::size_t i = 0; i < profile.size(); ++i) {
     const ProfileSection& section = profile[i];

@@ -24,7 +24,7 @@ struct MouldSection {
 /// Contradictions in a profile: lengths and diameters that are not positive, a first section without a tip, a
 /// tangent ogive that does not widen, a cylinder whose diameter differs from that of the section before.
 /// Paths are `profile[i].…`.
-std::vector<VehicleProblem> ProfileProblems(const std::vector<ProfileSection>& profile);
+std::vector<StructProblem> ProfileProblems(const std::vector<ProfileSection>& profile);
 
 /// The profile's sections from the nose tip to `end_station_m`, the last one cut there. A curved section
 /// is an arc that ends parallel to the axis.

@@ -116,8 +116,8 @@ NozzleLayout BuildNozzleLayout(const Gimbal& gimbal) {
   return o;
 }
 
-std::vector<VehicleProblem> NozzleProblems(const Gimbal& gimbal, const std::string& path) {
-  std::vector<VehicleProblem> problems;
+std::vector<StructProblem> NozzleProblems(const Gimbal& gimbal, const std::string& path) {
+  std::vector<StructProblem> problems;
   if (gimbal.nozzles.empty()) return problems;
   const std::string list = path + ".nozzles";
   double shares = 0.0, y_m = 0.0, z_m = 0.0;

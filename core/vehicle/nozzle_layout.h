@@ -22,7 +22,7 @@
 namespace dispersa {
 
 struct Gimbal;
-struct VehicleProblem;
+struct StructProblem;
 
 inline constexpr int kNozzles = 4;  ///< of a stage, at most
 /// Drives by number: the nozzles' first hinges, then their second ones.
@@ -49,6 +49,6 @@ struct NozzleLayout {
 NozzleLayout BuildNozzleLayout(const Gimbal& gimbal);
 
 /// Contradictions in a list of nozzles. Paths begin with `path`, that of the gimbal.
-std::vector<VehicleProblem> NozzleProblems(const Gimbal& gimbal, const std::string& path);
+std::vector<StructProblem> NozzleProblems(const Gimbal& gimbal, const std::string& path);
 
 }  // namespace dispersa

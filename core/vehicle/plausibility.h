@@ -15,10 +15,9 @@
 
 namespace dispersa {
 
-struct PlausibilityFinding {
-  std::string path;     ///< of the value to look at first
-  std::string message;  ///< what it implies
-  std::string allowed;  ///< what is possible, or usual, and from where that is known
+/// `path`: of the value to look at first, `message`: what it implies, `allowed`: what is possible, or usual,
+/// and from where that is known.
+struct PlausibilityFinding : StructProblem {
   bool impossible = false;
 };
 

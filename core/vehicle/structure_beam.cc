@@ -29,7 +29,7 @@ class BeamChecker {
  public:
   explicit BeamChecker(const Vehicle& vehicle) : vehicle_(vehicle), beam_(*vehicle.structure_beam) {}
 
-  std::vector<VehicleProblem> Run() {
+  std::vector<StructProblem> Run() {
     for (std::size_t i = 0; i < beam_.sensors.size(); ++i) {
       if (beam_.sensors[i].station_m > vehicle_.stages[0].bottom_station_m)
         Add("sensors[" + std::to_string(i) + "].station_m", "lies aft of the vehicle",
@@ -185,7 +185,7 @@ class BeamChecker {
 
   const Vehicle& vehicle_;
   const StructureBeam& beam_;
-  std::vector<VehicleProblem> problems_;
+  std::vector<StructProblem> problems_;
 };
 
 }  // namespace
@@ -209,6 +209,6 @@ double BeamSection::ShearStiffness(BeamPlane plane, double station_m) const {
   return PlaneFactor(*this, plane) * coefficient * area * modulus_pa / (2.0 * (1.0 + poisson_ratio));
 }
 
-std::vector<VehicleProblem> BeamProblems(const Vehicle& vehicle) { return BeamChecker(vehicle).Run(); }
+std::vector<StructProblem> BeamProblems(const Vehicle& vehicle) { return BeamChecker(vehicle).Run(); }
 
 }  // namespace dispersa

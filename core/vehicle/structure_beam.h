@@ -108,10 +108,9 @@ struct StructureBeam {
 void Describe(Fields& fields, StructureBeam& beam, std::size_t stages);
 
 struct Vehicle;
-struct VehicleProblem;
 
 /// Contradictions in the beam, or with the vehicle's mass model. Paths are `structure_beam.…`. Precondition:
 /// the vehicle has a beam and no other problems.
-std::vector<VehicleProblem> BeamProblems(const Vehicle& vehicle);
+std::vector<StructProblem> BeamProblems(const Vehicle& vehicle);
 
 }  // namespace dispersa

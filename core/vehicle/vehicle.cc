@@ -19,10 +19,10 @@ class Checker {
   void Require(bool ok, const std::string& path, const std::string& message, const std::string& allowed) {
     if (!ok) problems_.push_back({path, message, allowed});
   }
-  std::vector<VehicleProblem> Take() { return std::move(problems_); }
+  std::vector<StructProblem> Take() { return std::move(problems_); }
 
  private:
-  std::vector<VehicleProblem> problems_;
+  std::vector<StructProblem> problems_;
 };
 
 void CheckTube(const std::string& path, double top, double bottom, double outer, double inner,
@@ -49,8 +49,7 @@ void CheckLiquid(const Stage& stage, const std::string& path, Checker& check) {
     check.Require(tank.bottom_station_m <= stage.bottom_station_m, at + ".bottom_station_m",
                   "lies aft of the stage's bottom_station_m", "at most bottom_station_m of the stage");
     sum_kg += tank.propellant_mass_kg;
-    if (!(tank.diameter_m > 0.0 && tank.density_kg_m3 > 0.0 && tank.bottom_station_m > tank.top_station_m))
-      continue;
+    if (!(tank.bottom_station_m > tank.top_station_m)) continue;
     const double volume_m3 = tank.propellant_mass_kg / tank.density_kg_m3;
     check.Require(
         volume_m3 <= tank.Volume(), at + ".propellant_mass_kg",
@@ -139,11 +138,11 @@ void CheckStage(const Vehicle& vehicle, std::size_t i, Checker& check) {
                 "has fractions that sum to " + std::to_string(fractions), "fractions that sum to 1");
 
   const Gimbal& gimbal = stage.gimbal;
-  for (const VehicleProblem& problem : NozzleProblems(gimbal, path + ".gimbal"))
+  for (const StructProblem& problem : NozzleProblems(gimbal, path + ".gimbal"))
     check.Require(false, problem.path, problem.message, problem.allowed);
   const auto below_limit = [&](double angle_rad, const char* key) {
-    check.Require(angle_rad == 0.0 || (angle_rad > 0.0 && angle_rad < gimbal.limit_rad),
-                  path + ".gimbal." + key, "leaves the nozzle no travel", "0 to below the gimbal's limit");
+    check.Require(angle_rad < gimbal.limit_rad, path + ".gimbal." + key, "leaves the nozzle no travel",
+                  "0 to below the gimbal's limit");
   };
   below_limit(gimbal.dead_zone_rad, "dead_zone_deg");
   below_limit(gimbal.friction_rad, "friction_deg");
@@ -241,7 +240,7 @@ bool CutsOffAtVelocity(const Vehicle& vehicle) {
                      [](const Stage& stage) { return stage.motor.cut_off == CutOff::kAtVelocity; });
 }
 
-std::vector<VehicleProblem> Problems(const Vehicle& vehicle) {
+std::vector<StructProblem> Problems(const Vehicle& vehicle) {
   Checker check;
   const std::size_t count = vehicle.stages.size();
   for (std::size_t i = 0; i < count; ++i) CheckStage(vehicle, i, check);
@@ -258,14 +257,14 @@ std::vector<VehicleProblem> Problems(const Vehicle& vehicle) {
                   "is " + std::to_string(length) + " m long in all",
                   "sections that end at the first stage's bottom_station_m, " +
                       std::to_string(vehicle.stages[0].bottom_station_m) + " m");
-  for (const VehicleProblem& problem : ProfileProblems(vehicle.profile))
+  for (const StructProblem& problem : ProfileProblems(vehicle.profile))
     check.Require(false, problem.path, problem.message, problem.allowed);
   CheckTables(vehicle, check);
   CheckRestarts(vehicle, check);
   CheckJettisons(vehicle, check);
   CheckBoosters(vehicle, check);
   const ReactionControl& rcs = vehicle.reaction_control;
-  std::vector<VehicleProblem> problems = check.Take();
+  std::vector<StructProblem> problems = check.Take();
   for (std::size_t i = 0; problems.empty() && i < count; ++i)
     if (!(rcs.thrust_n > 0.0) && !BuildNozzleLayout(vehicle.stages[i].gimbal).rolls)
       problems.push_back({"stages[" + std::to_string(i) + "].gimbal.nozzles",

@@ -275,12 +275,7 @@ int LastBurn(const Vehicle& vehicle, int stage);
 /// Whether some engine is cut off at a velocity: when it will is known only in flight.
 bool CutsOffAtVelocity(const Vehicle& vehicle);
 
-/// A contradiction in a vehicle, with the path of the value ("stages[1].propellant_mass_kg").
-struct VehicleProblem {
-  std::string path;
-  std::string message;  ///< what is wrong
-  std::string allowed;  ///< what is allowed
-};
-std::vector<VehicleProblem> Problems(const Vehicle& vehicle);
+/// Where a vehicle contradicts itself.
+std::vector<StructProblem> Problems(const Vehicle& vehicle);
 
 }  // namespace dispersa

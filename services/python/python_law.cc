@@ -91,7 +91,7 @@ Campaign PythonLaw::OnAxes(Campaign campaign, unsigned axes) const {
   }
   autopilot.plugin = here_.Config({{kNumber, number_}});
   std::vector<InputProblem> problems;
-  for (const AutopilotProblem& p : Problems(autopilot, static_cast<int>(campaign.vehicle.stages.size())))
+  for (const StructProblem& p : Problems(autopilot, static_cast<int>(campaign.vehicle.stages.size())))
     problems.push_back({"", 0, 0, "autopilot" + (p.path.empty() ? "" : "." + p.path), p.message, p.allowed});
   if (!problems.empty()) throw InputError(std::move(problems));
   return campaign;

@@ -252,7 +252,7 @@ TEST(BuildAutopilot, MinimumOnTimeIsWholeCyclesRoundedUp) {
 
 std::vector<std::string> Texts(const AutopilotConfig& config, int stages = 2) {
   std::vector<std::string> texts;
-  for (const AutopilotProblem& p : Problems(config, stages))
+  for (const StructProblem& p : Problems(config, stages))
     texts.push_back(p.path + ": " + p.message + " | " + p.allowed);
   return texts;
 }

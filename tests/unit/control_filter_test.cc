@@ -77,7 +77,7 @@ TEST(Problems, NameAFilterThatCannotBeBuilt) {
   AutopilotConfig autopilot = SampleAutopilot();
   autopilot.pitch.filters = {{.poles_rad_s = 400.0, .poles_damping = 1.0, .stage = 3}};
   std::vector<std::string> texts;
-  for (const AutopilotProblem& p : Problems(autopilot, 2))
+  for (const StructProblem& p : Problems(autopilot, 2))
     texts.push_back(p.path + ": " + p.message + ": " + p.allowed);
   EXPECT_EQ(
       texts,

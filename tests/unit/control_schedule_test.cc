@@ -177,7 +177,7 @@ TEST(Problems, NameAScheduleThatCannotBeFollowed) {
     AutopilotConfig autopilot = SampleAutopilot();
     autopilot.yaw.schedule = schedule;
     std::vector<std::string> texts;
-    for (const AutopilotProblem& p : Problems(autopilot, 2))
+    for (const StructProblem& p : Problems(autopilot, 2))
       texts.push_back(p.path + ": " + p.message + ": " + p.allowed);
     return texts;
   };

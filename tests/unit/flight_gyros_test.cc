@@ -135,7 +135,7 @@ TEST(GyroProblems, RefuseWeightsAboveAndBelowOneInAnyStage) {
   const auto text = [&](std::vector<GyroShare> shares) {
     autopilot.rate_gyros = std::move(shares);
     std::string all;
-    for (const AutopilotProblem& p : GyroProblems(vehicle, autopilot))
+    for (const StructProblem& p : GyroProblems(vehicle, autopilot))
       all += p.path + ": " + p.message + ", allowed: " + p.allowed + "\n";
     return all;
   };

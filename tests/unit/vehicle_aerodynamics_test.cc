@@ -113,7 +113,7 @@ TEST(MouldLine, CutsASectionWhereTheStackEnds) {
 
 TEST(MouldLine, NamesEveryProblemOfAProfile) {
   std::vector<std::string> texts;
-  for (const VehicleProblem& problem : ProfileProblems(
+  for (const StructProblem& problem : ProfileProblems(
            {{Shape::kFrustum, 1.0, 0.5}, {Shape::kCylinder, 1.0, 0.6}, {Shape::kTangentOgive, 1.0, 0.6}})) {
     texts.push_back(problem.path + ": " + problem.message + " | " + problem.allowed);
   }

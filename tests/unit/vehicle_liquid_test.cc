@@ -271,7 +271,7 @@ std::vector<std::string> TextsOf(const std::function<void(Stage&)>& change) {
   Vehicle vehicle = LiquidVehicle();
   change(vehicle.stages[0]);
   std::vector<std::string> texts;
-  for (const VehicleProblem& p : Problems(vehicle))
+  for (const StructProblem& p : Problems(vehicle))
     texts.push_back(p.path + " " + p.message + " | " + p.allowed);
   return texts;
 }

@@ -194,7 +194,7 @@ TEST(NozzleLayout, TheFlowsRadiusCountsEachNozzleByItsShare) {
 
 std::vector<std::string> Texts(std::vector<Nozzle> nozzles) {
   std::vector<std::string> texts;
-  for (const VehicleProblem& p : NozzleProblems(With(std::move(nozzles)), "gimbal"))
+  for (const StructProblem& p : NozzleProblems(With(std::move(nozzles)), "gimbal"))
     texts.push_back(p.path + ": " + p.message + " | " + p.allowed);
   return texts;
 }

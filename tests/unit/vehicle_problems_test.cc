@@ -13,7 +13,7 @@ namespace {
 
 std::vector<std::string> Texts(const Vehicle& vehicle) {
   std::vector<std::string> texts;
-  for (const VehicleProblem& p : Problems(vehicle))
+  for (const StructProblem& p : Problems(vehicle))
     texts.push_back(p.path + ": " + p.message + " | " + p.allowed);
   return texts;
 }
@@ -75,7 +75,7 @@ INSTANTIATE_TEST_SUITE_P(
             [](Vehicle& v) {
               v.stages[0].gimbal.dead_zone_rad = v.stages[0].gimbal.limit_rad;
               v.stages[1].gimbal.friction_rad = 1.0;
-              v.stages[1].gimbal.resolution_rad = -1e-3;
+              v.stages[1].gimbal.resolution_rad = 1.0;
             },
             {"stages[0].gimbal.dead_zone_deg: leaves the nozzle no travel | 0 to below the gimbal's limit",
              "stages[1].gimbal.friction_deg: leaves the nozzle no travel | 0 to below the gimbal's limit",
