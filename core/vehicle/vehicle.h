@@ -268,6 +268,22 @@ struct Vehicle {
   std::optional<StructureBeam> structure_beam;  ///< none: the vehicle is rigid
 };
 
+/// Keys on which no other key depends.
+inline void DescribePlainKeys(Fields& fields, Vehicle& vehicle) {
+  fields.Text("name", vehicle.name, "of the vehicle");
+  fields.Map("site", "where it is launched", [&](Fields& site) { Describe(site, vehicle.site); });
+  fields.Quantity("hold_down", kTime, kNonNegative, vehicle.hold_down_s,
+                  "stage 1 burns so long before release; lift-off is time 0", 0.0);
+  fields.Flag("made_up", vehicle.made_up, false,
+              "what is impossible of it, as a textbook's frozen coefficients may be, is warned about and not "
+              "refused");
+  fields.Flag("jet_damping", vehicle.jet_damping, true, "moment of the flow through a turning vehicle");
+  fields.Flag("flow_coriolis", vehicle.flow_coriolis, true,
+              "force of that flow, and the motion of the centre of gravity through the body");
+  fields.Quantity("surface_roughness", kLength, kNonNegative, vehicle.surface_roughness_m,
+                  "equivalent sand grain, for skin friction", 0.0);
+}
+/// All keys.
 void Describe(Fields& fields, Vehicle& vehicle);
 
 /// The last burn of the stage whose burn this is: itself unless the next one restarts it.

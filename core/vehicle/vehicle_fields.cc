@@ -121,18 +121,7 @@ void Describe(Fields& fields, AeroTable& table) {
 }
 
 void Describe(Fields& fields, Vehicle& vehicle) {
-  fields.Text("name", vehicle.name, "of the vehicle");
-  fields.Map("site", "where it is launched", [&](Fields& site) { Describe(site, vehicle.site); });
-  fields.Quantity("hold_down", kTime, kNonNegative, vehicle.hold_down_s,
-                  "stage 1 burns so long before release; lift-off is time 0", 0.0);
-  fields.Flag("made_up", vehicle.made_up, false,
-              "what is impossible of it, as a textbook's frozen coefficients may be, is warned about and not "
-              "refused");
-  fields.Flag("jet_damping", vehicle.jet_damping, true, "moment of the flow through a turning vehicle");
-  fields.Flag("flow_coriolis", vehicle.flow_coriolis, true,
-              "force of that flow, and the motion of the centre of gravity through the body");
-  fields.Quantity("surface_roughness", kLength, kNonNegative, vehicle.surface_roughness_m,
-                  "equivalent sand grain, for skin friction", 0.0);
+  DescribePlainKeys(fields, vehicle);
   fields.List("stages", 1, kMaxStages, vehicle.stages, "in the order of flight");
   CheckRestarts(fields, vehicle.stages);
   bool has_boosters = vehicle.boosters.count > 0;
