@@ -9,6 +9,7 @@
 #include "core/campaign_yaml/load.h"
 #include "core/cases/campaign_flights.h"
 #include "core/pages/histories.h"
+#include "core/results/json_number.h"
 #include "core/results/output_file.h"
 #include "core/results/text.h"
 #include "services/cli/command.h"
@@ -32,7 +33,7 @@ struct FlyOptions {
 void PrintJson(const CaseResult& result, const std::vector<std::size_t>& metrics) {
   const nlohmann::ordered_json json = {{"schema", "dispersa/fly/1"},
                                        {"outcome", OutcomeName(result.outcome)},
-                                       {"end_time_s", JsonNumber(result.end_time_s)},
+                                       {"end_time_s", Number(result.end_time_s)},
                                        {"end_stage", result.end_stage},
                                        {"reason", result.reason},
                                        {"inputs", InputsJson(result.inputs)},

@@ -22,7 +22,7 @@ struct MarginsCommand {
   MarginsOptions margins;
 };
 
-std::string Number(double value, const char* format) {
+std::string Formatted(double value, const char* format) {
   return std::isfinite(value) ? fmt::format(fmt::runtime(format), value) : "none";
 }
 
@@ -35,9 +35,9 @@ void PrintLoop(const std::string& place, const char* kind, const ComputedMargins
                 m.bending_phase_6db_deg < 180.0 ? fmt::format("{:.1f}", m.bending_phase_6db_deg) : "-")
           : "";
   fmt::print("{:<24} {:>8.2f} {:<5}  {:<8} {:>8} {:>8} {:>8.1f} {:>8} {} {}\n", place, at.time_s,
-             kAxisNames[at.axis], kind, Number(m.gain_up_db, "{:.1f}"),
-             m.gain_down_db == 0.0 ? "0.0" : "-" + Number(m.gain_down_db, "{:.1f}"), m.phase_deg,
-             Number(1e3 * m.delay_s, "{:.0f}"), bending,
+             kAxisNames[at.axis], kind, Formatted(m.gain_up_db, "{:.1f}"),
+             m.gain_down_db == 0.0 ? "0.0" : "-" + Formatted(m.gain_down_db, "{:.1f}"), m.phase_deg,
+             Formatted(1e3 * m.delay_s, "{:.0f}"), bending,
              !m.stable ? "FAIL: unstable"
              : passed  ? ""
                        : "FAIL");
@@ -105,7 +105,7 @@ void PrintBySet(const MarginsResult& result) {
     }
     for (const auto& [frequencies, m] : least) {
       fmt::print("{:<8} {:<24} {:>8} {:>8.1f} {:>8} {}\n", fmt::format("stage {}", stage.stage + 1),
-                 frequencies, Number(std::min(m.gain_up_db, m.gain_down_db), "{:.2f}"), m.phase_deg,
+                 frequencies, Formatted(std::min(m.gain_up_db, m.gain_down_db), "{:.2f}"), m.phase_deg,
                  m.bending_phase_6db_deg < 180.0 ? fmt::format("{:.1f}", m.bending_phase_6db_deg) : "-",
                  PassesGates(m) ? "" : "FAIL");
     }

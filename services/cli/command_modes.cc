@@ -13,12 +13,12 @@
 #include "core/input/input_error.h"
 #include "core/math/constants.h"
 #include "core/pages/modes_page.h"
+#include "core/results/json_number.h"
 #include "core/results/output_file.h"
 #include "core/structure/bending_modes.h"
 #include "core/vehicle/mass.h"
 #include "services/cli/command.h"
 #include "services/cli/warn.h"
-#include "services/client/flight_json.h"
 #include "services/client/writable.h"
 
 namespace dispersa {
@@ -41,8 +41,8 @@ nlohmann::ordered_json ModeJson(const Vehicle& vehicle, const StackModes& stack,
     const StationShape at = ShapeOf(stack, plane, mode, place.station_m);
     places.push_back({{"name", place.name},
                       {"station_m", place.station_m},
-                      {"deflection", JsonNumber(at.deflection)},
-                      {"slope_1_m", JsonNumber(at.slope_1_m)}});
+                      {"deflection", Number(at.deflection)},
+                      {"slope_1_m", Number(at.slope_1_m)}});
   }
   nlohmann::ordered_json json = {{"plane", PlaneName(plane)},
                                  {"mode", index + 1},

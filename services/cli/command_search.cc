@@ -15,6 +15,7 @@
 #include "core/flight/flight.h"
 #include "core/input/input_error.h"
 #include "core/optimization/parallel_for.h"
+#include "core/results/json_number.h"
 #include "core/results/metric_catalogue.h"
 #include "core/results/output_file.h"
 #include "core/results/requirement_text.h"
@@ -168,14 +169,14 @@ ExitCode SearchFor(const SearchCommand& command, const GlobalOptions& global) {
                                  {"max_flights", command.options.max_flights},
                                  {"reach", command.options.reach},
                                  {"seed", command.options.seed},
-                                 {"least_margin", JsonNumber(result.least_margin)}};
+                                 {"least_margin", Number(result.least_margin)}};
   std::string text = Sentence(result, requirement, command.options.reach) + "\n";
   if (result.found) {
     const CaseResult flown = searcher.Fly(result.point);
     const double value = flown.metrics[MetricColumn(requirement.metric)];
-    json["distance"] = JsonNumber(result.distance);
+    json["distance"] = Number(result.distance);
     json["outcome"] = OutcomeName(flown.outcome);
-    json["value"] = JsonNumber(value);
+    json["value"] = Number(value);
     json["dispersions"] = nlohmann::ordered_json::array();
     text += fmt::format("outcome {}, {} {}\n\n{:<44}{:>12}{:>10}\n", OutcomeName(flown.outcome),
                         requirement.metric, std::isfinite(value) ? ReadableText(value) : "undefined",
@@ -190,8 +191,8 @@ ExitCode SearchFor(const SearchCommand& command, const GlobalOptions& global) {
       const double share = ShareOf(result, space, i);
       json["dispersions"].push_back({{"name", coordinate.name},
                                      {"kind", KindName(coordinate.kind)},
-                                     {"standard_normal", JsonNumber(result.point[i])},
-                                     {"share", JsonNumber(share)}});
+                                     {"standard_normal", Number(result.point[i])},
+                                     {"share", Number(share)}});
       if (share >= kPrintedShare)
         text += fmt::format("{:<44}{:>12.3f}{:>10}\n", coordinate.name, result.point[i],
                             PercentText(std::round(share * 1e3) / 1e3));

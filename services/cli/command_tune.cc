@@ -7,6 +7,7 @@
 #include <string>
 
 #include "core/campaign_yaml/load.h"
+#include "core/results/json_number.h"
 #include "core/results/output_file.h"
 #include "core/tuning/regulator.h"
 #include "core/tuning/tune.h"
@@ -14,7 +15,6 @@
 #include "services/cli/progress.h"
 #include "services/cli/stream_beside.h"
 #include "services/cli/warn.h"
-#include "services/client/flight_json.h"
 #include "services/client/writable.h"
 #include "services/log/log.h"
 #include "services/program/option_values.h"
@@ -120,9 +120,9 @@ std::string Header(const TuneOptions& options, const TuningResult& result) {
 }
 
 nlohmann::ordered_json MarginsJson(const LeastMargins& m) {
-  return {{"gain_db", JsonNumber(m.gain_db)},
-          {"phase_deg", JsonNumber(m.phase_deg)},
-          {"delay_ms", JsonNumber(1e3 * m.delay_s)}};
+  return {{"gain_db", Number(m.gain_db)},
+          {"phase_deg", Number(m.phase_deg)},
+          {"delay_ms", Number(1e3 * m.delay_s)}};
 }
 
 nlohmann::ordered_json MissedJson(const std::string& missed) {
@@ -142,12 +142,12 @@ nlohmann::ordered_json ResultJson(const TuneOptions& options, const TuningResult
                       {"bandwidth_rad_s", stage.design.bandwidth_rad_s},
                       {"damping", stage.design.damping},
                       {"learning", stage.design.learning},
-                      {"pitch_error_rms_mean_deg", JsonNumber(stage.mean_rms_deg)},
-                      {"pitch_error_peak_deg", JsonNumber(stage.peak_deg)},
+                      {"pitch_error_rms_mean_deg", Number(stage.mean_rms_deg)},
+                      {"pitch_error_peak_deg", Number(stage.peak_deg)},
                       {"frozen", MarginsJson(stage.frozen)},
                       {"adapting", MarginsJson(stage.adapting)},
                       {"missed", MissedJson(stage.missed)}});
-    if (stage.surplus) stages.back()["surplus"] = JsonNumber(*stage.surplus);
+    if (stage.surplus) stages.back()["surplus"] = Number(*stage.surplus);
   }
   auto skipped = nlohmann::ordered_json::array();
   for (const SkippedInstant& at : result.skipped)
@@ -162,8 +162,8 @@ nlohmann::ordered_json ResultJson(const TuneOptions& options, const TuningResult
     generations.push_back({{"stage", of_stage ? nlohmann::ordered_json(record.stage + 1) : nullptr},
                            {"generation", g.generation},
                            {"feasible_fraction", g.feasible_fraction},
-                           {"best_deg", g.best_objective ? JsonNumber(*g.best_objective) : nullptr},
-                           {"mean_deg", g.mean_objective ? JsonNumber(*g.mean_objective) : nullptr}});
+                           {"best_deg", g.best_objective ? Number(*g.best_objective) : nullptr},
+                           {"mean_deg", g.mean_objective ? Number(*g.mean_objective) : nullptr}});
   }
   nlohmann::ordered_json augmentation;
   if (result.augmentation) {
@@ -172,8 +172,8 @@ nlohmann::ordered_json ResultJson(const TuneOptions& options, const TuningResult
                     {"adaptive_gain_1_s", tuned.design.adaptive_gain_1_s},
                     {"spectral_gain_1_s", tuned.design.spectral_gain_1_s},
                     {"maximum_total_gain", tuned.design.maximum_total_gain},
-                    {"pitch_error_rms_mean_deg", JsonNumber(tuned.mean_rms_deg)},
-                    {"pitch_error_peak_deg", JsonNumber(tuned.peak_deg)},
+                    {"pitch_error_rms_mean_deg", Number(tuned.mean_rms_deg)},
+                    {"pitch_error_peak_deg", Number(tuned.peak_deg)},
                     {"missed", MissedJson(tuned.missed)}};
   }
   return {{"schema", "dispersa/tune/1"},
@@ -183,8 +183,8 @@ nlohmann::ordered_json ResultJson(const TuneOptions& options, const TuningResult
           {"cases", options.tuning.cases},
           {"evaluations", result.evaluations},
           {"flights", result.flights},
-          {"pitch_error_rms_median_deg", result.feasible ? JsonNumber(result.median_rms_deg) : nullptr},
-          {"pitch_error_peak_deg", result.feasible ? JsonNumber(result.largest_peak_deg) : nullptr},
+          {"pitch_error_rms_median_deg", result.feasible ? Number(result.median_rms_deg) : nullptr},
+          {"pitch_error_peak_deg", result.feasible ? Number(result.largest_peak_deg) : nullptr},
           {"stages", std::move(stages)},
           {"skipped", std::move(skipped)},
           {"augmentation", std::move(augmentation)},

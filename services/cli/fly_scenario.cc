@@ -8,10 +8,10 @@
 #include "core/campaign_yaml/load.h"
 #include "core/flight/fly_scenario.h"
 #include "core/flight/history_columns.h"
+#include "core/results/json_number.h"
 #include "core/results/output_file.h"
 #include "core/results/text.h"
 #include "services/cli/stream_beside.h"
-#include "services/client/flight_json.h"
 #include "services/client/writable.h"
 
 namespace dispersa {
@@ -40,12 +40,11 @@ ExitCode FlyScenarioFile(const std::string& path, Scheme scheme, const std::stri
   const std::size_t last = rows.size() - columns.size();
   if (global.json) {
     nlohmann::ordered_json metrics = nlohmann::ordered_json::object();
-    for (std::size_t i = 1; i < columns.size(); ++i)
-      metrics["final_" + columns[i]] = JsonNumber(rows[last + i]);
+    for (std::size_t i = 1; i < columns.size(); ++i) metrics["final_" + columns[i]] = Number(rows[last + i]);
     const nlohmann::ordered_json json = {{"schema", "dispersa/fly/1"},
                                          {"scenario", scenario.name},
                                          {"outcome", OutcomeName(flight.outcome)},
-                                         {"end_time_s", JsonNumber(flight.end_time_s)},
+                                         {"end_time_s", Number(flight.end_time_s)},
                                          {"end_stage", flight.samples.back().stage + 1},
                                          {"reason", flight.reason},
                                          {"inputs", nlohmann::ordered_json::object()},

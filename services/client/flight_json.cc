@@ -2,28 +2,22 @@
 
 #include <fmt/format.h>
 
-#include <cmath>
-
 #include "core/flight/flight_inputs.h"
 #include "core/flight/metrics.h"
+#include "core/results/json_number.h"
 
 namespace dispersa {
 
-nlohmann::ordered_json JsonNumber(double value) {
-  if (!std::isfinite(value)) return nullptr;
-  return value + 0.0;
-}
-
 nlohmann::ordered_json InputsJson(const std::vector<double>& inputs) {
   nlohmann::ordered_json json = nlohmann::ordered_json::object();
-  for (std::size_t i = 0; i < inputs.size(); ++i) json[InputColumns()[i].name] = JsonNumber(inputs[i]);
+  for (std::size_t i = 0; i < inputs.size(); ++i) json[InputColumns()[i].name] = Number(inputs[i]);
   return json;
 }
 
 nlohmann::ordered_json MetricsJson(const std::vector<double>& metrics,
                                    const std::vector<std::size_t>& positions) {
   nlohmann::ordered_json json = nlohmann::ordered_json::object();
-  for (const std::size_t i : positions) json[MetricNames()[i]] = JsonNumber(metrics[i]);
+  for (const std::size_t i : positions) json[MetricNames()[i]] = Number(metrics[i]);
   return json;
 }
 

@@ -7,9 +7,6 @@
 
 namespace dispersa {
 
-/// NaN and infinity become null, -0 becomes 0.
-nlohmann::ordered_json JsonNumber(double value);
-
 /// Inputs by name, and the metrics at some positions of Metrics(): {"thrust_factor_stage1": 1.01, ...}; what
 /// is undefined is null.
 nlohmann::ordered_json InputsJson(const std::vector<double>& inputs);

@@ -4,7 +4,7 @@
 #include <utility>
 
 #include "core/cases/campaign_flights.h"
-#include "services/client/flight_json.h"
+#include "core/results/json_number.h"
 #include "services/program/threads.h"
 
 namespace dispersa {
@@ -12,18 +12,18 @@ namespace {
 
 nlohmann::ordered_json LoopJson(const LoopMargins& m, bool passed) {
   return {{"stable", m.stable},
-          {"gain_up_db", JsonNumber(m.gain_up_db)},
-          {"gain_down_db", JsonNumber(m.gain_down_db)},
-          {"phase_deg", JsonNumber(m.phase_deg)},
-          {"delay_ms", JsonNumber(1e3 * m.delay_s)},
-          {"crossover_rad_s", JsonNumber(m.crossover_rad_s)},
-          {"bending_peak_db", JsonNumber(m.bending_peak_db)},
+          {"gain_up_db", Number(m.gain_up_db)},
+          {"gain_down_db", Number(m.gain_down_db)},
+          {"phase_deg", Number(m.phase_deg)},
+          {"delay_ms", Number(1e3 * m.delay_s)},
+          {"crossover_rad_s", Number(m.crossover_rad_s)},
+          {"bending_peak_db", Number(m.bending_peak_db)},
           {"bending_phase_deg", m.bending_phase_6db_deg},
           {"passed", passed}};
 }
 
 nlohmann::ordered_json LeastJson(const LeastMargin& m, double unit = 1.0) {
-  return {{"value", JsonNumber(unit * m.value)}, {"case", m.case_index}, {"time_s", m.time_s}};
+  return {{"value", Number(unit * m.value)}, {"case", m.case_index}, {"time_s", m.time_s}};
 }
 
 nlohmann::ordered_json DispersedJson(const CampaignMargins& dispersed) {

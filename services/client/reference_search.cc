@@ -7,8 +7,8 @@
 #include "core/math/constants.h"
 #include "core/pages/trajectory_figures.h"
 #include "core/pages/trajectory_page.h"
+#include "core/results/json_number.h"
 #include "core/results/output_file.h"
-#include "services/client/flight_json.h"
 #include "services/client/writable.h"
 
 namespace dispersa {
@@ -82,9 +82,9 @@ nlohmann::ordered_json FoundReferenceJson(const Vehicle& vehicle, const Optimiza
   auto constraints = nlohmann::ordered_json::array();
   for (const ConstraintMargin& constraint : reference.constraints) {
     constraints.push_back({{"name", constraint.name},
-                           {"value", JsonNumber(constraint.value)},
-                           {"limit", constraint.enforced ? JsonNumber(constraint.limit) : nullptr},
-                           {"margin", constraint.enforced ? JsonNumber(constraint.margin) : nullptr}});
+                           {"value", Number(constraint.value)},
+                           {"limit", constraint.enforced ? Number(constraint.limit) : nullptr},
+                           {"margin", constraint.enforced ? Number(constraint.margin) : nullptr}});
   }
   nlohmann::ordered_json variables;
   for (const ProgramVariable& variable : VariablesOf(vehicle, reference.problem))
@@ -93,20 +93,20 @@ nlohmann::ordered_json FoundReferenceJson(const Vehicle& vehicle, const Optimiza
           {"reference", file},
           {"reached", result.reached},
           {"orbit",
-           {{"altitude_km", JsonNumber(reference.orbit.altitude_m * 1e-3)},
-            {"velocity_m_s", JsonNumber(reference.orbit.velocity_m_s)},
-            {"flight_path_angle_deg", JsonNumber(reference.orbit.flight_path_angle_rad * kDegPerRad)},
-            {"inclination_deg", JsonNumber(reference.orbit.inclination_rad * kDegPerRad)},
-            {"node_longitude_deg", JsonNumber(reference.orbit.node_longitude_rad * kDegPerRad)}}},
+           {{"altitude_km", Number(reference.orbit.altitude_m * 1e-3)},
+            {"velocity_m_s", Number(reference.orbit.velocity_m_s)},
+            {"flight_path_angle_deg", Number(reference.orbit.flight_path_angle_rad * kDegPerRad)},
+            {"inclination_deg", Number(reference.orbit.inclination_rad * kDegPerRad)},
+            {"node_longitude_deg", Number(reference.orbit.node_longitude_rad * kDegPerRad)}}},
           {"lift_off_sidereal_deg", LiftOffSidereal(reference)
                                         ? nlohmann::ordered_json(*LiftOffSidereal(reference) * kDegPerRad)
                                         : nlohmann::ordered_json(nullptr)},
           {"errors",
-           {{"altitude_km", JsonNumber(result.errors.altitude_m * 1e-3)},
-            {"velocity_m_s", JsonNumber(result.errors.velocity_m_s)},
-            {"flight_path_angle_deg", JsonNumber(result.errors.flight_path_angle_rad * kDegPerRad)},
-            {"inclination_deg", JsonNumber(result.errors.inclination_rad * kDegPerRad)},
-            {"argument_of_perigee_deg", JsonNumber(result.errors.argument_of_perigee_rad * kDegPerRad)}}},
+           {{"altitude_km", Number(result.errors.altitude_m * 1e-3)},
+            {"velocity_m_s", Number(result.errors.velocity_m_s)},
+            {"flight_path_angle_deg", Number(result.errors.flight_path_angle_rad * kDegPerRad)},
+            {"inclination_deg", Number(result.errors.inclination_rad * kDegPerRad)},
+            {"argument_of_perigee_deg", Number(result.errors.argument_of_perigee_rad * kDegPerRad)}}},
           {"variables", std::move(variables)},
           {"constraints", std::move(constraints)},
           {"seed", reference.problem.seed},
