@@ -18,7 +18,7 @@ class AttitudeCommand {
   PitchYawRoll AnglesAt(double time_s) const;
   /// Angular velocity relative to L in the commanded body axes.
   Vector3 RateAt(double time_s) const;
-  /// Mean angular acceleration over the last step, likewise; small yaw and roll.
+  /// Mean angular acceleration over the last step, in the same axes, for small yaw and roll.
   Vector3 Acceleration() const { return {0.0, pitch_.acceleration, yaw_.acceleration}; }
   Direction direction() const { return {pitch_.angle, yaw_.angle}; }
 

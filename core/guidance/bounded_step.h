@@ -14,7 +14,8 @@ using Misses = Eigen::Matrix<double, kMisses, 1>;
 using Unknowns = Eigen::Matrix<double, kPlanUnknowns, 1>;
 using MissJacobian = Eigen::Matrix<double, kMisses, kPlanUnknowns>;
 
-/// Of the sum of squares |miss + J s|² + |y + s|², all without units; `low` is not above 0, `high` not below.
+/// Model of the sum of squares |miss + J s|² + |y + s|², all without units. `low` is not above 0, `high` not
+/// below.
 struct StepModel {
   MissJacobian jacobian = MissJacobian::Zero();
   Misses miss = Misses::Zero();
@@ -27,9 +28,9 @@ struct StepModel {
   }
 };
 
-/// The step s within the bounds with the least |miss + J s|² + |y + s|² + s' (W - 1) s, W the diagonal
-/// `weight` of 1 and more: no more than without a step. By an active set (J. Nocedal and S. J. Wright,
-/// Numerical Optimization, 2006, section 16.5).
+/// The step s within the bounds with the least |miss + J s|² + |y + s|² + s' (W - 1) s. W is the diagonal
+/// `weight`, 1 or more. The sum is never larger than without a step. By an active set (J. Nocedal and S. J.
+/// Wright, Numerical Optimization, 2006, section 16.5).
 Unknowns BoundedStep(const StepModel& model, const Unknowns& weight);
 
 }  // namespace dispersa

@@ -1,5 +1,5 @@
-// The guidance of one flight: sees the navigated state now and then, plans, and commands an attitude at every
-// tick from the last but one burn on.
+// The guidance of one flight. From the last burn but one on it receives the navigated state from time to
+// time, plans, and commands an attitude at every tick.
 #pragma once
 
 #include "core/guidance/attitude_command.h"
@@ -9,7 +9,7 @@
 
 namespace dispersa {
 
-/// What the flight computer knows at a call. Nothing here is a true value.
+/// Measured values for a call of guidance. None is a true value.
 struct GuidanceSight {
   NavigatedState state;
   GuidancePhase phase = GuidancePhase::kCoast;
@@ -32,7 +32,7 @@ class ClosedLoopGuidance {
 
   /// Whether the attitude is its own and no longer the reference's.
   bool steers() const { return steers_; }
-  /// Moves the command on to a tick; times do not fall.
+  /// Moves the command on to a tick. Times do not fall.
   void Command(double time_s);
   const AttitudeCommand& command() const { return command_; }
   const Plan& plan() const { return plan_; }

@@ -1,23 +1,23 @@
-// Finds the plan whose predicted injection is the target's or, where no plan arrives, the best orbit there
-// is.
+// Finds the guidance plan whose predicted injection is the target's or, where no plan arrives, the best
+// orbit.
 //
-// Of all plans that arrive it is the one that departs least from the prior, by the sum of squares of the
-// departures over their scales: Levenberg-Marquardt steps on
+// Of all plans that arrive it is the one nearest to the prior, by the sum of squares of the departures over
+// their scales. It takes Levenberg-Marquardt steps on
 //
 //   sum ((x - x0) / scale)² + sum (miss / tolerance)²
 //
-// with tolerances so tight that the first sum chooses among what the second leaves open. The misses are those
-// of orbit_miss.h. Path has three times the tolerance of energy, the plane a hundred times: the plane gets
-// what energy and path leave.
+// The tolerances are so tight that the first sum only chooses among plans that meet the second. The misses
+// are those of orbit_miss.h. Path has three times the tolerance of energy, the plane a hundred times. So
+// energy comes first, then path, then plane.
 //
-// With J' the Jacobian of miss / tolerance by x / scale and y = (x - x0) / scale, a step is
+// J' is the Jacobian of miss / tolerance by x / scale, and y = (x - x0) / scale. A step is
 //
-//   dx / scale = -W⁻¹ y - W⁻¹ J'ᵀ (J' W⁻¹ J'ᵀ + 1)⁻¹ (miss / tolerance - J' W⁻¹ y),
+//   dx / scale = -W⁻¹ y - W⁻¹ J'ᵀ (J' W⁻¹ J'ᵀ + 1)⁻¹ (miss / tolerance - J' W⁻¹ y)
 //
-// within the bounds (bounded_step.h): four equations whatever the number of unknowns, solvable whatever the
+// within the bounds (bounded_step.h). These are four equations for any number of unknowns, solvable for any
 // rank of J'. W is 1, and more in two cases:
 // - Energy is missing that no smaller turn gives back. Energy is greatest along the velocity, where J' says
-//   nothing of the angles: without W a step would be as long as one likes.
+//   nothing of the angles. Without W a step could have any length.
 // - A step did not make the sum smaller. Such a step is not taken.
 #pragma once
 
@@ -37,7 +37,7 @@ struct CorrectorTask {
 struct Correction {
   Plan plan;
   Arrival miss;  ///< of the plan, predicted less target
-  /// Of the plan, the square root of the misses' sum; never more than the start's, or than kSolvedMiss.
+  /// Square root of the misses' sum, of the plan. Never more than the start's, or than kSolvedMiss.
   double prioritised_miss = 0.0, start_prioritised_miss = 0.0;
   double burnout_s = 0.0;
   bool arrives = false;  ///< within Arrives()
@@ -49,8 +49,8 @@ struct Correction {
 /// plane.
 inline constexpr double kSolvedMiss = 0.1;
 
-/// Misses that a plan may have and still arrive: 50 m, 0.5 m/s, 0.01 degree, and 0.02 degree of inclination.
-/// Where altitude and plane are not met any more they do not count.
+/// Misses with which a plan still arrives: 50 m, 0.5 m/s, 0.01 degree, and 0.02 degree of inclination.
+/// Altitude and plane do not count once they cannot be met any more.
 bool Arrives(const Arrival& miss, bool meets_altitude, bool meets_plane);
 
 Correction Correct(const GuidanceMission& mission, const PlanPrior& prior, const Knowledge& known,

@@ -30,7 +30,7 @@ inline void Describe(Fields& fields, GuidanceConfig& guidance) {
                       guidance.steers_last_burn);
   fields.Quantity("period", kTime, Between(0.1, 10.0), guidance.period_s,
                   "between two solutions while a motor burns", guidance.period_s);
-  // Attitude loops of a launcher follow some degrees a second; more would be a loss of control.
+  // A launcher's attitude loops follow some degrees a second. A faster turn would be a loss of control.
   constexpr Range kRate = UpTo(20.0 * kRadPerDeg);
   fields.OptionalQuantity(
       "turn_rate", kAngularRate, kRate, guidance.turn_rate_rad_s,

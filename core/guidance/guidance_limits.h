@@ -21,7 +21,7 @@ struct GuidanceLimits {
   double settled_rate_rad_s = 0.2 * kRadPerDeg;
 };
 
-/// What the guided part of a vehicle can do, in pitch and yaw.
+/// Angular accelerations that the guided part of a vehicle can reach, in pitch and yaw.
 struct GuidedAuthority {
   /// By nozzles at their limit, at ignition: the less of the last two stacks.
   double nozzles_rad_s2 = 0.0;
@@ -33,8 +33,9 @@ struct GuidedAuthority {
 /// Precondition: two stages or more.
 GuidedAuthority AuthorityOf(const Vehicle& vehicle, const AutopilotConfig& autopilot);
 
-/// What the campaign says. Where it says nothing: GuidanceLimits' own, or less, so that nozzles and thrusters
-/// keep most of what they can for disturbances; and a settled attitude that the deadband allows.
+/// The campaign's limits. Where it gives none: those of GuidanceLimits, or less, so that nozzles and
+/// thrusters keep most of their authority for disturbances. A settled attitude is one that the deadband
+/// allows.
 GuidanceLimits LimitsOf(const GuidanceConfig& config, const GuidedAuthority& authority);
 
 /// A setting that a campaign says and its vehicle cannot follow.

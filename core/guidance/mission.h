@@ -1,5 +1,5 @@
-// What the guidance of every flight of a campaign knows beforehand: the nominal motors and masses of the last
-// two stages, the reference's attitude, and where to arrive.
+// Data that the guidance of every flight of a campaign has before lift-off: the nominal motors and masses of
+// the last two stages, the reference's attitude, and the target.
 #pragma once
 
 #include <vector>
@@ -12,7 +12,7 @@
 
 namespace dispersa {
 
-/// Where a flight shall arrive: geodetic altitude, inertial speed, inertial flight path angle, inclination.
+/// The target of a flight: geodetic altitude, inertial speed, inertial flight path angle, inclination.
 struct Arrival {
   double altitude_m = 0.0;
   double velocity_m_s = 0.0;
@@ -35,7 +35,7 @@ struct DirectionTable {
   std::vector<Direction> at;  ///< two at least
 
   Direction At(double time_s) const;
-  /// Its slope, rad/s; 0 outside.
+  /// Its slope, rad/s; 0 outside the table.
   Direction RateAt(double time_s) const;
 };
 

@@ -13,9 +13,9 @@ struct OrbitMiss {
   double plane_m_s = 0.0;   ///< inclination
 };
 
-/// The shape wanted is the target's where the energy is. Where it is not, it is that of the orbit with the
-/// target's perigee; near a circular target, whose perigee no lower orbit has, the circle. About a point
-/// mass.
+/// The wanted shape is the target's if the orbit has the target's energy. Else it is that of the orbit with
+/// the target's perigee. Near a circular target no lower orbit has this perigee: then it is the circle. About
+/// a point mass.
 OrbitMiss OrbitMissOf(const GuidanceMission& mission, const Injection& reached);
 
 }  // namespace dispersa

@@ -1,4 +1,4 @@
-// What became of the guidance of a flight, for its metrics.
+// The results of a flight's guidance, for its metrics.
 #pragma once
 
 namespace dispersa {

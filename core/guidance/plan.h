@@ -1,4 +1,4 @@
-// What the guidance may still decide, as seven numbers.
+// The guidance plan: the seven numbers that guidance still decides.
 #pragma once
 
 #include <array>
@@ -23,10 +23,10 @@ struct Plan {
   double ignition_s() const { return value[kIgnition]; }
 };
 
-/// How the last burn turns in yaw to spend what it has too much, in units of the largest turn a, over the
-/// time since ignition: a mixture of two courses. Late: 0 until the motor's estimate stands at `from_s`, to 1
-/// at `back_s`, and as steadily through to -1 at the nominal burnout. Early: 1 until `from_s`, and steadily
-/// to -1. Corners are rounded over `round_s` to either side, for the command to follow.
+/// The last burn's turn in yaw, which spends excess energy, over the time since ignition in units of its
+/// amplitude a: a mixture of two courses. Late: 0 until the motor's estimate is ready at `from_s`, then
+/// linear to 1 at `back_s`, then linear to -1 at the nominal burnout. Early: 1 until `from_s`, then linear to
+/// -1. Corners are rounded over `round_s` to either side, so that the command can follow.
 struct TurnCourse {
   double from_s = 0.0, back_s = 0.0, end_s = 0.0, round_s = 0.0;
   double steepest_rad_s = 0.0;  ///< what the command can follow
@@ -39,7 +39,7 @@ struct TurnCourse {
   double EarlyRate(double since_ignition_s) const;
 };
 
-/// What the guidance would do if everything were nominal, and how far it may depart from it.
+/// The plan of a nominal flight, and the scales and bounds of departures from it.
 struct PlanPrior {
   Plan nominal;
   double last_duration_s = 0.0;  ///< nominal, of the last burn
@@ -50,9 +50,9 @@ struct PlanPrior {
 };
 PlanPrior BuildPrior(const GuidanceMission& mission);
 
-/// Where the last burn's thrust points by a plan: pitch and yaw linear in time, and the turn in yaw besides,
-/// about its mean. It takes a²/2 of the course's variance away from the ideal velocity, for which kWaste
-/// stands. As late as the command can follow.
+/// Direction of the last burn's thrust by a plan: pitch and yaw linear in time, plus the turn in yaw about
+/// its mean. The turn takes a²/2 of the course's variance from the ideal velocity; kWaste stands for it. It
+/// begins as late as the command can follow.
 class LastBurnAttitude {
  public:
   LastBurnAttitude(const Plan& plan, const PlanPrior& prior);

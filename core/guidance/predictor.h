@@ -1,5 +1,5 @@
-// Where a flight arrives: a point mass under gravitation (central and J2) and the thrust of known motors,
-// through the rest of a burn, the coast and the last burn.
+// Predicts the injection of a plan: a point mass under gravitation (central and J2) and the thrust of known
+// motors, through the rest of a burn, the coast and the last burn.
 #pragma once
 
 #include <optional>
@@ -17,15 +17,16 @@ struct NavigatedState {
 
 enum class GuidancePhase { kBelowBurns, kCoast, kLastBurns };
 
-/// What is known when the prediction is made.
+/// The values at the time of the prediction.
 struct Knowledge {
   GuidancePhase phase = GuidancePhase::kCoast;
   double burn_ignition_s = 0.0;  ///< of the motor that burns
   GuidedStage below;             ///< as estimated, while it burns
-  GuidedStage last;  ///< nominal until it burns, then as estimated; less what reaction control expelled
+  GuidedStage last;  ///< nominal until it burns, then as estimated, less the propellant that reaction control
+                     ///< expelled
   /// Small rotation from where thrust shall point to where it does, as measured.
   Vector3 thrust_offset_rad_I = Vector3::Zero();
-  /// Where the motor that burns is commanded to point now: it takes its time to get to where a plan wants it.
+  /// The present command of a burning motor's attitude, which approaches the plan's at a limited rate.
   std::optional<Direction> commanded;
 };
 
@@ -35,7 +36,7 @@ struct Injection {
   double radius_m = 0.0;  ///< from the Earth's centre
 };
 
-/// Classical Runge-Kutta steps, at most so long; they end at a thrust's kinks.
+/// Largest steps of the classical Runge-Kutta method. Steps end at a thrust's kinks.
 struct PredictorSteps {
   double burn_s = 2.5;
   double coast_s = 40.0;

@@ -1,4 +1,4 @@
-// What is left of an autopilot's margins when its vehicle and its air are dispersed as a campaign's are.
+// Margins of an autopilot with the vehicle and the air dispersed as in a campaign.
 #pragma once
 
 #include <cstdint>
@@ -27,7 +27,7 @@ struct CampaignMargins {
   std::uint64_t cases = 0;
   std::uint64_t ended_early = 0;        ///< flights that failed: their margins end with them
   std::vector<std::uint64_t> missed;    ///< cases that miss a gate, ascending
-  std::vector<LeastLoopMargins> loops;  ///< by stage; pitch, yaw, roll
+  std::vector<LeastLoopMargins> loops;  ///< by stage, each with pitch, yaw, roll
   bool Passed() const { return ended_early == 0 && missed.empty(); }
 };
 

@@ -1,9 +1,9 @@
-// Stability margins of an autopilot along its nominal flight: computed from a linearisation, and measured by
-// spoiling the loop of the flight until it fails.
+// Stability margins of an autopilot along its nominal flight: computed from a linearisation, and measured in
+// flights whose loop is changed until it fails.
 //
-// A vehicle that bends is linearised with its modes, and its margins are the least over sets of their
-// frequencies (FrequencySets); one without a beam has rigid-body margins. There is no slosh. The path is held
-// unless a MarginModel says that it drifts.
+// A bending vehicle is linearised with its modes, and its margins are the least over sets of their
+// frequencies (FrequencySets). A vehicle without a beam has rigid-body margins. There is no slosh. The path
+// is held unless a MarginModel says that it drifts.
 #pragma once
 
 #include <array>
@@ -20,20 +20,20 @@
 
 namespace dispersa {
 
-/// What every powered phase must have.
+/// Gates of every powered phase.
 inline constexpr double kGainMarginGate_db = 6.0;  ///< both ways
 inline constexpr double kPhaseMarginGate_deg = 30.0;
 inline constexpr double kDelayMarginGate_s = 0.020;
 /// Wherever the bending is not attenuated by the gain margin's gate it must keep the phase margin's from -1.
 inline constexpr double kFrequencyBand = 0.15;
-/// What every powered phase of a dispersed flight must have.
+/// Gates of every powered phase of a dispersed flight.
 inline constexpr double kDispersedGainGate_db = 3.0;
 inline constexpr double kDispersedPhaseGate_deg = 20.0;
 
-/// What margins are computed of.
+/// The linear model from which margins are computed.
 struct MarginModel {
-  double frequency_band = kFrequencyBand;  ///< the modes' frequencies are also so much lower and higher,
-                                           ///< together and each alone; 0: as they are
+  double frequency_band = kFrequencyBand;  ///< fraction by which the modes' frequencies are also lowered and
+                                           ///< raised, together and each alone (0: as they are)
   LateralPath path = LateralPath::kHeld;
 };
 
@@ -42,8 +42,8 @@ struct FrequencySet {
   std::string name;  ///< "as they are", "all 15 % lower", "mode 2 15 % higher", ...
   std::array<double, kModes> factor;
 };
-/// The sets of which margins are the least: as they are, all lower and higher by the band, and, of several
-/// modes, each of them alone. A band of 0: as they are.
+/// The sets of frequencies over which margins are the least: unchanged, all lowered and all raised by the
+/// band, and, for several modes, each of them alone. With a band of 0: unchanged only.
 std::vector<FrequencySet> FrequencySets(int modes, double band);
 
 /// The margins with one set of frequencies.
@@ -54,12 +54,12 @@ struct SetMargins {
 
 /// One axis at one instant of the nominal flight.
 struct ComputedMargins {
-  std::string place;  ///< "lift-off", "max q", "stage 2 ignition + 1 s", ...; "" in between
+  std::string place;  ///< "lift-off", "max q", "stage 2 ignition + 1 s", ... or "" in between
   int stage = 0;      ///< 0-based
   double time_s = 0.0;
   Axis axis = kPitch;
   LoopMargins frozen;    ///< gains held
-  LoopMargins adapting;  ///< with the adaptation, linearised about zero error; as frozen if there is none
+  LoopMargins adapting;  ///< with the adaptation, linearised about zero error (without adaptation: as frozen)
   /// As adapting, with what the law has learnt by then: the least on any side of zero error and zero rate.
   /// None where nothing changes by learning.
   std::optional<LoopMargins> learnt;
@@ -67,8 +67,8 @@ struct ComputedMargins {
   std::vector<SetMargins> by_set = {};  ///< as adapting, where there are several FrequencySets
 };
 
-/// One powered phase, all axes at once. Resolutions: kMeasuredGainStep_db, kMeasuredDelayStep_s; a value at
-/// its ceiling was never lost.
+/// One powered phase, all axes at once. Resolutions: kMeasuredGainStep_db, kMeasuredDelayStep_s. At its
+/// ceiling a value is a lower bound: control was never lost.
 struct MeasuredMargins {
   int stage = 0;  ///< 0-based
   double gain_up_db = 0.0;
@@ -99,8 +99,9 @@ struct MarginInstant {
 };
 
 /// Lift-off, max q, each ignition + 1 s and burnout, and every `every_s` of powered flight between, in the
-/// order of time, less those whose thrust is below kLeastThrustFraction of full thrust (SkippedInstants). Of
-/// a burnout that is left out for this the last instant before it that is not stands in: "stage 1 tail-off".
+/// order of time. Instants with less than kLeastThrustFraction of full thrust are left out (SkippedInstants).
+/// If that leaves out a burnout, the last instant before it with enough thrust replaces it: "stage 1
+/// tail-off".
 std::vector<MarginInstant> MarginInstants(const FlightModel& model, double every_s = 5.0,
                                           const FlightInputs& inputs = {});
 /// An instant that MarginInstants leaves out.
@@ -116,9 +117,9 @@ std::vector<SkippedInstant> SkippedInstants(const FlightModel& model, double eve
 LoopMargins MarginsAt(const LauncherPlant& plant, const SensorModel& sensors, const AutopilotModel& autopilot,
                       const TickSample& sample, Axis axis, bool adapting, const MarginModel& of = {});
 
-/// At each of MarginInstants, in all axes, of the plant and along the flight that `inputs` make; the
-/// autopilot knows of the nominal plant only. What is learnt is learnt in a flight with the misalignment of
-/// MeasureMargins besides. A further delay of the loop (`inputs`) is left out.
+/// Margins at each of MarginInstants, in all axes, of the plant and along the flight that `inputs` give. The
+/// autopilot knows only the nominal plant. Learnt values come from a flight that also has the misalignment of
+/// MeasureMargins. A further delay of the loop (`inputs`) is left out.
 std::vector<ComputedMargins> ComputeMargins(const FlightModel& model, double every_s = 5.0,
                                             const FlightInputs& inputs = {}, const MarginModel& of = {});
 
@@ -130,18 +131,19 @@ struct DispersedMargins {
 DispersedMargins ComputeDispersedMargins(const FlightModel& model, const FlightOrder& order,
                                          double every_s = 5.0, LateralPath path = LateralPath::kHeld);
 
-/// By bisection over flights in which the gain or the delay of one stage's loop is changed, with a steady
-/// thrust misalignment of 0.25° in every stage that keeps the adaptation at work. A loop counts as lost when
-/// the flight loses control, when a deflection oscillates by more than 0.2° peak to peak over any second
-/// after the start-up transient, or when pitch or yaw leave the rules' range of 5°. The flights have
-/// `inputs`, but for the misalignment and the loop's gain and delay.
+/// Measures by bisection over flights in which the gain or the delay of one stage's loop is changed. A steady
+/// thrust misalignment of 0.25° in every stage keeps the adaptation at work. A loop counts as lost in three
+/// cases: the flight loses control, a deflection oscillates by more than 0.2° peak to peak over any second
+/// after the start-up transient, or pitch or yaw leave the rules' range of 5°. The flights have `inputs`,
+/// except for the misalignment and the loop's gain and delay.
 std::vector<MeasuredMargins> MeasureMargins(const FlightModel& model, const FlightInputs& inputs = {});
 
 /// Whether a margin set passes the gates.
 bool PassesGates(const LoopMargins& margins);
 bool PassesGates(const ComputedMargins& margins);
-/// What was learnt: rules must have the nominal flight's margins. An augmentation takes its gain from them
-/// until its spectral damper gives it back; it must leave those of a dispersed flight.
+/// Whether the margins with learnt values suffice. Rules must have the nominal flight's margins. An
+/// augmentation takes its gain from them until its spectral damper gives it back: it must leave those of a
+/// dispersed flight.
 bool LearntPasses(const ComputedMargins& margins);
 bool PassesGates(const MeasuredMargins& margins);
 /// Whether a margin set of a dispersed flight does.

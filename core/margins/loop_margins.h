@@ -24,9 +24,9 @@ struct RateSensor {
   double delay_ticks = 0.0;  ///< what holding a sample over several ticks is worth
 };
 
-/// Continuous plant of one axis about an operating point, x' = a x + b d. State: attitude (rad), its rate,
-/// nozzle deflection (rad), its rate, of a body that bends the modal coordinates and their rates, and of one
-/// that drifts its lateral velocity (m/s); d: commanded deflection, rad.
+/// Continuous plant of one axis about an operating point, x' = a x + b d, with d the commanded deflection,
+/// rad. State: attitude (rad), its rate, nozzle deflection (rad), its rate. A bending body adds the modal
+/// coordinates and their rates, a drifting one its lateral velocity (m/s).
 struct AxisPlant {
   Eigen::MatrixXd a = Eigen::MatrixXd::Zero(4, 4);
   Eigen::VectorXd b = Eigen::VectorXd::Zero(4);
@@ -37,12 +37,13 @@ struct AxisPlant {
   bool drifts = false;
 };
 
-/// A control law about zero error: u = kp e + kd e' + w, and the command is u, filtered, / effectiveness.
+/// A control law about zero error: u = kp e + kd e' + w. The command is u, filtered, / effectiveness.
 ///
 /// The adaptation law of the fuzzy rules, linearised there, learns in the central rule alone and spreads over
-/// all: w is driven by drive_error e + drive_rate e' through the mean of `rules` consequents, an integrator
-/// of gain 1 / rules that leaks at `leakage`, and the central rule's departure from the mean, which decays at
-/// leakage + spread. With one rule it is the integral of a PID law. Both drives 0: frozen, PD.
+/// all. drive_error e + drive_rate e' drives two parts of w. One is the mean of `rules` consequents, an
+/// integrator of gain 1 / rules that leaks at `leakage`. The other is the central rule's departure from the
+/// mean, which decays at leakage + spread. With one rule it is the integral of a PID law. With both drives 0
+/// the law is frozen, or PD.
 struct LinearLaw {
   double kp_1_s2 = 0.0;
   double kd_1_s = 0.0;
@@ -52,8 +53,8 @@ struct LinearLaw {
   double leakage_1_s = 0.0;
   double spread_1_s = 0.0;
   int rules = 1;
-  /// Composite adaptation: w is driven by this times the miss of a prediction of e', r' = -kp e - kd e' +
-  /// predictor (e' - r).
+  /// Composite adaptation: w is also driven by this times the error of a prediction of e', r' = -kp e - kd e'
+  /// + predictor (e' - r).
   double drive_prediction = 0.0;  ///< gamma p22 composite, 1/s²
   double predictor_1_s = 0.0;
   std::vector<DigitalSection> filters;  ///< of u, in series
@@ -62,17 +63,17 @@ struct LinearLaw {
 };
 
 struct LoopMargins {
-  bool stable = false;           ///< of the closed loop; the margins of an unstable one are 0
-  double gain_up_db = 0.0;       ///< the gain may grow by this; +infinity where nothing limits it
-  double gain_down_db = 0.0;     ///< the gain may fall by this; likewise
+  bool stable = false;           ///< of the closed loop (the margins of an unstable one are 0)
+  double gain_up_db = 0.0;       ///< the gain may grow by this (+infinity: no limit)
+  double gain_down_db = 0.0;     ///< the gain may fall by this (+infinity: no limit)
   double phase_deg = 0.0;        ///< least at any crossover of 0 dB, either way
   double delay_s = 0.0;          ///< further delay that destabilises
   double crossover_rad_s = 0.0;  ///< highest crossover of 0 dB
-  // Where the body bends, above 0.7 of its lowest mode; phase and crossover above are then those below it,
-  // delay that of every crossover. The peak is that of the open loop, known of an unstable one too.
+  // Values above 0.7 of a bending body's lowest mode. Phase and crossover above are then those below it, and
+  // delay is that of every crossover. The peak is that of the open loop, also of an unstable one.
   double bending_peak_db = -std::numeric_limits<double>::infinity();
-  /// Least angle of the response from -1 wherever it is not attenuated by 6 dB, and by 3 dB; 180 where it is
-  /// everywhere.
+  /// Least angle between the response and -1 wherever it is not attenuated by 6 dB, and by 3 dB; 180 if it is
+  /// attenuated everywhere.
   double bending_phase_6db_deg = 180.0;
   double bending_phase_3db_deg = 180.0;
 };
@@ -88,11 +89,11 @@ class SampledLoop {
 
   /// Return ratio L at z = exp(i w T), negative feedback: the closed loop is critical where L = -1.
   std::complex<double> Response(double frequency_rad_s) const;
-  /// Largest modulus of the closed loop's eigenvalues when the gain is multiplied; below 1: stable.
+  /// Largest modulus of the closed loop's eigenvalues with the gain multiplied. Below 1: stable.
   double SpectralRadius(double gain_factor) const;
   LoopMargins Margins() const;
 
-  /// Where Margins() looks, rising: 2 % apart, and closer about the modes.
+  /// Frequencies of Margins(), rising: 2 % apart, and closer about the modes.
   std::vector<double> Frequencies() const;
   /// Attitude and the rate that each sensor shows, before its weight, per command that is on its way for the
   /// delay.

@@ -1,6 +1,6 @@
-// Many laws for one plant: what its sensors answer, tabulated over frequency once, makes a law's margins a
-// matter of some ten microseconds. For searches; LoopMargins' are exact where these interpolate, which is
-// worth 0.1 dB and 1°.
+// Margins of many control laws for one plant. The answers of its sensors are tabulated over frequency once,
+// so a law's margins take some ten microseconds. For searches: LoopMargins' are exact. These interpolate,
+// with errors of 0.1 dB and 1°.
 #pragma once
 
 #include <complex>
@@ -10,8 +10,8 @@
 
 namespace dispersa {
 
-/// What a loop must have: gain both ways, phase at crossovers and of bending that is not attenuated by the
-/// gain's gate, and delay.
+/// The margins that a loop must have: gain both ways, phase at crossovers, phase of bending that is not
+/// attenuated by the gain's gate, and delay.
 struct LoopGates {
   double gain_db = 0.0;
   double phase_deg = 0.0;
@@ -20,13 +20,12 @@ struct LoopGates {
 
 class LoopTable {
  public:
-  /// `plant` with every sensor that a law may come to weigh; its weights do not matter. No undamped
-  /// oscillation.
+  /// `plant` has every sensor to which a law may give weight. Its own weights do not matter. It has no
+  /// undamped oscillation.
   LoopTable(const AxisPlant& plant, double tick_s, int delay_ticks);
 
-  /// The least of (margin - gate) / gate over all gates; where the body bends the larger of gain's and
-  /// phase's at each frequency. -2 or below: the closed loop is unstable, by the encirclements of -1
-  /// (Nyquist).
+  /// The least of (margin - gate) / gate over all gates. For bending the larger of gain's and phase's counts
+  /// at each frequency. -2 or below: the closed loop is unstable, by the encirclements of -1 (Nyquist).
   double Surplus(const LinearLaw& law, const std::vector<double>& weights, const LoopGates& gates) const;
 
  private:
