@@ -1,4 +1,4 @@
-// What tells one campaign from another: digests of parts of its canonical tree.
+// Identities of a campaign: digests of parts of its canonical tree.
 #pragma once
 
 #include <string>
@@ -9,7 +9,7 @@
 namespace dispersa {
 
 /// SHA-256 of the canonical vehicle of a campaign's or a vehicle file's tree, without its beam and its
-/// limits: the trajectory of a vehicle that bends or may break is the rigid one's.
+/// limits: they do not change the trajectory, which is that of the rigid vehicle.
 std::string VehicleSha256(const InputNode& vehicle);
 /// SHA-256 of the requirements and of how they are judged.
 std::string RequirementsId(const InputNode& campaign);

@@ -17,7 +17,7 @@ struct DecodedCampaign {
       optimize;  ///< of the `optimize` block, which stands in place of `reference`
 };
 
-/// What the campaign is read for decides what it must have.
+/// The use of a campaign, which decides the keys that it needs.
 enum class CampaignUse {
   kFly,       ///< autopilot, sampling and a reference
   kRead,      ///< likewise, but a control law in Python need not be here

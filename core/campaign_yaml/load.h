@@ -48,8 +48,8 @@ Campaign ParseCampaign(const std::string& yaml_text, const std::string& display_
 /// flown under need not be here.
 Campaign ReadFlownCampaign(const InputSource& source);
 
-/// What `optimize` needs of a campaign: the problem in its `optimize` block, or the one that its reference
-/// carries.
+/// A campaign's part for `optimize`: the trajectory problem in its `optimize` block, or that of its
+/// reference.
 struct OptimizationInput {
   std::string name;  ///< of the campaign
   Vehicle vehicle;
@@ -66,26 +66,25 @@ Vehicle LoadVehicle(const std::string& path, std::vector<InputProblem>* warnings
 AutopilotConfig LoadAutopilot(const std::string& path);
 Reference LoadReference(const std::string& path);
 Scenario LoadScenario(const std::string& path);
-/// True if the file is YAML with `schema: dispersa/scenario/1`; a file that cannot be read is none.
+/// True if the file is YAML with `schema: dispersa/scenario/1`. False for a file that cannot be read.
 bool IsScenarioFile(const std::string& path);
 
-/// YAML text of a reference; angles in degrees, lengths in km. A number is the shortest text that reads back
-/// to the same bits. A few radian values are no double's worth of degrees; those become the nearest value
-/// that is, so ReadReference(WriteReference(x)) may differ from x in the last bit, but writing and reading
+/// YAML text of a reference, with angles in degrees and lengths in km. A number is the shortest text that
+/// reads back to the same bits. A few radian values are no double's worth of degrees and become the nearest
+/// value that is. So ReadReference(WriteReference(x)) may differ from x in the last bit. Writing and reading
 /// again changes nothing more, neither value nor text.
 std::string WriteReference(const Reference& reference);
 /// The reference in a text, as LoadReference.
 Reference ReadReference(const std::string& yaml_text, const std::string& display_name);
 
-/// YAML text of an autopilot, with the blocks that its laws read; ReadAutopilot(WriteAutopilot(x)) as for
-/// references.
+/// YAML text of an autopilot, with the blocks that its laws read. Numbers as in WriteReference.
 std::string WriteAutopilot(const AutopilotConfig& autopilot);
 /// The autopilot in a text, as LoadAutopilot.
 AutopilotConfig ReadAutopilot(const std::string& yaml_text, const std::string& display_name);
 
-/// What is to be said of a file of any kind, found by its `schema`.
+/// The result of checking a file of any kind. Its `schema` names the kind.
 struct FileCheck {
-  std::vector<InputProblem> errors;    ///< every one; empty when the file is valid
+  std::vector<InputProblem> errors;    ///< all errors (empty: the file is valid)
   std::vector<InputProblem> warnings;  ///< of a valid one
   bool is_vehicle = false;
   std::optional<Vehicle> vehicle;  ///< of a valid vehicle or campaign

@@ -17,8 +17,8 @@ inline constexpr char kScenarioSchema[] = "dispersa/scenario/1";
 /// Whether a text may name files: a canonical text, which lives anywhere, may not.
 enum class FileNames { kAllowed, kRefused };
 
-/// Names are relative to the file in which they stand. A table is a CSV file, or of RASP's if its name ends
-/// so; bytes become {sha256, base64}.
+/// Reads the files that a tree names. Names are relative to the file in which they stand. A table is a CSV
+/// file, or RASP's format if its name ends so. Bytes become {sha256, base64}.
 class NamedFiles : public FileSource {
  public:
   explicit NamedFiles(FileNames names = FileNames::kAllowed) : names_(names) {}

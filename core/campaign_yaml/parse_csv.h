@@ -9,9 +9,9 @@
 
 namespace dispersa {
 
-/// Comma-separated; lines that begin with '#' and empty lines do not count; the first other line names the
-/// columns, in any order. Which there must be, and what their cells are, is for the reader of the map to say.
-/// A table of another form is a problem and an absent node (without file), which the readers ignore.
+/// Parses a comma-separated text. Lines that begin with '#' and empty lines do not count. The first other
+/// line names the columns, in any order. The reader of the map checks the columns and the cells. A table of
+/// another form is a problem and gives an absent node (without file), which the readers ignore.
 InputNode ParseCsv(const std::string& text, const std::string& file, std::vector<InputProblem>& problems);
 
 }  // namespace dispersa

@@ -9,12 +9,12 @@
 
 namespace dispersa {
 
-/// Parses one document. Not YAML, several documents, duplicate keys, keys that are not text, anchors, aliases
-/// and tags are problems; then what could be read is returned, and an absent node (without file), which the
-/// readers ignore, if that is nothing.
+/// Parses one document. Problems are: text that is not YAML, several documents, duplicate keys, keys that are
+/// not text, anchors, aliases and tags. After a problem it returns the part that could be read. If there is
+/// none, it returns an absent node (without file), which the readers ignore.
 InputNode ParseYaml(const std::string& text, const std::string& file, std::vector<InputProblem>& problems);
 
-/// The whole text of a regular file; false with the reason, as the system words it, if it cannot be read.
+/// Reads the whole text of a regular file. Returns false, with the system's reason, if it cannot be read.
 bool ReadFile(const std::string& path, std::string* text, std::string* reason);
 
 }  // namespace dispersa

@@ -1,4 +1,4 @@
-// What is wrong with a text before it is YAML or CSV: bytes that are no UTF-8, tabs that indent.
+// Faults of a text before it is YAML or CSV: bytes that are not UTF-8, and tabs that indent.
 #pragma once
 
 #include <string>
@@ -9,11 +9,11 @@
 
 namespace dispersa {
 
-/// Records the first byte that is not part of UTF-8 text; true if there is none.
+/// Records the first byte that is not part of UTF-8 text. Returns true if there is none.
 bool CheckUtf8(const std::string& text, const std::string& file, std::vector<InputProblem>& problems);
 
-/// Records the first tab that indents a line up to `last_line`; true if there is none. Tabs elsewhere are
-/// harmless.
+/// Records the first tab that indents a line up to `last_line`. Returns true if there is none. Tabs elsewhere
+/// are harmless.
 bool CheckIndentation(const std::string& text, const std::string& file, int last_line,
                       std::vector<InputProblem>& problems);
 

@@ -1,6 +1,6 @@
-// Runs what may crash, hang, end the process or never stop allocating, in a child process.
+// Runs work that may crash, hang, end the process or allocate without limit, in a child process.
 //
-// The child is forked without a new program: it has all that this process has prepared, and no files of it
+// The child is forked without a new program. It has all that this process has prepared, and no files of it
 // but the streams for output. It runs on one thread, and must take no lock that another thread may hold here.
 // It is shut in (sandbox.h): it computes, and reaches no file, network or process.
 #pragma once
@@ -44,14 +44,13 @@ class NoChild : public std::runtime_error {
   using std::runtime_error::runtime_error;
 };
 
-/// Runs `work` in a child. What it says is heard here, in order, until it is done or the child has ended.
-/// Throws PluginError with the text of one that `work` throws; ContainedEnd when it throws something else, or
-/// the child ends otherwise; NoChild; Interrupted; and
-/// what `hear` throws.
+/// Runs `work` in a child. Its messages are received here, in order, until it is done or the child has ended.
+/// Throws PluginError with the text of one that `work` throws, ContainedEnd if it throws something else or
+/// the child ends otherwise, NoChild, Interrupted, and whatever `hear` throws.
 void RunContained(const std::function<void(const Say& say)>& work, const Say& hear,
                   const StopCheck& should_stop = nullptr, const ContainmentLimits& limits = {});
 
-/// What a plug-in says of itself, asked in a child. Throws PluginError, ContainedEnd.
+/// A plug-in's description of itself, asked in a child. Throws PluginError, ContainedEnd.
 PluginDescription DescribeContained(const PluginConfig& config);
 
 /// Which parts of the sandbox hold for children of this process.
@@ -60,7 +59,7 @@ SandboxParts SandboxHere();
 /// Whether this process loads campaigns with plug-ins: until RefusePlugins, which says why not, and the
 /// SHA-256 of those that it loads all the same. To be called before any thread starts.
 void RefusePlugins(const std::string& why, std::set<std::string> but = {});
-/// Why this one is not loaded; empty: it is.
+/// Why this library is not loaded; empty if it is.
 std::string PluginRefusal(const std::string& sha256);
 
 }  // namespace dispersa

@@ -1,4 +1,4 @@
-// What holds a control law's process back: system calls, files, network.
+// Limits on a control law's process: system calls, files, network.
 #pragma once
 
 #include <string>
@@ -7,14 +7,14 @@ namespace dispersa {
 
 /// The parts of a sandbox: those that are asked for, or those that hold.
 struct SandboxParts {
-  bool seccomp = true;     ///< only the system calls of a computation; any other one ends the process
+  bool seccomp = true;     ///< allow only the system calls of a computation (any other one ends the process)
   bool landlock = true;    ///< no file is opened but shared objects in the system's folders
   bool namespaces = true;  ///< a user without rights, and a network without interfaces
 };
 
-/// Shuts this process in, for good, and ends it with its parent. It must have one thread. A part that the
-/// kernel does not give is missing from the answer. A system call that is not allowed has no effect;
-/// `refused` is called with its number, in a signal handler.
+/// Shuts this process in for good, and ends it with its parent. The process must have one thread. The answer
+/// lacks the parts that the kernel does not have. A system call that is not allowed has no effect: a signal
+/// handler calls `refused` with its number.
 SandboxParts EnterSandbox(const SandboxParts& wanted, void (*refused)(int call));
 
 /// As the manual names it.

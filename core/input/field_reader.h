@@ -11,13 +11,13 @@
 
 namespace dispersa {
 
-/// Where the files are that a tree names.
+/// The files that a tree names.
 class FileSource {
  public:
   enum class Holds { kDocument, kTable, kBytes };
 
   virtual ~FileSource() = default;
-  /// Replaces a scalar, a file's name, by what the file holds; by an absent node after a problem. `path` is
+  /// Replaces a scalar, a file's name, by the file's content; after a problem, by an absent node. `path` is
   /// the scalar's own.
   void Load(InputNode& name, const std::string& path, Holds holds, std::vector<InputProblem>& problems) {
     const std::size_t before = problems.size();
@@ -34,9 +34,9 @@ class FileSource {
   std::size_t problems_ = 0;
 };
 
-/// Reads the map at `node`. Every problem is recorded with its place, and reading goes on; what was read
-/// counts only if there is none. `path` is the node's own in its file. The names of files at keys that take
-/// them are replaced by what the files hold; without `files` they are left.
+/// Reads the map at `node`. Every problem is recorded with its place, and reading goes on. The values count
+/// only if there is no problem. `path` is the node's own in its file. With `files`, the names of files are
+/// replaced by the files' contents. Without `files` they stay.
 void ReadFields(InputNode& node, const std::string& path, std::vector<InputProblem>& problems,
                 FileSource* files, const Fields::Part& describe);
 

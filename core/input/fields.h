@@ -1,9 +1,9 @@
-// What the maps of the input files hold, declared once beside the structs that receive it.
+// The keys of the input files' maps, declared once beside the structs that receive them.
 //
-// `Describe(fields, value)` of a struct names its keys, one call each; ReadFields (field_reader.h) fills the
-// struct from a file by them. A description calls everything that a map may hold. What depends on other keys
-// it says by When() and Either(), and what holds between several fields in Check(): so whoever else visits
-// it, to list the keys, sees every branch.
+// `Describe(fields, value)` of a struct names its keys, one call each. ReadFields (field_reader.h) fills the
+// struct from a file by these calls. A description calls everything that a map may hold. Keys that depend on
+// other keys are declared inside When() and Either(). Relations between several fields are declared by
+// Check(). So other visitors, which list the keys, see every branch.
 #pragma once
 
 #include <array>
@@ -54,7 +54,7 @@ inline Condition HasMap(std::string key) { return {std::move(key), {}, {}, true}
 /// All maps for which no alternative before holds.
 inline Condition Else() { return {}; }
 
-/// What is declared of a key. Numbers are inside in SI and radians, limits and defaults too.
+/// The declaration of a key. Numbers, limits and defaults are in SI units and radians.
 struct Key {
   const char* name;     ///< of a quantity its stem: an underscore and one of the dimension's units follow
   const char* meaning;  ///< what documentation says of it, one line
@@ -84,12 +84,12 @@ struct WordKey : Key {
   std::vector<std::string> words;
   std::optional<std::size_t> absent;
 };
-/// The name of one of many things; none: another file has them.
+/// The name of one of many things. Without names another file has them.
 struct NameKey : Key {
   const std::vector<std::string>& names;
   const char* what;  ///< "a metric"
 };
-/// Whole numbers, each once; a single one needs no list.
+/// Whole numbers, each once. A single one needs no list.
 struct SeveralKey : Key {
   int low, high;
   const char* noun;   ///< of what, in the words of a message: "stage"
@@ -102,18 +102,18 @@ struct RowsKey : Key {
     double scale;  ///< value inside = value in the file * scale
   };
   std::size_t low_count, high_count;
-  std::size_t width = 0;             ///< of each row; 0: any
+  std::size_t width = 0;             ///< of each row (0: any)
   std::vector<Column> columns = {};  ///< which the key `columns` beside it names
 };
 struct MapKey : Key {
   enum class File { kNone, kTable, kBytes };
-  const char* word = nullptr;  ///< this word may stand in its place; what is neither is not `what`
-  const char* what = nullptr;
+  const char* word = nullptr;  ///< may replace the map
+  const char* what = nullptr;  ///< a value that is neither is refused as not this: "a direction"
   bool or_number = false;
   File file = File::kNone;  ///< of which the map may be made, by the columns of a table or of bytes
   bool or_list = false;     ///< of such maps
 };
-/// What stands at the key of a map.
+/// The value at the key of a map.
 struct MapValue {
   bool is_there = false;
   bool is_word = false;
@@ -123,7 +123,7 @@ struct MapValue {
 class Fields {
  public:
   using Part = std::function<void(Fields&)>;
-  /// Reads a value by hand; `path` is its own in its file.
+  /// Reads a value by hand. `path` is its own in its file.
   using ReadNode = std::function<void(InputNode& value, const std::string& path)>;
   struct Alternative {
     Condition condition;
@@ -187,7 +187,7 @@ class Fields {
                       const char* meaning) {
     OptionalQuantity(key, {}, range, value, meaning);
   }
-  /// A list of so many of them; if `low_count` is 0 the key need not be there.
+  /// A list of `low_count` to `high_count` quantities. If `low_count` is 0 the key is optional.
   void Quantities(const char* stem, Dimension dimension, const Range& range, std::size_t low_count,
                   std::size_t high_count, std::vector<double>& values, const char* meaning) {
     VisitNumbers({{{stem, meaning, low_count > 0}, dimension, range, {}}, low_count, high_count}, values);
@@ -219,9 +219,9 @@ class Fields {
     first = ends[0];
     second = ends[1];
   }
-  /// Exactly one of several quantities; `which` is its place among them.
+  /// Exactly one of several quantities. `which` is its position among them.
   virtual void OneOf(const std::vector<OneQuantity>& quantities, std::size_t& which, double& value) = 0;
-  /// A whole number, or a list of several, each once; the key need not be there.
+  /// A whole number, or a list of several, each once. The key is optional.
   void Several(const char* key, int low, int high, const char* noun, const char* which,
                std::vector<int>& values, const char* meaning) {
     VisitSeveral({{key, meaning, false}, low, high, noun, which}, values);
@@ -237,17 +237,18 @@ class Fields {
     const std::size_t width = columns.size();
     VisitRows({{"rows", meaning}, low_count, SIZE_MAX, width, std::move(columns)}, rows);
   }
-  /// Numbers under `names`; without, under any, of which nothing is read.
+  /// Numbers under `names`. Without names, numbers under any name, which are not read.
   virtual void NamedNumbers(const char* key, const std::optional<std::vector<std::string>>& names,
                             std::vector<double>& values, const char* meaning) = 0;
   virtual void Texts(const char* key, std::size_t low_count, std::size_t high_count,
                      std::vector<std::string>& values, const char* meaning) = 0;
-  /// The name of one of many things; `what` says of which: "a metric". Without `names` another file has them.
+  /// The name of one of many things. `what` names their kind: "a metric". Without `names` another file has
+  /// them.
   void Name(const char* key, const std::vector<std::string>& names, const char* what, std::string& value,
             const char* meaning) {
     VisitName({{key, meaning}, names, what}, value);
   }
-  /// A list of words, each one of `words`; `values` are their places.
+  /// A list of words, each one of `words`. `values` are their positions.
   virtual void Words(const char* key, const std::vector<std::string>& words, std::vector<std::size_t>& values,
                      const char* meaning) = 0;
   /// One of a list of words.
@@ -270,32 +271,32 @@ class Fields {
     MapValue value{true};
     VisitMap({{key, meaning, true, "a map"}}, value, part);
   }
-  /// A map that need not be there; `is_there` says whether it is.
+  /// An optional map. `is_there` receives whether it is there.
   void OptionalMap(const char* key, bool& is_there, const char* meaning, const Part& part) {
     MapValue value{is_there};
     VisitMap({{key, meaning, false}}, value, part);
     is_there = value.is_there;
   }
-  /// A word, or a map. What is neither is refused as not `what`: "a direction".
+  /// A word, or a map. Anything else is refused as not `what`: "a direction".
   void WordOrMap(const char* key, const char* word, const char* what, const char* allowed, bool& is_word,
                  const char* meaning, const Part& part) {
     MapValue value{true, is_word};
     VisitMap({{key, meaning, true, allowed}, word, what}, value, part);
     is_word = value.is_word;
   }
-  /// A number, or a table; the key need not be there.
+  /// A number, or a table. The key is optional.
   void NumberOrTable(const char* key, std::optional<double>& number, const char* meaning, const Part& part) {
     MapValue value;
     VisitMap({{key, meaning, false}, nullptr, nullptr, true, MapKey::File::kTable}, value, part);
     number = value.number;
   }
-  /// A map, or a list of such maps; the key need not be there. `allowed` says what an empty list should be.
+  /// A map, or a list of such maps. The key is optional. `allowed` is the message for an empty list.
   void MapOrMaps(const char* key, const char* allowed, const char* meaning, const Part& part) {
     MapValue value;
     VisitMap({{key, meaning, false, allowed}, nullptr, nullptr, false, MapKey::File::kNone, true}, value,
              part);
   }
-  /// The columns of a table, or the file of which they are made; `allowed` says which.
+  /// The columns of a table, or the file of which they are made. `allowed` says which files.
   void Table(const char* key, const char* allowed, const char* meaning, const Part& part) {
     MapValue value{true};
     VisitMap({{key, meaning, true, allowed}, nullptr, nullptr, false, MapKey::File::kTable}, value, part);
@@ -305,18 +306,18 @@ class Fields {
     VisitMap({{key, meaning, false}, nullptr, nullptr, false, MapKey::File::kTable}, value, part);
     is_there = value.is_there;
   }
-  /// The bytes of a file, as a map, or its name; `allowed` says which.
+  /// The bytes of a file, as a map, or its name. `allowed` says which files.
   void Bytes(const char* key, const char* allowed, const char* meaning, const Part& part) {
     MapValue value{true};
     VisitMap({{key, meaning, true, allowed}, nullptr, nullptr, false, MapKey::File::kBytes}, value, part);
   }
-  /// Columns of numbers under any names, or the CSV file of them; the key need not be there.
+  /// Columns of numbers under any names, or the CSV file of them. The key is optional.
   virtual void Columns(const char* key, const char* meaning, const ReadNode& read) = 0;
-  /// What a file of a kind holds, in place or by the file's name. If it is not `needed` the key need not be
-  /// there.
+  /// The content of a file of a kind, in place or by the file's name. The key is optional unless it is
+  /// `needed`.
   virtual void Document(const char* key, const char* schema, bool needed, const char* allowed,
                         const char* meaning, const ReadNode& read) = 0;
-  /// A list of maps; if `low_count` is 0 the key need not be there. describe(fields, item) of each, or
+  /// A list of maps. If `low_count` is 0 the key is optional. Calls describe(fields, item) for each, or
   /// describe(fields, item, number of items).
   template <class T, class F>
   void List(const char* key, std::size_t low_count, std::size_t high_count, std::vector<T>& items,
@@ -328,7 +329,7 @@ class Fields {
             const char* meaning) {
     List(key, low_count, high_count, items, meaning, [](Fields& fields, T& item) { Describe(fields, item); });
   }
-  /// The key need not be there; a list that is there has so many.
+  /// An optional key. A list that is there has this number of items.
   template <class T, class F>
   void OptionalList(const char* key, std::size_t low_count, std::size_t high_count, std::vector<T>& items,
                     const char* meaning, F describe) {
@@ -349,10 +350,11 @@ class Fields {
   void Unless(const Condition& condition, const std::function<void()>& describe) {
     Either({{condition, [] {}}, {Else(), describe}});
   }
-  /// Exactly one of these keys, which are named before, is there; a reader refuses others in words of its
-  /// own.
+  /// Exactly one of these keys must be there. They are declared before. A reader refuses others with its own
+  /// text.
   virtual void ExactlyOne(const std::vector<std::string>& /*keys*/) {}
-  /// One or more of these keys, which are named before or after, are there; likewise.
+  /// One or more of these keys must be there. They are declared before or after. A reader refuses others with
+  /// its own text.
   virtual void OneOrMore(const std::vector<std::string>& /*keys*/) {}
   /// In an alternative: one of these keys, which others have, is missing.
   virtual void Missing(const std::vector<std::string>& /*keys*/, const char* /*allowed*/) {}
@@ -360,7 +362,7 @@ class Fields {
   /// key.
   virtual void Misplaced(const char* /*stem*/, Dimension /*dimension*/, const char* /*message*/,
                          const char* /*allowed*/) {}
-  /// Before a Choice: a word that is one elsewhere; `message` says why it is none here.
+  /// Before a Choice: a word that is allowed elsewhere. `message` says why it is not allowed here.
   virtual void NoChoice(const char* /*key*/, const std::string& /*word*/, const std::string& /*message*/,
                         const std::string& /*allowed*/) {}
 
@@ -371,16 +373,16 @@ class Fields {
     describe();
   }
 
-  // What only a reader does: the others have no file.
+  // For readers only: other visitors have no file.
 
-  /// `relation` is called when the map, or the group of its keys, was read without a problem, and says by
-  /// Refuse() what does not fit together.
+  /// Calls `relation` if the map, or the group of its keys, was read without a problem. It refuses
+  /// contradicting values by Refuse().
   virtual void Check(const std::function<void()>& /*relation*/) {}
-  /// Refuses the value of a key, such as "time[3]" or "at.delay"; a quantity's unit need not be named.
+  /// Refuses the value of a key, such as "time[3]" or "at.delay". A quantity's key may lack its unit.
   virtual void Refuse(const std::string& /*key*/, const std::string& /*message*/,
                       const std::string& /*allowed*/) {}
-  /// After a number: one that was refused and lies in `mistaken` is its counterpart, "in percent"; meant()
-  /// gives it.
+  /// After a number: a refused number inside `mistaken` is probably its counterpart, `what`: "in percent".
+  /// meant() gives it.
   virtual void Hint(const char* /*key*/, const Range& /*mistaken*/, const char* /*what*/,
                     double (* /*meant*/)(double)) {}
   /// The value of a key as the file writes it, to be quoted in a message.
@@ -420,7 +422,7 @@ class Fields {
   }
 };
 
-/// In a Check(): refuses the first of a list's values that is not above the one before; true if there is
+/// In a Check(): refuses the first value of a list that is not above the one before. Returns true if there is
 /// none.
 bool CheckIncreasing(Fields& fields, const std::string& stem, const std::vector<double>& values);
 

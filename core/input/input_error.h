@@ -8,16 +8,16 @@
 
 namespace dispersa {
 
-/// One thing that a user has to change. Line and column count from 1; 0 = the problem has no place in the
-/// text (a folder, a command-line value), and `file` may then be empty.
+/// A fault that a user must mend. Line and column count from 1. 0 means that it has no place in the text (a
+/// folder, a command-line value); `file` may then be empty.
 struct InputProblem {
   std::string file;  ///< as the user named it
   int line = 0;
   int column = 0;
   std::string
-      path;  ///< of the value in its file, e.g. "stages[1].motor.thrust_kn"; empty: the file as a whole
+      path;  ///< of the value in its file, e.g. "stages[1].motor.thrust_kn" (empty: the file as a whole)
   std::string message;   ///< what is wrong
-  std::string allowed;   ///< what is allowed, or usual; may be empty
+  std::string allowed;   ///< allowed or usual values, may be empty
   bool unusual = false;  ///< a warning: it is legal, and `allowed` is what is usual
 
   /// "file:line:col: path: message, allowed: ..." (or "usual: ...") without the parts that are empty.

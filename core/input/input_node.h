@@ -28,7 +28,7 @@ struct InputNode {
   /// The value of a key, or null.
   const InputNode* Find(std::string_view key) const;
   InputNode* Find(std::string_view key);
-  /// The scalar as an error message quotes it; "a list", "a map", "nothing" for the other kinds.
+  /// The scalar as an error message quotes it. For the other kinds "a list", "a map", "nothing".
   std::string Describe() const;
 };
 

@@ -1,4 +1,4 @@
-// What numbers an input may be.
+// The range of allowed numbers of an input.
 #pragma once
 
 #include <limits>

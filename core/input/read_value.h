@@ -1,5 +1,5 @@
-// Single values of a tree. A problem is recorded with its place, and the value is then a harmless one (0,
-// empty): whoever reads checks that no problem was recorded before it uses it.
+// Single values of a tree. After a problem, which is recorded with its place, the value is a harmless one (0,
+// empty). The caller must check that no problem was recorded before it uses a value.
 #pragma once
 
 #include <string>
@@ -19,14 +19,14 @@ void AddProblem(std::vector<InputProblem>& problems, const InputNode& at, std::s
 /// The place of a member's key.
 InputNode KeyOf(const InputMember& member);
 
-/// What a range allows of a number in a unit: "a number above 0".
+/// A range's text for a number in a unit: "a number above 0".
 std::string TextIn(const Unit& unit, const Range& range);
 
-/// A scalar that is a finite number in a unit; range and result are in internal units.
+/// A scalar that is a finite number in a unit. Range and result are in internal units.
 double ReadNumber(const InputNode& node, const std::string& path, std::vector<InputProblem>& problems,
                   const Range& range = kAnyNumber, const Unit& unit = kNoUnit);
 
-/// The scalar as text; a number or a truth value must be quoted to be one.
+/// The scalar as text. A number or a truth value must be quoted to be a text.
 std::string ReadText(const InputNode& node, const std::string& path, std::vector<InputProblem>& problems);
 
 bool IsTruthValue(const std::string& text);

@@ -1,4 +1,4 @@
-// Where in a tree a field of the struct that was decoded from it stands.
+// The place in a tree of a field of the struct that was decoded from it.
 #pragma once
 
 #include <string>

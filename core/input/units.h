@@ -50,8 +50,8 @@ inline constexpr Unit kTemperatureDifference[] = {{"k", 1.0}};
 inline constexpr Unit kPerTemperature[] = {{"percent_per_k", 1e-2}};
 inline constexpr Unit kPerAngle[] = {{"per_deg", kDegPerRad}, {"per_rad", 1.0}};
 
-/// What may stand behind the last underscores of a key and is a unit, ours or not: to tell a wrong unit from
-/// a wrong name.
+/// Endings of keys, after the last underscores, that are units, ours or not. They tell a wrong unit from a
+/// wrong name.
 inline constexpr std::string_view kUnitLike[] = {"m",       "km",      "mm",      "um",
                                                  "cm",      "ft",      "in",      "mi",
                                                  "nmi",     "m2",      "ft2",     "s",

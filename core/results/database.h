@@ -13,8 +13,8 @@ namespace dispersa {
 
 class Statement;
 
-/// One connection, used by one thread at a time. Durable against a killed process, and against a power cut up
-/// to the last transactions (WAL, synchronous NORMAL); waits up to 10 s for another process's lock.
+/// One connection, used by one thread at a time. A committed transaction survives a killed process and a
+/// power cut (WAL, synchronous FULL). Waits up to 10 s for another process's lock.
 class Database {
  public:
   enum class Mode { kCreate, kExisting };

@@ -32,14 +32,14 @@ struct LookRecord {
   std::string verdict;
 };
 
-/// Not thread-safe: one thread at a time. Other processes may read `results.sqlite` meanwhile (WAL).
-/// Every method throws ResultError when the disk or the database fails; InputError, where it says so, when
-/// the user named the wrong folder or case.
+/// Used by one thread at a time. Other processes may read `results.sqlite` meanwhile (WAL). Every method
+/// throws ResultError if the disk or the database fails. Some throw InputError, as they say, if the user
+/// named the wrong folder or case.
 class ResultFolder : public ResultStore {
  public:
-  /// Makes the folder (parents too) with campaign.yaml and an empty results.sqlite.
-  /// InputError if it exists and is not empty, cannot be written, or another process writes it. It is locked
-  /// as long as the object lives; `lock` is the lock of a caller that has it already.
+  /// Makes the folder, with its parents, with campaign.yaml and an empty results.sqlite. Throws InputError if
+  /// it exists and is not empty, cannot be written, or another process writes it. It is locked while the
+  /// object lives. `lock` is the caller's lock, if it has one already.
   static ResultFolder Create(const std::filesystem::path& directory, const Campaign& campaign,
                              std::optional<FolderLock> lock = {});
   /// Opens a folder to go on with, possibly with more cases, other requirements or another name.
@@ -60,8 +60,8 @@ class ResultFolder : public ResultStore {
   std::size_t stages() const { return stages_; }
   /// Positions in Metrics() of those that are stored: of the vehicle, and of the law that was flown.
   const std::vector<std::size_t>& metrics() const { return metrics_; }
-  /// Value of "campaign_id", "flight_id", "engine", "name", "seed", "cases", "sampling"; and as they were
-  /// before the first case was flown: "planned_cases", "requirements_id" and "requirements"
+  /// Value of "campaign_id", "flight_id", "engine", "name", "seed", "cases", "sampling". Three values are
+  /// kept as they were before the first case: "planned_cases", "requirements_id" and "requirements"
   /// (RequirementLine() each).
   std::string Provenance(const std::string& key) const;
 
@@ -72,9 +72,9 @@ class ResultFolder : public ResultStore {
   std::vector<std::int64_t> PastLooks() const override;
   std::int64_t PlannedCases() const override;
 
-  /// Stores results in one transaction: all or, on an error, none. A case that is already there with the same
-  /// digest is left alone; with another digest: kConflict. Lifts the quarantine of what it stores. Values
-  /// that are not finite become NULL, -0 becomes 0. Returns how many were new.
+  /// Stores results in one transaction: all or, on an error, none. A case that is there with the same digest
+  /// is left alone. Another digest is an error (kConflict). Stored cases leave the quarantine. Values that
+  /// are not finite become NULL, -0 becomes 0. Returns the number of new ones.
   std::size_t Append(std::span<const CaseResult> results);
   /// From now on no other process may write here. InputError if one does.
   void Lock();
@@ -93,7 +93,7 @@ class ResultFolder : public ResultStore {
   /// The same with the fingerprint that was stored with each.
   std::vector<std::pair<std::uint64_t, Digest>> Fingerprints() const override;
   std::optional<std::string> WorkerOf(std::uint64_t case_index) const override;
-  /// Who flew which case: calls back with worker, host and case, in no order.
+  /// The worker of each case: calls back with worker, host and case, in no order.
   void ForEachFlier(const std::function<void(const std::string& worker, const std::string& host,
                                              std::uint64_t case_index)>& callback) const;
   void AppendAudits(std::span<const Claim> claims) override;
@@ -104,10 +104,10 @@ class ResultFolder : public ResultStore {
   /// Ascending by index.
   std::vector<QuarantinedCase> QuarantinedCases() const;
   bool Contains(std::uint64_t case_index) const;
-  /// The stored result, NULL as NaN. InputError if there is none; ResultError if its row does not fit its
-  /// fingerprint.
+  /// The stored result, with NULL as NaN. Throws InputError if there is none, ResultError if its row does not
+  /// fit its fingerprint.
   CaseResult Load(std::uint64_t case_index) const override;
-  /// Calls back with each result in ascending order of index; holds one at a time.
+  /// Calls back with each result in ascending order of index, one at a time.
   void ForEach(const std::function<void(const CaseResult&)>& callback) const override;
 
  private:

@@ -1,4 +1,4 @@
-// Where results go: a result folder, or memory in a simulation.
+// The destination of results: a result folder, or memory in a simulation.
 #pragma once
 
 #include <cstddef>
@@ -14,16 +14,16 @@
 
 namespace dispersa {
 
-/// Who flew a case, and when: the only place in the database that differs between runs.
+/// Worker and times of a case: the only place in the database that differs between runs.
 struct ExecutionRecord {
   std::uint64_t case_index = 0;
   std::string worker;
   std::string host;
-  std::string started_utc;  ///< ISO 8601; empty: nobody knows
-  double seconds = 0.0;     ///< wall clock; NaN: nobody knows
+  std::string started_utc;  ///< ISO 8601 (empty: unknown)
+  double seconds = 0.0;     ///< wall clock (NaN: unknown)
 };
 
-/// Who flew a case that nobody knows the worker of: of a folder of an older release.
+/// Name of an unknown worker, for cases of a folder of an older release.
 inline constexpr char kUnknownWorker[] = "unknown";
 
 /// Whether a worker is meant by this name: its own, or that of its keys ("node1" means "node1_5f3a...").
@@ -61,12 +61,12 @@ class ResultStore {
   virtual std::int64_t PlannedCases() const = 0;
   /// Numbers of cases at which verdicts were read, ascending.
   virtual std::vector<std::int64_t> PastLooks() const = 0;
-  /// Who returned the result of a case.
+  /// The worker that returned the result of a case.
   virtual std::optional<std::string> WorkerOf(std::uint64_t case_index) const = 0;
   /// These results were flown again and are right.
   virtual void AppendAudits(std::span<const Claim> claims) = 0;
   virtual void ForEachUnaudited(const std::function<void(const Claim&)>& callback) const = 0;
-  /// Removes all results of the workers that `worker` means; returns their cases.
+  /// Removes all results of the workers that `worker` means, and returns their cases.
   virtual std::vector<std::uint64_t> Disown(const std::string& worker) = 0;
 };
 

@@ -34,14 +34,15 @@ struct CatalogueEntry {
   int code = 0;         ///< exit code of a campaign that has ended
   std::string problem;  ///< of a failed one
   std::uint64_t seed = 0;
-  std::int64_t ended_unix_s = 0;        ///< when it ended; 0: it has not
+  std::int64_t ended_unix_s = 0;        ///< when it ended (0: it has not)
   std::vector<std::string> distrusted;  ///< workers whose results are still to be removed (dispersa repair)
 };
 
 /// The order of the queue: by priority, then by age.
 bool ComesBefore(const CatalogueEntry& a, const CatalogueEntry& b);
 
-/// Of state.json. 2: with `seed`, `ended_unix_s` and `distrusted`; what lacks them is read, too.
+/// Version of state.json. Version 2 has `seed`, `ended_unix_s` and `distrusted`. Version 1, which lacks them,
+/// can be read too.
 inline constexpr int kStateVersion = 2;
 
 /// Throws InputError if it cannot.

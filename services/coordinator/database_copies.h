@@ -11,9 +11,9 @@
 
 namespace dispersa {
 
-/// As long as anybody has a database open, its last transactions stand in a write-ahead log beside it, and
-/// the file alone lacks them. Then a copy by SQLite's own means is handed out. One thread; copies are made on
-/// another one.
+/// While any process has a database open, its last transactions are in a write-ahead log beside it, and the
+/// file alone lacks them. Then this hands out a copy by SQLite's backup. Used by one thread; copies are made
+/// on another one.
 class DatabaseCopies {
  public:
   /// The file to hand out as results.sqlite of `results`: itself, or a copy beside the folder. None: it is
@@ -26,7 +26,8 @@ class DatabaseCopies {
   /// present copy is meant. None: it is being copied.
   std::optional<std::filesystem::path> Snapshot(const std::filesystem::path& results, const std::string& name,
                                                 double now_s);
-  /// The same if it is there; none: another backup has taken its place, or nobody asked for too long.
+  /// The same copy, if it still exists. Empty: another backup has taken its place, or nobody asked for too
+  /// long.
   std::optional<std::filesystem::path> KnownSnapshot(const std::filesystem::path& results,
                                                      const std::string& name, double now_s);
   /// The campaign goes on: the copy for those who fetch it is old.

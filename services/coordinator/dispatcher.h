@@ -53,8 +53,8 @@ class Dispatcher {
   /// Calls `fly` for each campaign with the results to be flown again.
   using OnClaims = std::function<void(const Campaign&, std::vector<Claim>)>;
   void TakeClaims(const OnClaims& fly);
-  /// What that gave. A worker that returned something else is expelled: neither it nor another one with its
-  /// keys may fly here any more, and whatever they returned is flown again.
+  /// The audit's result. A worker that returned another result is expelled: neither it nor another worker
+  /// with its keys may fly here any more. All its results are flown again.
   void Audited(const std::string& flight_id, const Claim& claim, const Digest& truth);
 
   /// WorkerEnded will report the end of this worker: a local process, whose exit status says more than
@@ -93,7 +93,7 @@ class Dispatcher {
   std::uint64_t refused_messages() const { return refused_messages_; }
   const AuditOptions& audit() const { return options_.audit; }
   std::uint64_t audits() const { return audits_; }
-  /// Who may not fly here any more, and why: names of keys, and of workers without keys.
+  /// Names of expelled keys, and of expelled workers without keys, each with the reason.
   const std::map<std::string, std::string>& expelled() const { return expelled_; }
   /// From now on, as far as it is not so already: as an earlier coordinator knew, or who issues keys says.
   void Expel(const std::map<std::string, std::string>& names);

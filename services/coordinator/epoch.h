@@ -12,8 +12,8 @@ inline constexpr char kEpochFile[] = "epoch";
 /// back between them.
 std::uint64_t NextEpoch();
 
-/// The same, and in any case more than the last start on this data directory: the number is stored there, so
-/// that it also holds for a copy on another host. If it cannot be stored, this is logged.
+/// The same, but more than that of the last start on this data directory. The number is stored there, so it
+/// also holds for a copy on another host. A failure to store it is logged.
 std::uint64_t NextEpoch(const std::filesystem::path& data);
 
 }  // namespace dispersa

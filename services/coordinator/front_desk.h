@@ -1,4 +1,4 @@
-// What clients may ask a coordinator, and the answers. idl/README.md lists the requests.
+// Requests of clients and the coordinator's replies. idl/README.md lists the requests.
 #pragma once
 
 #include <cstdint>

@@ -20,7 +20,7 @@ std::vector<std::filesystem::path> StoredFilesIn(const std::filesystem::path& re
 
 /// Of a file by its path, packed or not: the size of its text. Throws ResultError.
 std::uint64_t SizeOf(const std::filesystem::path& file);
-/// At most `most` bytes of its text from `offset`; none at its end. Throws ResultError.
+/// At most `most` bytes of its text from `offset`, empty at its end. Throws ResultError.
 std::string ReadPart(const std::filesystem::path& file, std::uint64_t offset, std::size_t most);
 
 }  // namespace dispersa

@@ -3,7 +3,7 @@
 
 namespace dispersa {
 
-/// The whole program; returns its exit code.
+/// The whole program. Returns its exit code.
 int RunCoordinator(int argc, char** argv);
 
 }  // namespace dispersa

@@ -1,5 +1,5 @@
-// What dispersa-coordinator does, once it knows what is wanted. Each returns the exit code of what went as it
-// should, and throws Failure, InputError, NetworkError or ResultError.
+// The tasks of dispersa-coordinator. Each returns the exit code of a task that was done, and throws Failure,
+// InputError, NetworkError or ResultError.
 #pragma once
 
 #include <cstdint>
@@ -15,7 +15,7 @@ namespace dispersa {
 
 struct ServeOptions {
   NetworkOptions network;
-  /// So much of the results is flown again; without a value see Coordinator.
+  /// share of the results that is flown again (empty: see Coordinator)
   std::optional<double> audit = {};
   std::vector<std::string>
       again;  ///< the command that takes this program's place when it hears nobody any more

@@ -37,7 +37,7 @@ struct ServiceOptions {
   std::function<std::int64_t()> unix_time_s = [] { return std::int64_t{std::time(nullptr)}; };
 };
 
-/// Asked for something that cannot be; `code` is the exit code of the client.
+/// A request that cannot be granted. `code` is the exit code of the client.
 struct Refused : std::runtime_error {
   Refused(int exit_code, const std::string& what) : std::runtime_error(what), code(exit_code) {}
   int code;
@@ -54,8 +54,8 @@ struct CampaignView {
 };
 
 /// Everything that a client was told survives a restart: a campaign is on the disk before its id is answered.
-/// One thread talks; another one opens campaigns and a third writes reports, since both may take minutes.
-/// What goes wrong with one campaign ends that one; a full disk delays it.
+/// One thread talks, another opens campaigns, a third writes reports, since both may take minutes. An error
+/// in one campaign ends that campaign. A full disk delays it.
 class Service {
  public:
   /// Throws InputError if the data directory cannot be used.
@@ -74,7 +74,7 @@ class Service {
   /// The one with this name. Throws Refused.
   std::filesystem::path JournalAt(const std::filesystem::path& name) const;
   CampaignView View(const std::string& id) const;
-  /// What its results so far come to; also of one that flew lately. nullptr: not known.
+  /// The statistics of its results so far, also of one that flew lately; nullptr if unknown.
   const RunningTally* TallyOf(const std::string& id) const;
   /// Whether nobody writes its results, now or soon.
   bool IsAtRest(const std::string& id) const;
@@ -83,20 +83,20 @@ class Service {
   /// Whether workers are needed now.
   bool HasWorkToFly() const { return !flying_.empty(); }
 
-  // What clients want is on the disk before they are told so: these throw ResultError, and have changed
-  // nothing then.
+  // Changes by clients. They are on the disk before the client is told so. These throw ResultError, and have
+  // then changed nothing.
 
   /// Puts a campaign that is known into the queue again if it was cancelled, failed or gave cases up, and
   /// changes its priority.
   void Relaunch(const std::string& id, int priority);
   /// Takes a new one.
   void Launch(CatalogueEntry entry, const std::string& text);
-  /// Ends it; what it has flown stays. Again: nothing. Throws Refused when it is too late.
+  /// Ends it. Stored results stay. Called again it does nothing. Throws Refused if it has ended already.
   void Cancel(const std::string& id);
   /// Results of the workers that `worker` means (IsMeantBy) are removed and flown again, and contradictions
   /// are forgotten: they were with these. Throws Refused while its report is written.
   void Repair(const std::string& id, const std::string& worker);
-  /// Its folder; DATA/deleted.jsonl keeps a line of it. Throws Refused unless it is at rest.
+  /// Deletes its folder. DATA/deleted.jsonl keeps a line of it. Throws Refused unless it is at rest.
   void Delete(const std::string& id);
 
  private:

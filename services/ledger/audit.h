@@ -11,11 +11,11 @@
 
 namespace dispersa {
 
-/// Where nobody says otherwise: a forger of 500 results passes one time in 150.
+/// Default share. A forger of 500 results passes one time in 150.
 inline constexpr double kUsualAuditShare = 0.01;
 
 struct AuditOptions {
-  double share = 0.0;      ///< of the results, 0 to 1; 0: none at all
+  double share = 0.0;      ///< of the results, 0 (none) to 1
   std::uint64_t salt = 0;  ///< decides which: whoever knows it knows which forgery is seen
   /// Also where the control law is a plug-in: a law that differs from machine to machine then has its workers
   /// expelled. Otherwise it has the campaign refused.

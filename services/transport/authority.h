@@ -31,12 +31,12 @@ Validity ValidFor(int days);
 /// InputError rather than overwrite one.
 void MakeAuthority(const std::filesystem::path& directory, const Validity& validity);
 
-/// Returns the folder. Keys end with the authority at the latest; for more than a day longer: InputError.
+/// Returns the folder. Keys end with the authority at the latest. More than a day longer is an InputError.
 std::filesystem::path IssueKeys(const std::filesystem::path& directory, Role role, const std::string& name,
                                 const Validity& validity);
 
-/// Adds keys that were issued to the list of those that are not believed any more, and returns the list's
-/// file: it takes effect where it is copied into the folder of a coordinator's keys. Throws InputError.
+/// Adds issued keys to the list of revoked keys, and returns the list's file. The list takes effect where it
+/// is copied into the folder of a coordinator's keys. Throws InputError.
 std::filesystem::path RevokeKeys(const std::filesystem::path& directory, Role role, const std::string& name);
 
 }  // namespace dispersa

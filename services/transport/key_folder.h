@@ -27,8 +27,7 @@ inline constexpr char kPermissionsFile[] = "permissions.p7s";
 inline constexpr char kRevokedFile[] = "revoked.p7s";
 
 /// Reads the folder and checks all of it: each file, signatures, dates, that no other user of the machine can
-/// use the key, and that the folder is for one of `roles`. Throws NetworkError with what is wrong and what to
-/// do.
+/// use the key, and that the folder is for one of `roles`. Throws NetworkError with the fault and the remedy.
 KeyFolder OpenKeyFolder(const std::filesystem::path& directory, std::initializer_list<Role> roles);
 
 /// The text of a file. Throws NetworkError.

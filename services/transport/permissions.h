@@ -19,13 +19,13 @@ std::optional<Role> ParseRole(const std::string& text);
 /// Workers and clients with keys are called NAME_… after their keys: nobody else may speak and hear under
 /// such a name. Names of keys have no '_'.
 std::string OwnPrefix(const std::string& name);
-/// The name of the keys of one who is called so; empty: it has none.
+/// The name of the keys of a participant named `who`; empty if it has none.
 std::string KeyNameOf(const std::string& who);
 
 /// The protection of all traffic, the same for all participants.
 std::string GovernanceDocument();
 
-/// What one participant may publish and subscribe. `subject` is SubjectText of its certificate.
+/// One participant's rights to publish and subscribe. `subject` is SubjectText of its certificate.
 std::string PermissionsDocument(Role role, const std::string& name, const std::string& subject,
                                 std::time_t not_before, std::time_t not_after);
 
