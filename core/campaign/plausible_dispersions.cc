@@ -127,7 +127,8 @@ std::vector<UnusualDispersion> UnusualDispersions(const Campaign& campaign) {
   if (const auto& table = campaign.wind_table) {
     double fastest_m_s = 0.0;
     for (std::size_t i = 0; i < table->altitude_m.size(); ++i)
-      fastest_m_s = std::max(fastest_m_s, std::hypot(table->north_m_s[i], table->east_m_s[i]));
+      fastest_m_s = std::max(fastest_m_s, std::sqrt(table->north_m_s[i] * table->north_m_s[i] +
+                                                    table->east_m_s[i] * table->east_m_s[i]));
     CheckWind("wind_profile", fastest_m_s, table->altitude_m.back(), add);
   }
   if (const auto& statistics = campaign.wind_statistics) {
