@@ -19,8 +19,7 @@ struct LoadTableLanes {
 /// `table` null: nothing is known of this lane's sections.
 template <class T>
 DISPERSA_INLINE void SetLane(LoadTableLanes<T>& s, int lane, const LoadTable* table) {
-  static const LoadTable kNone{};
-  const LoadTable& from = table ? *table : kNone;
+  const LoadTable& from = table ? *table : NoLoads();
   Lane(s.slender_station_m, lane) = from.lift.slender_station_m;
   for (int i = 0; i < kLoadStations; ++i) {
     Lane(s.station_m[i], lane) = from.station_m.data()[i];

@@ -47,4 +47,9 @@ LoadTable BuildLoadTable(const Vehicle& vehicle, int stage) {
   return table;
 }
 
+const LoadTable& NoLoads() {
+  static const LoadTable none{};
+  return none;
+}
+
 }  // namespace dispersa

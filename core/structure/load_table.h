@@ -31,4 +31,8 @@ struct LoadTable {
 /// (beam_masses.h).
 LoadTable BuildLoadTable(const Vehicle& vehicle, int stage);
 
+/// A table without loads, for lanes without one. It is made here: code of one instruction set must not hold
+/// the destructor of a type that all share.
+const LoadTable& NoLoads();
+
 }  // namespace dispersa
