@@ -135,22 +135,23 @@ TEST(StepLimits, ADispersedActuatorBeyondIsRefusedAndSaysSo) {
   EXPECT_GT(MetricOf(refused, "step_limit_fraction"), 1.0);
 }
 
-FlightDefinition Flexible() {
-  FlightDefinition definition = Slv4Definition(DISPERSA_CAMPAIGNS, "flexible");
+FlightDefinition Flexible(const char* autopilot = "flexible") {
+  FlightDefinition definition = Slv4Definition(DISPERSA_CAMPAIGNS, autopilot);
   definition.vehicle = LoadVehicle(std::string(DISPERSA_CAMPAIGNS) + "/vehicles/slv4_flexible.yaml");
   return definition;
 }
 
-// Actuators whose nozzles push the body as they turn, where they begin to be flagged: a hundredth or so of it
-// off.
+// Actuators whose nozzles push the body as they turn, where they begin to be flagged. The law is one whose
+// bending margins suffice: a loop near its limit magnifies any difference between two methods
+// (core/README.md).
 TEST(StepLimits, HeavyNozzlesNearTheirLimitAreAlmostCvodes) {
-  FlightDefinition definition = Flexible();
+  FlightDefinition definition = Flexible("flexible_unscheduled");
   for (Stage& stage : definition.vehicle.stages) stage.gimbal.bandwidth_rad_s = kTwoPi * 16.0;
   const FlightModel model(definition);
   EXPECT_GT(GreatestStepUse(model.PlantFor({}), 0.01).fraction, kNearStepLimit);
   const Compared c = CompareWithCvode(model, {});
-  EXPECT_LT(c.rms_apart_deg, 2e-2 * c.rms_deg);
-  EXPECT_LT(c.peak_apart_deg, 2e-2 * c.peak_deg);
+  EXPECT_LT(c.rms_apart_deg, 1e-3 * c.rms_deg);
+  EXPECT_LT(c.peak_apart_deg, 1e-3 * c.peak_deg);
 }
 
 // The third mode of stage 2 ends at 43.7 Hz; so much stiffer at 61 Hz, beyond half the sampling frequency.
