@@ -230,7 +230,8 @@ void AddMarginsAt(const LauncherPlant& plant, const FlightModel& model, const Fl
       return LineariseLaw(autopilot, s.stack, s.since_ignition_s, axis, adapting);
     };
     const std::vector<SetMargins> by_set = loop.BySet(flown(law(Learns(autopilot, axis))));
-    ComputedMargins each{instant.place, s.stack, s.time_s, axis, LeastOf(by_set), LeastOf(by_set), {}};
+    const LoopMargins least = LeastOf(by_set);
+    ComputedMargins each{instant.place, s.stack, s.time_s, axis, least, least, {}};
     if (by_set.size() > 1) each.by_set = by_set;
     if (Learns(autopilot, axis)) {
       each.frozen = margins_of(law(false));

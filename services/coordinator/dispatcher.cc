@@ -47,9 +47,7 @@ void Dispatcher::EndCampaign(const std::string& flight_id) {
 
 void Dispatcher::On(const std::string& sender, const WorkerStatus& status, double now_s) {
   if (ended_.contains(status.worker)) return;
-  const std::string keys = KeyNameOf(status.worker);
-  if (const auto expelled = expelled_.find(keys.empty() ? status.worker : keys);
-      expelled != expelled_.end()) {
+  if (const auto expelled = expelled_.find(AccountOf(status.worker)); expelled != expelled_.end()) {
     TellRefusal(status.worker, expelled->second);
     return;
   }
@@ -142,8 +140,7 @@ void Dispatcher::Audited(const std::string& flight_id, const Claim& claim, const
 }
 
 void Dispatcher::Expel(const std::string& worker, const std::string& reason) {
-  const std::string keys = KeyNameOf(worker);
-  Expel({{keys.empty() ? worker : keys, reason}});
+  Expel({{AccountOf(worker), reason}});
 }
 
 void Dispatcher::Expel(const std::map<std::string, std::string>& names) {

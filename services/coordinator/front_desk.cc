@@ -89,6 +89,11 @@ std::size_t BinsFor(std::int64_t n) {
                     RunningHistogram::kMaxBins);
 }
 
+Refused SnapshotIsGone(const CatalogueEntry& entry) {
+  return Refused(kExitIncomplete, fmt::format("the snapshot of campaign {} is gone: repeat the backup",
+                                              entry.id.substr(0, 8)));
+}
+
 void RequireListed(const CatalogueEntry& entry, const std::vector<fs::path>& files, const fs::path& path) {
   if (std::find(files.begin(), files.end(), path) != files.end()) return;
   throw Refused(kExitBadInput,
@@ -180,7 +185,7 @@ std::string FrontDesk::TakePart(const std::string& client, const std::string& ar
     throw Refused(kExitIncomplete,
                   "the coordinator takes " + std::to_string(kMaxUploads) + " texts at a time already");
   }
-  const std::string keys = KeyNameOf(client), owner = keys.empty() ? client : keys;
+  const std::string owner = AccountOf(client);
   const auto taken = std::count_if(uploads_.begin(), uploads_.end(),
                                    [&](const auto& each) { return each.second.owner == owner; });
   if (!uploads_.contains(id) && taken >= kMaxUploadsOfOne) {
@@ -414,17 +419,13 @@ std::string FrontDesk::Snapshot(const CatalogueEntry& entry, const std::string& 
 fs::path FrontDesk::FindInSnapshot(const CatalogueEntry& entry, const std::string& name,
                                    const fs::path& path) {
   const auto found = snapshots_.find(entry.id);
-  if (found == snapshots_.end() || found->second.name != name) {
-    throw Refused(kExitIncomplete, fmt::format("the snapshot of campaign {} is gone: repeat the backup",
-                                               entry.id.substr(0, 8)));
-  }
+  if (found == snapshots_.end() || found->second.name != name) throw SnapshotIsGone(entry);
   const fs::path directory = service_.catalogue().ResultsOf(entry.id);
   if (path == "../campaign.yaml") return directory.parent_path() / "campaign.yaml";
   RequireListed(entry, found->second.files, path);
   if (path != kDatabase) return directory / path;
   if (const auto database = copies_.KnownSnapshot(directory, name, workforce_.now_s())) return *database;
-  throw Refused(kExitIncomplete,
-                fmt::format("the snapshot of campaign {} is gone: repeat the backup", entry.id.substr(0, 8)));
+  throw SnapshotIsGone(entry);
 }
 
 fs::path FrontDesk::FindInResults(const CatalogueEntry& entry, const fs::path& path) {

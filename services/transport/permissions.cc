@@ -83,6 +83,11 @@ std::string KeyNameOf(const std::string& who) {
   return end == std::string::npos ? "" : who.substr(0, end);
 }
 
+std::string AccountOf(const std::string& who) {
+  const std::string keys = KeyNameOf(who);
+  return keys.empty() ? who : keys;
+}
+
 // Each writer and reader has keys of its own, which only those have who are allowed to match it: what the
 // coordinator tells one worker another worker can neither read nor forge. Submessages are encrypted and not
 // only what they carry, so that nobody can forge acknowledgements or gaps either.

@@ -21,6 +21,8 @@ std::optional<Role> ParseRole(const std::string& text);
 std::string OwnPrefix(const std::string& name);
 /// The name of the keys of a participant named `who`; empty if it has none.
 std::string KeyNameOf(const std::string& who);
+/// The name under which a participant is counted and expelled: that of its keys, or its own if it has none.
+std::string AccountOf(const std::string& who);
 
 /// The protection of all traffic, the same for all participants.
 std::string GovernanceDocument();
