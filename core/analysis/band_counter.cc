@@ -37,7 +37,8 @@ void BandCounter::Cell::Count(double value) {
   ++classes[static_cast<std::size_t>(std::clamp(position, 0.0, static_cast<double>(kClasses + 1)))];
 }
 
-/// As dispersa::Quantile; within a class its values are taken as evenly spread.
+/// Linear between order statistics, as dispersa::Quantile. The values of a class are taken as evenly spread
+/// over it.
 double BandCounter::Cell::Quantile(double probability) const {
   if (classes.empty()) return dispersa::Quantile(SortedFinite(values), probability);
   const auto count = std::accumulate(classes.begin(), classes.end(), std::uint64_t{0});
@@ -134,7 +135,8 @@ FlightBands BandCounter::Bands() const {
   for (std::size_t i = 0; i < extremes_.size(); ++i) {
     Band& band = bands.bands[i];
     const Extremes& extremes = extremes_[i];
-    // One that is still in the air when the others have ended shows, without percentiles.
+    // An extreme flight can last longer than all others: these steps have a minimum and a maximum, but no
+    // percentiles.
     for (std::size_t step = bands.time_s.size(); step < extremes.min.size(); ++step) {
       bands.time_s.push_back(static_cast<double>(step) * step_s_);
       bands.flying.push_back(0);

@@ -21,10 +21,10 @@ namespace dispersa {
 namespace {
 
 constexpr double kInfinity = std::numeric_limits<double>::infinity();
-/// Pairs that are named of each metric, in either direction.
+/// Pairs that the comparison lists for each metric, in either direction.
 constexpr std::size_t kNamedPairs = 5;
 
-/// Rows of the case indices that both have, in their order.
+/// Rows of the case indices that both campaigns have, in ascending order.
 struct SharedRows {
   std::vector<std::size_t> a, b;
 };
@@ -64,7 +64,7 @@ Pairing FindPairing(const CaseColumns& a, const CaseColumns& b, const SharedRows
     ++varying;
     if (differs == 0) pairing.same.push_back(InputColumns()[input].name);
   }
-  // An input that never varies is equal without any draw: it is no evidence.
+  // An input that never varies is equal in both without any draw, so it does not show that cases are paired.
   pairing.paired = pairing.shared > 0 && (!pairing.same.empty() || (varying == 0 && pairing.changed.empty()));
   if (!pairing.paired) {
     pairing.sentence =
@@ -89,7 +89,7 @@ Pairing FindPairing(const CaseColumns& a, const CaseColumns& b, const SharedRows
   return pairing;
 }
 
-/// The values that are compared of one campaign: NaN is left out, an infinity is a lost flight.
+/// The values of one campaign that are compared. NaN is left out; an infinite value stands for a lost flight.
 struct MetricValues {
   std::vector<double> values;
   std::size_t lost = 0;
@@ -131,8 +131,8 @@ std::vector<NamedProbability> TailsOf(Worse worse) {
   return {};
 }
 
-/// The median of pairs, and which pairs gain and lose most. `sign` turns a metric of which more is better
-/// round.
+/// The median of the pairs, and the pairs that gain and lose most. `sign` is -1 for a metric of which more is
+/// better.
 void ComparePairs(const std::vector<double>& a, const std::vector<double>& b,
                   const std::vector<std::uint64_t>& index, double sign, MetricComparison& result) {
   std::vector<double> turned_a, turned_b;
@@ -230,7 +230,7 @@ MetricComparison CompareMetric(const std::string& metric, const CaseColumns& a, 
         CompareQuantiles(of_a.values, of_b.values, probability, kComparisonConfidence, paired);
     PercentileComparison percentile{name,          probability, tail.a,    tail.b, tail.difference,
                                     tail.interval, kUndefined,  kUndefined};
-    // Where neither sample reaches the percentile there is nothing to test.
+    // If neither sample reaches the percentile, there is nothing to test.
     if (std::isfinite(tail.a) || std::isfinite(tail.b)) percentile.p = tail.p;
     result.tails.push_back(std::move(percentile));
   }
@@ -282,7 +282,8 @@ class CaseChanges {
   CaseChanges(const CaseColumns& a, const CaseColumns& b, const SharedRows& rows)
       : a_(a), b_(b), rows_(rows) {}
 
-  /// `failing` in a and in b, a pair each; values are those of the rows.
+  /// `fails_a[i]` and `fails_b[i]` belong to pair i. `values_a` and `values_b` are indexed by row of their
+  /// campaign; empty if the requirement has no value.
   void Add(const std::string& requirement, const std::vector<bool>& fails_a, const std::vector<bool>& fails_b,
            const std::vector<double>& values_a, const std::vector<double>& values_b) {
     for (std::size_t i = 0; i < fails_a.size(); ++i) {
@@ -313,7 +314,7 @@ class CaseChanges {
   std::map<std::size_t, ChangedCase> harmed_, rescued_;  ///< by pair
 };
 
-/// Which flights fail it: none where the campaign's flights do not have the metric.
+/// The flights that fail the requirement. Empty if the campaign's flights do not have the metric.
 std::vector<bool> FailsOf(const ComparedCampaign& compared, const Requirement& requirement,
                           const std::vector<double>& values, const std::vector<std::size_t>& rows) {
   if (!WhyNotMeasured(compared.campaign, requirement.metric).empty()) return {};

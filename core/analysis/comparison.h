@@ -17,7 +17,7 @@
 
 namespace dispersa {
 
-/// One of the two, as it was flown.
+/// One of the two campaigns, as it was flown.
 struct ComparedCampaign {
   std::string folder;  ///< as the user named it: where the replay commands find it
   std::string engine;
@@ -25,16 +25,16 @@ struct ComparedCampaign {
   const CaseColumns& cases;  ///< with all inputs
 };
 
-/// A value of campaign.yaml that is not the same in both.
+/// A value of campaign.yaml that differs between the two.
 struct CampaignChange {
   std::string path;  ///< "dispersions.wind.max_speed_m_s"
-  std::string a, b;  ///< "–" where there is none
+  std::string a, b;  ///< "–" if the file has no such value
 };
 
-/// Whether case i of one campaign met the draws of case i of the other.
+/// Whether case i of one campaign got the same draws as case i of the other.
 struct Pairing {
   bool paired = false;
-  std::size_t shared = 0;  ///< case indices that both have a result of; the pairs, when paired
+  std::size_t shared = 0;  ///< case indices with a result in both; if paired, the number of pairs
   std::size_t only_a = 0;
   std::size_t only_b = 0;
   std::vector<std::string>
@@ -42,7 +42,7 @@ struct Pairing {
   struct ChangedInput {
     std::string input;
     std::string key;        ///< what campaign files call it
-    std::size_t cases = 0;  ///< shared ones in which it differs
+    std::size_t cases = 0;  ///< shared cases in which the input differs
   };
   std::vector<ChangedInput> changed;
   std::string sentence;
@@ -59,14 +59,14 @@ struct PercentileComparison {
   double p_holm = kUndefined;  ///< over the metrics, for this percentile
 };
 
-/// One metric. Flights that were not completed count as worse than any value; of a metric that is neither
-/// good nor bad they are left out. Of a metric that is worse farther from zero its magnitude is compared.
+/// One metric. A flight that was not completed counts as worse than any value. If a metric is neither good
+/// nor bad, such flights are left out. If a metric is worse farther from zero, its magnitude is compared.
 struct MetricComparison {
   std::string metric;
   MetricInfo info;
   std::size_t n_a = 0, n_b = 0;  ///< flights compared: with a value, or lost
   std::size_t lost_a = 0, lost_b = 0;
-  std::size_t undefined = 0;  ///< completed flights, or pairs, in which it is not defined
+  std::size_t undefined = 0;  ///< completed flights, or pairs, in which the metric is not defined
   /// Paired: the median of b - a with limits by order statistics of the differences, and the sign test.
   /// Unpaired: the difference of the medians with limits by DifferenceLimits(), and the rank sum.
   double median_a = kUndefined, median_b = kUndefined;
@@ -75,20 +75,21 @@ struct MetricComparison {
   double ratio = kUndefined;  ///< paired, all values positive: median of b / a
   Interval ratio_interval{kUndefined, kUndefined};
   std::size_t b_better = 0, a_better = 0,
-              equal = 0;  ///< pairs; of a metric neither good nor bad: b smaller, larger
+              equal =
+                  0;  ///< numbers of pairs; if the metric is neither good nor bad: b smaller, b larger, equal
   double p = kUndefined;
   double p_holm = kUndefined;  ///< over the metrics
   std::vector<PercentileComparison> tails;
   std::string finding;  ///< "better", "worse" (of b), "differs", "not shown"
   struct Pair {
     std::uint64_t case_index = 0;
-    double a = kUndefined, b = kUndefined;  ///< NaN: lost
+    double a = kUndefined, b = kUndefined;  ///< NaN: lost flight
   };
-  std::vector<Pair> gains, losses;  ///< the pairs in which b gains, and loses, most
+  std::vector<Pair> gains, losses;  ///< the pairs in which b gains most, and loses most
 };
 
-/// One limit, applied to the flights of both whichever campaign states it; n is 0 where the flights do not
-/// have the metric.
+/// One limit, applied to the flights of both campaigns, even if only one states it. `n` is 0 if the
+/// campaign's flights do not have the metric.
 struct RequirementComparison {
   std::string metric;
   std::string words;  ///< "pitch_error_peak_deg below 0.5"
@@ -99,11 +100,11 @@ struct RequirementComparison {
   std::size_t both_meet = 0, only_a_fails = 0, only_b_fails = 0, both_fail = 0;
   double difference = kUndefined;  ///< of the failure rates, b - a
   Interval interval{kUndefined, kUndefined};
-  double p = kUndefined;       ///< paired: McNemar's, exact; unpaired: Fisher's
+  double p = kUndefined;       ///< paired: exact McNemar test; unpaired: Fisher's exact test
   double p_holm = kUndefined;  ///< over the requirements
 };
 
-/// A pair in which a requirement, or the flight, is lost by one campaign and met by the other.
+/// A pair in which one campaign meets a requirement, or completes the flight, and the other does not.
 struct ChangedCase {
   std::uint64_t case_index = 0;
   Outcome outcome_a = Outcome::kCompleted, outcome_b = Outcome::kCompleted;
@@ -119,30 +120,30 @@ struct Comparison {
     std::string folder, name, id, flight_id, engine, vehicle, reference, autopilot, sampling;
     std::uint64_t seed = 0, cases = 0;
     std::size_t flown = 0, completed = 0;
-    bool has_its_law = true;  ///< false: flown with a law in Python, which no folder holds
+    bool has_its_law = true;  ///< false: flown with a control law in Python, which the folder does not hold
   };
   Side a, b;
   std::vector<CampaignChange> changes;
   Pairing pairing;
-  bool independent =
-      true;  ///< both are random samples; else differences are shown without limits or p-values
+  bool independent = true;  ///< both are random samples; otherwise differences have no limits and no p-values
   std::vector<MetricComparison> metrics;
   std::vector<RequirementComparison> requirements;
-  std::vector<ChangedCase> harmed;  ///< by a change from a to b, ascending; none when unpaired
+  std::vector<ChangedCase> harmed;  ///< met in a and not in b, ascending; empty if unpaired
   std::vector<ChangedCase> rescued;
-  std::string sentence;  ///< what it comes to
+  std::string sentence;  ///< the summary of the comparison in words
 };
 
 inline constexpr double kComparisonConfidence = 0.95;
 
-/// `metrics`: names without prefix; empty: every metric that a flight of both defines. Only the changed and
-/// the best matched inputs are listed, never more than the flights show.
+/// `metrics` are names without prefix. If empty, every metric that a flight of both campaigns defines is
+/// compared. Inputs: only the changed ones and the best matched ones are listed, and never more than the
+/// flights show.
 Comparison Compare(const ComparedCampaign& a, const ComparedCampaign& b,
                    const std::vector<std::string>& metrics, std::vector<CampaignChange> changes);
 
 /// "dispersa replay FOLDER --case N", for the shell and the folder in which the comparison was started.
 std::string ReplayCommand(const std::string& folder, std::uint64_t case_index);
-/// Empty where the folder does not hold the law.
+/// Empty if the folder does not hold the control law.
 std::string ReplayCommand(const Comparison::Side& side, std::uint64_t case_index);
 
 /// The contents of compare.json: schema "dispersa/compare/1".

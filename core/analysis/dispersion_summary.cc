@@ -91,7 +91,8 @@ double QuantileOf(const ScalarDistribution& d, double u) {
   }
 }
 
-/// Over the quantiles in the middles of many equal parts: exact enough to tell a draw from another law.
+/// From the quantiles in the middle of many equal parts. This is exact enough to tell a draw from another
+/// distribution.
 Moments ByQuantiles(const Dispersion& dispersion) {
   constexpr int kParts = 20000;
   std::vector<double> values;
@@ -102,7 +103,7 @@ Moments ByQuantiles(const Dispersion& dispersion) {
   return OfValues(values);
 }
 
-/// None where the magnitude of the draw makes it another distribution than the catalogue below knows.
+/// None if taking the magnitude of the draw makes it a distribution that the cases below do not cover.
 std::optional<Moments> Of(const Dispersion& dispersion) {
   const ScalarDistribution& d = dispersion.distribution;
   switch (d.kind) {
@@ -186,8 +187,8 @@ std::string Words(const Dispersion& dispersion, double unit, const std::string& 
   return dispersion.absolute ? "magnitude of " + words : words;
 }
 
-/// 5 standard errors: of the mean, and of the standard deviation by its delta-method approximation
-/// sigma sqrt((kurtosis - 1) / 4n), with a little for what rounding does to values without any spread.
+/// Within 5 standard errors of the mean and of the standard deviation. The latter is approximated by the
+/// delta method: sigma sqrt((kurtosis - 1) / 4n). A small allowance covers rounding if all values are equal.
 bool Agrees(const Moments& expected, const Summary& drawn) {
   const auto n = static_cast<double>(drawn.n);
   const double slack = 1e-9 * (std::fabs(expected.mean) + expected.std);

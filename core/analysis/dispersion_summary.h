@@ -1,5 +1,5 @@
-// Dispersions as declared against the inputs that the flights applied: a dispersion that never reached the
-// flights shows here.
+// Declared dispersions compared with the inputs that the flights applied. A dispersion that never reached the
+// flights is visible here.
 #pragma once
 
 #include <optional>
@@ -18,12 +18,13 @@ struct DispersionSummary {
   std::string input;       ///< column, without the prefix
   std::string key;         ///< what the campaign file calls it
   std::string declared;    ///< "normal, mean 1, 3σ 0.02"
-  /// Of the declared distribution; none when several dispersions feed the input, or the design decides.
+  /// Of the declared distribution. None if several dispersions feed the input, or if the design decides its
+  /// values.
   std::optional<double> expected_mean;
   std::optional<double> expected_std;
   Summary drawn;
-  /// Mean and standard deviation lie within 5 standard errors of the declared ones; none below 10 cases or
-  /// without expectation. Of a thousand true statements fewer than one is doubted.
+  /// Mean and standard deviation lie within 5 standard errors of the declared ones. None with fewer than 10
+  /// cases, or without an expectation. The test is wrong about fewer than one of a thousand correct inputs.
   std::optional<bool> consistent;
 };
 

@@ -1,4 +1,4 @@
-// How a quantity spreads over the cases as the flight goes on.
+// The spread of a quantity over the cases, as a function of time.
 #pragma once
 
 #include <cstddef>
@@ -9,7 +9,8 @@
 
 namespace dispersa {
 
-/// Pointwise order statistics of one history column over the flights still flying; NaN where none is defined.
+/// Order statistics of one history column at each time, over the flights that still fly. In the unit of the
+/// column. NaN if no flight defines a value.
 struct Band {
   std::string column;  ///< name in HistoryColumns()
   std::vector<double> min = {}, p01 = {}, p05 = {}, p50 = {}, p95 = {}, p99 = {}, max = {};
@@ -17,24 +18,25 @@ struct Band {
 
 struct FlightBands {
   double step_s = 0.0;
-  std::size_t flights = 0;  ///< that the bands are made of
+  std::size_t flights = 0;  ///< flights in all percentiles
   std::size_t extreme_flights =
-      0;                       ///< others, chosen for being extreme, that only minimum and maximum contain
+      0;                       ///< other flights, chosen as extreme, which count only in minimum and maximum
   std::vector<double> time_s;  ///< multiples of the step, to the end of the longest flight
-  std::vector<std::size_t> flying;  ///< flights that last so long
+  std::vector<std::size_t> flying;  ///< number of flights that last to this time
   std::vector<Band> bands;
 };
 
-/// Columns of one flight at multiples of a step. A row of the history counts for the multiple at its time, of
-/// several at one time (an event) the last; shape (columns, steps).
+/// Columns of one flight at multiples of a step; shape (columns, steps). A row of the history counts for the
+/// multiple at its time. If several rows have the same time (an event), the last one counts.
 using SampledFlight = std::vector<std::vector<double>>;
 SampledFlight SampleFlight(const History& history, const std::vector<int>& columns, double step_s);
 
-/// Bands of the columns over the flights; the same bits in whatever order the flights come.
+/// Bands of the columns over the flights. The order of the flights does not change a bit of the result.
 FlightBands ComputeBands(const std::vector<SampledFlight>& flights, const std::vector<int>& columns,
                          double step_s);
 
-/// As CSV: time_s, flights, then for each column its _min, _p01, _p05, _p50, _p95, _p99, _max.
+/// CSV with the columns time_s, flights, and for each history column _min, _p01, _p05, _p50, _p95, _p99,
+/// _max.
 std::string BandsCsv(const FlightBands& bands);
 
 }  // namespace dispersa

@@ -21,11 +21,11 @@ using Json = nlohmann::ordered_json;
 
 constexpr int kOutlinePoints = 72;
 
-/// A centimetre on the ground.
+/// 7 decimals of a degree are 1 cm on the ground.
 double Rounded(double degrees) { return std::round(degrees * 1e7) / 1e7 + 0.0; }
 
 double LatitudeDeg(const Geodetic& place) { return Rounded(place.latitude_rad * kDegPerRad); }
-/// Within half a turn of `near_rad`, so that lines do not run around the Earth.
+/// Within half a turn of `near_rad`, so that a line does not run around the Earth.
 double LongitudeDeg(const Geodetic& place, double near_rad) {
   return Rounded((near_rad + std::remainder(place.longitude_rad - near_rad, kTwoPi)) * kDegPerRad);
 }

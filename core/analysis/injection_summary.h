@@ -1,4 +1,4 @@
-// How the injections of the completed flights scatter in altitude, velocity and flight path angle together.
+// Joint scatter of the injections of completed flights in altitude, velocity and flight path angle.
 #pragma once
 
 #include <array>
@@ -11,17 +11,17 @@
 
 namespace dispersa {
 
-/// The coordinates: geodetic altitude, inertial velocity, inertial flight path angle, as the metrics' units
-/// have them.
+/// The coordinates, in the units of the metrics: geodetic altitude, inertial velocity, inertial flight path
+/// angle.
 inline constexpr std::array<const char*, 3> kInjectionMetrics = {
     "injection_altitude_km", "injection_velocity_m_s", "injection_flight_path_angle_deg"};
 
 struct InjectionSummary {
   PointScatter scatter;                  ///< mean and covariance in the order of kInjectionMetrics
-  std::vector<Containment> containment;  ///< of the ellipsoids; none where the covariance is singular
+  std::vector<Containment> containment;  ///< of the ellipsoids; empty if the covariance is singular
 };
 
-/// None of fewer than two injections.
+/// None with fewer than two injections.
 std::optional<InjectionSummary> SummarizeInjection(const CaseColumns& cases);
 
 }  // namespace dispersa

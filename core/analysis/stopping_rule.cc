@@ -10,7 +10,8 @@
 namespace dispersa {
 namespace {
 
-/// An anytime plan could stop after every case; it asks a hundred times, and not for less than this.
+/// Least distance between looks of an anytime plan, in cases. Such a plan could stop after every case; the
+/// rule looks about a hundred times.
 constexpr std::uint64_t kLeastStep = 20;
 
 std::vector<std::uint64_t> StoppingLooks(const Campaign& campaign, std::int64_t planned) {
@@ -77,7 +78,7 @@ bool StoppingRule::Settled(const std::vector<std::uint64_t>& quarantined) const 
 
 bool StoppingRule::Advance(const std::vector<std::uint64_t>& quarantined) {
   if (!stops_ || target_ == looks_.back() || !Settled(quarantined)) return false;
-  // A folder that was flown further before, without this rule, keeps what it has.
+  // A folder may hold cases beyond the target from an earlier run without this rule. They stay.
   const bool all_seen = present_.empty() || *std::max_element(present_.begin(), present_.end()) < target_;
   if (all_seen && Decided(quarantined)) return false;
   target_ = *std::upper_bound(looks_.begin(), looks_.end(), target_);

@@ -42,7 +42,7 @@ class StoppingRule {
   bool stops_;
   std::int64_t planned_;
   std::vector<std::int64_t> past_looks_;
-  std::vector<std::uint64_t> looks_;  ///< ascending, the last the number of cases
+  std::vector<std::uint64_t> looks_;  ///< ascending; the last is the number of cases
   std::uint64_t target_;
   std::vector<std::uint64_t> present_;             ///< in the order of arrival
   std::vector<std::vector<std::int64_t>> failed_;  ///< of each requirement, in the order of arrival

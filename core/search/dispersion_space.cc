@@ -24,7 +24,8 @@ CoordinateKind KindOf(const ScalarDistribution& d) {
   }
 }
 
-/// The law's value where a standard normal is z. What is exact far out is written in z.
+/// The distribution's value at the standard normal deviate z. The formulas use z itself if the probability
+/// would lose digits in the tails.
 double ValueAt(const ScalarDistribution& d, const std::array<double, 2>& truncation, double z) {
   switch (d.kind) {
     case Distribution::kNormal:
@@ -70,7 +71,7 @@ double DispersionSpace::Value(std::size_t coordinate, const std::vector<double>&
 }
 
 std::vector<FlightInputs> DispersionSpace::Inputs(const std::vector<std::vector<double>>& points) const {
-  // A list of these points is a design that the campaign's own code draws.
+  // A campaign whose design is a list of these points: the campaign's own code then computes the inputs.
   Campaign list = list_;
   list.sampling.cases = points.size();
   for (std::size_t i = 0; i < dispersions_.size(); ++i) {

@@ -1,6 +1,6 @@
-// The dispersions of a campaign as coordinates that are independent and standard normal, so that a distance
-// from nothing dispersed has a meaning (A. M. Hasofer and N. C. Lind, J. Eng. Mech. Div. ASCE 100 (1974)
-// 111-121).
+// The dispersions of a campaign as independent standard normal coordinates. The distance from the origin,
+// where nothing is dispersed, then has a meaning (A. M. Hasofer and N. C. Lind, J. Eng. Mech. Div. ASCE 100
+// (1974) 111-121).
 #pragma once
 
 #include <array>
@@ -14,10 +14,9 @@
 namespace dispersa {
 
 enum class CoordinateKind {
-  kNormal,     ///< 0 is the law's median, or the least magnitude of a law of magnitudes
-  kDirection,  ///< an angle over a full turn: any value is as likely as any other, so that it adds no
-               ///< distance
-  kHeld,       ///< a law of single values: held at its middle one
+  kNormal,     ///< 0 is the median, or the least magnitude if the distribution is of magnitudes
+  kDirection,  ///< an angle over a full turn: all values are equally likely, so it adds no distance
+  kHeld,       ///< a distribution of single values: held at the middle one
 };
 
 struct Coordinate {
@@ -27,17 +26,17 @@ struct Coordinate {
 
 class DispersionSpace {
  public:
-  /// As if every dispersion were drawn at random, whatever the campaign's design.
+  /// Treats every dispersion as drawn at random, whatever the campaign's design is.
   explicit DispersionSpace(const Campaign& campaign);
 
   const std::vector<Coordinate>& coordinates() const { return coordinates_; }
-  /// What a flight applies at each point; one value a coordinate.
+  /// The inputs of a flight at each point. A point has one value for each coordinate.
   std::vector<FlightInputs> Inputs(const std::vector<std::vector<double>>& points) const;
-  /// A dispersion's value at a point, in the internal unit of its input.
+  /// A dispersion's value at a point, in the internal unit of its input (SI, rad).
   double Value(std::size_t coordinate, const std::vector<double>& point) const;
 
  private:
-  Campaign list_;  ///< only what a design of listed points needs
+  Campaign list_;  ///< holds only what a design of listed points needs
   std::vector<Dispersion> dispersions_;
   std::vector<Coordinate> coordinates_;
   std::vector<std::array<double, 2>> truncation_;

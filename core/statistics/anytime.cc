@@ -15,13 +15,14 @@ constexpr double kNone = -std::numeric_limits<double>::infinity();
 
 double LogBeta(double a, double b) { return std::lgamma(a) + std::lgamma(b) - std::lgamma(a + b); }
 
-/// Of p^f (1 - p)^(n - f).
+/// Of a failure probability `failure`: ln(p^f (1 - p)^(n - f)).
 double LogLikelihood(double failure, std::int64_t n, std::int64_t failures) {
   return static_cast<double>(failures) * std::log(failure) +
          static_cast<double>(n - failures) * std::log1p(-failure);
 }
 
-/// Where a condition that holds for small probabilities and not for large ones ends, in (0, 1).
+/// The condition holds for small probabilities and not for large ones. Returns the boundary between them, in
+/// (0, 1).
 template <typename Condition>
 double LastTrue(Condition condition) {
   double low = 0.0;

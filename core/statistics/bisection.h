@@ -4,8 +4,8 @@
 
 namespace dispersa {
 
-/// The smallest integer in (low, high] at which a condition holds that, once it holds, holds for all larger
-/// ones; it holds at `high` without being asked there. low < high.
+/// The smallest integer in (low, high] at which a condition holds. The condition must be monotonic: once
+/// true, true for all larger integers. It is taken as true at `high`. low < high.
 template <typename Condition>
 std::int64_t FirstTrue(std::int64_t low, std::int64_t high, Condition condition) {
   while (high - low > 1) {

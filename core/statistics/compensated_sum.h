@@ -1,4 +1,4 @@
-// Sums whose rounding does not grow with the number of terms.
+// Sums with a rounding error that does not grow with the number of terms.
 #pragma once
 
 #include <cmath>

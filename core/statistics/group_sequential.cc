@@ -13,11 +13,11 @@
 namespace dispersa {
 namespace {
 
-/// A term of the binomial distribution below this share of the largest does not count: a million of them are
-/// worth less than rounding.
+/// Terms of the binomial distribution below this share of the largest are left out. A million of them are
+/// less than the rounding error.
 constexpr double kNegligible = 1e-22;
 
-/// P(X = first + i) for the number X of failures in n cases; the far tails are left out.
+/// P(X = first + i), where X is the number of failures in n cases. The far tails are left out.
 struct BinomialTerms {
   std::int64_t first = 0;
   std::vector<double> terms;
@@ -30,7 +30,8 @@ BinomialTerms Terms(std::int64_t n, double failure) {
   const auto at = static_cast<double>(mode);
   const double log_mode = std::lgamma(count + 1.0) - std::lgamma(at + 1.0) - std::lgamma(count - at + 1.0) +
                           at * std::log(failure) + (count - at) * std::log1p(-failure);
-  // From the mode by ratios of neighbours; the sum is then made 1, which takes lgamma's rounding out.
+  // Terms follow from the mode by ratios of neighbours. Scaling their sum to 1 then removes the rounding
+  // error of lgamma.
   std::vector<double> up = {std::exp(log_mode)};
   const double odds = failure / (1.0 - failure);
   for (std::int64_t k = mode; k < n && up.back() > kNegligible * up.front(); ++k)
@@ -51,12 +52,12 @@ BinomialTerms Terms(std::int64_t n, double failure) {
   return result;
 }
 
-/// The failures of those sequences of cases that no look has taken out yet.
+/// Distribution of the number of failures over the sequences of cases that no look has decided yet.
 class Undecided {
  public:
   explicit Undecided(double probability) : failure_(1.0 - probability) {}
 
-  /// Flies on to n cases.
+  /// Adds cases, up to n.
   void Advance(std::int64_t n) {
     assert(n >= n_);
     if (n == n_ || mass_.empty()) {
@@ -74,7 +75,8 @@ class Undecided {
     n_ = n;
   }
 
-  /// Takes out those with at most (at least) so many failures and returns their probability.
+  /// Takes out the sequences with at most (TakeUpTo) or at least (TakeFrom) this number of failures. Returns
+  /// their probability.
   double TakeUpTo(std::int64_t failures) {
     const std::int64_t count = std::clamp<std::int64_t>(failures - first_ + 1, 0, std::ssize(mass_));
     double taken = 0.0;
@@ -91,7 +93,8 @@ class Undecided {
     return taken;
   }
 
-  /// The most (fewest) failures for which TakeUpTo (TakeFrom) returns no more than `allowed`.
+  /// The largest number for which TakeUpTo, or the smallest for which TakeFrom, would return at most
+  /// `allowed`.
   std::int64_t MostUpTo(double allowed) const {
     double sum = 0.0;
     std::int64_t most = first_ - 1;
@@ -116,7 +119,7 @@ class Undecided {
  private:
   double failure_;
   std::int64_t n_ = 0;
-  std::int64_t first_ = 0;  ///< failures of mass_[0]
+  std::int64_t first_ = 0;  ///< number of failures that mass_[0] belongs to
   std::vector<double> mass_ = {1.0};
 };
 
@@ -133,7 +136,7 @@ std::vector<std::int64_t> LookCounts(const VerdictPlan& plan, std::int64_t plann
   if (plan.kind == PlanKind::kAnytime || planned <= 0) return {};
   const std::int64_t looks = plan.kind == PlanKind::kFixed ? 1 : std::min(plan.looks, planned);
   std::vector<std::int64_t> counts;
-  // planned / K first, so that no product overflows.
+  // planned / K comes first, so that no product overflows.
   for (std::int64_t i = 1; i <= looks; ++i)
     counts.push_back(planned / looks * i + (planned % looks * i + looks - 1) / looks);
   return counts;
@@ -161,7 +164,8 @@ std::vector<LookBoundary> Boundaries(const VerdictPlan& plan, double probability
     LookBoundary look{n, not_passed.MostUpTo(spent - passed), not_failed.FewestFrom(spent - failed)};
     passed += not_passed.TakeUpTo(look.accept);
     failed += not_failed.TakeFrom(look.reject);
-    // Below (above) the range of the undecided there is nothing to decide: not to be read as a boundary.
+    // Outside the range of undecided sequences there is nothing to decide. Such a number must not become a
+    // boundary.
     look.accept = std::clamp<std::int64_t>(look.accept, looks.empty() ? -1 : looks.back().accept, n);
     look.reject = std::clamp<std::int64_t>(look.reject, look.accept + 1, n + 1);
     looks.push_back(look);

@@ -1,4 +1,4 @@
-// Boundaries for counts of failures that are looked at several times, from the exact binomial distribution.
+// Boundaries for counts of failures at several looks, from the exact binomial distribution.
 #pragma once
 
 #include <cstdint>
@@ -8,26 +8,26 @@
 
 namespace dispersa {
 
-/// What a look at n cases decides: a pass with at most `accept` failures (-1: none is few enough), a fail
-/// with at least `reject` (n + 1: none is many enough).
+/// The decision at a look after n cases. At most `accept` failures pass; -1: no number passes. At least
+/// `reject` failures fail; n + 1: no number fails.
 struct LookBoundary {
   std::int64_t n = 0;
   std::int64_t accept = -1;
   std::int64_t reject = 1;
 };
 
-/// Cases at each of the plan's looks: the i-th of K at ceil(i `planned` / K), the last at `planned`. One for
-/// a fixed plan, none for an anytime one.
+/// Numbers of cases at the plan's looks: look i of K is at ceil(i `planned` / K), the last at `planned`. A
+/// fixed plan has one look, an anytime plan none.
 std::vector<std::int64_t> LookCounts(const VerdictPlan& plan, std::int64_t planned);
 
-/// The plan's boundaries. Whatever a design's true probability, it is passed at any of the looks with at most
-/// `risk` if it misses the required `probability`, and failed with at most the same risk if it meets it.
-/// Either statement holds whether or not one stops at the first decision.
+/// The plan's boundaries. A design that misses the required `probability` passes at any of the looks with at
+/// most `risk`. A design that meets it fails at any of the looks with at most `risk`. Both hold whether or
+/// not the campaign stops at the first decision.
 std::vector<LookBoundary> Boundaries(const VerdictPlan& plan, double probability, double risk,
                                      std::int64_t planned);
 
-/// Probability that a design that succeeds with `probability` shows at most `accept` failures at any of the
-/// looks (in ascending order of n); the same for at least `reject`.
+/// For a design that succeeds with `probability`: the probability of at most `accept` failures at any of the
+/// looks (PassRisk), or of at least `reject` (FailRisk). Looks in ascending order of n.
 double PassRisk(double probability, const std::vector<LookBoundary>& looks);
 double FailRisk(double probability, const std::vector<LookBoundary>& looks);
 

@@ -35,9 +35,9 @@ Interval ClopperPearson(std::int64_t events, std::int64_t n, double confidence) 
 
 RankInterval QuantileRanks(std::int64_t n, double probability, double confidence) {
   assert(n >= 0 && probability > 0.0 && probability < 1.0 && confidence > 0.0 && confidence < 1.0);
-  // The number B of values up to the quantile is binomial, and n - B are "failures". Rank r is above the
-  // quantile, no lower bound, when B < r; it is below, no upper bound, when B >= r. Each may happen with half
-  // of what the confidence leaves.
+  // The number B of values up to the quantile is binomial, and n - B counts as failures. If B < r, the value
+  // of rank r is above the quantile and is no lower bound. If B >= r, it is below and is no upper bound. Each
+  // may happen with half of 1 - confidence.
   const double tail = 0.5 * (1.0 - confidence);
   const std::int64_t too_high = FirstTrue(
       0, n + 1, [&](std::int64_t rank) { return ProducerRisk(probability, n, n - rank + 1) > tail; });

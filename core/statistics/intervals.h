@@ -6,7 +6,7 @@
 
 namespace dispersa {
 
-/// Bounds; infinite where the data give none.
+/// Lower and upper bound; infinite if the data give no bound.
 struct Interval {
   double lower;
   double upper;
@@ -19,9 +19,9 @@ double ClopperPearsonUpper(std::int64_t events, std::int64_t n, double confidenc
 /// ... and two-sided with equal tails.
 Interval ClopperPearson(std::int64_t events, std::int64_t n, double confidence);
 
-/// Ranks, counted from 1, of the order statistics that enclose a quantile with at least the given confidence,
-/// with equal tails and for any distribution: 0 and n + 1 where the sample is too small for a bound.
-/// (H. A. David and H. N. Nagaraja, Order Statistics, 3rd ed., Wiley 2003, section 7.1.)
+/// Ranks (from 1) of the order statistics that enclose a quantile with at least the given confidence. Equal
+/// tails, for any distribution. 0 and n + 1 if the sample is too small for a bound. (H. A. David and H. N.
+/// Nagaraja, Order Statistics, 3rd ed., Wiley 2003, section 7.1.)
 struct RankInterval {
   std::int64_t lower;
   std::int64_t upper;

@@ -1,4 +1,4 @@
-// The limits that a requirement sets to a metric.
+// The limits that a requirement sets for a metric.
 #pragma once
 
 #include <algorithm>
@@ -6,13 +6,13 @@
 
 namespace dispersa {
 
-/// Met strictly between both; an undefined value meets none.
+/// A value meets the limits if it lies strictly between them. An undefined value (NaN) meets no limits.
 struct Limits {
   double low = -std::numeric_limits<double>::infinity();
   double high = std::numeric_limits<double>::infinity();
 
   bool Meets(double value) const { return low < value && value < high; }
-  /// How far inside, in the metric's unit; negative outside, 0 at a limit.
+  /// Distance to the nearer limit, in the metric's unit: positive inside, negative outside, 0 at a limit.
   double Margin(double value) const { return std::min(value - low, high - value); }
 };
 

@@ -1,11 +1,11 @@
-// The standard normal distribution. Here for modules that need nothing else of Boost's.
+// The standard normal distribution, for modules that use nothing else of Boost.
 #pragma once
 
 namespace dispersa {
 
-/// That it is below z.
+/// Probability of a value below z.
 double NormalProbability(double z);
-/// What it is below with the probability, between 0 and 1.
+/// The value z for which NormalProbability(z) is `probability`, in (0, 1).
 double NormalQuantile(double probability);
 
 }  // namespace dispersa

@@ -11,7 +11,7 @@ namespace dispersa {
 double ConsumerRisk(double probability, std::int64_t n, std::int64_t failures) {
   assert(probability > 0.0 && probability < 1.0 && n >= 0 && failures >= 0);
   if (failures >= n) return 1.0;
-  // P(X <= f) = I_p(n - f, f + 1), in which the failure probability 1 - p need not be rounded.
+  // P(X <= f) = I_p(n - f, f + 1). In this form the failure probability 1 - p need not be rounded.
   return boost::math::ibeta(static_cast<double>(n - failures), static_cast<double>(failures + 1),
                             probability);
 }

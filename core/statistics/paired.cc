@@ -12,7 +12,8 @@ namespace {
 
 constexpr double kWorst = std::numeric_limits<double>::infinity();
 
-/// The median of sorted values; between equal infinities, that infinity; between opposite ones, undefined.
+/// The median of sorted values. Between two equal infinities it is that infinity, between opposite ones
+/// undefined.
 template <typename Middle>
 double Median(const std::vector<double>& sorted, Middle middle) {
   const std::size_t half = sorted.size() / 2;
@@ -21,7 +22,7 @@ double Median(const std::vector<double>& sorted, Middle middle) {
   return lower == upper ? upper : middle(lower, upper);
 }
 
-/// Probability of a split at least as uneven when both sides are equally likely.
+/// Probability of a split at least this uneven, when both sides are equally likely.
 double SignTest(std::size_t worse, std::size_t better) {
   const auto fewer = static_cast<std::int64_t>(std::min(worse, better));
   return std::min(1.0, 2.0 * ConsumerRisk(0.5, static_cast<std::int64_t>(worse + better), fewer));
@@ -45,7 +46,7 @@ PairedDifference ComparePaired(const std::vector<double>& a, const std::vector<d
     result.lost_a += has_a ? 0 : 1;
     result.lost_b += has_b ? 0 : 1;
     positive = positive && (!has_a || a[i] > 0.0) && (!has_b || b[i] > 0.0);
-    // A lost flight stands for an infinite value, two of them for the same one.
+    // A lost flight is an infinite value; two lost flights are equal.
     const double difference = has_a && has_b ? b[i] - a[i] : (has_a ? kWorst : (has_b ? -kWorst : 0.0));
     const double ratio = has_a && has_b ? b[i] / a[i] : (has_a ? kWorst : (has_b ? 0.0 : 1.0));
     ++(difference > 0.0 ? result.worse : difference < 0.0 ? result.better : result.equal);

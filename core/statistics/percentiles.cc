@@ -17,7 +17,7 @@ std::vector<Percentile> Percentiles(const std::vector<double>& sorted_values) {
   const auto n = static_cast<double>(sorted_values.size());
   std::vector<Percentile> percentiles;
   for (const auto& [name, probability] : kShown) {
-    // The rounding of 1 - 0.99 shall not take the 99 % of 100 values away.
+    // The factor allows for rounding: with 100 values, 1 - 0.99 must still leave one value beyond the 99 %.
     const double beyond = n * std::min(probability, 1.0 - probability) * (1.0 + 1e-12);
     percentiles.push_back({name, probability,
                            beyond >= 1.0 ? Quantile(sorted_values, probability) : kUndefined,
@@ -30,7 +30,7 @@ double Skewness(const std::vector<double>& sorted_values) {
   if (sorted_values.empty()) return kUndefined;
   const auto n = static_cast<double>(sorted_values.size());
   const double mean = Mean(sorted_values);
-  // In units of the largest deviation: its cube neither overflows nor vanishes.
+  // In units of the largest deviation, so that the cube neither overflows nor vanishes.
   const double scale = std::max(mean - sorted_values.front(), sorted_values.back() - mean);
   if (!(scale > 0.0)) return kUndefined;
   const auto moment = [&](int power) {

@@ -34,7 +34,8 @@ std::vector<Containment> ContainmentOf(const std::vector<std::vector<double>>& p
                                        const PointScatter& scatter, const std::vector<double>& stated) {
   const auto d = static_cast<Eigen::Index>(scatter.mean.size());
   if (static_cast<Eigen::Index>(points.size()) < d + 2) return {};
-  // In units of each coordinate's spread, so that metres beside radians do not make the matrix look singular.
+  // In units of each coordinate's spread. Otherwise metres beside radians would make the matrix look
+  // singular.
   Eigen::VectorXd unit(d);
   for (Eigen::Index i = 0; i < d; ++i) {
     unit[i] = std::sqrt(scatter.covariance[static_cast<std::size_t>(i)][static_cast<std::size_t>(i)]);
@@ -75,7 +76,7 @@ ScatterEllipse EllipseOf(const std::vector<std::vector<double>>& covariance, dou
   const double half = std::hypot(0.5 * (a - c), b);
   ScatterEllipse ellipse;
   ellipse.semi_major = std::sqrt(scale * (middle + half));
-  // The product of the roots is the determinant, which loses no digits of a slender ellipse.
+  // The product of the roots is the determinant. This way a slender ellipse loses no digits.
   ellipse.semi_minor =
       std::sqrt(scale * std::max(0.0, middle + half > 0.0 ? (a * c - b * b) / (middle + half) : 0.0));
   ellipse.angle_rad = 0.5 * std::atan2(2.0 * b, a - c);

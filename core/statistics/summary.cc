@@ -38,7 +38,7 @@ double Quantile(const std::vector<double>& sorted_values, double probability) {
 double Mean(const std::vector<double>& sorted) {
   if (sorted.empty()) return kUndefined;
   const double sum = CompensatedSum(sorted, [](double value) { return value; });
-  // Rounding must not carry it beyond the values: equal ones deviate by exactly 0.
+  // Rounding must not carry the mean beyond the values. The deviation of equal values is then exactly 0.
   return std::clamp(sum / static_cast<double>(sorted.size()), sorted.front(), sorted.back());
 }
 

@@ -19,9 +19,9 @@ double LogChoose(std::int64_t n, std::int64_t k) {
   return log_factorial(n) - log_factorial(k) - log_factorial(n - k);
 }
 
-/// The estimate of a quantile that the sample reaches, between values that are finite; else undefined.
+/// The estimate of a quantile, if the sample reaches it and the values around it are finite; else undefined.
 double Estimate(const std::vector<double>& sorted, double probability) {
-  // The rounding of 1 - 0.99 shall not take the 99 % of 100 values away.
+  // The factor allows for rounding: with 100 values, 1 - 0.99 must still leave one value beyond the 99 %.
   const double beyond =
       static_cast<double>(sorted.size()) * std::min(probability, 1.0 - probability) * (1.0 + 1e-12);
   if (beyond < 1.0) return kUndefined;
@@ -62,7 +62,7 @@ double FisherP(std::int64_t events_a, std::int64_t n_a, std::int64_t events_b, s
   const auto log_probability = [&](std::int64_t k) {
     return LogChoose(n_a, k) + LogChoose(n_b, events - k) - all;
   };
-  // Tables as likely as this one count whatever the rounding of their logarithms.
+  // The margin counts tables that are as likely as this one in spite of the rounding of their logarithms.
   const double seen = log_probability(events_a) + 1e-7;
   double p = 0.0;
   for (std::int64_t k = std::max<std::int64_t>(0, events - n_b); k <= std::min(events, n_a); ++k) {
@@ -121,7 +121,7 @@ QuantileDifference CompareQuantiles(const std::vector<double>& a, const std::vec
                                           0.0, static_cast<double>(pooled.size() - 1)));
   std::nth_element(pooled.begin(), pooled.begin() + static_cast<std::ptrdiff_t>(rank), pooled.end());
   const double common = pooled[rank];
-  // Beyond on the side of the tail, so that what is counted is rare.
+  // Counts on the side of the tail, so that the counted event is rare.
   const auto beyond = [&](double value) { return probability < 0.5 ? value < common : value > common; };
   const auto count = [&](const std::vector<double>& values) {
     return static_cast<std::int64_t>(std::count_if(values.begin(), values.end(), beyond));

@@ -1,4 +1,4 @@
-// How often a requirement's counts may be looked at for a verdict.
+// When a requirement's counts may be looked at for a verdict.
 #pragma once
 
 #include <cstdint>
@@ -8,14 +8,15 @@ namespace dispersa {
 enum class PlanKind {
   kFixed,            ///< one look, at a number of cases fixed beforehand
   kGroupSequential,  ///< several looks at numbers of cases fixed beforehand, which share the risk
-  kAnytime,          ///< looks whenever, as often as one likes
+  kAnytime,          ///< a look at any time, any number of times
 };
 
 /// How a group-sequential plan spends its risk a over the share t of its cases (K. K. G. Lan and D. L.
 /// DeMets, Biometrika 70 (1983) 659-663).
 enum class Spending {
-  kOBrienFleming,  ///< 2 - 2 Phi(z_{a/2} / sqrt t): little early, so that the last look is nearly a fixed one
-  kPocock,         ///< a ln(1 + (e - 1) t): evenly
+  kOBrienFleming,  ///< 2 - 2 Phi(z_{a/2} / sqrt t): little early; the last look is nearly that of a fixed
+                   ///< plan
+  kPocock,         ///< a ln(1 + (e - 1) t): nearly even
 };
 
 struct VerdictPlan {
