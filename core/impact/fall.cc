@@ -17,7 +17,7 @@ class Faller {
 
   double Altitude(const Motion& at) const { return ToGeodetic(environment_.earth, at.p).altitude_m; }
 
-  /// The Earth is symmetric about its axis, so that time does not enter.
+  /// The Earth is symmetric about its axis, so the motion does not depend on time.
   Motion Step(const Motion& y, double step_s) const {
     const Motion k1 = Rate(y);
     const Motion k2 = Rate(Moved(y, k1, 0.5 * step_s));
@@ -72,7 +72,8 @@ std::optional<Impact> Fall(const Environment& environment, const FallingBody& bo
     const Motion next = faller.Step(now, step_s);
     const double next_m = faller.Altitude(next);
     if (next_m <= 0.0) {
-      // The length of the last step, between 0 and step_s, by the secant between a point above and one below.
+      // The length of the last step, in (0, step_s): secant method between a point above the ground and one
+      // below.
       double low_s = 0.0, low_m = altitude_m, high_s = step_s, high_m = next_m;
       Motion ground = next;
       double part_s = step_s;

@@ -1,4 +1,4 @@
-// The fall of what flies on without thrust: a point mass with drag, in the air and winds of its flight.
+// The fall of a body without thrust: a point mass with drag, in the air and winds of its flight.
 #pragma once
 
 #include <optional>
@@ -8,28 +8,29 @@
 
 namespace dispersa {
 
-/// What falls. It tumbles, so that no lift and no attitude matter.
+/// A falling body. It is taken to tumble, so that lift and attitude do not matter.
 struct FallingBody {
   double mass_kg = 0.0;
   double drag_area_m2 = 0.0;  ///< drag coefficient times area; 0: no drag
 };
 
-/// Drag area of a randomly tumbling cylinder: coefficient 0.7198 + 0.3260 d / l on the area l d (E. D. Klett,
-/// "Drag coefficients and heating ratios for right circular cylinders in free-molecular and continuum flow
-/// from Mach 10 to 30", SC-RR-64-2141, Sandia 1964, as NASA's re-entry tools use it). For continuum flow at
-/// Mach 10 to 30 and l > d; taken for every Mach number, which misjudges the last, slow part of a fall by
-/// some tens of per cent of its drag.
+/// Drag area (m²) of a randomly tumbling cylinder: coefficient 0.7198 + 0.3260 d / l on the area l d. Source:
+/// E. D. Klett, "Drag coefficients and heating ratios for right circular cylinders in free-molecular and
+/// continuum flow from Mach 10 to 30", SC-RR-64-2141, Sandia 1964, as NASA's re-entry tools use it.
+///
+/// The formula is valid for continuum flow at Mach 10 to 30 and for l > d. It is used here at every Mach
+/// number. In the last, slow part of a fall the drag is then wrong by some tens of per cent.
 double TumblingCylinderDragArea(double length_m, double diameter_m);
 
 struct FallState {
-  double time_s = 0.0;  ///< since lift-off, when I and E coincided
+  double time_s = 0.0;  ///< since lift-off, at which I and E coincide
   Vector3 p_EoP_I = Vector3::Zero();
   Vector3 v_IP_I = Vector3::Zero();
 };
 
 struct Impact {
   double time_s = 0.0;
-  Geodetic place;          ///< on the ellipsoid; longitude fixed to the Earth
+  Geodetic place;          ///< on the ellipsoid; Earth-fixed longitude
   double speed_m_s = 0.0;  ///< over the ground
   double peak_altitude_m = 0.0;
 };
@@ -41,9 +42,10 @@ struct FallSteps {
 inline constexpr double kFallAir_m = 130000.0;
 inline constexpr double kFallLimit_s = 14400.0;
 
-/// Where a body meets the ellipsoid: gravitation with J2, drag in the environment's air and wind, by the
-/// classical Runge-Kutta method of fourth order; the last step ends on the ground. None within kFallLimit_s:
-/// it is in orbit. A body that is on the ground already stays where it is.
+/// The point at which a body meets the ellipsoid. Forces: gravitation with J2, drag in the environment's air
+/// and wind. Method: classical Runge-Kutta of fourth order; the last step ends on the ground. None if the
+/// body does not come down within kFallLimit_s, as in an orbit. A body that is on the ground already stays
+/// where it is.
 std::optional<Impact> Fall(const Environment& environment, const FallingBody& body, const FallState& start,
                            const FallSteps& steps = {});
 

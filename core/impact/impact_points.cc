@@ -12,9 +12,9 @@
 namespace dispersa {
 namespace {
 
-/// No row but the first and those of events.
+/// No rows but the first one and those of events.
 constexpr double kEventsOnly_s = 1e6;
-/// Flights whose rows are kept at a time: 10 MB.
+/// Flights whose rows are in memory at a time: about 10 MB.
 constexpr std::size_t kFlownTogether = 2000;
 
 class HistoryReader {
@@ -23,7 +23,7 @@ class HistoryReader {
 
   double At(std::size_t row, const char* column) const { return history_.at(row, FindHistoryColumn(column)); }
   int Stack(std::size_t row) const { return static_cast<int>(At(row, "stage")) - 1; }
-  /// Attitude is against the local north, east and down, whose axes in I follow from the position.
+  /// The history gives attitude relative to local north, east and down. The position gives these axes in I.
   RigidBodyState State(const Earth& earth, std::size_t row) const {
     RigidBodyState s;
     s.p_EoC_I = {At(row, "eci_x_m"), At(row, "eci_y_m"), At(row, "eci_z_m")};
@@ -40,7 +40,7 @@ class HistoryReader {
   const History& history_;
 };
 
-/// Of the empty stage alone.
+/// Centre of gravity of the empty stage alone.
 double DryStation(const Stage& stage) {
   double station_m = 0.0;
   for (const MassElement& element : stage.structure)
@@ -48,7 +48,7 @@ double DryStation(const Stage& stage) {
   return station_m;
 }
 
-/// From the bottom of the stage above, or from the nose, to its own.
+/// The top of the stage: the bottom of the stage above, or the nose.
 double TopStation(const Vehicle& vehicle, int stage) {
   const std::size_t above = static_cast<std::size_t>(LastBurn(vehicle, stage)) + 1;
   return above < vehicle.stages.size() ? vehicle.stages[above].bottom_station_m : 0.0;
@@ -75,7 +75,7 @@ std::vector<ImpactPoint> ImpactPoints(const CampaignFlights& flights, const Case
   for (std::size_t row = 1; row < history.rows(); ++row) {
     const int below = rows.Stack(row - 1);
     if (rows.Stack(row) == below) continue;
-    // The row shows the stack above, full, with its tip-off rates, which the stage below does not have.
+    // The row shows the full stack above, with its tip-off rates. The stage below does not have these rates.
     const auto stage = static_cast<std::size_t>(below);
     if (vehicle.stages[stage + 1].restarts) continue;  // nothing has left
     RigidBodyState above = rows.State(environment.earth, row);
@@ -84,7 +84,7 @@ std::vector<ImpactPoint> ImpactPoints(const CampaignFlights& flights, const Case
     const StackMass& mass = plant.stacks[stage + 1].mass;
     const double aft_m = DryStation(vehicle.stages[stage]) - mass.At(mass.propellant_mass_kg).cg_station_m;
     const RigidBodyState spent = AtPoint(above, Vector3(-aft_m, 0.0, 0.0));
-    // What a cut-off by velocity leaves only the flight knows.
+    // If the engine is cut off at a velocity, only the flight knows the propellant left.
     const double spent_kg = vehicle.stages[stage].motor.cut_off == CutOff::kAtVelocity
                                 ? rows.At(row - 1, "mass_kg") - rows.At(row, "mass_kg")
                                 : DryMass(vehicle, below) + plant.stacks[stage].burn.left_kg;

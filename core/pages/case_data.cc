@@ -22,7 +22,7 @@ std::vector<std::string> ShownMetrics(const CampaignSummary& summary) {
   return names;
 }
 
-/// Rows, ascending.
+/// Rows of the cases with the smallest and the largest values of each metric, ascending.
 std::vector<std::size_t> Answering(const std::vector<std::string>& metrics, const CaseColumns& cases) {
   std::set<std::size_t> rows;
   const std::size_t each = kAnsweringCases / (2 * metrics.size());

@@ -1,4 +1,4 @@
-// What the page's script knows of the cases.
+// The data of the cases for the script of the page.
 #pragma once
 
 #include <cstddef>
@@ -9,11 +9,12 @@
 
 namespace dispersa {
 
-/// A page stays small enough to be sent by mail.
+/// Limits the size of the page, so that it can be sent by mail.
 inline constexpr std::size_t kAnsweringCases = 5000;
 
 /// JSON for an element of the page: the metrics that charts show by case, the cases, and their values to six
-/// digits. Of more than kAnsweringCases those with the least and the largest values of each metric.
+/// digits. If there are more than kAnsweringCases cases, only those with the smallest and the largest values
+/// of each metric.
 std::string CaseData(const CampaignSummary& summary, const CaseColumns& cases);
 
 }  // namespace dispersa

@@ -10,7 +10,7 @@
 namespace dispersa {
 namespace {
 
-/// 1, 2 or 5 times a power of ten, about `range / count`.
+/// A step of 1, 2 or 5 times a power of ten, about `range / count`.
 double RoundStep(double range, int count) {
   const double raw = range / count;
   const double power = std::pow(10.0, std::floor(std::log10(raw)));
@@ -56,7 +56,7 @@ void ChartScale::LinearTicks(const ChartAxis& axis, int about_ticks) {
 }
 
 void ChartScale::LogarithmicTicks(const ChartAxis& axis, int about_ticks) {
-  // Every decade, unless their labels would run into one another.
+  // Every decade, unless the labels would overlap.
   const double decades = std::log10(high_ / low_);
   const double stride = decades > 2.0 * about_ticks ? std::ceil(decades / about_ticks) : 1.0;
   const double first = stride * std::ceil(std::log10(low_) / stride - 1e-9);

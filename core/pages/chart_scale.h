@@ -1,4 +1,4 @@
-// From values to positions in a chart, and the round numbers to write along its edge.
+// Maps values to positions in a chart, and chooses the round numbers at its axis.
 #pragma once
 
 #include <string>
@@ -15,8 +15,8 @@ struct Tick {
 
 class ChartScale {
  public:
-  /// `low` and `high`: range of the data, which the axis's own ends replace; positions run from `from` to
-  /// `to`. Linear ranges without given ends widen to round numbers.
+  /// `low` and `high` are the range of the data; ends given by the axis replace them. Positions run from
+  /// `from` to `to`. A linear range without given ends is widened to round numbers.
   ChartScale(const ChartAxis& axis, double low, double high, double from, double to, int about_ticks);
 
   double At(double value) const;

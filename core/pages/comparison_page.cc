@@ -18,7 +18,7 @@ constexpr char kComparisonNavigation[] =
     "href=\"#cases\">Harmed and rescued</a><a href=\"#metrics\">Metrics</a><a "
     "href=\"#figures\">Figures</a><a "
     "href=\"#changes\">Largest changes</a><a href=\"#methods\">Methods</a></nav>\n";
-/// Longer lists can be folded away; all are in compare.json.
+/// A longer table can be collapsed. compare.json has all rows.
 constexpr std::size_t kOpenRows = 20;
 constexpr std::size_t kListedCases = 1000;
 
@@ -34,7 +34,7 @@ std::string IntervalText(const Interval& interval) {
   return BoundText(interval.lower) + " … " + BoundText(interval.upper);
 }
 
-/// A path of a campaign file, which may break after its dots.
+/// A path in a campaign file, with line breaks allowed after its dots.
 std::string PathCell(const std::string& path) {
   std::string html;
   for (const char c : HtmlText(path)) html += c == '.' ? ".<wbr>" : std::string(1, c);
@@ -51,7 +51,7 @@ std::string PText(double p) {
   return p < 1e-4 ? fmt::format("{:.0e}", p) : fmt::format("{:.4f}", p);
 }
 
-/// `table`; a long one can be folded away.
+/// `table`, or the table in a part that can be collapsed if it is long.
 std::string Folded(const HtmlTable& table, std::size_t rows, const std::string& summary) {
   if (rows <= kOpenRows) return table.Html();
   return "<details open><summary>" + summary + "</summary>\n" + table.Html() + "</details>\n";
@@ -167,7 +167,7 @@ std::string RequirementsSection(const Comparison& c) {
   return html;
 }
 
-/// The commands that fly a case of both again, of those that can be.
+/// The commands that fly a case again in both campaigns. A campaign that cannot be replayed has none.
 std::string ReplayBoth(const Comparison& c, std::uint64_t case_index) {
   std::string html;
   for (const Comparison::Side* side : {&c.a, &c.b}) {
@@ -269,7 +269,7 @@ std::string MetricsSection(const Comparison& c) {
   return html + table.Html("metrics");
 }
 
-/// Share of the flights beyond each value; a lost flight is beyond any.
+/// Share of the flights beyond each value. A lost flight counts as beyond any value.
 void AddExceedance(SvgChart& chart, const CaseColumns& cases, const std::string& metric, Worse worse,
                    const char* style, const char* legend) {
   std::vector<double> values = CompletedValues(cases, metric);
@@ -287,7 +287,7 @@ void AddExceedance(SvgChart& chart, const CaseColumns& cases, const std::string&
   chart.Line(x, share, style, legend);
 }
 
-/// Metrics of the requirements, then those that controllers are usually compared by.
+/// The metrics of the requirements, then the usual metrics of controllers.
 std::vector<const MetricComparison*> ShownMetrics(const Comparison& c) {
   std::vector<std::string> names;
   for (const RequirementComparison& requirement : c.requirements) names.push_back(requirement.metric);

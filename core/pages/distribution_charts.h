@@ -1,4 +1,4 @@
-// How a metric is distributed over the cases.
+// Charts of the distribution of a metric over the cases.
 #pragma once
 
 #include <string>
@@ -8,12 +8,13 @@
 
 namespace dispersa {
 
-/// Two figures for a metric: its histogram, and the share of cases beyond each value on a logarithmic scale
-/// (lost flights are beyond any), with the limits of its requirements. A sentence if no case defines it.
+/// Two figures for a metric, with the limits of its requirements. The first is the histogram. The second is
+/// the share of cases beyond each value, on a logarithmic scale; lost flights count as beyond any value. If
+/// no case defines the metric, a sentence.
 std::string DistributionFigures(const std::string& metric, const CampaignSummary& summary,
                                 const CaseColumns& cases);
 
-/// The injection of the completed cases: altitude against velocity error, and apogee against perigee.
+/// The injection of the completed cases: altitude error against velocity error, and apogee against perigee.
 std::string InjectionFigures(const CampaignSummary& summary, const CaseColumns& cases);
 
 }  // namespace dispersa

@@ -1,4 +1,4 @@
-// What browsers read besides HTML: files of this folder, which the build embeds.
+// The style sheet and the script of pages: files of this folder, which the build embeds.
 #pragma once
 
 #include <string_view>
@@ -8,9 +8,10 @@ namespace dispersa {
 /// page.css, for the <style> of every page.
 std::string_view StyleSheet();
 
-/// report.js, for the report's <script>, after the element of CaseData(). It draws nothing that the page does
-/// not show without it: it names the case under the pointer, marks it in every chart and table, copies its
-/// replay command at a click, and zooms. Charts tell it their axes by the attributes that SvgChart writes.
+/// report.js, for the report's <script>, after the element of CaseData(). The page shows the same content
+/// without it. The script names the case under the pointer, marks it in every chart and table, copies its
+/// replay command at a click, and zooms. It reads the axes of charts from the attributes that SvgChart
+/// writes.
 std::string_view ReportScript();
 
 }  // namespace dispersa

@@ -16,7 +16,7 @@ namespace dispersa {
 namespace {
 
 constexpr char kTimeAxis[] = "time since lift-off, s";
-/// Below this dynamic pressure, Pa, incidence has no effect to speak of.
+/// Below this dynamic pressure (Pa) incidence has little effect.
 constexpr double kThinAir_pa = 1000.0;
 
 std::vector<double> Column(const History& history, const char* name, double factor = 1.0) {
@@ -27,7 +27,7 @@ std::vector<double> Column(const History& history, const char* name, double fact
   return values;
 }
 
-/// When stages burn, read from a flight's history.
+/// The burns of the stages, from a flight's history.
 struct Burns {
   struct Burn {
     int stage;
@@ -48,7 +48,7 @@ struct Burns {
     }
   }
 
-  /// Ignitions, and gaps of more than 10 s as coast.
+  /// Marks ignitions, and gaps of more than 10 s as coast.
   void AddTo(SvgChart* chart) const {
     for (std::size_t i = 0; i < burns.size(); ++i) {
       if (i > 0 && burns[i].from_s - burns[i - 1].to_s > 10.0)
@@ -61,11 +61,12 @@ struct Burns {
 struct BandView {
   const char* column;
   const char* label;
-  double factor = 1.0;     ///< from the column's unit to the label's
-  bool deviation = false;  ///< from the nominal, beside which the spread would not be seen
+  double factor = 1.0;  ///< from the unit of the column to the unit of the label
+  bool deviation =
+      false;  ///< difference from the nominal flight, beside which the spread would be too small to see
   std::optional<double> from_s = {}, to_s = {};
   bool nominal = true;
-  bool limits = false;  ///< draw those of the requirements on the peak
+  bool limits = false;  ///< draw the limits of the requirements on the peak
   int width = 520;
 };
 
@@ -74,7 +75,7 @@ std::vector<double> Scaled(std::vector<double> values, double factor) {
   return values;
 }
 
-/// The nominal flight at the steps of the bands; undefined after its end.
+/// The nominal flight at the steps of the bands. Undefined after the end of the nominal flight.
 std::vector<double> AtSteps(const History& nominal, const char* column, const FlightBands& bands) {
   std::vector<double> values = SampleFlight(nominal, {FindHistoryColumn(column)}, bands.step_s)[0];
   values.resize(bands.time_s.size(), std::nan(""));
@@ -115,7 +116,7 @@ std::string BandFigure(const BandView& view, const FlightHistories& histories, c
   return figure;
 }
 
-/// The last time at which the air is thick enough, and a little more.
+/// The last time at which dynamic pressure is above kThinAir_pa, and a little more.
 double AtmosphereEnd(const std::vector<double>& time_s, const std::vector<double>& qbar_pa) {
   double end_s = 0.0;
   for (std::size_t i = 0; i < time_s.size(); ++i) {
@@ -223,7 +224,7 @@ std::string EnvelopeFigures(const FlightHistories& histories, const CampaignSumm
 
 std::string WorstFigures(const FlightHistories& histories, const CampaignSummary& summary) {
   struct View {
-    const char* metrics;  ///< beginning of their names
+    const char* metrics;  ///< how the names of its metrics begin
     const char* column;
     const char* label;
     bool in_air;

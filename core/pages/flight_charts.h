@@ -1,4 +1,4 @@
-// Charts over time: the nominal flight, and how the dispersed ones spread about it.
+// Charts over time: the nominal flight, and the spread of the dispersed flights about it.
 #pragma once
 
 #include <string>
@@ -8,15 +8,15 @@
 
 namespace dispersa {
 
-/// Figures of the nominal flight, each marked with the stages.
+/// Figures of the nominal flight, with its stages marked.
 std::string NominalFigures(const History& nominal);
 
-/// Figures of the percentile bands about the nominal. `kick_end_s`: the pitch-over is shown magnified till
-/// somewhat later.
+/// Figures of the percentile bands about the nominal flight. The pitch-over has an enlarged figure, to
+/// somewhat later than `kick_end_s`.
 std::string EnvelopeFigures(const FlightHistories& histories, const CampaignSummary& summary,
                             double kick_end_s);
 
-/// The worst cases that have a history, over the envelope of what made them worst.
+/// The worst cases that have a history. Each is drawn over the envelope of the quantity in which it is worst.
 std::string WorstFigures(const FlightHistories& histories, const CampaignSummary& summary);
 
 }  // namespace dispersa

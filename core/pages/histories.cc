@@ -18,12 +18,12 @@ namespace {
 namespace fs = std::filesystem;
 
 constexpr double kHistoryStep_s = 0.1;
-/// Short against the transients of an ignition (about a second), and a multiple of the other step.
+/// Short compared with the transients of an ignition (about 1 s), and a multiple of kHistoryStep_s.
 constexpr double kBandStep_s = 0.2;
 /// Worst cases of each key metric that get a history.
 constexpr std::size_t kWorstWritten = 2;
 
-/// Quantities whose spread over the cases is shown.
+/// The report shows the spread of these quantities over the cases.
 const char* const kBandColumns[] = {"altitude_m",
                                     "pitch_launch_deg",
                                     "pitch_program_deg",
@@ -56,7 +56,7 @@ void CheckReproduced(const ResultFolder& folder, std::uint64_t case_index, const
                   case_index, stored.Hex(), flown.Hex()));
 }
 
-/// Other worst cases may have had their histories there before.
+/// The folder may hold histories of the worst cases of an earlier report.
 void EmptyDirectory(const fs::path& directory) {
   std::error_code error;
   fs::remove_all(directory, error);
@@ -131,8 +131,9 @@ FlightHistories WriteHistories(const ResultFolder& folder, const Campaign& campa
   histories.nominal = flights.FlyNominal(&histories.nominal_history);
   WriteFile(directory / "nominal.csv", HistoryCsv(histories.nominal_history, campaign.autopilot));
 
-  // Only cases that have a result are flown: a quarantined one may take this process with it. The first cases
-  // are a fair sample, of which percentiles can be told; no case's peak lies outside minimum and maximum.
+  // Only cases with a result are flown: a quarantined case may kill this process. The first cases are a fair
+  // sample, so they give percentiles. The extreme cases are added, so that every peak lies within minimum and
+  // maximum.
   histories.written_cases = WorstToWrite(summary);
   const std::size_t sampled = static_cast<std::size_t>(
       std::lower_bound(cases.index.begin(), cases.index.end(), options.history_cases) - cases.index.begin());
@@ -175,7 +176,7 @@ FlightHistories WriteHistories(const ResultFolder& folder, const Campaign& campa
           progress("time histories", ++flown, indices.size());
         });
   };
-  // Those that the counter keeps go first, whoever of them lands first.
+  // The flights that the counter keeps are flown first. They may end in any order.
   const std::size_t kept = std::min(sampled, BandCounter::kKept);
   fly(0, kept);
   fly(kept, indices.size());

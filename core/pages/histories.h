@@ -1,4 +1,4 @@
-// The flights whose time histories go with a report: the nominal, the worst cases, and bands over many.
+// The time histories of a report: the nominal flight, the worst cases, and bands over many flights.
 #pragma once
 
 #include <cstdint>
@@ -18,20 +18,22 @@ struct FlightHistories {
   CaseResult nominal;
   History nominal_history;
   FlightBands bands;
-  std::vector<std::uint64_t> written_cases;    ///< with a file histories/case_<index>.csv, ascending
-  std::vector<SampledFlight> written_flights;  ///< the same at the steps of the bands: one column a band
+  std::vector<std::uint64_t> written_cases;  ///< cases with a file histories/case_<index>.csv, ascending
+  std::vector<SampledFlight>
+      written_flights;  ///< the same cases at the steps of the bands: one column for each band
 };
 
-/// One line a row; the header names the columns that flights under the autopilot have. NaN is an empty cell.
+/// CSV with one line for each row. The header names the columns of flights under this autopilot. NaN is an
+/// empty cell.
 std::string HistoryCsv(const History& history, const AutopilotConfig& autopilot);
 
-/// Rows of the cases with the least and with the largest value of any metric, ascending.
+/// Rows of the cases with the smallest and the largest value of any metric, ascending.
 std::vector<std::size_t> ExtremeRows(const CaseColumns& cases);
 
-/// Removes histories/, which would belong to an earlier report.
+/// Removes histories/, which belongs to an earlier report.
 void RemoveHistories(const ResultFolder& folder);
 
-/// Flies again what the report shows and writes histories/ anew. Errors as WriteReports.
+/// Flies the flights of the report again and writes histories/ anew. Throws the errors of WriteReports().
 FlightHistories WriteHistories(const ResultFolder& folder, const Campaign& campaign,
                                const CampaignSummary& summary, const CaseColumns& cases,
                                const ReportOptions& options);

@@ -12,13 +12,13 @@
 namespace dispersa {
 namespace {
 
-/// The style sheet's colours of lines.
+/// Number of line colours in the style sheet.
 constexpr std::size_t kColours = 4;
 constexpr char kMoreStyle[] = "svg .empty { stroke-dasharray: 5 3; }";
 
 std::string LineStyle(std::size_t mode) { return fmt::format("line-{}", mode % kColours); }
 
-/// "y, z" where both planes are one, else the plane's own name.
+/// "y, z" if both planes are equal, else the plane's own name.
 std::string PlaneText(const StackModes& stack, std::size_t plane) {
   return stack.axisymmetric ? "y, z" : plane == 0 ? "y" : "z";
 }
@@ -50,7 +50,7 @@ std::string ShapeFigure(const Vehicle& vehicle, const StackModes& stack, std::si
   chart.Mark(vehicle.stages[static_cast<std::size_t>(stack.stage)].gimbal.pivot_station_m, "pivot");
   for (std::size_t mode = 0; mode < std::min(kModesShown, full.modes.size()); ++mode) {
     const auto line = [&](const BendingMode& m, const std::string& style, const std::string& legend) {
-      // Between the nodes a shape is smooth; a few points more draw it so.
+      // A shape is smooth between the nodes. A few more points make the curve look smooth.
       std::vector<double> station_m, deflection;
       const std::vector<double>& nodes = stack.station_m[plane];
       for (std::size_t i = 0; i + 1 < nodes.size(); ++i) {

@@ -1,5 +1,5 @@
-// The bending modes of a vehicle as one self-contained page: frequencies over the propellant and shapes, by
-// stack.
+// The bending modes of a vehicle as one self-contained page: frequency over propellant, and mode shapes, for
+// each stack.
 #pragma once
 
 #include <string>
@@ -11,7 +11,7 @@ namespace dispersa {
 
 std::string ModesPage(const Vehicle& vehicle, const std::vector<StackModes>& stacks);
 
-/// What kind of beam it is, in words.
+/// The kind of the beam, in words.
 std::string BeamText(const StructureBeam& beam);
 
 }  // namespace dispersa

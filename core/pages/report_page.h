@@ -10,8 +10,8 @@
 
 namespace dispersa {
 
-/// The whole page. Its numbers are those of summary.json, rounded for reading; it holds no date, time of
-/// computation, path or name of a machine.
+/// The whole page. Its numbers are those of summary.json, rounded for reading. It holds no date, no time of
+/// computation, no path and no name of a machine.
 std::string ReportPage(const Campaign& campaign, const CampaignSummary& summary, const CaseColumns& cases,
                        const FlightHistories& histories);
 

@@ -23,7 +23,7 @@ std::vector<double> Column(const std::vector<AscentSample>& history, Value value
 
 double TimeOf(const AscentSample& sample) { return sample.time_s; }
 
-/// Ignitions, and gaps of more than 20 s without thrust as coast.
+/// Marks ignitions, and gaps of more than 20 s without thrust as coast.
 void MarkStages(const std::vector<AscentSample>& history, SvgChart* chart) {
   constexpr double kThrust_g = 0.5;  // drag alone is thousandths of a g in the coast
   int marked = 0;

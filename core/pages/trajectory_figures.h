@@ -9,14 +9,14 @@
 
 namespace dispersa {
 
-/// Programmed angle of attack over the whole flight and over the pitch-over, stages and coast marked:
-/// <figure>s.
+/// <figure> elements of the programmed angle of attack, over the whole flight and over the pitch-over. Stages
+/// and coasts are marked.
 std::string FlightProgramFigures(const FlightProgram& program, const std::vector<AscentSample>& history);
 
-/// Pitch, height, velocity and inertial flight path angle over time: <figure>s.
+/// <figure> elements of pitch, altitude, velocity and inertial flight path angle over time.
 std::string ReferenceFigures(const std::vector<AscentSample>& history);
 
-/// The time history for other tools; the header names the columns with their units.
+/// The time history as CSV for other tools. The header names the columns with their units.
 std::string AscentCsv(const std::vector<AscentSample>& history);
 
 }  // namespace dispersa

@@ -31,7 +31,7 @@ std::string InjectionTable(const OptimizationResult& result, const std::optional
   return table.Html();
 }
 
-/// A search that ends on a bound was held back by it: the optimum within it may lie there, or beyond.
+/// A search that ends on a bound was limited by it: the optimum may lie on the bound, or beyond it.
 std::string BoundReached(double value, const Bounds& bounds) {
   const double near = 1e-3 * (bounds.high - bounds.low);
   if (!(near > 0.0)) return "fixed";
@@ -40,7 +40,7 @@ std::string BoundReached(double value, const Bounds& bounds) {
                                        : "";
 }
 
-// Within bounds that go on beyond north.
+// The azimuth within bounds that may go on beyond north (360°).
 double Unwrapped(double azimuth_rad, const Bounds& bounds) {
   return azimuth_rad < bounds.low && azimuth_rad + kTwoPi <= bounds.high * (1.0 + 1e-12)
              ? azimuth_rad + kTwoPi
@@ -124,7 +124,7 @@ std::string SearchFigures(const OptimizationResult& result) {
                     "q·α.");
 }
 
-// "0.01 a metre of altitude": what a miss counts, as the file says it.
+// "0.01 a metre of altitude": the weight of a miss, as the file states it.
 std::string ObjectiveText(const TrajectoryProblem& problem) {
   std::string text = fmt::format("{} per km of altitude", ReadableText(problem.weight_altitude_1_m * 1e3));
   if (!problem.velocity_is_free)
@@ -152,7 +152,8 @@ std::vector<InjectionRow> InjectionRows(const OptimizationResult& result,
     return flown ? std::optional<double>((*flown).*of * unit) : std::nullopt;
   };
   std::vector<InjectionRow> rows;
-  // Of an ellipse, whose altitude counts from the equator's radius, a flight's own altitude says nothing.
+  // The altitudes of an ellipse count from the equator's radius. The flight's geodetic altitude is no measure
+  // of them.
   const bool ellipse = problem.target_apogee_m.has_value();
   rows.push_back({ellipse ? "perigee altitude, km" : "altitude, km", 6, problem.target_altitude_m * 1e-3,
                   (problem.target_altitude_m + error.altitude_m) * 1e-3, error.altitude_m * 1e-3,

@@ -1,5 +1,5 @@
-// What `dispersa optimize` found, as one self-contained page: the injection, the flight program and its
-// trajectory, the constraints, and how the search went.
+// The result of `dispersa optimize` as one self-contained page: the injection, the flight program and its
+// trajectory, the constraints, and the course of the search.
 #pragma once
 
 #include <optional>
@@ -16,22 +16,23 @@ std::string TrajectoryPage(const OptimizationResult& result, const std::optional
 /// One condition of the target, in the unit of its name.
 struct InjectionRow {
   std::string name;
-  int decimals = 0;  ///< that mean something
+  int decimals = 0;  ///< number of meaningful decimals
   double desired = 0.0, reached = 0.0, error = 0.0;
   double halved = 0.0;          ///< the error with half the steps
-  std::optional<double> flown;  ///< the error of the closed-loop flight, where it is measured
+  std::optional<double> flown;  ///< the error of the closed-loop flight, if it is measured
 };
-/// What the target names, and nothing else.
+/// The conditions that the target names, and no others.
 std::vector<InjectionRow> InjectionRows(const OptimizationResult& result,
                                         const std::optional<OrbitErrors>& flown);
 
-/// Greenwich's right ascension (rad, 0 to 2 pi) at a lift-off that brings the orbit's node to the target's;
-/// none of a target without node.
+/// Greenwich's right ascension (rad, 0 to 2 pi) at the lift-off for which the orbit's node is the target's.
+/// None if the target has no node.
 std::optional<double> LiftOffSidereal(const Reference& reference);
-/// Inclination and node of the orbit reached, and when to lift off for the target's node.
+/// Inclination and node of the orbit reached, and the lift-off time for the target's node.
 std::string OrbitSentence(const Reference& reference);
 
-/// Says of each enforced limit that is ten times the value or more that it does not bind; empty if none.
+/// A sentence that names each enforced limit that is at least ten times the reached value and so does not
+/// bind. Empty if there is none.
 std::string LimitsThatDoNotBind(const Reference& reference);
 
 }  // namespace dispersa

@@ -13,10 +13,10 @@
 namespace dispersa {
 namespace {
 
-constexpr double kLength_px = 1080.0;  ///< of the vehicle
+constexpr double kLength_px = 1080.0;  ///< length of the vehicle
 constexpr double kMargin_px = 60.0;
-constexpr double kAbove_px = 78.0;   ///< names of the stages, sensors
-constexpr double kBelow_px = 132.0;  ///< dimensions, scale, legend
+constexpr double kAbove_px = 78.0;   ///< room for the names of stages and sensors
+constexpr double kBelow_px = 132.0;  ///< room for dimensions, scale and legend
 
 constexpr char kStyle[] =
     "text{font:13px 'DejaVu Sans','Liberation "
@@ -79,7 +79,7 @@ class Drawing {
                         axis_px_, radius_px);
   }
 
-  // There along one side and back along the other.
+  // The outline runs up one side and back along the other.
   void DrawBody() {
     std::vector<std::pair<double, double>> line;
     for (const MouldSection& section : body_) {
@@ -99,7 +99,7 @@ class Drawing {
     Line("axis", X(0.0) - 18.0, axis_px_, X(length_m_) + 18.0, axis_px_);
   }
 
-  // Seen from the side, two of them.
+  // A side view shows two of them.
   void DrawBoosters() {
     const Boosters& b = vehicle_.boosters;
     if (b.count == 0) return;
@@ -165,7 +165,7 @@ class Drawing {
     for (const RateGyro& gyro : vehicle_.sensors.rate_gyros) mark(gyro.station_m);
   }
 
-  // A bar of 1, 2 or 5 times a power of ten, about a fifth of the vehicle; then what the signs mean.
+  // A bar of 1, 2 or 5 times a power of ten, about a fifth of the vehicle, and the legend.
   void DrawScale() {
     const double power = std::pow(10.0, std::floor(std::log10(0.2 * length_m_)));
     const double rest = 0.2 * length_m_ / power;

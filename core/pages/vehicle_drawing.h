@@ -1,4 +1,4 @@
-// A vehicle as its file describes it, drawn to scale: what a table of numbers hides, a look shows.
+// A drawing of a vehicle to scale, as its file describes it. It shows mistakes that a table of numbers hides.
 #pragma once
 
 #include <string>
@@ -7,9 +7,9 @@
 
 namespace dispersa {
 
-/// An SVG document of its own: mould line, stages, grains with their bores, masses of the structure, hinges
-/// of the nozzles, sensors, centres of gravity of each stack full and empty, a scale in metres. Both axes
-/// have one scale. Precondition: no Problems().
+/// A self-contained SVG document with a scale in metres, the same for both axes. It shows the mould line,
+/// stages, grains with their bores, masses of the structure, hinges of the nozzles and sensors. It also shows
+/// the centres of gravity of each stack, full and empty. Precondition: no Problems().
 std::string VehicleDrawing(const Vehicle& vehicle);
 
 }  // namespace dispersa

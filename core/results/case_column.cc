@@ -26,11 +26,11 @@ constexpr std::size_t kBlockRows = 8192;
                                                           directory.string(), std::strerror(error)));
 }
 
-/// A file that no name leads to, so that nothing is left of it however the process ends.
+/// A file without a name, so that it is removed even if the process is killed.
 int OpenUnnamed(const std::filesystem::path& directory) {
   const int file = open(directory.c_str(), O_TMPFILE | O_RDWR | O_CLOEXEC, 0600);
   if (file >= 0) return file;
-  // Not every file system has them.
+  // Not every file system supports unnamed files.
   std::string name = (directory / ".columns-XXXXXX").string();
   const int named = mkostemp(name.data(), O_CLOEXEC);
   if (named >= 0) unlink(name.c_str());

@@ -10,9 +10,9 @@
 
 namespace dispersa {
 
-/// Takes rows and returns columns. Beyond a few thousand rows it uses an unnamed file that ends with the
-/// object, in `directory`, or in the system's folder for temporary files if that cannot be written. Throws
-/// ResultError (kDiskFull, else kFile).
+/// Stores rows and returns columns. Beyond a few thousand rows it uses an unnamed file in `directory`, which
+/// is removed with the object. If `directory` cannot be written, the file is in the system's folder for
+/// temporary files. Throws ResultError (kDiskFull, else kFile).
 class ColumnFile {
  public:
   ColumnFile(std::filesystem::path directory, std::size_t columns);
@@ -20,7 +20,7 @@ class ColumnFile {
   ColumnFile(const ColumnFile&) = delete;
   ColumnFile& operator=(const ColumnFile&) = delete;
 
-  /// As many values as there are columns.
+  /// `row` has one value for each column.
   void Append(const std::vector<double>& row);
   std::size_t rows() const { return rows_; }
   std::vector<double> Read(std::size_t column) const;
@@ -31,11 +31,11 @@ class ColumnFile {
   std::filesystem::path directory_;
   std::size_t columns_;
   std::size_t rows_ = 0;
-  std::vector<double> block_;  ///< the last rows, column by column
-  int file_ = -1;              ///< the rows before, block by block
+  std::vector<double> block_;  ///< the latest rows, column by column
+  int file_ = -1;              ///< descriptor of the file with the earlier rows, block by block
 };
 
-/// NaN = undefined.
+/// A column of values. NaN is undefined.
 class CaseColumn {
  public:
   CaseColumn() = default;

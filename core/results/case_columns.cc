@@ -38,7 +38,7 @@ CaseColumns ReadColumns(const ResultFolder& folder, const std::vector<int>& want
 
 std::vector<double> MeasuredValues(const CaseColumns& cases, const std::string& metric) {
   const std::size_t column = MetricColumn(metric);
-  // Of a stage too far, or of another law.
+  // The metric belongs to a stage that the vehicle does not have, or to another control law.
   if (column >= cases.metrics.size() || cases.metrics[column].empty())
     return std::vector<double>(cases.rows(), kUndefined);
   return cases.metrics[column];

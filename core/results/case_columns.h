@@ -1,4 +1,4 @@
-// The stored results by column: what statistics and charts are made of.
+// The stored results by column, for statistics and charts.
 #pragma once
 
 #include <cstddef>
@@ -18,25 +18,25 @@ namespace dispersa {
 struct CaseColumns {
   std::vector<std::uint64_t> index;
   std::vector<Outcome> outcome;
-  std::vector<CaseColumn> inputs;  ///< one for each input of the vehicle (not asked for: empty)
+  std::vector<CaseColumn> inputs;  ///< one for each input of the vehicle (empty if not asked for)
   std::vector<CaseColumn>
-      metrics;  ///< one for each metric of the vehicle (not measured under its law: empty)
-  std::vector<LostFlight> lost_flights;  ///< the first kListedLostFlights
+      metrics;  ///< one for each metric of the vehicle (empty if its control law does not measure it)
+  std::vector<LostFlight> lost_flights;  ///< the first kListedLostFlights lost flights
 
   std::size_t rows() const { return index.size(); }
 };
 
-/// Nobody reads a page with a longer list; cases.csv has all of them.
+/// A page with a longer list would not be read. cases.csv lists all lost flights.
 inline constexpr std::size_t kListedLostFlights = 10000;
 
-/// Reads all metrics and the inputs at the positions `wanted_inputs` in InputColumns(), in one pass.
-/// `observe`, if given, sees each result. A million cases take 50 MB beside the columns in use.
+/// Reads all metrics, and the inputs at the positions `wanted_inputs` in InputColumns(), in one pass.
+/// `observe`, if given, gets each result. A million cases take 50 MB beside the columns in use.
 CaseColumns ReadColumns(const ResultFolder& folder, const std::vector<int>& wanted_inputs,
                         const std::function<void(const CaseResult&)>& observe = {});
 
-/// A metric's values, NaN where the flights do not have it.
+/// A metric's values; NaN if the flights do not have it.
 std::vector<double> MeasuredValues(const CaseColumns& cases, const std::string& metric);
-/// The same, NaN for every flight that was not completed whatever it measured until then.
+/// The same, with NaN for every flight that was not completed, even if it measured a value.
 std::vector<double> CompletedValues(const CaseColumns& cases, const std::string& metric);
 
 /// Flights that were not completed.

@@ -14,15 +14,15 @@
 namespace dispersa {
 namespace {
 
-/// A full disk shows as SQLITE_FULL, or as an input/output error with the system's reason behind it (the
-/// write-ahead log's index is extended by other calls than the database).
+/// A full disk shows as SQLITE_FULL, or as an input/output error with the reason in `system_error`. The
+/// latter comes from the index of the write-ahead log, which SQLite extends by other calls.
 bool IsDiskFull(int code, int system_error) {
   return (code & 0xff) == SQLITE_FULL ||
          ((code & 0xff) == SQLITE_IOERR && (system_error == ENOSPC || system_error == EDQUOT));
 }
 
-/// A database of somebody else, or of an archive: this process may not write it, and nobody else does, who
-/// would have a write-ahead log beside it.
+/// A database of another user, or in an archive. This process may not write it. No other process writes it
+/// either: it would have a write-ahead log beside the database.
 bool CannotChange(const std::filesystem::path& file) {
   const std::filesystem::path log = file.string() + "-wal";
   std::error_code error;
@@ -31,7 +31,7 @@ bool CannotChange(const std::filesystem::path& file) {
   return access(file.c_str(), W_OK) != 0 || access(folder.c_str(), W_OK) != 0;
 }
 
-/// Such a one is read without the files that a reader else makes beside it.
+/// Such a database is read without the files that a reader normally creates beside it.
 std::string ImmutableUri(const std::filesystem::path& file) {
   std::string uri = "file:";
   for (const char c : std::filesystem::absolute(file).string()) {
@@ -46,8 +46,8 @@ std::string ImmutableUri(const std::filesystem::path& file) {
 }  // namespace
 
 Database::Database(const std::filesystem::path& file, Mode mode) : file_(file) {
-  // NOMUTEX: a connection is used by one thread at a time, and a lock for each value of a row took a seventh
-  // of a coordinator's time.
+  // NOMUTEX: one thread at a time uses a connection. A lock for each value of a row took a seventh of a
+  // coordinator's time.
   int flags = SQLITE_OPEN_NOMUTEX;
   std::string name = file.string();
   if (mode == Mode::kExisting && CannotChange(file)) {
@@ -63,8 +63,7 @@ Database::Database(const std::filesystem::path& file, Mode mode) : file_(file) {
     sqlite3_busy_timeout(handle_, 10000);
     if (sqlite3_db_readonly(handle_, "main") == 0) {
       Execute("PRAGMA journal_mode = WAL");
-      // On the disk before Commit returns, also for a machine that loses its power: what is acknowledged
-      // stays.
+      // Commit returns when the data are on the disk. Acknowledged results then survive a power cut.
       Execute("PRAGMA synchronous = FULL");
       Execute("PRAGMA wal_autocheckpoint = 4000");  // pages: 16 MB; each checkpoint waits for the disk
     }

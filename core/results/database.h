@@ -26,8 +26,8 @@ class Database {
 
   void Execute(const std::string& sql);
   Statement Prepare(const std::string& sql);
-  /// All that is committed, in the write-ahead log too, as a database of its own in the place of `file`.
-  /// Others may read and write meanwhile.
+  /// Replaces `file` by a copy of everything committed, including the write-ahead log. Other processes may
+  /// read and write meanwhile.
   void CopyTo(const std::filesystem::path& file) const;
   /// Throws the error that the connection reports for a result code.
   [[noreturn]] void Fail(int code) const;

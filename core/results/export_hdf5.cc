@@ -18,7 +18,7 @@
 namespace dispersa {
 namespace {
 
-/// What the library hands out, closed at the end of its scope.
+/// An identifier of the library, closed at the end of its scope.
 class Handle {
  public:
   using Close = herr_t (*)(hid_t);
@@ -42,7 +42,8 @@ void Check(herr_t result, const std::string& what) {
   if (result < 0) throw ResultError(ResultError::Kind::kFile, what + ": HDF5 cannot write it");
 }
 
-/// Text of one length, padded with zeros: what every reader knows. Octave knows no UTF-8 in datasets.
+/// Text of fixed length, padded with zeros: every reader supports this. Octave does not support UTF-8 in
+/// datasets.
 Handle TextType(std::size_t length, H5T_cset_t characters) {
   Handle type(H5Tcopy(H5T_C_S1), H5Tclose, "text");
   Check(H5Tset_size(type, std::max<std::size_t>(1, length)), "text");
@@ -58,7 +59,7 @@ class Hdf5File {
         file_(H5Fcreate(name_.c_str(), H5F_ACC_EXCL, H5P_DEFAULT, H5P_DEFAULT), H5Fclose, name_),
         creation_(H5Pcreate(H5P_DATASET_CREATE), H5Pclose, name_),
         group_creation_(H5Pcreate(H5P_GROUP_CREATE), H5Pclose, name_) {
-    // No times: the same results give the same bytes.
+    // Times are not stored, so that the same results give the same bytes.
     Check(H5Pset_obj_track_times(creation_, false), name_);
     Check(H5Pset_obj_track_times(group_creation_, false), name_);
   }

@@ -1,12 +1,12 @@
-// A hash over every bit of a result as it is stored.
+// A hash over every bit of a stored result.
 #pragma once
 
 #include "core/campaign/case_result.h"
 
 namespace dispersa {
 
-/// Covers every field, so that a stored row that was damaged, or a second result that differs anywhere, is
-/// told from the first. Taken over what storage keeps: any NaN or infinity is "undefined", -0 is 0.
+/// Covers every field. It detects a damaged row, and a second result of the case that differs anywhere. It is
+/// taken over the stored values: any NaN or infinity is "undefined", -0 is 0.
 Digest Fingerprint(const CaseResult& result);
 
 }  // namespace dispersa

@@ -1,15 +1,16 @@
-// One process at a time writes a result folder.
+// A lock with which only one process at a time writes a result folder.
 #pragma once
 
 #include <filesystem>
 
 namespace dispersa {
 
-/// Held from construction to destruction, and released with the process however it ends: a kernel lock on the
-/// folder itself, which leaves no file. File systems without locks (some network ones) give no protection.
+/// Held from construction to destruction. The kernel releases it if the process ends in any way. It is a lock
+/// on the folder itself and leaves no file. File systems without locks (some network ones) give no
+/// protection.
 class FolderLock {
  public:
-  /// The folder must exist. InputError if another process (or another lock of this one) holds it.
+  /// The folder must exist. Throws InputError if another process, or another lock of this process, holds it.
   explicit FolderLock(const std::filesystem::path& directory);
   ~FolderLock();
   FolderLock(FolderLock&& other) noexcept;

@@ -1,4 +1,4 @@
-// Numbers as results hold them in JSON.
+// Numbers in the JSON files of results.
 #pragma once
 
 #include <cmath>

@@ -12,7 +12,7 @@ struct UnitSuffix {
   std::string_view unit;
 };
 
-/// Longer suffixes before those that end them.
+/// A longer suffix comes before the shorter ones that it ends in.
 constexpr UnitSuffix kUnits[] = {
     {"_deg_s2", "°/s²"}, {"_pa_rad", "Pa rad"}, {"_deg_s", "°/s"}, {"_rad_s", "rad/s"}, {"_kg_m2", "kg m²"},
     {"_n_m", "N m"},     {"_kg_s", "kg/s"},     {"_km_s", "km/s"}, {"_m_s", "m/s"},     {"_deg", "°"},

@@ -1,4 +1,4 @@
-// Names and meaning of metrics for people.
+// Names and meanings of metrics for readers.
 #pragma once
 
 #include <string>
@@ -18,7 +18,7 @@ struct MetricInfo {
   bool known = false;    ///< a metric of flights
 };
 
-/// Of a metric's name without prefix. A name that is no metric has the unit that it ends in.
+/// `name` is a metric's name without prefix. If it is no metric, only the unit at its end is known.
 MetricInfo DescribeMetric(const std::string& name);
 
 /// Unit of a column from the end of its name, and the name without it: "wind_max_speed_m_s" gives "m/s" and

@@ -17,7 +17,7 @@ namespace {
 
 namespace fs = std::filesystem;
 
-// Where a name leads to; a link may lead to what does not exist yet.
+// The file that a name leads to. A link may point to a file that does not exist yet.
 fs::path Behind(const fs::path& name) {
   std::error_code error;
   if (!fs::is_symlink(name, error)) return name;
@@ -25,8 +25,8 @@ fs::path Behind(const fs::path& name) {
   return error ? name.parent_path() / fs::read_symlink(name) : there;
 }
 
-// So that the new name outlives a power failure. Some file systems cannot, and nothing is lost on them but
-// that.
+// Makes the new name survive a power cut. On file systems that cannot do this, only that protection is
+// missing.
 void SyncFolderOf(const fs::path& file) {
   const fs::path folder = file.has_parent_path() ? file.parent_path() : ".";
   const int directory = open(folder.c_str(), O_RDONLY | O_DIRECTORY | O_CLOEXEC);
@@ -52,14 +52,15 @@ OutputFile::OutputFile(fs::path target) : target_(std::move(target)) {
   if (S_ISREG(there.st_mode)) OpenTemporary(there.st_mode & 0777);
 }
 
-// `mode`: of the file whose place it takes; 0: there is none.
+// `mode` is that of the file to be replaced; 0: no such file.
 void OutputFile::OpenTemporary(mode_t mode) {
   target_ = Behind(target_);
   temporary_ = target_.string() + ".tmp";
-  // What lies there is of a process that was killed, or was put there: a link would lead the writing
-  // elsewhere.
+  // An existing file is left from a killed process, or was put there. If it is a link, it would redirect the
+  // writing.
   if (unlink(temporary_.c_str()) != 0 && errno != ENOENT) Fail(errno);
-  // Never wider than what it takes the place of, not even before it holds anything.
+  // The permissions are never wider than those of the file to be replaced, not even while the new file is
+  // empty.
   const int file =
       open(temporary_.c_str(), O_WRONLY | O_CREAT | O_EXCL | O_NOFOLLOW | O_CLOEXEC, mode != 0 ? mode : 0666);
   if (file < 0) Fail(errno);
@@ -67,7 +68,7 @@ void OutputFile::OpenTemporary(mode_t mode) {
   if (mode != 0 && fchmod(file, mode) != 0) Fail(errno);
 }
 
-// Not before there is something to write: a pipe waits for its reader.
+// Opened at the first write: opening a pipe waits for its reader.
 void OutputFile::OpenDirect() {
   const int file = open(target_.c_str(), O_WRONLY | O_CLOEXEC);
   if (file < 0) Fail(errno);

@@ -30,11 +30,11 @@ class OutputFile {
   [[noreturn]] void Fail(int error) const;
 
   std::filesystem::path target_;
-  std::filesystem::path temporary_;  ///< empty: what is there is written to
+  std::filesystem::path temporary_;  ///< empty: the target is written directly
   std::FILE* stream_ = nullptr;
 };
 
-/// A whole file at once.
+/// Writes a whole file at once.
 void WriteFile(const std::filesystem::path& target, std::string_view bytes);
 
 }  // namespace dispersa

@@ -1,4 +1,4 @@
-// Two results of one case, column by column.
+// The differences of two results of one case, column by column.
 #pragma once
 
 #include <string>
@@ -14,8 +14,8 @@ struct ResultDifference {
   std::string second;
 };
 
-/// As results are stored: undefined is undefined, -0 is 0. None: the same to the last bit. In the order of
-/// the columns, the digest last. Both of one vehicle.
+/// Compares results as they are stored: undefined equals undefined, -0 equals 0. Empty if they are equal to
+/// the last bit. In the order of the columns, with the digest last. Both results are of one vehicle.
 std::vector<ResultDifference> Differences(const CaseResult& first, const CaseResult& second);
 
 }  // namespace dispersa

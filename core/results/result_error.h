@@ -1,4 +1,4 @@
-// Errors of a result folder that are no fault of the user.
+// Errors of a result folder that the user did not cause.
 #pragma once
 
 #include <stdexcept>
@@ -6,21 +6,22 @@
 
 namespace dispersa {
 
-/// A result folder cannot be read or written. The message is one sentence with the path. A folder that the
-/// user should not have named is an InputError instead.
+/// A result folder cannot be read or written. The message is one sentence with the path. If the user named a
+/// wrong folder, InputError is thrown instead.
 class ResultError : public std::runtime_error {
  public:
   enum class Kind {
     kDiskFull,  ///< no space left, or over quota: the run is incomplete and can be resumed
-    kFewer,     ///< fewer results than there should be: nothing was written in the place of more
-    kConflict,  ///< a case returned twice with different digests: an internal error, never ignored
+    kFewer,     ///< fewer results than there should be: a fuller file was not replaced
+    kConflict,  ///< a case returned twice with different digests: an internal error that is never ignored
     kFile,      ///< any other failure of the disk or the database
   };
 
   ResultError(Kind kind, const std::string& message) : std::runtime_error(message), kind_(kind) {}
 
   Kind kind() const { return kind_; }
-  /// The results are incomplete, and no program is at fault: exit code 5. Else it is 1.
+  /// True if the results are incomplete and no program is at fault (exit code 5). Otherwise the exit code is
+  /// 1.
   bool IsIncomplete() const { return kind_ == Kind::kDiskFull || kind_ == Kind::kFewer; }
 
  private:

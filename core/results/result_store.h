@@ -23,10 +23,11 @@ struct ExecutionRecord {
   double seconds = 0.0;     ///< wall clock (NaN: unknown)
 };
 
-/// Name of an unknown worker, for cases of a folder of an older release.
+/// Name of an unknown worker. Cases in a folder of an older release have it.
 inline constexpr char kUnknownWorker[] = "unknown";
 
-/// Whether a worker is meant by this name: its own, or that of its keys ("node1" means "node1_5f3a...").
+/// Whether `name` denotes the worker: by its full name, or by the name of its keys ("node1" for
+/// "node1_5f3a...").
 inline bool IsMeantBy(const std::string& name, const std::string& worker) {
   return worker == name || worker.starts_with(name + "_");
 }
@@ -36,20 +37,20 @@ struct Claim {
   std::string worker;
   std::uint64_t case_index = 0;
   Digest fingerprint;
-  bool is_dispute = false;  ///< another worker's result of this case, with other bits, was accepted
+  bool is_dispute = false;  ///< true: another worker's result of this case, with other bits, was accepted
 };
 
 /// A case that killed or hung its workers: it has no result and is not flown any more.
 struct QuarantinedCase {
   std::uint64_t case_index = 0;
-  std::string reason;  ///< one sentence without names or times, so that reports do not differ between runs
+  std::string reason;  ///< one sentence without names or times, so that reports of two runs are equal
 };
 
-/// Each method is durable against the end of this process when it returns. ResultFolder says what they mean.
+/// When a method returns, its effect survives the end of this process. ResultFolder documents the methods.
 class ResultStore {
  public:
   virtual ~ResultStore() = default;
-  /// All or nothing: a result whose worker nobody knows could not be taken back.
+  /// All or nothing: a result without a known worker could not be disowned later.
   virtual void Store(std::span<const CaseResult> results, std::span<const ExecutionRecord> records) = 0;
   virtual void Quarantine(const QuarantinedCase& quarantined) = 0;
   virtual std::vector<std::pair<std::uint64_t, Digest>> Fingerprints() const = 0;
@@ -57,16 +58,16 @@ class ResultStore {
   virtual CaseResult Load(std::uint64_t case_index) const = 0;
   /// Every stored result, ascending by index.
   virtual void ForEach(const std::function<void(const CaseResult&)>& callback) const = 0;
-  /// How many cases were planned before the first was flown.
+  /// Number of cases planned before the first case was flown.
   virtual std::int64_t PlannedCases() const = 0;
   /// Numbers of cases at which verdicts were read, ascending.
   virtual std::vector<std::int64_t> PastLooks() const = 0;
   /// The worker that returned the result of a case.
   virtual std::optional<std::string> WorkerOf(std::uint64_t case_index) const = 0;
-  /// These results were flown again and are right.
+  /// Records that these results were flown again and confirmed.
   virtual void AppendAudits(std::span<const Claim> claims) = 0;
   virtual void ForEachUnaudited(const std::function<void(const Claim&)>& callback) const = 0;
-  /// Removes all results of the workers that `worker` means, and returns their cases.
+  /// Removes all results of the workers that `worker` denotes. Returns the indices of their cases.
   virtual std::vector<std::uint64_t> Disown(const std::string& worker) = 0;
 };
 
