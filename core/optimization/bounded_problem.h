@@ -31,8 +31,7 @@ struct BoundedProblem {
   std::function<Evaluation(const std::vector<double>&)> evaluate;
   /// Points, each of shape (n) and within the box, that the search starts with beside random ones.
   std::vector<std::vector<double>> known_points = {};
-  /// Optional: what `evaluate` returns for each of several points, for a problem that finds it faster side by
-  /// side.
+  /// Optional: `evaluate` for several points at once, for a problem that evaluates them faster side by side.
   std::function<std::vector<Evaluation>(std::span<const std::vector<double>>)> evaluate_together = nullptr;
   /// Largest number of points given to evaluate_together at a time, at least 1.
   std::size_t together = 1;

@@ -200,7 +200,8 @@ class Run {
     for (std::size_t i = 0; i < points.size(); ++i) individuals[i].evaluation = std::move(evaluations[i]);
   }
 
-  // Best first. Ties are counted from the lowest objective of the whole run, whoever had it.
+  // Best first. Objectives are equal within the tolerance of the lowest objective of the whole run, even if
+  // its individual is gone.
   void Sort(Population* population) {
     for (const Individual& individual : *population) {
       if (individual.merit.IsFeasible())

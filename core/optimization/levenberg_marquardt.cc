@@ -158,7 +158,7 @@ class Search {
     return scaled;
   }
 
-  // The residuals at x; with residuals_together also those beside it, for its Jacobian.
+  // The residuals at x. With residuals_together also those of the points beside x, for its Jacobian.
   VectorXd Try(const std::vector<double>& x) {
     tried_beside_.clear();
     if (!problem_.residuals_together) return Residuals(x);
@@ -182,7 +182,8 @@ class Search {
     return Scaled(all[0]);
   }
 
-  // The Jacobian at x_, the unknowns that their bounds hold, and the first damping. False: not finite.
+  // Computes the Jacobian at x_, the unknowns held by their bounds, and the first damping. False: a value is
+  // not finite.
   bool Linearise() {
     jacobian_.resize(residuals_.size(), x_.size());
     std::size_t next = 0;
@@ -198,7 +199,7 @@ class Search {
     return true;
   }
 
-  // Where a column of the Jacobian is differenced; a side that is not used is left out.
+  // The two points between which a column of the Jacobian is differenced. An unused side is empty.
   struct Sides {
     std::optional<double> low, high;
   };
@@ -214,7 +215,7 @@ class Search {
     return sides;
   }
 
-  // The column of unknown i; `next` counts through beside_.
+  // The column of unknown i. `next` is the position in beside_.
   VectorXd Column(std::size_t i, std::size_t* next) {
     const Sides sides = SidesOf(x_, i);
     const auto at = [&](const std::optional<double>& side) -> VectorXd {
@@ -226,7 +227,7 @@ class Search {
     };
     const VectorXd from = at(sides.low);
     const VectorXd to = at(sides.high);
-    // The steps as they are after rounding.
+    // The step between the points as rounded, not as intended.
     const double distance = sides.high.value_or(x_[i]) - sides.low.value_or(x_[i]);
     return (to - from) * (problem_.unknowns[i].scale / distance);
   }
@@ -240,8 +241,8 @@ class Search {
     return true;
   }
 
-  // Minimises |r + J d|² + damping |d|² over the free unknowns; those that would cross a bound stop on it,
-  // and the rest is solved again.
+  // Minimises |r + J d|² + damping |d|² over the free unknowns. An unknown that would cross a bound stops on
+  // it, and the rest is solved again.
   Step DampedStep() const {
     const Eigen::Index rows = residuals_.size();
     Step step{.target = x_, .predicted_cost = 0.0, .length = 0.0};

@@ -39,9 +39,9 @@ struct LeastSquaresProblem {
   std::vector<double> residual_scales;
   /// Residuals, shape (m), of unknowns, shape (n). Residuals that are not finite reject a step.
   std::function<std::vector<double>(const std::vector<double>&)> residuals;
-  /// Optional: `residuals` of each of several points, for a problem that finds them faster side by side. Then
-  /// each point that is tried comes with those of its Jacobian, in the hope that it is taken. The result is
-  /// the same but for the number of evaluations.
+  /// Optional: `residuals` of several points at once, for a problem that computes them faster side by side.
+  /// Each tried point is then computed together with the points of its Jacobian, in case it is accepted. The
+  /// result is the same, except for the number of evaluations.
   std::function<std::vector<std::vector<double>>(std::span<const std::vector<double>>)> residuals_together =
       nullptr;
 };
@@ -51,16 +51,16 @@ struct LevenbergMarquardtOptions {
   int max_iterations = 100;
   /// Converged if every scaled residual is at most this. Not negative.
   double residual_tolerance = 1e-9;
-  /// Stop if the cosine of the angle between the residuals and each column of the Jacobian of a free unknown
-  /// is at most this (the `gtol` of MINPACK's LMDER), 0 to 1.
+  /// Stop if every column of the Jacobian of a free unknown is nearly orthogonal to the residuals. The limit
+  /// of the cosine of their angle is this (the `gtol` of MINPACK's LMDER), 0 to 1.
   double gradient_tolerance = 1e-12;
   /// Stop if no unknown would move by more than this many of its scales. Not negative.
   double step_tolerance = 1e-13;
-  /// Initial damping as a fraction of the largest squared column norm of the scaled Jacobian, positive, at
-  /// most 1. 1e-6 suits a start near the solution, 1e-3 or more a remote one (Madsen et al., section 3.2).
+  /// Initial damping as a fraction of the largest squared column norm of the scaled Jacobian, in (0, 1]. 1e-6
+  /// suits a start near the solution, 1e-3 or more a remote one (Madsen et al., section 3.2).
   double initial_damping = 1e-6;
-  /// At the end the Jacobian counts as singular if the residuals change along some direction by less than
-  /// this fraction of the strongest one, 0 to 1. Central differences are good to about 1e-10.
+  /// At the end the Jacobian counts as singular if some direction hardly changes the residuals: by less than
+  /// this fraction of the strongest direction, 0 to 1. Central differences are good to about 1e-10.
   double rank_tolerance = 1e-9;
 };
 
@@ -93,8 +93,9 @@ class LevenbergMarquardt {
   /// Throws std::invalid_argument that names the field which is out of range and what is allowed.
   explicit LevenbergMarquardt(const LevenbergMarquardtOptions& options);
 
-  /// Minimises the sum of squared scaled residuals from `start`, shape (n), within the bounds. That it cannot
-  /// reach zero is a status, not an error. Throws std::invalid_argument for an ill-formed problem or start.
+  /// Minimises the sum of squared scaled residuals from `start`, shape (n), within the bounds. If the
+  /// residuals cannot reach zero, the status says so; this is no error. Throws std::invalid_argument for an
+  /// ill-formed problem or start.
   LeastSquaresResult Solve(const LeastSquaresProblem& problem, const std::vector<double>& start) const;
 
  private:

@@ -11,15 +11,16 @@ namespace dispersa {
 
 namespace {
 
-// How many half distances from the middle a child lies (1: on its parent) for a uniform draw u, when a bound
-// cuts the distribution at `limit` (at least 1).
+// Distance of a child from the middle, in half distances of the parents (1: on its parent), for a uniform
+// draw u. A bound cuts the distribution at `limit` (at least 1).
 double SpreadFactor(double u, double limit, double eta) {
   const double alpha = 2.0 - Pow(limit, -(eta + 1.0));
   const double argument = u * alpha <= 1.0 ? u * alpha : 1.0 / (2.0 - u * alpha);
   return Pow(argument, 1.0 / (eta + 1.0));
 }
 
-// How many half distances from the middle the bound lies that is beyond `parent`; +infinity: none is.
+// Distance of the bound beyond `parent` from the middle, in half distances of the parents. +infinity: no
+// bound.
 double Limit(double parent, double middle, double lower, double upper) {
   if (parent == middle) return std::numeric_limits<double>::infinity();
   const double bound = parent > middle ? upper : lower;

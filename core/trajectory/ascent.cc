@@ -20,7 +20,7 @@ namespace dispersa {
 
 namespace {
 
-// The attitude program goes on this long after the nominal burnout, for flights that burn longer.
+// The attitude program ends this long after the nominal burnout, for flights that burn longer.
 constexpr double kProgramReserve_s = 30.0;
 // An ascent that comes this far below its site has failed.
 constexpr double kGround_m = 1000.0;
@@ -38,7 +38,7 @@ lanes::Ground GroundOf(const AscentModel& model) {
   return {earth, &StandardAir(), ToLanes(-BuildLaunchFrame(earth, model.vehicle.site, 0.0).R_IL.col(2))};
 }
 
-// One flight's way from event to event. Its motion is a lane of the fleet.
+// The events and steps of one flight. Its motion is a lane of the fleet.
 struct Flight {
   const FlightProgram* program = nullptr;
   AscentResult* result = nullptr;  // none: the lane is idle
@@ -47,7 +47,7 @@ struct Flight {
   std::vector<AscentEvent> events;
   std::size_t next_event = 0;
 
-  // The way to the next event, in equal steps.
+  // The interval to the next event, in equal steps.
   double from_s = 0.0, to_s = 0.0;
   int step = 0, steps = 1, steps_per_knot = 1;
 
@@ -98,7 +98,7 @@ void SetLane(lanes::Leg<T>& leg, int lane, const AscentModel& model, const Fligh
   Lane(leg.fade_from_s, lane) = flight.fade_from_s;
 }
 
-// The largest of what limits are set on.
+// The largest values of the limited quantities.
 template <class T>
 struct Peaks {
   T qbar_pa, q_alpha_pa_rad, axial_g, lateral_g, turn_rate_rad_s, transonic_alpha_rad;
@@ -120,7 +120,7 @@ void SetLane(Peaks<T>& peaks, int lane, const Peaks<double>& value) {
   Lane(peaks.transonic_alpha_rad, lane) = value.transonic_alpha_rad;
 }
 
-// What an instant adds to the peaks.
+// Adds an instant to the peaks.
 template <class T>
 void Observe(const AscentOptions& options, const lanes::Ground& ground, const lanes::Leg<T>& leg, T time_s,
              const lanes::Vector<T>& p, const lanes::Vector<T>& v, const lanes::AscentInstant<T>& now,
@@ -149,8 +149,8 @@ struct AscentStep {
   LaneVector acceleration_I;
 };
 
-// W ascents side by side, each from event to event in steps of its own. A lane that has ended takes the next
-// program, so that few idle.
+// W ascents side by side, each from event to event in steps of its own. When an ascent ends, its lane takes
+// the next program, so that few lanes are idle.
 template <class T>
 class Fleet {
  public:
@@ -182,7 +182,7 @@ class Fleet {
   void Conclude(int lane, bool completed);
   void Inject(int lane);
 
-  // What happens to one lane alone happens to it as to a fleet of one.
+  // An event of one lane is computed with scalar code, as if it flew alone.
   AscentPoint PointOf(int lane) const {
     const Flight& flight = flights_[lane];
     AscentPoint point;
@@ -225,7 +225,7 @@ template <class T>
 void Fleet<T>::Fly(std::span<const FlightProgram> programs, std::span<AscentResult> results) {
   std::size_t taken = 0;
   for (int lane = 0; lane < kWidth; ++lane) {
-    // A lane without work flies the first program's instant of lift-off, in steps of no length.
+    // A lane without work stays at the lift-off of the first program, in steps of zero length.
     const bool idle = taken == programs.size();
     TakeOff(lane, programs[idle ? 0 : taken], idle ? nullptr : &results[taken]);
     if (!idle) ++taken;
@@ -268,7 +268,7 @@ void Fleet<T>::TakeOff(int lane, const FlightProgram& program, AscentResult* res
   GoOn(lane);
 }
 
-// One step of every lane. What is observed is the start of a step: the end of an interval is observed after
+// One step of every lane. Peaks are observed at the start of a step. The end of an interval is observed after
 // its event, on the far side of the kink.
 template <class T>
 void Fleet<T>::AdvanceAll() {
@@ -306,7 +306,7 @@ unsigned Fleet<T>::DueAt(int lane, double time_s, const LaneVector& p, const Lan
       {time_s, around.altitude_m, around.density_kg_m3, std::sqrt(lanes::Dot(ground, ground))});
 }
 
-// So much less is on board: the state goes on with the centre of gravity of the rest.
+// Removes the jettisoned mass. The state then belongs to the centre of gravity of the remaining stack.
 template <class T>
 void Fleet<T>::Drop(int lane, unsigned due) {
   Flight& flight = flights_[lane];
@@ -320,7 +320,8 @@ void Fleet<T>::Drop(int lane, unsigned due) {
   flight.jettisoned |= due;
 }
 
-// A step of a lane that ended beyond what happened in it, to be made again to where that is.
+// The start of a step that went beyond an event of the lane. The step is then repeated to the time of the
+// event.
 template <class T>
 AscentStep Fleet<T>::StepAgain(int lane, double from_s, const LaneVector& p, const LaneVector& v) const {
   AscentPoint start = PointOf(lane);
@@ -339,8 +340,8 @@ void Fleet<T>::MoveTo(int lane, const AscentStep& step, double time_s) {
   Lane(time_s_, lane) = time_s;
 }
 
-// After a step of a lane that began at `from_s`: what has become due leaves on the first of the flight
-// computer's ticks on which it is due, and the way to the next event begins there.
+// After a step of a lane that began at `from_s`: jettisons. Each due part leaves at the first tick of the
+// flight computer at which it is due. The interval to the next event then begins there.
 template <class T>
 void Fleet<T>::LetGo(int lane, double from_s, const LaneVector& p, const LaneVector& v) {
   Flight& flight = flights_[lane];
@@ -372,8 +373,8 @@ void Fleet<T>::LetGo(int lane, double from_s, const LaneVector& p, const LaneVec
   }
 }
 
-// After a step of a lane that began at `from_s`: an engine that has taken it beyond the speed at which it is
-// cut off is, at that speed, and all that follows has other times.
+// After a step of a lane that began at `from_s`: if the speed has passed the engine's cut-off velocity, the
+// engine is cut off at that velocity. The times of all later events change.
 template <class T>
 void Fleet<T>::CutOff(int lane, double from_s, const LaneVector& p, const LaneVector& v) {
   Flight& flight = flights_[lane];
@@ -390,7 +391,7 @@ void Fleet<T>::CutOff(int lane, double from_s, const LaneVector& p, const LaneVe
     MoveTo(lane, again, time_s);
     return beyond_m_s(LaneOf(v_, lane));
   };
-  // Regula falsi (Illinois): within a step the speed grows almost in proportion to time.
+  // Regula falsi (Illinois): within a step the speed is almost linear in time.
   constexpr double kNear_m_s = 1e-9;
   double before_s = from_s, after_s = Lane(time_s_, lane), before_m_s = beyond_m_s(v);
   if (before_m_s >= 0.0) move_to(from_s);  // it was too fast when it ignited
@@ -423,7 +424,7 @@ void Fleet<T>::CutOff(int lane, double from_s, const LaneVector& p, const LaneVe
   flight.step = flight.steps - 1;  // on to the cut-off
 }
 
-// From an event, or from lift-off, to the next one.
+// Continues from an event, or from lift-off, to the next event.
 template <class T>
 void Fleet<T>::GoOn(int lane) {
   Flight& flight = flights_[lane];
@@ -461,14 +462,14 @@ void Fleet<T>::SetOut(int lane, double to_s) {
   const auto pieces = [](double whole, double part) {
     return std::max(1, static_cast<int>(std::ceil(whole / part - kSameInstant_s)));
   };
-  // The steps are the same whether their ends are recorded or not.
+  // The steps do not depend on whether their ends are recorded.
   const int knots = pieces(way_s, std::max(knot, largest));
   flight.steps_per_knot = pieces(way_s / knots, largest);
   flight.steps = knots * flight.steps_per_knot;
   flight.step = 0;
 }
 
-// The near side of a kink at which loads peak.
+// Observes the near side of a kink, at which loads peak.
 template <class T>
 void Fleet<T>::ObserveHere(int lane) {
   const AscentPoint point = PointOf(lane);
@@ -484,7 +485,8 @@ void Fleet<T>::Steer(int lane, int stage) {
   const Steering& steering = flight.program->steering[i];
   flight.steer_from_s = flight.ignition_s;
   flight.steer_rad = steering.begin_rad;
-  // To depletion of what the burn before left, whenever it is cut off. Nothing left is no burn.
+  // The rate is over a burn to depletion of the propellant left by the burn before, even if the engine is cut
+  // off earlier. With no propellant left there is no burn.
   const double whole_s = flight.burns[i].duration_s;
   flight.steer_rad_s =
       steering.empty() || whole_s == 0.0 ? 0.0 : (steering.end_rad - steering.begin_rad) / whole_s;
@@ -527,7 +529,8 @@ void Fleet<T>::Happen(int lane, const AscentEvent& event) {
       break;
     }
     case AscentEvent::kSeparation: {
-      // The vehicle turns with its program: the stack above leaves with the velocity of its own CG.
+      // The vehicle turns with its program, so the stack above leaves with the velocity of its own centre of
+      // gravity.
       if (!model_.vehicle.stages[static_cast<std::size_t>(event.stage) + 1].restarts)
         SetBody(lane, AfterSeparation(model_.plant, event.stage, flight.jettisoned, BodyOf(lane),
                                       flight.burns[static_cast<std::size_t>(event.stage)].left_kg));
@@ -574,7 +577,7 @@ void Fleet<T>::Conclude(int lane, bool completed) {
   result.turn_rate_max_rad_s = peaks.turn_rate_rad_s;
   result.transonic_alpha_max_rad = peaks.transonic_alpha_rad;
   if (completed && options_.record) {
-    // The sample at the injection is the one that the reserve begins with.
+    // The reserve begins with the sample at the injection.
     flight.in_reserve = true;
     flight.samples = result.samples.size() + 1;
     SetOut(lane, result.end_time_s + kProgramReserve_s);

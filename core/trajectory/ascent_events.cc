@@ -16,7 +16,7 @@ AscentEvents EventsOf(const AscentModel& model, const std::vector<MotorBurn>& bu
                       const FlightProgram& program) {
   const std::size_t last = burns.size() - 1;
   AscentEvents all;
-  // A coast counts from the burnout below, which no later timer moves.
+  // A coast counts from the burnout below. No later timer moves that burnout.
   const auto timeline = [&] {
     return BuildTimeline(model.vehicle, burns, model.tick_s, all.last_ignition_s, all.earlier_ignition_s);
   };

@@ -20,19 +20,19 @@ struct AscentEvent {
   };
 
   double time_s;  ///< since lift-off, exact (an ignition may be earlier)
-  Kind kind;      ///< kKink: thrust or program bend there, and no step may go across
+  Kind kind;      ///< kKink: thrust or program has a kink; no step may cross it
   int stage;
 };
 
-/// In the order of time.
+/// Ascending in time.
 struct AscentEvents {
   std::vector<AscentEvent> events;
-  double last_ignition_s = 0.0;                         ///< the last stage's timer, 0 for a single stage
-  std::array<double, kMaxStages> earlier_ignition_s{};  ///< the others'
+  double last_ignition_s = 0.0;                         ///< timer of the last stage; 0 for a single stage
+  std::array<double, kMaxStages> earlier_ignition_s{};  ///< timers of the other stages
 };
 AscentEvents EventsOf(const AscentModel& model, const std::vector<MotorBurn>& burns,
                       const FlightProgram& program);
-/// Nominal ones of a model's stages.
+/// The nominal burns of a model's stages.
 std::vector<MotorBurn> BurnsOf(const AscentModel& model);
 
 }  // namespace dispersa

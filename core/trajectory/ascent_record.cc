@@ -21,7 +21,7 @@ AscentPoint Beside(AscentPoint point, double dt, const lanes::Vector<double>& ac
   return point;
 }
 
-// Rates along the motion: the program's own derivative, not the table's.
+// The rates are derivatives of the program along the motion, not of the recorded table.
 AttitudeKnot KnotOf(const LaunchFrame& frame, const lanes::Ground& ground, const AscentPoint& point,
                     const lanes::Vector<double>& acceleration) {
   const PitchYawRoll before = AnglesOf(frame, ground, Beside(point, -lanes::kDifference_s, acceleration));
@@ -94,7 +94,8 @@ void Record(const LaunchFrame& frame, const lanes::Ground& ground, const AscentP
   std::vector<AttitudeKnot>& knots = result->attitude.knots;
   if (!knots.empty() && point.time_s <= knots.back().time_s + kSameInstant_s) return;
   AttitudeKnot knot = KnotOf(frame, ground, point, now.acceleration_I);
-  // A long coast turns by more than half a turn; between knots angles are interpolated.
+  // Angles are interpolated between knots. In a long coast they may turn by more than half a turn, so they
+  // are unwrapped.
   if (!knots.empty())
     for (double AttitudeKnot::*angle : {&AttitudeKnot::pitch, &AttitudeKnot::yaw, &AttitudeKnot::roll})
       while (std::fabs(knot.*angle - knots.back().*angle) > kPi)

@@ -1,4 +1,4 @@
-// One ascent at one instant, and what is recorded of it.
+// One ascent at one instant, and its record.
 #pragma once
 
 #include "core/flight/launch_frame.h"
@@ -18,10 +18,11 @@ struct AscentPoint {
 lanes::AscentInstant<double> InstantOf(const lanes::Ground& ground, const AscentPoint& point);
 lanes::Vector<double> ForwardOf(const lanes::Ground& ground, const AscentPoint& point);
 lanes::Vector<double> AxisRateOf(const lanes::Ground& ground, const AscentPoint& point);
-/// Body axes in I: x forward, y as near to the launch frame's y as possible, so there is no roll in L.
+/// Body axes in I: x along `forward_I`, y as near as possible to the launch frame's y. There is then no roll
+/// in L.
 Matrix3 AttitudeOf(const LaunchFrame& frame, const lanes::Vector<double>& forward_I);
 
-/// Appends a sample, and a knot of the attitude program unless it has one at this time.
+/// Appends a sample, and a knot of the attitude program if it has none at this time.
 void Record(const LaunchFrame& frame, const lanes::Ground& ground, const AscentPoint& point,
             const lanes::AscentInstant<double>& now, AscentResult* result);
 

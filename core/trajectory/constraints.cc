@@ -11,7 +11,7 @@ std::vector<ConstraintMargin> ConstraintsOf(const TrajectoryProblem& problem, co
   std::vector<ConstraintMargin> constraints;
   const auto add = [&](const char* name, double value, double limit, double unit = 1.0) {
     const bool enforced = limit > 0.0;
-    // Dividing by the unit gives back the limit that the user wrote.
+    // Stored in SI. Dividing by the unit gives back the limit that the user wrote.
     constraints.push_back(
         {name, value / unit, limit / unit, enforced ? (limit - value) / unit : 0.0, enforced});
   };

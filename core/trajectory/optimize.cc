@@ -19,12 +19,12 @@ namespace dispersa {
 
 namespace {
 
-// Individuals that one thread flies side by side: enough to keep the lanes busy, few enough to share a
-// population.
+// Number of individuals that one thread flies side by side: enough to keep the lanes busy, few enough to
+// share a population among threads.
 constexpr std::size_t kTogether = 2 * kAscentWidth;
 
-// The speed at which an engine is cut off is a number of the vehicle's file, with the digits that its author
-// gave it: 0.1 m/s is 0.4 km of the other apsis.
+// Tolerance for an engine with a cut-off velocity: the vehicle's file gives that velocity with few digits.
+// 0.1 m/s moves the other apsis by 0.4 km.
 constexpr double kCutOffTolerance_m_s = 0.1;
 
 void Require(bool holds, const char* field, double value, const char* allowed) {
@@ -58,7 +58,7 @@ Evaluation Judge(const TrajectoryProblem& problem, const TrajectoryOptions& opti
                  const FlightProgram& program, const AscentResult& ascent) {
   Evaluation evaluation;
   if (!ascent.completed) {
-    // Worse than any limit broken on the way to an orbit; the later it falls the better.
+    // Worse than any violated limit of a program that reaches an orbit. A later fall is better.
     evaluation.constraint_violations = {1e3 + 1e3 / (1.0 + ascent.end_time_s)};
     return evaluation;
   }
@@ -76,7 +76,7 @@ Evaluation Judge(const TrajectoryProblem& problem, const TrajectoryOptions& opti
   return evaluation;
 }
 
-// Flown side by side.
+// The programs are flown side by side.
 std::vector<Evaluation> Evaluate(const AscentModel& model, const TrajectoryProblem& problem,
                                  const TrajectoryOptions& options,
                                  const std::vector<FlightProgram>& programs) {
@@ -85,7 +85,8 @@ std::vector<Evaluation> Evaluate(const AscentModel& model, const TrajectoryProbl
   std::vector<std::size_t> index;
   for (std::size_t i = 0; i < programs.size(); ++i) {
     if (const double disorder_s = DisorderOf(programs[i], options); disorder_s > 0.0) {
-      // Such a program cannot be flown; further from order is worse than anything that can.
+      // A program with its times out of order cannot be flown. It is worse than any that can, the more so the
+      // larger the disorder.
       evaluations[i].constraint_violations = {1e4 * (1.0 + disorder_s)};
     } else {
       flown.push_back(programs[i]);
@@ -130,7 +131,7 @@ GeneticAlgorithmResult Search(const AscentModel& model, const TrajectoryProblem&
 }  // namespace
 
 OrbitErrors ErrorsOf(const TrajectoryProblem& problem, const Orbit& orbit) {
-  // An ellipse's altitudes count from the equator's radius, as its elements do.
+  // The altitudes of an ellipse count from the equator's radius, as its elements do.
   const double altitude_m =
       problem.target_apogee_m ? orbit.radius_m - Wgs84().equatorial_radius_m : orbit.altitude_m;
   return {
@@ -196,12 +197,13 @@ OptimizationResult OptimizeTrajectory(const Vehicle& vehicle, const TrajectoryPr
   }
   result.refined = program;
   if (result.refinement.status != LeastSquaresStatus::kConverged) {
-    // The refinement knows neither constraints nor weights: what it ends with may be worse.
+    // The refinement knows neither constraints nor weights, so its end may be worse than the best of the
+    // search.
     const FlightProgram searched = ProgramOf(result.genetic.variables, variables);
     const std::vector<Evaluation> both = Evaluate(model, problem, options, {searched, program});
     if (IsBetter(MeritOf(both[0]), MeritOf(both[1]), 0.0)) program = searched;
   }
-  // Bounds may go on beyond north.
+  // Bounds of the azimuth may go on beyond north.
   if (program.launch_azimuth_rad >= kTwoPi) program.launch_azimuth_rad -= kTwoPi;
   result.reference = BuildReference(model, problem, program, options, &result.history);
   result.reference.evaluations = ascents;

@@ -1,5 +1,5 @@
-// The 3DOF ascent's point mass, W of them side by side (core/math/lanes.h): where its axis points, what
-// accelerates it, one step of its motion.
+// The point mass of the 3DOF ascent, W of them side by side (core/math/lanes.h): direction of its axis,
+// acceleration, and one step of its motion.
 #pragma once
 
 #include "core/dynamics/launcher_lanes.h"
@@ -11,14 +11,14 @@
 namespace dispersa::lanes {
 inline namespace DISPERSA_ISA {
 
-/// Values that all lanes share: the Earth, and the site's vertical at lift-off in I.
+/// Values that all lanes share: the Earth, its air, and the site's vertical at lift-off in I.
 struct Ground {
   Earth earth;
   const AirTable* air;
   Vector<double> up_I;
 };
 
-/// FlightProgram, prepared.
+/// FlightProgram with precomputed reciprocals.
 template <class T>
 struct FlightProgramLanes {
   T alpha_max_rad, t1_s, t3_s, t2_s;
@@ -49,10 +49,10 @@ struct Leg {
   T expelled_kg;                           ///< by the reaction control
   MaskOf<T> turning;                       ///< t1 is past
   Vector<T> right_I;                       ///< y axis of the launch frame
-  Vector<T> turn_offset_I;                 ///< body axis less direction of flight as the turn began
-  bool any_steers;                         ///< some lane's program has Steering:
-  T steer_rad, steer_rad_s, steer_from_s;  ///< at ignition, its growth, ignition
-  T fade_rad, fade_from_s;                 ///< what the burn before ended with, and when
+  Vector<T> turn_offset_I;                 ///< body axis minus direction of flight when the turn began
+  bool any_steers;                         ///< the program of a lane has Steering:
+  T steer_rad, steer_rad_s, steer_from_s;  ///< value at ignition, rate, ignition time
+  T fade_rad, fade_from_s;                 ///< value at the end of the burn before, and its time
 };
 
 /// 10 s³ - 15 s⁴ + 6 s⁵: no rate or acceleration at 0 and 1.
@@ -90,8 +90,8 @@ DISPERSA_INLINE Vector<T> VelocityOverGround(const Ground& ground, Vector<T> p, 
 }
 
 /// The body's x axis in I: the velocity over the ground, turned by the programmed incidence. In the vertical
-/// flight it is the site's vertical, which turns with the Earth. The small angle between the two at the
-/// beginning of the turn fades by t3.
+/// flight it is the site's vertical, which turns with the Earth. When the turn begins, the two differ by a
+/// small angle, which fades by t3.
 template <class T>
 DISPERSA_INLINE Vector<T> ForwardAt(const Ground& ground, const Leg<T>& leg, T time_s, Vector<T> p,
                                     Vector<T> v) {
@@ -129,10 +129,11 @@ template <class T>
 struct AscentInstant {
   Vector<T> acceleration_I;
   T altitude_m, qbar_pa, mach, incidence_rad, mass_kg;
-  T axial_n, lateral_n;  ///< force along the body axis and across it, gravitation apart
+  T axial_n, lateral_n;  ///< forces along the body axis and across it, without gravitation
 };
 
-/// The nozzles are straight and the sideslip is zero: the force lies in the plane of the axis and the flow.
+/// The nozzles are straight and the sideslip is zero, so the force lies in the plane of the axis and the
+/// flow.
 template <class T>
 DISPERSA_OUT_OF_LINE AscentInstant<T> InstantAt(const Ground& ground, const Leg<T>& leg, T time_s,
                                                 const Vector<T>& p, const Vector<T>& v) {
@@ -158,7 +159,7 @@ DISPERSA_OUT_OF_LINE AscentInstant<T> InstantAt(const Ground& ground, const Leg<
   const T across = Sqrt(Dot(crossing, crossing));
   const FlowForce<T> air = ForceOfFlow(leg.aero, {ahead, T(0.0), across}, Zero<T>(), around.density_kg_m3,
                                        around.inverse_sound_s_m, masses.cg_station_m);
-  // P = P_vac - p A_e. Where the ambient pressure would make the thrust negative, it is 0.
+  // P = P_vac - p A_e. Thrust is 0 if the ambient pressure would make it negative.
   const T thrust = Max(
       Fma(leg.burn.vacuum_thrust_n, burn.fraction, -(around.pressure_pa * leg.burn.exit_area_m2)), T(0.0));
   AscentInstant<T> o;
@@ -177,18 +178,18 @@ DISPERSA_OUT_OF_LINE AscentInstant<T> InstantAt(const Ground& ground, const Leg<
   return o;
 }
 
-/// Half the distance, s, over which what depends on time and motion is differenced: rounding and truncation
-/// stay below 1e-10 of a rate.
+/// Half the interval (s) of numerical derivatives along the motion. Rounding and truncation stay below 1e-10
+/// of a rate.
 inline constexpr double kDifference_s = 1e-3;
 
-/// Position and velocity a little later, or earlier, along the motion.
+/// Moves position and velocity along the motion by `dt` (s), forward or back.
 template <class T>
 DISPERSA_INLINE void MoveBy(double dt, Vector<T> acceleration, Vector<T>* p, Vector<T>* v) {
   *p = Along(Along(*p, T(dt), *v), T(0.5 * dt * dt), acceleration);
   *v = Along(*v, T(dt), acceleration);
 }
 
-/// Of the body's x axis against the stars, 1/s, in I.
+/// Rate of the body's x axis in I, 1/s.
 template <class T>
 DISPERSA_INLINE Vector<T> AxisRateAt(const Ground& ground, const Leg<T>& leg, T time_s, Vector<T> p,
                                      Vector<T> v, Vector<T> acceleration) {

@@ -1,5 +1,5 @@
-// The variables of a flight program that a search moves, and their bounds in a trajectory problem. Genetic
-// algorithm, refinement and messages share this list.
+// The variables of a flight program that a search moves, with their bounds in a trajectory problem. The
+// genetic algorithm, the refinement and the messages share this list.
 #pragma once
 
 #include <string>
@@ -17,7 +17,7 @@ struct ProgramVariable {
     kT2,
     kCoast,
     kAzimuth,
-    kEarlierCoast,  ///< of a stage, as
+    kEarlierCoast,  ///< this and the next two: of a stage
     kSteeringBegin,
     kSteeringEnd,
   };
@@ -27,24 +27,24 @@ struct ProgramVariable {
   double& Of(FlightProgram& program) const;
   double Of(const FlightProgram& program) const;
   const Bounds& BoundsOf(const TrajectoryProblem& problem) const;
-  /// As its key in the file, without the unit: "stage3_coast".
+  /// Key in the file, without the unit: "stage3_coast".
   std::string Name() const;
-  /// SI value of the file's unit, and that unit's name.
+  /// SI value of the unit in the file, and the name of that unit.
   double unit() const;
   const char* unit_name() const;
-  /// A small step of it.
+  /// A small step of the variable, SI.
   double scale() const;
 };
 
 /// In the order alpha_max, t1, t3, t2, coast, launch azimuth, earlier coasts, steering by stage.
 std::vector<ProgramVariable> VariablesOf(const Vehicle& vehicle, const TrajectoryProblem& problem);
-/// Those of Steering that the problem lets move, a part of VariablesOf.
+/// The variables of Steering that the problem lets move: a part of VariablesOf.
 std::vector<ProgramVariable> SteeringVariables(const Vehicle& vehicle, const TrajectoryProblem& problem);
 
-/// The stages before the last that a timer ignites, each after a coast of its own.
+/// The stages before the last with an ignition timer. Each has a coast of its own.
 std::vector<std::size_t> EarlierCoasts(const Vehicle& vehicle);
 
-/// The program whose variables have these values.
+/// The program with these values of the variables.
 FlightProgram ProgramOf(const std::vector<double>& values, const std::vector<ProgramVariable>& variables);
 
 }  // namespace dispersa

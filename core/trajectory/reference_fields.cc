@@ -15,7 +15,7 @@ std::string StageKey(std::size_t stage, const char* what) {
   return "stage" + std::to_string(stage + 1) + "_" + what;
 }
 
-// The two limits of a decision variable, which are one list in the file.
+// The two bounds of a decision variable, a list in the file.
 void DescribeBounds(Fields& fields, const std::string& stem, Dimension dimension, const Range& range,
                     Bounds& bounds, const char* meaning, bool needed = true) {
   std::vector<double> limits;
@@ -29,7 +29,7 @@ void DescribeBounds(Fields& fields, const std::string& stem, Dimension dimension
   if (limits[0] > limits[1]) fields.Refuse(stem, "the lower bound is above the upper one", "[low, high]");
 }
 
-// Bounds that fall go through north, [350, 10] as [350, 370] does.
+// Descending bounds go through north: [350, 10] equals [350, 370].
 void DescribeAzimuthBounds(Fields& fields, Bounds& bounds) {
   std::vector<double> limits = {bounds.low, bounds.high};
   fields.Quantities("launch_azimuth", kAngle, Between(0.0, 2.0 * kTwoPi), 2, 2, limits,
@@ -41,7 +41,7 @@ void DescribeAzimuthBounds(Fields& fields, Bounds& bounds) {
                   "[low, high], low from 0 to below 360; [350, 10] goes through north");
 }
 
-// The speed at the perigee of an ellipse about a point mass; altitudes over the equator's radius.
+// The speed (m/s) at the perigee of an ellipse about a point mass. Altitudes are above the equator's radius.
 double PerigeeSpeed(double perigee_m, double apogee_m) {
   const Earth earth = Wgs84();
   const double perigee_radius_m = earth.equatorial_radius_m + perigee_m;
@@ -92,7 +92,7 @@ void DescribeTarget(Fields& fields, TrajectoryProblem& problem) {
         "argument_of_perigee_deg beside perigee_altitude_km, apogee_altitude_km and inclination_deg");
 }
 
-// Keys of a stage that steers, which come together.
+// The keys of a stage that steers. They are given together.
 void DescribeSteering(Fields& fields, std::size_t stage, bool steers,
                       const std::function<void(const std::string& begin, const std::string& end)>& describe) {
   const std::string begin = StageKey(stage, "incidence_begin"), end = StageKey(stage, "incidence_end");
@@ -126,7 +126,7 @@ void DescribeDecisionBounds(Fields& fields, TrajectoryProblem& problem) {
   }
 }
 
-// Of the objective, equation (8); a target that names more has more of them.
+// The weights of objective (8). A target with more conditions has more weights.
 void DescribeWeights(Fields& fields, TrajectoryProblem& problem, bool of_inclination, bool of_argument) {
   fields.Map("weights", "of the target's misses in the objective, equation (8)", [&](Fields& weights) {
     weights.Quantity("altitude", kPerLength, kNonNegative, problem.weight_altitude_1_m, "G1");
@@ -203,7 +203,7 @@ void DescribeOrbit(Fields& fields, Orbit& orbit) {
                   "from the node along the orbit", 0.0);
 }
 
-// They follow from orbit and target; the file repeats them for its reader.
+// The errors follow from orbit and target. The file repeats them for the reader.
 void DescribeErrors(Fields& fields, const Reference& reference) {
   const TrajectoryProblem& problem = reference.problem;
   OrbitErrors errors = ErrorsOf(problem, reference.orbit);

@@ -13,18 +13,19 @@ namespace {
 
 using Kind = ProgramVariable::Kind;
 
-// Forward differences over this fraction of a scale: the ascent's rounding and its curvature both spoil about
-// 1e-5 of a derivative, which costs Newton's method nothing.
+// Step of forward differences, as a fraction of a variable's scale. Rounding and curvature of the ascent each
+// cause an error of about 1e-5 of a derivative, which does not slow Newton's method.
 constexpr double kDifference = 1e-5;
-// A refinement ends this far inside the tolerance, so that text, other steps and other compilers keep it.
+// A refinement ends this far inside the tolerance, so that rounding in files, other steps and other compilers
+// stay within it.
 constexpr double kWithinTolerance = 0.02;
 
 LeastSquaresResult Solve(const AscentModel& model, const TrajectoryProblem& problem,
                          const TrajectoryOptions& options, const std::vector<ProgramVariable>& freedoms,
                          bool with_speed, FlightProgram* program, AscentResult* ascent = nullptr) {
   const AscentOptions ascent_options = AscentOptionsOf(problem, options.steps);
-  // The speed of an engine that is cut off at one is not for the program to find: as a condition that no
-  // unknown moves it would stall the rest.
+  // If the engine is cut off at a velocity, no variable of the program changes the speed. As a condition it
+  // would stall the others.
   const bool speed = with_speed && !problem.velocity_is_free &&
                      !EndsByVelocity(model, FlyAscent(model, *program, ascent_options));
   const bool plane = with_speed && problem.target_inclination_rad.has_value();
@@ -37,7 +38,7 @@ LeastSquaresResult Solve(const AscentModel& model, const TrajectoryProblem& prob
   for (std::size_t i = 0; i < freedoms.size(); ++i) {
     const ProgramVariable& freedom = freedoms[i];
     const Bounds& bounds = freedom.BoundsOf(problem);
-    // Equal bounds freeze a variable. More unknowns than conditions would leave a manifold.
+    // A variable with equal bounds is frozen. More unknowns than conditions would leave a manifold.
     if (!(bounds.low < bounds.high) || free.size() == conditions) continue;
     Unknown unknown;
     unknown.lower = bounds.low;
@@ -72,7 +73,7 @@ LeastSquaresResult Solve(const AscentModel& model, const TrajectoryProblem& prob
   if (speed) least_squares.residual_scales.push_back(options.tolerance.velocity_m_s);
   if (plane) least_squares.residual_scales.push_back(options.tolerance.inclination_rad);
   if (turned) least_squares.residual_scales.push_back(options.tolerance.argument_of_perigee_rad);
-  // Of every point that is tried; one of them is the end.
+  // The ascent of every point tried. One of them is the end.
   std::vector<std::pair<std::vector<double>, AscentResult>> tried;
   least_squares.residuals = [&](const std::vector<double>& unknowns) {
     tried.emplace_back(unknowns, FlyAscent(model, program_at(unknowns), ascent_options));
@@ -119,9 +120,9 @@ std::vector<ProgramVariable> AltitudeAndAngleVariables(const Vehicle& vehicle,
   return variables;
 }
 
-// Three conditions have three unknowns. An inclination beside a speed is a fourth, an argument of perigee a
-// fifth: the earlier coasts serve them, or where there are none the end of the pitch-over, which spends a
-// little more or less on the way. What steers upper stages always helps.
+// Three conditions have three unknowns. An inclination beside a speed is a fourth condition, an argument of
+// perigee a fifth. The earlier coasts serve them. Without earlier coasts the end of the pitch-over (t2) does,
+// which changes the losses a little. The steering of upper stages always helps.
 std::vector<ProgramVariable> RefinedVariables(const Vehicle& vehicle, const TrajectoryProblem& problem) {
   std::vector<ProgramVariable> variables = {{Kind::kAlphaMax}, {Kind::kCoast}, {Kind::kAzimuth}};
   const std::vector<ProgramVariable> steering = SteeringVariables(vehicle, problem);

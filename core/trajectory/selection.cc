@@ -11,10 +11,10 @@ namespace dispersa {
 
 namespace {
 
-// Individuals are flown with the steps of the search and need no more than its accuracy.
+// Factor of the tolerances: individuals are flown with the steps of the search and need only its accuracy.
 constexpr double kLooser = 1e3;
 constexpr int kIterations = 12;
-// Times that need more incidence than is allowed are judged by how much more, up to this.
+// Times that need more incidence than allowed are judged by the excess, up to this.
 constexpr double kSteepest_rad = 45.0 * kRadPerDeg;
 
 FlightProgram WithTimes(FlightProgram program, const std::vector<double>& times) {
@@ -40,7 +40,7 @@ Selection SelectProgram(const AscentModel& model, const TrajectoryProblem& probl
   const FlightProgram start = *program;
   std::atomic<std::int64_t> ascents = 0;
 
-  // From the same start whoever asks, so that an individual's refinement depends on nothing but itself.
+  // Every refinement begins at the same start, so that it depends on the individual alone.
   const auto refined = [&](const std::vector<double>& times, FlightProgram* trial,
                            AscentResult* ascent = nullptr) {
     *trial = WithTimes(start, times);

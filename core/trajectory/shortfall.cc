@@ -15,7 +15,7 @@ namespace {
 
 double Deg(double radians) { return radians / kRadPerDeg; }
 
-// A variable that the refinement holds at the end of its bounds.
+// Text about a variable that the refinement holds at a bound.
 std::string HeldText(const TrajectoryProblem& problem, const FlightProgram& program,
                      const ProgramVariable& held) {
   const double value = held.Of(program);
@@ -27,13 +27,13 @@ std::string HeldText(const TrajectoryProblem& problem, const FlightProgram& prog
 
 struct SpeedAtTarget {
   double velocity_m_s = 0.0;
-  bool on_target = false;  ///< altitude and angle are the target's
+  bool on_target = false;  ///< altitude and angle reach the target
   std::vector<std::size_t> held;
   FlightProgram program;
 };
 
-// The speed at the target's altitude and angle toward one azimuth; if they cannot be had, the speed at the
-// target's radius of the orbit that comes nearest, by its energy.
+// The speed at the target's altitude and angle toward one azimuth. If they cannot be reached, the energy of
+// the nearest orbit gives the speed at the target's radius.
 SpeedAtTarget SpeedToward(const AscentModel& model, const TrajectoryProblem& problem,
                           const TrajectoryOptions& options, FlightProgram program, double azimuth_rad) {
   program.launch_azimuth_rad = azimuth_rad;
@@ -55,7 +55,8 @@ const char* Where(const SpeedAtTarget& speed) {
   return speed.on_target ? "at the target's altitude and angle" : "carried to the target's altitude";
 }
 
-// Of an engine that ends at a speed: that speed, and what holds altitude and angle away from the target.
+// For an engine with a cut-off velocity: that velocity, and the bounds that keep altitude and angle from the
+// target.
 std::string CutOffText(const AscentModel& model, const TrajectoryProblem& problem,
                        const TrajectoryOptions& options, FlightProgram program) {
   std::string text;
@@ -73,11 +74,11 @@ std::string CutOffText(const AscentModel& model, const TrajectoryProblem& proble
   return text;
 }
 
-// What is wrong with altitude and angle, then with speed, each on its own: a compromise between the three,
-// which is where the refinement ends, lies at bounds that have nothing to do with the cause.
+// The cause for altitude and angle, then for speed, each on its own. The refinement ends at a compromise
+// between the three, at bounds that are not the cause.
 std::string CauseText(const AscentModel& model, const TrajectoryProblem& problem,
                       const TrajectoryOptions& options, const FlightProgram& program) {
-  // Energy is not what is missing where the engine could burn on.
+  // An engine with a cut-off velocity could burn on, so energy is not the cause.
   if (EndsByVelocity(model, FlyAscent(model, program, AscentOptionsOf(problem, options.steps))))
     return CutOffText(model, problem, options, program);
   const Bounds& azimuth = problem.launch_azimuth_rad;
@@ -118,7 +119,7 @@ std::string DescribeShortfall(const AscentModel& model, const TrajectoryProblem&
         "The target is out of reach: every program falls back to the ground; the best flies {:.1f} s.",
         ascent.end_time_s);
   const OrbitErrors& e = result.errors;
-  // That near the target is no matter of reach.
+  // A miss this small does not mean that the target is out of reach.
   constexpr OrbitErrors kNear = {100.0, 0.5, 0.01 * kRadPerDeg, 0.01 * kRadPerDeg, 0.1 * kRadPerDeg};
   std::string text =
       fmt::format("The target is {}: the best program ends {:+.3f} km, {:+.3f} m/s and {:+.4f} deg from it.",

@@ -1,4 +1,4 @@
-// Why a target was missed, in words for the user.
+// The reasons why a target was missed, in words for the user.
 #pragma once
 
 #include <string>
@@ -8,9 +8,9 @@
 
 namespace dispersa {
 
-/// One sentence on how near the best program came, then one for each cause: a constraint that it breaks, a
-/// variable at the end of its bounds that altitude and angle need, the vehicle's energy (its range of speeds
-/// at the target's altitude and angle over the bounds of the launch azimuth).
+/// One sentence says how near the best program came. One more sentence follows for each cause: a violated
+/// constraint, a variable at its bound that altitude and angle need, or the vehicle's energy. Energy is given
+/// as the range of speeds at the target's altitude and angle, over the bounds of the launch azimuth.
 std::string DescribeShortfall(const AscentModel& model, const TrajectoryProblem& problem,
                               const TrajectoryOptions& options, const OptimizationResult& result);
 

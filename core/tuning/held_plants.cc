@@ -11,7 +11,7 @@
 namespace dispersa {
 namespace {
 
-// LoopTable's of a loop that is unstable, or more.
+// LoopTable's surplus of an unstable loop is at most this.
 constexpr double kUnstableSurplus = -2.0;
 
 }  // namespace
@@ -25,7 +25,7 @@ HeldPlants::HeldPlants(const TunedPlant& plant, const std::vector<MarginInstant>
          {kGainMarginGate_db + kHeldGainReserve_db, kPhaseMarginGate_deg + kHeldPhaseReserve_deg,
           kDelayMarginGate_s + kHeldDelayReserve_s});
   for (int i = 0; i < draws; ++i) {
-    // Beyond the cases that are flown, which need not be as many.
+    // Draws go beyond the flown cases if there are more draws than cases.
     const std::uint64_t draw = static_cast<std::uint64_t>(i);
     const FlightInputs inputs = rigid.Draw(draw);
     const LauncherPlant dispersed = plant_.untuned.PlantFor(inputs, draw);
@@ -47,7 +47,7 @@ void HeldPlants::Hold(LauncherPlant plant, const std::string& name, const TickSa
   const std::vector<FrequencySet> sets = FrequencySets(bending ? bending->modes : 0, frequency_band);
   for (const FrequencySet& set : sets) {
     for (std::size_t k = 0; k < kModes; ++k) plant.bending.frequency[k] = set.factor[k] * nominal[k];
-    // Roll neither bends nor diverges: the nominal plant stands for all.
+    // Roll has no bending and no aerodynamic instability, so it is checked for the nominal plant only.
     const std::vector<Axis> axes = frequency_band > 0.0 && &set == &sets.front()
                                        ? std::vector{kPitch, kYaw, kRoll}
                                        : std::vector{kPitch, kYaw};
@@ -84,7 +84,7 @@ double HeldPlants::SurplusOf(const AutopilotConfig& autopilot, int stage, std::s
   const std::vector<Held>& held = held_[static_cast<std::size_t>(stage)];
   double least = HUGE_VAL;
   for (std::size_t k = 0; k < held.size() && least > enough; ++k) {
-    // The one that failed last, then all.
+    // The plant that failed last comes first, then all others.
     const std::size_t i = (*last + k) % held.size();
     const Held& each = held[i];
     if (about && nearest(each.since_ignition_s) != *about) continue;
@@ -118,7 +118,7 @@ std::string HeldPlants::Missed(int stage) const {
     }
   }
   const LinearLaw law = LineariseLaw(model, stage, worst->since_ignition_s, worst->axis, worst_adapts);
-  // With the other gates next to nothing; where the body bends either gain or phase does.
+  // One gate at a time, the others close to zero. The bending modes set a gain and a phase gate together.
   constexpr double kHardly = 1e-9;
   const LoopGates alone[] = {{worst->gates.gain_db, kHardly, 0.0},
                              {kHardly, worst->gates.phase_deg, 0.0},

@@ -31,8 +31,9 @@ Eigen::Matrix3d SolveLyapunov3(const Eigen::Matrix3d& a, const Eigen::Matrix3d& 
 RegulatorGains SolveRegulator(const RegulatorWeights& weights) {
   Eigen::Matrix3d q = Eigen::Matrix3d::Zero();
   q.diagonal() << weights.integral_1_s6, weights.angle_1_s4, weights.rate_1_s2;
-  // Stabilising: poles at -1 and at an angle of 60° beside it. From there the iteration falls to P,
-  // quadratically at the end; it starts at most some powers of ten away and halves its distance at least.
+  // Stabilising start: poles at -1 and two at ±60° from it. Newton's iteration converges from any stabilising
+  // start, at the end quadratically. It starts a few powers of ten away at most, and each step at least
+  // halves the distance.
   Eigen::RowVector3d k(1.0, 2.0, 2.0);
   for (int i = 0; i < 60; ++i) {
     Eigen::Matrix3d closed = Eigen::Matrix3d::Zero();

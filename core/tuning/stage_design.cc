@@ -65,7 +65,8 @@ std::vector<double> ScheduledTimes(const AutopilotConfig& autopilot, int stage) 
 
 void ApplyDesign(const std::vector<StageDesign>& designs, int stage, AutopilotConfig& autopilot) {
   const std::vector<double> times = ScheduledTimes(autopilot, stage);
-  // What a design makes of the stage's own gains and filters is what its entry holds.
+  // The design is applied to a stage's own gains and filters first. The entry of the schedule then holds
+  // these.
   std::vector<std::vector<ScheduleEntry>> entries(kAxes);
   const auto axes_of = [](AutopilotConfig& config) {
     return std::array<AxisConfig*, kAxes>{&config.pitch, &config.yaw, &config.roll};

@@ -14,7 +14,7 @@ BoundedProblem StagePoints::ProblemOf(int stage) const {
   struct Variable {
     Bounds bounds;
     double start;
-    double held_start = start;  ///< of the second point that a search under held plants begins with
+    double held_start = start;  ///< in the second starting point, which a search with held plants has
   };
   std::vector<Variable> variables = {{kBandwidthOfLargest, kBandwidthOfLargest.high}};
   if (options_.regulator) {

@@ -1,5 +1,4 @@
-// The points of a stage's search: its variables, their bounds and where it starts, and the design that a
-// point means.
+// The points of a stage's search: variables, bounds, starting points, and the design at a point.
 #pragma once
 
 #include <vector>
@@ -15,11 +14,12 @@ class StagePoints {
  public:
   StagePoints(const TunedPlant& plant, const TuningOptions& options) : plant_(plant), options_(options) {}
 
-  /// Bounds and starting points, without results yet.
+  /// Bounds and starting points; `evaluate` is not set.
   BoundedProblem ProblemOf(int stage) const;
-  /// All but the bandwidth at a point of the search.
+  /// The design at a point of the search, without the bandwidth.
   StageDesign ShapeOf(const std::vector<double>& point, int stage, double at_s) const;
-  /// Of the last variables of a point.
+  /// The filters from the last variables of a point. Frequencies follow the first mode at time `at_s` after
+  /// ignition.
   StageFilters FiltersAt(const std::vector<double>& point, int stage, double at_s) const;
 
  private:

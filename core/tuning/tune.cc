@@ -25,9 +25,9 @@ namespace dispersa {
 
 namespace {
 
-// Changes of a tenth of a range at first.
+// Mutations are about a tenth of a variable's range at first.
 constexpr double kMutationEta = 10.0;
-// Changes of a percent at the end: the optimum is flat, and a design is rounded to a thousandth anyhow.
+// Mutations are about a percent at the end. The optimum is flat, and a design is rounded to a thousandth.
 constexpr double kFinalMutationEta = 100.0;
 
 double Metric(const FlightResult& result, const std::string& name) {
@@ -44,7 +44,7 @@ bool AllZero(const std::vector<double>& violations) {
   return std::all_of(violations.begin(), violations.end(), [](double v) { return v == 0.0; });
 }
 
-// Fractions by which the gates are missed.
+// Adds the fraction by which the gates are missed.
 void AddViolations(const MeasuredMargins& m, std::vector<double>& violations) {
   const double gain_db = std::min(m.gain_up_db, m.gain_down_db);
   violations.push_back(PassesGates(m) ? 0.0
@@ -56,13 +56,13 @@ void AddViolations(const MeasuredMargins& m, std::vector<double>& violations) {
 constexpr double kBandwidthStep = 0.98;
 constexpr double kHeldBandwidthStep = 0.97;
 constexpr double kWorstSurplus = -1.0;
-// Of a design of one time: from this surplus on, so many steps, of 5 % at first.
+// Refinement of the design of one time: from this surplus on, this number of steps, of 5 % at first.
 constexpr double kWorthRefining = -0.12;
 constexpr int kRefinements = 500;
 constexpr double kRefinementStep = 0.05, kRefinementGrowth = 1.5, kRefinementDecay = 0.97;
 constexpr double kStiffBandwidthOfActuator = 0.165;
 
-// The campaign as the tuning flies it, and what it has found so far.
+// The campaign as the tuning flies it, with the designs found so far.
 class Tuner {
  public:
   Tuner(const Campaign& campaign, const AutopilotConfig& autopilot, const TuningOptions& options)
@@ -70,7 +70,7 @@ class Tuner {
     campaign_.autopilot = autopilot;
     campaign_.sampling = {SamplingMethod::kMonteCarlo, static_cast<std::uint64_t>(options.cases),
                           options.seed};
-    // Of the plant alone what stages are like is asked below.
+    // A first model, only for properties of the plant that the loop below needs.
     start_ = std::make_unique<CampaignFlights>(campaign_);
     for (int stage = 0; stage < Plant().StageCount(); ++stage) {
       StageDesign cautious;
@@ -90,7 +90,7 @@ class Tuner {
     }
     ApplyDesign(kStartAugmentation, campaign_.autopilot);
     start_ = std::make_unique<CampaignFlights>(campaign_);
-    // Of a vehicle that bends the instants are those of its rigid self: untuned, the other may be lost.
+    // The instants are those of the rigid vehicle. The flexible one may be lost while it is not tuned.
     Campaign rigid = campaign_;
     if (rigid.vehicle.structure_beam) rigid.vehicle.structure_beam->flown_modes = 0;
     const CampaignFlights held(rigid);
@@ -142,7 +142,8 @@ class Tuner {
     return FlyAll(model, orders);
   }
 
-  // Of the design that campaign_ has: the constraint that is missed by most, in the order of Evaluate.
+  // For the design in campaign_: the constraint that is missed by most. `violations` are in the order of
+  // Evaluate().
   std::string MissedBy(const std::vector<double>& violations, int stage) const {
     const auto most = std::max_element(violations.begin(), violations.end());
     const std::size_t kind = static_cast<std::size_t>(most - violations.begin());
@@ -159,7 +160,8 @@ class Tuner {
                        (1.0 + violation) * kLimitCycleLimit_deg, kLimitCycleLimit_deg);
   }
 
-  // A rigid vehicle whose autopilot keeps the reference even where the air's instability is doubled.
+  // A rigid vehicle with an autopilot that follows the reference even if the aerodynamic instability is
+  // doubled.
   Campaign Stiff(Campaign rigid) const {
     for (AxisConfig* axis : {&rigid.autopilot.pitch, &rigid.autopilot.yaw, &rigid.autopilot.roll}) {
       axis->filters.clear();
@@ -173,8 +175,9 @@ class Tuner {
     return rigid;
   }
 
-  // Of a point of the search: bandwidth as a fraction of the largest admissible one, and its shape. Where
-  // none is admissible the least one stands, and its margins say by how much they are missed.
+  // The designs at a point of the search. The point's first variable is the bandwidth as a fraction of the
+  // largest admissible one. If no bandwidth is admissible, the lowest is used, and its margins tell by how
+  // much they miss.
   std::vector<StageDesign> DesignOf(const std::vector<double>& point, int stage) const {
     const std::vector<double> times = Plant().TimesOf(stage);
     std::vector<StageDesign> designs;
@@ -184,8 +187,9 @@ class Tuner {
     return designs;
   }
 
-  // At a time of a stage's schedule, as if the whole stage had it: the largest bandwidth and the damping with
-  // which the held plants about that time are held, else those which come nearest.
+  // The design for a time of a stage's schedule, judged as if it held for the whole stage. It has the largest
+  // bandwidth, and a damping, with which the held plants about that time meet their gates. If there is none,
+  // it has those with the largest surplus.
   StageDesign HeldDesign(const std::vector<double>& point, int stage, std::size_t time) const {
     const std::vector<double> times = Plant().TimesOf(stage);
     StageDesign design = Points().ShapeOf(point, stage, times[time]), best = design;
@@ -201,7 +205,7 @@ class Tuner {
         design.bandwidth_rad_s = w;
         design.damping = factor * damping;
         ApplyDesign(std::vector<StageDesign>(times.size(), design), stage, autopilot);
-        // How far a design misses does not matter once it misses by this much.
+        // A surplus below kWorstSurplus is not worth computing exactly.
         const double surplus =
             held_->SurplusOf(autopilot, stage, &last, std::clamp(most, kWorstSurplus, 0.0), time);
         if (surplus <= most) continue;
@@ -215,9 +219,9 @@ class Tuner {
     return best;
   }
 
-  // Where what a stage has in common does not hold the plants about a time, the design of that time departs
-  // from it: a random walk of its bandwidth, damping, integral and filters that keeps what is better, with
-  // steps that grow by success and shrink by failure. The same whatever was tried before.
+  // Improves the design of one time if the common shape misses the gates there. A random walk changes
+  // bandwidth, damping, integral and filters, and keeps each improvement. Steps grow after success and shrink
+  // after failure. The walk does not depend on earlier points of the search.
   void Refine(int stage, std::size_t time, double most, StageDesign& best) const {
     const std::size_t times = Plant().TimesOf(stage).size();
     const double fastest_rad_s = kFastestPoles * kPi / campaign_.autopilot.tick_s;
@@ -281,11 +285,12 @@ class Tuner {
     return evaluation;
   }
 
-  // Objective, tie-breaker and constraints of flight; `suffix` of the metrics of the pitch error.
+  // Adds objective, tie-breaker and constraints from flights of the cases. `suffix` is that of the pitch
+  // error metrics.
   void FlyCandidate(const FlightModel& candidate, const std::string& suffix, Evaluation& evaluation) {
     double sum_deg = 0.0, lost = 0.0, cycle_deg = 0.0;
     for (const FlightResult& flown : FlyCases(candidate)) {
-      // Not every metric of a flight that was lost is defined.
+      // Some metrics of a lost flight are undefined.
       if (flown.outcome != Outcome::kCompleted) {
         lost += 1.0;
         continue;
@@ -299,7 +304,7 @@ class Tuner {
     evaluation.constraint_violations.push_back(std::max(0.0, cycle_deg / kLimitCycleLimit_deg - 1.0));
   }
 
-  // `part`: as in TuningRecord.
+  // `part` is the stage of TuningRecord.
   GeneticAlgorithmResult Minimize(const BoundedProblem& problem, int part,
                                   const TuningObserver& observer) const {
     GeneticAlgorithmOptions search;
@@ -350,7 +355,7 @@ class Tuner {
     return tuned;
   }
 
-  // Of the augmentation that campaign_ has, likewise: one constraint a stage, then those of flight.
+  // For the augmentation in campaign_: one constraint for each stage, then those of flight.
   std::string MissedByAugmentation(const std::vector<double>& violations) const {
     const auto most = std::max_element(violations.begin(), violations.end());
     const std::size_t kind = static_cast<std::size_t>(most - violations.begin());
@@ -388,12 +393,12 @@ class Tuner {
   }
 
   const TuningOptions& options_;
-  Campaign campaign_;  ///< its autopilot: tuned as far as the search has come
+  Campaign campaign_;  ///< its autopilot is tuned as far as the search has come
   std::unique_ptr<CampaignFlights>
-      start_;  ///< all stages untuned: margins are taken about its nominal flight
+      start_;  ///< all stages untuned; margins are computed about its nominal flight
   std::vector<SkippedInstant> skipped_;
   std::optional<NominalMargins> margins_;
-  std::optional<HeldPlants> held_;  ///< where dispersed plants are held
+  std::optional<HeldPlants> held_;  ///< set if dispersed plants are held
   std::atomic<std::uint64_t> flights_ = 0;
 };
 

@@ -1,4 +1,4 @@
-// The vehicle's side of a tuning, which does not depend on the autopilot's design.
+// The vehicle's part of a tuning. It does not depend on the autopilot's design.
 #pragma once
 
 #include <vector>
@@ -10,7 +10,7 @@ namespace dispersa {
 
 struct TunedPlant {
   const Campaign& campaign;
-  const FlightModel& untuned;  ///< of the campaign, all stages untuned
+  const FlightModel& untuned;  ///< model of the campaign with all stages untuned
 
   int StageCount() const { return static_cast<int>(campaign.vehicle.stages.size()); }
   double ActuatorOf(int stage) const {
@@ -18,8 +18,8 @@ struct TunedPlant {
   }
   AutopilotModel ModelOf(const AutopilotConfig& autopilot) const;
   std::vector<double> TimesOf(int stage) const;
-  /// Frequency of the first mode of a stage at a time of its schedule, without a time in the middle of its
-  /// burn; 0 for a stage that does not bend.
+  /// Frequency (rad/s) of the first mode of a stage at a time of its schedule. A stage without times: in the
+  /// middle of its burn. 0 for a stage that does not bend.
   double FirstMode(int stage, double at_s = 0.0) const;
 };
 

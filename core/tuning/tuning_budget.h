@@ -6,13 +6,13 @@
 
 namespace dispersa {
 
-/// Of a generation, so many designs go on as they are.
+/// Number of designs of a generation that pass on unchanged.
 inline constexpr int kElites = 2;
 
-/// Stages, and the augmentation.
+/// Number of searches: one for each stage, and one for the augmentation.
 int SearchesOf(const Campaign& campaign, const AutopilotConfig& autopilot);
 int PopulationOf(const TuningOptions& options);
-/// Generations of a search after the initial one.
+/// Number of generations of a search after the initial one.
 int GenerationsOf(const TuningOptions& options, int searches);
 /// Throws InputError, as Tune does.
 void CheckTuning(const Campaign& campaign, const AutopilotConfig& autopilot, const TuningOptions& options);
