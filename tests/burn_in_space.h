@@ -1,4 +1,4 @@
-// The first stack burns alone in empty space, by the engine's own step.
+// A burn of the first stack alone in empty space, with the engine's own step.
 #pragma once
 
 #include <gtest/gtest.h>

@@ -1,5 +1,4 @@
-// SLV-4 that bends differently in its two planes, guided in a closed loop, with rate gyros weighed in two
-// stages.
+// SLV-4 with different bending in its two planes, closed-loop guidance, and blended rate gyros in two stages.
 #pragma once
 
 #include "core/campaign_yaml/load.h"

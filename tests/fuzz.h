@@ -1,4 +1,4 @@
-// What the tests that damage their input have in common: how much they damage, and their source of chance.
+// Shared by the tests that damage their input: the number of damaged inputs, and the random source.
 #pragma once
 
 #include <gtest/gtest.h>

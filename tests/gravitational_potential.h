@@ -1,4 +1,4 @@
-// The potential of which gravitation is the gradient: a reference of its own for the product's gravitation.
+// A potential with gravitation as its gradient: a reference that is independent of the product's gravitation.
 #pragma once
 
 #include <cmath>

@@ -1,4 +1,4 @@
-// A guidance mission like the shipped launcher's, made up from round numbers.
+// A guidance mission like that of the shipped launcher, with round numbers.
 #pragma once
 
 #include "core/guidance/predictor.h"

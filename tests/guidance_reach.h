@@ -1,6 +1,5 @@
-// What closed-loop guidance makes of motors that are weaker or stronger than they should be, against what
-// flying open loop makes of them: SLV-4 on the reference with a reserve of 60 m/s, one stage's specific
-// impulse off at a time.
+// Closed-loop guidance compared with open-loop flight, for motors that are weaker or stronger than nominal.
+// SLV-4 on the reference with a reserve of 60 m/s, with the specific impulse of one stage changed at a time.
 #pragma once
 
 #include <gtest/gtest.h>

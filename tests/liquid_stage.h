@@ -1,5 +1,5 @@
-// SLV-4 with a liquid stage in the place of a solid one, of the same masses, thrust and specific impulse; its
-// liquids are made up, dense enough for the room that the grain had.
+// SLV-4 with a liquid stage instead of a solid one, of the same masses, thrust and specific impulse. Its
+// liquids are made up: dense enough for the volume of the grain.
 #pragma once
 
 #include "core/vehicle/vehicle.h"

@@ -1,10 +1,10 @@
-// The public three-stage launcher of tests/data/aero, as a body that the build-up can work on.
+// The public three-stage launcher of tests/data/aero, as a body for the aerodynamic build-up.
 //
 // The launcher's tables are Missile DATCOM's; its geometry is not published. Known are the reference diameter
-// (2.032 m), the gimbal's station (16.84 m from the nose) and the masses and inertias, which put the stages'
-// propellant at 4.1, 7.0 and 12.7 m and their radii of gyration at those of cylinders of about 1.5, 1.6 and
-// 1.9 m. The profile below has these, with a payload fairing whose diameter and bluntness follow from the
-// hypersonic limits of the upper stages' tables (C_Na 1.15 and CA 0.36 on 3.243 m^2, Newtonian).
+// (2.032 m), the gimbal's station (16.84 m from the nose), and the masses and inertias. These put the stages'
+// propellant at 4.1, 7.0 and 12.7 m, with radii of gyration of cylinders of about 1.5, 1.6 and 1.9 m. The
+// profile below has these. The diameter and bluntness of its payload fairing follow from the hypersonic
+// limits of the upper stages' tables. These are C_Na 1.15 and CA 0.36 on 3.243 m^2, Newtonian.
 #pragma once
 
 #include <fstream>

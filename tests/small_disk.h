@@ -1,4 +1,4 @@
-// What a child process says that sees a folder as a disk of its own, which is soon full.
+// The output of a child process in which a folder is a small disk of its own, which soon fills up.
 #pragma once
 
 #include <sched.h>

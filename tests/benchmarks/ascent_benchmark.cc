@@ -1,4 +1,4 @@
-// What an ascent of the optimiser costs in 1, 4 and 8 lanes, and the whole optimisation, on one core.
+// Time of an ascent of the optimiser in 1, 4 and 8 lanes, and of a whole optimisation, on one core.
 #include <benchmark/benchmark.h>
 
 #include <string>

@@ -1,5 +1,5 @@
-// What a flight costs on one core, and where the time goes. Compare figures of one run with one another, not
-// with those of another machine.
+// Time of a flight on one core, and its shares. Compare figures of one run with each other, not with another
+// machine's.
 #include <benchmark/benchmark.h>
 
 #include <string>

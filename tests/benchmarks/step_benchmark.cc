@@ -1,5 +1,5 @@
-// The floor of what a flight costs: its steps alone, without autopilot, metrics and events, and the
-// right-hand side.
+// Lower bound of a flight's time: its steps alone, without autopilot, metrics and events, and the right-hand
+// side.
 #include <benchmark/benchmark.h>
 
 #include <algorithm>

@@ -1,5 +1,5 @@
-// The step of one width for one instruction set: compiled once for each (CMakeLists.txt), by the rules of
-// core/flight/fly_lanes.cc.
+// The step of one width for one instruction set. It is compiled once for each set (CMakeLists.txt), by the
+// rules of core/flight/fly_lanes.cc.
 #include "tests/benchmarks/step_instances.h"
 
 #include "core/flight/simpson_step.h"

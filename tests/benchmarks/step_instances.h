@@ -1,4 +1,4 @@
-// The engine's step and its right-hand side without the rest of a flight: the floor of what a flight costs.
+// The engine's step and its right-hand side without the rest of a flight: a lower bound of a flight's time.
 #pragma once
 
 #include <vector>

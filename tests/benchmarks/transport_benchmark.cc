@@ -1,4 +1,4 @@
-// What a case costs on the network: loopback, a coordinator and a worker that "flies" at once.
+// Time of a case on the network: loopback, a coordinator, and a worker that returns results at once.
 #include <benchmark/benchmark.h>
 #include <sys/resource.h>
 

@@ -1,4 +1,4 @@
-// The one door of a flight library: the core as another compiler, or another optimisation level, made it.
+// The only function of a flight library: the core built by another compiler or at another optimisation level.
 #pragma once
 
 #include <cstdint>

@@ -1,5 +1,5 @@
-// same_flights CAMPAIGNS LIBRARY...: flies a few cases of the campaigns that ship with the core of this build
-// and with each flight library, and compares every bit. Exit code 0: all the same; 1: not.
+// same_flights CAMPAIGNS LIBRARY...: flies a few cases of the shipped campaigns with the core of this build
+// and with each flight library, and compares every bit. Exit code 0: all equal; 1: not.
 #include <dlfcn.h>
 #include <fmt/format.h>
 

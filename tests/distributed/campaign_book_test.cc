@@ -1,4 +1,4 @@
-// A campaign's book over a real result folder: when it stops, what it counts, what it stores.
+// A campaign's book over a real result folder: its end, its counts, and the stored results.
 #include "services/ledger/campaign_book.h"
 
 #include <gmock/gmock.h>

@@ -1,5 +1,5 @@
-// The coordinator against workers that do what real ones must never do. The "workers" speak the real protocol
-// over real sockets, but make up their results.
+// The coordinator against workers that break the protocol. The "workers" use the real protocol over real
+// sockets, but make up their results.
 #include "services/coordinator/coordinator.h"
 
 #include <gmock/gmock.h>

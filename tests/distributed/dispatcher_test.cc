@@ -1,4 +1,4 @@
-// The coordinator's rules with made-up time and messages: who is believed, what is repeated, who is blamed.
+// The coordinator's rules with made-up time and messages: trust in workers, repeated assignments, and blames.
 #include "services/coordinator/dispatcher.h"
 
 #include <gmock/gmock.h>

@@ -1,4 +1,5 @@
-// A home folder of one test: what programs keep there is not the user's who runs the tests.
+// A home folder for one test. Programs keep files there, and must not touch that of the user who runs the
+// tests.
 #pragma once
 
 #include <stdlib.h>

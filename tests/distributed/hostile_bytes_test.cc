@@ -1,4 +1,5 @@
-// Bytes from strangers: what a decoder or the middleware could be harmed by is told from what is well-formed.
+// Bytes from strangers: malformed ones, which could harm a decoder or the middleware, are told from
+// well-formed ones.
 #include <gtest/gtest.h>
 
 #include <cstdint>

@@ -1,4 +1,5 @@
-// With keys over real sockets: who is signed is heard, under his own name, and nothing in plain is believed.
+// Keys over real sockets: a signed participant is heard under its own name, and unprotected messages are not
+// believed.
 #include <arpa/inet.h>
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>

@@ -1,4 +1,5 @@
-// What `watch --web` makes of a coordinator's answers: texts stay texts, words are the report's.
+// The data of the page of `watch --web`, made from a coordinator's answers: texts stay texts, words are those
+// of the report.
 #include "services/cli/live_page.h"
 
 #include <gmock/gmock.h>

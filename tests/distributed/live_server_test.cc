@@ -1,4 +1,5 @@
-// The page of `watch --web` over a real socket, byte by byte: who may read it, and what each browser is sent.
+// The page of `watch --web` over a real socket, byte by byte: who may read it, and the messages to each
+// browser.
 #include "services/cli/live_server.h"
 
 #include <arpa/inet.h>

@@ -1,5 +1,5 @@
-// A service's workers without a network: the real dispatcher with made-up time, and workers who return
-// made-up results.
+// A service's workers without a network: the real dispatcher with made-up time, and workers with made-up
+// results.
 #pragma once
 
 #include <cstdint>

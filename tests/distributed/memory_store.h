@@ -1,4 +1,4 @@
-// Results in memory, as a result folder holds them.
+// Results in memory instead of a result folder.
 #pragma once
 
 #include <cstddef>

@@ -1,5 +1,5 @@
-// A campaign that is given to a coordinator, followed and brought home: without a network, against a real
-// front desk and against coordinators that are made up.
+// A campaign sent to a coordinator, followed, and copied back, without a network: against a real front desk,
+// and against made-up coordinators.
 #include "services/client/remote_campaign.h"
 
 #include <gmock/gmock.h>

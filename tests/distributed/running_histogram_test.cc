@@ -1,4 +1,4 @@
-// Histograms of results that still come: order does not matter, memory is bounded.
+// Histograms of results that are still arriving: the order does not matter, and memory is bounded.
 #include "services/ledger/running_histogram.h"
 
 #include <gmock/gmock.h>

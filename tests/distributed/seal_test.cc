@@ -1,4 +1,5 @@
-// The secret of a run: who has it is listened to, who has not, or says again what others said, is not.
+// The secret of a run: a sender with the secret is believed. One without it, or one that repeats others'
+// messages, is not.
 #include "services/transport/seal.h"
 
 #include <fcntl.h>

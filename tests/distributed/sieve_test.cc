@@ -1,4 +1,4 @@
-// The limits of the sieve: the last datagram that passes, and the first that does not.
+// The limits of the sieve: the largest datagram that passes, and the smallest that does not.
 #include "services/transport/sieve.h"
 
 #include <gtest/gtest.h>

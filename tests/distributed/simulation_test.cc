@@ -1,7 +1,7 @@
-// The real ledger, dispatcher and flight desks over a made-up network: messages are lost, repeated, reordered
-// and delayed, connections fall deaf or dumb, workers and coordinators die at any step, workers lie where all
-// is audited, and still every campaign comes to its end with the right results. DISPERSA_SIMULATED_WORLDS:
-// how many worlds (default 2000; tests/run --long: 1,000,000).
+// The real ledger, dispatcher and flight desks over a made-up network. Messages are lost, repeated, reordered
+// and delayed. Connections fail in one or both directions. Workers and coordinators die at any step. Workers
+// return false results if all cases are audited. Still every campaign ends with the right results.
+// DISPERSA_SIMULATED_WORLDS: number of worlds (default 2000; tests/run --long: 1,000,000).
 #include <gtest/gtest.h>
 
 #include <algorithm>

@@ -1,4 +1,4 @@
-// Messages over real sockets: every field arrives, doubles to the last bit, and departure is noticed.
+// Messages over real sockets: every field arrives, doubles to the last bit, and a departure is noticed.
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 

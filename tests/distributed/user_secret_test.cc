@@ -1,4 +1,4 @@
-// The secret that the programs of one user share on a machine, and whose file is taken for it.
+// The secret that the programs of one user share on a machine, and the files that are accepted for it.
 #include "services/transport/user_secret.h"
 
 #include <gtest/gtest.h>

@@ -1,4 +1,4 @@
-// Each rule for a message: the last one that passes, the first that does not, and the log's words for it.
+// Each rule for a message: the last message that passes, the first that does not, and the text in the log.
 #include "services/transport/validity.h"
 
 #include <gtest/gtest.h>

@@ -1,4 +1,4 @@
-// A real worker against a coordinator that is made up: what the worker answers, and in whose name.
+// A real worker against a made-up coordinator: the worker's answers, and the names in them.
 #include "services/worker/worker.h"
 
 #include <gtest/gtest.h>

@@ -1,5 +1,5 @@
-// What every control law promises (core/control/law.h), whichever it is: all that it remembers is in the
-// memory that it is given, lanes know nothing of each other, and a stage begins as its configuration says.
+// The promises of every control law (core/control/law.h): its state is only in the memory that it is given,
+// lanes do not affect each other, and a stage begins as its configuration says.
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 

@@ -1,4 +1,5 @@
-// A flight is a pure function of its arguments: whatever flew before it, beside it, or on which thread.
+// A flight is a pure function of its arguments. Flights before it or beside it, and its thread, do not change
+// it.
 #include <gtest/gtest.h>
 
 #include <thread>

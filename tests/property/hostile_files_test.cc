@@ -1,6 +1,5 @@
-// Damaged files: whatever stands in a YAML file or a stored database, the answer is what the file says or an
-// error that names what is wrong, and never a wrong number. tests/fuzz.h: how many of each kind, and their
-// seed.
+// Damaged files: a YAML file or a stored database with any content. The answer is the content, or an error
+// that names the damage. It is never a wrong number. tests/fuzz.h: the number of each kind, and their seed.
 #include <gtest/gtest.h>
 
 #include <algorithm>

@@ -1,5 +1,5 @@
-// Every field of an autopilot counts: changed alone it changes the autopilot's text and the campaign's flight
-// id, and the text gives it back.
+// Every field of an autopilot counts. Changing one field changes the autopilot's text and the campaign's
+// flight id, and the text reads back to the field.
 #include <gtest/gtest.h>
 
 #include <functional>

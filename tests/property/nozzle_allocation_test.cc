@@ -1,5 +1,5 @@
-// Commands go to drives and come back, for layouts drawn at random: one to four nozzles anywhere, with none
-// to two hinges each, alone and side by side.
+// Commands to drives and back, for random layouts: one to four nozzles anywhere, with none to two hinges
+// each, alone and side by side.
 #include <gtest/gtest.h>
 
 #include <algorithm>

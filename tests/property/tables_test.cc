@@ -1,4 +1,4 @@
-// Table look-up on random grids, against a search from the front and the definition of a straight line.
+// Table look-up on random grids, against a linear search and the definition of a straight line.
 #include <gtest/gtest.h>
 
 #include <algorithm>

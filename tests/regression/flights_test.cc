@@ -1,4 +1,4 @@
-// What a few flights of every kind return today, to the bit: digest, metrics, and the inputs that were drawn.
+// Today's results of a few flights of every kind, to the bit: digest, metrics, and drawn inputs.
 #include <gtest/gtest.h>
 
 #include <algorithm>

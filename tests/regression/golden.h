@@ -1,8 +1,8 @@
-// Goldens: today's numbers as text, against unintended change. They say nothing about truth;
+// Goldens: today's numbers as text, against unintended change. They do not show that a number is true;
 // tests/verification does.
 //
-// The text holds an entry a line: a name, a space and a value. Lines in brackets begin a section, lines with
-// # are comments.
+// Each line of the text is an entry: a name, a space and a value. Lines in brackets begin a section, lines
+// with # are comments.
 #pragma once
 
 #include <cstdlib>

@@ -1,5 +1,5 @@
-// Every verdict, interval and bound, 20,000 times on made-up campaigns: how often it errs against how often
-// it says it may. Prints the table of core/statistics/README.md, and holds that to it.
+// Every verdict, interval and bound, 20,000 times on made-up campaigns: the simulated rate of errors against
+// the stated one. Prints the table of core/statistics/README.md, and compares that table with it.
 #include <algorithm>
 #include <cmath>
 #include <cstdio>

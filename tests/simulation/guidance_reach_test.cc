@@ -1,5 +1,4 @@
-// Closed-loop guidance at the edge of its reach, each stage's specific impulse in steps of a tenth of a per
-// cent.
+// Closed-loop guidance at the edge of its reach, with each stage's specific impulse in steps of 0.1 %.
 #include "tests/guidance_reach.h"
 
 namespace dispersa::guidance_reach_test {

@@ -1,4 +1,4 @@
-// Several charts as one picture that needs no page around it, and as a section of a page.
+// Several charts as one picture, either self-contained or as a section of a page.
 #pragma once
 
 #include <string>

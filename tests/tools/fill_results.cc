@@ -1,6 +1,6 @@
-// A result folder of as many cases as wanted, to measure what reads it: inputs as the campaign draws them,
-// metrics made up from those of a few flights. Its reports are made with --no-histories: the flights were not
-// flown.
+// Writes a result folder with any number of cases, to measure the programs that read it. Inputs are drawn by
+// the campaign; metrics are made up from those of a few flights. Make its reports with --no-histories: the
+// flights were not flown.
 #include <fmt/format.h>
 
 #include <cmath>

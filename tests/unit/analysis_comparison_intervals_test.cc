@@ -1,5 +1,5 @@
-// Every number of a comparison lies inside its interval, whichever way its metric is good and whichever way
-// it moved.
+// Every number of a comparison lies inside its interval, for any sense of its metric and any direction of the
+// change.
 #include <gtest/gtest.h>
 
 #include <algorithm>

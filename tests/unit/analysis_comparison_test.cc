@@ -1,4 +1,4 @@
-// Pairing of cases, and what is said of two campaigns.
+// Pairing of cases, and the statements about two campaigns.
 #include "core/analysis/comparison.h"
 
 #include <gmock/gmock.h>

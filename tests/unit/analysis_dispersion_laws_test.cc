@@ -1,4 +1,4 @@
-// What a report expects of each law: its moments in closed form, and its words.
+// Moments and words of each distribution in a report: moments in closed form, and full texts.
 #include <gtest/gtest.h>
 
 #include <cmath>

@@ -1,4 +1,4 @@
-// A dispersion that never reached the flights, or reached them wrong, shows in the report.
+// The report shows a dispersion that did not reach the flights, or reached them wrongly.
 #include "core/analysis/dispersion_summary.h"
 
 #include <gtest/gtest.h>

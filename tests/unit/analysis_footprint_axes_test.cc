@@ -1,5 +1,5 @@
-// Impact points of known covariance, turned to every azimuth: their ellipses, as GeoJSON and KML state them.
-// Places come from the radii of curvature of the ellipsoid, which the product does not use.
+// Impact points of known covariance, turned to every azimuth: their ellipses in GeoJSON and KML. Places are
+// computed from the radii of curvature of the ellipsoid, which the product does not use.
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 

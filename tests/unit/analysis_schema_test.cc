@@ -1,4 +1,4 @@
-// summary.json keeps to its published schema, core/analysis/summary.schema.json.
+// summary.json conforms to its published schema, core/analysis/summary.schema.json.
 #include <fstream>
 
 #include <gmock/gmock.h>

@@ -1,4 +1,5 @@
-// Campaigns with gaps and losses: case indices that are no rows, several lost flights, several requirements.
+// Campaigns with gaps and losses: case indices that differ from rows, several lost flights, several
+// requirements.
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 

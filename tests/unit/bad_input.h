@@ -1,4 +1,4 @@
-// One edit of the valid files, and what `validate` then says about a file.
+// One change of the valid files, and the message of `validate` about it.
 #pragma once
 
 #include <ostream>

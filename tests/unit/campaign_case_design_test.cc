@@ -1,4 +1,4 @@
-// Which inputs a case has, by every sampling method.
+// The inputs of a case, by every sampling method.
 #include "core/campaign/case_design.h"
 
 #include <gtest/gtest.h>

@@ -1,4 +1,4 @@
-// An autopilot survives its file.
+// An autopilot that is written to a file and read back is the same.
 #include <gtest/gtest.h>
 
 #include <filesystem>

@@ -1,5 +1,4 @@
-// A vehicle's beam from its file: what is read, what is said about mistakes, and that vehicles can be based
-// on others.
+// The beam of a vehicle file: values read, messages about mistakes, and vehicles based on others.
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 

@@ -1,4 +1,4 @@
-// Boosters in a vehicle's file: what is read, and what is said about what is wrong.
+// Boosters in a vehicle file: values read, and messages about mistakes.
 #include <gtest/gtest.h>
 
 #include <string>

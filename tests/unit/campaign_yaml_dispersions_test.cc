@@ -1,4 +1,4 @@
-// What the dispersions of a campaign file become.
+// The dispersions of a campaign file as draws of inputs.
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 

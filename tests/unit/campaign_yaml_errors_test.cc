@@ -1,4 +1,4 @@
-// Full texts of what is said about bad input files: place, value, what is wrong, what is allowed.
+// Full texts of errors about input files: place, value, mistake, and what is allowed.
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 

@@ -1,4 +1,4 @@
-// Texts from anywhere: however large, deep or damaged, reading ends soon, with a message.
+// Texts from any source: however large, nested or damaged, reading ends soon, with a message.
 #include <gtest/gtest.h>
 
 #include <chrono>

@@ -1,4 +1,4 @@
-// Liquid stages of vehicle files, and each bad input's full text.
+// Liquid stages in vehicle files, with the full text for each mistake.
 #include <gtest/gtest.h>
 
 #include "core/campaign_yaml/load.h"

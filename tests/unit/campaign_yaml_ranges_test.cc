@@ -1,4 +1,4 @@
-// Each number of a vehicle's file has one range, which is what a user is told beyond it.
+// Each number of a vehicle file has one range, and the error for a value outside states it.
 #include <gtest/gtest.h>
 
 #include <string>

@@ -1,4 +1,4 @@
-// A reference survives its file; numbers survive their text.
+// A reference, and every number, that is written and read back is the same.
 #include <gtest/gtest.h>
 
 #include <bit>

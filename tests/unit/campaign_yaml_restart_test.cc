@@ -1,4 +1,4 @@
-// Engines that burn again and cut-off at a velocity in vehicle files, and each bad input's full text.
+// Restarts and cut-off at a velocity in vehicle files, with the full text for each mistake.
 #include <gtest/gtest.h>
 
 #include "core/campaign_yaml/load.h"

@@ -1,4 +1,4 @@
-// Scenario files: what is read, and the full text of what is said about bad ones.
+// Scenario files: values read, and full texts for mistakes.
 #include <gtest/gtest.h>
 
 #include "core/campaign_yaml/load.h"

@@ -1,5 +1,4 @@
-// Dispersions of stages, masses, events and lift-off: what they become, and the full texts of what is wrong
-// with them.
+// Dispersions of stages, masses, events and lift-off: the draws they become, and full texts for mistakes.
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 

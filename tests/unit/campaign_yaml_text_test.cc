@@ -1,4 +1,4 @@
-// Texts of files before anything is read from them: encodings, tabs, tables and base64.
+// Text of files before any key is read: encodings, tabs, tables and base64.
 #include <gtest/gtest.h>
 
 #include <string>

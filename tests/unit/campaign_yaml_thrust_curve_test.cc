@@ -1,4 +1,4 @@
-// Thrust curves of vehicle files: tables, .eng files, what contradicts them, each bad input's full text.
+// Thrust curves in vehicle files: tables, .eng files, contradictions, with the full text for each mistake.
 #include <gtest/gtest.h>
 
 #include "core/campaign_yaml/load.h"

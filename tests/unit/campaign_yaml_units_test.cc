@@ -1,4 +1,4 @@
-// Any quantity in any of its units is read as the same value, written so that it reads back, and limited in
+// Any quantity in any of its units: read as the same value, written so that it reads back, and limited in
 // that unit.
 #include <gtest/gtest.h>
 

@@ -1,4 +1,4 @@
-// What a campaign's flights are made of, and that a queue of cases is flown as each case by itself.
+// The parts of a campaign's flights. A queue of cases gives the same results as each case by itself.
 #include "core/cases/campaign_flights.h"
 
 #include <gtest/gtest.h>

@@ -1,4 +1,4 @@
-// What commands print of vehicles, searches and campaigns, in full.
+// Full texts that commands print about vehicles, searches and campaigns.
 #include <gtest/gtest.h>
 
 #include <cmath>

@@ -1,4 +1,4 @@
-// Made-up results of two campaigns, as a comparison takes them.
+// Made-up results of two campaigns for a comparison.
 #pragma once
 
 #include <cstdint>

@@ -1,4 +1,4 @@
-// The three axes together: stages, mixing, saturation, reaction control, and what a file may not say.
+// The three axes together: stages, mixing, saturation, reaction control, and contradictions in a file.
 #include "core/control/autopilot.h"
 
 #include <gtest/gtest.h>

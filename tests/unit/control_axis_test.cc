@@ -1,4 +1,4 @@
-// One axis of the autopilot, tick by tick: the law, its guards, and what each must not change.
+// One axis of the autopilot, tick by tick: the law, its guards, and the effects that each must not have.
 #include "core/control/axis_controller.h"
 
 #include <gtest/gtest.h>

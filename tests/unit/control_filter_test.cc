@@ -1,4 +1,4 @@
-// Second-order sections behind a law.
+// Second-order sections after a control law.
 #include "core/control/filter.h"
 
 #include <gtest/gtest.h>

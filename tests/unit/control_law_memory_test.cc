@@ -1,4 +1,4 @@
-// What a law writes beside its memory is seen, or ends its process.
+// A law that writes outside its memory is detected, or its process ends.
 #include "core/control/law_memory.h"
 
 #include <gtest/gtest.h>

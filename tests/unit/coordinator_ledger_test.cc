@@ -1,4 +1,4 @@
-// The ledger with made-up time, and a world of dying, hanging, lying and repeating workers around it.
+// The ledger with made-up time and workers that die, hang, return false results and repeat themselves.
 #include "services/ledger/ledger.h"
 
 #include <algorithm>

@@ -1,5 +1,5 @@
-// Air on a body that bends, and what its sections carry by bending: against rigid motions that modes can
-// stand for, virtual work, and the balance of masses on a line.
+// The flow on a flexible body, and the loads in its sections. Compared with rigid motions that modes can
+// represent, virtual work, and the balance of masses on a line.
 #include <gtest/gtest.h>
 
 #include <cmath>

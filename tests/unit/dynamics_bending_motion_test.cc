@@ -1,4 +1,5 @@
-// What bending does to places of the body, what forces there do to the modes, and how the modes swing.
+// The effect of bending on places of the body, the effect of forces there on the modes, and the modes'
+// oscillation.
 #include <gtest/gtest.h>
 
 #include <cmath>

@@ -1,4 +1,4 @@
-// What a flight looks up of its modes: at any propellant, in both planes, with the flight's factors.
+// Look-up of modes in flight: at any propellant, in both planes, with the flight's factors.
 #include <gtest/gtest.h>
 
 #include <cmath>

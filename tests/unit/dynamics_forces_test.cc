@@ -1,5 +1,5 @@
-// Where forces act: whatever the vehicle is made of, a moment is a lever times a force. Each case is held
-// against the same case with one thing moved.
+// Points of application of forces: for any vehicle, a moment is a lever times a force. Each case is compared
+// with the same case with one thing moved.
 #include <gtest/gtest.h>
 
 #include <cmath>

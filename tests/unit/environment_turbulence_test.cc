@@ -1,4 +1,4 @@
-// Turbulence: figure 7 as published, the low-altitude model's numbers, and the spectra of realisations.
+// Turbulence: figure 7 as published, numbers of the low-altitude model, and spectra of realisations.
 #include "core/environment/turbulence.h"
 
 #include <gtest/gtest.h>

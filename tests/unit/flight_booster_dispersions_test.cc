@@ -1,6 +1,5 @@
-// Boosters whose flight is dispersed: thrust, flow and burn times, what the vehicle weighs at every tick, and
-// the momentum that it gains, by conservation. The sample vehicle with two boosters, where there is next to
-// no air.
+// Dispersed boosters: thrust, flow and burn times, the vehicle's mass at every tick, and the momentum gained,
+// by conservation. The sample vehicle with two boosters flies in almost no air.
 #include <gtest/gtest.h>
 
 #include <algorithm>

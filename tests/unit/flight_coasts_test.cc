@@ -1,5 +1,5 @@
-// Coasts before stages other than the last: timed ignition and reaction control there, in six degrees of
-// freedom and of the optimiser's point mass.
+// Coasts before stages other than the last: timed ignition and reaction control, in six degrees of freedom
+// and in the optimiser's point mass.
 #include <gtest/gtest.h>
 
 #include <algorithm>

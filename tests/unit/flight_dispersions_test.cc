@@ -1,4 +1,4 @@
-// What each input of a flight does to its plant and to its flight. The sample vehicle flies above the air.
+// The effect of each input on the plant and on the flight. The sample vehicle flies above the air.
 #include <gtest/gtest.h>
 
 #include <algorithm>

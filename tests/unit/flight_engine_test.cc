@@ -1,5 +1,4 @@
-// What the engine does at the seams of a flight: between thruster cycles, at ignition and burnout, at its
-// end.
+// The engine at the joints of a flight: between thruster cycles, at ignition and burnout, and at its end.
 #include <gtest/gtest.h>
 
 #include <algorithm>

@@ -1,5 +1,4 @@
-// A flexible vehicle whose masses are dispersed: its modes and what its sections carry are those of the
-// masses that fly.
+// A flexible vehicle with dispersed masses: its modes and section loads are those of the dispersed masses.
 #include <gtest/gtest.h>
 
 #include <cmath>

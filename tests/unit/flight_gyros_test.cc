@@ -1,4 +1,4 @@
-// Rate gyros: start, rounding and sampling of one, and how flights blend several, stage by stage.
+// Rate gyros: start, rounding and sampling of one, and blending of several, stage by stage.
 #include <gtest/gtest.h>
 
 #include <cmath>

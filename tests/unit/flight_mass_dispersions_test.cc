@@ -1,5 +1,5 @@
-// What dispersed masses do to a vehicle and its flight, against closed forms. The sample vehicle flies where
-// there is next to no air.
+// The effect of dispersed masses on a vehicle and its flight, against closed forms. The sample vehicle flies
+// in almost no air.
 #include <gtest/gtest.h>
 
 #include <cmath>

@@ -1,5 +1,4 @@
-// What dispersed masses and delays change of a vehicle and its timeline, stage by stage: nothing of any
-// other.
+// Dispersed masses and delays change a vehicle and its timeline only in their own stage.
 #include <gtest/gtest.h>
 
 #include <cmath>

@@ -1,5 +1,5 @@
-// Flights whose nozzles are a list: forces by hand, a list that is the cross, roll by the reaction control
-// under thrust, stuck and departing nozzles.
+// Flights with a list of nozzles: forces by hand, a list equal to the cross, roll by the reaction control
+// under thrust, stuck and misaligned nozzles.
 #include <gtest/gtest.h>
 
 #include <algorithm>

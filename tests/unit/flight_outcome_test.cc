@@ -1,4 +1,4 @@
-// How flights end, and what must not change them. The sample vehicle flies above the air.
+// The ends of flights, and conditions that must not change them. The sample vehicle flies above the air.
 #include <gtest/gtest.h>
 
 #include <cmath>

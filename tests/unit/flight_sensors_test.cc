@@ -1,4 +1,4 @@
-// Sensors as flights use them: the gyro's section, what is asked of gyros, and the inertial unit's drift.
+// Sensors in flight: the gyro's section, the requirements on gyros, and the inertial unit's drift.
 #include <gtest/gtest.h>
 
 #include <cmath>

@@ -1,5 +1,4 @@
-// Delays, lift-off errors and departures by components: what they do to a flight where there is next to no
-// air.
+// Delays, lift-off errors and errors by components: their effect on a flight in almost no air.
 #include <gtest/gtest.h>
 
 #include <algorithm>

@@ -1,4 +1,4 @@
-// When stages ignite, burn out and separate.
+// Times of ignition, burnout and separation of stages.
 #include "core/flight/sequence.h"
 
 #include <gtest/gtest.h>

@@ -1,5 +1,4 @@
-// Turbulence as a flight uses it: which field a case meets, and that its three components know nothing of
-// each other.
+// Turbulence in flight: the field of a case, and the independence of its three components.
 #include <gtest/gtest.h>
 
 #include <array>

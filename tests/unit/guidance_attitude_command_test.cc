@@ -1,4 +1,4 @@
-// The commanded attitude: within its limits, and where it is wanted.
+// The commanded attitude: it keeps its limits and reaches the desired attitude.
 #include <gtest/gtest.h>
 
 #include <cmath>

@@ -1,5 +1,5 @@
-// Decisions of closed-loop guidance, one at a time: when it steers, what it measures of the thrust, when the
-// last stage ignites, and whether it says that it arrives.
+// Decisions of closed-loop guidance, one at a time: when it steers, its measurement of the thrust, the last
+// ignition, and its statement that it reaches the target.
 #include <gtest/gtest.h>
 
 #include <cmath>

@@ -1,4 +1,4 @@
-// The corrector over random states, and where there is nothing to be found.
+// The corrector at random states, and at states without a solution.
 #include <gtest/gtest.h>
 
 #include <cmath>

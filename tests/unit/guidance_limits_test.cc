@@ -1,4 +1,5 @@
-// What guidance may ask of a vehicle: from its nozzles, thrusters and deadband, unless the campaign says it.
+// The limits of guidance commands, from a vehicle's nozzles, thrusters and deadband, unless the campaign
+// gives them.
 #include <gtest/gtest.h>
 
 #include "core/control/autopilot_config.h"

@@ -1,5 +1,4 @@
-// A spent stage by hand: what it weighs, where it is when it leaves and how fast, from a history made up for
-// it.
+// A spent stage by hand: its mass, and its position and velocity at separation, from a made-up history.
 #include <gtest/gtest.h>
 
 #include <cmath>

@@ -1,4 +1,4 @@
-// What a description's calls read from a map, and what is said of maps that do not fit it.
+// The values that a description reads from a map, and the messages about maps that do not fit it.
 #include <gtest/gtest.h>
 
 #include <string>

@@ -1,4 +1,4 @@
-// A copy of tests/data/yaml in a folder of its own, to be edited by one test.
+// A copy of tests/data/yaml in a separate folder, for one test to edit.
 #pragma once
 
 #include <gtest/gtest.h>

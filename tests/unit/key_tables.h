@@ -1,4 +1,4 @@
-// The keys of the input files as tables of Markdown, from their descriptions.
+// The keys of the input files as Markdown tables, from their descriptions.
 #pragma once
 
 #include <algorithm>

@@ -1,4 +1,4 @@
-// A body that bends in shapes known in closed form: cubics of the station, with eight masses on a line.
+// A body with bending shapes in closed form: cubics of the station, with eight masses on a line.
 #pragma once
 
 #include <array>

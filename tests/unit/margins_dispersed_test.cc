@@ -1,4 +1,4 @@
-// The least margins of a campaign's cases against those of each case by itself.
+// The least margins over a campaign's cases, against those of each case by itself.
 #include "core/margins/dispersed_margins.h"
 
 #include <gtest/gtest.h>

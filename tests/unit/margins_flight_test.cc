@@ -1,4 +1,4 @@
-// Linearised and measured margins of a flight, and the inputs that spoil its loop.
+// Linearised and measured margins of a flight, and the inputs that disturb its loop.
 #include "core/margins/flight_margins.h"
 
 #include <gtest/gtest.h>

@@ -1,5 +1,4 @@
-// What margins must pass, and what is made of several plants, laws and instants: each by the loops that it is
-// made of.
+// The gates for margins, and the least margins over several plants, laws and instants, each from its loops.
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 

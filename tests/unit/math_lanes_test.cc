@@ -1,4 +1,5 @@
-// A lane of a pack has the bits of the same operation on one double, for every operation and any argument.
+// A lane of a pack has the same bits as the same operation on one double, for every operation and any
+// argument.
 #include "core/math/lanes.h"
 
 #include <gtest/gtest.h>

@@ -1,5 +1,5 @@
-// Quaternions, matrices, rotation vectors and Euler angles: each of them from the others, and at their
-// singular places.
+// Quaternions, matrices, rotation vectors and Euler angles: conversion of each to the others, also at
+// singularities.
 #include <gtest/gtest.h>
 
 #include <algorithm>

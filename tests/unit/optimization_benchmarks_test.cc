@@ -1,4 +1,4 @@
-// Constrained problems from the literature, solved by the genetic algorithm to their published optimum.
+// Constrained problems from the literature: the genetic algorithm finds their published optimum.
 #include <gtest/gtest.h>
 
 #include <cmath>

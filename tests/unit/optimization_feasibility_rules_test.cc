@@ -1,4 +1,4 @@
-// Deb's rules, the tie-breaker, and what becomes of values that are not finite.
+// Deb's rules, the tie-breaker, and values that are not finite.
 #include <gtest/gtest.h>
 
 #include <limits>

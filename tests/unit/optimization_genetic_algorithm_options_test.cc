@@ -1,4 +1,4 @@
-// Each option and each part of a problem out of its range is named, with its value and what is allowed.
+// Each option, and each part of a problem, that is out of range is named, with its value and what is allowed.
 #include <gtest/gtest.h>
 
 #include <cmath>

@@ -1,4 +1,4 @@
-// Least squares: known solutions, each way to end, bounds, differencing sides, scales and errors.
+// Least squares: known solutions, each status at the end, bounds, sides of differencing, scales and errors.
 #include <gtest/gtest.h>
 
 #include <algorithm>

@@ -1,4 +1,4 @@
-// Crossover and mutation: bounds, symmetry and the distributions that their sources give.
+// Crossover and mutation: bounds, symmetry, and the distributions of their sources.
 #include <gtest/gtest.h>
 
 #include <cmath>

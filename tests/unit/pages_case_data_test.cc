@@ -1,4 +1,4 @@
-// What the page's script knows: bounded, and what cases.csv says.
+// The data of the page's script: bounded in size, and equal to cases.csv.
 #include "core/pages/case_data.h"
 
 #include <algorithm>

@@ -1,4 +1,4 @@
-// The whole of a report, from flights of the engine: the same bytes whoever flew them, in whatever order.
+// A whole report from flights of the engine: the same bytes for any worker and any order.
 #include "core/pages/reports.h"
 
 #include <gmock/gmock.h>

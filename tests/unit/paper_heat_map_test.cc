@@ -1,4 +1,4 @@
-// What a cell of a map shows.
+// The text of a cell of a heat map.
 #include "core/paper/heat_map.h"
 
 #include <string>

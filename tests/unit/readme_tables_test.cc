@@ -1,4 +1,4 @@
-// The tables of metrics and inputs in README files are made of their declarations.
+// The tables of metrics and inputs in README files agree with their declarations.
 #include <gtest/gtest.h>
 
 #include <algorithm>

@@ -1,4 +1,4 @@
-// Columns of results: what counts as a value.
+// Columns of results: which numbers count as values.
 #include "core/results/case_columns.h"
 
 #include <gtest/gtest.h>

@@ -1,4 +1,4 @@
-// The result folder keeps every result once, exactly, whatever arrives in whatever order.
+// The result folder keeps every result exactly once, for any order of arrival.
 #include "core/results/result_folder.h"
 
 #include <fcntl.h>

@@ -1,4 +1,4 @@
-// A made-up two-stage launcher of round numbers, whose masses, burns and effectiveness are known by hand.
+// A made-up two-stage launcher with round numbers. Its masses, burns and effectiveness are known by hand.
 #pragma once
 
 #include <cmath>

@@ -1,5 +1,5 @@
-// What a coordinate of the search means for each law: a value as far out, by its probability, as the standard
-// normal is.
+// The coordinates of the search for each distribution: a value has the same tail probability as the standard
+// normal coordinate.
 #include "core/search/dispersion_space.h"
 
 #include <gtest/gtest.h>

@@ -1,4 +1,4 @@
-// The search on flights: of all that `full` disperses one cause is made to matter, and the search finds it.
+// The search on flights: one of the dispersions of `full` is made to matter, and the search finds it.
 #include <algorithm>
 #include <cmath>
 

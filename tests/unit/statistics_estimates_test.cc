@@ -1,4 +1,4 @@
-// Every interval holds its own estimate, whatever the sample, the percentile and the confidence.
+// Every interval contains its own estimate, for any sample, percentile and confidence.
 #include <gtest/gtest.h>
 
 #include <algorithm>

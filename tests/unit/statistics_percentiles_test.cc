@@ -1,4 +1,4 @@
-// Percentiles: what so many values support, and what they do not.
+// Percentiles that a number of values supports, and those that it does not.
 #include "core/statistics/percentiles.h"
 
 #include <algorithm>

@@ -1,4 +1,4 @@
-// Bounds from replicates of a design, in the cases that have a closed form.
+// Bounds from replicates of a design, in cases with a closed form.
 #include "core/statistics/replicates.h"
 
 #include <gtest/gtest.h>

@@ -1,5 +1,4 @@
-// Sensitivity on functions whose indices are known in closed form, and on dependences that correlation
-// misses.
+// Sensitivity of functions with indices in closed form, and dependences that correlation misses.
 #include "core/statistics/sensitivity.h"
 
 #include <cmath>

@@ -1,5 +1,5 @@
-// Parts of the beam, each against a part that is the same: a lumped body against a rod, two sections against
-// one, what is jettisoned against the mass model.
+// Equivalent parts of the beam: a lumped body and a rod, two sections and one, jettisoned masses and the mass
+// model.
 #include <gtest/gtest.h>
 
 #include <cmath>

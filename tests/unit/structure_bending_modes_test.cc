@@ -1,4 +1,4 @@
-// The beam of a vehicle: its masses are the rigid vehicle's, its modes keep their names and signs over the
+// The beam of a vehicle has the masses of the rigid vehicle. Its modes keep their numbers and signs over the
 // burn.
 #include <gtest/gtest.h>
 

@@ -1,5 +1,5 @@
-// Where the normal force acts along a body: against Munk's integrals, closed forms of a bent body, and the
-// same distribution in ever finer pieces.
+// The distribution of the normal force along a body: against Munk's integrals, closed forms of a bent body,
+// and finer and finer pieces.
 #include <gtest/gtest.h>
 
 #include <cmath>

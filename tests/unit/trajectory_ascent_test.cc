@@ -1,4 +1,4 @@
-// Ascents side by side: the same bits as one alone, whatever flies beside it, in whatever order.
+// Ascents side by side have the same bits as one alone, with any neighbours and in any order.
 #include <gtest/gtest.h>
 
 #include <algorithm>

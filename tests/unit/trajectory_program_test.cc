@@ -1,5 +1,5 @@
-// A recorded ascent against its flight program: what steers an upper stage over time, how dense the
-// knots of the attitude are.
+// A recorded ascent against its flight program: steering of an upper stage over time, and density of the
+// attitude knots.
 #include <gtest/gtest.h>
 
 #include <algorithm>

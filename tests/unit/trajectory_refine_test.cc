@@ -1,5 +1,5 @@
-// The refinement finds the one program of its unknowns that meets the target, from wherever the search ended,
-// in a few steps; and the attitude program that comes of it has a knot at every kink.
+// The refinement finds the one program that meets the target, from any end of the search, in a few steps. Its
+// attitude program has a knot at every kink.
 #include "core/trajectory/refine.h"
 
 #include <gtest/gtest.h>

@@ -1,4 +1,4 @@
-// What a recorded ascent says of each sample, from the position and velocity in it.
+// The quantities of each sample of a recorded ascent, from its position and velocity.
 #include <gtest/gtest.h>
 
 #include <cmath>

@@ -1,5 +1,5 @@
-// What is said of a target out of reach. The shipped program meets the shipped target, so with its azimuth
-// held the speed at the altitude and angle of that target is its speed, whatever speed is asked.
+// The statement about a target out of reach. The shipped program meets the shipped target. With its azimuth
+// held, its speed is the only one at that altitude and angle, for any speed asked.
 #include <fmt/format.h>
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>

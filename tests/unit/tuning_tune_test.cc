@@ -1,5 +1,5 @@
-// The procedure that tunes every law: what it holds, what it refuses, and that nothing but its arguments
-// decides.
+// The procedure that tunes every control law: the gates it keeps, the requests it refuses, and its dependence
+// on its arguments alone.
 #include "core/tuning/tune.h"
 
 #include <gmock/gmock.h>

@@ -1,4 +1,4 @@
-// The component build-up of aerodynamics: closed answers, independent theories, and the tables' shape.
+// The component build-up of aerodynamics: closed forms, independent theories, and the shape of its tables.
 #include "core/vehicle/aerodynamics_build_up.h"
 
 #include <gmock/gmock.h>

@@ -1,5 +1,5 @@
-// Liquid stages: masses of tanks that drain against slices of the liquid, burns by throttle, cut-off and
-// depletion against closed forms, and what is wrong with them.
+// Liquid stages: masses of draining tanks against slices of the liquid, burns with throttle, cut-off and
+// depletion against closed forms, and mistakes.
 #include <gtest/gtest.h>
 
 #include <algorithm>

@@ -1,4 +1,4 @@
-// Mass properties against sums done by hand and against their own numeric derivatives.
+// Mass properties against sums by hand and against their own numerical derivatives.
 #include "core/vehicle/mass.h"
 
 #include <gtest/gtest.h>

@@ -1,5 +1,4 @@
-// Lists of nozzles: what commands do with them, against geometry by hand and closed forms of the
-// pseudo-inverse.
+// Lists of nozzles: the effect of commands, against geometry by hand and closed forms of the pseudo-inverse.
 #include "core/vehicle/nozzle_layout.h"
 
 #include <gtest/gtest.h>

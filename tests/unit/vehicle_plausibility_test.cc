@@ -1,4 +1,5 @@
-// What a vehicle's numbers imply, held against physics and known launchers: every check, with the full text.
+// Consequences of a vehicle's numbers, compared with physics and known launchers: every check, with the full
+// text.
 #include "core/vehicle/plausibility.h"
 
 #include <gtest/gtest.h>

@@ -1,4 +1,4 @@
-// Every way in which a vehicle can contradict itself, with the full text that the user reads.
+// Every contradiction within a vehicle, with the full text for the user.
 #include <gtest/gtest.h>
 
 #include <functional>

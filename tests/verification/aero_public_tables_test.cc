@@ -1,7 +1,7 @@
 // The component build-up against public tables of other launchers (tests/data/aero/SOURCE.md), on the body of
-// tests/public_launcher.h, whose geometry is partly inferred. So these are comparisons of shape and size, of
-// two estimates of two similar bodies: bands of 35 %, where handbook methods claim 10 to 20 % each and the
-// geometry takes the rest (0.3 m of fairing nose are 20 % of CA).
+// tests/public_launcher.h. The geometry is partly inferred, so two estimates of two similar bodies are
+// compared, in shape and size. The bands are 35 %. Handbook methods claim 10 to 20 % each, and the geometry
+// takes the rest (0.3 m of fairing nose change CA by 20 %).
 #include <gtest/gtest.h>
 
 #include <cmath>

@@ -1,5 +1,5 @@
 // The gates that every shipped autopilot must pass, computed and measured: gain 6 dB both ways, phase 30°,
-// delay 20 ms (flight/margins.h). What `dispersa margins` shows, held for each law.
+// delay 20 ms (flight/margins.h). `dispersa margins` shows these margins.
 #include <gtest/gtest.h>
 
 #include <set>

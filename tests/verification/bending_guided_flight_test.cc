@@ -1,5 +1,5 @@
-// A whole guided flight of a body that bends differently in its two planes, through wind and air, with a rate
-// gyro in each of two stages: the engine's steps against CVODE.
+// A whole guided flight of a body with different bending in its two planes: the engine's steps against CVODE.
+// The body flies through wind and air, with a rate gyro in each of two stages.
 #include <gtest/gtest.h>
 
 #include <algorithm>

@@ -1,11 +1,11 @@
 // Verifies the engine's equations of motion against solutions in closed form and against conserved
 // quantities.
 //
-// Flights use the shipped fixed-step scheme, of order 4. So the tolerance needs no number of its own: the
-// error against an exact solution must fall by 2^4 when the step is halved; 12 is asked for, because terms of
-// higher order still show. A wrong equation leaves an error that does not fall. `rounding` bounds what the
-// arithmetic of doubles adds; the error at the longer step must stand well above it, or the test would show
-// nothing.
+// Flights use the shipped fixed-step scheme, of order 4. The error against an exact solution must therefore
+// fall by 2^4 when the step is halved, and no tolerance is needed. The test asks for 12, because terms of
+// higher order are still visible. A wrong equation leaves an error that does not fall. `rounding` bounds the
+// contribution of double arithmetic. The error at the longer step must be well above it, or the test would
+// show nothing.
 #include <cmath>
 #include <functional>
 

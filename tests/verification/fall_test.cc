@@ -1,5 +1,5 @@
-// The fall of a spent stage: against Kepler's ellipse without air, against a terminal velocity with it, and
-// by halved steps.
+// The fall of a spent stage, against Kepler's ellipse without air, against a terminal velocity with air, and
+// with halved steps.
 #include "core/impact/fall.h"
 
 #include <array>

@@ -1,8 +1,8 @@
-// Integration of a whole closed-loop flight: the engine's steps and those of the classical Runge-Kutta method
-// agree with an independent high-accuracy run (CVODE, relative tolerance 1e-12, scaled absolute tolerances,
-// restarted at every tick and event), the latter with its order. The engine's are there from the first:
-// halving them changes nothing that CVODE's own tolerance does not; simpson_step_test.cc shows their order
-// where it can be seen.
+// Integration of a whole closed-loop flight. The engine's steps and those of the classical Runge-Kutta method
+// agree with an independent high-accuracy run: CVODE, relative tolerance 1e-12, scaled absolute tolerances,
+// restarted at every tick and event. The Runge-Kutta method converges with its order. The engine's steps
+// agree from the first: halving them changes less than CVODE's own tolerance. simpson_step_test.cc shows
+// their order in a case that resolves it.
 #include <gtest/gtest.h>
 
 #include <algorithm>

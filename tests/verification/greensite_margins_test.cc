@@ -1,11 +1,11 @@
 // Greensite's launch vehicle at 72 s, as two public repositories have it (tests/data/greensite/SOURCE.md):
-// its published equations in closed form, the published margins, and the same by what `dispersa margins`
-// computes.
+// its published equations in closed form, the published margins, and those of `dispersa margins`.
 //
 // Equations (displacement z across the path, attitude t, mode n, deflection d):
-//   z'' = a1 z' + (a1 V + a4) t + a3 d        t'' = A6 / V z' + A6 t + K1 d       n'' + 2 zeta w n' + w² n =
-//   -phi Tc d measured: t + sigma n, z - phi_ins n, and their rates d = servo * e^(-0.02 s) * filter * -(Kp t
-//   + Kd t' + Kz z + Kzd z'), all as measured
+//   z'' = a1 z' + (a1 V + a4) t + a3 d        t'' = A6 / V z' + A6 t + K1 d
+//   n'' + 2 zeta w n' + w² n =   -phi Tc d
+// measured: t + sigma n, z - phi_ins n, and their rates
+// d = servo * e^(-0.02 s) * filter * -(Kp t   + Kd t' + Kz z + Kzd z'), all as measured
 #include <gtest/gtest.h>
 
 #include <algorithm>

@@ -1,4 +1,4 @@
-// Closed-loop guidance at the edge of its reach: never notably worse than flying open loop.
+// Closed-loop guidance at the edge of its reach is never notably worse than open-loop flight.
 #include "tests/guidance_reach.h"
 
 namespace dispersa::guidance_reach_test {

@@ -1,5 +1,5 @@
-// What is jettisoned: mass properties, the jump of the state, when it happens in three and six degrees of
-// freedom, and what it is worth by the rocket equation.
+// Jettison: mass properties, the jump of the state, its time in three and six degrees of freedom, and its
+// velocity gain by the rocket equation.
 #include <gtest/gtest.h>
 
 #include <cmath>

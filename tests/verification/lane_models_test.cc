@@ -1,4 +1,4 @@
-// What flights look up and propagate, against the definitions it is made from.
+// The look-up and propagation of flights, against their definitions.
 #include <gtest/gtest.h>
 
 #include <algorithm>

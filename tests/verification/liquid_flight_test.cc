@@ -1,5 +1,5 @@
-// Flights of liquid stages: what a throttled burn in space gains is the rocket equation's, whatever the
-// throttle, and whole flights differ from those of solid motors as physics says.
+// Flights of liquid stages: a throttled burn in space gains the velocity of the rocket equation, for any
+// throttle. Whole flights differ from those of solid motors as physics predicts.
 #include <gtest/gtest.h>
 
 #include <algorithm>

@@ -1,5 +1,5 @@
 // Verifies atmosphere, gravitation, geodesy and rotation against NASA's 6DOF check cases
-// (NASA/TM-2015-218675): the environment that each simulator reports at the places where it flew.
+// (NASA/TM-2015-218675): the environment that each simulator reports along its flight.
 #include <cmath>
 #include <fstream>
 #include <map>

@@ -1,5 +1,5 @@
-// Actuators with a dead zone, friction and a resolution: against closed forms, an integration of their own
-// and describing functions.
+// Actuators with a dead zone, friction and a resolution: against closed forms, an independent integration and
+// describing functions.
 #include <gtest/gtest.h>
 
 #include <cmath>

@@ -1,4 +1,5 @@
-// Whole flights in turbulence and with real actuators, against CVODE: the same air, the same equations.
+// Whole flights in turbulence and with real actuators, against CVODE with the same air and the same
+// equations.
 #include <gtest/gtest.h>
 
 #include <algorithm>

@@ -1,6 +1,7 @@
-// Verifies that the shipped fixed-step scheme converges at its order, 4, on a flight whose right-hand side is
-// smooth: a tumbling, statically stable body with drag, normal force and rate damping in the troposphere over
-// the turning ellipsoid with J2, in wind. Differences of successive halvings fall by 2^4.
+// Verifies that the shipped fixed-step scheme converges at its order, 4, on a flight with a smooth right-hand
+// side. The body tumbles and is statically stable, with drag, normal force and rate damping, in the
+// troposphere over the rotating ellipsoid with J2, in wind. Differences between successive halvings fall by
+// 2^4.
 #include <algorithm>
 #include <cmath>
 #include <functional>

@@ -1,5 +1,5 @@
-// Bending moments along the body against the equilibrium of what lies behind each section, and against the
-// curvature of a beam that rings.
+// Bending moments along the body, against the equilibrium of the part behind each section and against the
+// curvature of an oscillating beam.
 #include <gtest/gtest.h>
 
 #include <cmath>

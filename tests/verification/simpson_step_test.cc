@@ -1,4 +1,4 @@
-// The order of the engine's step, on a stretch of powered flight without kinks: no controller, no change of
+// The order of the engine's step, on powered flight without kinks, without controller and with a constant
 // command.
 #include <gtest/gtest.h>
 

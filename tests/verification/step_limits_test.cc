@@ -1,5 +1,5 @@
-// What the engine's step resolves: whole closed-loop flights with ever faster actuators against CVODE, which
-// steps as short as it has to; and what happens beyond the limits.
+// The limits of the engine's step: whole closed-loop flights with faster and faster actuators against CVODE,
+// which chooses its own steps; and the behaviour beyond the limits.
 #include <gtest/gtest.h>
 
 #include <algorithm>

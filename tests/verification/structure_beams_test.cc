@@ -1,6 +1,6 @@
-// Free beams against exact solutions: uniform, stepped, conical, shearing, with lumped bodies; orthogonality,
-// rigid modes, order of convergence. Characteristic equations are derived and solved here, independently of
-// the elements.
+// Free beams against exact solutions: uniform, stepped, conical, with shear, with lumped bodies;
+// orthogonality, rigid modes, order of convergence. Characteristic equations are derived and solved here,
+// independently of the elements.
 #include <gtest/gtest.h>
 
 #include <Eigen/Eigenvalues>

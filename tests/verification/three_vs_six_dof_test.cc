@@ -1,7 +1,7 @@
-// Verifies that the production 3DOF (FlyAscent) and the 6DOF engine (LauncherModel) agree along the
-// whole flight when the 6DOF's attitude is imposed: on the same environment, propulsion, mass and sequencing,
-// once by the steering law evaluated on the flight's own state, written here independently of the 3DOF, and
-// once by the reference as it is shipped and as flights follow it, a table over time.
+// Verifies that the production 3DOF (FlyAscent) and the 6DOF engine (LauncherModel) agree along the whole
+// flight if the 6DOF's attitude is imposed. Environment, propulsion, mass and sequence are the same. The
+// attitude comes from two sources. One is the steering law evaluated on the flight's own state, written here
+// independently of the 3DOF. The other is the shipped reference, a table over time, as flights follow it.
 #include <gtest/gtest.h>
 
 #include <algorithm>

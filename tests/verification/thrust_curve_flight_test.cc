@@ -1,6 +1,6 @@
-// Flights of motors with thrust curves: every corner ends a step, so that the engine's steps keep their order
-// on curves whose corners fall between ticks, as CVODE shows, which is started anew at each of them; and what
-// a burn in space gains is the rocket equation's, whatever the curve and the burn rate.
+// Flights of motors with thrust curves. Every corner ends a step, so that the engine's steps keep their order
+// with corners between ticks. CVODE, restarted at each corner, shows this. A burn in space gains the velocity
+// of the rocket equation, for any curve and burn rate.
 #include <gtest/gtest.h>
 
 #include <algorithm>

@@ -1,4 +1,4 @@
-// Verifies the atmosphere against the US Standard Atmosphere, 1976, as others computed or printed it.
+// Verifies the atmosphere against the US Standard Atmosphere, 1976, as computed or printed by others.
 #include <cmath>
 
 #include <gtest/gtest.h>

@@ -1,4 +1,5 @@
-// What the two programs of this folder share: how a program of another vendor joins (idl/README.md).
+// Code shared by the two programs of this folder: how a program with DDS of another vendor joins
+// (idl/README.md).
 #pragma once
 
 #include <dds/dds.h>
