@@ -63,7 +63,7 @@ FlightDefinition DefinitionOf(const Campaign& campaign) {
   definition.kick_end_s = campaign.reference.program.t2_s;
   const TrajectoryProblem& problem = campaign.reference.problem;
   definition.earlier_ignition_s = campaign.reference.earlier_ignition_s;
-  // What the target leaves open, or counts from elsewhere, is the reference's.
+  // The reference gives the values that the target leaves open, or measures from another origin.
   const Orbit& reached = campaign.reference.orbit;
   definition.target = {problem.target_apogee_m ? reached.altitude_m : problem.target_altitude_m,
                        problem.velocity_is_free ? reached.velocity_m_s - problem.velocity_reserve_m_s

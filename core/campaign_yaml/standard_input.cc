@@ -8,7 +8,7 @@
 namespace dispersa {
 namespace {
 
-// What is larger is refused by whoever parses it.
+// The parser refuses a longer text.
 constexpr std::size_t kMost = std::size_t{65} << 20;
 
 struct Input {

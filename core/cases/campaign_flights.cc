@@ -57,7 +57,7 @@ struct SharedOrders {
   }
 };
 
-// What one thread flies of them.
+// The orders that one thread flies.
 class FlyingOrders : public FlightQueue {
  public:
   explicit FlyingOrders(SharedOrders& shared) : shared_(shared) {}

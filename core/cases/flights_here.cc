@@ -12,7 +12,8 @@
 namespace dispersa {
 namespace {
 
-// What was flown with a law in Python can be read by everybody, and flown by who has the law.
+// A campaign flown with a control law in Python can be read anywhere, but flown only by a process with the
+// law.
 const Campaign& WithItsLaw(const Campaign& campaign) {
   const auto& plugin = campaign.autopilot.plugin;
   if (plugin && IsAbsent(*plugin)) {

@@ -31,13 +31,14 @@ std::set<std::string> not_refused;
 constexpr char kSaid = 's', kProblem = 'p', kThrew = 't', kDone = 'd', kAsked = 'a', kUnheld = 'u';
 constexpr std::string_view kKinds = "sptdau";
 
-// Where a child writes its frames.
+// Descriptor to which a child writes its frames.
 constexpr int kPipe = 3;
 
-// What the kernel gave this process; asked in a child.
+// The restrictions that the kernel granted to this process. Read in a child.
 SandboxParts sandbox;
 
-// What a plug-in says may be anything: so much of it, in whole characters, on one line.
+// A plug-in's text may hold anything. At most `limit` bytes of it are shown, in whole characters, on one
+// line.
 std::string Clean(const std::string& text, std::size_t limit = 1000) {
   std::size_t end = std::min(text.size(), limit);
   if (end < text.size())
@@ -139,7 +140,7 @@ std::string HowItEnded(int status, const ContainmentLimits& limits) {
   const char* const name = sigabbrev_np(signal);
   const std::string text =
       "ended by signal " + std::to_string(signal) + (name ? " (SIG" + std::string(name) + ")" : "");
-  // What may be want of memory.
+  // Ends that a lack of memory may cause.
   const bool is_of_memory = signal == SIGABRT || signal == SIGSEGV || signal == SIGKILL;
   return is_of_memory
              ? text + ", in a process that may allocate " + std::to_string(limits.memory_bytes >> 20) + " MiB"

@@ -45,8 +45,8 @@ class NoChild : public std::runtime_error {
 };
 
 /// Runs `work` in a child. Its messages are received here, in order, until it is done or the child has ended.
-/// Throws PluginError with the text of one that `work` throws, ContainedEnd if it throws something else or
-/// the child ends otherwise, NoChild, Interrupted, and whatever `hear` throws.
+/// Throws PluginError with its text if `work` throws one. Throws ContainedEnd if it throws another error or
+/// the child ends otherwise. Also throws NoChild, Interrupted, and any exception of `hear`.
 void RunContained(const std::function<void(const Say& say)>& work, const Say& hear,
                   const StopCheck& should_stop = nullptr, const ContainmentLimits& limits = {});
 

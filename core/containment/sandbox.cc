@@ -18,7 +18,7 @@
 namespace dispersa {
 namespace {
 
-// What loading a shared object and computing ask the system for. Paths are Landlock's matter.
+// System calls needed to load a shared object and to compute. Landlock restricts paths.
 constexpr int kAllowedCalls[] = {
     // Memory.
     SCMP_SYS(brk), SCMP_SYS(mmap), SCMP_SYS(munmap), SCMP_SYS(mremap), SCMP_SYS(mprotect), SCMP_SYS(madvise),
@@ -105,7 +105,7 @@ struct LandlockRules {
 constexpr std::uint64_t kTruncate = 1u << 14, kDeviceControl = 1u << 15;
 constexpr std::uint64_t kTcpBindAndConnect = 3, kAbstractSocketsAndSignals = 3;
 
-// Where the loader finds what an object depends on.
+// Folders in which the loader finds dependencies of a shared object.
 constexpr const char* kReadable[] = {"/lib",       "/lib64",         "/usr/lib",
                                      "/usr/lib64", "/usr/local/lib", "/etc/ld.so.cache"};
 

@@ -191,7 +191,7 @@ struct AutopilotConfig {
 /// Bits (1 << Axis) of the axes whose law is a plug-in's.
 unsigned PluginAxes(const AutopilotConfig& autopilot);
 
-/// Where it contradicts itself, or the vehicle of so many stages.
+/// Contradictions within the autopilot, or with a vehicle of this number of stages.
 std::vector<StructProblem> Problems(const AutopilotConfig& autopilot, int stages);
 
 }  // namespace dispersa

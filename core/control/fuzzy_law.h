@@ -66,7 +66,7 @@ struct FuzzyLaw {
       }
       auto is_frozen = Abs(drive) < T(guards.dead_zone_rad) * Abs(in.stage.pn_error);
       if (guards.freeze_when_saturated) is_frozen = is_frozen | (memory.saturation * drive > T(0.0));
-      // Where nothing adapts, the coefficients leave every departure as it is.
+      // Without adaptation these coefficients leave every consequent as it is.
       const auto adapts = in.acting & (in.stage.gamma > T(0.0));
       T rated = T(in.tick_s) * in.stage.gamma * drive;
       if (guards.normalized) {

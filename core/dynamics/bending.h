@@ -168,10 +168,11 @@ DISPERSA_INLINE void DriveAtPivot(const BendingTableLanes<T>& b, Vector<T> force
   }
 }
 
-/// What the flow does by bending: each place of the body meets it at an incidence of its own, the body's plus
-/// slope q + deflection q' / V in its plane, and the normal force is distributed along the body
-/// (lift_distribution.h), by bending with the slope of its coefficient at the body's incidence. An effect of
-/// a mode's lift is `by_slope` q + `by_rate` q' / V, times the normal force for each radian.
+/// The lift due to bending. Each place of the body has its own incidence: the body's plus slope q +
+/// deflection q' / V in the mode's plane. The normal force is distributed along the body
+/// (lift_distribution.h). The part due to bending uses the slope of the normal force coefficient at the
+/// body's incidence. The effect of a mode's lift is `by_slope` q + `by_rate` q' / V, times the normal force
+/// per radian.
 template <class T>
 struct LiftNow {
   T by_slope, by_rate;
@@ -183,8 +184,8 @@ DISPERSA_INLINE LiftNow<T> LiftOf(const ModeNow<T>& mode, int effect, T aft_m) {
           Fma(aft_m, mode.lift[kRateShift][effect], mode.lift[kRateSlender][effect])};
 }
 
-/// What the flow does besides to a body that bends. Adds to the body's force and moment about C and to the
-/// modes.
+/// The additional effects of the flow on a body that bends. Added to the body's force, to its moment about C,
+/// and to the modes.
 template <class T>
 DISPERSA_INLINE void BendFlow(const BendingTableLanes<T>& b, const BendingState<T>& s,
                               const LoadTableLanes<T>& body, T cg_station_m, FlowForce<T>& flow,

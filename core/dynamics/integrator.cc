@@ -149,9 +149,9 @@ bool Integrator::Advance(double from_s, double to_s, int steps, double* y) {
     if (CVode(s.memory, to_s, s.y, &reached, CV_NORMAL) < 0) return false;
     for (int i = 0; i < s.size; ++i) state[i] += s.start[static_cast<std::size_t>(i)];
   } else {
-    // ERKStep takes the derivative of the last stage for that of the step's end when the stage lies there,
-    // which holds for stiffly accurate tables only: without a reset at every step the order falls to 3, and
-    // a derivative from before the jump of a held command would be reused.
+    // ERKStep reuses the derivative of the last stage as that of the next step's start if the stage lies at
+    // the step's end. That is correct only for stiffly accurate tables. Without a reset at every step the
+    // order falls to 3, and a derivative from before the jump of a held command would be reused.
     for (int i = 0; i < steps; ++i) {
       const double begin_s = i == 0 ? from_s : from_s + (to_s - from_s) * i / steps;
       const double end_s = i + 1 == steps ? to_s : from_s + (to_s - from_s) * (i + 1) / steps;

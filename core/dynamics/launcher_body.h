@@ -199,8 +199,8 @@ DISPERSA_INLINE void AddDepartures(const LauncherPlantLanes<T>& plant, const Noz
 }
 
 /// Each nozzle carries a quarter of the thrust and deflects it in its hinge plane. Right (+y) and left (-y)
-/// turn the force towards +z, bottom (+z) and top (-z) towards -y. P = P_vac - p A_e. Where the ambient
-/// pressure would make the thrust negative, it is 0.
+/// turn the force towards +z, bottom (+z) and top (-z) towards -y. P = P_vac - p A_e. Thrust is 0 if the
+/// ambient pressure would make it negative.
 template <class T>
 DISPERSA_INLINE Thrust<T> ThrustOf(const LauncherPlantLanes<T>& plant, const TimedMasses<T>& masses,
                                    const Nozzles<T>& nozzles, T pressure_pa) {

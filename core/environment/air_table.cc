@@ -77,7 +77,7 @@ struct Cell {
   }
 };
 
-// Where the standard's functions or their derivatives jump: StandardAtmosphere1976.
+// The altitudes at which functions of the standard, or their derivatives, jump (StandardAtmosphere1976).
 std::vector<double> Kinks() {
   std::vector<double> kinks = AtmosphereKinks();
   kinks.insert(kinks.begin(), kAtmosphereBottom_m);

@@ -17,7 +17,7 @@ constexpr double kHeatRatio = 1.4;            // gamma
 constexpr double kSpecificGasConstant = kGasConstant / kMolecularWeight;
 constexpr double kSeaLevelPressure = 101325.0;
 
-// Where the lower part ends, and where the molecular weight begins to fall.
+// Altitudes (m) of the end of the lower part, and of the start of the decrease in molecular weight.
 constexpr double kUpperBase = 86000.0;
 constexpr double kMixedTop = 80000.0;
 

@@ -82,11 +82,11 @@ TurbulentWind Evaluate(const TurbulenceField& field, double altitude_m);
 struct TurbulenceNormals {
   std::function<double()> along, across, normal;
 };
-/// One realisation. The component along the path has the longitudinal spectrum 2 L / pi / (1 + (L k)²), those
-/// across it the lateral one L / pi (1 + 3 (L k)²) / (1 + (L k)²)². k is the wave number along the path
-/// (rad/m), and the square of the deviation multiplies both. Each is a Markov sequence with exactly the
-/// correlations exp(-d/L) and (1 - d / 2L) exp(-d/L) between nodes d apart where L is constant. On a vertical
-/// path the component along it is vertical.
+/// One realisation, as functions of the wave number k along the path (rad/m). The component along the path
+/// has the longitudinal spectrum 2 L / pi / (1 + (L k)²). The components across it have the lateral spectrum
+/// L / pi (1 + 3 (L k)²) / (1 + (L k)²)². The squared deviation multiplies both. Each component is a Markov
+/// sequence. Where L is constant, its correlations between nodes d apart are exactly exp(-d/L) and (1 - d /
+/// 2L) exp(-d/L). On a vertical path the component along it is vertical.
 TurbulenceField DrawTurbulence(const TurbulenceStrength& strength, const TurbulencePath& path,
                                const TurbulenceNormals& draw);
 

@@ -64,7 +64,7 @@ struct Scenario {
 /// The keys of its file.
 void Describe(Fields& fields, Scenario& scenario);
 
-/// Where one stage contradicts itself. Paths start at the stage ("mass_properties.ixx_kg_m2[1]",
+/// Contradictions within one stage. Paths start at the stage ("mass_properties.ixx_kg_m2[1]",
 /// "motor.nozzle_station_m").
 std::vector<StructProblem> Problems(const ScenarioStage& stage);
 /// Of the stages together and the steps ("stages[1].separation_time_s").

@@ -13,8 +13,8 @@ constexpr double kClosing_1_s = 1.0;
 constexpr double kHastening_1_s = 4.0;
 }  // namespace
 
-// The rate that can still be braked away on what is left of the way, √(2 a |e|), is what a bounded
-// acceleration may have, and half of it leaves room for the filter's delay.
+// A bounded acceleration can still brake a rate of √(2 a |e|) on the way left. Half of it leaves room for the
+// filter's delay.
 void AttitudeCommand::Angle::Follow(double step_s, double wanted, double wanted_rate, double most_rate,
                                     double most_acceleration) {
   const double left = wanted - angle;

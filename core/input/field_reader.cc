@@ -479,7 +479,7 @@ class FieldReader : public Fields {
     const Found found = FindQuantity(key.name, key.dimension, key.needed);
     if (found.node != nullptr || !key.needed) return found;
     std::string number = TextIn(key.dimension.empty() ? kNoUnit : key.dimension.front(), key.range);
-    // Where any number will do, only its meaning says which.
+    // If any number is allowed, only the meaning of the key says which one is needed.
     if (number == kAnyNumber.Text() && *key.meaning != 0) number += std::string(": ") + key.meaning;
     ReportMissing(known_.back().keys, allowed.empty() ? number : allowed);
     return found;
@@ -581,7 +581,7 @@ class FieldReader : public Fields {
   void ReportMissing(std::vector<std::string> keys, const std::string& allowed) {
     if (node_->kind == Kind::kMap) missing_.push_back({std::move(keys), allowed});
   }
-  // What a table may have, in the order of the description.
+  // The columns that a table may have, in the order of the description.
   std::string ColumnNames() const {
     std::vector<std::string> needed, optional;
     for (const Known& known : known_) {

@@ -8,7 +8,7 @@
 namespace dispersa {
 namespace {
 
-// What a case contributes; whole sets of margins of many cases would fill the memory.
+// A case's contribution. Whole sets of margins of many cases would fill the memory.
 struct CaseMargins {
   bool ended_early = false;
   bool passed = true;

@@ -89,7 +89,7 @@ bool HasLoop(const LauncherPlant& plant, const TickSample& sample, Axis axis) {
   return axis != kRoll || plant.stacks[static_cast<std::size_t>(sample.stack)].layout.rolls;
 }
 
-// What learning changes a law's slopes in.
+// Whether learning changes the slopes of the control law.
 bool Learns(const AutopilotModel& autopilot, Axis axis) {
   const LawInfo& info = InfoOf(autopilot.laws[static_cast<std::size_t>(axis)].config.law);
   return info.adaptation || info.augmentation;
@@ -338,7 +338,7 @@ std::vector<MeasuredMargins> MeasureMargins(const FlightModel& model, const Flig
     searches.emplace_back(kMeasuredDelayStep_s, kMeasuredDelayCeiling_s,
                           [&inputs, stage](double s) { return Spoilt(inputs, stage, 0.0, s); });
   }
-  // Whatever its stage, the flight that nothing spoils is the same.
+  // The undisturbed flight is the same for every stage.
   if (!Holds(Fly(model, Spoilt(inputs, 0, 0.0, 0.0).inputs)))
     for (Bisection& search : searches) search.EndAtZero();
   for (;;) {

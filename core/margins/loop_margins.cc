@@ -189,9 +189,10 @@ std::complex<double> SampledLoop::Response(double frequency_rad_s) const {
 }
 
 double SampledLoop::SpectralRadius(double gain_factor) const {
-  // States: plant, commands on their way (latest first), mean of the consequents, departure of the central
-  // one from it (without spread the two are one), two a section of the filters, the prediction of the rate,
-  // and of each gyro two of its section and its outputs of the last ticks.
+  // States in their order. First the plant, the commands on their way (latest first), and the mean of the
+  // consequents. Then the difference of the central consequent from the mean (without spread the two are
+  // one). Then two states for each section of the filters, and the prediction of the rate. Last, for each
+  // gyro, two states of its section and its outputs of the last ticks.
   const int plant_states = static_cast<int>(ad_.rows());
   const int first_command = plant_states;
   const int first_rule = first_command + delay_ticks_;
@@ -205,7 +206,7 @@ double SampledLoop::SpectralRadius(double gain_factor) const {
     for (const RateSensor& sensor : plant_.rates) size += 2 + static_cast<int>(std::ceil(sensor.delay_ticks));
   Eigen::MatrixXd m = Eigen::MatrixXd::Zero(size, size);
   m.topLeftCorner(plant_states, plant_states) = ad_;
-  // What is measured as rows over the states.
+  // The measured angle and rate, as rows over the states.
   Eigen::RowVectorXd angle = Eigen::RowVectorXd::Zero(size), rate = angle;
   if (is_rigid_) {
     angle[0] = rate[1] = 1.0;
@@ -348,8 +349,9 @@ LoopMargins SampledLoop::Margins() const {
   const auto from_critical = [](std::complex<double> at) {
     return kDegPerRad * std::fabs(Atan2(-at.imag(), -at.real()));
   };
-  // Between two neighbours: the phase is least at an edge of where the response is not attenuated, or at 0
-  // where it crosses the axis there, or turns back, which neighbours so near to each other show.
+  // Between two neighbours the phase is least at an edge of the range without attenuation, or at a turning
+  // point, which neighbours this close resolve. It is 0 where the response crosses the axis within that
+  // range.
   const auto bend = [&](double w, std::complex<double> before, double next_w, std::complex<double> at) {
     margins.bending_peak_db = std::max(margins.bending_peak_db, 0.5 * Decibel(std::norm(at)));
     for (const auto& [level2, phase_deg] : not_attenuated) {

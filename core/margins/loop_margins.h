@@ -53,8 +53,8 @@ struct LinearLaw {
   double leakage_1_s = 0.0;
   double spread_1_s = 0.0;
   int rules = 1;
-  /// Composite adaptation: w is also driven by this times the error of a prediction of e', r' = -kp e - kd e'
-  /// + predictor (e' - r).
+  /// Composite adaptation: w is also driven by this factor times the prediction error of e'. The prediction
+  /// follows r' = -kp e - kd e' + predictor (e' - r).
   double drive_prediction = 0.0;  ///< gamma p22 composite, 1/s²
   double predictor_1_s = 0.0;
   std::vector<DigitalSection> filters;  ///< of u, in series

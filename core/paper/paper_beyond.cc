@@ -1,4 +1,4 @@
-// What the paper lacks: baselines, statistics of dV/dt, our own completions.
+// Additions to the paper: baselines, statistics of dV/dt, our own completions.
 #include <fmt/format.h>
 
 #include <algorithm>
@@ -22,7 +22,7 @@ constexpr char kAdaptive[] = "controllers";
 /// V up to that of this error at rest is the residual set, in which V may rise.
 constexpr double kResidualError_deg = 0.05;
 
-/// What controllers are usually compared by: of each, less is better.
+/// Metrics by which controllers are usually compared. Less is better for each.
 const std::vector<std::string> kCompared = {
     "pitch_error_rms_deg", "pitch_error_peak_deg", "yaw_error_rms_deg",          "yaw_error_peak_deg",
     "roll_error_peak_deg", "deflection_peak_deg",  "deflection_limit_cycle_deg", "deflection_travel_deg"};
@@ -56,7 +56,7 @@ std::string ComparisonTable(const Comparison& comparison) {
                      b, a, comparison.pairing.shared);
 }
 
-/// Where the second law beats the first most, by the first metric.
+/// The cases in which the second law is better than the first by most, in the first metric.
 std::string LargestGains(const Comparison& comparison) {
   const MetricComparison& metric = comparison.metrics[0];
   std::string list;

@@ -19,8 +19,8 @@ std::string PaperMarginSection(const PaperStudy& study);      ///< gain, phase a
 std::string PaperLyapunovSection(const PaperStudy& study);    ///< statistics of dV/dt
 std::string PaperCompletionSection(const PaperStudy& study);  ///< what we added to the vehicle
 
-/// What the paper claims, what was found, where they differ and why: the last may be empty. Arguments are
-/// HTML.
+/// The claim of the paper, the result found here, and their difference with its reason (may be empty).
+/// Arguments are HTML.
 std::string PaperFindings(const std::string& claim, const std::string& found, const std::string& difference);
 
 /// How a campaign was flown here, and the command that flies it as its file says.

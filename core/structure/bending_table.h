@@ -15,9 +15,9 @@ namespace dispersa {
 inline constexpr int kModes = kMostFlownModes;
 inline constexpr int kPlanes = 2;
 
-/// What a distributed force does: the force itself, its moment about the nose tip (its sum times the
-/// station), its work on each mode, and from kSectionEffects its moment about each load station, of what lies
-/// ahead.
+/// Effects of a distributed force: the force, its moment about the nose tip (its sum times the station), and
+/// its work on each mode. From kSectionEffects on: the moment about each load station of the force ahead of
+/// it.
 enum LiftEffect : int {
   kForceEffect = 0,
   kFirstEffect = 1,

@@ -18,7 +18,7 @@ Eigen::MatrixXd DisplacementsByEnergy(const std::vector<BeamElement>& elements) 
     const BeamElement& element = elements[static_cast<std::size_t>(i)];
     const double h = element.length_m;
     const Eigen::Index top = 2 * i, bottom = top + 2;
-    // What came before turns the whole element.
+    // The elements before turn the whole element.
     displacement.row(bottom) = displacement.row(top) + h * displacement.row(top + 1);
     displacement.row(bottom + 1) = displacement.row(top + 1);
     // Its own ends: the chord turns by theta_top - e_top.

@@ -7,9 +7,9 @@
 
 namespace dispersa {
 
-/// What the mass ahead of a station, accelerated as a shape says (m/s² and 1/s², as deflection and slope),
-/// loads the section there with: the integral of m (deflection (s - x) - g² slope), N m; g: the radius of
-/// gyration of the mass about its own section. `shape_at`: StationShape of a station, m.
+/// Bending moment (N m) at a station from the inertia of the mass ahead of it: the integral of m (deflection
+/// (s - x) - g² slope). `shape_at` gives the acceleration at a station (m) as a StationShape: deflection in
+/// m/s², slope in 1/s². g is the radius of gyration of the mass about its own section.
 template <typename Shape>
 double InertiaMoment(const BeamMasses& masses, double station_m, const Shape& shape_at) {
   constexpr int kPieces = 200;

@@ -1,4 +1,4 @@
-// Where along the body the normal force acts.
+// The distribution of the normal force along the body.
 #pragma once
 
 #include <vector>
@@ -16,19 +16,19 @@ struct LiftPiece {
   double Middle() const { return 0.5 * (from_m + to_m); }
 };
 
-/// The normal force of a stack along its body. A piece takes the share area_to - area_from of it by
-/// slender-body theory (2 dA/dx; Munk, NACA TR 184), plus for each metre that the centre of pressure is aft
-/// of slender_station_m `shift`, which is in proportion to the planform and to the distance from its
-/// centroid. So all shares together are 1, and their centroid is the centre of pressure.
+/// The normal force of a stack along its body. By slender-body theory a piece has the share area_to -
+/// area_from (2 dA/dx; Munk, NACA TR 184). To this it adds `shift` times the distance (m) of the centre of
+/// pressure aft of slender_station_m. `shift` is proportional to the planform and to the distance from its
+/// centroid. All shares together are then 1, and their centroid is the centre of pressure.
 struct LiftDistribution {
   std::vector<LiftPiece> pieces;  ///< from the nose aft
   double slender_station_m = 0.0;
 
-  /// What a distributed incidence does. Slender-body theory: the cross-flow's momentum per length is A alpha,
-  /// and a piece of the body takes what it grows by, d(A alpha); so a body that curves has lift where its
-  /// cross-section does not grow. The shift's share meets the incidence of its place.
-  /// `incidence_at`: of a station; `take`: is given each piece's middle, and its force for a slope of 1 and a
-  /// metre of shift.
+  /// The effect of an incidence that varies along the body. In slender-body theory the momentum of the
+  /// cross-flow per length is A alpha. A piece of the body gets its increase, d(A alpha). A curved body
+  /// therefore has lift even where its cross-section does not grow. The share of `shift` sees the incidence
+  /// at its place. `incidence_at` gives the incidence at a station. `take` receives each piece's middle, and
+  /// its force for a slope of 1 and for a shift of 1 m.
   template <typename Incidence, typename Take>
   void ForEach(const Incidence& incidence_at, const Take& take) const {
     if (pieces.empty()) return;

@@ -1,5 +1,5 @@
-// What a stack's cross-sections have to carry: where the normal force acts along the body, and what the mass
-// ahead of a station resists. Plain data, for dynamics/body_sections.h.
+// The loads of a stack's cross-sections: the place of the normal force along the body, and the inertia of the
+// mass ahead of a station. Plain data, for dynamics/body_sections.h.
 #pragma once
 
 #include <array>
@@ -17,11 +17,11 @@ struct LoadTable {
   /// for each metre that the centre of pressure is aft of lift.slender_station_m `shift_arm`.
   std::array<double, kLoadStations> slender_arm_m{}, shift_arm{};
 
-  /// Stations s, and of the mass ahead of each, with m(x) its mass per length, g(x) the radius of gyration of
-  /// its cross-section and p the propellant: the integral of m (s - x) = first[0] + first[1] p + first[2] p²,
-  /// and that of m (s - x) x - m g² = second[0] + second[1] p + second[2] p². Of a grain that is exact, with
-  /// first[2] = 0; of liquids whose surface passes the station it is the parabola through full, half full and
-  /// empty.
+  /// Stations s, and integrals over the mass ahead of each. m(x) is the mass per length, g(x) the radius of
+  /// gyration of the cross-section, and p the propellant. The integral of m (s - x) is first[0] + first[1] p
+  /// + first[2] p². The integral of m (s - x) x - m g² is second[0] + second[1] p + second[2] p². For a grain
+  /// this is exact, with first[2] = 0. For liquids with a surface that passes the station, it is the parabola
+  /// through full, half full and empty.
   std::array<double, kLoadStations> station_m{};
   std::array<std::array<double, 3>, kLoadStations> first_kg_m{};
   std::array<std::array<double, 3>, kLoadStations> second_kg_m2{};

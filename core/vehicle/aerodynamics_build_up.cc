@@ -23,9 +23,9 @@ const std::vector<double> kIncidence_deg = {
 // The normal-force slope leaves slender-body theory between these two Mach numbers.
 constexpr double kSlenderMach = 0.8;
 constexpr double kCarryOverMach = 2.0;
-// The part of shock-expansion theory's excess over slender-body theory that is kept: it overestimates the
-// lift carried over onto cylinders, where linear cross-flow theory, which underestimates it, gives 0.3 of
-// that excess (an ogive of fineness 3 with 7 diameters of cylinder at Mach 2).
+// The share of shock-expansion theory's excess over slender-body theory that is used. Shock-expansion theory
+// overestimates the lift carried over onto cylinders. Linear cross-flow theory underestimates it, and gives
+// 0.3 of that excess (an ogive of fineness 3 with 7 diameters of cylinder at Mach 2).
 constexpr double kCarryOverShare = 0.5;
 // Mach-number independence: above this the slope holds.
 constexpr double kHypersonicMach = 8.0;

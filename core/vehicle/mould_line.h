@@ -21,9 +21,9 @@ struct MouldSection {
   bool IsCurved() const { return arc_radius_m > 0.0; }
 };
 
-/// Contradictions in a profile: lengths and diameters that are not positive, a first section without a tip, a
-/// tangent ogive that does not widen, a cylinder whose diameter differs from that of the section before.
-/// Paths are `profile[i].…`.
+/// Contradictions in a profile: non-positive lengths or diameters, a first section without a tip, a tangent
+/// ogive that does not widen, or a cylinder with another diameter than the section before. Paths are
+/// `profile[i].…`.
 std::vector<StructProblem> ProfileProblems(const std::vector<ProfileSection>& profile);
 
 /// The profile's sections from the nose tip to `end_station_m`, the last one cut there. A curved section

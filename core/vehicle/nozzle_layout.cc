@@ -12,8 +12,7 @@ namespace dispersa {
 
 namespace {
 
-// What a matrix of rank 3 or 2 has at least, its rows scaled: 1 where axes are commanded by drives of their
-// own.
+// Least independence of a matrix of rank 3 or 2 with scaled rows. It is 1 if each axis has drives of its own.
 constexpr double kIndependence = 1e-6;
 constexpr double kOnAxis_m = 1e-3;
 

@@ -25,7 +25,7 @@ struct Span {
 };
 constexpr Span kAnything{};
 
-/// What a check looks at: the vehicle, and one of its stages, nozzles or gyros.
+/// The subject of a check: the vehicle, and one of its stages, nozzles or gyros.
 struct Subject {
   const Vehicle& vehicle;
   const std::vector<StageFigures>& figures;

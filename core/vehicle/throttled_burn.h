@@ -10,8 +10,8 @@ struct ThrottledBurn {
   BurnCurve curve;       ///< levels are parts of full thrust and flow
   double left_kg = 0.0;  ///< of the propellant at the end: the residual, or more
 };
-/// Burn of `propellant_kg`, of which the engine's residual never flows. Where the throttle's level is linear,
-/// so is the flow. The time of depletion then solves a quadratic equation.
+/// Burn of `propellant_kg`, of which the engine's residual never flows. While the throttle's level is linear,
+/// the flow is linear too. The time of depletion then solves a quadratic equation.
 ThrottledBurn Throttled(const Motor& engine, double propellant_kg, double full_flow_kg_s);
 
 }  // namespace dispersa

@@ -38,15 +38,16 @@ void Describe(Fields& fields, ThrustCurve& curve);
 /// Flows given sum up to the propellant within this.
 inline constexpr double kFlowSumTolerance = 0.01;
 
-/// The vacuum curve of one measured under the pressure of sea level: P + p A_e. Where the measured thrust is
-/// 0 nothing flows, and it stays 0.
+/// The vacuum curve of a curve measured at sea-level pressure: P + p A_e. If the measured thrust is 0,
+/// nothing flows, and it stays 0.
 ThrustCurve InVacuum(ThrustCurve at_sea_level, double exit_area_m2);
 
 /// A curve by level, thrust over its greatest thrust, prepared to be looked up.
 struct BurnCurve {
-  /// A piece's row: a time on it (s), the level of thrust there and its slope (1/s), the part of the
-  /// propellant left there, the level of the flow over its greatest and its slope (1/s), two unused. The time
-  /// is the piece's beginning. For the last piece it is the end, so that exactly nothing is left there.
+  /// The row of a piece has 8 numbers: a time on it (s), the level of thrust there and its slope (1/s), the
+  /// share of the propellant left there, the level of the flow over its largest and its slope (1/s), and two
+  /// unused. The time is the piece's start. For the last piece it is the end, so that exactly nothing is left
+  /// there.
   static constexpr int kRowSize = 8;
   AlignedRows rows;
   std::vector<double> begin_s;  ///< of each piece

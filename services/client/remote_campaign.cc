@@ -163,7 +163,8 @@ void CopyCampaign(Session& session, const std::string& id, const fs::path& folde
   WriteFile(folder / "state.json", answer.at("state_json").get<std::string>());
 }
 
-/// False: it was deleted meanwhile. What is written or reported anew while it is copied is copied again.
+/// False: the campaign was deleted meanwhile. Files that are written or replaced while they are copied are
+/// copied again.
 bool BackUpCampaign(Session& session, const std::string& id, const fs::path& folder) {
   for (int attempt = 1;; ++attempt) {
     try {

@@ -14,7 +14,7 @@ constexpr std::chrono::milliseconds kFarewell(500);
 /// Longer rounds count as this long: a process that was stopped, or a machine that slept, must not take what
 /// it did not hear meanwhile for silence.
 constexpr double kLongestRound_s = 0.5;
-/// What is kept to talk to a client is dropped when it has asked nothing for so long.
+/// The state of a conversation with a client is dropped if the client asks nothing for this time.
 constexpr double kClientPatience_s = 30.0;
 constexpr std::size_t kMaxClients = 256;
 constexpr std::size_t kTextPart = 256 << 10;

@@ -44,7 +44,8 @@ std::string StateOf(const fs::path& results) {
 }
 
 void MakeCopy(const fs::path& results, std::uint64_t promised) {
-  // Who closes the database last merges the log: so ends what a coordinator that was killed left.
+  // The last process to close the database merges the log. This completes the work of a coordinator that was
+  // killed.
   ResultFolder::Open(results);
   if (!HasLog(results)) return;
   const ResultFolder folder = ResultFolder::Open(results);

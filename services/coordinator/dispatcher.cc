@@ -37,7 +37,7 @@ void Dispatcher::EndCampaign(const std::string& flight_id) {
   if (found == campaigns_.end()) return;
   Acknowledge(found->second);
   campaigns_.erase(found);
-  // What a worker still holds of it is revoked when its status says so.
+  // Cases of it that a worker still holds are revoked when the worker's status reports them.
   for (auto& [id, worker] : workers_) {
     worker.ForgetSent(flight_id);
     std::erase_if(worker.orders.assignments,
@@ -108,7 +108,7 @@ bool Dispatcher::Join(const std::string& sender, const WorkerStatus& status, dou
                         : status.held.empty() || !status.started.empty()
                             ? std::numeric_limits<double>::infinity()
                             : options_.load_silence_s;
-  // Whatever it says that it can hold: the others shall find cases too.
+  // The number of credits is limited, whatever the worker says: cases must be left for others.
   worker.hello = {status.engine_version, status.slots,
                   std::min(status.credits, kCreditsPerSlot * status.slots)};
   for (auto& [flight_id, campaign] : campaigns_) {
@@ -168,8 +168,8 @@ void Dispatcher::TellRefusal(const std::string& worker, const std::string& reaso
   refusals_.push_back(std::move(orders));
 }
 
-// What the worker holds against what it was given: the one place where losses on the way are found and made
-// good.
+// Compares the cases that the worker holds with those it was given. Only here are lost messages found and
+// replaced.
 void Dispatcher::Compare(Worker& worker, const WorkerStatus& status, double now_s) {
   const std::string& id = status.worker;
   const bool follows = status.coordinator_epoch == epoch_;

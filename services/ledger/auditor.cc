@@ -37,7 +37,7 @@ class Auditor::Queue : public CaseQueue {
     flying_.erase(claim);
   }
 
-  // What cannot be flown here tells nothing of who could.
+  // A case that cannot be flown here is no evidence against a worker.
   void Quarantined(std::uint64_t case_index, const std::string& reason) override {
     const auto claim = std::find_if(flying_.begin(), flying_.end(),
                                     [&](const Claim& each) { return each.case_index == case_index; });

@@ -284,7 +284,8 @@ std::optional<Assignment> Ledger::GiveTo(const std::string& worker, std::uint64_
   const auto entry = workers_.find(worker);
   if (entry == workers_.end()) return std::nullopt;
   Worker& to = entry->second;
-  // Who holds much has returned much: nobody stops a campaign by taking its cases.
+  // A worker may hold many cases only after it has returned many. Otherwise one worker could stop a campaign
+  // by taking its cases.
   const std::uint64_t most =
       std::min<std::uint64_t>(to.hello.credits, options_.first_assignments + to.returned);
   if (to.stuck || to.leaving || to.alone || to.batches.size() + elsewhere >= most) return std::nullopt;

@@ -15,8 +15,8 @@ inline constexpr char kFileType[] = "FILE", kFolderType[] = "DIR";
 inline constexpr char kYamlType[] = "YAML", kMetricType[] = "METRIC";
 
 /// `words` are those after the program's name. The last one is unfinished and may be empty. One line for each
-/// candidate: the word, a tab and its description. Where the shell itself knows best: ":file" or ":folder";
-/// for YAML files alone: ":file", a tab and "yaml".
+/// candidate: the word, a tab and its description. If the shell completes better itself: ":file" or
+/// ":folder"; for YAML files only: ":file", a tab and "yaml".
 std::string CompletionWords(const CLI::App& app, const std::vector<std::string>& words);
 
 }  // namespace dispersa

@@ -342,7 +342,7 @@ void MapSchema::Group(const char* name, const std::string& of, const Part& part)
   }));
 }
 
-// What holds of a map if the condition does, any of these.
+// Schemas for a map that meets the condition; any of them suffices.
 std::vector<MapSchema::Json> MapSchema::Holds(const Condition& condition) const {
   std::vector<std::string> path;
   for (std::size_t start = 0; start <= condition.key.size();) {

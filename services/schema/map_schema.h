@@ -20,7 +20,7 @@ namespace dispersa {
 class MapSchema : public Fields {
  public:
   using Json = nlohmann::ordered_json;
-  /// What several maps refer to.
+  /// The schemas that several maps refer to.
   class Shared {
    public:
     virtual ~Shared() = default;

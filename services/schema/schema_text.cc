@@ -33,7 +33,7 @@ void Print(const Json& json, std::size_t indent, std::string& out) {
   out += "\n" + std::string(indent, ' ') + (json.is_array() ? "]" : "}");
 }
 
-// What the schema of a file refers to.
+// The schemas that a file's schema refers to.
 class SharedSchemas : public MapSchema::Shared {
  public:
   Json Document(const std::string& schema) override {

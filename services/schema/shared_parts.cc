@@ -10,7 +10,7 @@ namespace {
 
 using Json = nlohmann::ordered_json;
 
-// What a reference takes, one with a description beside it, and the name under "$defs".
+// Sizes in characters: of a reference, of a reference with a description, and of the name under "$defs".
 constexpr std::size_t kReference = 30, kDescribed = 45, kName = 16;
 
 // Calls visit(part, key) of every schema directly inside a schema; `key`: of the properties, else empty.

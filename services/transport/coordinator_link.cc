@@ -13,7 +13,7 @@ namespace dispersa {
 namespace dds = eprosima::fastdds::dds;
 
 struct CoordinatorLink::Impl {
-  /// What is meant for one goes through writers of its own: one that stopped blocks nobody else.
+  /// Messages to one participant have writers of their own, so that a stopped reader blocks no other.
   struct Channel {
     Channel(Participant& participant_, const std::string& who)
         : participant(participant_), publisher(participant.MakePublisher(PartitionOf(who))) {}

@@ -33,7 +33,7 @@ void SetCommonQos(Qos& qos, int depth) {
 dds::DataWriterQos MakeWriterQos(int depth) {
   dds::DataWriterQos qos = dds::DATAWRITER_QOS_DEFAULT;
   SetCommonQos(qos, depth);
-  // What was lost is sent again after this long and not after 3 s.
+  // Lost messages are sent again after this time, and not after 3 s.
   qos.reliable_writer_qos().times.heartbeatPeriod = eprosima::fastrtps::Duration_t(0, 200000000);
   qos.reliability().max_blocking_time = eprosima::fastrtps::Duration_t(0, 100000000);
   return qos;

@@ -143,7 +143,7 @@ class Writer : private eprosima::fastdds::dds::DataWriterListener {
   Writer(const Writer&) = delete;
   Writer& operator=(const Writer&) = delete;
 
-  /// A message that cannot be sent now is lost. Whoever needs it repeats it.
+  /// A message that cannot be sent now is lost. The sender repeats it if needed.
   void Write(Message message) {
     const Lock lock(mutex_);
     if (++written_ > kRenewAfter) {

@@ -74,7 +74,8 @@ void Neighbours::LogSilent() {
   });
 }
 
-// Who changes partitions could speak in one with the permission for another: he speaks in none from then on.
+// A participant that changes partitions could use its permission for one partition in another. It is not
+// heard any more.
 void Neighbours::on_publisher_discovery(dds::DomainParticipant*, rtps::WriterDiscoveryInfo&& found) {
   const Lock lock(mutex_);
   if (found.status == rtps::WriterDiscoveryInfo::REMOVED_WRITER) {

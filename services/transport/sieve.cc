@@ -25,7 +25,7 @@ constexpr std::uint8_t kData = 0x15;
 constexpr std::uint8_t kDataFragment = 0x16;
 constexpr std::uint8_t kNackFragment = 0x12;
 constexpr std::uint8_t kHeartbeatFragment = 0x13;
-// Of DDS Security. What is encrypted is a prefix, a body and a postfix.
+// DDS Security: an encrypted part is a prefix, a body and a postfix.
 constexpr std::uint8_t kSecureBody = 0x30;
 constexpr std::uint8_t kSecurePrefix = 0x31;
 constexpr std::uint8_t kSecurePostfix = 0x32;
@@ -35,7 +35,7 @@ constexpr std::uint8_t kSecureMessagePostfix = 0x34;
 constexpr std::uint32_t kGreeting = 0x000100c2;
 constexpr std::uint32_t kHandshake = 0x000201c3;
 
-/// What a reader that comes late to one of our writers may be told to skip (endpoints.h renews writers before
+/// Largest range that a late reader of our writers may be told to skip (endpoints.h renews writers before
 /// they have written more).
 constexpr std::uint64_t kMaxRange = 2 * kRenewAfter;
 

@@ -193,7 +193,7 @@ bool FlightDesk::Announce(double now_s) {
   return true;
 }
 
-// What was gathered becomes a report.
+// Makes a report of the gathered results.
 void FlightDesk::Finish(double now_s) {
   Report report = std::exchange(next_, {});
   report.worker = options_.worker;
@@ -261,7 +261,7 @@ FlightDesk::Due FlightDesk::Tick(double now_s) {
                         : in_flight_ > 0 ? WorkerState::kFlying
                                          : WorkerState::kReady);
   }
-  // What would travel with the start of a next case does not wait for a case that takes long.
+  // Results that would be sent with the start of a next case do not wait for a case that takes long.
   if (!next_.flown.empty() && now_s - gathered_s_ > kGatherAtMost_s) Finish(now_s);
   due.reports = TakeReports(now_s);
   // Nobody hears what is said to a coordinator that does not answer; when it does again, all is said again.

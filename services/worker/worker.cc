@@ -225,8 +225,8 @@ std::optional<WorkerExit> Worker::Exit(double now_s) {
   if (desk_.left()) return WorkerExit::kTold;
   if (desk_.draining()) {
     if (draining_s_ == 0.0) draining_s_ = now_s;
-    // What is flown is finished; that its results are stored is waited for while somebody is there to store
-    // them.
+    // Cases under way are finished. The worker waits until the results are stored, as long as a coordinator
+    // is there to store them.
     if (desk_.IsIdle() ||
         (!desk_.IsFlying() && now_s - std::max(busy_since_drain_s_, draining_s_) > kLastWords_s)) {
       return WorkerExit::kDrained;
