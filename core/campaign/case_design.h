@@ -25,7 +25,7 @@ class CaseDesign {
  public:
   explicit CaseDesign(const Campaign& campaign);
 
-  /// Pure: the same inputs whatever was drawn before.
+  /// Pure: the inputs do not depend on earlier draws.
   FlightInputs Draw(std::uint64_t case_index) const;
 
  private:

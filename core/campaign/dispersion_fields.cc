@@ -421,7 +421,7 @@ class DispersionFields {
   const bool is_sound_;     ///< else nothing is checked against it
   const int stages_;
   Campaign& campaign_;
-  int maps_ = 0;  ///< so many dispersions of a distribution were there
+  int maps_ = 0;  ///< number of distributions read so far
 };
 
 }  // namespace

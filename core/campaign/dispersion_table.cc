@@ -25,8 +25,8 @@ Range LimitsOfPropellant(const Vehicle& vehicle, int stage) {
   return Inside(0.0, LargestPropellantFactor(StageAt(vehicle, stage)));
 }
 
-// Half the least moment of inertia of the stack without what it burns and what may leave it, about either
-// axis: with three such products the tensor is still one of a body.
+// Half the least moment of inertia, about either axis, of the stack without its own propellant and without
+// masses that may leave. With three such products the tensor is still that of a body.
 Range LimitsOfProduct(const Vehicle& vehicle, int stage) {
   StackMass left = Without(BuildStackMasses(vehicle)[static_cast<std::size_t>(stage) - 1], stage - 1,
                            BuildJettisonedMasses(vehicle), ~0u);

@@ -45,7 +45,7 @@ struct DispersionRow {
   std::vector<DispersionRow> parts = {};         ///< maps in its map
   std::optional<double> absent = {};             ///< the value in every case if the key is not there
   int first_stage = 1;
-  int last_stages_without = 0;  ///< so many stages at the end cannot be dispersed
+  int last_stages_without = 0;  ///< number of last stages that cannot be dispersed
   /// Of a stage of a vehicle: what its draws are limited to besides.
   Range (*limits)(const Vehicle& vehicle, int stage) = nullptr;
 };

@@ -1,7 +1,7 @@
-// Trees to the engine's structs. The files that a tree names are put in the place of their names.
+// Reads trees into the engine's structs. Named files are already replaced by their contents.
 //
-// `path` is the tree's own in its file: empty when it is a whole file, e.g. "vehicle" when it is inlined.
-// A result is complete only if no problem was recorded.
+// `path` is the tree's own path in its file: empty for a whole file, "vehicle" for an inlined vehicle. A
+// result is complete only if no problem was recorded.
 #pragma once
 
 #include <string>

@@ -16,7 +16,7 @@
 namespace dispersa {
 namespace {
 
-// Far above what any file of ours has; below them no text takes long or much memory, whoever wrote it.
+// Limits far above every real file. Below them no text, also from strangers, takes long or much memory.
 constexpr std::size_t kMaxBytes = std::size_t{64} << 20;
 constexpr std::size_t kMaxDepth = 64;
 constexpr std::size_t kMaxKeys = 1000;

@@ -10,7 +10,7 @@ std::string WriteReference(const Reference& reference) {
                              .length_unit = "km",
                              .quotes_all_texts = true};  // names come from other files and may hold anything
   Reference written = reference;
-  // Nobody asks for these where the target does not name them.
+  // If the target does not name these, no reader needs them.
   if (!reference.problem.target_node_rad) written.orbit.node_longitude_rad = 0.0;
   if (!reference.problem.target_argument_of_perigee_rad) written.orbit.argument_of_latitude_rad = 0.0;
   return WriteFields(layout, [&](Fields& fields) { DescribeReferenceFile(fields, written); });

@@ -1,4 +1,4 @@
-// The cases of a campaign flown in this process, whatever their control law does to it.
+// The cases of a campaign flown in this process, with any control law.
 #pragma once
 
 #include <cstdint>

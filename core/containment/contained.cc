@@ -106,7 +106,7 @@ void TellAskedCall(int call) {
   sigset_t none;
   sigemptyset(&none);
   pthread_sigmask(SIG_SETMASK, &none, nullptr);
-  // No file of this process is the plug-in's, and what it prints is no result.
+  // The plug-in gets no file of this process, and its printed output is no result.
   if (out != kPipe) dup2(out, kPipe);
   fcntl(kPipe, F_SETFD, FD_CLOEXEC);
   close_range(kPipe + 1, ~0u, 0);

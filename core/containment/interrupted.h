@@ -1,4 +1,4 @@
-// How a long call is stopped by whoever asked for it.
+// Interrupting a long call on request.
 #pragma once
 
 #include <functional>

@@ -90,8 +90,8 @@ struct GimbalCommand {
   }
 };
 
-/// At ignition of a stage: the rules of the stage, anew or, without reset, with what they learnt. Adaptive
-/// augmenting control always starts anew.
+/// At ignition of a stage: loads the rules of the stage. They restart, or without reset keep what they
+/// learnt. Adaptive augmenting control always restarts.
 void StartStage(const AutopilotModel& model, int stage, AutopilotState& state);
 /// One tick of powered flight. `gain` multiplies every command, the other factors P_n (1 in flight).
 GimbalCommand StepGimbals(const AutopilotModel& model, int stage, double since_ignition_s,

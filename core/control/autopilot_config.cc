@@ -100,7 +100,8 @@ void CheckAxis(const AxisConfig& axis, const std::string& name, int stages, doub
     for (const ScheduleEntry& entry : axis.schedule) all.emplace_back(entry.stage, entry.gains);
     for (const auto& [stage, gains] : all) {
       const Vector2 solved = SolveLyapunov(gains, a.q).col(1);
-      // The file prints a handful of digits: a part in a thousand tells agreement from another P.
+      // The file has few digits of P_n. A relative tolerance of 1e-3 still tells the right P from another
+      // one.
       if (std::fabs(a.p_n->x() - solved.x()) > 1e-3 * solved.x() ||
           std::fabs(a.p_n->y() - solved.y()) > 1e-3 * solved.y()) {
         add("adaptation.p_n",

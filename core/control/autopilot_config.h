@@ -90,7 +90,7 @@ struct Adaptation {
   double composite = 0.0;
   double predictor_1_s = 0.0;
   bool freeze_when_saturated = false;  ///< no adaptation into a deflection limit
-  bool reset_at_ignition = false;      ///< consequents start anew with each stage
+  bool reset_at_ignition = false;      ///< consequents restart with each stage
   double supervisory_bound = 0.0;      ///< supervisory term acts while V exceeds it
 };
 
@@ -104,7 +104,7 @@ struct FuzzyRules {
 struct IntegralAction {
   std::vector<double> ki_1_s3;     ///< one a stage
   double bound_rad_s2 = 0.0;       ///< of |w| (0: none)
-  bool reset_at_ignition = false;  ///< w starts anew with each stage
+  bool reset_at_ignition = false;  ///< w restarts with each stage
 };
 
 /// NASA's adaptive augmenting control (J. S. Orr and T. S. VanZwieten, "Robust, Practical Adaptive Control

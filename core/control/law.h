@@ -60,8 +60,8 @@ struct LawInput {
   const StageLawLanes<T>& stage;
   MaskOf<T> acting;
   T error_rad, rate_rad_s;  ///< e and its rate
-  const T* foreign_rad_s2;  ///< what a plug-in commands of the axis, if the law is one
-  bool is_reported;         ///< what the law has learnt is read afterwards
+  const T* foreign_rad_s2;  ///< the command of a plug-in for the axis, if the law is one
+  bool is_reported;         ///< the learnt values are read afterwards
 };
 
 /// A law's output: AxisTelemetry lane by lane. V is set beforehand, the rest begins at zero.

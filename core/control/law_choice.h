@@ -1,4 +1,4 @@
-// Which law an axis has: the one place where laws are told apart.
+// The control law of an axis. Only here does code depend on which law it is.
 #pragma once
 
 #include "core/control/augmented_law.h"

@@ -18,13 +18,13 @@ class LawMemory {
   LawMemory& operator=(const LawMemory&) = delete;
 
   void* get() const { return block_; }
-  /// Whether nobody has written behind the block, or into the 8 bytes before it: cheap enough for each call.
+  /// Whether the bytes after the block and the 8 bytes before it are unchanged. Cheap enough for each call.
   bool IsSoundNearby() const {
     std::uint64_t before;
     std::memcpy(&before, block_ - sizeof before, sizeof before);
     return before == kUnwritten && (bytes_ == size_of_block_ || IsSoundBehind());
   }
-  /// Whether nobody has written between the pages and the block.
+  /// Whether everything between the pages and the block is unchanged.
   bool IsSound() const;
 
  private:

@@ -194,7 +194,7 @@ void PluginFlight::Begin(double time_s, int stage) {
 }
 
 void PluginFlight::End(double time_s, int stage) {
-  // Rounding and exceptions of arithmetic as every flight has them, whatever the law has set.
+  // Restores the rounding and exception mode of flights, which the law may have changed.
   _mm_setcsr(0x1f80);
   CountCall();
   // All that is watched may be a page: now and then.

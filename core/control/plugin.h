@@ -40,9 +40,9 @@ class PluginLaw {
   PluginLaw& operator=(const PluginLaw&) = delete;
 
   const PluginConfig& config() const { return config_; }
-  /// Loads the object at the first call, which runs code of it: only in a process whose calls are marked
-  /// (MarkPluginCallsIn), so that somebody watches. Throws PluginError. Not for several threads at once
-  /// before it has returned once.
+  /// Loads the object at the first call, which runs code of it. Allowed only in a process with marked calls
+  /// (MarkPluginCallsIn), so that another process watches it. Throws PluginError. Not thread-safe until it
+  /// has returned once.
   void Open() const;
   /// Opens it.
   PluginDescription Describe() const;
@@ -91,7 +91,7 @@ class PluginFlight {
   /// Returns false if the law fails, as Step does: then it is not called any more. Both throw PluginError if
   /// the law has written beside the flight's memory.
   bool StartStage(const dispersa_law_stage& stage, double time_s);
-  /// Angular accelerations, rad/s², whatever the law commands.
+  /// Sets the commanded angular accelerations, rad/s². They may have any value.
   bool Step(const dispersa_law_input& input, double* command_rad_s2);
 
   /// Why the flight ends, as a string literal; null while it goes on.

@@ -132,7 +132,7 @@ DISPERSA_INLINE FlowForce<T> ForceOfFlow(const BodyAerodynamicsLanes<T>& body, V
   const T turning = normal * (cg_station_m - c.xcp_station_m);
   o.normal = {normal, qs * c.cn_slope_1_rad, c.xcp_station_m, ny, nz, airspeed};
   o.force_n = {-(qs * c.ca), -(normal * ny), -(normal * nz)};
-  // q S d² / (2 V) = rho V S d² / 4, or with the floor in the place of a lower V.
+  // q S d² / (2 V) = rho V S d² / 4. In the divisor 2 V, a V below the floor is replaced by the floor.
   T damped_airspeed = airspeed;
   if (body.has_airspeed_floor) {
     const auto is_slow = airspeed < body.minimum_airspeed_m_s;

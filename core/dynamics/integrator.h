@@ -20,8 +20,8 @@ enum class Scheme {
 /// "simpson", "erk4", "cvode".
 bool ParseScheme(const std::string& name, Scheme* scheme);
 
-/// Advances a state of fixed size. Every Advance starts anew: no derivative, step size or history survives an
-/// event. So a result depends on the arguments alone. Not thread-safe: make one for each flight.
+/// Advances a state of fixed size. Every Advance restarts: no derivative, step size or history is kept over
+/// an event. So a result depends on the arguments alone. Not thread-safe: make one for each flight.
 class Integrator {
  public:
   /// scheme: ERKStep's or CVODE's. absolute_tolerance, shape (size): only CVODE reads it.

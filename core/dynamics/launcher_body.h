@@ -228,8 +228,8 @@ DISPERSA_INLINE Thrust<T> ThrustOf(const LauncherPlantLanes<T>& plant, const Tim
   return o;
 }
 
-/// The same of a list of nozzles (core/vehicle/nozzle_layout.h), whatever each has besides its nominal share
-/// included.
+/// The same for a list of nozzles (core/vehicle/nozzle_layout.h), with deviations of each nozzle from its
+/// nominal share.
 template <class T>
 DISPERSA_INLINE Thrust<T> ThrustOf(const LauncherPlantLanes<T>& plant, const TimedMasses<T>& masses,
                                    const ListedNozzles<T>& nozzles, T pressure_pa) {

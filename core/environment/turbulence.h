@@ -52,7 +52,7 @@ class TurbulencePath {
   struct Node {
     double altitude_m;
     double sine, cosine;  ///< of the path's angle
-    /// exp(-d / length) from the last node and what is added anew, of a component along the path
+    /// of a component along the path: exp(-d / length) from the last node, and the share of new noise
     double along_keeps, along_renews;
     /// The same for a component across the path, with two states: [1 0; ratio 1] times the factor that is
     /// kept, and the lower triangle of the new part.

@@ -138,7 +138,7 @@ void Batch<T>::Happen(int lane) {
       StateValues y;
       step_.ReadLane(lane, y);
       const double time_s = Lane(time_s_, lane);
-      // Straight from the burn: what was evaluated last is at an earlier time.
+      // Computed from the burn itself, because the last evaluation is of an earlier time.
       const double since_ignition_s = time_s - Lane(step_.phase().ignition_s, lane);
       const double propellant_kg = record.plant.stacks.data()->burn.Propellant(since_ignition_s);
       record.LetGoOfBoosters(slot.jettisoned, time_s, propellant_kg, y);
@@ -187,7 +187,7 @@ void Batch<T>::Ignite(int lane, int stage) {
     of_stage.limit_rad = autopilot.stages.data()[stage].limit_rad;
     record.law->StartStage(of_stage, Lane(time_s_, lane));
   }
-  // The last stage's are nobody's now.
+  // The outputs of the last stage belong to no stage now.
   const AxisOutput<double> nothing{};
   for (int axis = 0; axis < kAxes; ++axis) {
     Lane(gimbals_.deflection_rad[axis], lane) = 0.0;

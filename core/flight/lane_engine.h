@@ -25,8 +25,8 @@ std::vector<LaneEngine> UsableEngines();
 const LaneEngine& ChosenEngine();
 /// The instance of one lane on the same level.
 const LaneEngine& OneLaneEngine();
-/// The narrowest engine of the chosen level that holds so many flights at once: an empty lane costs as much
-/// as a flying one. If DISPERSA_LANES is set, the chosen engine.
+/// The narrowest engine of the chosen level with lanes for this number of flights. An empty lane costs as
+/// much as a flying one. If DISPERSA_LANES is set, the chosen engine.
 const LaneEngine& EngineFor(std::size_t flights);
 
 }  // namespace dispersa

@@ -34,7 +34,7 @@ class LimitCycleMeter {
 
   explicit LimitCycleMeter(double tick_s);
 
-  /// Windows start anew: a transient, a gust, a coast.
+  /// Restarts the windows, after a transient, a gust or a coast.
   void Interrupt();
   /// One tick's deflections (rad).
   void Add(double roll_rad, double pitch_rad, double yaw_rad);

@@ -19,7 +19,7 @@ enum class Worse {
   kLarger,
   kSmaller,
   kFartherFromZero,
-  kNeither,  ///< it tells where or when, not how good
+  kNeither,  ///< a place or a time, neither good nor bad
 };
 
 /// The heading of reports under which a metric stands.
@@ -46,7 +46,7 @@ struct Metric {
   std::string definition;  ///< completes the title (empty if the title says all)
   MetricGroup group = MetricGroup::kAttitude;
   Worse worse = Worse::kLarger;
-  bool is_usual = false;     ///< shown in full in every report, whatever is required
+  bool is_usual = false;     ///< shown in full in every report, with or without a requirement
   bool is_digested = false;  ///< part of a flight's digest
   bool is_part =
       false;  ///< of one stage or of the coast: the metric without this suffix has the same definition
@@ -57,12 +57,13 @@ struct Metric {
 /// In the order of their columns.
 const std::vector<Metric>& Metrics();
 const std::vector<std::string>& MetricNames();
-/// Metrics that a vehicle of so many stages has: the first so many of Metrics(). Of those that its law does
-/// not have a flight's values are undefined.
+/// Number of metrics of a vehicle with this number of stages: they are the first of Metrics(). A flight's
+/// value is undefined if its control law does not have the metric.
 std::size_t MetricCount(std::size_t stages);
 /// Whether flights under a law of the pitch axis have it.
 bool HasMetric(const Metric& metric, ControlLaw pitch_law);
-/// Positions in Metrics() of those that flights of so many stages have under a law of the pitch axis.
+/// Positions in Metrics() of the metrics that flights have, for a number of stages and the law of the pitch
+/// axis.
 std::vector<std::size_t> MetricsUnder(std::size_t stages, ControlLaw pitch_law);
 /// "adaptive_fuzzy or frozen_fuzzy": the laws that have it.
 std::string LawsWith(const Metric& metric);

@@ -1,4 +1,4 @@
-// The ripple of a flight's deflections: how far they swing within a second, whatever swings them.
+// The ripple of a flight's deflections: their peak-to-peak within a second, of any cause.
 #pragma once
 
 #include <vector>
@@ -12,7 +12,7 @@ class RippleMeter {
  public:
   explicit RippleMeter(double tick_s);
 
-  /// Windows start anew: a transient, a gust, a coast.
+  /// Restarts the windows, after a transient, a gust or a coast.
   void Interrupt() { filled_ = 0; }
   /// One tick's deflections (rad).
   void Add(double roll_rad, double pitch_rad, double yaw_rad);

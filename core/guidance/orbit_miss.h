@@ -5,7 +5,7 @@
 
 namespace dispersa {
 
-/// m/s at the target's speed, of what is reached less what is wanted.
+/// Reached minus wanted, in m/s at the target's speed.
 struct OrbitMiss {
   double energy_m_s = 0.0;  ///< orbital energy over speed: 1 m/s is 1.8 km of semi-major axis at 500 km
   double radial_m_s = 0.0;  ///< of the eccentricity vector, e sin(true anomaly): of the vertical speed

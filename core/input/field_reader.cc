@@ -490,7 +490,7 @@ class FieldReader : public Fields {
     });
   }
 
-  // f(item, path) for each item of a list of so many.
+  // Calls f(item, path) for each item of a list with an allowed length.
   template <typename F>
   void Items(InputNode& list, const std::string& path, std::size_t low_count, std::size_t high_count, F f) {
     const std::size_t count = list.items.size();

@@ -24,7 +24,7 @@ class FileSource {
     Read(name, path, holds, problems);
     problems_ += problems.size() - before;
   }
-  /// So many problems were those of the files as texts, not of their values.
+  /// Number of problems in reading the files, without those of their values.
   std::size_t problems() const { return problems_; }
 
  private:

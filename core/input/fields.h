@@ -33,7 +33,7 @@ struct StructProblem {
 struct Condition {
   std::string key;                 ///< of the map, or of a map in it: "motor.liquid"
   Dimension dimension = {};        ///< not empty: the key ends in any unit of it
-  std::vector<std::string> words;  ///< empty: whatever its value
+  std::vector<std::string> words;  ///< empty: any value
   bool is_map = false;             ///< its value is a map
   bool is_list = false;            ///< its value is a list
   bool empty_counts = false;       ///< an empty list is one, too
@@ -128,7 +128,7 @@ class Fields {
   struct Alternative {
     Condition condition;
     std::function<void()> describe;
-    bool is_so = false;  ///< what is described is of this alternative: for those who write it
+    bool is_so = false;  ///< the described value is of this alternative (for visitors that write)
   };
   struct OneQuantity {
     const char* stem;
@@ -396,7 +396,7 @@ class Fields {
     std::function<void(Fields&, std::size_t)> describe;
   };
 
-  // Each takes what the value is, and leaves in it what it was given.
+  // Each visit gets the value, and leaves the read value in it.
   virtual void VisitText(const TextKey& key, std::string& value) = 0;
   virtual void VisitWhole(const WholeKey& key, std::uint64_t& value) = 0;
   virtual void VisitNumber(const NumberKey& key, std::optional<double>& value) = 0;

@@ -41,7 +41,7 @@ struct InputMember {
 
 /// A scalar, list or map that stands at the place of another node.
 InputNode ScalarAt(const InputNode& place, std::string text);
-/// A scalar that is text, whatever it looks like.
+/// A scalar that is always text, also if it looks like a number.
 InputNode TextAt(const InputNode& place, std::string text);
 InputNode ListAt(const InputNode& place);
 InputNode MapAt(const InputNode& place);

@@ -73,7 +73,7 @@ inline constexpr std::string_view kUnitLike[] = {"m",       "km",      "mm",    
                                                  "w_m2",    "kw_m2",   "k",       "percent_per_k",
                                                  "kg_m3"};
 
-/// How people write a unit else, and what it is called here.
+/// Other spellings of a unit, and its name here.
 struct UnitSpelling {
   std::string_view written;
   std::string_view meant;

@@ -7,7 +7,7 @@ namespace dispersa {
 
 /// Quoted if it must be.
 std::string TextScalar(const std::string& text);
-/// In single quotes, whatever it is.
+/// Any text in single quotes.
 std::string SingleQuoted(const std::string& text);
 
 }  // namespace dispersa

@@ -63,7 +63,7 @@ struct ComputedMargins {
   /// As adapting, with what the law has learnt by then: the least on any side of zero error and zero rate.
   /// None where nothing changes by learning.
   std::optional<LoopMargins> learnt;
-  bool is_augmented = false;            ///< what is learnt is an augmentation's gain
+  bool is_augmented = false;            ///< the learnt value is an augmentation's gain
   std::vector<SetMargins> by_set = {};  ///< as adapting, where there are several FrequencySets
 };
 

@@ -7,7 +7,8 @@
 
 namespace dispersa {
 
-std::string PaperHeadline(const PaperStudy& study);           ///< what the comparison of laws comes to
+std::string PaperHeadline(
+    const PaperStudy& study);  ///< The result of the comparison of control laws, in one sentence.
 std::string PaperVehicleSection(const PaperStudy& study);     ///< Table 1
 std::string PaperTrajectorySection(const PaperStudy& study);  ///< Table 2, Figs. 2 and 3
 std::string PaperDispersionSection(const PaperStudy& study);  ///< Table 3

@@ -18,7 +18,7 @@
 
 namespace dispersa {
 
-/// A campaign of the page, and what it is for.
+/// A campaign of the page, and its purpose.
 struct PaperCampaign {
   std::string name;    ///< of the file without its ending
   std::string figure;  ///< what it shows, for people
@@ -46,8 +46,7 @@ struct PaperFlights {
   StudyFlights flights;
 };
 
-/// A deliberately bad P_n of the pitch axis: what is said to it, and what it does when it is flown all the
-/// same.
+/// A deliberately bad P_n of the pitch axis: the error message about it, and its flight if it is allowed.
 struct BadPn {
   double factor = 0.0;  ///< of the Lyapunov equation's column
   Vector2 p_n = Vector2::Zero();

@@ -15,7 +15,7 @@ namespace dispersa {
 /// How much of a campaign is flown and kept.
 struct StudyOptions {
   std::uint64_t cases = 0;      ///< instead of the campaign's own number; 0: that
-  std::uint64_t histories = 0;  ///< the first so many cases keep a time history
+  std::uint64_t histories = 0;  ///< number of first cases that keep a time history
   std::vector<int> columns;     ///< of HistoryColumns(), that a time history keeps
   double step_s = 0.1;          ///< of the time histories
   int threads = 1;              ///< the results do not depend on it

@@ -26,7 +26,7 @@ struct Coordinate {
 
 class DispersionSpace {
  public:
-  /// Treats every dispersion as drawn at random, whatever the campaign's design is.
+  /// Treats every dispersion as drawn at random, for any design of the campaign.
   explicit DispersionSpace(const Campaign& campaign);
 
   const std::vector<Coordinate>& coordinates() const { return coordinates_; }

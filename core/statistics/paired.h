@@ -19,7 +19,7 @@ struct PairedDifference {
   std::size_t worse = 0;   ///< b > a, or only b undefined
   std::size_t better = 0;  ///< b < a, or only a undefined
   std::size_t equal = 0;
-  std::size_t lost_a = 0;  ///< undefined values in a, whatever b has
+  std::size_t lost_a = 0;  ///< undefined values in a, with any value in b
   std::size_t lost_b = 0;
   double median_difference = kUndefined;  ///< of b - a
   Interval difference_interval{kUndefined, kUndefined};

@@ -84,7 +84,7 @@ std::vector<BeamElement> BuildElements(const Beam& beam, BeamPlane plane,
     const double h = stations[i + 1] - stations[i];
     BeamElement element;
     element.length_m = h;
-    // The shape is that of the element as if it were uniform; the energy is of what it is.
+    // The shape is that of a uniform element. The energy is that of the real one.
     const Stiffness middle = StiffnessAt(beam, plane, stations[i] + 0.5 * h);
     element.shear_ratio = middle.shear_n > 0.0 ? 12.0 * middle.bending_n_m2 / (middle.shear_n * h * h) : 0.0;
     const double phi = element.shear_ratio, scale = 1.0 / (1.0 + phi);

@@ -30,12 +30,14 @@ enum LiftEffect : int {
 enum LiftCause : int { kSlopeSlender, kSlopeShift, kRateSlender, kRateShift, kLiftCauses };
 
 struct BendingTable {
-  /// Frequency (rad/s), 1 / generalised mass; at the pivot: deflection, slope; slopes at the inertial unit
-  /// and at each rate gyro; shortening with each mode; the work on the mode of the straight body's lift, by
-  /// slender-body theory and by shift; from kLiftAt what the lift by a unit of the mode does, by cause and
-  /// effect, for a normal force of 1 for each radian; from kMomentAt the bending moment of the mode's inertia
-  /// at each load station, for a unit acceleration of it. Where a stage is above: by how much a unit of the
-  /// mode moves its centre of gravity and turns it, in the mean.
+  /// Columns. Frequency (rad/s) and 1 / generalised mass. At the pivot: deflection and slope. Slopes at the
+  /// inertial unit and at each rate gyro. Shortening with each mode. Work on the mode of the straight body's
+  /// lift, by slender-body theory and by shift.
+  ///
+  /// From kLiftAt on: effects of the lift by a unit of the mode, by cause and effect, for a normal force of 1
+  /// per radian. From kMomentAt on: bending moment of the mode's inertia at each load station, for a unit
+  /// acceleration of the mode. If there is a stage above: mean displacement of its centre of gravity, and
+  /// mean rotation, for a unit of the mode.
   enum Column : int {
     kFrequency = 0,
     kInverseMass = 1,

@@ -1,4 +1,4 @@
-// Bodies of revolution on the axis: what a vehicle's mass is made of.
+// Bodies of revolution on the axis, which make up a vehicle's mass.
 //
 // Stations are distances aft of the nose tip of the full vehicle.
 #pragma once

@@ -19,7 +19,7 @@ struct StackMassLanes {
   T inner_per_kg_m2;  ///< by which each kilogram lowers the bore's radius squared
   T length2_m2;       ///< the grain's length squared, over 12
   bool any_drains;    ///< of any lane:
-  T drains;           ///< 1 where tanks stand in the place of the grain (DrainingMass), else 0
+  T drains;           ///< 1 for liquid stages (DrainingMass), 0 for grains
   T first_per_kg_m, first_per_kg2_m, second_per_kg_m2, second_per_kg2_m2, second_per_kg3_m2;
 };
 template <class T>

@@ -102,7 +102,7 @@ NozzleLayout BuildNozzleLayout(const Gimbal& gimbal) {
   double scale[kSteeredAxes] = {};
   if (o.rolls) scale[0] = 1.0 / reach(0);
   scale[1] = scale[2] = 1.0 / std::max(reach(1), reach(2));
-  // To 1e-12, so that what is meant to be 1 or 0 is: doubles about 6144 are so far apart.
+  // Rounds to 1e-12, the distance of doubles near 6144, so that values that should be 1 or 0 are exact.
   const auto rounded = [](double x) { return (x + 0x1.8p12) - 0x1.8p12; };
   for (int axis = first; axis < kSteeredAxes; ++axis) {
     for (int drive = 0; drive < kDrives; ++drive) {

@@ -602,7 +602,7 @@ std::string SpanText(const Span& span, const std::string& unit) {
   return Readable(span.low) + " to " + Readable(span.high) + end;
 }
 
-// A thrust curve or an engine stands in the place of the thrust.
+// A thrust curve or an engine replaces the key of the thrust.
 std::string PathOf(const Check& check, const Subject& subject) {
   const std::string field = check.field;
   if (field != "motor.thrust_n") return field;

@@ -15,8 +15,8 @@
 
 namespace dispersa {
 
-/// `path`: of the value to look at first, `message`: what it implies, `allowed`: what is possible, or usual,
-/// and from where that is known.
+/// `path` is the value to look at first, `message` its implication, `allowed` the possible or usual range
+/// with its source.
 struct PlausibilityFinding : StructProblem {
   bool impossible = false;
 };

@@ -22,7 +22,7 @@ struct MotorBurn {
   double exit_area_m2 = 0.0;
   double duration_s = 0.0;  ///< ignition to burnout
   double left_kg = 0.0;     ///< of the propellant, then
-  /// In place of the ramps, at the flight's rate: its time runs so many times as fast as the file's.
+  /// Replaces the ramps. Its time runs `curve_rate` times as fast as in the file, by the flight's burn rate.
   std::shared_ptr<const BurnCurve> curve;
   double curve_rate = 1.0;
 

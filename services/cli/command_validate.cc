@@ -1,5 +1,4 @@
-// dispersa validate: what is wrong with input files, what is unusual about them, and what a vehicle amounts
-// to.
+// dispersa validate: errors and unusual numbers in input files, and a summary of a vehicle.
 #include <fmt/format.h>
 
 #include <memory>

@@ -95,7 +95,7 @@ ExitCode PrintEnd(const Json& campaign, const GlobalOptions& global) {
   return static_cast<ExitCode>(campaign.at("code").get<int>());
 }
 
-// A coordinator that is away for a while is waited for: what was launched goes on when it is back.
+// Waits for a coordinator that is away: a launched campaign goes on when the coordinator is back.
 ExitCode Watch(const std::string& id, const WatchOptions& options, Session& session,
                const GlobalOptions& global) {
   CatchStopSignals();

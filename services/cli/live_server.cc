@@ -21,7 +21,7 @@ constexpr char kHost[] = "127.0.0.1";
 /// Each has a thread; further ones are told to try again.
 constexpr int kMaxViewers = 32;
 constexpr std::size_t kThreads = kMaxViewers + 8;
-/// So often a browser hears something, and one that is gone is noticed.
+/// Interval of messages to a browser, by which a closed one is noticed.
 constexpr std::chrono::seconds kSignOfLife(2);
 constexpr std::chrono::seconds kFarewell(2);
 constexpr int kWritePatience_s = 2;
@@ -45,7 +45,7 @@ LiveServer::LiveServer(std::uint16_t port, std::string page)
     : page_(std::move(page)), serving_(std::make_unique<Serving>()) {
   httplib::Server& server = serving_->server;
   server.new_task_queue = [] { return new httplib::ThreadPool(kThreads); };
-  // By default httplib shares its port with whoever asks for it.
+  // By default httplib lets other programs listen on the same port.
   server.set_socket_options([](int socket) {
     const int yes = 1;
     setsockopt(socket, SOL_SOCKET, SO_REUSEADDR, &yes, sizeof yes);

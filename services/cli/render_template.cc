@@ -72,7 +72,7 @@ std::string RenderTemplate(const std::filesystem::path& summary, const std::file
     if (!std::ifstream(file) || std::filesystem::is_directory(file))
       throw InputError(file.string() + ": cannot be read", "a readable file");
   }
-  // Debian's python first: python3-jinja2 belongs to it, whatever else is called python3.
+  // Debian's python first: python3-jinja2 belongs to it. Another python3 may come first in the path.
   for (const char* python : {"/usr/bin/python3", "python3"}) {
     Ended ended = Run({python, "-I", "-c", kRenderTemplateScript, summary.string(), template_file.string()});
     if (ended.code == kNoJinja) continue;

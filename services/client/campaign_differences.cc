@@ -11,7 +11,7 @@ namespace {
 
 using Kind = InputNode::Kind;
 
-/// So many numbers of a list are shown.
+/// Number of items of a list that are shown.
 constexpr std::size_t kShownItems = 6;
 
 std::string Words(const InputNode* node) {

@@ -7,8 +7,8 @@
 
 namespace dispersa {
 
-/// Inputs by name, and the metrics at some positions of Metrics(): {"thrust_factor_stage1": 1.01, ...}; what
-/// is undefined is null.
+/// Inputs by name, and the metrics at some positions of Metrics(): {"thrust_factor_stage1": 1.01, ...}. An
+/// undefined value is null.
 nlohmann::ordered_json InputsJson(const std::vector<double>& inputs);
 nlohmann::ordered_json MetricsJson(const std::vector<double>& metrics,
                                    const std::vector<std::size_t>& positions);

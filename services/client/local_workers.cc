@@ -23,7 +23,8 @@ namespace {
 constexpr int kExecFailed = 127;
 constexpr double kLongestDelay_s = 2.0;
 
-// The end to read from of a pipe that holds this text: what fits into its buffer needs nobody to read it.
+// The read end of a pipe that holds this text. The text fits into the buffer, so writing it does not wait for
+// a reader.
 int PipeWith(const std::string& text) {
   int ends[2];
   if (pipe2(ends, O_CLOEXEC) != 0)
@@ -37,7 +38,8 @@ int PipeWith(const std::string& text) {
 
 // Between fork and exec of a process with threads: only what is safe in a signal handler.
 [[noreturn]] void BecomeWorker(const char* program, char* const* arguments, pid_t parent, int pass) {
-  // The kernel kills the worker when its parent ends; if that happened already, nobody would.
+  // The kernel kills the worker when its parent ends. If the parent has ended before this call, the signal
+  // would not come.
   prctl(PR_SET_PDEATHSIG, SIGKILL);
   if (getppid() != parent) _exit(kExecFailed);
   if (pass >= 0) fcntl(pass, F_SETFD, 0);  // this one stays open
@@ -101,7 +103,7 @@ void LocalWorkers::Kill(const std::string& uuid) {
 }
 
 void LocalWorkers::End(double patience_s) {
-  // Not SIGTERM: they would finish what they fly, which nobody waits for.
+  // Not SIGTERM: workers would finish their cases, and no one needs them.
   if (WaitAll(patience_s)) return;
   SignalAll(SIGKILL);
   WaitAll(1.0);

@@ -60,7 +60,7 @@ Json AskForFiles(Session& session, const Json& which) {
   }
 }
 
-/// Nobody takes a folder that lacks results for the campaign.
+/// A folder without all results must not be taken for the campaign.
 void RequireAllCases(const fs::path& directory, const Json& answer) {
   const auto promised = answer.value("done", std::uint64_t{0});
   const bool has_database = fs::exists(directory / "results.sqlite");

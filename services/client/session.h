@@ -22,7 +22,7 @@ struct SessionOptions {
   Admission admission;
 };
 
-/// Asks a coordinator once, for so long. None: nobody has answered.
+/// Asks a coordinator once, for a limited time. None: no answer.
 using Call = std::function<std::optional<Reply>(const std::string& method, const std::string& arguments,
                                                 const std::string& data, std::chrono::milliseconds patience)>;
 
@@ -36,7 +36,7 @@ class Session {
   /// Over another connection than the network: of a program that has the coordinator in it.
   Session(Peer peer, bool has_keys, Call call);
 
-  /// Asks for so long. None: nobody has answered.
+  /// Asks for a limited time. None: no answer.
   std::optional<Reply> Try(const std::string& method, const Json& arguments, const std::string& data = "",
                            std::chrono::milliseconds patience = kPatience);
   /// As above; without an answer it throws Failure.

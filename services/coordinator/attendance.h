@@ -1,4 +1,4 @@
-// Nobody flies: said again and again, and not endured for ever if so asked.
+// Watches for a time without any flying worker: repeats a warning, and ends the program after a given time.
 #pragma once
 
 #include <optional>

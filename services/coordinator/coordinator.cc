@@ -27,7 +27,7 @@ std::uint64_t Draw() {
 
 }  // namespace
 
-// The epoch is told to everybody. Nobody is told which results are audited.
+// Everybody learns the epoch. Nobody learns which results are audited.
 Coordinator::Coordinator(const NetworkOptions& network, std::optional<double> audit_share,
                          std::uint64_t epoch)
     : epoch_(epoch),

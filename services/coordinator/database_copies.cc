@@ -17,7 +17,7 @@ constexpr std::chrono::milliseconds kCopyWait(20);
 fs::path DatabaseOf(const fs::path& results) { return results / "results.sqlite"; }
 fs::path LogOf(const fs::path& results) { return results / "results.sqlite-wal"; }
 fs::path CopyOf(const fs::path& results) { return results.parent_path() / "fetched.sqlite"; }
-// Apart from it: a client that fetches must not change what a backup is reading.
+// A separate copy: a client that fetches must not change the copy that a backup reads.
 fs::path SnapshotOf(const fs::path& results) { return results.parent_path() / "backup.sqlite"; }
 
 void RemoveCopy(const fs::path& file) {

@@ -1,5 +1,5 @@
-// Databases of result folders for clients that fetch them, whole also while somebody reads them on this
-// machine.
+// Copies of the databases of result folders, for clients that fetch them. They are consistent even if the
+// database is being read on this machine.
 #pragma once
 
 #include <cstdint>
@@ -22,17 +22,16 @@ class DatabaseCopies {
                                              double now_s);
   /// The same of a folder that Whole was asked about before: nothing is copied.
   std::filesystem::path Known(const std::filesystem::path& results, double now_s);
-  /// A copy of a database that somebody may be writing, for a backup. The backup's `name` decides whether the
-  /// present copy is meant. None: it is being copied.
+  /// A copy, for a backup, of a database that may be written at the same time. The backup's `name` tells
+  /// whether the present copy belongs to it. None: it is being copied.
   std::optional<std::filesystem::path> Snapshot(const std::filesystem::path& results, const std::string& name,
                                                 double now_s);
-  /// The same copy, if it still exists. Empty: another backup has taken its place, or nobody asked for too
-  /// long.
+  /// The same copy, if it still exists. Empty: another backup replaced it, or it was not used for too long.
   std::optional<std::filesystem::path> KnownSnapshot(const std::filesystem::path& results,
                                                      const std::string& name, double now_s);
   /// The campaign goes on: the copy for those who fetch it is old.
   void Forget(const std::filesystem::path& results);
-  /// Removes the copies that nobody has asked for lately.
+  /// Removes copies that were not used lately.
   void ForgetUnused(double now_s);
 
  private:

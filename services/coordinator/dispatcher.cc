@@ -57,7 +57,7 @@ void Dispatcher::On(const std::string& sender, const WorkerStatus& status, doubl
   }
   const auto known = workers_.find(status.worker);
   if (known != workers_.end() && known->second.sender != sender) {
-    // A worker that made its connection anew; or somebody who uses its name while it lives.
+    // A worker that renewed its connection, or another process that uses its name while it runs.
     if (!known->second.sender_gone && now_s - known->second.heard_s <= options_.silence_s) {
       Disagree(sender, "it speaks for worker " + status.worker + " of another participant");
       return;

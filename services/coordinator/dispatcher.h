@@ -69,7 +69,7 @@ class Dispatcher {
 
   /// The orders to send now. Stores accepted results when due. Throws ResultError.
   std::vector<Orders> Tick(double now_s);
-  /// From now on every worker is told to leave.
+  /// From now on, every worker gets the order to leave.
   void Dismiss();
 
   std::size_t joined() const { return workers_.size(); }

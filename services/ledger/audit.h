@@ -15,8 +15,9 @@ namespace dispersa {
 inline constexpr double kUsualAuditShare = 0.01;
 
 struct AuditOptions {
-  double share = 0.0;      ///< of the results, 0 (none) to 1
-  std::uint64_t salt = 0;  ///< decides which: whoever knows it knows which forgery is seen
+  double share = 0.0;  ///< of the results, 0 (none) to 1
+  std::uint64_t salt =
+      0;  ///< selects the audited results; it is secret, so that nobody knows which forgery would be noticed
   /// Also where the control law is a plug-in: a law that differs from machine to machine then has its workers
   /// expelled. Otherwise it has the campaign refused.
   bool with_plugins = true;

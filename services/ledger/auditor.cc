@@ -97,7 +97,7 @@ std::string Auditor::Await() {
   }
 }
 
-// Preparing them takes long, and nobody shall wait for it.
+// Preparing flights takes long and must not block others.
 std::shared_ptr<const CampaignFlights> Auditor::FlightsOf(const std::string& flight_id) {
   std::shared_ptr<const Campaign> campaign;
   {

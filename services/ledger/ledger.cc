@@ -130,7 +130,7 @@ bool Ledger::Quarantine(const std::string& worker, std::uint64_t case_index, std
   const auto entry = workers_.find(worker);
   if (case_index >= cases_.size() || entry == workers_.end()) return false;
   const auto held = entry->second.held.find(case_index);
-  // Of nobody else: others fly it, or have flown it.
+  // The case must be held by this attempt. Otherwise others fly it, or have flown it.
   if (held == entry->second.held.end() || held->second.attempt != attempt) return false;
   held->second.started_s.reset();  // how long it took says nothing of the others
   Settle(worker, case_index, attempt, now_s);

@@ -6,8 +6,8 @@
 namespace dispersa {
 namespace {
 
-/// Values that differ by less than this share of their size need not be told apart. It keeps the bins'
-/// numbers small.
+/// Values that differ by less than this share of their size may share a bin. It keeps the bins' numbers
+/// small.
 constexpr int kFinest = 40;  // binary digits
 
 }  // namespace

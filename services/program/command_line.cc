@@ -46,7 +46,7 @@ InputProblem UnknownWord(const CLI::App& app) {
   return {"", 0, 0, "", what + word + "'" + DidYouMean(word, names), JoinWords(names)};
 }
 
-/// "--cases: what is wrong, allowed: what is allowed"
+/// Splits "--cases: message, allowed: range" into its parts.
 InputProblem ProblemOf(const CLI::ParseError& error) {
   const std::string text = error.what();
   const std::string separator = ", allowed: ";
@@ -69,7 +69,7 @@ Words Spelled(const Words& words) {
   return spelled;
 }
 
-// CLI11 ends at --version, whatever else is asked for.
+// CLI11 ends at --version and ignores all other options.
 ExitCode PrintVersionJson() {
   try {
     return PrintAndEnd(VersionJson() + "\n");

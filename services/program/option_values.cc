@@ -97,7 +97,7 @@ void CheckValue(CLI::Option& option) {
 }  // namespace
 
 CLI::Validator WholeNumber(std::int64_t least, std::uint64_t most) {
-  // Limits that nobody meets would only widen help texts.
+  // Limits that no user reaches would only lengthen help texts.
   const std::string range = most < kMostCases ? std::to_string(least) + " to " + std::to_string(most) : "";
   return CLI::Validator([least, most](std::string& text) { return MakeWholeNumber(text, least, most); },
                         range, kWholeNumber);

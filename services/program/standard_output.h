@@ -18,7 +18,7 @@ ExitCode PrintAndEnd(std::string_view text);
 ExitCode EndOutput(ExitCode code);
 /// Says that it did not arrive, and why by `error`, an errno or 0. Returns kExitIncomplete.
 ExitCode EndLostOutput(int error);
-/// True if what was printed did not arrive: whatever was thrown since then was thrown for this.
+/// True if output was lost. Any exception since then was caused by it.
 bool IsOutputLost();
 
 }  // namespace dispersa

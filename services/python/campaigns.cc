@@ -65,7 +65,7 @@ std::unique_ptr<LoadedCampaign> Load(const std::string& name, const std::optiona
   return std::make_unique<LoadedCampaign>(SourceOf(name, text), CampaignOverrides{cases, seed, autopilot});
 }
 
-/// Of a text that is canonical, whoever can fly it.
+/// From a canonical text. The control law need not be available here.
 std::unique_ptr<LoadedCampaign> FromCanonical(const std::string& name, const std::string& text) {
   const py::gil_scoped_release free;
   return std::make_unique<LoadedCampaign>(ReadFlownCampaign(InputSource(name, text)));
@@ -88,7 +88,7 @@ py::tuple Check(const std::string& name, const std::optional<std::string>& text)
   return py::make_tuple(ProblemsOf(check.errors), ProblemsOf(check.warnings));
 }
 
-// As the canonical text takes a scalar: what is plain and a number is one.
+// The value of a scalar, by the rule of the canonical text: a plain scalar that is a number is a number.
 py::object ScalarValue(const InputNode& node) {
   if (!node.quoted) {
     if (const auto integer = ParseInteger(node.text)) return py::int_(*integer);

@@ -1,4 +1,4 @@
-// Python watches a long call: a function of the caller's is told how far it is, and Ctrl-C stops it.
+// Lets Python watch a long call: a function of the caller gets the progress, and Ctrl-C stops the call.
 #pragma once
 
 #include <pybind11/pybind11.h>

@@ -11,7 +11,7 @@ namespace dispersa {
 /// warning tells the count. Thread-safe.
 void Complain(const std::string& kind, const std::string& sender, const std::string& what);
 
-/// So many since the start of the process, of all kinds.
+/// Number of complaints of all kinds since the start of the process.
 std::uint64_t Complaints();
 
 }  // namespace dispersa

@@ -16,7 +16,7 @@ namespace rtps = eprosima::fastrtps::rtps;
 template <typename Qos>
 void SetCommonQos(Qos& qos, int depth) {
   qos.reliability().kind = dds::RELIABLE_RELIABILITY_QOS;
-  // Nobody depends on what was said before it listened: what matters is said again (services/README.md).
+  // No late reader depends on earlier messages: important ones are repeated (services/README.md).
   qos.durability().kind = dds::VOLATILE_DURABILITY_QOS;
   qos.history().kind = dds::KEEP_LAST_HISTORY_QOS;
   qos.history().depth = depth;

@@ -31,7 +31,7 @@ namespace dispersa {
 /// Older ones are dropped; whoever needs them repeats them. So a reader that stops reading has a limited
 /// cost.
 inline constexpr int kDepth = 512;
-/// Samples after which a writer is made anew, so that nobody ever has to skip more (sieve.h).
+/// Number of samples after which a writer is replaced, so that no reader has to skip more (sieve.h).
 inline constexpr std::uint64_t kRenewAfter = 1 << 20;
 
 eprosima::fastdds::dds::DataWriterQos MakeWriterQos(int depth);
@@ -53,7 +53,7 @@ bool PutSeal(const Seal& seal, const std::string& topic, const Seal::Origin& ori
 /// As a seal names a writer.
 Seal::Writer NameOfWriter(const eprosima::fastrtps::rtps::GUID_t& writer);
 
-/// The numbers of seals grow: what has been heard once is not believed again.
+/// The numbers of seals grow. A repeated number is not believed.
 class HeardSeals {
  public:
   /// Whether the sample of this writer was sealed by it, and comes for the first time.

@@ -14,7 +14,7 @@ namespace dispersa {
 template <typename Event>
 class EventQueue {
  public:
-  /// With so many events waiting, further ones are dropped: senders repeat important messages.
+  /// With this number of waiting events, further ones are dropped. Senders repeat important messages.
   static constexpr std::size_t kMaxWaiting = 20000;
 
   /// False: dropped.

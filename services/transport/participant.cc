@@ -111,9 +111,9 @@ dds::DomainParticipantQos MakeQos(const ParticipantOptions& options) {
   auto& builtin = qos.wire_protocol().builtin;
   builtin.discovery_config.leaseDuration = eprosima::fastrtps::Duration_t(5, 0);
   builtin.discovery_config.leaseDuration_announcementperiod = eprosima::fastrtps::Duration_t(1, 0);
-  // Own locators instead of the default ones, which include multicast: discovery is by peers alone, and
-  // nothing leaves the interface that was asked for. Explicit ports: of its own Fast DDS tries a hundred and
-  // then hears nothing, so that no more participants than that had room on a host.
+  // Own locators replace the default ones, which include multicast. Discovery is then by peers alone, and
+  // nothing leaves the chosen interface. The ports are explicit. By itself Fast DDS tries a hundred ports and
+  // then receives nothing, which limits the number of participants on a host.
   const std::string own = address.empty() ? "0.0.0.0" : address;
   const int domain = options.network.domain;
   const auto free_port = [&](int first) {

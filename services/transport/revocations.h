@@ -20,8 +20,9 @@ std::string RevocationText(const Revoked& revoked);
 /// Throws std::runtime_error when it is no such text.
 Revoked ParseRevocations(const std::string& text);
 
-/// The list beside the keys of who reads it, `revoked.p7s`: as it is when the program starts, and whenever it
-/// is exchanged. A list that is damaged, or signed by somebody else, is logged, and the last good one holds.
+/// The list `revoked.p7s` beside the keys of its reader. It is read at the start of the program and whenever
+/// it is replaced. A list that is damaged, or signed by another authority, is logged, and the last good list
+/// stays valid.
 class Revocations {
  public:
   explicit Revocations(const KeyFolder& keys) : directory_(keys.directory) {}

@@ -88,7 +88,7 @@ bool Seal::Fits(const std::string& topic, const std::uint8_t* data, std::size_t 
 }
 
 std::uint64_t NextSealNumber(std::uint64_t last) {
-  // The clock since the machine's start, which nobody sets back.
+  // The clock since the machine's start, which is never set back.
   const auto now = std::chrono::duration_cast<std::chrono::nanoseconds>(
       std::chrono::steady_clock::now().time_since_epoch());
   return std::max(last + 1, static_cast<std::uint64_t>(now.count()));

@@ -18,8 +18,8 @@ inline const std::string kResultTopic = "dispersa/ResultV1";
 inline const std::string kRequestTopic = "dispersa/RequestV1";
 inline const std::string kReplyTopic = "dispersa/ReplyV1";
 
-/// Of what anybody may hear, and nobody who acts listens to: it is not sealed, so that programs of others
-/// read it.
+/// Topics that anybody may read and that no worker or coordinator acts on. They are not sealed, so that
+/// programs of others can read them.
 inline bool IsForObservers(const std::string& topic) {
   return topic == kProgressTopic || topic == kResultTopic;
 }

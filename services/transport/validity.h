@@ -1,5 +1,5 @@
-// Whether a message makes sense, whoever sent it. Sizes are bounded, so that nothing that arrives makes this
-// process allocate or compute without limit.
+// Whether a message makes sense, from any sender. Sizes are bounded, so that no message makes this process
+// allocate or compute without limit.
 #pragma once
 
 #include <string>
@@ -23,8 +23,8 @@ std::string WhyInvalid(const Reply& reply);
 inline constexpr std::uint64_t kMaxTextBytes = std::uint64_t{64} << 20;
 inline constexpr std::size_t kMaxSlots = 1024;
 
-/// At most `limit` bytes of a text from elsewhere, fit for a log or a terminal: what is not printable ASCII
-/// is written as \xNN.
+/// At most `limit` bytes of a text from elsewhere, fit for a log or a terminal. Bytes that are not printable
+/// ASCII are written as \xNN.
 std::string Printable(const std::string& text, std::size_t limit = 200);
 
 }  // namespace dispersa

@@ -10,8 +10,8 @@ class Walker {
  public:
   Walker(const std::uint8_t* data, std::size_t size) : data_(data), size_(size) {}
 
-  /// Walks over what the shape describes, up to its end or to the bracket that closes it, where `shape` is
-  /// left.
+  /// Walks over the bytes that the shape describes, up to its end or to the closing bracket. `shape` is left
+  /// there.
   bool Walk(const char*& shape) {
     for (; *shape != '\0' && *shape != ']'; ++shape) {
       if (!(*shape == '[' ? Sequence(shape) : Scalar(*shape))) return false;

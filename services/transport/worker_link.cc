@@ -19,7 +19,7 @@ struct WorkerLink::Impl {
       : participant({network, "dispersa-worker", std::nullopt, {peer}}),
         publisher(participant.MakePublisher(PartitionOf(worker))),
         subscriber(participant.MakeSubscriber({PartitionOf(worker)})) {
-    // Also what the coordinator has said to another worker, and somebody says again here.
+    // This includes messages of the coordinator to another worker that a third party repeats here.
     const auto push = [this, worker](auto&& message, const std::string& sender) {
       if (message.worker != worker) {
         Complain("message", sender, "it is for another worker");

@@ -264,7 +264,7 @@ FlightDesk::Due FlightDesk::Tick(double now_s) {
   // Results that would be sent with the start of a next case do not wait for a case that takes long.
   if (!next_.flown.empty() && now_s - gathered_s_ > kGatherAtMost_s) Finish(now_s);
   due.reports = TakeReports(now_s);
-  // Nobody hears what is said to a coordinator that does not answer; when it does again, all is said again.
+  // Messages to a coordinator that does not answer are lost. When it answers again, all are repeated.
   if (IsHeard(now_s)) {
     for (auto& [number, owed] : owed_) {
       if (due.reports.size() >= kRepeatedAtOnce) break;
@@ -287,7 +287,7 @@ FlightDesk::Due FlightDesk::Tick(double now_s) {
     }
   }
   const bool deaf = now_s - std::max(heard_s_, connected_s_) > patience_s_;
-  // It hears, but is not heard: what it repeats is not acknowledged.
+  // The worker hears the coordinator, but is not heard: its repeated messages are not acknowledged.
   const bool dumb = !owed_.empty() && IsHeard(now_s) && now_s - connected_s_ > 2 * options_.longest_deaf_s &&
                     now_s - owed_.begin()->second.made_s > 2 * options_.longest_deaf_s;
   if (deaf || dumb) {

@@ -20,10 +20,10 @@ struct FlightDeskOptions {
   std::string worker;  ///< its UUID
   std::string engine_version;
   std::uint32_t slots = 1;
-  std::uint32_t lanes = 1;       ///< cases that a slot flies side by side
-  double status_s = 0.5;         ///< between two statuses
-  double repeat_s = 2.0;         ///< what was not answered is said again after so long
-  double deaf_s = 5.0;           ///< without a word of the coordinator: the connection is made anew
+  std::uint32_t lanes = 1;  ///< cases that a slot flies side by side
+  double status_s = 0.5;    ///< between two statuses
+  double repeat_s = 2.0;    ///< time after which an unanswered message is repeated
+  double deaf_s = 5.0;  ///< time without a message of the coordinator after which the connection is renewed
   double longest_deaf_s = 30.0;  ///< when that does not help, ever later, up to this
   double announce_s = 0.005;     ///< cases that take less together are announced together
   std::size_t max_unstored =
@@ -53,7 +53,7 @@ class FlightDesk {
   /// `now_s`: the connection is new.
   FlightDesk(const FlightDeskOptions& options, double now_s);
 
-  /// Orders of an older coordinator than the followed one are ignored while that one is heard. Epochs grow.
+  /// Orders of an older coordinator are ignored while the followed one is heard. Epochs grow.
   void On(const Orders& orders, double now_s);
   void On(const TextPart& part, double now_s);
 
@@ -78,7 +78,7 @@ class FlightDesk {
     std::vector<Report> reports;
     std::vector<TextRequest> text_requests;
     std::vector<CampaignRefusal> refusals;
-    bool new_connection = false;  ///< nobody answers on this one
+    bool new_connection = false;  ///< no answers on this connection
   };
   Due Tick(double now_s);
   WorkerStatus Status(WorkerState state) const;

@@ -90,7 +90,7 @@ int RunWorker(int argc, char** argv) {
       sigwait(&ends, &signal);
       worker.Drain();
       sigwait(&ends, &signal);
-      // As any process that is ended by a signal: whoever started it must not take it for a crash.
+      // Ends by the signal itself, so that the parent process does not take it for a crash.
       std::signal(signal, SIG_DFL);
       pthread_sigmask(SIG_UNBLOCK, &ends, nullptr);
       std::raise(signal);

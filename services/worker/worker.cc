@@ -37,7 +37,7 @@ Worker::Worker(const WorkerOptions& options)
 }
 
 WorkerExit Worker::Run() {
-  // Detached: a flight cannot be interrupted, so nobody could wait for them.
+  // Detached: a flight cannot be interrupted, so waiting for these threads could take too long.
   for (std::uint32_t i = 0; i < options_.slots; ++i) std::thread([this] { FlyForEver(); }).detach();
   for (;;) {
     std::vector<WorkerEvent> events;
@@ -75,8 +75,8 @@ void Worker::Drain() {
   desk_.Drain();
 }
 
-// A new participant, and the peer's name resolved again: what is stuck in the old one, on this side or on the
-// other, is gone with it.
+// Makes a new participant and resolves the peer's name again. Anything stuck in the old participant, on
+// either side, is gone with it.
 void Worker::Connect() {
   std::shared_ptr<WorkerLink> link;
   {
