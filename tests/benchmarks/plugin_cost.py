@@ -1,4 +1,5 @@
-"""What a control law from a shared object costs a campaign: computing time of `law: pd` and of the example in C, in turn.
+"""The cost of a control law from a shared object for a campaign: computing time of `law: pd` and of the example in
+C, in turn.
 
 usage: plugin_cost.py BUILD
 """

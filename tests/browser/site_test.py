@@ -1,4 +1,5 @@
-"""The docs site in a browser, opened from its folder: nothing sticks out of a page at any width, pictures are there, the search finds.
+"""The docs site in a browser, opened from its folder: at any width nothing is cut off, pictures are there, and the
+search works.
 
 site_test.py CHROMEDRIVER DISPERSA CAMPAIGN
 """

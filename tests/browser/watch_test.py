@@ -1,4 +1,5 @@
-"""The page of dispersa watch --web in a browser: it fills, at every width, in the dark, and tells when it is cut off.
+"""The page of dispersa watch --web in a browser: at every width and in dark mode it is complete, and it says when
+the connection is lost.
 
 watch_test.py CHROMEDRIVER DISPERSA CAMPAIGN
 """

@@ -1,4 +1,4 @@
-"""Fifty workers that fly nothing and answer at once: none is taken for lost, and each case is stored once.
+"""Fifty workers that return results at once without flying: none is taken for lost, and each case is stored once.
 
 Environment as of processes.py; DISPERSA_NOOP_WORKER: the program that makes its results up.
 """

@@ -1,5 +1,5 @@
-"""Programs of another vendor's middleware (cyclone/) at our topics: an observer sees what is stored, a worker's results
-count.
+"""Programs with another vendor's DDS (cyclone/) on our topics: an observer gets the stored results, and a worker's
+results count.
 
 Environment as of processes.py; DISPERSA_CYCLONE names the folder of the two programs.
 """

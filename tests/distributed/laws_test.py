@@ -1,4 +1,4 @@
-"""A control law from a shared object on a service: its bytes reach the workers, who contain what it does.
+"""A control law from a shared object on a service: its bytes reach the workers, which run it in a contained process.
 
 Environment as of processes.py; DISPERSA_SOURCE: the repository.
 """

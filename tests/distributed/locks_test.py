@@ -1,4 +1,4 @@
-"""Nothing that a lock guards is touched without it: clang's thread safety analysis of services/.
+"""No data guarded by a lock are used without it: clang's thread safety analysis of services/.
 
 Arguments: the build folder, whose compile_commands.json tells how each source is compiled, and clang++.
 """

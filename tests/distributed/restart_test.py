@@ -1,4 +1,5 @@
-"""Coordinators killed at random moments of campaigns whose flights end at once: each must come to its end when it is resumed.
+"""Coordinators killed at random moments of campaigns with very short flights: each campaign must end when it is
+resumed.
 
 Environment as of processes.py. DISPERSA_RESTARTS: how many kills (default 15; tests/run --long: 300).
 """

@@ -1,4 +1,5 @@
-"""A coordinator with --data and its clients: launched campaigns end with the bytes of a run, whatever is killed.
+"""A coordinator with --data and its clients: launched campaigns end with the bytes of a run, also if any process is
+killed.
 
 Environment as of processes.py.
 """

@@ -1,4 +1,4 @@
-"""dispersa watch --web over HTTP: what the page is sent, to whom, and what a coordinator that dies changes.
+"""dispersa watch --web over HTTP: the data of the page, who gets them, and the effect of a coordinator's death.
 
 Environment as of processes.py. tests/browser/watch_test.py looks at the page itself.
 """

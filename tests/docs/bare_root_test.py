@@ -1,5 +1,5 @@
-"""The docs' pages done word for word by a new user: on a bare Debian 12 with the Debian package and what a page says it
-needs (`apt-get install …`), in a home folder, without a network.
+"""The docs' pages followed word for word by a new user: on a bare Debian 12 with the Debian package and the packages
+that a page asks for (`apt-get install …`), in a home folder, without a network.
 """
 import pathlib
 import re

@@ -1,4 +1,4 @@
-"""follow.py sees when a page is wrong."""
+"""follow.py detects a page that is wrong."""
 import os
 import tempfile
 import unittest

@@ -1,4 +1,4 @@
-"""The docs site: every page is there, every link and anchor leads somewhere, nothing is loaded from elsewhere."""
+"""The docs site: every page is there, every link and anchor has a target, and nothing is loaded from elsewhere."""
 import html.parser
 import os
 import pathlib

@@ -1,4 +1,4 @@
-"""The Debian package that CPack makes: what it holds, what it says of itself, and that it is of use unpacked."""
+"""The Debian package made by CPack: its files, its metadata, and its use when unpacked."""
 import gzip
 import pathlib
 import shutil

@@ -1,5 +1,6 @@
-"""The templates for continuous integration, as far as their shell goes: every step is run as the runner runs it, in a
-repository with a campaign, with an installed dispersa."""
+"""The templates for continuous integration, as far as they are shell: every step is run as the runner runs it, in a
+repository with a campaign, with an installed dispersa.
+"""
 import os
 import pathlib
 import re

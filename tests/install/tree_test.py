@@ -1,4 +1,4 @@
-"""`cmake --install`: complete, and of use wherever it is moved."""
+"""`cmake --install`: the tree is complete, and works wherever it is moved."""
 import pathlib
 import re
 import shutil

@@ -1,4 +1,5 @@
-"""Control laws from shared objects: theirs are the built-in laws' bytes, and whatever they do is contained and named.
+"""Control laws from shared objects: the bytes of their results equal those of the built-in laws, and any fault of
+theirs is contained and named.
 
 Environment: DISPERSA_BINARIES, DISPERSA_CAMPAIGNS; DISPERSA_SOURCE: the repository.
 """

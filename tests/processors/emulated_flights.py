@@ -1,5 +1,5 @@
-"""The bits of flights on a processor with AVX-512, which this machine need not have: bochs emulates one, a kernel
-from Debian's archive runs dispersa on it, and every cases.csv must have the bytes of the one that is flown here.
+"""Flights on an emulated processor with AVX-512, which this machine need not have. bochs emulates it, a kernel from
+Debian's archive runs dispersa on it, and every cases.csv must have the same bytes as one flown here.
 
 usage: emulated_flights.py DISPERSA CAMPAIGNS WORK_FOLDER
 Exit code 0: all the same; 1: not. The emulator computes a flight in about 6 s of CPU: six minutes in

@@ -1,4 +1,4 @@
-"""What the comparison must find: a digest that differs, a run that did not come, another engine than asked for."""
+"""Differences that the comparison must find: another digest, a missing run, another engine than requested."""
 import json
 import unittest
 

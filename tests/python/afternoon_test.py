@@ -1,5 +1,6 @@
-"""An analyst's afternoon, in the order in which it is done: a campaign that ships, edited, checked, planned, flown on workers, looked
-at, compared, its worst case flown again, reported; and a thousand histories in memory."""
+"""The tasks of an analyst's afternoon, in order: a shipped campaign is edited, checked, planned, flown on workers,
+viewed and compared, its worst case is flown again, and it is reported. Also a thousand histories in memory.
+"""
 import json
 import os
 import pathlib

@@ -1,4 +1,4 @@
-"""Flights from Python: the program's bits, and their histories without copies."""
+"""Flights from Python have the bits of the program's, and their histories are not copied."""
 import csv
 import math
 import threading

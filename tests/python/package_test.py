@@ -1,4 +1,6 @@
-"""The package itself: what its .pyi files declare, its installation, and what it says of a processor that is too old."""
+"""The package itself: the declarations of its .pyi files, its installation, and its message about a processor that
+is too old.
+"""
 import ast
 import dataclasses
 import importlib

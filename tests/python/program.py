@@ -1,4 +1,4 @@
-"""What the Python package is held against: the program, and the campaigns that ship."""
+"""The reference for the Python package: the program, and the shipped campaigns."""
 import json
 import os
 import pathlib

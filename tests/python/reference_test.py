@@ -1,4 +1,4 @@
-"""The reference of the docs site: every public name is in it, and docstrings say shapes, units and errors."""
+"""The reference of the docs site: every public name is in it, and docstrings give shapes, units and errors."""
 import ast
 import importlib.util
 import inspect

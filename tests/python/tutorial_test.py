@@ -1,4 +1,6 @@
-"""The tutorial, cell by cell as a reader runs it, and the plots: files that show something, and errors that say what is wrong."""
+"""The tutorial, cell by cell as a reader runs it, and the plots: files with content, and errors that name the
+mistake.
+"""
 import os
 import pathlib
 import re

@@ -1,4 +1,4 @@
-"""What arguments and verdicts of the Python package mean, on flights of seconds."""
+"""Arguments and verdicts of the Python package, on flights of seconds."""
 import json
 import pathlib
 import unittest

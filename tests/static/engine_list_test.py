@@ -1,4 +1,4 @@
-"""core/flight/engine_list.cmake: which lists of engines CMake takes, and what it says about the others."""
+"""core/flight/engine_list.cmake: the lists of engines that CMake accepts, and its messages about the others."""
 import os
 import pathlib
 import subprocess

@@ -1,4 +1,4 @@
-"""core/flight/engine_version.cmake: what changes the engine version and what does not."""
+"""core/flight/engine_version.cmake: changes that change the engine version, and changes that do not."""
 import hashlib
 import os
 import pathlib

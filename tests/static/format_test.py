@@ -1,4 +1,4 @@
-"""Makes up C++ files in and out of layout, and sees what tests/format says of them."""
+"""Makes C++ files in and out of layout, and checks the messages of tests/format about them."""
 import pathlib
 import subprocess
 import tempfile

@@ -1,4 +1,4 @@
-"""Checks that no object of the product multiplies and adds in one rounding but where its source says so.
+"""Checks that no object of the product fuses a multiplication and an addition, except where its source says so.
 
 A source fuses by `Fma` of core/math, which under -DDISPERSA_NO_FMA is `a * b + c`. So whatever is fused in an
 object must be gone when the same command compiles the same source with that definition: what is left was

@@ -1,4 +1,4 @@
-"""fused.py finds what compilers fused, in objects built for the purpose."""
+"""fused.py finds operations that compilers fused, in objects built for this test."""
 import os
 import pathlib
 import re

@@ -1,4 +1,4 @@
-"""hygiene.py finds what it claims to find, in made-up trees."""
+"""hygiene.py finds violations in made-up trees."""
 import pathlib
 import subprocess
 import tempfile

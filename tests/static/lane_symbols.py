@@ -1,4 +1,4 @@
-"""Checks that code for a newer instruction set cannot take the place of common code.
+"""Checks that code for a newer instruction set cannot replace common code.
 
 An inline function that two objects hold is kept once, whichever: one that was compiled for AVX-512 would then run on a
 processor without it. So an object of the engine for v4 may define such functions only in the namespaces that are its

@@ -1,4 +1,4 @@
-"""layering.py finds what it claims to find, in made-up trees."""
+"""layering.py finds violations in made-up trees."""
 import pathlib
 import tempfile
 import unittest

@@ -1,4 +1,4 @@
-"""libm.py finds calls of libm in libraries built for the purpose."""
+"""libm.py finds calls of libm in libraries built for this test."""
 import os
 import pathlib
 import subprocess

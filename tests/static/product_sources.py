@@ -1,4 +1,4 @@
-"""Which entries of compile_commands.json are sources of the product."""
+"""The entries of compile_commands.json that are sources of the product."""
 import pathlib
 
 FOLDERS = ("core", "services")

@@ -1,4 +1,4 @@
-"""Every room stands in the tables of the architecture page once, and nothing else does.
+"""Every room is in the tables of the architecture page once, and nothing else is.
 
     rooms.py REPOSITORY
 

@@ -1,4 +1,4 @@
-"""rooms.py finds what it claims to find, in made-up trees."""
+"""rooms.py finds violations in made-up trees."""
 import pathlib
 import tempfile
 import unittest

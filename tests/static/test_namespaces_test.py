@@ -1,4 +1,4 @@
-"""test_namespaces.py finds what it claims to find, in made-up trees."""
+"""test_namespaces.py finds violations in made-up trees."""
 import pathlib
 import tempfile
 import unittest

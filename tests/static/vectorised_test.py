@@ -1,4 +1,4 @@
-"""vectorised.py finds what GCC's vectorisers fuse, in programs built for the purpose."""
+"""vectorised.py finds operations fused by GCC's vectorisers, in programs built for this test."""
 import os
 import pathlib
 import re

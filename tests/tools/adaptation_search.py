@@ -1,4 +1,5 @@
-"""Where does adaptation pay? Variants of the adaptive fuzzy law against a PID, under uncertainties larger than Table 3's.
+"""Uncertainties under which adaptation pays: variants of the adaptive fuzzy law against a PID, under uncertainties
+larger than those of Table 3.
 
 adaptation_search.py BINARIES CAMPAIGNS README writes the table between the README's <!-- adaptation:begin --> and
 <!-- adaptation:end -->. For each uncertainty every variant and the PID are tuned anew, by the same procedure with the

@@ -1,4 +1,4 @@
-"""What each guard of the adaptive law is worth: the shipped autopilot with one of them changed at a time.
+"""The effect of each guard of the adaptive law: the shipped autopilot with one guard changed at a time.
 
 guards_study.py BINARIES CAMPAIGNS README writes the table between the README's <!-- guards:begin --> and
 <!-- guards:end -->. The cases are those of seed 2, which no campaign, tuning or verdict uses. About 5 minutes.

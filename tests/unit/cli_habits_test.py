@@ -1,4 +1,5 @@
-"""What people and scripts expect of any command: errors as objects, colours, standard input and output, help, versions.
+"""Conventions that people and scripts expect of any command: errors as objects, colours, standard input and output,
+help, versions.
 
 DISPERSA_BINARIES and DISPERSA_CAMPAIGNS name the folders of the programs and of the campaigns.
 """

@@ -1,4 +1,4 @@
-"""Completion in bash, zsh and fish, each asked as its user asks it, with the scripts that the program prints.
+"""Completion in bash, zsh and fish, each used as its user does, with the scripts that the program prints.
 
 DISPERSA_BINARIES names the folder of the programs.
 """

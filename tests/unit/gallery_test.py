@@ -1,4 +1,4 @@
-"""The gallery as its reader uses it: files that are valid and usual, a few cases flown, events as published."""
+"""The gallery: its files are valid and usual, a few cases fly, and events agree with the published ones."""
 
 import os
 import pathlib

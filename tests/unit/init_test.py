@@ -1,4 +1,4 @@
-"""`dispersa init` as a new user meets it: each starting point is complete, commented, valid and flies."""
+"""`dispersa init` for a new user: each starting point is complete, commented and valid, and it flies."""
 import json
 import os
 import pathlib
