@@ -12,8 +12,8 @@
 
 namespace dispersa {
 
-/// What it gains from rest along its axis, m/s, in steps of `step_s` that end on the corners of the burn too,
-/// unless they are to be passed over.
+/// Velocity gained from rest along the axis, m/s, in steps of `step_s`. Steps also end on the corners of the
+/// burn if `stops_at_corners`.
 inline double SpeedGained(const Vehicle& vehicle, double thrust_factor, double flow_factor, double step_s,
                           bool stops_at_corners = true) {
   LauncherPlant plant = BuildNominalPlant(vehicle);

@@ -13,7 +13,7 @@
 
 namespace dispersa {
 
-/// Where a flight arrived, altitudes above the equatorial radius.
+/// The orbit reached by a flight, altitudes above the equatorial radius.
 struct ReachedOrbit {
   double velocity_error_m_s = 0.0;
   double axis_km = 0.0, target_axis_km = 0.0;  ///< semi-major axes; the target is circular

@@ -70,7 +70,7 @@ const bool kRegistered = [] {
   return true;
 }();
 
-// What a campaign costs before its first flight: tables, schedules, design.
+// Time of a campaign before its first flight: tables, schedules, design.
 void Preparation(benchmark::State& state) {
   for (auto _ : state) benchmark::DoNotOptimize(CampaignFlights(Table3()).Draw(0));
 }

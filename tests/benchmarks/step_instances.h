@@ -8,7 +8,7 @@
 
 namespace dispersa {
 
-/// Where all lanes stand: on the first stack.
+/// The state of all lanes: on the first stack.
 struct StepSetting {
   const LauncherPlant* plant;
   const FlightWeather* weather;

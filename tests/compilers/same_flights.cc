@@ -31,7 +31,7 @@ std::string Difference(const std::vector<std::string>& names, const std::vector<
   return {};
 }
 
-// What differs first, in words; empty if every bit is the same.
+// The first difference, in words. Empty if every bit is the same.
 std::string Difference(const CaseResult& expected, const CaseResult& actual) {
   std::vector<std::string> inputs;
   for (const InputColumn& column : InputColumns()) inputs.push_back(column.name);

@@ -54,7 +54,7 @@ class MadeUpWorker {
       : status_{uuid, "host", 1, engine_version, 1, 2, WorkerState::kReady, 0, 0, {}, {}},
         link_(network, {"127.0.0.1", CoordinatorPort(network.domain)}, uuid) {}
 
-  /// What came since; assignments as single cases. Says that it lives.
+  /// Collects new messages, with assignments as single cases. Sends a status message.
   void Listen() {
     for (WorkerEvent& event : link_.Wait(milliseconds(0))) {
       const auto* orders = std::get_if<Orders>(&event);

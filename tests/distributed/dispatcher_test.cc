@@ -51,7 +51,7 @@ class DispatcherTest : public testing::Test {
   WorkerStatus Status(const std::string& worker = "w") {
     return {worker, "host", 1, EngineVersion(), 1, 2, WorkerState::kReady, 0, kEpoch, {}, {}};
   }
-  /// What the worker is told now.
+  /// The message to the worker now.
   Orders Tick(double now_s, const std::string& worker = "w") {
     for (const Orders& orders : dispatcher_.Tick(now_s)) {
       if (orders.worker == worker) return orders;

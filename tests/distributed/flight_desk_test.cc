@@ -128,7 +128,7 @@ TEST_F(FlightDeskTest, AnotherCoordinatorsOrdersReplaceTheLastOnes) {
   EXPECT_EQ(job->case_index, 20u);
   EXPECT_EQ(job->coordinator_epoch, 8u);
   EXPECT_FALSE(desk_.Next(0.5)) << "case 11 is nobody's wish any more";
-  // What was flown for the last one counts, in its name.
+  // Results flown for the last coordinator count, under its name.
   desk_.Done(*old, {}, 0.6);
   for (const Report& report : desk_.TakeReports(0.6)) {
     if (!report.flown.empty()) {

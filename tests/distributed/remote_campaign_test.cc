@@ -269,7 +269,7 @@ TEST_F(RemoteCampaign, IsLaunchedFollowedAndFetched) {
   }
 }
 
-// What takes most of the disk is compressed there; who fetches it sees nothing of that.
+// The largest files are compressed there. A client that fetches them gets them uncompressed.
 TEST_F(RemoteCampaign, ReportsAreStoredPackedAndFetchedPlain) {
   const Campaign campaign = Smoke(2);
   Launch(campaign);
@@ -318,7 +318,7 @@ TEST_F(RemoteCampaign, HasAllItsCasesAlsoWhileSomebodyReadsThem) {
   EXPECT_THAT(ResultFolder::Open(first.directory).PresentCases(), ElementsAre(0, 1, 3));
   EXPECT_EQ(ResultFolder::Open(first.directory).Load(3).metrics, MadeUpWorkforce::ResultOf(3).metrics);
 
-  // What was copied for the first is not handed out when there is more.
+  // The copy for the first client is not used when there are more results.
   service_->Relaunch(campaign.id, 0);
   ASSERT_TRUE(Reaches(campaign.id, CampaignState::kFlying));
   workforce_.Return("w", campaign.flight_id, MadeUpWorkforce::ResultOf(2));

@@ -171,7 +171,7 @@ class RawType : public dds::TopicDataType {
   bool getKey(void*, rtps::InstanceHandle_t*, bool) override { return false; }
 };
 
-/// Who hears what is said on a topic to a worker, and says the same again.
+/// Repeats the messages to a worker on a topic.
 class Echo {
  public:
   Echo(Participant& participant, const std::string& topic, const char* type, const std::string& worker) {
@@ -321,14 +321,14 @@ std::string TextOfProcess(pid_t pid, const char* what) {
   return TextOfFile(fs::path("/proc") / std::to_string(pid) / what);
 }
 
-/// What follows a word of a command line.
+/// The word that follows a given word of a command line.
 std::string After(const std::string& word, const std::string& command_line) {
   const std::string wanted = word + '\0';
   const std::size_t at = command_line.find(wanted);
   return at == std::string::npos ? "" : command_line.substr(at + wanted.size()).c_str();
 }
 
-// What `ps` shows to everybody, and its environment.
+// The secret is neither in the command line, which `ps` shows to everybody, nor in the environment.
 TEST_F(SecretTest, AWorkerIsGivenItWhereNobodyElseSeesIt) {
   CoordinatorLink coordinator(Network(secret_));
   const std::string pass = ToText({secret_, {}});

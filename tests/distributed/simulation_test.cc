@@ -29,7 +29,7 @@ namespace {
 constexpr double kStep_s = 0.1;
 constexpr std::size_t kTextPart = 5;  // bytes: a text takes several
 
-/// What survives a coordinator: a disk.
+/// The part that survives a coordinator: a disk.
 struct Disk {
   std::map<std::uint64_t, CaseResult> rows;
   std::int64_t planned_cases = 0;
@@ -125,7 +125,7 @@ Campaign CampaignThatStops(int number) {
   return campaign;
 }
 
-/// Where it stops without a network.
+/// The number of cases at which it stops without a network.
 std::uint64_t CasesUntilDecided(const Campaign& campaign) {
   StoppingRule rule(campaign, static_cast<std::int64_t>(campaign.sampling.cases), {});
   std::uint64_t flown = 0;
@@ -413,8 +413,8 @@ std::uint64_t Worlds() {
 TEST(Simulation, EveryWorldComesToItsEndSoonAfterItsTroubles) {
   SetLogLevel(LogLevel::kNothing);
   constexpr double kCalm_s = 20.0;
-  // What may be under way when the troubles end: a lease of 20 s, a connection made anew after 30 s, and the
-  // same again.
+  // Delays that may be under way when the faults end: a lease of 20 s, a connection renewed after 30 s, and
+  // both once more.
   constexpr double kLimit_s = kCalm_s + 120.0;
   double latest_s = 0.0;
   for (std::uint64_t seed = 1; seed <= Worlds(); ++seed) {

@@ -53,7 +53,7 @@ AxisConfig AnyAxis(ControlLaw law, Random& random) {
   return axis;
 }
 
-// What an axis is given at a tick.
+// The inputs of an axis at a tick.
 struct Tick {
   double error_rad, rate_rad_s, foreign_rad_s2, saturation;
 };

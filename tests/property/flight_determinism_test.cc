@@ -108,7 +108,7 @@ TEST(FlightDeterminism, OnlyANoisySensorKnowsItsCaseIndex) {
   EXPECT_NE(Fly(Model(), Flights()[2], other).digest, Alone()[2].digest);
 }
 
-// What one flight measures must not leak into another: a quiet flight after a violent one is quiet.
+// Measurements of one flight must not reach another: a quiet flight after a violent one is quiet.
 TEST(FlightDeterminism, MetricsDoNotLeak) {
   FlyCase(3);
   const FlightResult quiet = FlyCase(0);

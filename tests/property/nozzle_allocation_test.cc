@@ -149,7 +149,7 @@ TEST(NozzleAllocation, IsTheLeastThatDoes) {
     Drives any;
     for (int drive = 0; drive < kDrives; ++drive)
       any.command_rad[drive] = layout.there[drive] * (2.0 * draws.Uniform() - 1.0);
-    // What it does about the axes is taken out of it.
+    // Its effect about the axes is subtracted.
     double idle[kDrives];
     for (int drive = 0; drive < kDrives; ++drive) {
       idle[drive] = any.command_rad[drive];

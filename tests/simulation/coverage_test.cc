@@ -74,7 +74,7 @@ class Row {
     EXPECT_NEAR(rate_, exact, 4.0 * std::sqrt(exact * (1.0 - exact) / kRepetitions) + 1e-9) << what_;
     EXPECT_LE(exact, stated + 1e-12) << what_;
   }
-  /// What is stated is proved, the rate itself not known.
+  /// The stated bound is proved; the rate itself is not known.
   void IsAtMost(double stated) {
     Print("", stated);
     EXPECT_LE(rate_, stated + 4.0 * std::sqrt(stated * (1.0 - stated) / kRepetitions)) << what_;

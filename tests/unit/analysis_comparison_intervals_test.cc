@@ -134,7 +134,7 @@ TEST_P(ComparisonOfEveryMetric, AdjustsEachPercentileOverTheMetrics) {
   }
 }
 
-// Where neither sample reaches a percentile there is nothing to test.
+// If neither sample reaches a percentile, there is nothing to test.
 TEST_P(ComparisonOfEveryMetric, DoesNotTestWhatNoSampleReaches) {
   const Comparison comparison =
       CompareAll(Flights(0.0, "a"), Flights(GetParam().moved, GetParam().draws_of_b));

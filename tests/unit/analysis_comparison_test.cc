@@ -167,7 +167,7 @@ TEST(ReportComparison, ReplayCommandsSurviveAShell) {
   EXPECT_EQ(ReplayCommand("my results/it's", 3), "dispersa replay 'my results/it'\\''s' --case 3");
 }
 
-// What one of the laws does not measure is neither better nor worse, and nobody fails it.
+// A metric that one of the laws does not measure is neither better nor worse, and no flight fails it.
 TEST(ReportComparison, OfTwoLawsHasTheMetricsOfBoth) {
   const std::vector<double> inputs = {1.0, 2.0, 3.0};
   CaseColumns a = Columns({0, 1, 2}, inputs, {0.1, 0.2, 0.3});

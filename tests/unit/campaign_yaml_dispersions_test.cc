@@ -316,7 +316,7 @@ TEST(CampaignYaml, RequirementsNameTheirPlan) {
   EXPECT_EQ((*campaign.requirements[0].within)[1], 520.0);
   EXPECT_EQ(campaign.requirements[1].plan, (VerdictPlan{PlanKind::kGroupSequential, 4, Spending::kPocock}));
   EXPECT_EQ(LoadCampaign(files.Path("campaign.yaml"), {.cases = 300, .seed = {}}).sampling.cases, 300u);
-  // What is required decides no flight.
+  // Requirements do not change a flight.
   const InputFiles plain;
   EXPECT_EQ(LoadCampaign(plain.Path("campaign.yaml")).flight_id, campaign.flight_id);
   EXPECT_NE(LoadCampaign(plain.Path("campaign.yaml")).requirements_id, campaign.requirements_id);

@@ -514,7 +514,7 @@ TEST(CampaignYamlErrors, ColumnThatIsGivenTwice) {
             "north_m_s, east_m_s\n");
 }
 
-// What has nothing to do with an unreadable table is checked all the same.
+// Values without relation to an unreadable table are checked all the same.
 TEST(CampaignYamlErrors, RelationsBesideAnUnreadableTable) {
   const InputFiles files;
   const std::string unreadable =

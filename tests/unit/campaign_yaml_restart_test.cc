@@ -38,7 +38,7 @@ TEST(RestartFile, IsTheStageBeforeWithCommandsOfItsOwn) {
   EXPECT_EQ(again.motor.cut_off_velocity_m_s, 7136.0);
   EXPECT_EQ(again.ignition, IgnitionTrigger::kTimer);
   EXPECT_EQ(again.tanks.size(), first.tanks.size());
-  // What is jettisoned stays on until it is due, in whichever burn.
+  // Masses stay attached until they are due, in any of the burns.
   EXPECT_TRUE(first.jettisoned.empty());
   EXPECT_EQ(again.jettisoned.size(), 1u);
   EXPECT_EQ(LastBurn(vehicle, 3), 4);

@@ -20,7 +20,7 @@ namespace {
 
 using std::numbers::pi;
 
-/// What one of each unit is in SI and radians, by the definitions of the units.
+/// One of each unit in SI and radians, by the definitions of the units.
 const std::map<std::string_view, double> kInSi = {{"m", 1.0},
                                                   {"km", 1000.0},
                                                   {"mm", 0.001},
@@ -110,7 +110,7 @@ TEST_P(Units, AreReadAsWhatTheyAre) {
 TEST_P(Units, AreWrittenSoThatTheyReadBack) {
   for (const Unit& unit : dimension_) {
     for (const double value : kValues) {
-      // What was read from a text is written as a text that gives the same bits.
+      // A value read from a text is written as a text that gives the same bits.
       const double inside = Read(Key(unit), FormatNumber(value), dimension_, &problems_);
       const std::string text = FormatScaled(inside, unit.scale);
       EXPECT_EQ(Read(Key(unit), text, dimension_, &problems_), inside) << text << " " << unit.suffix;

@@ -36,8 +36,7 @@ TEST(CampaignFlights, OfAQueueAreThoseOfEachCaseWithItsOwnNoise) {
     EXPECT_EQ(result.digest.Hex(), flights.FlyCase(i).digest.Hex()) << i;
 }
 
-// What guidance steers for: a target that leaves the speed open has the reference's, less what it keeps in
-// reserve.
+// The target of guidance. If the target names no speed, it is that of the reference minus its reserve.
 TEST(CampaignFlights, AimForTheTargetAndForWhatTheReferenceHasWhereItIsOpen) {
   Campaign campaign = LoadCampaign(DISPERSA_CAMPAIGNS "/smoke.yaml");
   TrajectoryProblem& problem = campaign.reference.problem;

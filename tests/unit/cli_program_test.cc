@@ -194,7 +194,7 @@ TEST(CliProgram, ValidateWarnsAndStrictTakesItForAnError) {
   EXPECT_EQ(json["errors"].size(), 0u);
   EXPECT_EQ(json["warnings"].size(), 2u);
   EXPECT_EQ(json["warnings"][0]["line"], 12);
-  // Whoever flies it hears of it once, on stderr.
+  // Commands that fly it print it once, on stderr.
   const Output plan = Dispersa("plan --cases 1 " + files.Path("campaign.yaml"));
   EXPECT_EQ(plan.code, 0) << plan.error;
   EXPECT_EQ(plan.error.find("warning: " + files.Path("vehicle.yaml") + ":12:12: "),

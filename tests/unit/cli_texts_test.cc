@@ -234,7 +234,7 @@ TEST(SeedStudy, AsJsonHasItsUnitsInTheNames) {
   EXPECT_EQ(first["flown_velocity_error_m_s"], -2.5);
   EXPECT_NEAR(first["flown_flight_path_angle_error_deg"], 0.05, 1e-12);
   EXPECT_EQ(first["ascents"], 1234);
-  // What one of the searches did not fly is in no row.
+  // A value that one of the searches did not fly is in no row.
   rows[1].flown.reset();
   EXPECT_FALSE(SeedStudyJson(rows)["seeds"][0].contains("flown_altitude_error_km"));
 }

@@ -30,7 +30,7 @@ ContainmentLimits With(const SandboxParts& parts) {
 }
 const ContainmentLimits kFloor = With({.seccomp = true, .landlock = false, .namespaces = false});
 
-// What the child says, or how it ended.
+// The message of the child, or how it ended.
 std::string Outcome(const std::function<std::string()>& work, const ContainmentLimits& limits) {
   std::string heard;
   try {

@@ -86,7 +86,7 @@ TEST(GimbalCommand, MixesPairsAndRoll) {
   EXPECT_EQ(c.Nozzles(), (std::array<double, 4>{0.02 + 0.001, 0.02 - 0.001, 0.03 + 0.001, 0.03 - 0.001}));
 }
 
-// What the pitch axis learnt in stage 1 after a standing error.
+// The state that the pitch axis has learnt in stage 1 after a constant error.
 AutopilotState Learnt(const AutopilotModel& model) {
   AutopilotState state;
   StartStage(model, 0, state);

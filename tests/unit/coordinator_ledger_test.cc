@@ -508,10 +508,10 @@ TEST_F(SecondFlights, ResumesWithWhoFlewThem) {
   EXPECT_THAT(resumed.Assign(0.0), ElementsAre(Assignment{"b", 2, {0}}));
 }
 
-// A world in which messages are delayed, reordered between workers and repeated, workers are killed, stop
-// beating and come back, poison cases crash or hang whoever flies them. Whatever the interleaving, every
-// other case is accepted exactly once, exactly the poison is quarantined, and the world comes to rest. In
-// every other world two workers shall fly the first cases.
+// A world with delayed, reordered and repeated messages. Workers are killed, stop their status messages and
+// come back. Poison cases crash or hang their worker. For any order of events, every other case is accepted
+// exactly once, exactly the poison cases are quarantined, and the world ends. In every other world two
+// workers must fly the first cases.
 class RandomWorld {
  public:
   RandomWorld(std::uint64_t seed, std::uint64_t cases)

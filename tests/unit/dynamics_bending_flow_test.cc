@@ -258,7 +258,7 @@ Everything Of(const BendingTableLanes<double>& b, const BendingState<double>& s,
   return o;
 }
 
-// A quarter turn about x takes y to z and z to -y. What is seen from the turned axes is turned, and else the
+// A quarter turn about x takes y to z and z to -y. Results in the turned axes are turned, and otherwise the
 // same.
 TEST(BendingPlanes, AreOneAnotherTurnedByAQuarterAboutX) {
   const BendingTable table = MadeUpTable({TwoPlanes()[0]});

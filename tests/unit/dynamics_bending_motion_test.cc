@@ -73,7 +73,7 @@ TEST_F(BendingMotion, TurnsTheInertialUnitAndEachGyro) {
   }
 }
 
-// What the unit has turned by is what it turns at, summed over time.
+// The angle of the unit is the integral of its rate.
 TEST_F(BendingMotion, TheUnitsTurnGrowsByItsRate) {
   constexpr double kTime_s = 0.25;
   BendingState<double> later = state_;

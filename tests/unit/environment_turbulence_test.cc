@@ -88,8 +88,8 @@ TurbulenceField Drawn(std::uint64_t index, double sine, double top_m = 9000.0) {
   return field;
 }
 
-// What a vehicle meets that flies up at a speed between 700 and 9000 m, by components of its path, over the
-// local deviation: sampled in time, as a flight samples it.
+// The turbulence of a vehicle that climbs at constant speed between 700 and 9000 m: components along its
+// path, over the local deviation, sampled in time as a flight does.
 struct Met {
   std::vector<double> along, across, normal;
 };

@@ -33,7 +33,7 @@ FlightDefinition Boosted() {
   return definition;
 }
 
-// What of the first stage acts on its boosters; the last changes the masses too.
+// Inputs of the first stage that act on its boosters. The last one changes the masses too.
 std::vector<FlightInputs> Dispersed() {
   FlightInputs thrust, flow, impulse, all;
   thrust.thrust_factor[0] = 1.03;

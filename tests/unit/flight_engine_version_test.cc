@@ -5,7 +5,7 @@
 namespace dispersa::flight_engine_version_test {
 namespace {
 
-// What the digits depend on is tested in tests/static/engine_version_test.py.
+// tests/static/engine_version_test.py tests what the digits depend on.
 TEST(EngineVersion, IsProjectVersionAndDigest) {
   EXPECT_THAT(EngineVersion(), testing::MatchesRegex("[0-9]+\\.[0-9]+\\.[0-9]+\\+[0-9a-f]{12}"));
 }

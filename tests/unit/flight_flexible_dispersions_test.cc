@@ -32,7 +32,7 @@ FlightInputs Heavier(double factor) {
   return inputs;
 }
 
-// Where all masses grow in proportion the shapes stay, and frequencies fall with the root: K x = omega² M x.
+// If all masses grow in proportion, shapes stay and frequencies fall with the square root: K x = omega² M x.
 TEST(FlexibleDispersions, ModesOfAHeavierVehicleAreSlowerByTheRoot) {
   constexpr double kFactor = 1.05;
   const FlightModel model(Flexible());

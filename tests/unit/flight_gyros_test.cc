@@ -171,8 +171,8 @@ TEST(FlightGyros, PerfectOnesFlyAsTheInertialUnitDoes) {
         << shares.size();
 }
 
-// What a gyro with steps coarser than any rate shows is zero, so its weight takes as much of the rate away.
-// The PD law's command tells which rate it was given.
+// A gyro with steps coarser than any rate measures zero, so its weight reduces the rate by that share. The PD
+// law's command shows the rate that it got.
 TEST(FlightGyros, WeightsAreThoseOfTheStageThatBurns) {
   const double kCoarse_rad_s = 1e3;
   const FlightDefinition definition =

@@ -109,8 +109,8 @@ TEST(LimitCycle, EveryChannelCounts) {
   }
 }
 
-// What counts is the amplitude in the last third of a window over that in the first, 0.7 at least. At 1.8 Hz
-// a window lasts 9.6 s, and its outer thirds lie 6.4 s apart.
+// The criterion is the amplitude in the last third of a window over that in the first: at least 0.7. At 1.8
+// Hz a window lasts 9.6 s, and its outer thirds lie 6.4 s apart.
 TEST(LimitCycle, MayLoseThreeTenthsOfItsAmplitudeWithinAWindow) {
   const auto found = [](double ratio) {
     return Found(60.0,

@@ -248,7 +248,7 @@ TEST(StackFactors, ActOnTheirStackAlone) {
   EXPECT_NEAR((left.p_EoC_I - state.p_EoC_I).norm(), from - to, 1e-8);
 }
 
-// Where the nose is, whatever its centre of gravity does: at rest a point of the body stays when masses
+// The place of the nose, wherever the centre of gravity is. At rest a point of the body stays when masses
 // leave.
 Vector3 NoseOf(const LauncherPlant& plant, int stack, double propellant_kg, const RigidBodyState& state) {
   LauncherPhase phase;
@@ -275,7 +275,7 @@ TEST(CentreOfGravity, AtSeparationLeavesTheNoseWhereItIs) {
     EXPECT_NEAR((NoseOf(plant, 1, 1000.0, above) - NoseOf(plant, 0, left_kg, state)).norm(), 0.0, 2e-9)
         << left_kg;
   }
-  // What the burn says that it leaves counts where nobody says otherwise.
+  // The propellant left by the burn counts if no other value is given.
   LauncherPlant leaving = plant;
   leaving.stacks[0].burn.left_kg = 900.0;
   EXPECT_EQ(AfterSeparation(leaving, 0, 0u, state).p_EoC_I,

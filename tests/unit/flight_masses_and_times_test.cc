@@ -77,7 +77,7 @@ TEST(DispersedVehicle, AThrustCurveIsStretchedWithItsPropellant) {
   EXPECT_NEAR(after.vacuum_thrust_n, before.vacuum_thrust_n, 1e-9 * before.vacuum_thrust_n);
 }
 
-// What stands beside the first stage stays aboard when masses are dispersed.
+// Boosters beside the first stage keep their masses when masses are dispersed.
 TEST(DispersedVehicle, BoostersKeepTheirMasses) {
   const Vehicle vehicle = LoadVehicle(DISPERSA_TEST_DATA "/goldens/boosters_vehicle.yaml");
   FlightInputs in;

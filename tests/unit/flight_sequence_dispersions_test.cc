@@ -107,10 +107,10 @@ TEST(LaunchAzimuthError, TurnsTheWholeFlight) {
     // The body's axis in the launch frame: x downrange, y right.
     const Vector3 x_L = R_LI * Rotate(turned[tick].state.q_IB, Vector3::UnitX());
     EXPECT_NEAR(std::atan2(x_L.y(), x_L.x()), kError_rad, 1e-4) << tick;
-    // What the autopilot controls it believes to be right: nothing turns it back.
+    // The autopilot takes its measurement for right, so nothing turns the vehicle back.
     EXPECT_NEAR(turned[tick].error.angle_rad.norm(), kError_rad, 1e-3) << tick;
   }
-  // What the thrust gave to the right is the sine of what it gave downrange.
+  // The velocity gained to the right is that gained downrange, times the sine of the error.
   const Vector3 gained_n = R_LI * (nominal[3500].state.v_IC_I - nominal[0].state.v_IC_I);
   const Vector3 gained_t = R_LI * (turned[3500].state.v_IC_I - turned[0].state.v_IC_I);
   EXPECT_GT(gained_n.x(), 100.0);

@@ -21,7 +21,7 @@ TEST(Arrives, WithinItsLimitsInTheirUnits) {
     EXPECT_FALSE(Arrives({0.0, sign * 0.51, 0.0, 0.0}, true, true));
     EXPECT_FALSE(Arrives({0.0, 0.0, sign * 0.0101 * kDeg, 0.0}, true, true));
     EXPECT_FALSE(Arrives({0.0, 0.0, 0.0, sign * 0.0201 * kDeg}, true, true));
-    // What is not met any more does not count; speed and angle do.
+    // Conditions that guidance does not meet any more do not count. Speed and angle do.
     EXPECT_TRUE(Arrives({sign * 1e4, 0.0, 0.0, 0.0}, false, true));
     EXPECT_TRUE(Arrives({0.0, 0.0, 0.0, sign * 1.0}, true, false));
     EXPECT_FALSE(Arrives({0.0, sign * 0.51, 0.0, 0.0}, false, false));
@@ -129,9 +129,9 @@ TEST(ClosedLoopGuidance, ArrivesAndSaysSo) {
   EXPECT_TRUE(flight.guidance.outcome().arrives);
 }
 
-// 1.5 degrees aside: uncorrected, 2.3 km/s of the last burn miss by 60 m/s across and end 0.1 degree off the
-// flight path angle or the plane. What is measured is the rotation from where thrust was to point to where it
-// did.
+// Thrust misaligned by 1.5 degrees. Uncorrected, 2.3 km/s of the last burn miss by 60 m/s across. They end
+// 0.1 degree off in flight path angle or plane. The measurement is the rotation from the commanded to the
+// real direction of thrust.
 TEST(ClosedLoopGuidance, MakesUpForThrustThatPointsAside) {
   const GuidanceMission mission = ReachableMission();
   for (const Vector3& aside_L : {Vector3(0.0, 1.5 * kDeg, 0.0), Vector3(0.0, 0.0, -1.5 * kDeg)}) {

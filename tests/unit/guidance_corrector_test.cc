@@ -115,8 +115,8 @@ TEST(Corrector, KeepsItsBounds) {
   EXPECT_TRUE(found.arrives);
 }
 
-// Whatever the start, the target and the number of steps: the prioritised miss of a plan is never more than
-// that of the plan that it comes from. 300 m/s are out of reach, 60 m/s are the reserve.
+// For any start, target and number of steps: the prioritised miss of a plan is never larger than that of the
+// plan before. 300 m/s are out of reach, 60 m/s are the reserve.
 TEST(Corrector, NeverTakesAWorsePlan) {
   int improved = 0;
   for (std::uint64_t draw = 0; draw < 300; ++draw) {
@@ -314,7 +314,7 @@ TEST(MotorEstimate, DoesNotBelieveNonsense) {
   EXPECT_LE(wild.Stage(0.0).burn.vacuum_thrust_n, 1.15 * 30e3 + 1e-6);
 }
 
-// What gets lighter at once lies on no line, however straight the readings look.
+// A sudden loss of mass does not lie on a line, however straight the readings look.
 TEST(MotorEstimate, IsNominalOfAStageThatLosesMass) {
   GuidanceMission mission = PlainMission();
   mission.last.loses_mass = true;

@@ -183,8 +183,8 @@ TEST(BuildPrior, TurnsTheLastBurnByFortyFiveDegreesAtMost) {
   EXPECT_NEAR(LastBurnAttitude(prior.nominal, prior).turn_rad(), 45.0 * kDeg, 1e-12);
 }
 
-// What is spent before the motor is known is not had back: 60 m/s wait until its estimate stands, 6 s after
-// ignition, but for a rounded corner, and twice as much cannot, at 3 degrees a second.
+// Velocity spent before the motor is known cannot be recovered. 60 m/s can wait for the estimate, 6 s after
+// ignition, except for a rounded corner. Twice the excess cannot wait, at 3 degrees per second.
 TEST(LastBurnAttitude, TurnsOnlyOnceTheMotorIsKnown) {
   const GuidanceMission mission = PlainMission();
   PlanPrior prior = BuildPrior(mission);
@@ -200,8 +200,7 @@ TEST(LastBurnAttitude, TurnsOnlyOnceTheMotorIsKnown) {
   }
   plan.value[kWaste] *= 2.5;
   EXPECT_GT(LastBurnAttitude(plan, prior).At(0.0).yaw_rad, 20.0 * kDeg);
-  // Where nothing is estimated nothing is waited for: a burn as planned, a thrust curve, a stage that loses
-  // mass.
+  // Without an estimate there is no wait: a burn as planned, a thrust curve, a stage that loses mass.
   GuidanceMission other = mission;
   other.config.steers_last_burn = false;
   EXPECT_EQ(BuildPrior(other).turn.from_s, 0.0);

@@ -99,7 +99,7 @@ TEST(ImpactPoints, ALostFlightFallsFromItsEnd) {
   EXPECT_GT(points[1].impact->peak_altitude_m, points[1].from_altitude_m);
   EXPECT_NEAR(points[1].impact->place.altitude_m, 0.0, 1e-5);
 
-  // What falls is the stack as heavy as it was then, from where the flight ended.
+  // The falling body is the stack with its mass at that time, from where the flight ended.
   TickSample last;
   FlightOptions options;
   options.case_index = 2;

@@ -66,7 +66,7 @@ struct Separation {
     result.outcome = Outcome::kCompleted;
     return ImpactPoints(CampaignFlights(campaign), result, Rows());
   }
-  // Where stage 1 comes down, if it weighs so much and leaves so far behind the stack above and so fast.
+  // The impact of stage 1 for a given mass, a distance behind the stack above, and a velocity.
   Impact Falling(double mass_kg, double behind_m, const Vector3& v_m_s) const {
     Environment calm;
     const Stage &first = campaign.vehicle.stages[0], &second = campaign.vehicle.stages[1];

@@ -113,8 +113,8 @@ TEST(LineariseAxis, OfAPathThatDriftsIsTheShortPeriodByHand) {
   EXPECT_FALSE(roll.drifts);
 }
 
-// The air turns this vehicle over: where the path gives way, the least gain is larger. Where there is no air,
-// the drift neither acts nor is it lost.
+// This vehicle is aerodynamically unstable: if the path may drift, the margin to a lower gain is smaller.
+// Without air the drift has no effect.
 TEST(ComputeMargins, OfAPathThatDrifts) {
   const FlightModel model(HotStaged()), in_space(HighDefinition());
   const auto at = [](const FlightModel& of, LateralPath path, const std::string& place) {
@@ -226,7 +226,7 @@ TEST(LineariseLearntLaw, HasTheSlopesOfBothSidesOfTheRuleThatLearnt) {
                   1e-12);
     }
   }
-  // What all rules have learnt is no slope.
+  // A value that all rules have learnt is no slope.
   for (double& departure : memory.departure_rad_s2) departure = kLearnt_rad_s2;
   EXPECT_EQ(LineariseLearntLaw(model.autopilot(), s, kPitch, {}).kp_1_s2, fresh.kp_1_s2);
 }

@@ -217,8 +217,8 @@ TEST(MarginsAt, OfABodyThatBendsAreTheLeastOfAllSetsOfFrequencies) {
   EXPECT_GT(different, 4);
 }
 
-// What Fig. 5 of the paper disperses, and what the law has learnt, are of the law that flies. Stage 2's
-// actuators are later.
+// The inputs of Fig. 5 of the paper, and the learnt values, belong to the law that flies. Stage 2 has a
+// longer delay.
 TEST(ComputeDispersedMargins, AreOfTheDispersedLawOnEverySideOfZeroError) {
   const FlightModel model(HotStaged(SampleVehicle()));
   FlightOrder order;

@@ -55,7 +55,7 @@ TEST(PaperHeatMap, ShadesFollowTheLogarithmOfTheCompletedFlights) {
   EXPECT_EQ(Count(svg, "\"heat-5\""), 2);  // 0.7 and the largest itself
 }
 
-/// Where a text is drawn from the top.
+/// The height of a text, from the top.
 double HeightOf(const std::string& svg, const std::string& text) {
   const std::size_t end = svg.find(">" + text + "</text>");
   EXPECT_NE(end, std::string::npos) << text;

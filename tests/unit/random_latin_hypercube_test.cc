@@ -74,9 +74,9 @@ TEST(LatinHypercube, PermutationsAreEquallyLikely) {
   EXPECT_LT(chi_square, 49.73);
 }
 
-// Shuffled by draws below a bound, of 2^32 numbers. Where they do not divide evenly, some results have one
-// number more than the others: its first, which is drawn again. Of so many cases a few are; without it
-// everything after them is another permutation.
+// The shuffle draws below a bound, from 2^32 numbers. If they do not divide evenly, some results would have
+// one number more than the others. Such a first number is drawn again. With this number of cases it happens a
+// few times. Without it, all later draws are another permutation.
 TEST(LatinHypercube, DrawsAgainWhatWouldFavourAStratum) {
   constexpr std::uint64_t kAll = std::uint64_t{1} << 32, kCases = 300000;
   std::vector<std::uint32_t> strata(kCases);

@@ -44,7 +44,7 @@ TEST(SmallestFailure, FindsAPlantedCauseInFlight) {
   const FailureSearchResult found = FindSmallestFailure(space.coordinates(), margins_at, options);
   ASSERT_TRUE(found.found);
   EXPECT_LE(found.flights, options.max_flights);
-  // What it returns has been flown and fails.
+  // The returned point has been flown and fails.
   EXPECT_FALSE(margins_at({found.point})[0] > 0.0);
   const double share = found.point[cause] * found.point[cause] / (found.distance * found.distance);
   EXPECT_GT(share, 0.9);

@@ -20,7 +20,7 @@
 namespace dispersa::statistics_estimates_test {
 namespace {
 
-/// What rounding of a root, or of an inverse of the beta function, may take away.
+/// Allowance for the rounding of a root, or of an inverse of the beta function.
 constexpr double kRounding = 1e-12;
 
 void ExpectHolds(const Interval& interval, double estimate, const std::string& what) {

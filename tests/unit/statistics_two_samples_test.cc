@@ -94,7 +94,7 @@ TEST(TwoSamples, SwappingTurnsSigns) {
     EXPECT_NEAR(forth.p, back.p, 1e-9);
   }
   EXPECT_DOUBLE_EQ(LocationP(a, b), LocationP(b, a));
-  // What pairing gains.
+  // The gain by pairing.
   const Interval paired = CompareQuantiles(a, b, 0.95, 0.95, true).interval;
   const Interval unpaired = CompareQuantiles(a, b, 0.95, 0.95, false).interval;
   EXPECT_LT(paired.upper - paired.lower, 0.8 * (unpaired.upper - unpaired.lower));

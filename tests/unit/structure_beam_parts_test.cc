@@ -63,7 +63,8 @@ TEST(BeamMasses, HaveWhatIsStillToBeJettisoned) {
   }
 }
 
-// Where sections overlap stiffness adds, of bending and of shear: two of half a modulus are one of a whole.
+// Overlapping sections add their stiffness, in bending and in shear: two with half the modulus equal one with
+// the whole.
 TEST(BeamSections, ThatOverlapAreAsStiffAsOneOfBoth) {
   Vehicle one = FlexibleSample();
   one.structure_beam->timoshenko = true;

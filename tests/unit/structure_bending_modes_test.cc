@@ -20,7 +20,7 @@ namespace {
 
 Vehicle Slv4() { return LoadVehicle(DISPERSA_CAMPAIGNS "/vehicles/slv4_flexible.yaml"); }
 
-/// What the finite elements of a stack weigh at a propellant level.
+/// The mass properties of a stack's finite elements at a propellant level.
 BeamMassProperties BeamWeight(const Vehicle& vehicle, int stage, double propellant_kg) {
   Beam beam;
   for (std::size_t i = static_cast<std::size_t>(stage); i < vehicle.structure_beam->stages.size(); ++i) {
@@ -78,7 +78,7 @@ TEST(BendingModes, OwnMassesAreScaledToTheVehicles) {
   const OwnMassScale scale = ScaleOwnMasses(vehicle, 0);
   EXPECT_GT(scale.least, 0.7);
   EXPECT_LT(scale.greatest, 1.4);
-  // Where it is the vehicle's own distribution, nothing is scaled.
+  // The vehicle's own distribution is not scaled.
   first.sections = {SampleSection("case", 11.0, 19.0, 5e8)};
   first.sections[0].mass_per_length_kg_m = {562.5, 562.5};
   first.sections[0].modulus_pa = 70e9;
@@ -133,8 +133,8 @@ TEST(BendingModes, KeepNameAndSignOverTheBurn) {
   }
 }
 
-// From full to empty at once a mode is recognised by halves only. What is told is the least resemblance on
-// the way, and not that of the last step.
+// From full to empty in one step, a mode is only half recognised. The reported value is the least resemblance
+// on the way, not that of the last step.
 TEST(BendingModes, TellTheLeastResemblanceOnTheWay) {
   Vehicle vehicle = Slv4();
   vehicle.structure_beam->propellant_levels = 2;

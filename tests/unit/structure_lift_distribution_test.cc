@@ -67,10 +67,11 @@ TEST(LiftDistribution, OfABentBodyIsTheGradientOfAreaTimesIncidence) {
   EXPECT_LT(on_cylinder, -0.005);
 }
 
-// What the flow does by the modes, with so many pieces and with four times those that fly: the largest
-// difference of a kind of column, against the largest of its kind over modes and propellants. (Against itself
-// it would say nothing: the work of the shift on mode 3 goes through 0 as stage 1 burns.) An integral by
-// middles: twice as many pieces quarter it.
+// The flow's effect on the modes, with this number of pieces and with four times the flown number. The
+// largest difference of each kind of column is compared with the largest value of its kind over modes and
+// propellants. (A comparison with its own value would show nothing: the work of the shift on mode 3 goes
+// through 0 as stage 1 burns.) The integral uses middles of pieces, so twice the number divides the error by
+// four.
 TEST(LiftDistribution, ConvergesAsTheSquareOfItsPieces) {
   const Vehicle vehicle = Flexible();
   const std::vector<StackModes> stacks = BuildBendingModes(vehicle);

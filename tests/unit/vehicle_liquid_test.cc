@@ -132,8 +132,8 @@ MotorBurn BurnWith(const std::function<void(Motor&)>& change, double thrust = 1.
   return BuildBurn(stage, thrust, flow);
 }
 
-// What is left falls by the integral of the flow; levels are linear between the steps, so the midpoint rule
-// is exact.
+// The propellant left falls by the integral of the flow. Levels are linear between the steps, so the midpoint
+// rule is exact.
 void ExpectFlowToFit(const MotorBurn& burn) {
   const int steps = 2000;
   const double step_s = burn.duration_s / steps;

@@ -165,8 +165,7 @@ TEST(NozzleLayout, ARingHasTheClosedFormOfItsPseudoInverse) {
   }
 }
 
-// Of two nozzles one may turn half as far. Where their sum is given and nothing else, (d1/2)² + d2² is least
-// at d1 = 4 d2.
+// One of two nozzles may turn half as far. If only their sum is given, (d1/2)² + d2² is least at d1 = 4 d2.
 TEST(NozzleLayout, WeighsDeflectionsByTheirLimits) {
   Gimbal gimbal = Two();
   gimbal.nozzles[1].limit_rad = 3.0 * kDeg;

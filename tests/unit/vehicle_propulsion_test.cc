@@ -118,7 +118,7 @@ TEST(MotorBurn, FollowsTheCurveAndUsesThePropellantUpAtItsEnd) {
   EXPECT_EQ(burn.Propellant(0.0), 4000.0);
   EXPECT_EQ(burn.Propellant(42.5), 0.0);
   EXPECT_EQ(burn.Fraction(42.5 + 1e-9), 0.0);
-  // What is burnt is the part of the impulse that was given, at corners and within pieces.
+  // The propellant burnt is proportional to the impulse given, at corners and within pieces.
   const double per_n_s = 4000.0 / kCurveImpulse_n_s;
   EXPECT_NEAR(burn.Propellant(0.25), 4000.0 - per_n_s * 12.5e3, 1e-9);
   EXPECT_NEAR(burn.Propellant(10.0), 4000.0 - per_n_s * 1855e3, 1e-9);

@@ -34,9 +34,8 @@ TEST_P(ShippedAutopilot, HasTheMeasuredMarginsInEveryStage) {
                                 << m.gain_down_db << " dB down, " << m.delay_s << " s";
 }
 
-// The paper's law as it stands in (32), without spread, with the integral action of the shipped one: about
-// zero error nothing is wrong with it. Where the central rule has learnt a trim alone, the edge in the
-// surface is.
+// The paper's law as in (32), without spread, with the integral action of the shipped one. About zero error
+// it passes. If the central rule alone has learnt a trim, it fails, because of the edge in the surface.
 TEST(SpreadFreeLaw, PassesAboutZeroErrorAndFailsWhereItHasLearnt) {
   FlightDefinition definition = Slv4Definition(DISPERSA_CAMPAIGNS, "adaptive_fuzzy");
   for (AxisConfig* axis : {&definition.autopilot.pitch, &definition.autopilot.yaw}) {

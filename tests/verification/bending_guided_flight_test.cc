@@ -86,7 +86,7 @@ TEST(FlexibleGuidedFlight, IsThatOfCvode) {
   EXPECT_EQ(MetricOf(exact.result, "guidance_converged"), 1.0);
 }
 
-// What the flight above is to show is there: without it the flight is another.
+// The flight above really has these properties: without one of them it is another flight.
 TEST(FlexibleGuidedFlight, FeelsBothPlanesAndItsGyros) {
   FlightDefinition alike = FlexibleGuidedDefinition(), without_gyros = FlexibleGuidedDefinition();
   for (BeamStage& stage : alike.vehicle.structure_beam->stages)

@@ -22,7 +22,7 @@ Environment Airless(const Earth& earth) {
   return environment;
 }
 
-/// What a stage of slv4 is like after its separation, on a day with wind.
+/// A stage of slv4 after its separation, on a day with wind.
 Environment Windy() {
   Environment environment;
   environment.wind.jets = {{60.0, 12000.0, 12000.0, 0.3}};

@@ -43,9 +43,9 @@ struct Differences {
   double expelled_kg;     // by all firings
 };
 
-// The phase-plane logic of the reaction control decides every 50 ms. Where a flight grazes a switching line,
-// a difference of 1e-6 deg is a firing one cycle earlier or later: then the two are both flights of the
-// closed loop, apart by what a firing is worth, however exact the integration.
+// The phase-plane logic of the reaction control decides every 50 ms. If a flight grazes a switching line, a
+// difference of 1e-6 deg makes a firing one cycle earlier or later. Both are then flights of the closed loop.
+// They differ by the effect of a firing, however exact the integration is.
 Differences Between(const Flown& a, const Flown& b, double until_s) {
   Differences d{};
   d.altitude_m = 1e3 * std::fabs(MetricOf(a.result, "injection_altitude_km") -

@@ -79,8 +79,8 @@ Complex ClosedForm(const PublishedLoop& loop, double frequency_rad_s) {
 struct Crossing {
   double frequency_rad_s, value, delay_s;
 };
-// Where the response is real and negative: the gain's margin in dB, positive upwards. Where its gain is 1:
-// the phase's in degrees, and the delay's.
+// At a real and negative response: the gain margin in dB, positive upwards. At a gain of 1: the phase margin
+// in degrees, and the delay margin.
 struct Crossings {
   std::vector<Crossing> gain, phase;
 };
@@ -310,8 +310,8 @@ TEST_F(Greensite, FliesToThePublishedCoefficients) {
   EXPECT_EQ(p.attitude[4], p.rates[0].rate[5]);
   near(-p.a(3, 2), kServo_rad_s * kServo_rad_s, "servo");
   near(-p.a(3, 3), 2.0 * kServoDamping * kServo_rad_s, "servo's damping");
-  // What the published equations do not have: damping, and what the mode does to the body. Against what the
-  // mode adds to the measured acceleration, and what drives it.
+  // Terms that the published equations do not have: damping, and the effect of the mode on the body. They are
+  // compared with the mode's part of the measured acceleration, and with its drive.
   EXPECT_LT(std::fabs(p.a(1, 1)), 1e-5);
   EXPECT_LT(std::fabs(p.a(1, 4)), 1e-3 * kSigma * kMode_rad_s * kMode_rad_s);
   EXPECT_LT(std::fabs(p.a(1, 5)), 1e-3 * kSigma * 2.0 * kModeDamping * kMode_rad_s);
@@ -388,8 +388,8 @@ TEST_F(Greensite, DeepNotchHoldsTheModeBelowItsFrequencyAndLosesItAbove) {
       MarginsAt(model().nominal_plant(), model().sensors(), model().autopilot(), sample_, kPitch, false)));
 }
 
-// What `dispersa margins --frequency-band 0` prints at the campaign's burnout, with and without --drift: the
-// published loop but for its drift feedback.
+// The output of `dispersa margins --frequency-band 0` at the campaign's burnout, with and without --drift:
+// the published loop except its drift feedback.
 TEST_F(Greensite, ComputedMarginsAreThoseOfThePublishedLoopWithoutDriftFeedback) {
   for (const LateralPath path : {LateralPath::kHeld, LateralPath::kDrifts}) {
     PublishedLoop loop{kRetuned};

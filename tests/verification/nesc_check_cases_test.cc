@@ -78,7 +78,7 @@ Columns ReadSimulator(const std::string& path) {
   return columns;
 }
 
-// What one quantity is called by the simulators and by us, and how it is judged.
+// The name of a quantity in the simulators and here, and how it is judged.
 struct Component {
   std::string theirs;
   std::string ours;

@@ -153,7 +153,7 @@ PaperRates Engine(const Setting& setting, const PaperState& s) {
 
 // The equations ------------------------------------------------------------------------------------------
 
-// What enters the equations as given numbers: mass, inertia, stations, thrust, coefficients.
+// Quantities that the equations take as given: mass, inertia, stations, thrust, coefficients.
 struct Given {
   double m, P, x_z, x_R, x_d, z_r, Jx, Jt;
   double D, L, C;   // before nu
@@ -289,7 +289,7 @@ PaperRates Printed(const Setting& setting, const PaperState& s) {
   return out;
 }
 
-// What the listed misprints put into Printed - Engine at first order.
+// The contribution of the listed misprints to Printed - Engine, at first order.
 PaperRates ListedMisprints(const Setting& setting, const PaperState& s) {
   const Given g = GivenAt(setting, s);
   const double arm = g.x_d - g.x_z;

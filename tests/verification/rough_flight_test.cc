@@ -43,8 +43,9 @@ Difference Between(const FlightModel& model, const FlightInputs& inputs, const c
   return d;
 }
 
-// Another firing of the coast's thrusters is worth 0.04 m and 6e-4 m/s (flight_convergence_test.cc): the
-// flights may differ by a few. What is asked besides is far below what any dispersion does.
+// One more firing of the coast's thrusters changes the flight by 0.04 m and 6e-4 m/s
+// (flight_convergence_test.cc). The flights may differ by a few firings. The other bounds are far below the
+// effect of any dispersion.
 constexpr double kAltitude_m = 0.5, kVelocity_m_s = 5e-3, kPeak_deg = 1e-3;
 
 TEST(RoughFlight, InTurbulenceIsCvodes) {

@@ -317,7 +317,7 @@ TEST(FreeBeams, TimoshenkosFrequenciesAreThoseOfTheirCharacteristicEquation) {
     EXPECT_NEAR(std::log2(coarse_error / fine_error), 2.0, 0.01) << i;
     EXPECT_NEAR((4.0 * fine_error - coarse_error) / 3.0, 0.0, 1e-6) << i;
   }
-  // What is neglected otherwise: each effect lowers the frequency.
+  // Effects that are otherwise neglected: each lowers the frequency.
   beam.timoshenko = false;
   const double stiff = Solve(beam, 80, 1).modes.frequency_rad_s[0];
   beam.rotary_inertia = false;

@@ -209,9 +209,9 @@ class ThreeVsSixDof : public testing::Test {
 
 TEST_F(ThreeVsSixDof, AttitudeOfTheSteeringLaw) {
   const std::vector<Mark> marks = FlySixBySteeringLaw();
-  // What is left is the 3DOF's integration error: its steps are chosen to hold the orbit to a decimetre.
-  // Without the velocity of the turning body at the upper stack's CG, 3DOF and 6DOF part at the separations
-  // by 0.017, 0.004 and 0.001 m/s, which grow to 11.5 m and 0.025 m/s at injection.
+  // The rest is the integration error of the 3DOF, with steps that hold the orbit to 0.1 m. Without the
+  // velocity of the turning body at the upper stack's CG, the two differ after the separations by 0.017,
+  // 0.004 and 0.001 m/s. At injection this has grown to 11.5 m and 0.025 m/s.
   ExpectAgreement(marks, {}, {0.5, 1e-3});
   // With short steps in both it is 2 mm and 6e-6 m/s, which their own errors are: kinks of the air's tables
   // that fall between steps, and the differenced rate of the body axis at separations.
@@ -241,8 +241,8 @@ TEST_F(ThreeVsSixDof, AttitudeOfTheShippedReference) {
   ExpectAgreement(marks, {}, {0.5, 1e-3});
 }
 
-// The whole closed loop, from lift-off to injection, arrives where the 3DOF said. What it has and the 3DOF
-// has not: an attitude that errs, and thrusters whose propellant the last stage need not accelerate.
+// The whole closed loop, from lift-off to injection, ends where the 3DOF does. Beyond the 3DOF it has
+// attitude errors, and thrusters with propellant that the last stage need not accelerate.
 TEST_F(ThreeVsSixDof, TheClosedLoopArrives) {
   FlightDefinition definition = Slv4Definition(DISPERSA_CAMPAIGNS);
   const FlightResult complete = Fly(FlightModel(definition), {});

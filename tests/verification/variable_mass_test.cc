@@ -199,9 +199,9 @@ TEST_F(TurningLauncher, KeepsItsAngularMomentumButForTheFlowsOfDrainingTanks) {
   EXPECT_NEAR(RatesAtBurnout({0.01, 0.0, 0.0}).x() / 0.01, axial, 1e-11);
 }
 
-// Momentum and centre of mass of everything, the flow inside and what has left included. On board: the body's
-// momentum and that of the flow, m_dot times its way aft from where it leaves the grain to where it leaves
-// the vehicle. What leaves has the velocity of the nozzle and, relative to it, that which makes the thrust.
+// Momentum and centre of mass of everything, including the flow inside and the expelled mass. On board: the
+// momentum of the body, and that of the flow. The latter is m_dot times its way aft, from the grain to the
+// exit. Expelled mass has the velocity of the nozzle plus the relative velocity that makes the thrust.
 class FlowThroughATurningLauncher : public TurningLauncher {
  protected:
   static constexpr int kMomentum = kRigidLauncherSize, kPlace = kMomentum + 3, kSize = kPlace + 3;

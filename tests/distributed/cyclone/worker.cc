@@ -43,7 +43,7 @@ struct Assignment {
   std::vector<std::uint64_t> cases;
 };
 
-/// What a program prints.
+/// The output of a program.
 Json Output(const std::string& command) {
   std::FILE* pipe = popen(command.c_str(), "r");
   std::string text;
@@ -155,7 +155,7 @@ struct Worker {
     return started;
   }
 
-  /// What is flown, or, as long as nothing is, what is begun.
+  /// Reports flown cases or, while there are none, begun ones.
   void Report() {
     std::vector<dispersa_idl_FlownCaseV2> messages;
     for (std::size_t i = 0; i < flown.size(); ++i) {
@@ -182,7 +182,7 @@ struct Worker {
     requested = dds_time();
   }
 
-  /// Whatever takes its time flies on a thread of its own: a worker that is not heard for 3 s is lost.
+  /// Long work has a thread of its own: a worker without a message for 3 s counts as lost.
   void Begin() {
     flights = std::async(std::launch::async, [this, indices = assignment->cases] {
       std::vector<Flown> results;
