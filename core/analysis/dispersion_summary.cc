@@ -59,7 +59,7 @@ Moments OfWeighted(const Dispersion& dispersion) {
   return moments;
 }
 
-/// Of the magnitude of a normal: the folded normal distribution.
+/// Moments of the magnitude of a normal: the folded normal distribution.
 Moments FoldedNormal(double mean, double sigma) {
   using std::numbers::pi;
   const double ratio = mean / sigma;

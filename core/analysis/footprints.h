@@ -34,7 +34,7 @@ inline constexpr std::array<double, 3> kFootprintContainment = {0.5, 0.95, 0.99}
 /// threads at once; it may throw to stop.
 std::vector<Footprint> FootprintsOf(const ResultFolder& folder, const Campaign& campaign, int threads,
                                     const std::function<void(std::size_t, std::size_t)>& progress = {});
-/// Of the given points.
+/// The footprints of the given points.
 std::vector<Footprint> GatherFootprints(const std::vector<ImpactPoint>& points);
 
 /// "stage 2, spent", "stack from stage 1, lost".

@@ -46,7 +46,7 @@ struct DispersionRow {
   std::optional<double> absent = {};             ///< the value in every case if the key is not there
   int first_stage = 1;
   int last_stages_without = 0;  ///< number of last stages that cannot be dispersed
-  /// Of a stage of a vehicle: what its draws are limited to besides.
+  /// Further limits of the draws, for a stage of a vehicle.
   Range (*limits)(const Vehicle& vehicle, int stage) = nullptr;
 };
 

@@ -26,7 +26,7 @@ AutopilotConfig DecodeAutopilot(InputNode& node, const std::string& path, int st
                                 std::vector<InputProblem>& problems, FileSource* files,
                                 PythonLaws laws = PythonLaws::kMustBeHere);
 
-/// Of a file that nothing but its description checks.
+/// Decodes a file that only its description checks.
 template <class T, class F>
 T DecodeFile(InputNode& node, const std::string& path, std::vector<InputProblem>& problems, FileSource* files,
              F describe) {

@@ -15,7 +15,7 @@ void DescribeReferenceFile(Fields& fields, Reference& reference);
 void DescribeAutopilotFile(Fields& fields, AutopilotConfig& autopilot, const OpenPlugin& open);
 void DescribeScenarioFile(Fields& fields, Scenario& scenario);
 
-/// Of a kind, for those that have no file: schemas and tables of keys.
+/// Describes a kind of file without a file, for schemas and tables of keys.
 void DescribeFile(FileKind kind, Fields& fields);
 
 }  // namespace dispersa

@@ -85,7 +85,7 @@ std::string Difference(const std::vector<double>& first, const std::vector<doubl
   return first.size() == second.size() ? "" : "one of the flights ends earlier";
 }
 
-// Of flights that ended well before.
+// Flies again flights that ended normally before.
 std::vector<Flown> FlyAgain(const CampaignFlights& flights,
                             const std::vector<std::optional<std::uint64_t>>& cases,
                             const StopCheck& should_stop) {

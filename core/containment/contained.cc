@@ -270,7 +270,7 @@ void RunContained(const std::function<void(const Say& say)>& work, const Say& he
   for (;;) {
     if (should_stop && should_stop()) throw Interrupted();
     const std::optional<int> ended = child.Ended();
-    // Of one that has ended, all that is left; else what comes now.
+    // After the child's end all that is left is read; before, only what has arrived.
     for (int patience_ms = ended ? 0 : 100; is_open; patience_ms = 0) {
       pollfd ready{child.in(), POLLIN, 0};
       if (poll(&ready, 1, patience_ms) <= 0) break;

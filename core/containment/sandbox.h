@@ -17,7 +17,7 @@ struct SandboxParts {
 /// handler calls `refused` with its number.
 SandboxParts EnterSandbox(const SandboxParts& wanted, void (*refused)(int call));
 
-/// As the manual names it.
+/// The name of a system call, as in the manual.
 std::string SystemCallName(int call);
 
 }  // namespace dispersa

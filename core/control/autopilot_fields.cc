@@ -5,7 +5,7 @@
 namespace dispersa {
 namespace {
 
-// Of actuators and delays: a second would be another program.
+// Delays and actuators need less than a second. A longer lead would be another program.
 constexpr Range kLead = Between(0.0, 1.0);
 
 void DescribeGains(Fields& fields, AxisGains& gains) {

@@ -31,7 +31,7 @@ StageLaw RateBetween(const LawPiece& a, const LawPiece& b) {
   return rate;
 }
 
-// Those of a stage (0-based), whose law at ignition is known.
+// The pieces of a stage (0-based) with a known law at ignition.
 std::vector<LawPiece> PiecesOf(const AxisConfig& config, int stage, const StageLaw& at_ignition,
                                double tick_s) {
   StageLaw nothing{};

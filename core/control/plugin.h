@@ -52,11 +52,12 @@ class PluginLaw {
     int (*create)(const dispersa_law_setup*, void*) = nullptr;
     int (*start_stage)(const dispersa_law_stage*, void*) = nullptr;
     int (*step)(const dispersa_law_input*, dispersa_law_output*, void*) = nullptr;
-    /// Of a law in this process: before it is created for a case, and after its flight. Null: not asked for.
+    /// For a law in this process: called before it is created for a case, and after its flight. Null: no
+    /// call.
     void (*begin)(std::uint64_t case_index, void* memory) = nullptr;
     void (*end)(void* memory) = nullptr;
   };
-  /// Of an open one.
+  /// The functions of an open plug-in.
   const Functions& functions() const { return functions_; }
   const dispersa_law_description& description() const { return *description_; }
   /// In the order of the description. Throws PluginError.

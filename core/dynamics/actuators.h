@@ -18,7 +18,7 @@
 namespace dispersa::lanes {
 inline namespace DISPERSA_ISA {
 
-/// Of each lane's stack.
+/// The actuators of each lane's stack.
 template <class T>
 struct GimbalLanes {
   T limit_rad, rate_limit_rad_s;
@@ -129,7 +129,7 @@ DISPERSA_INLINE void DriveRates(const GimbalLanes<T>& d, int i, T command_rad, T
   dangle = d.moves[i] * Clamp(rate_rad_s, -d.rate_limit_rad_s, d.rate_limit_rad_s);
   drate = d.moves[i] * acceleration;
 }
-/// Of a drive without friction.
+/// The step of a drive without friction.
 template <class T>
 DISPERSA_INLINE void DriveRates(const GimbalLanes<T>& d, int i, T command_rad, T angle_rad, T rate_rad_s,
                                 T& dangle, T& drate) {

@@ -48,10 +48,10 @@ struct LargestMoment {
   T moment_n_m, station_m;
 };
 
-/// Of all load stations. A section holds what the acceleration of the mass ahead takes, less what the flow
-/// gives there (force summation: R. L. Bisplinghoff, H. Ashley, R. L. Halfman, "Aeroelasticity", 1955), plus
-/// `further`. Left out: the flow's damping moment, forces of the flow of propellant, the axial force on the
-/// bent axis.
+/// Bending moments at all load stations. A section carries the force for the acceleration of the mass ahead,
+/// minus the flow's force there, plus `further` (force summation: R. L. Bisplinghoff, H. Ashley, R. L.
+/// Halfman, "Aeroelasticity", 1955). Left out: the flow's damping moment, forces of the propellant flow, and
+/// the axial force on the bent axis.
 template <class T, class... Further>
 DISPERSA_INLINE LargestMoment<T> LargestOf(const LoadTableLanes<T>& body, const NormalForce<T>& air,
                                            const BodyMotion<T>& m, const Further&... further) {

@@ -137,8 +137,8 @@ TurbulentWind Evaluate(const TurbulenceField& field, double altitude_m) {
 
 TurbulenceField DrawTurbulence(const TurbulenceStrength& strength, const TurbulencePath& path,
                                const TurbulenceNormals& draw) {
-  // Of the states x1' = -x1 + w, x2' = -x2 + x1 over the length: (sqrt 3 x1 + (1 - sqrt 3) x2) / sqrt 2 has
-  // the lateral spectrum and the deviation 1.
+  // With the states x1' = -x1 + w and x2' = -x2 + x1 over the length, (sqrt 3 x1 + (1 - sqrt 3) x2) / sqrt 2
+  // has the lateral spectrum and the deviation 1.
   static const double root3 = Sqrt(3.0), root2 = Sqrt(2.0);
   const double of_first = root3 / root2, of_second = (1.0 - root3) / root2;
   struct Lateral {

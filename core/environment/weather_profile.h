@@ -38,7 +38,7 @@ struct FlightWeather {
          gust_east = 0.0;
   WeatherProfile profile;  ///< of everything else
 };
-/// Of a wind with at most one jet stream and one gust, which is what a flight draws.
+/// Prepares a wind with at most one jet stream and one gust, as a flight draws it.
 FlightWeather PrepareWeather(const Wind& wind, const DensityFactor& density,
                              const TurbulenceField* turbulence = nullptr);
 

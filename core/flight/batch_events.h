@@ -35,7 +35,7 @@ void Batch<T>::AdvanceThroughEvents(T target) {
           goal = event_s;
           due |= 1u << lane;
         } else if (event_s <= end + kSameInstant_s) {
-          // As good as now, or as good as at the end.
+          // An event at nearly the current time, or at nearly the end, is taken as exactly there.
           if (event_s < end - kSameInstant_s) goal = now;
           due |= 1u << lane;
         }

@@ -15,7 +15,7 @@
 
 namespace dispersa {
 
-/// Of a signed angle over ticks.
+/// Sums of a signed angle over ticks.
 struct ErrorSums {
   double squares = 0.0;
   double peak = -1.0;        ///< largest magnitude, negative without ticks
@@ -140,7 +140,8 @@ struct LaneMetrics {
     Raise(lanes, law.departure_norm2, sums.departure_norm2_peak);
   }
 
-  /// Of the cross, at the same tick: deflections of the actuators, commands as they reach them.
+  /// Adds the deflections of four nozzles in a cross, at the same tick: angles of the actuators, and their
+  /// commands.
   DISPERSA_INLINE void AddDeflections(MaskOf<T> lanes, T time_s, const DriveState<T>& drives,
                                       const T* command_rad, T limit_rad) {
     T travel(0.0), largest(0.0), fastest(0.0);
@@ -154,7 +155,7 @@ struct LaneMetrics {
     }
     AddTravel(lanes, fastest, T(1.0 / kNozzles), travel, largest >= limit_rad);
   }
-  /// Of listed nozzles: each drive that the lane's stage has counts.
+  /// Adds the deflections of listed nozzles: every drive of the lane's stage counts.
   DISPERSA_INLINE void AddDeflections(MaskOf<T> lanes, T time_s, const DriveState<T>& first,
                                       const DriveState<T>& second, const T* command_rad,
                                       const NozzleLayoutLanes<T>& list) {
@@ -213,7 +214,7 @@ struct LaneMetrics {
   DISPERSA_INLINE void AddLoadsOfLane(int lane, const Instant<double>& now) {
     LaneMetrics<double> one{};
     one.AddLoads(true, now);
-    // Of everything else `one` has 0, which raises nothing.
+    // All other values of `one` are 0, which raises nothing.
     for (unsigned i = 0; i < kValues<T, TickSums<T>>; ++i) {
       const double to = LaneAt<double>(one.sums, i, 0);
       if (to > LaneAt<T>(sums, i, lane)) SetLaneAt<T>(sums, i, lane, to);

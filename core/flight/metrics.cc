@@ -29,7 +29,7 @@ struct Measured {
   const FlightDefinition& definition;
   const ErrorSums& pitch;  // of the metric's phase
 
-  /// Of a flight that got there.
+  /// The value, if the flight got there.
   double AtHandover(double value) const { return sums.handed_over ? value : kUndefined; }
   double Guided(double value) const { return sums.guidance.acted ? value : kUndefined; }
   double AtInjection(double value) const {
@@ -293,7 +293,7 @@ std::string PhaseTitle(int phase) {
   return phase == 0 ? "" : ", stage " + std::to_string(phase);
 }
 
-// Of stages that few vehicles have.
+// Phases of stages that few vehicles have.
 constexpr bool IsRare(int phase) { return phase > kUsualStages && phase <= kMaxStages; }
 
 // f(row, phase) for each metric in the order of the columns: of rare stages behind all others.
@@ -310,7 +310,7 @@ void ForEach(F f) {
   by_phase(true);
 }
 
-// Of all stages.
+// The metrics of all stages.
 std::vector<Metric> AllMetrics() {
   std::vector<Metric> list;
   ForEach([&](const Row& row, int phase) {

@@ -9,7 +9,7 @@
 namespace dispersa::lanes {
 inline namespace DISPERSA_ISA {
 
-/// Of each lane's stage.
+/// The allocation of each lane's stage.
 template <class T>
 struct NozzleLayoutLanes {
   T drive[kDrives][kSteeredAxes];

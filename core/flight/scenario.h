@@ -67,7 +67,7 @@ void Describe(Fields& fields, Scenario& scenario);
 /// Contradictions within one stage. Paths start at the stage ("mass_properties.ixx_kg_m2[1]",
 /// "motor.nozzle_station_m").
 std::vector<StructProblem> Problems(const ScenarioStage& stage);
-/// Of the stages together and the steps ("stages[1].separation_time_s").
+/// Contradictions between stages, and in the steps ("stages[1].separation_time_s").
 std::vector<StructProblem> Problems(const Scenario& scenario);
 
 /// Seconds between ignition and burnout: all propellant over the flow.

@@ -18,7 +18,7 @@ struct GyroModel {
 
 struct SensorModel {
   std::vector<GyroModel> gyros;
-  /// Of a stage's rates: those of each gyro, and of the inertial unit. Together 1.
+  /// The weights in a stage's rates: of each gyro, and of the inertial unit. Their sum is 1.
   struct Weights {
     std::array<double, kRateGyros> gyro{};
     double unit = 1.0;

@@ -30,8 +30,8 @@ std::vector<StageTimes> BuildTimeline(const Vehicle& vehicle, const std::vector<
                                       const std::array<double, kMaxStages>& earlier_ignition_s = {},
                                       const FlightInputs& in = {});
 
-/// Of boosters that ignite with the first stage: exact burnout, and separation by the flight computer's
-/// ticks. They leave no later than the stage burns out.
+/// Times of boosters that ignite with the first stage: exact burnout, and separation on the flight computer's
+/// ticks. They separate no later than the stage burns out.
 struct BoosterTimes {
   double burnout_s = 0.0;
   double separation_s = 0.0;

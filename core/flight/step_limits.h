@@ -19,7 +19,8 @@ namespace dispersa {
 
 /// Actuators of nozzles without mass: the highest that has been compared. 160 Hz with ticks of 10 ms.
 inline constexpr double kActuatorLimit_rad = 10.0;
-/// Of nozzles whose turning accelerates the body, by the acceleration at those three instants: 20 Hz.
+/// Limit for nozzles that accelerate the body when they turn, by the acceleration at those three instants: 20
+/// Hz.
 inline constexpr double kHeavyActuatorLimit_rad = 1.25;
 /// From this share of a limit on a case is flagged.
 inline constexpr double kNearStepLimit = 0.8;

@@ -145,9 +145,9 @@ class Fields {
   // A key each. `meaning` is what documentation says of it. With `absent` the key need not be there, and its
   // value is then that.
 
-  /// Of a whole file: the kind of file that it is.
+  /// For a whole file: its kind.
   virtual void Schema(const char* name) = 0;
-  /// Of a whole file: the key of another one of its kind, whose keys stand where this one has none.
+  /// For a whole file: the key that names another file of its kind. That file gives the keys missing here.
   virtual void Base(const char* key, const char* schema, const char* meaning) = 0;
   void Text(const char* key, std::string& value, const char* meaning,
             std::optional<std::string> absent = {}) {

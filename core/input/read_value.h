@@ -35,7 +35,7 @@ bool IsTruthValue(const std::string& text);
 std::string JoinWords(const std::vector<std::string>& words);
 /// " (did you mean 'x'?)" for the nearest word within two edits, else empty.
 std::string DidYouMean(const std::string& word, const std::vector<std::string>& words);
-/// That word, or empty.
+/// The nearest of the words, or empty.
 std::string Nearest(const std::string& word, const std::vector<std::string>& words);
 
 }  // namespace dispersa

@@ -106,7 +106,7 @@ int ModesOf(const LauncherPlant& plant, int stack) {
   return of.bending ? of.bending->modes : 0;
 }
 
-// Those of one flight, those that hardly have thrust, and how it ended.
+// The instants of one flight, those with little thrust, and how the flight ended.
 struct FlownInstants {
   std::vector<MarginInstant> instants;
   std::vector<SkippedInstant> skipped;
@@ -206,7 +206,8 @@ class InstantLoop {
   std::vector<Plant> plants_;
 };
 
-// Of each axis: all laws of ComputedMargins. `learnt` is the sample whose memories count.
+// Adds the margins of each axis, for all laws of ComputedMargins. The memories are those of the sample
+// `learnt`.
 void AddMarginsAt(const LauncherPlant& plant, const FlightModel& model, const FlightInputs& inputs,
                   const MarginInstant& instant, const TickSample& learnt, const MarginModel& of,
                   std::vector<ComputedMargins>& all) {

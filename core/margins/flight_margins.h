@@ -60,8 +60,8 @@ struct ComputedMargins {
   Axis axis = kPitch;
   LoopMargins frozen;    ///< gains held
   LoopMargins adapting;  ///< with the adaptation, linearised about zero error (without adaptation: as frozen)
-  /// As adapting, with what the law has learnt by then: the least on any side of zero error and zero rate.
-  /// None where nothing changes by learning.
+  /// Like `adapting`, with the values learnt by then: the least margins on any side of zero error and zero
+  /// rate. None if the law does not learn.
   std::optional<LoopMargins> learnt;
   bool is_augmented = false;            ///< the learnt value is an augmentation's gain
   std::vector<SetMargins> by_set = {};  ///< as adapting, where there are several FrequencySets

@@ -122,7 +122,7 @@ class SampledLoop {
   /// Rigid: (z I - ad)⁻¹ bd, angle and rate, as quotients of polynomials in z - 1, rising powers.
   std::array<double, 4> angle_, rate_;
   std::array<double, 5> denominator_;
-  /// Else ad - I in upper Hessenberg form, with bd and the measured rows in its coordinates.
+  /// Otherwise: ad - I in upper Hessenberg form, with bd and the measured rows in its coordinates
   Eigen::MatrixXd hessenberg_;
   Eigen::VectorXd driven_;
   Eigen::RowVectorXd attitude_row_;

@@ -45,7 +45,7 @@ LoopTable::LoopTable(const AxisPlant& plant, double tick_s, int delay_ticks)
 
 double LoopTable::Surplus(const LinearLaw& law, const std::vector<double>& weights,
                           const LoopGates& gates) const {
-  // Of one integrator, at z = 1.
+  // The loop then has an integrator, at z = 1.
   const bool integrates = law.adapts() && law.leakage_1_s == 0.0;
   double least = HUGE_VAL;
   const auto take = [&](double value, double gate) { least = std::min(least, (value - gate) / gate); };
@@ -66,7 +66,7 @@ double LoopTable::Surplus(const LinearLaw& law, const std::vector<double>& weigh
     const double by_gain = (-10.0 * Log10(size) - gates.gain_db) / gates.gain_db;
     least = std::min(least, std::max(by_gain, by_phase(l)));
   };
-  // Of 1 + L: how often it crosses the negative axis upwards, less downwards.
+  // Number of upward crossings of the negative axis by 1 + L, minus the downward ones.
   int turns = 0;
   std::complex<double> before = 0.0, first = 0.0;
   for (std::size_t i = 0; i < s_.size(); ++i) {

@@ -14,7 +14,7 @@ template <>
 struct LaneValueOf<1> {
   using Type = double;
 };
-/// Of W lanes.
+/// For W lanes.
 template <int W>
 using LaneValue = typename LaneValueOf<W>::Type;
 

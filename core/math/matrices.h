@@ -6,21 +6,21 @@
 
 namespace dispersa {
 
-/// Of a square matrix, each as often as it is one, in no order.
+/// The eigenvalues of a square matrix, with their multiplicity, in no order.
 Eigen::VectorXcd Eigenvalues(const Eigen::MatrixXd& m);
 
 struct SymmetricEigen {
   Eigen::VectorXd values;   ///< rising
   Eigen::MatrixXd vectors;  ///< columns of length 1, in the order of the values
 };
-/// Of a symmetric matrix, of which the lower triangle is read.
+/// Eigenvalues and eigenvectors of a symmetric matrix. Only the lower triangle is read.
 SymmetricEigen EigenOfSymmetric(const Eigen::MatrixXd& m);
 
 struct Hessenberg {
   Eigen::MatrixXd form;  ///< zero below the first subdiagonal
   Eigen::MatrixXd turn;  ///< orthogonal; m = turn form turn'
 };
-/// Of a square matrix.
+/// The Hessenberg form of a square matrix.
 Hessenberg HessenbergOf(const Eigen::MatrixXd& m);
 
 /// exp(m) by a Taylor series with scaling and squaring, to rounding.

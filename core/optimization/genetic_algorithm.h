@@ -20,7 +20,7 @@ namespace dispersa {
 struct GenerationRecord {
   int generation = 0;  ///< 0 is the initial, random one
   double feasible_fraction = 0.0;
-  /// Of the best individual: 0 once one is feasible. +infinity: not one finite evaluation yet.
+  /// The violation of the best individual: 0 once one is feasible. +infinity if no evaluation was finite yet.
   double best_violation = 0.0;
   std::optional<double> best_objective;
   std::optional<double> mean_objective;  ///< over the feasible individuals

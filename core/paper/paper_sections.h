@@ -30,7 +30,8 @@ std::string PaperSource(const PaperStudy& study, const std::vector<std::string>&
 /// "0.0123°"
 std::string Degrees(double value);
 
-/// Of a metric in degrees: median, 99 % and maximum over completed flights, and how many were lost.
+/// Statistics of a metric in degrees: median, 99 % and maximum over completed flights, and the number of lost
+/// flights.
 struct MetricDigest {
   std::size_t n = 0;  ///< flights, the lost among them
   std::size_t lost = 0;

@@ -50,7 +50,7 @@ class CaseColumn {
   std::vector<double> Values() const { return file_ ? file_->Read(number_) : values_; }
   operator std::vector<double>() const { return Values(); }
 
-  // Of a column in memory only.
+  // For a column in memory only.
   void push_back(double value) { values_.push_back(value); }
   double operator[](std::size_t row) const { return values_[row]; }
   double& operator[](std::size_t row) { return values_[row]; }

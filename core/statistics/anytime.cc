@@ -15,7 +15,7 @@ constexpr double kNone = -std::numeric_limits<double>::infinity();
 
 double LogBeta(double a, double b) { return std::lgamma(a) + std::lgamma(b) - std::lgamma(a + b); }
 
-/// Of a failure probability `failure`: ln(p^f (1 - p)^(n - f)).
+/// The log likelihood of a failure probability `failure`: ln(p^f (1 - p)^(n - f)).
 double LogLikelihood(double failure, std::int64_t n, std::int64_t failures) {
   return static_cast<double>(failures) * std::log(failure) +
          static_cast<double>(n - failures) * std::log1p(-failure);

@@ -46,8 +46,8 @@ struct LiftDistribution {
 /// (structure_lift_distribution_test).
 inline constexpr int kLiftPieces = 32;
 
-/// Of the stack of stages `stage` (from 0) and above. No piece lies on both sides of one of `cuts_m`.
-/// Precondition: a profile that reaches the stage's bottom.
+/// The distribution for the stack of stages `stage` (from 0) and above. No piece lies on both sides of one of
+/// `cuts_m`. Precondition: a profile that reaches the stage's bottom.
 LiftDistribution DistributeLift(const Vehicle& vehicle, int stage, const std::vector<double>& cuts_m = {},
                                 int pieces = kLiftPieces);
 

@@ -13,8 +13,8 @@ inline constexpr int kLoadStations = 7;
 
 struct LoadTable {
   LiftDistribution lift;
-  /// Of the normal force ahead of each station, its moment about the station, m: by slender-body theory, plus
-  /// for each metre that the centre of pressure is aft of lift.slender_station_m `shift_arm`.
+  /// Moment arm (m) about each station of the normal force ahead of it, per force: by slender-body theory.
+  /// Added to it: `shift_arm` for each metre of the centre of pressure aft of lift.slender_station_m.
   std::array<double, kLoadStations> slender_arm_m{}, shift_arm{};
 
   /// Stations s, and integrals over the mass ahead of each. m(x) is the mass per length, g(x) the radius of
@@ -27,7 +27,7 @@ struct LoadTable {
   std::array<std::array<double, 3>, kLoadStations> second_kg_m2{};
 };
 
-/// Of the stack of stages `stage` (from 0) and above. Masses as the beam of finite elements has them
+/// The table for the stack of stages `stage` (from 0) and above. Masses are those of the finite-element beam
 /// (beam_masses.h).
 LoadTable BuildLoadTable(const Vehicle& vehicle, int stage);
 

@@ -45,7 +45,7 @@ struct NozzleLayout {
   double roll_arm_m = 0.0;     ///< moment of a radian of roll over T (0: nozzles do not roll)
   double flow_radius_m = 0.0;  ///< of gyration of the flow about the axis, for the damping of roll
 };
-/// Of a gimbal without problems. One without a list of nozzles has four in a cross.
+/// Precondition: a gimbal without problems. Without a list of nozzles it has four in a cross.
 NozzleLayout BuildNozzleLayout(const Gimbal& gimbal);
 
 /// Contradictions in a list of nozzles. Paths begin with `path`, that of the gimbal.

@@ -54,7 +54,7 @@ struct Check {
   double (*value)(const Subject&);  ///< NaN: does not apply
 };
 
-// Of the mould line between two stations.
+// The widest diameter of the mould line between two stations.
 double WidestDiameter(const Vehicle& vehicle, double top_m, double bottom_m) {
   constexpr int kSamples = 64;  // sections are far longer than a 64th of a grain
   double widest_m = 0.0;
@@ -234,7 +234,7 @@ constexpr Check kStageChecks[] = {
      }},
 };
 
-// Of what a stage jettisons.
+// Checks of jettisoned masses.
 constexpr Check kJettisonChecks[] = {
     {"at.time_s",
      "comes",
@@ -288,7 +288,7 @@ double NormalSlope(const AeroTable& table, bool of_largest) {
   return found;
 }
 
-// Of incidences up to 10 degrees: further on, and tail first, a body may be pulled forwards.
+// For incidences up to 10 degrees. Beyond, and tail first, the axial force may pull a body forwards.
 double LeastAxial(const AeroTable& table) {
   constexpr double kSmall_rad = 10.0 * kRadPerDeg;
   double least = kAny;
@@ -300,7 +300,7 @@ double LeastAxial(const AeroTable& table) {
   return least;
 }
 
-// Of the aerodynamic table of each stack.
+// Checks of the aerodynamic table of each stack.
 constexpr Check kAeroChecks[] = {
     {"reference_area_m2",
      "is the cross-section of the stack's lowest stage times",

@@ -21,7 +21,7 @@ struct PlausibilityFinding : StructProblem {
   bool impossible = false;
 };
 
-/// Of a vehicle without Problems().
+/// Precondition: a vehicle without Problems().
 std::vector<PlausibilityFinding> Plausibility(const Vehicle& vehicle);
 
 }  // namespace dispersa

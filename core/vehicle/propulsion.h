@@ -8,8 +8,8 @@
 
 namespace dispersa {
 
-/// Of full thrust: below it a motor has little say in attitude control. An autopilot that knows a thrust
-/// curve raises its commands no further, and no margins are taken.
+/// Fraction of full thrust below which a motor hardly controls the attitude. An autopilot that knows a thrust
+/// curve raises its commands no further, and no margins are computed.
 inline constexpr double kLeastThrustFraction = 0.2;
 
 /// A motor as one flight burns it: nominal data times the flight's factors.
@@ -50,7 +50,7 @@ void SetPropellant(const Motor& engine, double propellant_kg, MotorBurn& burn);
 /// Ends a throttled burn by command.
 void CutOffAt(double since_ignition_s, MotorBurn& burn);
 
-/// Of all boosters together, with the first stage's factors.
+/// The burn of all boosters together, with the first stage's factors.
 MotorBurn BuildBoosterBurn(const Boosters& boosters, double thrust_factor, double flow_factor);
 
 }  // namespace dispersa

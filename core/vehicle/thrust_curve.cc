@@ -9,7 +9,7 @@ double GreatestOf(const std::vector<double>& values) {
   return values.empty() ? 0.0 : *std::max_element(values.begin(), values.end());
 }
 
-// Of a value that is linear between the times.
+// The integral of a value that is linear between the times.
 double AreaUnder(const std::vector<double>& values, const std::vector<double>& time_s) {
   double sum = 0.0;
   for (std::size_t i = 0; i + 1 < time_s.size(); ++i)

@@ -17,7 +17,7 @@ double SitePressure(double altitude_m) {
 
 namespace {
 
-// Of a burn; the ramps of a motor without curve are held to last no time.
+// The largest value in the first second of a burn. A motor without curve is taken to have no ramps.
 double GreatestOfFirstSecond(const MotorBurn& burn, double from_s) {
   if (!burn.curve) return burn.vacuum_thrust_n;
   double level = std::max(burn.Fraction(from_s), burn.Fraction(from_s + 1.0));
@@ -38,8 +38,8 @@ double GreatestLoad_m_s2(const MotorBurn& burn, double empty_kg) {
   return greatest;
 }
 
-// Of the first stage: at first both flows with their thrusts, means over the boosters' burn, then the stage's
-// alone.
+// Velocity gain of the first stage with boosters. First both flows with their thrusts, as means over the
+// boosters' burn; then the stage alone.
 double BoostedDeltaV(const Vehicle& vehicle, const MotorBurn& core, const MotorBurn& boost) {
   const double boost_s = boost.duration_s;
   const double core_kg = core.propellant_mass_kg - core.Propellant(boost_s);

@@ -8,7 +8,7 @@
 
 namespace dispersa {
 
-/// Of one stage, which carries all above it.
+/// Figures of one stage, which carries all stages above it.
 struct StageFigures {
   double own_mass_kg = 0.0;  ///< without the stages above, for the last stage with the payload
   double dry_mass_kg = 0.0;
@@ -25,7 +25,7 @@ struct StageFigures {
       0.0;  ///< full thrust over the remaining weight, for a thrust curve its greatest value
 };
 
-/// Of a vehicle without Problems().
+/// Precondition: a vehicle without Problems().
 std::vector<StageFigures> FiguresOf(const Vehicle& vehicle);
 
 /// Pressure of the US Standard Atmosphere's lowest layer, Pa. Above 11 km, where no site is, that of 11 km.

@@ -72,7 +72,7 @@ std::string RegulatorText(const AxisConfig& axis) {
   return text;
 }
 
-// Of a line of the log: the number of a stage, or the augmentation.
+// The part that a line of the log is about: a stage's number, or the augmentation.
 std::string PartText(const TuningRecord& record, const TuningResult& result) {
   return record.stage < std::ssize(result.stages) ? fmt::format("{}", record.stage + 1) : "augm.";
 }

@@ -13,7 +13,7 @@ std::string LivePage(const std::string& id);
 /// The header that lets a page use its own style and script, its own server, and nothing else.
 std::string ContentSecurityPolicy(const std::string& page);
 
-/// Of the answers of a coordinator to `status` and `tally`.
+/// The parts of the page, from a coordinator's answers to `status` and `tally`.
 LiveParts StatusParts(const nlohmann::ordered_json& status);
 LiveParts TallyParts(const nlohmann::ordered_json& tally);
 /// A notice about trouble with the coordinator; empty if there is none.

@@ -16,7 +16,7 @@ namespace {
 constexpr std::size_t kShownInputs = 20;
 constexpr std::size_t kIndent = 2, kUnitWidth = 6, kNumberWidth = 11;
 
-/// Of the inputs that any dispersion feeds; the others stay empty.
+/// Columns of the inputs that any dispersion feeds. The others stay empty.
 CaseColumns DrawnColumns(const Campaign& campaign, const std::vector<int>& inputs) {
   const CaseDesign design(campaign);
   CaseColumns cases;

@@ -13,7 +13,7 @@ inline void Warn(const std::vector<InputProblem>& warnings) {
   for (const InputProblem& warning : warnings) LogWarning("{}", warning.Text());
 }
 
-/// As LoadCampaign.
+/// Loads a campaign (LoadCampaign) and logs its warnings.
 inline Campaign LoadAndWarn(const std::string& path, const CampaignOverrides& overrides = {}) {
   std::vector<InputProblem> warnings;
   Campaign campaign = LoadCampaign(path, overrides, &warnings);

@@ -13,7 +13,7 @@
 
 namespace dispersa {
 
-/// Of the search for this input. The result does not depend on the threads.
+/// Options of the search for this input. The result does not depend on the threads.
 TrajectoryOptions SearchOptions(const OptimizationInput& input, int threads);
 
 /// The user's trajectory problem may ask for options out of their ranges.

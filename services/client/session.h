@@ -39,7 +39,7 @@ class Session {
   /// Asks for a limited time. None: no answer.
   std::optional<Reply> Try(const std::string& method, const Json& arguments, const std::string& data = "",
                            std::chrono::milliseconds patience = kPatience);
-  /// As above; without an answer it throws Failure.
+  /// The same, but throws Failure if there is no answer.
   Reply Ask(const std::string& method, const Json& arguments, const std::string& data = "");
   /// "no coordinator has answered at HOST:PORT for 15 s"
   std::string Silence(std::chrono::seconds silent = kPatience) const;

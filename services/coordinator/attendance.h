@@ -5,7 +5,7 @@
 
 namespace dispersa {
 
-/// Of the workers of one coordinator. Times in seconds.
+/// The attendance of the workers of one coordinator. Times in seconds.
 class Attendance {
  public:
   /// `patience_s`: how long to do without workers; none: for ever.

@@ -18,7 +18,7 @@ std::vector<std::filesystem::path> FilesIn(const std::filesystem::path& results)
 /// The same files as they lie on the disk: X.gz is X.gz.
 std::vector<std::filesystem::path> StoredFilesIn(const std::filesystem::path& results);
 
-/// Of a file by its path, packed or not: the size of its text. Throws ResultError.
+/// The size of a file's text, packed or not, by the file's path. Throws ResultError.
 std::uint64_t SizeOf(const std::filesystem::path& file);
 /// At most `most` bytes of its text from `offset`, empty at its end. Throws ResultError.
 std::string ReadPart(const std::filesystem::path& file, std::uint64_t offset, std::size_t most);

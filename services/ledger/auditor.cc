@@ -11,7 +11,7 @@
 namespace dispersa {
 namespace {
 
-/// Of which the prepared flights are kept.
+/// Number of campaigns with prepared flights in memory.
 constexpr std::size_t kKnownCampaigns = 8;
 
 }  // namespace

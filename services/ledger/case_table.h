@@ -29,7 +29,7 @@ class CaseTable {
     const auto& block = blocks_[index / kBlock];
     return block ? block->states[index % kBlock] : CaseState::kWaiting;
   }
-  /// Of a case that is done.
+  /// The fingerprint of a case that is done.
   Digest FingerprintOf(std::uint64_t index) const {
     const auto& block = blocks_[index / kBlock];
     return block ? block->fingerprints[index % kBlock] : Digest();

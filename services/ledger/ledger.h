@@ -135,7 +135,7 @@ class Ledger {
   std::uint64_t Batches(const std::string& worker) const;
   /// Whether the worker flies a suspect and may hold nothing else.
   bool IsAlone(const std::string& worker) const;
-  /// Of the result that was accepted.
+  /// The fingerprint of the accepted result.
   Digest FingerprintOf(std::uint64_t case_index) const { return cases_.FingerprintOf(case_index); }
 
   bool Complete() const;
@@ -145,7 +145,7 @@ class Ledger {
   std::size_t WorkerCount() const { return workers_.size(); }
 
  private:
-  /// Of a case that two workers shall fly.
+  /// The second flight of a case that two workers must fly.
   struct SecondFlight {
     std::string first;        ///< the worker that returned its result; empty: none, or unknown
     bool is_flown = false;    ///< the second flight is under way

@@ -22,7 +22,7 @@ struct RequirementStanding {
   std::string so_far;
 };
 
-/// Of the flights completed so far.
+/// A histogram of the flights completed so far.
 struct MetricHistogram {
   std::string metric;
   std::size_t column = 0;
@@ -38,7 +38,7 @@ class RunningTally {
   std::vector<RequirementStanding> Standings() const;
   std::int64_t n() const { return n_; }
   const std::vector<Requirement>& requirements() const { return requirements_; }
-  /// Of KeyMetrics().
+  /// The histograms of KeyMetrics().
   const std::vector<MetricHistogram>& histograms() const { return histograms_; }
 
  private:

@@ -32,7 +32,7 @@ ExitCode BadUsage(const InputProblem& problem, bool json) {
   return kExitBadInput;
 }
 
-/// Of a program whose first word is neither a command nor an option of it.
+/// The problem of a program's first word that is neither a command nor an option.
 InputProblem UnknownWord(const CLI::App& app) {
   const std::string word = app.remaining().front();
   const bool is_option = word.starts_with("-");

@@ -27,7 +27,7 @@ std::vector<std::string> Names(const CLI::Option& option) {
   return names;
 }
 
-/// Of the command, then of what it belongs to: an option may stand behind any command.
+/// Options of the command, then those of its parents: an option may follow any command.
 std::vector<const CLI::Option*> OptionsOf(const CLI::App* app) {
   std::vector<const CLI::Option*> options;
   const CLI::App* const command = app;
@@ -82,7 +82,7 @@ class Candidates {
   }
   void AddKind(const std::string& kind) { text_ += ":" + kind + "\n"; }
 
-  /// Of the type as help texts show it; `before` stands before each value.
+  /// Adds the values in the type as help texts show it. `before` precedes each value.
   void AddValues(const CLI::Option& option, const std::string& before) {
     const std::string type = option.get_type_name();
     const std::vector<std::string> values = ListedValues(option);

@@ -15,7 +15,7 @@ nlohmann::ordered_json ProblemJson(const InputProblem& problem);
 
 /// Prints {schema: "dispersa/error/1", code, errors}. A command that fails has printed nothing else.
 void PrintErrorJson(ExitCode code, const std::vector<InputProblem>& problems);
-/// Of one problem without a place.
+/// Prints one problem without a place.
 void PrintErrorJson(ExitCode code, const std::string& message);
 
 }  // namespace dispersa

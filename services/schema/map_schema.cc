@@ -90,7 +90,7 @@ std::string UnitsOf(Dimension dimension) {
 
 Json Required(const std::string& key) { return {{"required", Json::array({key})}}; }
 
-// Of a pattern: "(a|b)", or "a".
+// The alternatives of a pattern: "(a|b)", or "a".
 std::string Alternatives(const std::string& texts) {
   return texts.find('|') == std::string::npos ? texts : "(" + texts + ")";
 }
@@ -175,7 +175,8 @@ void MapSchema::AddUnits(const NumberKey& key, const std::function<Json(const Un
   keys_.rules.push_back(Combined("oneOf", std::move(any)));
 }
 
-// Of just these keys; quantities by their stems and units, which is a tenth as long as all their keys.
+// A pattern for exactly these keys. Quantities are given by their stems and units, which takes a tenth of the
+// length of all their keys.
 std::string MapSchema::Pattern(const std::vector<std::string>& keys) const {
   std::map<std::string, std::set<std::string>> stems;  // by units
   std::string names;

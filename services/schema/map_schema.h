@@ -32,7 +32,7 @@ class MapSchema : public Fields {
 
   explicit MapSchema(Shared& shared) : shared_(shared) {}
 
-  /// Of what was described so far.
+  /// The schema of everything described so far.
   Json Finish() const;
 
   void Schema(const char* name) override;
@@ -67,7 +67,7 @@ class MapSchema : public Fields {
   void VisitMaps(const Key& key, std::size_t low_count, std::size_t high_count, const Items& items) override;
 
  private:
-  /// Of a map, or of one alternative of it.
+  /// The keys of a map, or of one alternative of it.
   struct Keys {
     Json values = Json::object();  ///< the schema of each
     Json required = Json::array();

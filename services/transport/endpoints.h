@@ -50,7 +50,7 @@ inline constexpr std::uint32_t kRoomForSeal = Seal::kSize + 3;
 /// False: there is no room.
 bool PutSeal(const Seal& seal, const std::string& topic, const Seal::Origin& origin,
              eprosima::fastrtps::rtps::SerializedPayload_t& payload);
-/// As a seal names a writer.
+/// The name of a writer in a seal.
 Seal::Writer NameOfWriter(const eprosima::fastrtps::rtps::GUID_t& writer);
 
 /// The numbers of seals grow. A repeated number is not believed.
@@ -103,11 +103,11 @@ class GuardedType : public PubSubType {
     payload->length = whole;
     return true;
   }
-  /// Of the last sample that this thread decoded.
+  /// Whether the last sample decoded by this thread was refused.
   static inline thread_local bool refused = false;
-  /// Because it has no seal that fits.
+  /// The same, because no seal fits.
   static inline thread_local bool is_foreign = false;
-  /// Of the last sample that this thread read, and of the one that it writes.
+  /// Origins of the last sample read by this thread, and of the sample that it writes.
   static inline thread_local Seal::Origin read, writing;
 
  private:
@@ -226,7 +226,7 @@ class Reader : private eprosima::fastdds::dds::DataReaderListener {
   void on_data_available(eprosima::fastdds::dds::DataReader* reader) override {
     Message message;
     eprosima::fastdds::dds::SampleInfo info;
-    // Of two threads of the middleware one after the other: numbers of seals grow.
+    // Two threads of the middleware come here one after the other: numbers of seals grow.
     const Lock lock(mutex_);
     while (reader->take_next_sample(&message, &info) == ReturnCode_t::RETCODE_OK) {
       if (!info.valid_data) continue;

@@ -25,14 +25,14 @@ namespace rtps = eprosima::fastrtps::rtps;
 
 constexpr std::uint32_t kReceiveBuffer = 4 << 20;
 constexpr std::uint32_t kSendBuffer = 1 << 20;
-// Of a domain's ports those that ordinary participants take: even ones for discovery, odd ones for the rest.
+// The ports of a domain that ordinary participants use: even ones for discovery, odd ones for the rest.
 constexpr int kFirstPort = 10, kLastPort = 249;
 
 class LogToSpdlog : public dds::LogConsumer {
  public:
   void Consume(const dds::Log::Entry& entry) override {
     if (entry.kind != dds::Log::Error) return;
-    // Of a permission that lacks: the next entry says the same and names the sender.
+    // About a missing permission: the next entry says the same and names the sender.
     if (std::string(entry.context.function ? entry.context.function : "").starts_with("check_remote_"))
       return;
     // Much of it repeats what strangers sent.

@@ -37,7 +37,7 @@ struct Seal::Code {
     if (!begin || EVP_MAC_init(begin.get(), secret.data(), secret.size(), parameters) != 1) Fail();
   }
 
-  /// Of a content that ends with its origin.
+  /// The code of a content that ends with its origin.
   std::array<std::uint8_t, kCode> Of(const std::string& topic, const std::uint8_t* data,
                                      std::size_t size) const {
     const Mac mac(EVP_MAC_CTX_dup(begin.get()));

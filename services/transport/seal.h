@@ -21,7 +21,7 @@ Secret DrawSecret();
 /// disturbance. Thread-safe.
 class Seal {
  public:
-  /// Of a writer, as the middleware names it.
+  /// A writer, by the middleware's name for it.
   using Writer = std::array<std::uint8_t, 16>;
   struct Origin {
     Writer writer{};

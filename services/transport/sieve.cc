@@ -16,7 +16,7 @@ namespace {
 namespace rtps = eprosima::fastrtps::rtps;
 namespace transport = eprosima::fastdds::rtps;
 
-// Of the RTPS protocol, version 2.
+// Sizes of the RTPS protocol, version 2.
 constexpr std::size_t kMessageHeader = 20;
 constexpr std::uint8_t kGap = 0x08;
 constexpr std::uint8_t kAckNack = 0x06;

@@ -24,7 +24,7 @@ inline bool IsForObservers(const std::string& topic) {
   return topic == kProgressTopic || topic == kResultTopic;
 }
 
-/// Of what is meant for one worker or client only.
+/// The partition of messages for one worker or client only.
 inline std::string PartitionOf(const std::string& who) { return "w" + who; }
 
 }  // namespace dispersa

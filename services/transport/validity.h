@@ -19,7 +19,7 @@ std::string WhyInvalid(const CampaignProgress& progress);
 std::string WhyInvalid(const Request& request);
 std::string WhyInvalid(const Reply& reply);
 
-/// Of a campaign.
+/// Largest text of a campaign.
 inline constexpr std::uint64_t kMaxTextBytes = std::uint64_t{64} << 20;
 inline constexpr std::size_t kMaxSlots = 1024;
 

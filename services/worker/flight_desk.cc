@@ -25,7 +25,7 @@ FlightDesk::FlightDesk(const FlightDeskOptions& options, double now_s)
       patience_s_(options.deaf_s) {}
 
 void FlightDesk::On(const Orders& orders, double now_s) {
-  // Of a coordinator whose place another one has taken, while that one lives.
+  // Orders of a replaced coordinator are ignored while its successor is heard.
   if (orders.coordinator_epoch < epoch_ && IsHeard(now_s)) return;
   heard_s_ = now_s;
   patience_s_ = options_.deaf_s;
@@ -91,7 +91,7 @@ void FlightDesk::DropAttempt(std::map<std::uint64_t, Attempt>::iterator attempt)
   if (attempt->second.unflown == 0 && attempt->second.unstored == 0) attempts_.erase(attempt);
 }
 
-// Of campaigns that nothing is held of, the few that were used last are kept.
+// Campaigns without a case held here are forgotten, except the few that were used last.
 void FlightDesk::Forget() {
   while (campaigns_.size() > kKnownCampaigns) {
     auto oldest = campaigns_.end();
