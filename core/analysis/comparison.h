@@ -1,4 +1,4 @@
-// Two campaigns compared: what `dispersa compare` prints, writes as compare.json and shows as compare.html.
+// Two campaigns compared: the output of `dispersa compare`, compare.json and compare.html.
 #pragma once
 
 #include <array>
@@ -41,7 +41,7 @@ struct Pairing {
       same;  ///< inputs that vary from case to case and are equal, bit for bit, in every shared case
   struct ChangedInput {
     std::string input;
-    std::string key;        ///< what campaign files call it
+    std::string key;        ///< its name in campaign files
     std::size_t cases = 0;  ///< shared cases in which the input differs
   };
   std::vector<ChangedInput> changed;

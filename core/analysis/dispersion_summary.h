@@ -16,7 +16,7 @@ namespace dispersa {
 struct DispersionSummary {
   std::string dispersion;  ///< its name
   std::string input;       ///< column, without the prefix
-  std::string key;         ///< what the campaign file calls it
+  std::string key;         ///< its name in the campaign file
   std::string declared;    ///< "normal, mean 1, 3σ 0.02"
   /// Of the declared distribution. None if several dispersions feed the input, or if the design decides its
   /// values.

@@ -9,7 +9,7 @@
 
 namespace dispersa {
 
-/// Which draws a dispersion makes of its distribution, and what its map holds besides.
+/// The draws that a dispersion makes from its distribution, and the further keys of its map.
 enum class Draws {
   kOnce,             ///< one value for all columns
   kEachAxis,         ///< a value for each axis of the launch-inertial frame

@@ -11,12 +11,12 @@ namespace dispersa {
 
 struct UnusualDispersion {
   std::string key;      ///< under the campaign's `dispersions`
-  std::string message;  ///< what it draws
-  std::string allowed;  ///< what is usual, and why
+  std::string message;  ///< the range that it draws
+  std::string allowed;  ///< the usual range, and the reason
 };
 
-/// One finding a key, the first of its columns that is beyond what is usual between the 0.135 and the 99.865
-/// per cent points; and errors of navigation in a campaign that has no guidance.
+/// At most one finding for each key: its first column with an unusual value between the 0.135 and the 99.865
+/// per cent points. Also errors of navigation in a campaign without guidance.
 std::vector<UnusualDispersion> UnusualDispersions(const Campaign& campaign);
 
 }  // namespace dispersa

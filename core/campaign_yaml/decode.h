@@ -13,15 +13,15 @@
 
 namespace dispersa {
 
-/// `warnings`, if given, receives what is possible but unusual (core/vehicle/plausibility.h).
+/// `warnings`, if given, receives values that are possible but unusual (core/vehicle/plausibility.h).
 Vehicle DecodeVehicle(InputNode& node, const std::string& path, std::vector<InputProblem>& problems,
                       FileSource* files, std::vector<InputProblem>* warnings = nullptr);
 
 /// A control law written in Python is named in a file, not contained: to fly it, it must be here
 /// (OfferedLaw).
 enum class PythonLaws { kMustBeHere, kMayBeAbsent };
-/// `stages`: of the vehicle that it flies, 0 if that is unknown (then nothing is checked against it). A
-/// plug-in is asked, in a child process, what it says of itself.
+/// `stages` is the number of stages of the vehicle, 0 if unknown (then nothing is checked against it). A
+/// plug-in describes itself, in a child process.
 AutopilotConfig DecodeAutopilot(InputNode& node, const std::string& path, int stages,
                                 std::vector<InputProblem>& problems, FileSource* files,
                                 PythonLaws laws = PythonLaws::kMustBeHere);

@@ -10,11 +10,10 @@
 
 namespace dispersa {
 
-/// A campaign as its file describes it: with a reference, or with a problem whose solution will be one.
+/// A campaign as its file describes it: with a reference, or with a trajectory problem to be solved first.
 struct DecodedCampaign {
-  Campaign campaign;  ///< without canonical_yaml and ids
-  std::optional<TrajectoryProblem>
-      optimize;  ///< of the `optimize` block, which stands in place of `reference`
+  Campaign campaign;                          ///< without canonical_yaml and ids
+  std::optional<TrajectoryProblem> optimize;  ///< from the `optimize` block, which replaces `reference`
 };
 
 /// The use of a campaign, which decides the keys that it needs.

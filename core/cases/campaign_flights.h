@@ -17,9 +17,9 @@ struct CaseOrder {
 /// A flown case: its position in the list, its result, and its history (empty if none was wanted).
 using CaseObserver = std::function<void(std::size_t order, CaseResult result, const History& history)>;
 
-/// Flies the cases of a campaign in this process, and those of a campaign whose control law is a plug-in in
-/// child processes (contained_flights.h). Flying is const and thread-safe. It throws PluginError where the
-/// plug-in cannot be used, and ContainedEnd where it ends the process of a flight that is not of a queue.
+/// Flies the cases of a campaign in this process. If the control law is a plug-in, they are flown in child
+/// processes (contained_flights.h). Flying is const and thread-safe. Throws PluginError if the plug-in cannot
+/// be used. Throws ContainedEnd if the plug-in ends the process of a flight outside a queue.
 class CampaignFlights {
  public:
   explicit CampaignFlights(const Campaign& campaign);
@@ -36,8 +36,8 @@ class CampaignFlights {
 
   /// Flies the queue's cases side by side on this thread until it has none. Results are those of FlyCase.
   void FlyCases(CaseQueue& queue) const;
-  /// Flies a list side by side on up to `threads` threads, this one among them. `done` is called by one
-  /// thread at a time, in the order in which flights end. Throws what it throws.
+  /// Flies a list side by side on up to `threads` threads, including this one. `done` is called by one thread
+  /// at a time, in the order in which flights end. Throws the exceptions of `done`.
   void FlyCases(const std::vector<CaseOrder>& orders, int threads, const CaseObserver& done) const;
 
  private:

@@ -1,5 +1,5 @@
-// Flights whose control law is a plug-in: flown in child processes, so that nothing that the plug-in does
-// ends this one.
+// Flights with a plug-in as control law. They are flown in child processes, so that nothing in the plug-in
+// ends this process.
 #pragma once
 
 #include "core/cases/flights_here.h"

@@ -31,14 +31,13 @@ class ContainedEnd : public std::runtime_error {
 struct ContainmentLimits {
   double call_cpu_s = 2.0;   ///< a call of more computing time counts as one that does not return,
   double call_wait_s = 5.0;  ///< or of more time while this process was awake
-  std::size_t memory_bytes = std::size_t{1} << 30;  ///< beyond what this process has
+  std::size_t memory_bytes = std::size_t{1} << 30;  ///< beyond the memory of this process
   SandboxParts sandbox{};  ///< seccomp is needed, the others hold where the kernel gives them
 };
 
 using Say = std::function<void(const std::string& message)>;
 
-/// There is no memory, file, process or sandbox for a child now: the system's matter, and no fault of what it
-/// would run.
+/// The system has no memory, file, process or sandbox for a child now. This is no fault of the work.
 class NoChild : public std::runtime_error {
  public:
   using std::runtime_error::runtime_error;

@@ -1,4 +1,4 @@
-// A control law whose functions are in this process: a prototype. Nothing contains what it does.
+// A control law with its functions in this process: a prototype. Nothing protects the process from it.
 #pragma once
 
 #include <memory>
@@ -20,7 +20,7 @@ class LawHere {
   LawHere(const LawHere&) = delete;
   LawHere& operator=(const LawHere&) = delete;
 
-  /// To be an autopilot's plug-in, with what it describes as its parameters.
+  /// The configuration for an autopilot's plug-in, with the parameters that it describes.
   PluginConfig Config(std::vector<std::pair<std::string, double>> parameters) const;
   /// From now on campaigns that this thread loads and that name a law in Python of this hash have this one.
   void Offer(PluginConfig config);
@@ -29,7 +29,7 @@ class LawHere {
   std::shared_ptr<const std::string> library_;  ///< empty: its address is the law's name
 };
 
-/// The functions that a configuration stands for, or null: those of a shared object.
+/// The functions of a configuration in this process. Null: those of a shared object.
 const PluginLaw::Functions* FunctionsHere(const PluginConfig& config);
 
 /// Whether it is a law in Python that this process does not have: its flights can be looked at, not flown.

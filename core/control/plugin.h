@@ -1,6 +1,6 @@
 // A control law from a shared object (control_law.h): its file, its functions, and the memory of a flight.
 //
-// Nothing here protects this process from what the object does: core/containment/contained.h does.
+// Nothing here protects this process from the object: core/containment/contained.h does.
 #pragma once
 
 #include <array>
@@ -31,7 +31,7 @@ struct PluginDescription {
   std::vector<std::string> parameters;
 };
 
-/// The functions of a law, and what is always given to them.
+/// The functions of a law, and their constant arguments.
 class PluginLaw {
  public:
   explicit PluginLaw(const PluginConfig& config) : config_(config) {}

@@ -12,7 +12,7 @@ namespace dispersa {
 struct PluginConfig {
   std::shared_ptr<const std::string> library;
   std::string sha256;         ///< of the bytes
-  std::string name, version;  ///< what it says of itself
+  std::string name, version;  ///< as it describes itself
   /// A Python function. `sha256` is the hash of its code. Only the process that has it (law_here.h) can fly
   /// it; `library` is null elsewhere.
   bool in_python = false;

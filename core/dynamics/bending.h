@@ -59,7 +59,7 @@ struct ModalForce {
   T drive_m_s2[kPlanes][kModes];
 };
 
-/// Sets what the lane's propellant decides.
+/// Sets the values that depend on the lane's propellant.
 template <class T>
 DISPERSA_INLINE void ShapesAt(BendingTableLanes<T>& b, T propellant_kg) {
   alignas(128) static constexpr double kNone[BendingTable::kRowSize] = {};

@@ -177,7 +177,8 @@ struct Thrust {
   Vector<T> force_n, moment_n_m;
   Vector<T> couple_n_m;  ///< the part of the moment that acts as a couple at the pivots
 };
-/// Adds what the nozzles have besides a nominal one's quarter: force, and couple about the pivots' centre.
+/// Adds the deviations of nozzles from a quarter of the thrust each: force, and couple about the pivots'
+/// centre.
 template <class T>
 DISPERSA_INLINE void AddDepartures(const LauncherPlantLanes<T>& plant, const Nozzles<T>& nozzles, T quarter_n,
                                    Thrust<T>& o) {
@@ -431,8 +432,8 @@ DISPERSA_INLINE LoadsOf<T> LoadsAt(double earth_rate_rad_s, const LauncherPlantL
   return o;
 }
 
-/// dw/dt of I dw/dt = `moment` - w x I w with products of inertia: I's inverse by cofactors. `moment`:
-/// without what w x I w gives.
+/// dw/dt of I dw/dt = `moment` - w x I w with products of inertia, by cofactors of I. `moment` does not
+/// include w x I w.
 template <class T>
 DISPERSA_INLINE Vector<T> TurnedUnderProducts(const LauncherPlantLanes<T>& plant,
                                               const TimedMasses<T>& masses, const Vector<T>& moment,
@@ -469,7 +470,7 @@ DISPERSA_INLINE Rates<T> RatesOf(double earth_rate_rad_s, const LauncherPlantLan
     specific_n_kg.z = Fma(-masses.cg_speed_m_s, s.w.y, specific_n_kg.z);
   }
   o.dv = around.gravitation_m_s2 + loads.R_IB * specific_n_kg;
-  // Angular momentum that the flow takes along, less the body's loss of inertia.
+  // Angular momentum carried off by the flow, minus the body's loss of inertia.
   const T axial_loss = loads.jet_axial - loads.flow_kg_s * masses.axial_per_kg_m2;
   const T transverse_loss = loads.jet_transverse - loads.flow_kg_s * masses.transverse_per_kg_m2;
   const T inverse = T(1.0) / (masses.axial_kg_m2 * masses.transverse_kg_m2);

@@ -1,5 +1,5 @@
-// Gravitation, air and wind around W flights side by side (core/math/lanes.h): what a flight's equations need
-// of the world, as functions of position alone.
+// Gravitation, air and wind around W flights side by side (core/math/lanes.h), as functions of position
+// alone.
 #pragma once
 
 #include "core/environment/air_table.h"

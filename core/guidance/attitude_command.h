@@ -1,4 +1,4 @@
-// The attitude that the autopilot is given: it follows what guidance wants at limited rate and acceleration.
+// The attitude command of the autopilot. It follows the wish of guidance with limited rate and acceleration.
 #pragma once
 
 #include "core/guidance/mission.h"

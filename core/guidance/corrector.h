@@ -27,9 +27,9 @@ namespace dispersa {
 
 struct CorrectorTask {
   std::array<bool, kPlanUnknowns> free{};
-  Plan prior;  ///< what departures are counted from
+  Plan prior;  ///< origin of the departures
   std::array<double, kPlanUnknowns> low{}, high{};
-  bool meets_altitude = true;  ///< else only what a short rest of a burn can still change:
+  bool meets_altitude = true;  ///< if false, a short rest of a burn can only change
   bool meets_plane = true;     ///< speed and flight path angle
   int iterations = 3;
 };

@@ -17,7 +17,7 @@ struct GuidanceConfig {
   std::optional<double> turn_acceleration_rad_s2 = {};
   std::optional<double> coast_rate_rad_s = {};  ///< and in the coast, by the reaction control
   std::optional<double> coast_acceleration_rad_s2 = {};
-  /// The last stage ignites only with attitude and rate this near to what is commanded.
+  /// The last stage ignites only if errors of attitude and rate are at most these.
   std::optional<double> settled_angle_rad = {};
   std::optional<double> settled_rate_rad_s = {};
 };

@@ -22,8 +22,8 @@ struct Knowledge {
   GuidancePhase phase = GuidancePhase::kCoast;
   double burn_ignition_s = 0.0;  ///< of the motor that burns
   GuidedStage below;             ///< as estimated, while it burns
-  GuidedStage last;  ///< nominal until it burns, then as estimated, less the propellant that reaction control
-                     ///< expelled
+  GuidedStage last;  ///< nominal until it burns, then as estimated, minus the propellant expelled by the
+                     ///< reaction control
   /// Small rotation from where thrust shall point to where it does, as measured.
   Vector3 thrust_offset_rad_I = Vector3::Zero();
   /// The present command of a burning motor's attitude, which approaches the plan's at a limited rate.

@@ -16,8 +16,8 @@ struct FileLayout {
   bool quotes_all_texts = false;              ///< else where YAML needs it
 };
 
-/// A number is the shortest text that reads back to the same bits. A key whose value is its default is left
-/// out. Of alternatives that which `is_so` is written, else the last one if it has no condition.
+/// A number is the shortest text that reads back to the same bits. A key with its default value is left out.
+/// Of several alternatives, the one with `is_so` is written, else the last one if it has no condition.
 std::string WriteFields(const FileLayout& layout, const Fields::Part& describe);
 
 }  // namespace dispersa

@@ -57,9 +57,9 @@ inline Condition Else() { return {}; }
 /// The declaration of a key. Numbers, limits and defaults are in SI units and radians.
 struct Key {
   const char* name;     ///< of a quantity its stem: an underscore and one of the dimension's units follow
-  const char* meaning;  ///< what documentation says of it, one line
+  const char* meaning;  ///< one line for documentation
   bool needed = true;   ///< else the key need not be there
-  const char* allowed = "";  ///< what a message says should be there
+  const char* allowed = "";  ///< the expected value, in a message
 };
 struct TextKey : Key {
   std::optional<std::string> absent;  ///< the value where the key is not there
@@ -76,7 +76,7 @@ struct NumberKey : Key {
 /// A list of numbers.
 struct NumbersKey : NumberKey {
   std::size_t low_count, high_count;
-  bool or_one = false;   ///< one number stands for two
+  bool or_one = false;   ///< one number may replace two
   bool or_file = false;  ///< or a CSV file's only column, of the key's name
 };
 /// One of a list of words.
@@ -92,7 +92,7 @@ struct NameKey : Key {
 /// Whole numbers, each once. A single one needs no list.
 struct SeveralKey : Key {
   int low, high;
-  const char* noun;   ///< of what, in the words of a message: "stage"
+  const char* noun;   ///< the noun of a message: "stage"
   const char* which;  ///< "that this disperses"
 };
 /// A list of lists of numbers.
@@ -142,8 +142,8 @@ class Fields {
   Fields(const Fields&) = delete;
   Fields& operator=(const Fields&) = delete;
 
-  // A key each. `meaning` is what documentation says of it. With `absent` the key need not be there, and its
-  // value is then that.
+  // Each declares a key. `meaning` is its line in the documentation. With `absent` the key is optional, and
+  // that is its value without the key.
 
   /// For a whole file: its kind.
   virtual void Schema(const char* name) = 0;
@@ -277,7 +277,7 @@ class Fields {
     VisitMap({{key, meaning, false}}, value, part);
     is_there = value.is_there;
   }
-  /// A word, or a map. Anything else is refused as not `what`: "a direction".
+  /// A word, or a map. Anything else is refused as not being `what`: "a direction".
   void WordOrMap(const char* key, const char* word, const char* what, const char* allowed, bool& is_word,
                  const char* meaning, const Part& part) {
     MapValue value{true, is_word};
@@ -336,8 +336,8 @@ class Fields {
     VisitMaps({key, meaning, false}, low_count, high_count, ItemsOf(items, describe));
   }
 
-  /// Keys that stand in several maps: the `name` of what they are, "distribution", and of what, "an angle".
-  /// Two groups of one name and `of` have the same keys.
+  /// Keys that several maps share. `name` is their kind, "distribution", and `of` their subject, "an angle".
+  /// Two groups with the same name and `of` have the same keys.
   virtual void Group(const char* /*name*/, const std::string& /*of*/, const Part& part) { part(*this); }
   /// Keys of the first alternative whose condition holds. Conditions are about keys that are named before, or
   /// that alternatives have.
@@ -366,8 +366,8 @@ class Fields {
   virtual void NoChoice(const char* /*key*/, const std::string& /*word*/, const std::string& /*message*/,
                         const std::string& /*allowed*/) {}
 
-  /// Keys of maps that have none of `unclear`: people write these, but they say too little. In `message` {}
-  /// stands for the key.
+  /// For maps with none of the `unclear` keys: people write these keys, but they say too little. {} in
+  /// `message` stands for the key.
   virtual void Unclear(const std::vector<std::string>& /*unclear*/, const char* /*message*/,
                        const std::string& /*allowed*/, const std::function<void()>& describe) {
     describe();
@@ -389,7 +389,7 @@ class Fields {
   virtual std::string Quote(const std::string& /*key*/) const { return {}; }
 
  protected:
-  /// A list's items: how to have a number of them, and what item k holds.
+  /// The items of a list: how to set their number, and the content of item k.
   struct Items {
     std::size_t count;
     std::function<void(std::size_t)> resize;

@@ -8,8 +8,8 @@
 
 namespace dispersa {
 
-/// A fault that a user must mend. Line and column count from 1. 0 means that it has no place in the text (a
-/// folder, a command-line value); `file` may then be empty.
+/// A fault that a user must mend. Line and column count from 1. 0: it has no place in the text (a folder, a
+/// command-line value); `file` may then be empty.
 struct InputProblem {
   std::string file;  ///< as the user named it
   int line = 0;
@@ -18,7 +18,7 @@ struct InputProblem {
       path;  ///< of the value in its file, e.g. "stages[1].motor.thrust_kn" (empty: the file as a whole)
   std::string message;   ///< what is wrong
   std::string allowed;   ///< allowed or usual values, may be empty
-  bool unusual = false;  ///< a warning: it is legal, and `allowed` is what is usual
+  bool unusual = false;  ///< a warning: the value is allowed, and `allowed` is the usual range
 
   /// "file:line:col: path: message, allowed: ..." (or "usual: ...") without the parts that are empty.
   std::string Text() const {

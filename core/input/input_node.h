@@ -10,7 +10,7 @@ namespace dispersa {
 
 struct InputMember;
 
-/// A value of a document. Anchors, aliases and tags do not exist here: a value stands where it is used.
+/// A value of a document. Anchors, aliases and tags are resolved: a value is where it is used.
 struct InputNode {
   enum class Kind { kNull, kScalar, kList, kMap };
 
@@ -39,7 +39,7 @@ struct InputMember {
   InputNode value;
 };
 
-/// A scalar, list or map that stands at the place of another node.
+/// A scalar, list or map at the place of another node.
 InputNode ScalarAt(const InputNode& place, std::string text);
 /// A scalar that is always text, also if it looks like a number.
 InputNode TextAt(const InputNode& place, std::string text);

@@ -381,7 +381,7 @@ DISPERSA_INLINE void SetLaneAt(S& s, unsigned i, int lane, double value) {
   SetValueAt(s, i * static_cast<unsigned>(kWidth<T>) + static_cast<unsigned>(lane), value);
 }
 
-/// Replaces what a mask selects of a struct.
+/// Replaces the lanes of a struct that a mask selects.
 template <class T, class S>
 DISPERSA_INLINE void Blend(MaskOf<T> mask, const S& from, S& to) {
   static_assert(sizeof(S) % sizeof(T) == 0);

@@ -24,9 +24,9 @@ struct HeatMap {
   double framed_x = 0.0, framed_y = 0.0;  ///< the cell with a frame, if the grid has it
 };
 
-/// The element, with `description` for those who cannot see it. Shades follow the logarithm of the value; a
-/// cell says its value, "~" for a limit cycle, "lost" for a lost flight, so that no information rests on
-/// colour alone.
+/// The SVG element, with `description` for readers who cannot see it. Shades follow the logarithm of the
+/// value. A cell also shows its value, "~" for a limit cycle, or "lost" for a lost flight, so that no
+/// information depends on colour alone.
 std::string HeatMapSvg(const HeatMap& map, const std::string& description);
 
 /// For the page's <style>.

@@ -7,8 +7,7 @@
 
 namespace dispersa {
 
-std::string PaperHeadline(
-    const PaperStudy& study);  ///< The result of the comparison of control laws, in one sentence.
+std::string PaperHeadline(const PaperStudy& study);           ///< result of the comparison of laws
 std::string PaperVehicleSection(const PaperStudy& study);     ///< Table 1
 std::string PaperTrajectorySection(const PaperStudy& study);  ///< Table 2, Figs. 2 and 3
 std::string PaperDispersionSection(const PaperStudy& study);  ///< Table 3
@@ -18,7 +17,7 @@ std::string PaperRobustnessSection(const PaperStudy& study);  ///< Fig. 10
 std::string PaperComparisonSection(const PaperStudy& study);  ///< the baselines
 std::string PaperMarginSection(const PaperStudy& study);      ///< gain, phase and delay margins
 std::string PaperLyapunovSection(const PaperStudy& study);    ///< statistics of dV/dt
-std::string PaperCompletionSection(const PaperStudy& study);  ///< what we added to the vehicle
+std::string PaperCompletionSection(const PaperStudy& study);  ///< our additions to the vehicle
 
 /// The claim of the paper, the result found here, and their difference with its reason (may be empty).
 /// Arguments are HTML.

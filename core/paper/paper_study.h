@@ -1,5 +1,5 @@
-// Everything that the paper's page shows, computed: the optimised trajectory and the flights of the campaigns
-// that stand behind its figures.
+// All data of the paper's page: the optimised trajectory, and the flights of the campaigns behind its
+// figures.
 #pragma once
 
 #include <cstdint>
@@ -21,7 +21,7 @@ namespace dispersa {
 /// A campaign of the page, and its purpose.
 struct PaperCampaign {
   std::string name;    ///< of the file without its ending
-  std::string figure;  ///< what it shows, for people
+  std::string figure;  ///< its content, for readers
 };
 
 /// In the order of the page. The first is the nominal flight.
@@ -54,7 +54,7 @@ struct BadPn {
   CaseResult flight;    ///< with allow_unproven
 };
 
-/// The injection of the nominal's flight program, by what flies it.
+/// The injection of the nominal flight program, in each model that flies it.
 struct PaperInjection {
   double propellant_kg = 0.0;  ///< that the nominal flight's reaction control expels
   Orbit point_mass;            ///< as the optimiser flies it

@@ -63,7 +63,7 @@ struct BendingTable {
   std::vector<double> propellant_kg;  ///< of the levels, falling
   AlignedRows rows;                   ///< by plane, level, mode; linear between levels, held beyond
 
-  /// A column at a propellant, for what is not flown.
+  /// A column at a propellant, for uses outside flights.
   double At(int plane, int mode, int column, double propellant_kg) const;
 
   const double* Row(int plane, int level, int mode) const {
@@ -72,8 +72,8 @@ struct BendingTable {
   }
 };
 
-/// Modes of a stack that fly: only those whose frequency stays below `highest_rad_s` all the burn, and no
-/// more than the beam's flown_modes: of the rest none, from the first on that does not.
+/// Number of modes of a stack that fly: at most the beam's flown_modes. It ends before the first mode with a
+/// frequency above `highest_rad_s` at any time of the burn.
 int ModesBelow(const Vehicle& vehicle, const StackModes& stack, double highest_rad_s);
 
 /// The table of the first `modes` modes of one stack.

@@ -1,5 +1,5 @@
-// Masses and the burn of W stacks side by side (core/math/lanes.h): the one source of what mass.h and
-// propulsion.h give for one.
+// Masses and the burn of W stacks side by side (core/math/lanes.h). mass.h and propulsion.h use the same code
+// for one stack.
 #pragma once
 
 #include "core/math/constants.h"

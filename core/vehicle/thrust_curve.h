@@ -14,7 +14,7 @@
 
 namespace dispersa {
 
-/// Sea level of the U.S. Standard Atmosphere, 1976: what a static firing "at sea level" stands for.
+/// Sea level of the U.S. Standard Atmosphere, 1976: the pressure of a static firing "at sea level".
 inline constexpr double kSeaLevelPressure_pa = 101325.0;
 /// Every corner ends an integration step.
 inline constexpr std::size_t kThrustCurveCorners = 1000;
@@ -30,7 +30,7 @@ struct ThrustCurve {
   double Greatest() const;
   double Impulse() const;       ///< N s
   double Flown() const;         ///< the sum of flow_kg_s, kg
-  double FullFlowTime() const;  ///< in which the greatest flow would use up what flows in all, s
+  double FullFlowTime() const;  ///< in which the largest flow would use up all propellant, s
 };
 
 void Describe(Fields& fields, ThrustCurve& curve);

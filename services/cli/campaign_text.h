@@ -1,4 +1,4 @@
-// A coordinator's campaign in words, for those who watch it.
+// A coordinator's campaign in words, for users who watch it.
 #pragma once
 
 #include <nlohmann/json.hpp>

@@ -25,7 +25,7 @@ class Progress {
   bool terminal_;
   bool drawn_ = false;
   bool begun_ = false;
-  std::uint64_t first_done_ = 0;  ///< what was done before this command
+  std::uint64_t first_done_ = 0;  ///< number done before this command
   std::chrono::steady_clock::time_point start_;
   std::chrono::steady_clock::time_point shown_;
 };

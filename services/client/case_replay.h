@@ -1,4 +1,4 @@
-// One stored case flown again, and every difference to what is stored.
+// One stored case flown again, and every difference from the stored result.
 #pragma once
 
 #include <cstdint>

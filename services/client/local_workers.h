@@ -32,7 +32,7 @@ class LocalWorkers {
   /// pipe that nobody else can read (`--run-pass DESCRIPTOR`). Starts nothing yet.
   LocalWorkers(std::filesystem::path program, std::vector<std::string> arguments, int count,
                std::string pass = "");
-  /// Kills what is left.
+  /// Kills the remaining workers.
   ~LocalWorkers();
   LocalWorkers(const LocalWorkers&) = delete;
   LocalWorkers& operator=(const LocalWorkers&) = delete;
@@ -41,8 +41,8 @@ class LocalWorkers {
     std::vector<WorkerProcess> started;
     std::vector<WorkerProcess> ended;
   };
-  /// Notes who ended, and starts missing workers: at once, but ever later if they keep ending without any
-  /// `progress` (a number that grows) between. Times in seconds.
+  /// Notes ended workers, and starts missing ones: at once, or later and later if they keep ending without
+  /// `progress` (a number that grows). Times in seconds.
   Changes Poll(double now_s, std::uint64_t progress);
   /// Ends in a row without progress.
   int fruitless_ends() const { return fruitless_ends_; }

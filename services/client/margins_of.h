@@ -25,7 +25,7 @@ struct MarginsResult {
   std::vector<SkippedInstant> skipped;
   std::vector<MeasuredMargins> measured;
   std::optional<CampaignMargins> dispersed;
-  MarginModel of;       ///< what was linearised
+  MarginModel of;       ///< the linearised model
   bool bends = false;   ///< the vehicle has bending modes
   bool passed = false;  ///< every gate is met
 };

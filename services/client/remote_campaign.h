@@ -10,7 +10,7 @@
 
 namespace dispersa {
 
-/// Uploads what the coordinator lacks. Launching again changes nothing but the priority. Returns the
+/// Uploads the parts that the coordinator lacks. Launching again changes only the priority. Returns the
 /// campaign's state ("waiting", "flying", ...). Throws Failure.
 std::string LaunchCampaign(Session& session, const Campaign& campaign, int priority);
 

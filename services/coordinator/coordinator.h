@@ -21,9 +21,9 @@ namespace dispersa {
 /// The dispatcher with a clock and a network. Use it from one thread.
 class Coordinator : public Workforce {
  public:
-  /// Throws NetworkError.
-  /// `audit_share`: so much of all results is flown again here, 0 to 1. Without a value kUsualAuditShare of
-  /// campaigns without a plug-in, whose results another machine may rightly contradict.
+  /// Throws NetworkError. `audit_share` is the share (0 to 1) of all results that is flown again here.
+  /// Without a value it is kUsualAuditShare for campaigns without a plug-in. Results under a plug-in may
+  /// rightly differ on another machine.
   explicit Coordinator(const NetworkOptions& network, std::optional<double> audit_share = 0.0,
                        std::uint64_t epoch = NextEpoch());
   /// Serves one campaign.
@@ -32,7 +32,7 @@ class Coordinator : public Workforce {
   void BeginCampaign(CampaignBook& book, int priority) override { dispatcher_.BeginCampaign(book, priority); }
   void EndCampaign(const std::string& flight_id) override { dispatcher_.EndCampaign(flight_id); }
 
-  /// One round: waits at most `timeout` for messages, handles them, and sends what is due. Throws
+  /// One round: waits at most `timeout` for messages, handles them, and sends due messages. Throws
   /// ResultError.
   void Step(std::chrono::milliseconds timeout);
 

@@ -29,14 +29,14 @@ class DatabaseCopies {
   /// The same copy, if it still exists. Empty: another backup replaced it, or it was not used for too long.
   std::optional<std::filesystem::path> KnownSnapshot(const std::filesystem::path& results,
                                                      const std::string& name, double now_s);
-  /// The campaign goes on: the copy for those who fetch it is old.
+  /// The campaign goes on, so the copy for clients is outdated.
   void Forget(const std::filesystem::path& results);
   /// Removes copies that were not used lately.
   void ForgetUnused(double now_s);
 
  private:
   struct Copy {
-    std::string of;  ///< what was copied: state of the database and its log, or a backup's name
+    std::string of;  ///< the copied state of database and log, or a backup's name
     std::future<void> making;
     bool is_made = false;
     double used_s = 0.0;
@@ -47,7 +47,7 @@ class DatabaseCopies {
   std::map<std::filesystem::path, Copy> copies_;  ///< by the copy's file
 };
 
-/// Removes what a coordinator that was killed has left of copies.
+/// Removes copies left by a coordinator that was killed.
 void RemoveDatabaseCopies(const std::filesystem::path& results);
 
 }  // namespace dispersa

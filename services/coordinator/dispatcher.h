@@ -57,8 +57,8 @@ class Dispatcher {
   /// with its keys may fly here any more. All its results are flown again.
   void Audited(const std::string& flight_id, const Claim& claim, const Digest& truth);
 
-  /// WorkerEnded will report the end of this worker: a local process, whose exit status says more than
-  /// silence.
+  /// WorkerEnded will report the end of this worker. It is a local process, and its exit status says more
+  /// than silence.
   void Supervise(const std::string& worker);
   /// A supervised worker ended. Takes effect after `last_messages_s`, when its last messages have arrived.
   void WorkerEnded(const std::string& worker, WorkerEnd end, const std::string& reason, double now_s);
@@ -95,7 +95,8 @@ class Dispatcher {
   std::uint64_t audits() const { return audits_; }
   /// Names of expelled keys, and of expelled workers without keys, each with the reason.
   const std::map<std::string, std::string>& expelled() const { return expelled_; }
-  /// From now on, as far as it is not so already: as an earlier coordinator knew, or who issues keys says.
+  /// Expels workers from now on, if they are not expelled yet: those that an earlier coordinator expelled, or
+  /// that the issuer of keys revoked.
   void Expel(const std::map<std::string, std::string>& names);
 
  private:
@@ -118,14 +119,15 @@ class Dispatcher {
     WorkerState state = WorkerState::kReady;
     std::uint64_t flown = 0;
     double heard_s = 0.0;
-    double last_report_s = 0.0;              ///< when the last one came that was no status
-    double report_due_s = 0.0;               ///< the next one is due so long after it, by the last status
-    std::int64_t results = 0;                ///< that came
-    bool is_known = false;                   ///< one of them was accepted
-    std::optional<std::int64_t> unreported;  ///< what it has flown less that: the least, when all had come
+    double last_report_s = 0.0;  ///< when the last one came that was no status
+    double report_due_s = 0.0;   ///< the next one is due so long after it, by the last status
+    std::int64_t results = 0;    ///< that came
+    bool is_known = false;       ///< one of them was accepted
+    std::optional<std::int64_t>
+        unreported;  ///< cases flown minus `results`: the least value, when all had come
     double last_orders_s = 0.0;
     std::map<std::uint64_t, Sent> sent;  ///< by attempt
-    Orders orders;                       ///< what is to be said
+    Orders orders;                       ///< messages to send
 
     void ForgetSent(const std::string& flight_id);
   };
@@ -139,7 +141,7 @@ class Dispatcher {
   void Compare(Worker& worker, const WorkerStatus& status, double now_s);
   void GiveOrder(Worker& worker, const std::string& flight_id, std::uint64_t attempt,
                  std::vector<std::uint64_t> cases, double now_s);
-  /// Acknowledges what is stored of a campaign.
+  /// Acknowledges the stored results of a campaign.
   void Acknowledge(FlyingCampaign& campaign);
   void Lose(const std::string& worker, WorkerEnd end, const std::string& reason);
   void LoseSilent(double now_s);
@@ -163,7 +165,7 @@ class Dispatcher {
   std::set<std::string> supervised_;
   std::map<std::string, std::string> refused_;   ///< worker -> why; told again whenever it speaks
   std::map<std::string, std::string> expelled_;  ///< the name of its keys, or of a worker without keys -> why
-  std::set<std::string> ended_;  ///< supervised workers that ended: what still arrives of them is old
+  std::set<std::string> ended_;  ///< supervised workers that ended: later messages from them are old
   std::set<std::string> unresponsive_;
   std::vector<std::string> forgotten_;
   std::vector<Ending> endings_;

@@ -23,7 +23,8 @@ struct LedgerOptions {
   std::uint64_t attempt_base =
       0;  ///< attempts count from here: ledgers of one coordinator have different ones
   std::uint64_t first_assignments = 4;  ///< that a worker holds at most before it has returned anything
-  double overdue_s = 10.0;  ///< who returns nothing for so long loses its cases to workers that have none
+  double overdue_s =
+      10.0;  ///< time without a result after which a worker loses its cases to workers without cases
   std::uint64_t side_by_side = 8;  ///< cases that a slot may fly at the same time: the widest engine's lanes
 };
 
@@ -82,7 +83,7 @@ class Ledger {
  public:
   Ledger(std::string engine_version, std::uint64_t cases, const LedgerOptions& options = {});
 
-  /// A case whose result exists already (resume). Call it before any assignment.
+  /// A case with a result from an earlier run (resume). Call it before any assignment.
   void MarkDone(std::uint64_t case_index, const Digest& fingerprint);
 
   /// A second worker shall fly this case too, as soon as it has a result. The campaign is not complete

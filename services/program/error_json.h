@@ -10,7 +10,7 @@
 
 namespace dispersa {
 
-/// {file, line, column, path, message, allowed}: 0 and "" for what there is not.
+/// {file, line, column, path, message, allowed}; 0 and "" for missing parts.
 nlohmann::ordered_json ProblemJson(const InputProblem& problem);
 
 /// Prints {schema: "dispersa/error/1", code, errors}. A command that fails has printed nothing else.

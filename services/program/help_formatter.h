@@ -6,8 +6,7 @@
 
 namespace dispersa {
 
-/// Help of a command ends its options with those of the whole program, which stand behind the command as
-/// well.
+/// The help of a command ends with the options of the whole program, which may follow the command as well.
 class HelpFormatter : public CLI::Formatter {
  public:
   HelpFormatter();

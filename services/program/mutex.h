@@ -10,7 +10,7 @@
 #else
 #define DISPERSA_PROVED(what)
 #endif
-/// Of a member: to be read and written by who holds this Mutex only.
+/// For a member: only a holder of this Mutex may read or write it.
 #define DISPERSA_GUARDED_BY(mutex) DISPERSA_PROVED(guarded_by(mutex))
 
 namespace dispersa {

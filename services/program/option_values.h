@@ -11,8 +11,8 @@ namespace dispersa {
 /// A case's number has 32 bits.
 inline constexpr std::uint64_t kMostCases = 4294967295;
 
-/// For an option's transform(): a whole number in digits, from `least` to `most`. To CLI11 alone, 010 is
-/// eight and -1 of what has no sign the largest number that there is.
+/// For an option's transform(): a whole number in digits, from `least` to `most`. CLI11 by itself reads 010
+/// as eight, and -1 of an unsigned number as the largest number.
 CLI::Validator WholeNumber(std::int64_t least, std::uint64_t most);
 
 /// Values of an option whose type lists them as "{one,another}"; none for any other option.

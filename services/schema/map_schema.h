@@ -26,7 +26,7 @@ class MapSchema : public Fields {
     virtual ~Shared() = default;
     /// A reference to the schema of another kind of file, by the text of its key `schema`.
     virtual Json Document(const std::string& schema) = 0;
-    /// A reference to what `make` makes, which it is asked for once a name.
+    /// A reference to the schema of `make`, which is called once for each name.
     virtual Json Named(const std::string& name, const std::function<Json()>& make) = 0;
   };
 
@@ -72,7 +72,7 @@ class MapSchema : public Fields {
     Json values = Json::object();  ///< the schema of each
     Json required = Json::array();
     Json rules = Json::array();       ///< which keys go together
-    std::set<std::string> groups;     ///< what "$defs" calls the names of their keys
+    std::set<std::string> groups;     ///< names of their groups of keys under "$defs"
     std::set<std::string> of_groups;  ///< these keys
 
     /// Adds the conditions on a map with these keys.
@@ -96,7 +96,7 @@ class MapSchema : public Fields {
   Keys keys_;
   std::map<std::string, QuantityKey> quantities_;
   std::set<std::string> lists_;  ///< keys of lists, which count as absent if they are empty
-  std::string base_;  ///< the key of another file whose keys stand where this one has none, or empty
+  std::string base_;             ///< the key of a base file that gives missing keys, or empty
 };
 
 }  // namespace dispersa

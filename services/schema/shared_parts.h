@@ -1,4 +1,4 @@
-// Parts of a JSON Schema that stand in several places are written once, under `$defs`.
+// Writes equal parts of a JSON Schema once, under `$defs`.
 #pragma once
 
 #include <nlohmann/json.hpp>

@@ -39,7 +39,7 @@ class CoordinatorLink {
   void Send(const Reply& reply);
   /// Waits, at most so long, until the worker has the orders that were sent to it.
   void Drain(const std::string& worker, std::chrono::milliseconds timeout);
-  /// Drops what was kept to talk to a worker or client.
+  /// Drops the state of the conversation with a worker or client.
   void Forget(const std::string& who);
 
   /// To all observers.

@@ -44,8 +44,8 @@ void LogIncompatibleQos(const std::string& topic, eprosima::fastdds::dds::QosPol
 /// The participant that an endpoint belongs to: the same for all topics of one sender.
 std::string ParticipantOf(const eprosima::fastrtps::rtps::InstanceHandle_t& endpoint);
 
-/// A seal, and what fills the content up to a multiple of 4 bytes before it: the middleware would do so
-/// behind it.
+/// A seal, and the bytes before it that fill the content to a multiple of 4. The middleware would add them
+/// after it.
 inline constexpr std::uint32_t kRoomForSeal = Seal::kSize + 3;
 /// False: there is no room.
 bool PutSeal(const Seal& seal, const std::string& topic, const Seal::Origin& origin,
@@ -115,7 +115,7 @@ class GuardedType : public PubSubType {
   std::string topic_;
 };
 
-/// The worker or client who sends a message, or to whom it goes.
+/// The worker or client that sends a message, or receives it.
 template <typename Plain>
 const std::string& NameIn(const Plain& message) {
   if constexpr (requires { message.client; }) {
@@ -160,7 +160,7 @@ class Writer : private eprosima::fastdds::dds::DataWriterListener {
     writer_->get_publication_matched_status(status);
     return status.current_count;
   }
-  /// Waits until what was written has arrived.
+  /// Waits until written messages have arrived.
   void Drain(int milliseconds) {
     const Lock lock(mutex_);
     writer_->wait_for_acknowledgments(

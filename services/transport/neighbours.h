@@ -12,8 +12,8 @@
 
 namespace dispersa {
 
-/// Logs who is refused at the door, which the middleware often does in silence, and knows in which partitions
-/// the writers of others are. With keys the permissions say who may be in which.
+/// Logs participants refused at discovery, which the middleware often refuses silently. It also knows the
+/// partitions of others' writers. With keys, the permissions say who may be in which partition.
 class Neighbours : public eprosima::fastdds::dds::DomainParticipantListener {
  public:
   explicit Neighbours(bool we_have_keys) : we_have_keys_(we_have_keys) {}

@@ -25,7 +25,7 @@ struct NetworkOptions {
   std::string address;  ///< IPv4 address of the only interface to use (empty: all)
   /// Our keys. With keys we speak only to holders of keys of the same authority, and everything is encrypted.
   std::optional<KeyFolder> keys = {};
-  /// Then only those are listened to who have it too (seal.h).
+  /// If set, only participants with the same secret are believed (seal.h).
   std::optional<Secret> secret = {};
 };
 

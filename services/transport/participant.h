@@ -53,7 +53,7 @@ class Participant {
   /// name. Without keys nothing is sure, and all may.
   bool MaySpeakFor(const eprosima::fastrtps::rtps::InstanceHandle_t& writer, const std::string& name) const;
 
-  /// Whether what is said here must be sealed.
+  /// Whether messages from here must be sealed.
   bool IsSealed() const { return seal_ != nullptr; }
 
   /// Now and then: see Neighbours.

@@ -9,7 +9,7 @@
 namespace dispersa {
 
 struct RunPass {
-  Secret secret{};                ///< of this run: who does not have it is not listened to
+  Secret secret{};                ///< of this run; senders without it are ignored
   std::set<std::string> plugins;  ///< SHA-256 of the shared objects that the run's campaign names
 };
 

@@ -38,7 +38,7 @@ class Seal {
 
   /// Writes the seal of a content behind it, kSize bytes.
   void Put(const std::string& topic, const Origin& origin, std::uint8_t* data, std::size_t size) const;
-  /// Whether `data` ends with the seal of what stands before it, and whose it is.
+  /// Whether `data` ends with the right seal of the bytes before it, and whose seal it is.
   bool Fits(const std::string& topic, const std::uint8_t* data, std::size_t size, Origin* origin) const;
 
  private:
@@ -46,7 +46,7 @@ class Seal {
   std::unique_ptr<Code> code_;
 };
 
-/// Larger than any before in any process of this machine, for writers whose names may come again.
+/// A number larger than any before in any process of this machine, for writers whose names may be used again.
 std::uint64_t NextSealNumber(std::uint64_t last);
 
 }  // namespace dispersa

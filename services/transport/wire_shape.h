@@ -1,4 +1,4 @@
-// Whether bytes from the network are what a decoder expects, asked before it allocates anything.
+// Checks that bytes from the network are what a decoder expects, before it allocates anything.
 #pragma once
 
 #include <cstddef>

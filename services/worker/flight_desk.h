@@ -40,7 +40,7 @@ struct Job {
   double started_s = 0.0;
 };
 
-/// A campaign's text as it arrived, to be loaded: its flight id is what the coordinator says.
+/// A campaign's text as it arrived, to be loaded. Its flight id is the coordinator's.
 struct CampaignText {
   std::string flight_id;
   std::string name;

@@ -1,4 +1,4 @@
-// Flies what the coordinator assigns: a flight desk with a clock, a network and threads that fly.
+// Flies the cases that the coordinator assigns: a flight desk with a clock, a network and threads that fly.
 #pragma once
 
 #include <chrono>
