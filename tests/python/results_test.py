@@ -51,6 +51,47 @@ class Runs(unittest.TestCase):
         execution = json.loads((results.directory / "execution.json").read_text())
         self.assertEqual(len(execution["workers"]), 1)
 
+    def test_probability_has_the_limits_of_clopper_and_pearson(self):
+        value = float(numpy.sort(self.ours.metrics["q_max_pa"])[8])
+        answer = self.ours.probability("q_max_pa", above=value, confidence_percent=90)
+        self.assertEqual({key: answer[key] for key in ("events", "n", "estimate", "left_out")},
+                         {"events": 3, "n": 12, "estimate": 0.25, "left_out": 0})
+        # Roots of the binomial tail: P(X >= 3 | low) = P(X <= 3 | high) = 0.05.
+        def at_most(k, p):
+            return sum(math.comb(12, i) * p**i * (1 - p)**(12 - i) for i in range(k + 1))
+        self.assertAlmostEqual(1 - at_most(2, answer["low"]), 0.05, 12)
+        self.assertAlmostEqual(at_most(3, answer["high"]), 0.05, 12)
+        below = self.ours.probability("q_max_pa", below=1e9)
+        self.assertEqual((below["events"], below["high"]), (12, 1.0))
+        for arguments, message in (
+                (("q_mx_pa",), "probability: 'q_mx_pa' is not a metric of these flights (did you mean 'q_max_pa'?), allowed: a "
+                               "name of Results.metrics.dtype.names"),
+                (("q_max_pa",), "probability: one limit is needed, allowed: above=x or below=x")):
+            with self.assertRaises(dispersa.BadInput) as caught:
+                self.ours.probability(*arguments)
+            self.assertEqual(str(caught.exception), message)
+
+    def test_a_sweep_flies_each_value_and_compares_as_flat_frames(self):
+        flown = dispersa.sweep(SMOKE, "dispersions.thrust.three_sigma_percent", [1, 4], self.folder / "sweep", workers=0,
+                               histories=False)
+        self.assertEqual([results.directory.name for results in flown.values()],
+                         ["three_sigma_percent=1", "three_sigma_percent=4"])
+        self.assertLess(numpy.std(flown[1].inputs["thrust_factor_stage1"]), numpy.std(flown[4].inputs["thrust_factor_stage1"]))
+        compared = dispersa.compare(flown[1], flown[4])
+        frame = compared.table()
+        self.assertEqual(list(frame["metric"]), [each["metric"] for each in compared["metrics"]])
+        self.assertEqual(list(frame["median_p"]), [each["median"]["p"] for each in compared["metrics"]])
+        self.assertEqual(list(frame["median_interval_low"]), [each["median"]["interval"][0] for each in compared["metrics"]])
+        self.assertEqual(list(compared.table("requirements")["mcnemar_both_meet"]), [12, 12])
+        with self.assertRaises(dispersa.BadInput) as caught:
+            dispersa.sweep(SMOKE, "dispersions.thrst", [1], self.folder / "none")
+        self.assertEqual(str(caught.exception), "key: the campaign has no 'dispersions.thrst', allowed: a key that it has, such as "
+                                                "sampling.seed")
+
+    def test_notebooks_show_requirements_and_differences(self):
+        self.assertIn("<td>pitch_error_peak_deg below 1</td><td>0 of 12</td><td>pass</td>", self.ours._repr_html_())
+        self.assertIn("<p>Of ", dispersa.compare(self.ours, self.theirs)._repr_html_())
+
     def test_dicts_run_too(self):
         tree = dispersa.read(SMOKE)
         tree["sampling"]["cases"] = 2

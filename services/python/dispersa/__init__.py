@@ -18,8 +18,8 @@ from ._campaign import Campaign, Validation, load, validate  # noqa: E402
 from .errors import (BadInput, Error, ExitCode, Incomplete, InputWarning, InternalError, Problem,  # noqa: E402
                      ReplayMismatch)
 from ._flight import Flight, Flights, History  # noqa: E402
-from ._results import (Optimization, Results, compare, margins, optimize, report, results, run,  # noqa: E402
-                      worker_program)
+from ._results import (Comparison, Optimization, Results, compare, margins, optimize, report, results, run,  # noqa: E402
+                      sweep, worker_program)
 
 __version__ = _engine_version()
 """The engine's version: results of different ones are never mixed."""
@@ -41,6 +41,6 @@ def fly(what, case=None, *, inputs=None, history=True, step_s=0.1, integrator="s
                         axes=axes)
 
 
-__all__ = ["BadInput", "Campaign", "Error", "ExitCode", "Flight", "Flights", "History", "Incomplete", "InputWarning",
+__all__ = ["BadInput", "Campaign", "Comparison", "Error", "ExitCode", "Flight", "Flights", "History", "Incomplete", "InputWarning",
            "InternalError", "Optimization", "Problem", "ReplayMismatch", "Results", "Tree", "Validation", "compare", "fly",
-           "load", "margins", "optimize", "plan", "read", "report", "results", "run", "validate", "worker_program", "write"]
+           "load", "margins", "optimize", "plan", "read", "report", "results", "run", "sweep", "validate", "worker_program", "write"]

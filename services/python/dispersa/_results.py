@@ -1,5 +1,6 @@
 """Result folders: runs, reports, comparisons; margins and references."""
 import functools
+import html
 import json
 import os
 import pathlib
@@ -9,7 +10,7 @@ import numpy
 
 from . import _core
 from ._arguments import MOST_CASES, MOST_THREADS, did_you_mean, finite, refuse, truth, whole, whole_if_given
-from ._source import placed, source
+from ._source import _in_folder, placed, read, source, text_of
 from ._tables import structured
 from ._campaign import Campaign, _from_canonical, load, under_law
 from .errors import BadInput, ExitCode, Incomplete, InternalError, ReplayMismatch
@@ -47,6 +48,13 @@ class Results:
 
     def __repr__(self):
         return f"<dispersa.Results {self.directory}: {len(self)} cases, {self.verdict}>"
+
+    def _repr_html_(self):
+        """For notebooks: the verdict and the requirements."""
+        rows = [(_limits(each), f"{each['failures']} of {each['n']}", each["verdict"]) for each in self.requirements]
+        return (f"<p><b>{html.escape(self.campaign.name)}</b>: {len(self)} cases, <b>{html.escape(self.verdict)}</b>, "
+                f"<code>{html.escape(str(self.directory))}</code></p>"
+                + _html_table(("requirement", "failures", "verdict"), rows))
 
     def __len__(self):
         return len(self.case_index)
@@ -97,6 +105,29 @@ class Results:
         badness = numpy.where(completed, badness, numpy.inf)
         order = [i for i in numpy.argsort(-badness, kind="stable") if not numpy.isnan(badness[i])]
         return [int(self.case_index[i]) for i in order[:whole_if_given("count", count, 1)]]
+
+    def probability(self, metric, *, above=None, below=None, confidence_percent=95.0):
+        """The probability that a flight's metric is above, or below, a limit in the metric's unit, as a dict. `estimate` is
+        `events` / `n`; `low` and `high` are its Clopper-Pearson limits of that two-sided confidence. `n` counts the completed
+        flights that define the metric, `left_out` all others. Raises BadInput for an unknown metric, and for points that are
+        chosen and not drawn."""
+        names = self.metrics.dtype.names
+        if metric not in names:
+            raise refuse(f"probability: '{metric}' is not a metric of these flights{did_you_mean(metric, names)}",
+                         "a name of Results.metrics.dtype.names")
+        if (above is None) == (below is None):
+            raise refuse("probability: one limit is needed", "above=x or below=x")
+        if self._stored["campaign"]["design"] != "monte_carlo":
+            raise refuse("probability: the points of a study are chosen, not drawn", "results of method: monte_carlo")
+        share = finite("confidence_percent", confidence_percent, 0.1, 99.9999) / 100.0
+        completed = numpy.array([outcome == "completed" for outcome in self.outcome], dtype=bool)
+        values = self.metrics[metric][completed]
+        values = values[numpy.isfinite(values)]
+        limit = finite("above" if below is None else "below", above if below is None else below)
+        events, n = int(numpy.count_nonzero(values > limit if below is None else values < limit)), len(values)
+        low, high = _core.clopper_pearson(events, n, share) if n else (0.0, 1.0)
+        return {"events": events, "n": n, "estimate": events / n if n else None, "low": low, "high": high,
+                "left_out": len(self) - n}
 
     def table(self):
         """A structured array of shape (cases,) with the columns of cases.csv."""
@@ -298,8 +329,87 @@ def _law_of(campaign, law):
     return under_law(campaign, law)[1]
 
 
+def _limits(requirement):
+    """A requirement of summary.json in words."""
+    if requirement["side"] == "within":
+        return f"{requirement['metric']} between {requirement['low_limit']:g} and {requirement['limit']:g}"
+    return f"{requirement['metric']} {requirement['side']} {requirement['limit']:g}"
+
+
+def _html_table(heads, rows):
+    """The text of each cell as it is."""
+    def line(tag, cells):
+        return "<tr>" + "".join(f"<{tag}>{html.escape(str(cell))}</{tag}>" for cell in cells) + "</tr>"
+    return "<table>" + line("th", heads) + "".join(line("td", row) for row in rows) + "</table>"
+
+
+def _flat(value, prefix=""):
+    """{"a": {"b": 1}} as {"a_b": 1}, an interval as its two ends; other lists are left out."""
+    flat = {}
+    for key, each in value.items():
+        if isinstance(each, dict):
+            flat.update(_flat(each, f"{prefix}{key}_"))
+        elif not isinstance(each, list):
+            flat[prefix + key] = each
+        elif len(each) == 2 and not any(isinstance(end, (dict, list)) for end in each):
+            flat[f"{prefix}{key}_low"], flat[f"{prefix}{key}_high"] = each
+    return flat
+
+
+class Comparison(dict):
+    """compare.json as a dict, with its lists as tables."""
+
+    def table(self, part="metrics"):
+        """One row for each item of `part` ("metrics" or "requirements"), one column for each of its values: a pandas.DataFrame,
+        or without pandas a list of dicts. Maps are flat: column "median_p" is item["median"]["p"], and "median_interval_low" and
+        "median_interval_high" are the ends of an interval. Longer lists are in the dict alone. Raises BadInput for another
+        part."""
+        if part not in ("metrics", "requirements"):
+            raise refuse(f"part: '{part}' is no table", "metrics or requirements")
+        rows = [_flat(item) for item in self[part]]
+        try:
+            import pandas
+        except ImportError:
+            return rows
+        return pandas.DataFrame(rows)
+
+    def _repr_html_(self):
+        """For notebooks: what is better or worse in B."""
+        rows = [(each["metric"], each["finding"]) for each in self["metrics"] if each["finding"] in ("better", "worse", "differs")]
+        return f"<p>{html.escape(self['sentence'])}</p>" + _html_table(("metric", "B is"), rows)
+
+
+def sweep(what, key, values, out, *, base=None, **options):
+    """Flies a campaign once for each of several values of one key. Returns {value: Results} in their order.
+
+    `what`: a path or a dict. `key`: path of the key, such as "sampling.seed" or "requirements[0].below"; a path to a campaign
+    is read with its files inlined, so that "autopilot.tick_s" or "vehicle.stages[0].motor.thrust_n" work too. `out`: a folder,
+    in which each value has its own. Other arguments are those of run. Raises BadInput for a key that is not there, and what run
+    raises.
+    """
+    tree = _read_for(what)
+    parts = [int(part) if part.isdigit() else part for part in key.replace("[", ".").replace("]", "").split(".")]
+    flown = {}
+    for value in values:
+        changed = _in_folder(json.loads(text_of(tree)), base if base is not None else getattr(tree, "folder", "."))
+        at = changed
+        try:
+            for part in parts[:-1]:
+                at = at[part]
+            at[parts[-1]]
+        except (KeyError, IndexError, TypeError):
+            raise refuse(f"key: the campaign has no '{key}'", "a key that it has, such as sampling.seed") from None
+        at[parts[-1]] = value
+        flown[value] = run(changed, os.path.join(os.fspath(out), f"{parts[-1]}={value}"), **options)
+    return flown
+
+
+def _read_for(what):
+    return read(what, inlined=True) if isinstance(what, (str, os.PathLike)) else what
+
+
 def compare(a, b, *, metrics=(), out=""):
-    """Compares two result folders (paths or Results), case by case if their draws are the same. Returns compare.json as a dict.
+    """Compares two result folders (paths or Results), case by case if their draws are the same. Returns a Comparison.
 
     `metrics`: names without prefix, instead of all. `out`: a folder for compare.html and compare.json. Raises BadInput.
     """
@@ -308,7 +418,7 @@ def compare(a, b, *, metrics=(), out=""):
     for name in names:
         if not isinstance(name, str):
             raise refuse(f"metrics: {name!r} is not a metric", "names of metrics")
-    return json.loads(_core.compare(*folders, names, os.fspath(out)))
+    return Comparison(json.loads(_core.compare(*folders, names, os.fspath(out))))
 
 
 def margins(what, *, cases=None, autopilot=None, base=None, frequency_band_percent=15.0, drift=False):
