@@ -16,7 +16,7 @@ import urllib.request
 
 import yaml
 
-from processes import BINARIES, PATIENCE_S, end, main, wait_for
+from processes import BINARIES, CAMPAIGN, PATIENCE_S, end, main, wait_for
 from security_test import keys
 
 REPOSITORY = pathlib.Path(__file__).resolve().parents[2]
@@ -72,6 +72,12 @@ class DeployTest(unittest.TestCase):
         worker.send_signal(signal.SIGTERM)
         self.assertEqual(worker.wait(timeout=PATIENCE_S), 0)
 
+    def test_images_have_the_version_as_their_tag(self):
+        version = re.search(r"project\(dispersa VERSION (\S+)", (REPOSITORY / "CMakeLists.txt").read_text()).group(1)
+        for name in ("services/deploy/kubernetes.yaml", "docker/compose.yaml", "docker/Dockerfile", "docker/README.md"):
+            images = re.findall(r"(?m)(?:image: |build -t |data/results\" )(\S+)", (REPOSITORY / name).read_text())
+            self.assertEqual(set(images), {f"dispersa:{version}"}, name)
+
     def test_compose(self):
         compose = yaml.safe_load((REPOSITORY / "docker/compose.yaml").read_text())
         services = compose["services"]
@@ -82,6 +88,14 @@ class DeployTest(unittest.TestCase):
         self.assert_they_find_each_other(shlex.split(services["coordinator"]["command"]),
                                          shlex.split(services["worker"]["command"]),
                                          services["coordinator"]["healthcheck"]["test"][1:])
+        # The campaign that the file's head tells to launch, with the keys that are mounted there.
+        head = (REPOSITORY / "docker/compose.yaml").read_text()
+        launch = shlex.split(re.search(r"exec coordinator (dispersa launch .*)", head).group(1))
+        launch[launch.index("CAMPAIGN")] = CAMPAIGN
+        launch[launch.index("--keys") + 1] = self.keys["dispersa-coordinator"]
+        launched = subprocess.run([BINARIES / launch[0], *launch[1:], "--address", "127.0.0.1"], capture_output=True,
+                                  text=True, timeout=PATIENCE_S)
+        self.assertRegex(launched.stdout, "^[0-9a-f]{64}\n$", launched.stderr)
 
     def test_kubernetes(self):
         documents = {d["kind"]: d for d in yaml.safe_load_all((DEPLOY / "kubernetes.yaml").read_text())}
