@@ -250,6 +250,7 @@ std::vector<std::string> KeyMetrics(const Campaign& campaign) {
   };
   for (const Requirement& requirement : campaign.requirements)
     if (!requirement.by_default) add(requirement.metric);
+  for (const OwnMetric& metric : campaign.own_metrics) add(metric.name);
   for (const Metric& metric : Metrics())
     if (metric.is_usual) add(metric.name);
   return metrics;
@@ -295,10 +296,13 @@ CampaignSummary BuildSummary(const ResultFolder& folder, const Campaign& campaig
     summary.python_law = {plugin->name, plugin->sha256};
   for (const Outcome outcome : cases.outcome) ++summary.outcomes[static_cast<std::size_t>(outcome)];
   summary.lost_flights = cases.lost_flights;
+  summary.metric_list = folder.metric_list();
+  summary.own_metrics = campaign.own_metrics;
   for (const std::size_t i : folder.metrics()) {
-    const std::vector<double> sorted = SortedFinite(CompletedValues(cases, MetricNames()[i]));
-    summary.metrics.push_back({MetricNames()[i], SummarizeSorted(sorted, cases.rows() - sorted.size()),
-                               Skewness(sorted), Percentiles(sorted)});
+    const std::string& name = folder.metric_list().NameAt(i);
+    const std::vector<double> sorted = SortedFinite(CompletedValues(cases, name));
+    summary.metrics.push_back(
+        {name, SummarizeSorted(sorted, cases.rows() - sorted.size()), Skewness(sorted), Percentiles(sorted)});
   }
   HoldAgainstLimits(campaign.vehicle.limits, cases, &summary);
   summary.near_step_limit = NearStepLimit(cases);

@@ -71,6 +71,8 @@ struct CampaignSummary {
   std::array<std::uint64_t, kOutcomeCount> outcomes{};
   std::vector<LostFlight> lost_flights;  ///< the first kListedLostFlights
   std::vector<MetricSummary> metrics;    ///< that the flights have, in the order of MetricNames()
+  MetricList metric_list;                ///< of the nominal flight and of every result
+  std::vector<OwnMetric> own_metrics;
   std::vector<RequirementSummary> requirements;
   /// One that the vehicle gives, against the largest load of every flown case, completed or not.
   struct Limit {

@@ -457,7 +457,11 @@ Comparison Compare(const ComparedCampaign& a, const ComparedCampaign& b,
     for (std::size_t row = 0; row < a.cases.rows(); ++row) rows.a.push_back(row);
     for (std::size_t row = 0; row < b.cases.rows(); ++row) rows.b.push_back(row);
   }
-  for (const std::string& metric : metrics.empty() ? MetricNames() : metrics) {
+  std::vector<std::string> candidates = metrics.empty() ? MetricNames() : metrics;
+  if (metrics.empty())
+    for (const OwnMetric& metric : a.campaign.own_metrics)
+      if (FindOwn({metric}, b.campaign.own_metrics)) candidates.push_back(metric.name);
+  for (const std::string& metric : candidates) {
     if (!WhyNotMeasured(a.campaign, metric).empty() || !WhyNotMeasured(b.campaign, metric).empty()) continue;
     MetricComparison result =
         CompareMetric(metric, a.cases, b.cases, rows, comparison.pairing.paired, comparison.independent);

@@ -5,6 +5,7 @@
 #include <set>
 
 #include "core/analysis/requirement_summary.h"
+#include "core/campaign/case_result.h"
 #include "core/results/sampling_text.h"
 
 namespace dispersa {
@@ -41,7 +42,9 @@ StoppingRule::StoppingRule(const Campaign& campaign, std::int64_t planned,
       looks_(stops_ ? StoppingLooks(campaign, planned) : std::vector{campaign.sampling.cases}),
       target_(looks_.front()),
       failed_(requirements_.size()) {
-  for (const Requirement& requirement : requirements_) columns_.push_back(MetricColumn(requirement.metric));
+  const MetricList metrics = MetricsOf(campaign);
+  for (const Requirement& requirement : requirements_)
+    columns_.push_back(metrics.PositionOf(requirement.metric));
 }
 
 void StoppingRule::Add(const CaseResult& result) {

@@ -130,10 +130,10 @@ Json InjectionJson(const InjectionSummary& injection) {
           {"containment", containment}};
 }
 
-Json NominalJson(const CaseResult& nominal, const std::vector<MetricSummary>& stored) {
+Json NominalJson(const CaseResult& nominal, const CampaignSummary& summary) {
   Json metrics = Json::object();
-  for (const MetricSummary& metric : stored)
-    metrics[metric.name] = Number(nominal.metrics[MetricColumn(metric.name)]);
+  for (const MetricSummary& metric : summary.metrics)
+    metrics[metric.name] = Number(nominal.metrics[summary.metric_list.PositionOf(metric.name)]);
   return {{"outcome", OutcomeName(nominal.outcome)},
           {"end_time_s", Number(nominal.end_time_s)},
           {"metrics", metrics},
@@ -219,6 +219,8 @@ std::string SummaryJson(const CampaignSummary& summary) {
                                             {"upper", Number(percentile.limits.upper)}};
     }
   }
+  for (const OwnMetric& metric : summary.own_metrics)
+    json["metrics"][metric.name].update({{"expression", metric.expression}, {"description", metric.meaning}});
   json["injection"] = summary.injection ? InjectionJson(*summary.injection) : Json(nullptr);
   json["drivers"] = Json::object();
   for (const MetricDrivers& metric : summary.drivers) {
@@ -282,7 +284,7 @@ std::string SummaryJson(const CampaignSummary& summary) {
   json["envelope"] = summary.envelope ? Json{{"flights", summary.envelope->flights},
                                              {"extreme_flights", summary.envelope->extreme_flights}}
                                       : Json(nullptr);
-  json["nominal"] = summary.nominal ? NominalJson(*summary.nominal, summary.metrics) : Json(nullptr);
+  json["nominal"] = summary.nominal ? NominalJson(*summary.nominal, summary) : Json(nullptr);
   return json.dump(2) + "\n";
 }
 

@@ -13,6 +13,7 @@
 #include "core/environment/wind.h"
 #include "core/environment/wind_statistics.h"
 #include "core/flight/flight_inputs.h"
+#include "core/flight/own_metrics.h"
 #include "core/guidance/guidance_config.h"
 #include "core/input/fields.h"
 #include "core/statistics/verdict_plan.h"
@@ -69,6 +70,7 @@ struct Requirement {
   double probability = 0.0;
   double consumer_risk = 0.0;
   std::optional<std::array<double, 2>> within = {};  ///< between both, strictly
+  std::string own_expression = {};                   ///< of a metric of the campaign's own
   VerdictPlan plan = {};
   /// Not the campaign's own: the vehicle gives limits of its structure, and the campaign does not say how
   /// they are to be judged. While it is undecided and nothing has failed it, it holds no verdict up.
@@ -110,6 +112,7 @@ struct Campaign {
   std::vector<Dispersion> dispersions;
   std::optional<WindStatistics> wind_statistics;  ///< climatology whose levels the profile draws fill
   std::optional<WindTable> wind_table;            ///< a profile that every flight meets, the nominal too
+  std::vector<OwnMetric> own_metrics;
   std::vector<Requirement> requirements;
   Verdicts verdicts;
 
@@ -117,6 +120,10 @@ struct Campaign {
   std::string id;               ///< SHA-256 of canonical_yaml, hexadecimal
   std::string flight_id;        ///< SHA-256 of what decides a case
   std::string requirements_id;  ///< SHA-256 of the requirements and how they are judged
+  std::string own_metrics_id;   ///< SHA-256 of the flight id and the own metrics; empty without any
+
+  /// Of what decides a case's result: the flight, and which metrics it measures.
+  const std::string& result_id() const { return own_metrics_id.empty() ? flight_id : own_metrics_id; }
 };
 
 // The keys of a campaign's maps. Relations between several keys are checked where the map is described.
@@ -125,6 +132,8 @@ struct Campaign {
 void Describe(Fields& fields, Sampling& sampling);
 /// `plan` is what the verdicts say of all requirements.
 void Describe(Fields& fields, Verdicts& verdicts, VerdictPlan& plan, Sampling& sampling);
+/// `others` are the names that it may not have. Its expression is not parsed.
+void Describe(Fields& fields, OwnMetric& metric, const std::vector<std::string>& others);
 /// requirement.plan is the plan of `verdicts` unless the requirement has its own. `metrics` are the names of
 /// metrics that it may require.
 void Describe(Fields& fields, Requirement& requirement, const std::vector<std::string>& metrics);

@@ -1,5 +1,6 @@
 #include <algorithm>
 #include <cmath>
+#include <sstream>
 
 #include "core/campaign/campaign.h"
 #include "core/input/read_value.h"
@@ -138,6 +139,21 @@ std::int64_t Count(const std::vector<Dispersion>& dispersions, Distribution kind
                        [&](const Dispersion& dispersion) { return dispersion.distribution.kind == kind; });
 }
 
+// A column of SQLite, whose names know no capitals.
+bool CanNameMetric(const std::string& name) {
+  const auto is_letter = [](char c) { return c >= 'a' && c <= 'z'; };
+  return name.size() <= 60 && is_letter(name.front()) && std::all_of(name.begin(), name.end(), [&](char c) {
+           return is_letter(c) || (c >= '0' && c <= '9') || c == '_';
+         });
+}
+
+std::string WithSingleSpaces(const std::string& text) {
+  std::string single;
+  std::istringstream words(text);
+  for (std::string word; words >> word;) single += (single.empty() ? "" : " ") + word;
+  return single;
+}
+
 bool HaveOneLength(const std::vector<Dispersion>& dispersions) {
   std::size_t length = 0;
   for (const Dispersion& dispersion : dispersions) {
@@ -192,6 +208,18 @@ void Describe(Fields& fields, Verdicts& verdicts, VerdictPlan& plan, Sampling& s
                    "of a campaign that stops when decided, in place of cases");
     if (!verdicts.stop_when_decided) fields.Refuse("max_cases", "every case is flown", "stop: when_decided");
   });
+}
+
+void Describe(Fields& fields, OwnMetric& metric, const std::vector<std::string>& others) {
+  fields.Text("name", metric.name, "of the metric, with its unit at the end");
+  if (!metric.name.empty() && !CanNameMetric(metric.name))
+    fields.Refuse("name", "'" + metric.name + "' cannot name a metric",
+                  "a small letter, then small letters, digits and '_', 60 at most");
+  else if (std::find(others.begin(), others.end(), metric.name) != others.end())
+    fields.Refuse("name", "'" + metric.name + "' is a metric already", "another name");
+  fields.Text("expression", metric.expression, "of columns of histories, at every tick");
+  metric.expression = WithSingleSpaces(metric.expression);
+  fields.Text("description", metric.meaning, "for the report", "");
 }
 
 void Describe(Fields& fields, Requirement& requirement, const std::vector<std::string>& metrics) {

@@ -1,21 +1,36 @@
 #include "core/campaign/case_result.h"
 
+#include <algorithm>
+#include <optional>
 #include <utility>
 
 #include "core/flight/flight_model.h"
+#include "core/input/read_value.h"
 
 namespace dispersa {
 
+MetricList MetricsOf(const Campaign& campaign) {
+  std::vector<std::string> own;
+  for (const OwnMetric& metric : campaign.own_metrics) own.push_back(metric.name);
+  return MetricList(campaign.vehicle.stages.size(), std::move(own));
+}
+
 std::vector<std::size_t> MeasuredMetrics(const Campaign& campaign) {
-  return MetricsUnder(campaign.vehicle.stages.size(), campaign.autopilot.pitch.law);
+  const std::size_t stages = campaign.vehicle.stages.size();
+  std::vector<std::size_t> positions = MetricsUnder(stages, campaign.autopilot.pitch.law);
+  for (std::size_t i = 0; i < campaign.own_metrics.size(); ++i) positions.push_back(MetricCount(stages) + i);
+  return positions;
 }
 
 std::string WhyNotMeasured(const Campaign& campaign, const std::string& metric) {
-  const std::size_t column = MetricColumn(metric);
-  if (column >= MetricCount(campaign.vehicle.stages.size())) return "is of a stage that the vehicle has not";
+  const std::optional<std::size_t> position = MetricsOf(campaign).Find(metric);
+  const auto known = std::find(MetricNames().begin(), MetricNames().end(), metric);
+  if (!position && known != MetricNames().end()) return "is of a stage that the vehicle has not";
+  if (!position) return "is not a metric" + DidYouMean(metric, NamesOf(MetricsOf(campaign)));
+  if (known == MetricNames().end()) return "";
   const ControlLaw law = campaign.autopilot.pitch.law;
-  if (HasMetric(Metrics()[column], law)) return "";
-  return "is of flights whose law of pitch is " + LawsWith(Metrics()[column]) + "; here it is " +
+  if (HasMetric(Metrics()[*position], law)) return "";
+  return "is of flights whose law of pitch is " + LawsWith(Metrics()[*position]) + "; here it is " +
          InfoOf(law).name;
 }
 

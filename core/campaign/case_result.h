@@ -9,6 +9,7 @@
 #include "core/campaign/campaign.h"
 #include "core/flight/digest.h"
 #include "core/flight/flight.h"
+#include "core/flight/metric_list.h"
 #include "core/flight/metrics.h"
 
 namespace dispersa {
@@ -20,16 +21,17 @@ struct CaseResult {
   int end_stage = 0;           ///< 1-based stage burning, or last burnt, at the end
   std::string reason;          ///< one sentence (empty when completed)
   std::vector<double> inputs;  ///< as applied, in the order of InputNames()
-  /// The vehicle's metrics in the order of MetricNames(). NaN: undefined, or not measured under the
-  /// campaign's law.
+  /// In the order of MetricsOf the campaign. NaN: undefined, or not measured under its law.
   std::vector<double> metrics;
   Digest digest;
 };
 
-/// Positions in Metrics() of those that the campaign's flights have.
+/// The metrics of the campaign's vehicle, then its own.
+MetricList MetricsOf(const Campaign& campaign);
+/// Positions in MetricsOf of those that the campaign's flights have.
 std::vector<std::size_t> MeasuredMetrics(const Campaign& campaign);
-/// Why the campaign's flights lack an existing metric: "is of flights whose law of pitch is ..."; empty if
-/// they have it.
+/// Why the campaign's flights lack a metric: "is of flights whose law of pitch is ..."; empty if they have
+/// it.
 std::string WhyNotMeasured(const Campaign& campaign, const std::string& metric);
 
 /// The result of a flight of these inputs, as a case's result.

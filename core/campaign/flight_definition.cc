@@ -75,6 +75,7 @@ FlightDefinition DefinitionOf(const Campaign& campaign) {
   definition.wind_table = campaign.wind_table;
   definition.wind_statistics = campaign.wind_statistics;
   definition.noise_seed = campaign.sampling.seed;
+  definition.own_metrics = campaign.own_metrics;
   if (Jettisons(campaign.vehicle) || CutsOffAtVelocity(campaign.vehicle)) {
     const AscentResult ascent = FlyReference(campaign);
     definition.jettison_s = ascent.jettison_s;

@@ -1,10 +1,35 @@
 #include "core/campaign_yaml/campaign_ids.h"
 
+#include <algorithm>
+#include <utility>
+
 #include "core/campaign_yaml/canonical.h"
 #include "core/campaign_yaml/load.h"
 #include "core/flight/engine_version.h"
 
 namespace dispersa {
+namespace {
+
+// The items of `metrics` that requirements name.
+InputNode LimitedMetrics(const InputNode& campaign) {
+  InputNode limited = ListAt(campaign);
+  const InputNode* metrics = campaign.Find("metrics");
+  const InputNode* requirements = campaign.Find("requirements");
+  if (metrics == nullptr || requirements == nullptr) return limited;
+  for (const InputNode& metric : metrics->items) {
+    const bool is_limited = std::any_of(requirements->items.begin(), requirements->items.end(),
+                                        [&](const InputNode& requirement) {
+                                          const InputNode* name = requirement.Find("metric");
+                                          return name != nullptr && name->text == metric.Find("name")->text;
+                                        });
+    if (!is_limited) continue;
+    InputNode& item = limited.items.emplace_back(MapAt(campaign));
+    for (const char* key : {"name", "expression"}) SetMember(item, key, *metric.Find(key));
+  }
+  return limited;
+}
+
+}  // namespace
 
 std::string VehicleSha256(const InputNode& vehicle) {
   InputNode rigid = vehicle;
@@ -28,7 +53,16 @@ std::string RequirementsId(const InputNode& campaign) {
   for (const char* key : {"requirements", "verdicts"}) {
     if (const InputNode* value = campaign.Find(key)) SetMember(judged, key, *value);
   }
+  if (InputNode limited = LimitedMetrics(campaign); !limited.items.empty())
+    SetMember(judged, "metrics", std::move(limited));
   return Sha256Hex(CanonicalText(judged));
+}
+
+std::string OwnMetricsId(const std::string& flight_id, const std::vector<OwnMetric>& metrics) {
+  if (metrics.empty()) return "";
+  std::string text = flight_id + "\n";
+  for (const OwnMetric& metric : metrics) text += metric.name + " = " + metric.expression + "\n";
+  return Sha256Hex(text);
 }
 
 std::string FlightId(const InputNode& campaign, SamplingMethod method) {

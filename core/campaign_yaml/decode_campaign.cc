@@ -341,6 +341,30 @@ class CampaignDescription {
       requirement.Refuse("metric", "'" + metric + "' " + why, "a metric of this law, or a law that has it");
   }
 
+  // Names that an own metric may not have again.
+  std::vector<std::string> NamesBefore(const OwnMetric& metric) const {
+    std::vector<std::string> names = MetricNames();
+    for (const OwnMetric& other : campaign_.own_metrics) {
+      if (&other == &metric) break;
+      names.push_back(other.name);
+    }
+    return names;
+  }
+  void ReadExpression(Fields& fields, OwnMetric& metric) const {
+    if (!has_autopilot_ || metric.expression.empty()) return;
+    try {
+      metric.parsed = ParseOwnMetric(metric.expression, static_cast<int>(campaign_.vehicle.stages.size()),
+                                     campaign_.autopilot);
+    } catch (const ExpressionError& error) {
+      fields.Refuse("expression", error.what(), error.allowed);
+    }
+  }
+  std::string ExpressionOf(const std::string& metric) const {
+    for (const OwnMetric& own : campaign_.own_metrics)
+      if (own.name == metric) return own.expression;
+    return "";
+  }
+
   void DescribeJudgement(Fields& fields) {
     VerdictPlan plan;
     bool has_verdicts = false;
@@ -349,13 +373,20 @@ class CampaignDescription {
                          dispersa::Describe(verdicts, campaign_.verdicts, plan, campaign_.sampling);
                        });
     const std::size_t stages = campaign_.vehicle.stages.size();
+    fields.OptionalList("metrics", 1, kMaxOwnMetrics, campaign_.own_metrics, "metrics of the campaign's own",
+                        [&](Fields& map, OwnMetric& metric) {
+                          dispersa::Describe(map, metric, NamesBefore(metric));
+                          ReadExpression(map, metric);
+                        });
     std::vector<std::string> metrics = MetricNames();
     if (root_ != nullptr) metrics.resize(MetricCount(stages));
+    for (const OwnMetric& metric : campaign_.own_metrics) metrics.push_back(metric.name);
     fields.OptionalList("requirements", 1, SIZE_MAX, campaign_.requirements,
                         "what is required of the flights", [&](Fields& map, Requirement& requirement) {
                           requirement.plan = plan;
                           dispersa::Describe(map, requirement, metrics);
                           CheckMeasured(map, requirement.metric);
+                          requirement.own_expression = ExpressionOf(requirement.metric);
                         });
     if (HasLimits(campaign_.vehicle.limits)) RequireLimitsKept(plan, campaign_.requirements);
   }

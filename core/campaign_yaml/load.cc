@@ -85,6 +85,7 @@ Campaign FinishCampaign(InputNode root, FileNames names, const CampaignOverrides
   campaign.id = Sha256Hex(campaign.canonical_yaml);
   campaign.flight_id = FlightId(root, campaign.sampling.method);
   campaign.requirements_id = RequirementsId(root);
+  campaign.own_metrics_id = OwnMetricsId(campaign.flight_id, campaign.own_metrics);
   return std::move(campaign);
 }
 

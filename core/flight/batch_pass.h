@@ -436,10 +436,9 @@ void Batch<T>::WatchAndDigest() {
       LaneView view = ViewOf(lane);
       view.has_error = true;
       record.Watch(view, record.history_ticks > 0 && tick % record.history_ticks == 0);
-      const bool every_tick = static_cast<bool>(record.options.observe);
       Lane(next_row_tick_, lane) =
-          every_tick ? Lane(tick_, lane)
-                     : static_cast<double>((tick / record.history_ticks + 1) * record.history_ticks);
+          record.every_tick ? Lane(tick_, lane)
+                            : static_cast<double>((tick / record.history_ticks + 1) * record.history_ticks);
     }
     if (static_cast<double>(tick) < Lane(next_digest_tick_, lane)) continue;
     if (tick % second == 0) {

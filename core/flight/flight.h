@@ -32,7 +32,7 @@ struct FlightResult {
   double end_time_s = 0.0;
   int end_stage = 0;  ///< 1-based
   std::string reason;
-  std::vector<double> metrics;  ///< of the vehicle, in the order of MetricNames()
+  std::vector<double> metrics;  ///< of the vehicle, in the order of MetricNames(), then the campaign's own
   Digest digest;
   RigidBodyState end_state;
 };

@@ -14,6 +14,7 @@
 #include "core/flight/attitude_program.h"
 #include "core/flight/flight_inputs.h"
 #include "core/flight/launch_frame.h"
+#include "core/flight/own_metrics.h"
 #include "core/flight/sensor_model.h"
 #include "core/flight/sequence.h"
 #include "core/guidance/mission.h"
@@ -52,6 +53,7 @@ struct FlightDefinition {
   /// How long the reference's engines burn that are cut off at a velocity, by stage, s: known beforehand
   /// likewise. Infinite: to depletion.
   std::array<double, kMaxStages> cut_off_s = AllStages(HUGE_VAL);
+  std::vector<OwnMetric> own_metrics = {};  ///< they change nothing of a flight
 };
 
 /// Ends a stage's burn by command. The remaining propellant belongs to the next stage if that stage restarts

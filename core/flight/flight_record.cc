@@ -8,6 +8,7 @@
 #include "core/dynamics/jettison.h"
 #include "core/dynamics/launcher_lanes.h"
 #include "core/flight/history_columns.h"
+#include "core/flight/own_metrics.h"
 #include "core/flight/sequence.h"
 #include "core/flight/step_limits.h"
 #include "core/flight/tick_sample.h"
@@ -170,7 +171,8 @@ FlightRecord::FlightRecord(const FlightModel& model, const FlightOrder& order)
                              plant.environment.turbulence.get())),
       events(EventsOf(model, plant, inputs)),
       lift_off{},
-      watched(options.history != nullptr || options.observe != nullptr),
+      every_tick(options.observe != nullptr || !model.definition().own_metrics.empty()),
+      watched(every_tick || options.history != nullptr),
       history_ticks(options.history ? std::max(1L, std::lround(options.history->step_s /
                                                                model.definition().autopilot.tick_s))
                                     : 0),
@@ -197,6 +199,8 @@ FlightRecord::FlightRecord(const FlightModel& model, const FlightOrder& order)
     law = law_.get();
   }
   if (options.history) options.history->values.clear();
+  if (!model.definition().own_metrics.empty())
+    own_metrics_ = std::make_unique<OwnMetricsMeter>(model.definition().own_metrics, tick_s);
   SetEquations();
 }
 
@@ -275,22 +279,25 @@ TickSample FlightRecord::SampleOf(const LaneView& view) const {
   return s;
 }
 
-void FlightRecord::AppendRow(const TickSample& s) {
-  std::vector<double>& rows = options.history->values;
+void FlightRecord::AppendRow(const TickSample& s, std::vector<double>& rows) const {
   AppendKinematics(plant.environment.earth, s.time_s, s.state, s.instant.air, s.instant.v_AB_B,
                    s.instant.loads.mass_kg, rows);
   AppendLauncher(model_, s, rows);
 }
 
 void FlightRecord::Watch(const LaneView& view, bool row) {
-  if (!row && !options.observe) return;
+  if (!row && !every_tick) return;
   const TickSample sample = SampleOf(view);
   if (options.observe) options.observe(sample);
-  if (row) AppendRow(sample);
+  if (row) AppendRow(sample, options.history->values);
+  if (!own_metrics_) return;
+  row_.clear();
+  AppendRow(sample, row_);
+  own_metrics_->Add(sample.time_s, sample.burning ? sample.stack + 1 : 0, sample.coasting, row_);
 }
 
 void FlightRecord::WatchEvent(const LaneView& view) {
-  if (options.history) AppendRow(SampleOf(view));
+  if (options.history) AppendRow(SampleOf(view), options.history->values);
 }
 
 void FlightRecord::HandOver(double time_s, const double* y) {
@@ -373,6 +380,10 @@ FlightResult FlightRecord::Result() {
   if (guided) sums.guidance = guided->outcome();
   MeasuredFlight measured = Measure(sums, model_.definition());
   result_.metrics = std::move(measured.metrics);
+  if (own_metrics_) {
+    const std::vector<double> own = own_metrics_->Values();
+    result_.metrics.insert(result_.metrics.end(), own.begin(), own.end());
+  }
   digester_.Add(measured.digested.data(), measured.digested.size());
   result_.digest = digester_.Finish();
   return std::move(result_);

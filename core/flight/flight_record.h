@@ -21,6 +21,8 @@
 
 namespace dispersa {
 
+class OwnMetricsMeter;
+
 /// Events of the plant at their own times, in the order in which they happen.
 enum class EventKind {
   kIgnition,
@@ -70,9 +72,10 @@ class FlightRecord {
   StateValues lift_off;
   const char* refusal = nullptr;  ///< reason why its inputs cannot be flown (null: they can)
   double believed_attitude[4];    ///< q_IB (w, x, y, z) that the inertial unit is aligned to at lift-off
-  bool watched;                   ///< has a history or an observer
-  long history_ticks;             ///< ticks between two rows (0: no history)
-  bool noisy;                     ///< its gyros are
+  bool every_tick;     ///< has an observer, or metrics of its campaign's own: is watched at each tick
+  bool watched;        ///< is watched at some ticks: a history is enough
+  long history_ticks;  ///< ticks between two rows (0: no history)
+  bool noisy;          ///< its gyros are
 
   // ---- while it flies ----
   GuidedFlight* guided = nullptr;  ///< null: the reference's attitude is flown
@@ -122,7 +125,7 @@ class FlightRecord {
   void SetEquations();
   ReferenceAttitude ReferenceAt(double time_s) const;
   TickSample SampleOf(const LaneView& view) const;
-  void AppendRow(const TickSample& sample);
+  void AppendRow(const TickSample& sample, std::vector<double>& rows) const;
 
   const FlightModel& model_;
   std::unique_ptr<GuidedFlight> guided_;
@@ -131,6 +134,8 @@ class FlightRecord {
   Digester digester_;
   std::unique_ptr<const LauncherModel> equations_;  ///< of a flight that is watched or judged
   std::unique_ptr<JudgedMotion> judged_;
+  std::unique_ptr<OwnMetricsMeter> own_metrics_;  ///< of a campaign that has any
+  std::vector<double> row_;
   FlightResult result_;
   std::string refusal_;
 };

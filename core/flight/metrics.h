@@ -31,9 +31,11 @@ enum class MetricGroup {
   kGuidance,
   kControlLaw,
   kIntegration,
+  kOwn,  ///< of the campaign (own_metrics.h)
 };
-inline constexpr const char* kMetricGroupTitles[] = {"Attitude", "Control effort", "Loads",      "Injection",
-                                                     "Guidance", "Control law",    "Integration"};
+inline constexpr const char* kMetricGroupTitles[] = {"Attitude",    "Control effort",    "Loads",
+                                                     "Injection",   "Guidance",          "Control law",
+                                                     "Integration", "The campaign's own"};
 constexpr const char* TitleOf(MetricGroup group) { return kMetricGroupTitles[static_cast<int>(group)]; }
 
 /// A metric that a flight does not define (a stage that it never reached) is NaN inside and NULL, empty or

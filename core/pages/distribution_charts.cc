@@ -61,11 +61,6 @@ void AddConfidence(const std::vector<double>& good, std::size_t all, double lowe
   chart->Band(x, low, high, "band-outer", "95 %");
 }
 
-std::size_t Position(const std::string& metric) {
-  const std::vector<std::string>& names = MetricNames();
-  return static_cast<std::size_t>(std::find(names.begin(), names.end(), metric) - names.begin());
-}
-
 std::string AxisLabel(const std::string& metric) {
   const MetricInfo info = DescribeMetric(metric);
   return info.title + (info.unit.empty() ? "" : ", " + info.unit);
@@ -77,8 +72,8 @@ void AddCases(const std::string& x, const std::string& y, const CampaignSummary&
   chart->ShowsCases(x, y);
   chart->Points(CompletedValues(cases, x), CompletedValues(cases, y), "dots", "cases");
   if (!summary.nominal) return;
-  chart->Points({summary.nominal->metrics[Position(x)]}, {summary.nominal->metrics[Position(y)]},
-                "dot-nominal", "nominal");
+  chart->Points({summary.nominal->metrics[summary.metric_list.PositionOf(x)]},
+                {summary.nominal->metrics[summary.metric_list.PositionOf(y)]}, "dot-nominal", "nominal");
 }
 
 constexpr std::size_t kFewestForEllipses = 10;

@@ -116,7 +116,13 @@ std::string LimitsTable(const CampaignSummary& summary) {
 }
 
 double NominalValue(const CampaignSummary& summary, const std::string& metric) {
-  return summary.nominal ? summary.nominal->metrics[MetricColumn(metric)] : std::nan("");
+  return summary.nominal ? summary.nominal->metrics[summary.metric_list.PositionOf(metric)] : std::nan("");
+}
+
+std::string OwnDefinition(const CampaignSummary& summary, const std::string& metric) {
+  for (const OwnMetric& own : summary.own_metrics)
+    if (own.name == metric) return own.meaning + (own.meaning.empty() ? "" : "; ") + own.expression;
+  return "";
 }
 
 }  // namespace
@@ -161,9 +167,11 @@ std::string HeaderSection(const CampaignSummary& summary) {
   // Limits that end no flight do not show among the outcomes.
   if (summary.beyond_limits > 0) html += Tile(share(summary.beyond_limits), "exceeded a structural limit");
   for (const MetricSummary& metric : summary.metrics) {
-    const Metric& declared = Metrics()[MetricColumn(metric.name)];
-    if (declared.is_usual)
-      html += Tile(WithUnit(metric.statistics.p50, declared.unit), "median " + Lower(declared.title));
+    const auto declared = std::find_if(Metrics().begin(), Metrics().end(), [&](const Metric& candidate) {
+      return candidate.name == metric.name && candidate.is_usual;
+    });
+    if (declared != Metrics().end())
+      html += Tile(WithUnit(metric.statistics.p50, declared->unit), "median " + Lower(declared->title));
   }
   return html + "</div>\n</header>\n";
 }
@@ -287,9 +295,11 @@ std::string StatisticsSection(const CampaignSummary& summary) {
       if (info.group != group) continue;
       if (!titled) table.Wide(group, "group");
       titled = true;
-      const std::string definition = info.is_part || info.definition.empty()
-                                         ? ""
-                                         : " <span class=\"soft\">" + HtmlText(info.definition) + "</span>";
+      const std::string text = info.is_part ? ""
+                               : info.known ? info.definition
+                                            : OwnDefinition(summary, metric.name);
+      const std::string definition =
+          text.empty() ? "" : " <span class=\"soft\">" + HtmlText(text) + "</span>";
       const Summary& s = metric.statistics;
       // Above its numbers: beside twelve of them no name finds room.
       table.Wide("<div><b>" + HtmlText(info.title) + (info.unit.empty() ? "" : ", " + HtmlText(info.unit)) +

@@ -12,7 +12,8 @@ namespace dispersa {
 CaseColumns ReadColumns(const ResultFolder& folder, const std::vector<int>& wanted_inputs,
                         const std::function<void(const CaseResult&)>& observe) {
   CaseColumns cases;
-  const std::size_t metrics = MetricCount(folder.stages());
+  const std::size_t metrics = folder.metric_list().size();
+  cases.own_metrics = folder.metric_list().own();
   const auto file = std::make_shared<ColumnFile>(folder.directory(), metrics + wanted_inputs.size());
   std::vector<double> row(metrics + wanted_inputs.size());
   folder.ForEach([&](const CaseResult& result) {
@@ -37,7 +38,11 @@ CaseColumns ReadColumns(const ResultFolder& folder, const std::vector<int>& want
 }
 
 std::vector<double> MeasuredValues(const CaseColumns& cases, const std::string& metric) {
-  const std::size_t column = MetricColumn(metric);
+  const auto own = std::find(cases.own_metrics.begin(), cases.own_metrics.end(), metric);
+  const std::size_t column =
+      own == cases.own_metrics.end()
+          ? MetricColumn(metric)
+          : cases.metrics.size() - static_cast<std::size_t>(cases.own_metrics.end() - own);
   // The metric belongs to a stage that the vehicle does not have, or to another control law.
   if (column >= cases.metrics.size() || cases.metrics[column].empty())
     return std::vector<double>(cases.rows(), kUndefined);

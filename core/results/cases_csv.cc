@@ -11,10 +11,10 @@
 
 namespace dispersa {
 
-std::string CasesCsvHeader(std::size_t stages, const std::vector<std::size_t>& metrics) {
+std::string CasesCsvHeader(const MetricList& list, const std::vector<std::size_t>& metrics) {
   std::string line = "case_index,outcome,end_time_s,end_stage,reason";
-  for (std::size_t i = 0; i < InputCount(stages); ++i) line += ",input_" + InputColumns()[i].name;
-  for (const std::size_t i : metrics) line += ",metric_" + MetricNames()[i];
+  for (std::size_t i = 0; i < InputCount(list.stages()); ++i) line += ",input_" + InputColumns()[i].name;
+  for (const std::size_t i : metrics) line += ",metric_" + list.NameAt(i);
   return line + ",digest\n";
 }
 
@@ -28,7 +28,7 @@ std::string CasesCsvLine(const CaseResult& result, const std::vector<std::size_t
 
 CasesCsv::CasesCsv(const std::filesystem::path& file, const ResultFolder& folder)
     : file_(file), metrics_(folder.metrics()) {
-  file_.Write(CasesCsvHeader(folder.stages(), metrics_));
+  file_.Write(CasesCsvHeader(folder.metric_list(), metrics_));
 }
 
 std::uint64_t CountCases(const std::filesystem::path& file) {

@@ -13,9 +13,9 @@
 
 namespace dispersa {
 
-/// Both with their line break, of a vehicle with so many stages and the metrics at these positions of
-/// Metrics(). Doubles in the shortest text that reads back to the same bits.
-std::string CasesCsvHeader(std::size_t stages, const std::vector<std::size_t>& metrics);
+/// Both with their line break, with the metrics at these positions of the list. Doubles in the shortest text
+/// that reads back to the same bits.
+std::string CasesCsvHeader(const MetricList& list, const std::vector<std::size_t>& metrics);
 std::string CasesCsvLine(const CaseResult& result, const std::vector<std::size_t>& metrics);
 
 /// The growing file. It replaces the old one as a whole.

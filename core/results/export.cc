@@ -27,7 +27,7 @@ void ExportJsonLines(const ResultFolder& folder, const std::filesystem::path& fi
     for (std::size_t i = 0; i < result.inputs.size(); ++i)
       line["input_" + InputColumns()[i].name] = Number(result.inputs[i]);
     for (const std::size_t i : folder.metrics())
-      line["metric_" + MetricNames()[i]] = Number(result.metrics[i]);
+      line["metric_" + folder.metric_list().NameAt(i)] = Number(result.metrics[i]);
     line["digest"] = result.digest.Hex();
     output.Write(line.dump() + "\n");
   });

@@ -149,10 +149,12 @@ void ExportHdf5(const ResultFolder& folder, const std::filesystem::path& file) {
       }
       output.Group("/metrics");
       for (const std::size_t i : folder.metrics()) {
-        const std::string path = "/metrics/" + MetricNames()[i];
-        column(path, Metrics()[i].unit, cases.metrics[i]);
-        output.Attribute(path, "group", TitleOf(Metrics()[i].group));
-        output.Attribute(path, "label", Metrics()[i].title);
+        const std::string& name = folder.metric_list().NameAt(i);
+        const MetricInfo info = DescribeMetric(name);
+        const std::string path = "/metrics/" + name;
+        column(path, info.unit, cases.metrics[i]);
+        output.Attribute(path, "group", info.group);
+        output.Attribute(path, "label", info.title);
       }
     }
     std::filesystem::rename(temporary, file);

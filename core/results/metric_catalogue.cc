@@ -16,8 +16,9 @@ struct UnitSuffix {
 constexpr UnitSuffix kUnits[] = {
     {"_deg_s2", "°/s²"}, {"_pa_rad", "Pa rad"}, {"_deg_s", "°/s"}, {"_rad_s", "rad/s"}, {"_kg_m2", "kg m²"},
     {"_n_m", "N m"},     {"_kg_s", "kg/s"},     {"_km_s", "km/s"}, {"_m_s", "m/s"},     {"_deg", "°"},
-    {"_rad", "rad"},     {"_pa", "Pa"},         {"_km", "km"},     {"_kg", "kg"},       {"_ms", "ms"},
-    {"_db", "dB"},       {"_n", "N"},           {"_m", "m"},       {"_g", "g"},         {"_s", "s"},
+    {"_rad", "rad"},     {"_kpa", "kPa"},       {"_pa", "Pa"},     {"_km", "km"},       {"_kg", "kg"},
+    {"_ms", "ms"},       {"_db", "dB"},         {"_n", "N"},       {"_m", "m"},         {"_g", "g"},
+    {"_s", "s"},
 };
 
 }  // namespace
@@ -45,6 +46,8 @@ MetricInfo DescribeMetric(const std::string& name) {
     info.known = true;
     return info;
   }
+  info.group = TitleOf(MetricGroup::kOwn);
+  info.worse = Worse::kNeither;
   const NameAndUnit split = SplitUnit(name);
   info.title = split.stem;
   info.unit = split.unit;

@@ -28,10 +28,11 @@ std::string RequirementLine(const Requirement& requirement) {
   const char* plan = requirement.plan.kind == PlanKind::kAnytime      ? "anytime"
                      : requirement.plan.spending == Spending::kPocock ? "pocock"
                                                                       : "obrien_fleming";
-  return fmt::format("{} above {} below {} probability {} consumer_risk {} looks {} {}", requirement.metric,
-                     ShortestText(limits.low), ShortestText(limits.high),
-                     ShortestText(requirement.probability), ShortestText(requirement.consumer_risk),
-                     requirement.plan.looks, plan);
+  const std::string& own = requirement.own_expression;
+  return fmt::format("{} above {} below {} probability {} consumer_risk {} looks {} {}",
+                     requirement.metric + (own.empty() ? "" : " = " + own), ShortestText(limits.low),
+                     ShortestText(limits.high), ShortestText(requirement.probability),
+                     ShortestText(requirement.consumer_risk), requirement.plan.looks, plan);
 }
 
 }  // namespace dispersa

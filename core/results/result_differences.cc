@@ -29,7 +29,8 @@ void CompareText(const std::string& name, const std::string& first, const std::s
 
 }  // namespace
 
-std::vector<ResultDifference> Differences(const CaseResult& first, const CaseResult& second) {
+std::vector<ResultDifference> Differences(const CaseResult& first, const CaseResult& second,
+                                          const MetricList& metrics) {
   std::vector<ResultDifference> differences;
   CompareText("outcome", OutcomeName(first.outcome), OutcomeName(second.outcome), differences);
   CompareText("reason", first.reason, second.reason, differences);
@@ -39,7 +40,7 @@ std::vector<ResultDifference> Differences(const CaseResult& first, const CaseRes
     CompareNumber("input_" + InputColumns()[i].name, first.inputs[i], second.inputs[i], differences);
   }
   for (std::size_t i = 0; i < first.metrics.size(); ++i) {
-    CompareNumber("metric_" + MetricNames()[i], first.metrics[i], second.metrics[i], differences);
+    CompareNumber("metric_" + metrics.NameAt(i), first.metrics[i], second.metrics[i], differences);
   }
   CompareText("digest", first.digest.Hex(), second.digest.Hex(), differences);
   return differences;

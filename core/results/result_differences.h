@@ -16,6 +16,7 @@ struct ResultDifference {
 
 /// Compares results as they are stored: undefined equals undefined, -0 equals 0. Empty if they are equal to
 /// the last bit. In the order of the columns, with the digest last. Both results are of one vehicle.
-std::vector<ResultDifference> Differences(const CaseResult& first, const CaseResult& second);
+std::vector<ResultDifference> Differences(const CaseResult& first, const CaseResult& second,
+                                          const MetricList& metrics);
 
 }  // namespace dispersa

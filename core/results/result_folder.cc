@@ -8,6 +8,7 @@
 #include <iterator>
 #include <optional>
 #include <set>
+#include <sstream>
 #include <system_error>
 #include <utility>
 
@@ -30,39 +31,80 @@ using Kind = ResultError::Kind;
 constexpr char kDatabaseName[] = "results.sqlite";
 constexpr char kCampaignName[] = "campaign.yaml";
 constexpr char kSchema[] = "dispersa/results/1";
+/// Rows of cases that were flown before, without all of the campaign's own metrics.
+constexpr char kUnmeasured[] = "unmeasured";
 
 /// Columns of `cases` before the inputs; the digests of the flight and of the row follow the metrics.
 constexpr int kFirstInput = 5;
 
-std::string CaseColumnList(std::size_t stages, const std::vector<std::size_t>& metrics, const char* type) {
+using Positions = std::vector<std::size_t>;
+
+std::string CaseColumnList(const MetricList& list, const Positions& metrics, const char* type) {
   std::string columns;
-  for (std::size_t i = 0; i < InputCount(stages); ++i)
+  for (std::size_t i = 0; i < InputCount(list.stages()); ++i)
     columns += fmt::format(", input_{}{}", InputColumns()[i].name, type);
-  for (const std::size_t i : metrics) columns += fmt::format(", metric_{}{}", MetricNames()[i], type);
+  for (const std::size_t i : metrics) columns += fmt::format(", metric_{}{}", list.NameAt(i), type);
   return columns;
 }
 
-std::string SelectCases(std::size_t stages, const std::vector<std::size_t>& metrics) {
-  return "SELECT case_index, outcome, end_time_s, end_stage, reason" + CaseColumnList(stages, metrics, "") +
-         ", digest, row_digest FROM cases";
+std::string SelectCases(const MetricList& list, const Positions& metrics, const char* table = "cases") {
+  return "SELECT case_index, outcome, end_time_s, end_stage, reason" + CaseColumnList(list, metrics, "") +
+         ", digest, row_digest FROM " + table;
 }
 
 /// Vehicles of few stages have fewer columns.
 std::size_t StagesOf(Database& database) {
-  Statement rare = database.Prepare(
-      fmt::format("SELECT name FROM pragma_table_info('cases') WHERE name LIKE '%_stage{}%'", kMaxStages));
+  Statement rare = database.Prepare(fmt::format(
+      "SELECT name FROM pragma_table_info('cases') WHERE name LIKE 'input_%_stage{}%'", kMaxStages));
   return rare.Step() ? kMaxStages : kUsualStages;
 }
 
+bool HasTable(Database& database, const std::string& name) {
+  Statement select = database.Prepare("SELECT 1 FROM sqlite_master WHERE type = 'table' AND name = ?");
+  select.BindText(1, name);
+  return select.Step();
+}
+
 /// A law's own metrics are there if it was flown; of all others a folder must have a column.
-std::vector<std::size_t> MetricsOf(Database& database, std::size_t stages) {
+Positions StoredMetrics(Database& database, const MetricList& list) {
   std::set<std::string> columns;
   Statement names = database.Prepare("SELECT name FROM pragma_table_info('cases')");
   while (names.Step()) columns.insert(names.Text(0));
-  std::vector<std::size_t> metrics;
-  for (std::size_t i = 0; i < MetricCount(stages); ++i)
-    if (Metrics()[i].of_law == nullptr || columns.count("metric_" + MetricNames()[i]) > 0)
-      metrics.push_back(i);
+  Positions metrics;
+  for (std::size_t i = 0; i < list.size(); ++i) {
+    const bool is_of_law = i < MetricCount(list.stages()) && Metrics()[i].of_law != nullptr;
+    if (!is_of_law || columns.count("metric_" + list.NameAt(i)) > 0) metrics.push_back(i);
+  }
+  return metrics;
+}
+
+/// Without those of a campaign's own.
+Positions OfVehicle(const MetricList& list, Positions metrics) {
+  std::erase_if(metrics, [&](std::size_t i) { return i >= MetricCount(list.stages()); });
+  return metrics;
+}
+
+constexpr char kOwnMetrics[] = "own_metrics";
+
+/// "name = expression" a line, as in the provenance.
+std::string OwnMetricLines(const std::vector<OwnMetric>& metrics) {
+  std::string lines;
+  for (const OwnMetric& metric : metrics) lines += metric.name + " = " + metric.expression + "\n";
+  return lines;
+}
+
+/// Of an older folder, or one that is none: nothing.
+std::vector<OwnMetric> OwnMetricsOf(Database& database) {
+  std::vector<OwnMetric> metrics;
+  if (!HasTable(database, "provenance")) return metrics;
+  Statement select = database.Prepare("SELECT value FROM provenance WHERE key = ?");
+  select.BindText(1, kOwnMetrics);
+  if (!select.Step()) return metrics;
+  std::istringstream lines(select.Text(0));
+  for (std::string line; std::getline(lines, line);) {
+    const std::size_t sign = line.find(" = ");
+    if (sign != std::string::npos) metrics.push_back({line.substr(0, sign), line.substr(sign + 3), "", {}});
+  }
   return metrics;
 }
 
@@ -89,12 +131,17 @@ void Upgrade(Database& database) {
   database.Execute(fmt::format("PRAGMA user_version = {}", kVersion));
 }
 
+void CreateCases(Database& database, const std::string& table, const MetricList& list,
+                 const Positions& metrics) {
+  database.Execute("CREATE TABLE " + table +
+                   " (case_index INTEGER PRIMARY KEY, outcome TEXT NOT NULL, end_time_s REAL, end_stage "
+                   "INTEGER NOT NULL, reason TEXT NOT NULL" +
+                   CaseColumnList(list, metrics, " REAL") +
+                   ", digest TEXT NOT NULL, row_digest TEXT NOT NULL)");
+}
+
 void CreateTables(Database& database, const Campaign& campaign) {
-  database.Execute(
-      "CREATE TABLE cases (case_index INTEGER PRIMARY KEY, outcome TEXT NOT NULL, end_time_s REAL, "
-      "end_stage INTEGER NOT NULL, reason TEXT NOT NULL" +
-      CaseColumnList(campaign.vehicle.stages.size(), MeasuredMetrics(campaign), " REAL") +
-      ", digest TEXT NOT NULL, row_digest TEXT NOT NULL)");
+  CreateCases(database, "cases", MetricsOf(campaign), MeasuredMetrics(campaign));
   database.Execute("CREATE TABLE quarantined (case_index INTEGER PRIMARY KEY, reason TEXT NOT NULL)");
   database.Execute("CREATE TABLE provenance (key TEXT PRIMARY KEY, value TEXT NOT NULL)");
   database.Execute(
@@ -104,6 +151,13 @@ void CreateTables(Database& database, const Campaign& campaign) {
       "CREATE TABLE looks (requirements_id TEXT NOT NULL, requirement TEXT NOT NULL, n INTEGER NOT NULL, "
       "failures INTEGER NOT NULL, verdict TEXT NOT NULL, PRIMARY KEY (requirements_id, requirement, n))");
   Upgrade(database);
+}
+
+void WriteOwnMetrics(Database& database, const Campaign& campaign) {
+  Statement insert = database.Prepare("INSERT OR REPLACE INTO provenance VALUES (?, ?)");
+  insert.BindText(1, kOwnMetrics);
+  insert.BindText(2, OwnMetricLines(campaign.own_metrics));
+  insert.Step();
 }
 
 /// `register_plan`: no case has been flown, so that the requirements and the number of cases are the plan.
@@ -150,16 +204,15 @@ std::optional<Digest> ParseDigest(const std::string& hex) {
 }
 
 /// None if the row is damaged.
-std::optional<CaseResult> ReadRow(const Statement& row, std::size_t stages,
-                                  const std::vector<std::size_t>& metrics) {
+std::optional<CaseResult> ReadRow(const Statement& row, const MetricList& list, const Positions& metrics) {
   CaseResult result;
   result.case_index = static_cast<std::uint64_t>(row.Integer(0));
   result.end_time_s = row.Real(2);
   result.end_stage = static_cast<int>(row.Integer(3));
   result.reason = row.Text(4);
   int column = kFirstInput;
-  for (std::size_t i = 0; i < InputCount(stages); ++i) result.inputs.push_back(row.Real(column++));
-  result.metrics.assign(MetricCount(stages), kUndefined);
+  for (std::size_t i = 0; i < InputCount(list.stages()); ++i) result.inputs.push_back(row.Real(column++));
+  result.metrics.assign(list.size(), kUndefined);
   for (const std::size_t i : metrics) result.metrics[i] = row.Real(column++);
   const std::optional<Digest> digest = ParseDigest(row.Text(column));
   if (!ParseOutcome(row.Text(1), &result.outcome) || !digest) return std::nullopt;
@@ -169,20 +222,62 @@ std::optional<CaseResult> ReadRow(const Statement& row, std::size_t stages,
   return result;
 }
 
-CaseResult ReadCase(const Statement& row, std::size_t stages, const std::vector<std::size_t>& metrics,
+CaseResult ReadCase(const Statement& row, const MetricList& list, const Positions& metrics,
                     const fs::path& directory) {
-  if (auto result = ReadRow(row, stages, metrics)) return *std::move(result);
+  if (auto result = ReadRow(row, list, metrics)) return *std::move(result);
   throw ResultError(Kind::kFile, fmt::format("{}: the row of case {} is damaged; --resume flies it again",
                                              (directory / kDatabaseName).string(), row.Integer(0)));
 }
 
 /// What is stored of a result: of other metrics nothing.
-CaseResult WithMetrics(CaseResult result, const std::vector<std::size_t>& metrics) {
+CaseResult WithMetrics(CaseResult result, const Positions& metrics) {
   std::vector<double> kept(result.metrics.size(), kUndefined);
   for (const std::size_t i : metrics)
     if (i < kept.size()) kept[i] = result.metrics[i];
   result.metrics = std::move(kept);
   return result;
+}
+
+std::string InsertInto(const std::string& table, const MetricList& list, const Positions& metrics) {
+  std::string parameters = "?, ?, ?, ?, ?, ?, ?";
+  for (std::size_t i = 0; i < InputCount(list.stages()) + metrics.size(); ++i) parameters += ", ?";
+  return "INSERT INTO " + table + " VALUES (" + parameters + ")";
+}
+
+/// One row. `insert` is InsertInto() of a table with these metrics.
+void InsertRow(Statement& insert, const CaseResult& result, const Positions& metrics) {
+  insert.Reset();
+  int parameter = 0;
+  insert.BindInteger(++parameter, static_cast<std::int64_t>(result.case_index));
+  insert.BindText(++parameter, OutcomeName(result.outcome));
+  insert.BindReal(++parameter, result.end_time_s);
+  insert.BindInteger(++parameter, result.end_stage);
+  insert.BindText(++parameter, result.reason);
+  for (const double value : result.inputs) insert.BindReal(++parameter, value);
+  for (const std::size_t i : metrics) insert.BindReal(++parameter, result.metrics[i]);
+  insert.BindText(++parameter, result.digest.Hex());
+  insert.BindText(++parameter, Fingerprint(result).Hex());
+  insert.Step();
+}
+
+void RequireSame(std::int64_t case_index, const std::string& stored, const std::string& arrived) {
+  if (stored == arrived) return;
+  throw ResultError(Kind::kConflict, fmt::format("case {} was flown twice with different digests: {} is "
+                                                 "stored, {} arrived",
+                                                 case_index, stored, arrived));
+}
+
+/// The row of a case that was flown again goes, and who flew it before.
+void TakeTheUnmeasured(Database& database, std::int64_t case_index, const std::string& digest) {
+  Statement stored = database.Prepare(fmt::format("SELECT digest FROM {} WHERE case_index = ?", kUnmeasured));
+  stored.BindInteger(1, case_index);
+  if (!stored.Step()) return;
+  RequireSame(case_index, stored.Text(0), digest);
+  for (const char* table : {kUnmeasured, "execution", "audits"}) {
+    Statement remove = database.Prepare(fmt::format("DELETE FROM {} WHERE case_index = ?", table));
+    remove.BindInteger(1, case_index);
+    remove.Step();
+  }
 }
 
 /// The error for a folder that cannot be made or written, from the system's reason.
@@ -197,10 +292,18 @@ CaseResult WithMetrics(CaseResult result, const std::vector<std::size_t>& metric
 }  // namespace
 
 ResultFolder::ResultFolder(fs::path directory, std::unique_ptr<Database> database)
-    : directory_(std::move(directory)),
-      stages_(StagesOf(*database)),
-      metrics_(MetricsOf(*database, stages_)),
-      database_(std::move(database)) {}
+    : directory_(std::move(directory)), database_(std::move(database)) {
+  ReadColumnsOfTable();
+}
+
+void ResultFolder::ReadColumnsOfTable() {
+  own_metrics_ = OwnMetricsOf(*database_);
+  std::vector<std::string> names;
+  for (const OwnMetric& metric : own_metrics_) names.push_back(metric.name);
+  list_ = MetricList(StagesOf(*database_), std::move(names));
+  metrics_ = StoredMetrics(*database_, list_);
+  has_unmeasured_ = HasTable(*database_, kUnmeasured);
+}
 
 ResultFolder::ResultFolder(ResultFolder&&) noexcept = default;
 ResultFolder& ResultFolder::operator=(ResultFolder&&) noexcept = default;
@@ -233,6 +336,7 @@ ResultFolder ResultFolder::Create(const fs::path& directory, const Campaign& cam
     Transaction transaction(fresh);
     CreateTables(fresh, campaign);
     WriteProvenance(fresh, campaign, true);
+    WriteOwnMetrics(fresh, campaign);
     transaction.Commit();
   }
   fs::rename(temporary, database, error);
@@ -257,7 +361,7 @@ ResultFolder ResultFolder::Open(const fs::path& directory) {
   std::string schema;
   try {
     schema = folder.Provenance("schema");
-    folder.database_->Prepare(SelectCases(folder.stages_, folder.metrics_));
+    folder.database_->Prepare(SelectCases(folder.list_, folder.metrics_));
   } catch (const ResultError& unreadable) {
     if (schema != kSchema) {
       throw InputError(fmt::format("{}: not a result folder: {}", directory.string(), unreadable.what()));
@@ -284,16 +388,17 @@ ResultFolder ResultFolder::Resume(const fs::path& directory, const Campaign& cam
     throw InputError(fmt::format("{}: holds results of engine {}, this one is {}", directory.string(), engine,
                                  EngineVersion()));
   }
-  const std::vector<std::uint64_t> present = folder.PresentCases();
-  if (!present.empty() && present.back() >= campaign.sampling.cases) {
+  const std::optional<std::uint64_t> last = folder.LastCase();
+  if (last && *last >= campaign.sampling.cases) {
     throw InputError(fmt::format("{}: already holds case {}, the campaign has only {} cases",
-                                 directory.string(), present.back(), campaign.sampling.cases));
+                                 directory.string(), *last, campaign.sampling.cases));
   }
   WriteFile(directory / kCampaignName, campaign.canonical_yaml);
   Transaction transaction(*folder.database_);
-  WriteProvenance(*folder.database_, campaign, present.empty());
-  Upgrade(*folder.database_);
   folder.RemoveDamaged();
+  folder.MeasureOwn(campaign);
+  WriteProvenance(*folder.database_, campaign, !last);
+  Upgrade(*folder.database_);
   transaction.Commit();
   return folder;
 }
@@ -302,11 +407,46 @@ void ResultFolder::Lock() {
   if (!lock_) lock_.emplace(directory_);
 }
 
+// The table `cases` becomes one with the campaign's own metrics. Rows that have all of them stay. All others
+// wait in a table of their own, without any, until their flights are repeated.
+void ResultFolder::MeasureOwn(const Campaign& campaign) {
+  if (OwnMetricLines(own_metrics_) == OwnMetricLines(campaign.own_metrics)) return;
+  const std::optional<Positions> places = FindOwn(campaign.own_metrics, own_metrics_);
+  const MetricList then = list_;
+  const Positions metrics_then = metrics_;
+  const std::size_t of_vehicle = MetricCount(then.stages());
+  database_->Execute("ALTER TABLE cases RENAME TO cases_then");
+  CreateCases(*database_, "cases", MetricsOf(campaign), MeasuredMetrics(campaign));
+  if (!places && !has_unmeasured_) CreateCases(*database_, kUnmeasured, then, OfVehicle(then, metrics_then));
+  {
+    const MetricList now = MetricsOf(campaign);
+    const Positions to = places ? MeasuredMetrics(campaign) : OfVehicle(then, metrics_then);
+    Statement select = database_->Prepare(SelectCases(then, metrics_then, "cases_then"));
+    Statement insert = database_->Prepare(InsertInto(places ? "cases" : kUnmeasured, now, to));
+    while (select.Step()) {
+      CaseResult result = ReadCase(select, then, metrics_then, directory_);
+      std::vector<double> own;
+      for (const std::size_t place : places.value_or(Positions()))
+        own.push_back(result.metrics[of_vehicle + place]);
+      result.metrics.resize(of_vehicle);
+      result.metrics.insert(result.metrics.end(), own.begin(), own.end());
+      InsertRow(insert, result, to);
+    }
+  }
+  database_->Execute("DROP TABLE cases_then");
+  if (has_unmeasured_ && campaign.own_metrics.empty()) {
+    database_->Execute(fmt::format("INSERT INTO cases SELECT * FROM {}", kUnmeasured));
+    database_->Execute(fmt::format("DROP TABLE {}", kUnmeasured));
+  }
+  WriteOwnMetrics(*database_, campaign);
+  ReadColumnsOfTable();
+}
+
 void ResultFolder::RemoveDamaged() {
   {
-    Statement select = database_->Prepare(SelectCases(stages_, metrics_));
+    Statement select = database_->Prepare(SelectCases(list_, metrics_));
     while (select.Step()) {
-      if (!ReadRow(select, stages_, metrics_))
+      if (!ReadRow(select, list_, metrics_))
         damaged_.push_back(static_cast<std::uint64_t>(select.Integer(0)));
     }
   }
@@ -314,7 +454,8 @@ void ResultFolder::RemoveDamaged() {
 }
 
 void ResultFolder::Remove(const std::vector<std::uint64_t>& cases) {
-  for (const char* table : {"cases", "execution"}) {
+  for (const char* table : {"cases", "execution", kUnmeasured}) {
+    if (table == kUnmeasured && !has_unmeasured_) continue;
     Statement remove = database_->Prepare(fmt::format("DELETE FROM {} WHERE case_index = ?", table));
     for (const std::uint64_t case_index : cases) {
       remove.Reset();
@@ -368,46 +509,30 @@ void ResultFolder::Store(std::span<const CaseResult> results, std::span<const Ex
 }
 
 std::size_t ResultFolder::Insert(std::span<const CaseResult> results) {
-  std::string parameters = "?, ?, ?, ?, ?, ?, ?";
-  for (std::size_t i = 0; i < InputCount(stages_) + metrics_.size(); ++i) parameters += ", ?";
   Statement stored = database_->Prepare("SELECT digest FROM cases WHERE case_index = ?");
-  Statement insert = database_->Prepare("INSERT INTO cases VALUES (" + parameters + ")");
+  Statement insert = database_->Prepare(InsertInto("cases", list_, metrics_));
   Statement lift = database_->Prepare("DELETE FROM quarantined WHERE case_index = ?");
   std::size_t added = 0;
   for (const CaseResult& flown : results) {
     const auto index = static_cast<std::int64_t>(flown.case_index);
     const CaseResult result = WithMetrics(flown, metrics_);
-    const std::string digest = result.digest.Hex();
     stored.Reset();
     stored.BindInteger(1, index);
     if (stored.Step()) {
-      if (stored.Text(0) == digest) continue;
-      throw ResultError(Kind::kConflict,
-                        fmt::format("case {} was flown twice with different digests: {} is stored, "
-                                    "{} arrived",
-                                    index, stored.Text(0), digest));
+      RequireSame(index, stored.Text(0), result.digest.Hex());
+      continue;
     }
-    if (result.inputs.size() != InputCount(stages_) || result.metrics.size() != MetricCount(stages_)) {
-      throw ResultError(Kind::kConflict,
-                        fmt::format("case {} has {} inputs and {} metrics, its vehicle has {} and {}", index,
-                                    result.inputs.size(), result.metrics.size(), InputCount(stages_),
-                                    MetricCount(stages_)));
+    if (result.inputs.size() != InputCount(list_.stages()) || result.metrics.size() != list_.size()) {
+      throw ResultError(
+          Kind::kConflict,
+          fmt::format("case {} has {} inputs and {} metrics, its vehicle has {} and {}", index,
+                      result.inputs.size(), result.metrics.size(), InputCount(list_.stages()), list_.size()));
     }
-    insert.Reset();
-    int parameter = 0;
-    insert.BindInteger(++parameter, index);
-    insert.BindText(++parameter, OutcomeName(result.outcome));
-    insert.BindReal(++parameter, result.end_time_s);
-    insert.BindInteger(++parameter, result.end_stage);
-    insert.BindText(++parameter, result.reason);
-    for (const double value : result.inputs) insert.BindReal(++parameter, value);
-    for (const std::size_t i : metrics_) insert.BindReal(++parameter, result.metrics[i]);
-    insert.BindText(++parameter, digest);
-    insert.BindText(++parameter, Fingerprint(result).Hex());
-    insert.Step();
+    InsertRow(insert, result, metrics_);
     lift.Reset();
     lift.BindInteger(1, index);
     lift.Step();
+    if (has_unmeasured_) TakeTheUnmeasured(*database_, index, result.digest.Hex());
     ++added;
   }
   return added;
@@ -446,6 +571,24 @@ std::vector<std::uint64_t> ResultFolder::PresentCases() const {
   Statement select = database_->Prepare("SELECT case_index FROM cases ORDER BY case_index");
   while (select.Step()) present.push_back(static_cast<std::uint64_t>(select.Integer(0)));
   return present;
+}
+
+std::optional<std::uint64_t> ResultFolder::LastCase() const {
+  std::optional<std::uint64_t> last;
+  for (const char* table : {"cases", kUnmeasured}) {
+    if (table == kUnmeasured && !has_unmeasured_) continue;
+    Statement select =
+        database_->Prepare(fmt::format("SELECT case_index FROM {} ORDER BY case_index DESC LIMIT 1", table));
+    if (select.Step()) last = std::max(last.value_or(0), static_cast<std::uint64_t>(select.Integer(0)));
+  }
+  return last;
+}
+
+std::uint64_t ResultFolder::UnmeasuredCount() const {
+  if (!has_unmeasured_) return 0;
+  Statement select = database_->Prepare(fmt::format("SELECT COUNT(*) FROM {}", kUnmeasured));
+  select.Step();
+  return static_cast<std::uint64_t>(select.Integer(0));
 }
 
 std::vector<std::pair<std::uint64_t, Digest>> ResultFolder::Fingerprints() const {
@@ -525,17 +668,17 @@ bool ResultFolder::Contains(std::uint64_t case_index) const {
 }
 
 CaseResult ResultFolder::Load(std::uint64_t case_index) const {
-  Statement select = database_->Prepare(SelectCases(stages_, metrics_) + " WHERE case_index = ?");
+  Statement select = database_->Prepare(SelectCases(list_, metrics_) + " WHERE case_index = ?");
   select.BindInteger(1, static_cast<std::int64_t>(case_index));
   if (!select.Step()) {
     throw InputError(fmt::format("{}: has no result of case {}", directory_.string(), case_index));
   }
-  return ReadCase(select, stages_, metrics_, directory_);
+  return ReadCase(select, list_, metrics_, directory_);
 }
 
 void ResultFolder::ForEach(const std::function<void(const CaseResult&)>& callback) const {
-  Statement select = database_->Prepare(SelectCases(stages_, metrics_) + " ORDER BY case_index");
-  while (select.Step()) callback(ReadCase(select, stages_, metrics_, directory_));
+  Statement select = database_->Prepare(SelectCases(list_, metrics_) + " ORDER BY case_index");
+  while (select.Step()) callback(ReadCase(select, list_, metrics_, directory_));
 }
 
 }  // namespace dispersa

@@ -42,7 +42,8 @@ class ResultFolder : public ResultStore {
   /// object lives. `lock` is the caller's lock, if it has one already.
   static ResultFolder Create(const std::filesystem::path& directory, const Campaign& campaign,
                              std::optional<FolderLock> lock = {});
-  /// Opens a folder to go on with, possibly with more cases, other requirements or another name.
+  /// Opens a folder to go on with, possibly with more cases, other requirements or another name. Where the
+  /// campaign has metrics of its own that were not measured, every case is to be flown again.
   /// InputError if it holds another flight id or engine, or more cases than the campaign has. Rows that are
   /// damaged are removed, so that their cases are flown again. Locked as by Create.
   static ResultFolder Resume(const std::filesystem::path& directory, const Campaign& campaign,
@@ -57,9 +58,17 @@ class ResultFolder : public ResultStore {
 
   const std::filesystem::path& directory() const { return directory_; }
   /// Of the vehicle, as far as its results' columns depend on it: kUsualStages or kMaxStages.
-  std::size_t stages() const { return stages_; }
-  /// Positions in Metrics() of those that are stored: of the vehicle, and of the law that was flown.
+  std::size_t stages() const { return list_.stages(); }
+  /// The positions of metrics in its results.
+  const MetricList& metric_list() const { return list_; }
+  /// Positions of those that are stored: of the vehicle, of the law that was flown, and the campaign's own.
   const std::vector<std::size_t>& metrics() const { return metrics_; }
+  /// As they were measured. Their expressions are not parsed.
+  const std::vector<OwnMetric>& own_metrics() const { return own_metrics_; }
+  /// The highest index that was flown, also without the campaign's own metrics.
+  std::optional<std::uint64_t> LastCase() const;
+  /// Cases that were flown without all of the campaign's own metrics.
+  std::uint64_t UnmeasuredCount() const;
   /// Value of "campaign_id", "flight_id", "engine", "name", "seed", "cases", "sampling". Three values are
   /// kept as they were before the first case: "planned_cases", "requirements_id" and "requirements"
   /// (RequirementLine() each).
@@ -115,11 +124,15 @@ class ResultFolder : public ResultStore {
   std::size_t Insert(std::span<const CaseResult> results);
   void Insert(std::span<const ExecutionRecord> records);
   void RemoveDamaged();
+  void MeasureOwn(const Campaign& campaign);
+  void ReadColumnsOfTable();
   void Remove(const std::vector<std::uint64_t>& cases);
 
   std::filesystem::path directory_;
-  std::size_t stages_;
+  MetricList list_;
   std::vector<std::size_t> metrics_;
+  std::vector<OwnMetric> own_metrics_;
+  bool has_unmeasured_ = false;  ///< cases were flown before without all of the campaign's own metrics
   std::optional<FolderLock> lock_;
   std::unique_ptr<Database> database_;
   std::vector<std::uint64_t> damaged_;

@@ -30,28 +30,30 @@ struct FlyOptions {
   std::string integrator;  ///< empty: the one that campaigns and scenarios fly
 };
 
-void PrintJson(const CaseResult& result, const std::vector<std::size_t>& metrics) {
-  const nlohmann::ordered_json json = {{"schema", "dispersa/fly/1"},
-                                       {"outcome", OutcomeName(result.outcome)},
-                                       {"end_time_s", Number(result.end_time_s)},
-                                       {"end_stage", result.end_stage},
-                                       {"reason", result.reason},
-                                       {"inputs", InputsJson(result.inputs)},
-                                       {"metrics", MetricsJson(result.metrics, metrics)},
-                                       {"digest", result.digest.Hex()}};
+void PrintJson(const CaseResult& result, const Campaign& campaign) {
+  const nlohmann::ordered_json json = {
+      {"schema", "dispersa/fly/1"},
+      {"outcome", OutcomeName(result.outcome)},
+      {"end_time_s", Number(result.end_time_s)},
+      {"end_stage", result.end_stage},
+      {"reason", result.reason},
+      {"inputs", InputsJson(result.inputs)},
+      {"metrics", MetricsJson(result.metrics, MetricsOf(campaign), MeasuredMetrics(campaign))},
+      {"digest", result.digest.Hex()}};
   fmt::print("{}\n", json.dump(2));
 }
 
-void PrintText(std::FILE* stream, const CaseResult& result, const std::vector<std::size_t>& metrics) {
+void PrintText(std::FILE* stream, const CaseResult& result, const Campaign& campaign) {
   fmt::print(stream, "outcome  {}\ndigest   {}\n", OutcomeText(result), result.digest.Hex());
   const std::vector<double> nominal = InputValues(FlightInputs{}, kMaxStages);
   for (std::size_t i = 0; i < result.inputs.size(); ++i) {
     if (result.inputs[i] == nominal[i]) continue;
     fmt::print(stream, "{:<44} {}\n", "input_" + InputColumns()[i].name, ShortestText(result.inputs[i]));
   }
-  for (const std::size_t i : metrics) {
+  const MetricList metrics = MetricsOf(campaign);
+  for (const std::size_t i : MeasuredMetrics(campaign)) {
     const std::string value = ShortestText(result.metrics[i]);
-    fmt::print(stream, "{:<44} {}\n", "metric_" + MetricNames()[i], value.empty() ? "-" : value);
+    fmt::print(stream, "{:<44} {}\n", "metric_" + metrics.NameAt(i), value.empty() ? "-" : value);
   }
 }
 
@@ -82,9 +84,9 @@ ExitCode FlyOne(const FlyOptions& options, const GlobalOptions& global) {
                                         options.history.empty() ? nullptr : &history, scheme);
   if (!options.history.empty()) WriteFile(options.history, HistoryCsv(history, campaign.autopilot));
   if (global.json) {
-    PrintJson(result, MeasuredMetrics(campaign));
+    PrintJson(result, campaign);
   } else {
-    PrintText(stream, result, MeasuredMetrics(campaign));
+    PrintText(stream, result, campaign);
   }
   return kExitDone;
 }

@@ -49,10 +49,7 @@ struct SearchCommand {
 /// A limit of the command line, or the campaign's own.
 Requirement WantedRequirement(const SearchCommand& command, const Campaign& campaign) {
   if (!command.metric.empty()) {
-    const std::vector<std::string>& names = MetricNames();
-    const bool is_known = std::find(names.begin(), names.end(), command.metric) != names.end();
-    const std::string why = is_known ? WhyNotMeasured(campaign, command.metric) : "is not a metric";
-    if (!why.empty())
+    if (const std::string why = WhyNotMeasured(campaign, command.metric); !why.empty())
       throw InputError("--metric: '" + command.metric + "' " + why,
                        "a name in cases.csv without its prefix 'metric_'");
   }
@@ -78,7 +75,7 @@ class Searcher {
       : flights_(campaign),
         space_(campaign),
         limits_(LimitsOf(requirement)),
-        metric_(MetricColumn(requirement.metric)),
+        metric_(MetricsOf(campaign).PositionOf(requirement.metric)),
         max_flights_(max_flights),
         progress_("flights", quiet) {}
 
@@ -173,7 +170,7 @@ ExitCode SearchFor(const SearchCommand& command, const GlobalOptions& global) {
   std::string text = Sentence(result, requirement, command.options.reach) + "\n";
   if (result.found) {
     const CaseResult flown = searcher.Fly(result.point);
-    const double value = flown.metrics[MetricColumn(requirement.metric)];
+    const double value = flown.metrics[MetricsOf(campaign).PositionOf(requirement.metric)];
     json["distance"] = Number(result.distance);
     json["outcome"] = OutcomeName(flown.outcome);
     json["value"] = Number(value);

@@ -214,7 +214,7 @@ class CampaignRun {
       return "no worker may fly this campaign: " + *coordinator.refusal();
     }
     // Whoever takes their places would say the same.
-    if (const auto refusal = coordinator.RefusalByAll(book_.campaign().flight_id)) {
+    if (const auto refusal = coordinator.RefusalByAll(book_.campaign().result_id())) {
       return "no worker can fly this campaign: " + *refusal;
     }
     if (workers.fruitless_ends() > kFruitlessEndsAllowed) {

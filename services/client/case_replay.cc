@@ -17,7 +17,7 @@ CaseReplay ReplayCase(const StoredCampaign& stored, std::uint64_t case_index, Hi
   CaseReplay replay;
   replay.stored = stored.folder.Load(case_index);
   replay.replayed = CampaignFlights(stored.campaign).FlyCase(case_index, history);
-  replay.differences = Differences(replay.stored, replay.replayed);
+  replay.differences = Differences(replay.stored, replay.replayed, MetricsOf(stored.campaign));
   return replay;
 }
 

@@ -14,10 +14,10 @@ nlohmann::ordered_json InputsJson(const std::vector<double>& inputs) {
   return json;
 }
 
-nlohmann::ordered_json MetricsJson(const std::vector<double>& metrics,
+nlohmann::ordered_json MetricsJson(const std::vector<double>& metrics, const MetricList& list,
                                    const std::vector<std::size_t>& positions) {
   nlohmann::ordered_json json = nlohmann::ordered_json::object();
-  for (const std::size_t i : positions) json[MetricNames()[i]] = Number(metrics[i]);
+  for (const std::size_t i : positions) json[list.NameAt(i)] = Number(metrics[i]);
   return json;
 }
 

@@ -7,10 +7,10 @@
 
 namespace dispersa {
 
-/// Inputs by name, and the metrics at some positions of Metrics(): {"thrust_factor_stage1": 1.01, ...}. An
+/// Inputs by name, and the metrics at some positions of their list: {"thrust_factor_stage1": 1.01, ...}. An
 /// undefined value is null.
 nlohmann::ordered_json InputsJson(const std::vector<double>& inputs);
-nlohmann::ordered_json MetricsJson(const std::vector<double>& metrics,
+nlohmann::ordered_json MetricsJson(const std::vector<double>& metrics, const MetricList& list,
                                    const std::vector<std::size_t>& positions);
 
 /// "completed", or the outcome with time, stage and reason.

@@ -21,15 +21,6 @@ CaseColumns AllColumns(const ResultFolder& folder) {
   return ReadColumns(folder, inputs);
 }
 
-void CheckMetrics(const std::vector<std::string>& metrics) {
-  const std::vector<std::string>& names = MetricNames();
-  for (const std::string& metric : metrics) {
-    if (std::find(names.begin(), names.end(), metric) == names.end())
-      throw InputError("--metric: '" + metric + "' is not a metric",
-                       "a name in cases.csv without its prefix 'metric_'");
-  }
-}
-
 /// Both must have what is asked for.
 void CheckMeasured(const std::string& name, const Campaign& campaign,
                    const std::vector<std::string>& metrics) {
@@ -37,6 +28,14 @@ void CheckMeasured(const std::string& name, const Campaign& campaign,
     if (const std::string why = WhyNotMeasured(campaign, metric); !why.empty())
       throw InputError("--metric: " + name + ": '" + metric + "' " + why,
                        "a metric that both campaigns have");
+}
+
+void CheckSameDefinitions(const Campaign& a, const Campaign& b, const std::vector<std::string>& metrics) {
+  for (const OwnMetric& own : a.own_metrics)
+    if (std::find(metrics.begin(), metrics.end(), own.name) != metrics.end() &&
+        !FindOwn({own}, b.own_metrics))
+      throw InputError("--metric: '" + own.name + "' has another expression in each campaign",
+                       "a metric that means the same in both");
 }
 
 std::vector<CampaignChange> ChangesOf(const Campaign& a, const Campaign& b) {
@@ -50,11 +49,11 @@ std::vector<CampaignChange> ChangesOf(const Campaign& a, const Campaign& b) {
 
 FolderComparison CompareFolders(const std::string& name_a, const std::string& name_b,
                                 const std::vector<std::string>& metrics) {
-  CheckMetrics(metrics);
   const StoredCampaign a = OpenStored(name_a);
   const StoredCampaign b = OpenStored(name_b);
   CheckMeasured(name_a, a.campaign, metrics);
   CheckMeasured(name_b, b.campaign, metrics);
+  CheckSameDefinitions(a.campaign, b.campaign, metrics);
   FolderComparison compared = {{}, AllColumns(a.folder), AllColumns(b.folder)};
   for (const auto& [name, cases] : {std::pair{&name_a, &compared.a}, std::pair{&name_b, &compared.b}})
     if (cases->rows() == 0) throw InputError(*name + ": no case has a result");

@@ -110,7 +110,8 @@ void Coordinator::Handle(const CoordinatorEvent& event) {
   } else if (const auto* report = std::get_if<Report>(&event.what)) {
     const auto accepted = dispatcher_.On(event.sender, *report, now_s_);
     if (accepted.empty() || !link_.HasResultObservers()) return;
-    for (const FlownCase* flown : accepted) link_.Publish(report->flight_id, report->worker, *flown);
+    for (const FlownCase* flown : accepted)
+      link_.Publish(dispatcher_.FlightIdOf(report->flight_id), report->worker, *flown);
   }
 }
 

@@ -25,7 +25,7 @@ Dispatcher::Dispatcher(std::uint64_t epoch, std::string engine_version, const Di
     : epoch_(epoch), engine_version_(std::move(engine_version)), options_(options) {}
 
 void Dispatcher::BeginCampaign(CampaignBook& book, int priority) {
-  FlyingCampaign& campaign = campaigns_[book.campaign().flight_id];
+  FlyingCampaign& campaign = campaigns_[book.campaign().result_id()];
   campaign.book = &book;
   campaign.priority = priority;
   book.KeepAudit(options_.audit);
@@ -268,10 +268,13 @@ bool Dispatcher::MayReturn(const std::string& sender, const Report& report, cons
       Disagree(sender, "it returns case " + std::to_string(case_index) + ", which it was not given");
     return false;
   }
-  if (book.IsDrawnSo(flown.result)) return true;
-  Disagree(sender, "a result has other inputs than its case");
+  const bool is_drawn_so = book.IsDrawnSo(flown.result);
+  if (is_drawn_so && book.HasItsMetrics(flown.result)) return true;
+  Disagree(sender, is_drawn_so ? "a result has other metrics than its campaign"
+                               : "a result has other inputs than its case");
   Expel(report.worker, "case " + std::to_string(case_index) + " of campaign " + book.campaign().name +
-                           ": its inputs are not those that the campaign draws");
+                           (is_drawn_so ? ": its metrics are not those of the campaign"
+                                        : ": its inputs are not those that the campaign draws"));
   return false;
 }
 
@@ -291,6 +294,11 @@ void Dispatcher::On(const std::string& sender, const CampaignRefusal& refusal, d
   refusal_ = reason;
   campaign->second.book->ledger().Lost(refusal.worker, WorkerEnd::kLeft, *refusal_);
   known->second.ForgetSent(refusal.flight_id);
+}
+
+std::string Dispatcher::FlightIdOf(const std::string& result_id) const {
+  const auto campaign = campaigns_.find(result_id);
+  return campaign == campaigns_.end() ? "" : campaign->second.book->campaign().flight_id;
 }
 
 std::optional<std::string> Dispatcher::RefusalByAll(const std::string& flight_id) const {
@@ -447,7 +455,7 @@ bool Dispatcher::AssignTo(const std::string& id, Worker& worker, double now_s) {
     if (!campaign->book->pause().empty() || !campaign->book->breakdown().empty()) continue;
     Ledger& ledger = campaign->book->ledger();
     if (auto assignment = ledger.GiveTo(id, batches - ledger.Batches(id), now_s)) {
-      GiveOrder(worker, campaign->book->campaign().flight_id, assignment->attempt,
+      GiveOrder(worker, campaign->book->campaign().result_id(), assignment->attempt,
                 std::move(assignment->cases), now_s);
       return true;
     }

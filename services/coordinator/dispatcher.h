@@ -85,6 +85,8 @@ class Dispatcher {
     std::uint64_t flown;
   };
   std::vector<WorkerView> Workers() const;
+  /// Of a campaign that flies.
+  std::string FlightIdOf(const std::string& result_id) const;
   /// The reason of one worker, if every worker refuses this campaign. Nothing without workers.
   std::optional<std::string> RefusalByAll(const std::string& flight_id) const;
   /// The latest reason why a worker was refused, or refused a campaign.

@@ -94,7 +94,7 @@ Service::Service(const ServiceOptions& options, Workforce& workforce)
 Service::~Service() {
   stop_report_ = true;
   if (reporting_) reporting_->verdict.wait();
-  for (auto& [id, flying] : flying_) workforce_.EndCampaign(catalogue_.At(id).flight_id);
+  for (auto& [id, flying] : flying_) workforce_.EndCampaign(flying.book->campaign().result_id());
 }
 
 void Service::Step() {
@@ -403,7 +403,7 @@ Service::Book Service::TakeBack(const std::string& id) {
   CatalogueEntry& entry = catalogue_.At(id);
   found->second.book->TryFlush();
   NoteConflicts(entry, found->second);
-  workforce_.EndCampaign(entry.flight_id);
+  workforce_.EndCampaign(found->second.book->campaign().result_id());
   Book book = std::move(found->second.book);
   std::erase_if(flew_, [&](const auto& each) { return each.first == id; });
   flew_.emplace_back(id, book->tally());
@@ -455,7 +455,7 @@ CampaignView Service::View(const std::string& id) const {
       view.progress.waiting = entry.cases - std::min(entry.cases, entry.done + entry.quarantined);
     return view;
   }
-  if (const auto refusal = workforce_.RefusalByAll(entry.flight_id))
+  if (const auto refusal = workforce_.RefusalByAll(flying->second.book->campaign().result_id()))
     view.problem = "no worker here can fly it: " + *refusal;
   if (const std::string& pause = flying->second.book->pause(); !pause.empty()) view.problem = Waiting(pause);
   view.progress = flying->second.book->ledger().Progress();

@@ -68,7 +68,7 @@ void Auditor::Fly(const Campaign& campaign, std::vector<Claim> claims) {
   if (claims.empty()) return;
   {
     const Lock lock(mutex_);
-    Work& work = work_[campaign.flight_id];
+    Work& work = work_[campaign.result_id()];
     if (!work.campaign) work.campaign = std::make_shared<const Campaign>(campaign);
     work.claims.insert(work.claims.end(), claims.begin(), claims.end());
     for (auto other = work_.begin(); other != work_.end() && work_.size() > kKnownCampaigns;) {

@@ -77,6 +77,10 @@ CampaignBook::CampaignBook(const Campaign& campaign, std::unique_ptr<ResultStore
     ledger_.RequireSecondFlight(i, store_->WorkerOf(i).value_or(""));
 }
 
+bool CampaignBook::HasItsMetrics(const CaseResult& result) const {
+  return result.metrics.size() == MetricsOf(campaign_).size();
+}
+
 bool CampaignBook::IsDrawnSo(const CaseResult& result) const {
   const std::vector<double> drawn =
       InputValues(design_.Draw(result.case_index), campaign_.vehicle.stages.size());
@@ -163,7 +167,7 @@ void CampaignBook::Refuse(std::uint64_t case_index, const std::string& once, con
 
 void CampaignBook::RefuseForDifference(const CaseResult& first, const std::string& once,
                                        const CaseResult& second, const std::string& again) {
-  const std::vector<ResultDifference> differences = Differences(first, second);
+  const std::vector<ResultDifference> differences = Differences(first, second, MetricsOf(campaign_));
   if (differences.empty()) return;
   const ResultDifference& at = differences.front();
   Refuse(second.case_index, once, again,

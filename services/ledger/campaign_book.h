@@ -81,6 +81,8 @@ class CampaignBook {
   std::uint64_t confirmed() const { return confirmed_; }
   /// Whether a result's inputs are those that the campaign draws for its case.
   bool IsDrawnSo(const CaseResult& result) const;
+  /// Whether it has as many metrics as the campaign measures.
+  bool HasItsMetrics(const CaseResult& result) const;
   /// Whatever the workers returned that `worker` means (IsMeantBy) is flown again. A campaign that stops when
   /// it is decided keeps the cases that it was extended to.
   void Disown(const std::string& worker);

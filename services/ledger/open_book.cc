@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <limits>
 #include <map>
+#include <optional>
 #include <utility>
 
 #include "core/campaign/case_design.h"
@@ -51,8 +52,24 @@ class Fliers {
   std::pair<std::string, std::string> nobody_{kUnknownWorker, ""};
 };
 
+// Of the campaign's own metrics those at these places among the result's.
+CaseResult WithOwnMetrics(const CaseResult& result, const MetricList& list,
+                          const std::vector<std::size_t>& places) {
+  const std::size_t of_vehicle = list.size() - list.own().size();
+  CaseResult kept = result;
+  kept.metrics.resize(of_vehicle);
+  for (const std::size_t place : places) kept.metrics.push_back(result.metrics[of_vehicle + place]);
+  return kept;
+}
+
 void TakeOver(const ResultFolder& from, const Campaign& campaign, const std::vector<std::string>& distrusted,
               ResultFolder& to) {
+  const std::optional<std::vector<std::size_t>> own = FindOwn(campaign.own_metrics, from.own_metrics());
+  if (!own) {
+    LogInfo("{}: its results are not taken over: they lack metrics of the campaign {}",
+            from.directory().string(), campaign.name);
+    return;
+  }
   const CaseDesign design(campaign);
   const Fliers fliers(from);
   std::vector<CaseResult> results;
@@ -73,7 +90,7 @@ void TakeOver(const ResultFolder& from, const Campaign& campaign, const std::vec
     if (std::any_of(distrusted.begin(), distrusted.end(),
                     [&](const std::string& name) { return IsMeantBy(name, record.worker); }))
       return;
-    results.push_back(result);
+    results.push_back(WithOwnMetrics(result, from.metric_list(), *own));
     records.push_back(std::move(record));
     if (results.size() >= kBatch) store();
   });

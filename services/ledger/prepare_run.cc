@@ -86,10 +86,10 @@ PreparedRun PrepareRun(const RunRequest& request, const StopCheck& should_stop) 
     ResultFolder folder = ResultFolder::Create(directory, campaign, std::move(lock));
     return {std::move(campaign), std::move(folder), std::move(flown)};
   }
-  const std::vector<std::uint64_t> present = ResultFolder::Open(directory).PresentCases();
-  if (!present.empty() && present.back() >= campaign.sampling.cases) {
+  const std::optional<std::uint64_t> last = ResultFolder::Open(directory).LastCase();
+  if (last && *last >= campaign.sampling.cases) {
     CampaignOverrides extended = request.overrides;
-    extended.cases = present.back() + 1;
+    extended.cases = *last + 1;
     Campaign larger = LoadCampaign(request.campaign, extended);
     if (larger.flight_id == campaign.flight_id) {
       LogWarning("{} holds more cases than the {} asked for: the campaign is extended to {}",
@@ -101,6 +101,8 @@ PreparedRun PrepareRun(const RunRequest& request, const StopCheck& should_stop) 
   for (const std::uint64_t damaged : folder.damaged()) {
     LogWarning("{}: the row of case {} is damaged; it is flown again", directory.string(), damaged);
   }
+  if (const std::uint64_t unmeasured = folder.UnmeasuredCount(); unmeasured > 0)
+    LogInfo("{}: {} cases are flown again for the campaign's own metrics", directory.string(), unmeasured);
   return {std::move(campaign), std::move(folder), std::move(flown)};
 }
 

@@ -14,9 +14,11 @@ RunningTally::RunningTally(const Campaign& campaign)
     : requirements_(campaign.requirements),
       failures_(requirements_.size()),
       independent_(IsIndependent(campaign.sampling.method)) {
-  for (const Requirement& requirement : requirements_) columns_.push_back(MetricColumn(requirement.metric));
+  const MetricList metrics = MetricsOf(campaign);
+  for (const Requirement& requirement : requirements_)
+    columns_.push_back(metrics.PositionOf(requirement.metric));
   for (const std::string& metric : KeyMetrics(campaign))
-    histograms_.push_back({metric, MetricColumn(metric), {}});
+    histograms_.push_back({metric, metrics.PositionOf(metric), {}});
 }
 
 void RunningTally::Add(const CaseResult& result) {

@@ -214,7 +214,7 @@ std::vector<int> ColumnsNamed(const std::optional<std::vector<std::string>>& nam
   return columns;
 }
 
-py::dict FlightValues(CaseResult result, const std::vector<std::size_t>& metrics) {
+py::dict FlightValues(CaseResult result, const MetricList& list, const std::vector<std::size_t>& metrics) {
   std::vector<double> values;
   for (const std::size_t i : metrics) values.push_back(result.metrics[i]);
   py::dict flight;
@@ -225,7 +225,7 @@ py::dict FlightValues(CaseResult result, const std::vector<std::size_t>& metrics
   flight["digest"] = result.digest.Hex();
   flight["inputs"] = ArrayOf(std::move(result.inputs));
   flight["metrics"] = ArrayOf(std::move(values));
-  flight["metric_names"] = NamesOf(metrics);
+  flight["metric_names"] = NamesOf(list, metrics);
   return flight;
 }
 
@@ -249,7 +249,11 @@ class FlownWith {
     return flights_ ? flights_->model().definition().autopilot : campaign_.campaign().autopilot;
   }
   /// Positions of the metrics that the flights have.
-  std::vector<std::size_t> metrics() const { return MetricsUnder(campaign_.stages(), autopilot().pitch.law); }
+  std::vector<std::size_t> metrics() const {
+    Campaign flown = campaign_.campaign();
+    flown.autopilot = autopilot();
+    return MeasuredMetrics(flown);
+  }
   void FliesTheNominal() const {
     if (law_) law_->FliesTheNominal();
   }
@@ -275,7 +279,7 @@ py::dict FlyOne(const LoadedCampaign& campaign, std::optional<std::uint64_t> cas
     return flights.Fly(InputsOf(campaign, flights, case_index, replaced), case_index.value_or(0),
                        step_s > 0.0 ? &history : nullptr, scheme);
   });
-  py::dict flight = FlightValues(std::move(result), with.metrics());
+  py::dict flight = FlightValues(std::move(result), MetricsOf(campaign.campaign()), with.metrics());
   const std::vector<int> columns = HistoryColumnsUnder(with.autopilot());
   flight["history"] = step_s > 0.0 ? py::object(HistoryArray(history, columns)) : py::none();
   flight["history_columns"] = HistoryNames(columns);
@@ -343,7 +347,7 @@ py::dict FlyMany(const LoadedCampaign& campaign, const std::vector<std::uint64_t
                               if (observer.ShouldStop()) throw Interrupted();
                             });
   });
-  ResultColumns table(InputCount(campaign.stages()), with.metrics());
+  ResultColumns table(MetricsOf(campaign.campaign()), with.metrics());
   for (const CaseResult& result : results) table.Add(result);
   py::dict answer = table.Take();
   answer["history_columns"] = HistoryNames(columns);
@@ -380,7 +384,9 @@ void AddCampaigns(py::module_& module) {
       .def_property_readonly("seed", [](const LoadedCampaign& c) { return c.campaign().sampling.seed; })
       .def_property_readonly("stages", &LoadedCampaign::stages)
       .def_property_readonly("metric_names",
-                             [](const LoadedCampaign& c) { return NamesOf(MeasuredMetrics(c.campaign())); })
+                             [](const LoadedCampaign& c) {
+                               return NamesOf(MetricsOf(c.campaign()), MeasuredMetrics(c.campaign()));
+                             })
       .def_property_readonly("python_law", &PythonLawOf)
       .def_property_readonly("law_axes",
                              [](const LoadedCampaign& c) { return PluginAxes(c.campaign().autopilot); })

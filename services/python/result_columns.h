@@ -10,24 +10,27 @@
 #include <vector>
 
 #include "core/campaign/case_result.h"
+#include "core/flight/flight_inputs.h"
 #include "core/flight/outcome.h"
 #include "services/python/arrays.h"
 
 namespace dispersa {
 
 /// Names of the metrics at these positions.
-inline std::vector<std::string> NamesOf(const std::vector<std::size_t>& metrics) {
+inline std::vector<std::string> NamesOf(const MetricList& list, const std::vector<std::size_t>& metrics) {
   std::vector<std::string> names;
-  for (const std::size_t i : metrics) names.push_back(MetricNames()[i]);
+  for (const std::size_t i : metrics) names.push_back(list.NameAt(i));
   return names;
 }
 
 /// Gathered without the interpreter's lock, taken with it.
 class ResultColumns {
  public:
-  /// `metrics`: positions in Metrics() of those that are kept.
-  ResultColumns(std::size_t inputs, std::vector<std::size_t> metrics)
-      : input_count_(inputs), metric_columns_(std::move(metrics)) {}
+  /// `metrics`: positions in the list of those that are kept.
+  ResultColumns(MetricList list, std::vector<std::size_t> metrics)
+      : list_(std::move(list)),
+        input_count_(InputCount(list_.stages())),
+        metric_columns_(std::move(metrics)) {}
 
   /// A result with as many inputs and metrics.
   void Add(const CaseResult& result) {
@@ -52,12 +55,13 @@ class ResultColumns {
     columns["inputs"] = ArrayOf(std::move(inputs_), {rows, static_cast<pybind11::ssize_t>(input_count_)});
     columns["metrics"] =
         ArrayOf(std::move(metrics_), {rows, static_cast<pybind11::ssize_t>(metric_columns_.size())});
-    columns["metric_names"] = NamesOf(metric_columns_);
+    columns["metric_names"] = NamesOf(list_, metric_columns_);
     columns["digest"] = digest_;
     return columns;
   }
 
  private:
+  MetricList list_;
   std::size_t input_count_;
   std::vector<std::size_t> metric_columns_;
   std::vector<std::uint64_t> index_;

@@ -114,7 +114,7 @@ py::dict Results(const std::string& directory) {
   {
     const py::gil_scoped_release free;
     const StoredCampaign stored = OpenStored(directory);
-    columns.emplace(InputCount(stored.folder.stages()), stored.folder.metrics());
+    columns.emplace(stored.folder.metric_list(), stored.folder.metrics());
     stored.folder.ForEach([&](const CaseResult& result) { columns->Add(result); });
     engine = stored.folder.Provenance("engine");
     const CampaignSummary built = BuildSummary(stored.folder, stored.campaign);

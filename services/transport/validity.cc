@@ -63,7 +63,8 @@ std::string WhyInvalid(const Report& report) {
   const auto has_sizes = [](const FlownCase& flown) {
     const auto are_of = [&](std::size_t stages) {
       return flown.result.inputs.size() == InputCount(stages) &&
-             flown.result.metrics.size() == MetricCount(stages);
+             flown.result.metrics.size() >= MetricCount(stages) &&
+             flown.result.metrics.size() <= MetricCount(stages) + kMaxOwnMetrics;
     };
     if (flown.is_quarantined)
       return flown.result.inputs.empty() && flown.result.metrics.empty() && !flown.result.reason.empty();

@@ -101,12 +101,12 @@ void Worker::Load(const CampaignText& text) {
                 EngineVersion();
     } else {
       const Campaign campaign = ParseCampaign(text.text, text.name);
-      if (campaign.flight_id == text.flight_id) {
+      if (campaign.result_id() == text.flight_id) {
         flights = std::make_shared<CampaignFlights>(campaign);
         CheckPluginIsDeterministic(*flights, campaign.sampling.cases);
       } else {
         problem = "flight id " + text.flight_id + " of the coordinator differs from the worker's " +
-                  campaign.flight_id;
+                  campaign.result_id();
       }
     }
   } catch (const std::exception& error) {

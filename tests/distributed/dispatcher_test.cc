@@ -37,6 +37,7 @@ CaseResult ResultOf(std::uint64_t case_index) {
   CaseResult result;
   result.case_index = case_index;
   result.inputs = InputValues({});  // what a campaign without dispersions draws
+  result.metrics.resize(MetricCount(kUsualStages));
   return result;
 }
 
@@ -401,6 +402,20 @@ TEST_F(ForgerTest, WhatWasTakenFromAWorkerIsStillItsToReturn) {
   const std::uint64_t refused = dispatcher_.refused_messages();
   Return("w", ResultOf(1), 5.3);  // its acknowledgement got lost
   EXPECT_EQ(dispatcher_.refused_messages(), refused);
+}
+
+TEST_F(ForgerTest, MetricsThatTheCampaignHasNotExpelTheKeys) {
+  Open(50);
+  Come("node1_aa");
+  const std::vector<Orders> all = dispatcher_.Tick(0.0);
+  CaseResult forged = ResultOf(all.at(0).assignments.at(0).cases.at(0));
+  forged.metrics.push_back(1.0);
+  Return("node1_aa", forged);
+  EXPECT_EQ(Progress().done, 0u);
+  EXPECT_THAT(
+      dispatcher_.expelled(),
+      ElementsAre(testing::Pair("node1", "case " + std::to_string(forged.case_index) +
+                                             " of campaign : its metrics are not those of the campaign")));
 }
 
 TEST_F(ForgerTest, InputsThatTheCampaignDoesNotDrawExpelTheKeysAndAllThatTheyReturned) {
@@ -831,8 +846,10 @@ TEST_F(PluginTest, AnotherResultRefusesTheCampaignAndNamesTheFirstColumnThatDiff
   Open(3);
   for (const char* worker : {"a", "b"}) Come(worker);
   CaseResult first = ResultOf(1), second = ResultOf(1);
-  first.metrics.assign(3, 0.25);
-  second.metrics = {0.25, 0.5, 0.75};
+  first.metrics.assign(MetricCount(kUsualStages), 0.25);
+  second.metrics = first.metrics;
+  second.metrics[1] = 0.5;
+  second.metrics[2] = 0.75;
   second.digest.low = 1;
   Return("a", first);
   Return("b", second);

@@ -7,6 +7,7 @@
 
 #include "core/flight/flight_inputs.h"
 #include "core/flight/metrics.h"
+#include "core/flight/own_metrics.h"
 #include "services/transport/convert.h"
 
 namespace dispersa::validity_test {
@@ -107,7 +108,8 @@ TEST(Validity, AResultHasTheInputsAndMetricsOfThisEngine) {
   EXPECT_EQ(of(inputs, metrics), "");
   for (const std::size_t wrong_inputs : {std::size_t{0}, inputs - 1, inputs + 1})
     EXPECT_EQ(of(wrong_inputs, metrics), wrong);
-  for (const std::size_t wrong_metrics : {std::size_t{0}, metrics - 1, metrics + 1})
+  EXPECT_EQ(of(inputs, metrics + kMaxOwnMetrics), "") << "of a campaign with metrics of its own";
+  for (const std::size_t wrong_metrics : {std::size_t{0}, metrics - 1, metrics + kMaxOwnMetrics + 1})
     EXPECT_EQ(of(inputs, wrong_metrics), wrong);
 }
 

@@ -33,11 +33,13 @@ TEST_P(BadInputTest, IsReportedInFull) {
 constexpr BadInput kBadInputs[] = {
     {"UnknownKey", "campaign.yaml", "dispersions:\n", "dispersion:\n", "campaign.yaml",
      "campaign.yaml:7:1: dispersion: unknown key 'dispersion' (did you mean 'dispersions'?), "
-     "allowed: autopilot, correlations, description, dispersions, guidance, name, optimize, reference, "
+     "allowed: autopilot, correlations, description, dispersions, guidance, metrics, name, optimize, "
+     "reference, "
      "requirements, sampling, schema, vehicle, verdicts\n"},
     {"UnknownKeyLikeNoOther", "campaign.yaml", "name: trial", "name: trial\nzebra: 1", "campaign.yaml",
      "campaign.yaml:3:1: zebra: unknown key 'zebra', allowed: autopilot, correlations, "
-     "description, dispersions, guidance, name, optimize, reference, requirements, sampling, schema, "
+     "description, dispersions, guidance, metrics, name, optimize, reference, requirements, sampling, "
+     "schema, "
      "vehicle, verdicts\n"},
     {"JettisonWithoutTrigger", "vehicle.yaml", "    gimbal:",
      "    jettisoned:\n      - {name: skirt, mass_kg: 10, top_station_m: 1, bottom_station_m: 2, "

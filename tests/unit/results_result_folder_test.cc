@@ -125,6 +125,71 @@ TEST(ResultFolder, RefusesADifferentResultOfACaseWithItsWholeBatch) {
   EXPECT_EQ(folder.Load(1).digest.low, 0xabcdefu);
 }
 
+Campaign WithOwn(const std::vector<std::string>& names) {
+  Campaign campaign = MakeCampaign(4);
+  for (const std::string& name : names) campaign.own_metrics.push_back({name, "max(" + name + ")", "", {}});
+  return campaign;
+}
+
+CaseResult Measured(std::uint64_t index, const std::vector<double>& own) {
+  CaseResult result = MakeCase(index);
+  result.metrics.insert(result.metrics.end(), own.begin(), own.end());
+  return result;
+}
+
+TEST(ResultFolder, CasesWaitForMetricsThatTheyLack) {
+  TemporaryFolder temporary;
+  ResultFolder::Create(temporary / "out", WithOwn({})).Append({{MakeCase(0), MakeCase(1), MakeCase(2)}});
+  {
+    ResultFolder folder = ResultFolder::Resume(temporary / "out", WithOwn({"a_m", "b_s"}));
+    EXPECT_THAT(folder.PresentCases(), ElementsAre());
+    EXPECT_EQ(folder.UnmeasuredCount(), 3u);
+    EXPECT_EQ(folder.LastCase(), 2u);
+    EXPECT_EQ(folder.Append({{Measured(1, {10.0, kNaN})}}), 1u);
+    EXPECT_EQ(folder.UnmeasuredCount(), 2u);
+    EXPECT_EQ(folder.PlannedCases(), 4) << "no new plan";
+  }
+  // Interrupted, and then without the second metric: what has the first stays.
+  {
+    ResultFolder folder = ResultFolder::Resume(temporary / "out", WithOwn({"a_m"}));
+    EXPECT_THAT(folder.PresentCases(), ElementsAre(1));
+    EXPECT_EQ(folder.Load(1).metrics.back(), 10.0);
+    EXPECT_EQ(folder.metric_list().size(), folder.Load(1).metrics.size());
+    EXPECT_EQ(folder.UnmeasuredCount(), 2u);
+  }
+  // Without any: all that was flown is there again, as it was.
+  ResultFolder folder = ResultFolder::Resume(temporary / "out", WithOwn({}));
+  EXPECT_THAT(folder.PresentCases(), ElementsAre(0, 1, 2));
+  EXPECT_EQ(folder.UnmeasuredCount(), 0u);
+  for (const std::uint64_t index : {0, 1, 2}) EXPECT_EQ(folder.Load(index).metrics, MakeCase(index).metrics);
+}
+
+TEST(ResultFolder, AMetricWithAnotherExpressionIsAnother) {
+  TemporaryFolder temporary;
+  Campaign campaign = WithOwn({"a_m"});
+  ResultFolder::Create(temporary / "out", campaign).Append({{Measured(0, {1.0})}});
+  campaign.own_metrics[0].expression = "min(a_m)";
+  ResultFolder folder = ResultFolder::Resume(temporary / "out", campaign);
+  EXPECT_EQ(folder.UnmeasuredCount(), 1u);
+  CaseResult other = Measured(0, {2.0});
+  other.digest.low = 5;
+  EXPECT_EQ(MessageOf<ResultError>([&] { folder.Append({{other}}); }),
+            "case 0 was flown twice with different digests: 00000000000000010000000000abcdef is stored, "
+            "00000000000000010000000000000005 arrived");
+  EXPECT_EQ(folder.Append({{Measured(0, {2.0})}}), 1u);
+  EXPECT_EQ(folder.UnmeasuredCount(), 0u);
+  EXPECT_EQ(folder.Load(0).metrics.back(), 2.0);
+}
+
+TEST(ResultFolder, AMetricNamedAfterAStageMakesNoVehicleOfManyStages) {
+  TemporaryFolder temporary;
+  const Campaign campaign = WithOwn({"q_stage6_pa"});
+  ResultFolder::Create(temporary / "out", campaign).Append({{Measured(0, {1.0})}});
+  const ResultFolder folder = ResultFolder::Open(temporary / "out");
+  EXPECT_EQ(folder.stages(), static_cast<std::size_t>(kUsualStages));
+  EXPECT_EQ(folder.Load(0).metrics.back(), 1.0);
+}
+
 TEST(ResultFolder, ListsInOrderWhatIsThere) {
   TemporaryFolder temporary;
   ResultFolder folder = ResultFolder::Create(temporary / "out", MakeCampaign(100));
