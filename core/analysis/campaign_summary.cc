@@ -68,6 +68,7 @@ CampaignVerdict Overall(const CampaignSummary& summary) {
                : CampaignVerdict::kStudy;
   }
   if (any(is("fail"))) return CampaignVerdict::kFail;
+  if (!any(counts) && !any(is("pass"))) return CampaignVerdict::kNothingJudged;
   return any([&](const RequirementSummary& requirement) {
     return counts(requirement) && requirement.verdict == "inconclusive";
   })
@@ -126,6 +127,8 @@ const char* CampaignVerdictName(CampaignVerdict verdict) {
   switch (verdict) {
     case CampaignVerdict::kPass:
       return "pass";
+    case CampaignVerdict::kNothingJudged:
+      return "nothing_judged";
     case CampaignVerdict::kInconclusive:
       return "inconclusive";
     case CampaignVerdict::kStudy:
@@ -161,29 +164,11 @@ std::vector<std::string> Warnings(const CampaignSummary& summary) {
   }
   if (!independent && !summary.requirements.empty()) {
     warnings.push_back(
-        "Design study: the points are chosen, so that no requirement is passed or failed by it.");
+        "Design study: its points are chosen, not drawn, so it shows no probability in flight.");
   }
-  bool post_hoc = false;
   for (const RequirementSummary& requirement : summary.requirements) {
-    if (requirement.post_hoc) {
-      post_hoc = true;
-      warnings.push_back(fmt::format("Post hoc: {} is not what was required before the first case was flown.",
-                                     RequirementWords(requirement)));
-    }
-    if (requirement.naive_risk) {
-      warnings.push_back(fmt::format(
-          "Beyond the plan: {} was planned for {} cases, {} are in the campaign; its looks read one "
-          "by one carry a risk of {}, not {}.",
-          requirement.metric, requirement.planned, summary.cases, PercentText(*requirement.naive_risk),
-          PercentText(requirement.consumer_risk)));
-    }
     if (requirement.contradicted)
       warnings.push_back(fmt::format("Contradiction: {} was decided both ways.", requirement.metric));
-  }
-  if (!post_hoc && summary.requirements_id != summary.registered_requirements_id) {
-    warnings.push_back(
-        "Post hoc: requirements were left out, or the way they are judged was changed, after the first case "
-        "was flown.");
   }
   if (summary.beyond_limits > 0) {
     std::string loads;
@@ -272,12 +257,15 @@ CampaignSummary BuildSummary(const ResultFolder& folder, const Campaign& campaig
   context.method = campaign.sampling.method;
   context.replicates = campaign.sampling.replicates;
   context.design_points = DesignSize(campaign);
-  context.planned = std::stoll(folder.Provenance("planned_cases"));
+  context.planned = folder.PlannedCases();
   context.past_looks = folder.PastLooks();
   context.registered = Lines(folder.Provenance("requirements"));
   if (context.registered.empty()) context.registered = {"no requirement"};
   context.holm = campaign.verdicts.holm;
   context.cases = CasesToFly(campaign, context, summary.quarantined, cases);
+  // The campaign by itself, as if it were the first: what was planned or read before is judged by StandingOf.
+  context.planned = static_cast<std::int64_t>(campaign.sampling.cases);
+  context.past_looks.clear();
   summary.cases = context.cases;
   summary.replicates = context.replicates;
   summary.design_points = context.design_points;
@@ -286,6 +274,7 @@ CampaignSummary BuildSummary(const ResultFolder& folder, const Campaign& campaig
   summary.requirements_id = campaign.requirements_id;
   summary.registered_requirements_id = folder.Provenance("requirements_id");
   summary.flown = cases.rows();
+  summary.reached = cases.rows() == 0 ? 0 : cases.index.back() + 1;
   summary.sampling = campaign.sampling.method;
   summary.engine = folder.Provenance("engine");
   summary.vehicle = campaign.vehicle.name;
@@ -325,6 +314,7 @@ CampaignSummary BuildSummary(const ResultFolder& folder, const Campaign& campaig
   summary.drivers = FindDrivers(campaign, KeyMetrics(campaign), cases);
   summary.failure_drivers = FindFailureDrivers(campaign, cases);
   summary.verdict = Overall(summary);
+  summary.standing = StandingOf(folder, campaign, summary);
   return summary;
 }
 

@@ -11,6 +11,7 @@
 #include "core/analysis/drivers.h"
 #include "core/analysis/injection_summary.h"
 #include "core/analysis/requirement_summary.h"
+#include "core/analysis/standing.h"
 #include "core/campaign/campaign.h"
 #include "core/campaign/case_result.h"
 #include "core/results/case_columns.h"
@@ -23,8 +24,16 @@ namespace dispersa {
 
 /// What a campaign comes to. A study's points are chosen: it neither passes nor fails, but a point that
 /// violates a requirement is a fact.
-enum class CampaignVerdict { kPass, kInconclusive, kStudy, kStudyViolated, kFail, kIncomplete };
-/// "pass", "inconclusive", "study", "study", "fail", "incomplete".
+enum class CampaignVerdict {
+  kPass,
+  kNothingJudged,
+  kInconclusive,
+  kStudy,
+  kStudyViolated,
+  kFail,
+  kIncomplete
+};
+/// "pass", "nothing_judged", "inconclusive", "study", "study", "fail", "incomplete".
 const char* CampaignVerdictName(CampaignVerdict verdict);
 
 struct MetricSummary {
@@ -53,6 +62,7 @@ struct CampaignSummary {
   std::uint64_t cases = 0;      ///< asked for; of a campaign that stops when decided, up to where it stopped
   std::uint64_t max_cases = 0;  ///< up to which it would have gone on
   std::uint64_t flown = 0;
+  std::uint64_t reached = 0;  ///< up to the last case that has a result
   std::uint64_t replicates = 1;
   std::uint64_t design_points = 1;  ///< of a corner, one-at-a-time, grid or list design
   SamplingMethod sampling = SamplingMethod::kMonteCarlo;
@@ -92,7 +102,7 @@ struct CampaignSummary {
   double any_risk = 0.0;
   std::string requirements_id;             ///< hash of the requirements now,
   std::string registered_requirements_id;  ///< and before the first case was flown
-  std::int64_t planned_cases = 0;          ///< likewise
+  std::int64_t planned_cases = 0;          ///< of the plan by which the requirements are judged
   std::vector<QuarantinedCase> quarantined;
   std::vector<WorstCases> worst_cases;
   std::vector<DispersionSummary> dispersions;
@@ -107,10 +117,12 @@ struct CampaignSummary {
   };
   std::optional<Envelope> envelope;
   std::optional<CaseResult> nominal;  ///< flown without dispersions, when it was flown
+  /// What stands after earlier attempts and changes; no part of summary.json.
+  Standing standing;
 };
 
-/// What a reader must not miss before any number: cases that are missing, limits that were changed after the
-/// first case, looks beyond the plan, studies, lost flights. Sentences, of which the first screen shows each.
+/// What a reader must not miss before any number: cases that are missing, studies, lost flights. Sentences,
+/// of which the first screen shows each, after those of StandingNotes().
 std::vector<std::string> Warnings(const CampaignSummary& summary);
 
 /// The sentence for each requirement's verdict taken together.

@@ -2,13 +2,19 @@
 
 #include <algorithm>
 #include <cmath>
+#include <cstddef>
+#include <numeric>
 #include <optional>
+#include <string>
+#include <utility>
+#include <vector>
 
 #include "core/analysis/dispersion_summary.h"
 #include "core/analysis/requirement_summary.h"
 #include "core/campaign/dispersion_table.h"
 #include "core/flight/flight_inputs.h"
 #include "core/math/constants.h"
+#include "core/statistics/normal.h"
 #include "core/statistics/sensitivity.h"
 #include "core/statistics/summary.h"
 
@@ -17,6 +23,11 @@ namespace {
 
 constexpr std::size_t kLeastFlights = 30;
 constexpr std::size_t kShown = 12;
+constexpr std::size_t kCauses = 5;
+/// A smaller share of the variance is no cause that anybody acts on.
+constexpr double kLeastShare = 0.005;
+/// Of ranks: more than chance shows, and enough to take one input for another.
+constexpr double kCorrelated = 0.3;
 constexpr double kFalseDiscoveryRate = 0.10;
 
 /// Of so many flights indices have a standard error below a hundredth; more would only take time and memory.
@@ -129,6 +140,24 @@ std::vector<Feature> Features(const Campaign& campaign, const CaseColumns& cases
   return features;
 }
 
+/// One name for a magnitude, its direction, and both together.
+std::string FamilyOf(const std::string& input) {
+  const std::string first = input.substr(0, input.find(" along "));
+  const std::optional<int> magnitude = IsAngle(first) ? MagnitudeOf(first) : std::nullopt;
+  return magnitude ? InputColumns()[static_cast<std::size_t>(*magnitude)].name : first;
+}
+
+/// Inputs of other families whose values rank like this one's.
+std::vector<std::string> CorrelatedWith(const Feature& feature, const std::vector<Feature>& features) {
+  std::vector<std::string> inputs;
+  if (feature.name != "x") return inputs;
+  for (const Feature& other : features)
+    if (other.name == "x" && FamilyOf(other.input) != FamilyOf(feature.input) &&
+        std::fabs(RankCorrelation(feature.values, other.values)) > kCorrelated)
+      inputs.push_back(other.input);
+  return inputs;
+}
+
 /// The features of the rows that were asked for last: most metrics are defined for the same flights.
 class FeaturesOfRows {
  public:
@@ -193,16 +222,119 @@ MetricDrivers DriversOf(const std::string& metric, const CaseColumns& cases, Fea
   }
   const std::vector<double> partial = PartialRankCorrelations(named, ranked_y);
   std::size_t regressed = 0;
-  for (const Candidate& candidate : candidates) {
-    const bool pair = features[candidate.indexed].name.starts_with("m ");
-    const double correlation = pair ? kUndefined : partial[regressed++];
-    if (result.drivers.size() == kShown || candidate.index <= 0.0) continue;
-    const SensitivityIndex index = FirstOrderIndex(features[candidate.indexed].values, y);
-    result.drivers.push_back({features[candidate.indexed].input, features[candidate.indexed].key,
-                              features[candidate.indexed].same_as, features[candidate.named].name,
-                              index.index, index.low, index.high, correlation});
+  std::vector<double> correlations;
+  for (const Candidate& candidate : candidates)
+    correlations.push_back(features[candidate.indexed].name.starts_with("m ") ? kUndefined
+                                                                              : partial[regressed++]);
+  // What explains most is taken first, and the others only explain what it leaves.
+  std::vector<double> rest = y;
+  double left = 1.0;
+  std::vector<bool> tried(candidates.size());
+  std::vector<std::string> families;
+  for (;;) {
+    std::size_t best = candidates.size();
+    double most = 0.0;
+    for (std::size_t i = 0; i < candidates.size(); ++i) {
+      if (tried[i]) continue;
+      const double share = FirstOrderShare(features[candidates[i].indexed].values, rest);
+      if (share <= most) continue;
+      most = share;
+      best = i;
+    }
+    if (best == candidates.size() || most * left < kLeastShare) break;
+    tried[best] = true;
+    const Feature& feature = features[candidates[best].indexed];
+    const SensitivityIndex index = FirstOrderIndex(feature.values, rest);
+    if (!(index.low > 0.0)) continue;
+    const std::string family = FamilyOf(feature.input);
+    const auto known_family = std::find(families.begin(), families.end(), family);
+    if (known_family == families.end()) {
+      if (families.size() == kCauses) break;
+      families.push_back(family);
+      result.drivers.push_back({feature.input, feature.key, feature.same_as,
+                                features[candidates[best].named].name, 0.0, 0.0, 0.0, correlations[best],
+                                CorrelatedWith(feature, features)});
+    }
+    Driver& driver = result.drivers[static_cast<std::size_t>(
+        std::find(families.begin(), families.end(), family) - families.begin())];
+    driver.index += left * index.index;
+    driver.low += left * index.low;
+    driver.high = std::min(1.0, driver.high + left * index.high);
+    rest = RestOf(feature.values, rest);
+    left *= 1.0 - index.index;
   }
+  std::stable_sort(result.drivers.begin(), result.drivers.end(),
+                   [](const Driver& a, const Driver& b) { return a.index > b.index; });
   return result;
+}
+
+/// Normal scores of a feature over the marked rows, or over the others up to as many as tell a correlation.
+std::vector<double> ScoresOf(const Ranked& values, const std::vector<bool>& marked, bool inside) {
+  constexpr std::size_t kEnough = 5000;
+  std::vector<double> scores;
+  for (std::size_t i = 0; i < marked.size() && scores.size() < kEnough; ++i)
+    if (marked[i] == inside)
+      scores.push_back(NormalQuantile(values.ranks()[i] / (static_cast<double>(marked.size()) + 1.0)));
+  // Of mean 0 and length 1, so that products sum to the correlation.
+  const double mean = std::accumulate(scores.begin(), scores.end(), 0.0) /
+                      static_cast<double>(std::max<std::size_t>(1, scores.size()));
+  double squares = 0.0;
+  for (double& score : scores) {
+    score -= mean;
+    squares += score * score;
+  }
+  const double length = std::sqrt(squares);
+  if (length > 0.0)
+    for (double& score : scores) score /= length;
+  return scores;
+}
+
+/// Pairs whose correlation among the marked flights differs from that among the others, by R. A. Fisher's
+/// transformation (Metron 1 (1921) 3-32). Where two inputs fail a flight each by itself, they stay
+/// independent among the failing ones; only a combination relates them.
+std::vector<FailurePair> PairsOf(const std::vector<Feature>& features, const std::vector<bool>& marked) {
+  std::vector<const Feature*> single;
+  std::vector<std::vector<double>> inside, outside;
+  for (const Feature& feature : features) {
+    if (feature.name.starts_with("m ")) continue;
+    single.push_back(&feature);
+    inside.push_back(ScoresOf(feature.values, marked, true));
+    outside.push_back(ScoresOf(feature.values, marked, false));
+  }
+  if (single.empty() || outside.front().size() < kLeastFlights) return {};
+  const double error = std::sqrt(1.0 / (static_cast<double>(inside.front().size()) - 3.0) +
+                                 1.0 / (static_cast<double>(outside.front().size()) - 3.0));
+  std::vector<FailurePair> pairs;
+  std::vector<double> p;
+  for (std::size_t i = 0; i < single.size(); ++i) {
+    for (std::size_t j = i + 1; j < single.size(); ++j) {
+      if (FamilyOf(single[i]->input) == FamilyOf(single[j]->input)) continue;
+      const auto correlation = [&](const std::vector<std::vector<double>>& scores) {
+        return std::clamp(std::inner_product(scores[i].begin(), scores[i].end(), scores[j].begin(), 0.0),
+                          -0.999999, 0.999999);
+      };
+      const double failing = correlation(inside);
+      const double z = (std::atanh(failing) - std::atanh(correlation(outside))) / error;
+      pairs.push_back({single[i]->input, single[j]->input, single[i]->key, single[j]->key, single[i]->name,
+                       single[j]->name, failing, 2.0 * NormalProbability(-std::fabs(z)), 1.0});
+      p.push_back(pairs.back().p);
+    }
+  }
+  const std::vector<double> rates = FalseDiscoveryRates(p);
+  for (std::size_t i = 0; i < pairs.size(); ++i) pairs[i].false_discovery_rate = rates[i];
+  std::erase_if(pairs,
+                [](const FailurePair& pair) { return pair.false_discovery_rate > kFalseDiscoveryRate; });
+  std::stable_sort(pairs.begin(), pairs.end(),
+                   [](const FailurePair& a, const FailurePair& b) { return a.p < b.p; });
+  // Two inputs once, by the features that show it most.
+  std::vector<FailurePair> shown;
+  for (FailurePair& pair : pairs) {
+    const bool known = std::any_of(shown.begin(), shown.end(), [&](const FailurePair& other) {
+      return other.first == pair.first && other.second == pair.second;
+    });
+    if (!known && shown.size() < kCauses) shown.push_back(std::move(pair));
+  }
+  return shown;
 }
 
 }  // namespace
@@ -220,7 +352,7 @@ std::vector<FailureDrivers> FindFailureDrivers(const Campaign& campaign, const C
   std::vector<FailureDrivers> all;
   FeaturesOfRows known(campaign, cases);
   for (const Requirement& requirement : campaign.requirements) {
-    FailureDrivers result{requirement.metric, false, 0, {}};
+    FailureDrivers result{requirement.metric, false, 0, {}, {}};
     const Limits limits = LimitsOf(requirement);
     const std::vector<double> values = CompletedValues(cases, requirement.metric);
     // The first flights, and of those beyond them the failing: what they are held against stays a fair
@@ -264,6 +396,7 @@ std::vector<FailureDrivers> FindFailureDrivers(const Campaign& campaign, const C
     std::stable_sort(result.drivers.begin(), result.drivers.end(),
                      [](const FailureDriver& a, const FailureDriver& b) { return a.p < b.p; });
     if (result.drivers.size() > kShown) result.drivers.resize(kShown);
+    if (!result.nearest && result.flights >= kEnoughFailures) result.pairs = PairsOf(features, marked);
     all.push_back(std::move(result));
   }
   return all;

@@ -2,6 +2,8 @@
 
 #include <fmt/format.h>
 
+#include <algorithm>
+
 #include "core/results/text.h"
 
 namespace dispersa {
@@ -13,14 +15,18 @@ struct Finding {
   std::string text;
 };
 
-Finding FindingOf(const RequirementSummary& requirement) {
-  if (requirement.verdict == "pass") return {};
-  if (requirement.verdict == "fail") return {"failure", requirement.sentence};
-  if (requirement.verdict == "study")
-    return {requirement.failures > 0 ? "failure" : "skipped", requirement.sentence};
+Finding FindingOf(const RequirementSummary& requirement, const Standing::Requirement& standing) {
+  const std::string text =
+      standing.reason.empty() ? requirement.sentence : standing.reason + " " + requirement.sentence;
+  if (standing.verdict == "pass") return {};
+  if (standing.verdict == "fail") return {"failure", text};
   // What the campaign did not ask itself holds nothing up while nothing has failed it.
-  if (requirement.by_default && requirement.failures == 0) return {"skipped", requirement.sentence};
-  return {"error", requirement.sentence};
+  if (requirement.by_default && requirement.failures == 0) return {"skipped", text};
+  return {"error", text};
+}
+
+std::string NameOf(const RequirementSummary& requirement) {
+  return (requirement.id.empty() ? "" : requirement.id + ": ") + RequirementWords(requirement);
 }
 
 std::string TestCase(const std::string& suite, const std::string& name, const Finding& finding) {
@@ -43,14 +49,26 @@ std::string JUnitXml(const CampaignSummary& summary) {
     skipped += finding.element == "skipped";
     cases += TestCase(summary.name, name, finding);
   };
-  for (const RequirementSummary& requirement : summary.requirements)
-    add(RequirementWords(requirement), FindingOf(requirement));
-  if (summary.verdict == CampaignVerdict::kIncomplete || summary.requirements.empty()) {
+  const Standing& standing = summary.standing;
+  for (std::size_t i = 0; i < summary.requirements.size(); ++i)
+    add(NameOf(summary.requirements[i]), FindingOf(summary.requirements[i], standing.requirements[i]));
+  if (summary.verdict == CampaignVerdict::kIncomplete)
     add("every case flown",
-        summary.verdict == CampaignVerdict::kIncomplete
-            ? Finding{"error", fmt::format("{} of {} cases have a result", summary.flown, summary.cases)}
-            : Finding{});
-  }
+        {"error", fmt::format("{} of {} cases have a result", summary.flown, summary.cases)});
+  else if (standing.verdict == StandingVerdict::kNothingJudged && summary.requirements.empty())
+    add("requirements", {"skipped", "The campaign states no requirement: nothing is judged."});
+  for (const Standing::Dropped& dropped : standing.dropped)
+    add(dropped.line,
+        {"error", fmt::format("Changed or left out after its flights were flown. Its last verdict: {}.",
+                              dropped.verdict.empty() ? "none" : dropped.verdict)});
+  const bool judged_otherwise = standing.is_post_hoc && standing.dropped.empty() &&
+                                std::none_of(standing.requirements.begin(), standing.requirements.end(),
+                                             [](const Standing::Requirement& one) { return one.post_hoc; });
+  if (judged_otherwise)
+    add("verdicts", {"error", "The rules of judgement were changed after the first case was flown."});
+  std::string notes;
+  for (const std::string& note : StandingNotes(standing, summary)) notes += note + "\n";
+  if (!notes.empty()) cases += fmt::format("    <system-out>{}</system-out>\n", HtmlText(notes));
   return fmt::format(
       "<?xml version=\"1.0\" encoding=\"UTF-8\"?>\n<testsuites>\n  <testsuite name=\"{}\" tests=\"{}\" "
       "failures=\"{}\" errors=\"{}\" skipped=\"{}\">\n{}  </testsuite>\n</testsuites>\n",

@@ -9,6 +9,8 @@
 #include "core/results/metric_catalogue.h"
 #include "core/results/sampling_text.h"
 #include "core/results/text.h"
+#include "core/statistics/anytime.h"
+#include "core/statistics/group_sequential.h"
 #include "core/statistics/intervals.h"
 #include "core/statistics/order_statistics.h"
 #include "core/statistics/replicates.h"
@@ -77,12 +79,12 @@ void SetBound(const Limits& limits, std::vector<double> values, std::int64_t acc
 
 void SetPassChances(RequirementSummary& summary) {
   if (summary.n == 0) return;
-  const double rate = static_cast<double>(summary.failures) / static_cast<double>(summary.n);
   // From the least number that can pass up, in steps that show the rise, to where it has saturated.
   const auto least = static_cast<double>(CasesNeeded(summary.probability, summary.consumer_risk, 0));
   for (const double factor : {1.0, 1.5, 2.0, 3.0, 4.0, 6.0, 8.0, 12.0, 16.0, 24.0, 32.0}) {
     const auto cases = static_cast<std::int64_t>(std::ceil(least * factor));
-    const double probability = PassProbability(summary.probability, summary.consumer_risk, cases, rate);
+    const double probability =
+        PassProbability(summary.probability, summary.consumer_risk, cases, summary.n, summary.failures);
     summary.pass_chances.push_back({cases, probability});
     if (probability > 0.995) break;
   }
@@ -106,70 +108,69 @@ void SetConvergence(const CaseTally& tally, const CaseColumns& cases, Requiremen
 std::string PlanSentence(const RequirementSummary& summary) {
   switch (summary.plan.kind) {
     case PlanKind::kFixed:
-      return fmt::format("one look at {} cases", summary.planned);
+      return fmt::format("judged once, after {} flights", summary.planned);
     case PlanKind::kGroupSequential:
-      return fmt::format("{} looks up to {} cases", summary.plan.looks, summary.planned);
+      return fmt::format("judged {} times up to {} flights", summary.plan.looks, summary.planned);
     case PlanKind::kAnytime:
-      return "looks at any time";
+      return "judged at any time";
   }
   return "";
 }
 
-/// The first new campaign of the list that would pass with 90 %, in words.
-std::string ChanceWords(const RequirementSummary& summary) {
+/// How many flights more could decide: of a new campaign, and of this one when it is extended.
+std::string Advice(const RequirementSummary& summary) {
   if (summary.pass_chances.empty()) return "";
-  const auto enough = std::find_if(summary.pass_chances.begin(), summary.pass_chances.end(),
-                                   [](const auto& chance) { return chance.probability >= 0.9; });
-  if (enough == summary.pass_chances.end()) {
-    return " At the failure rate seen here a larger campaign is not likely to pass either.";
-  }
-  return fmt::format(
-      " At the failure rate seen here a new campaign of {} cases passes with a probability of {}.",
-      enough->cases, PercentText(enough->probability));
+  std::string text =
+      fmt::format(" A new campaign can pass with {} flights or more.", summary.pass_chances.front().cases);
+  // The number from which more flights hardly help.
+  const double worth = 0.9 * std::min(1.0, summary.pass_chances.back().probability);
+  const auto& shown = *std::find_if(summary.pass_chances.begin(), summary.pass_chances.end(),
+                                    [&](const auto& chance) { return chance.probability >= worth; });
+  text += fmt::format(" By what was seen here, one of {} flights passes with a probability of {}.",
+                      shown.cases, PercentText(std::round(1000.0 * shown.probability) / 1000.0));
+  double left = summary.consumer_risk;
+  if (summary.plan.kind != PlanKind::kAnytime)
+    left -= PassRisk(summary.probability,
+                     Boundaries(summary.plan, summary.probability, summary.consumer_risk, summary.planned));
+  if (left < 1e-12) return text;
+  return text +
+         fmt::format(" This one, extended, needs {} flights in all with no further failure (any-time rule).",
+                     AnytimeCasesNeeded(summary.probability, left, summary.failures));
 }
 
 std::string IndependentSentence(const RequirementSummary& summary, std::int64_t missing) {
-  const std::string required = PercentText(summary.probability);
+  const std::string required = PercentText(summary.probability) + " required.";
   const std::string confidence = PercentText(1.0 - summary.consumer_risk);
-  const std::string seen =
-      fmt::format("{} in {}{}", Plural(summary.failures, "failure"), Plural(summary.n, "case"),
-                  missing > 0 ? fmt::format(" ({} without a result)", missing) : "");
-  std::string sentence;
+  std::string sentence =
+      fmt::format("{} of {} broke the limit{}.", summary.failures, Plural(summary.n, "flight"),
+                  missing > 0 ? fmt::format(", and {} have no result", missing) : "");
   // The bounds of a plan of several looks hold at every look, and are wider than what this one decides by.
   if (summary.verdict == "pass" && *summary.success_lower >= summary.probability) {
-    sentence = fmt::format("Met: {} show a probability of at least {} with {} confidence; {} is required.",
-                           seen, PercentText(*summary.success_lower), confidence, required);
+    sentence += fmt::format(" With {} confidence at least {} of flights meet it; {}", confidence,
+                            PercentText(*summary.success_lower), required);
   } else if (summary.verdict == "pass") {
-    sentence = fmt::format("Met by its plan ({}): {} at a risk of {}; {} is required.", PlanSentence(summary),
-                           seen, PercentText(summary.consumer_risk), required);
+    sentence += fmt::format(" That is few enough by its plan ({}) at a risk of {}; {}", PlanSentence(summary),
+                            PercentText(summary.consumer_risk), required);
   } else if (summary.verdict == "fail" && *summary.success_upper <= summary.probability) {
-    sentence = fmt::format("Not met: {} show a probability of at most {} with {} confidence; {} is required.",
-                           seen, PercentText(*summary.success_upper), confidence, required);
+    sentence += fmt::format(" With {} confidence at most {} of flights meet it; {}", confidence,
+                            PercentText(*summary.success_upper), required);
   } else if (summary.verdict == "fail") {
-    sentence = fmt::format("Not met by its plan ({}): {} at a risk of {}; {} is required.",
-                           PlanSentence(summary), seen, PercentText(summary.consumer_risk), required);
+    sentence += fmt::format(" That is too many by its plan ({}) at a risk of {}; {}", PlanSentence(summary),
+                            PercentText(summary.consumer_risk), required);
   } else if (summary.contradicted) {
-    sentence = fmt::format(
-        "Not decided: one look met the requirement and another one did not, with {} in all; {} is required.",
-        seen, required);
+    sentence += fmt::format(" One look met the requirement and another one did not; {}", required);
   } else {
-    sentence = fmt::format(
-        "Not decided: {} show a probability of {} to {}, either bound with {} confidence; {} is required.",
-        seen, PercentText(*summary.success_lower), PercentText(*summary.success_upper), confidence, required);
-    sentence += ChanceWords(summary);
+    sentence += fmt::format(" Between {} and {} of flights meet it, each bound with {} confidence; {}",
+                            PercentText(*summary.success_lower), PercentText(*summary.success_upper),
+                            confidence, required);
+    sentence += Advice(summary);
   }
   if (summary.verdict != "inconclusive" && summary.looks.back().verdict != Verdict::kInconclusive) {
     const auto first = std::find_if(summary.looks.begin(), summary.looks.end(),
                                     [](const Look& look) { return look.verdict != Verdict::kInconclusive; });
     if (first->n < summary.looks.back().n)
-      sentence += fmt::format(" Decided by the look at {} cases, with {}.", first->n,
+      sentence += fmt::format(" The look after {} decided, with {}.", Plural(first->n, "flight"),
                               Plural(first->failures, "failure"));
-  }
-  if (summary.beyond_plan) {
-    sentence += fmt::format(
-        " Beyond the plan ({}): read as if each look were the only one, these looks pass a design that just "
-        "misses with a probability of {}, not {}; the verdict spends only what the plan left of its risk.",
-        PlanSentence(summary), PercentText(*summary.naive_risk), PercentText(summary.consumer_risk));
   }
   return sentence;
 }
@@ -193,6 +194,24 @@ std::string StudySentence(const RequirementSummary& summary, const JudgingContex
   return sentence + ": this says nothing about the probability in flight.";
 }
 
+/// Of several looks the stage-wise one: that a design that just misses passes at an earlier look, or shows so
+/// few failures at the one that decides.
+double AttainedRisk(const PlannedRequirement& requirement, const std::vector<Look>& looks,
+                    std::int64_t missing) {
+  const Look& last = looks.back();
+  if (requirement.plan.kind == PlanKind::kAnytime)
+    return std::min(1.0, std::exp(-PassEvidence(requirement.probability, last.n, last.failures + missing)));
+  std::vector<LookBoundary> boundaries =
+      Boundaries(requirement.plan, requirement.probability, requirement.risk, requirement.planned);
+  const auto passed = std::find_if(looks.begin(), looks.end(), [](const Look& look) {
+    return look.planned && look.verdict == Verdict::kPass;
+  });
+  const Look& at = passed == looks.end() ? last : *passed;
+  std::erase_if(boundaries, [&](const LookBoundary& look) { return look.n >= at.n; });
+  boundaries.push_back({at.n, std::min(at.n, at.failures + missing), at.n + 1});
+  return PassRisk(requirement.probability, boundaries);
+}
+
 /// Bounds of the failure probability from the failures in each replicate.
 Interval BoundsOfReplicates(const CaseTally& tally, const JudgingContext& context, double risk) {
   const auto points = static_cast<std::int64_t>(context.cases / context.replicates);
@@ -214,6 +233,8 @@ std::string LimitWords(const RequirementSummary& requirement, const std::string&
 }
 
 std::string RequirementWords(const RequirementSummary& requirement) {
+  if (requirement.every_case)
+    return fmt::format("{} {} in every case", requirement.metric, LimitWords(requirement, ""));
   return fmt::format("{} {} for {} of flights at {} risk", requirement.metric, LimitWords(requirement, ""),
                      PercentText(requirement.probability), PercentText(requirement.consumer_risk));
 }
@@ -227,6 +248,10 @@ std::vector<RequirementSummary> JudgeAll(const std::vector<Requirement>& require
   for (const Requirement& requirement : requirements) {
     const Limits limits = LimitsOf(requirement);
     RequirementSummary summary;
+    summary.id = requirement.id;
+    summary.rationale = requirement.rationale;
+    summary.source = requirement.source;
+    summary.every_case = requirement.every_case;
     summary.metric = requirement.metric;
     summary.by_default = requirement.by_default;
     summary.below = !requirement.above.has_value();
@@ -252,7 +277,7 @@ std::vector<RequirementSummary> JudgeAll(const std::vector<Requirement>& require
     for (std::size_t i = 0; i < summaries.size(); ++i) {
       RequirementSummary& summary = summaries[i];
       summary.verdict = "study";
-      if (context.replicates > 1 && missing == 0) {
+      if (context.replicates > 1 && missing == 0 && !summary.every_case) {
         const Interval failure = BoundsOfReplicates(tallies[i], context, summary.consumer_risk);
         summary.success_lower = 1.0 - failure.upper;
         summary.success_upper = 1.0 - failure.lower;
@@ -279,6 +304,7 @@ std::vector<RequirementSummary> JudgeAll(const std::vector<Requirement>& require
     summary.naive_risk = verdict.naive_risk;
     SetBound(LimitsOf(requirements[i]), ValuesOf(requirements[i], cases), verdict.boundary.accept, missing,
              summary);
+    summary.attained_risk = AttainedRisk(planned[i], summary.looks, missing);
     SetPassChances(summary);
     SetConvergence(tallies[i], cases, summary);
     summary.sentence = IndependentSentence(summary, missing);

@@ -19,9 +19,11 @@ namespace dispersa {
 inline bool LossFails(const Requirement& requirement) { return !requirement.by_default; }
 
 struct RequirementSummary {
-  std::string metric;       ///< without the prefix
-  bool by_default = false;  ///< because the vehicle gives limits
-  bool below = true;        ///< else above; of `within` the high limit
+  std::string id, rationale, source;  ///< as the campaign gives them
+  std::string metric;                 ///< without the prefix
+  bool every_case = false;            ///< of a study: no probability is stated
+  bool by_default = false;            ///< because the vehicle gives limits
+  bool below = true;                  ///< else above; of `within` the high limit
   double limit = 0.0;
   std::optional<double> low_limit;  ///< of `within`
   double probability = 0.0;
@@ -37,6 +39,9 @@ struct RequirementSummary {
   std::optional<double> success_upper;
   /// When inconclusive: the least number of cases that could pass with as many failures.
   std::optional<std::int64_t> cases_needed;
+  /// The probability that a design that just misses shows so few failures: the risk at which these cases
+  /// would pass. A case without a result counts as a failure. None in a design study.
+  std::optional<double> attained_risk;
   std::vector<Look> looks;  ///< at the counts, ascending; none in a design study
   std::optional<std::int64_t>
       accepts;  ///< so many failures or fewer pass at the last look; none: no number does

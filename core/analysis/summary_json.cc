@@ -59,12 +59,16 @@ const char* LookVerdict(Verdict verdict) {
 
 Json RequirementJson(const RequirementSummary& requirement) {
   Json json = {{"metric", requirement.metric}};
+  json["id"] = requirement.id;
+  json["rationale"] = requirement.rationale;
+  json["source"] = requirement.source;
   json["by_default"] = requirement.by_default;
   json["side"] = requirement.low_limit ? "within" : requirement.below ? "below" : "above";
   json["limit"] = Number(requirement.limit);
   json["low_limit"] = OrNull(requirement.low_limit);
-  json["probability"] = requirement.probability;
-  json["consumer_risk"] = requirement.consumer_risk;
+  json["every_case"] = requirement.every_case;
+  json["probability"] = requirement.every_case ? Json(nullptr) : Json(requirement.probability);
+  json["consumer_risk"] = requirement.every_case ? Json(nullptr) : Json(requirement.consumer_risk);
   json["plan"] = {{"kind", PlanName(requirement.plan.kind)},
                   {"looks", requirement.plan.looks},
                   {"spending", requirement.plan.kind != PlanKind::kGroupSequential ? Json(nullptr)
@@ -79,6 +83,7 @@ Json RequirementJson(const RequirementSummary& requirement) {
   json["bound"] = OrNull(requirement.bound);
   json["margin"] = OrNull(requirement.margin);
   json["verdict"] = requirement.verdict;
+  json["attained_risk"] = OrNull(requirement.attained_risk);
   json["accepts"] = OrNull(requirement.accepts);
   json["rejects"] = OrNull(requirement.rejects);
   json["looks"] = Json::array();
@@ -233,7 +238,8 @@ std::string SummaryJson(const CampaignSummary& summary) {
                       {"index", Number(driver.index)},
                       {"low", Number(driver.low)},
                       {"high", Number(driver.high)},
-                      {"partial_rank_correlation", Number(driver.partial)}});
+                      {"partial_rank_correlation", Number(driver.partial)},
+                      {"correlated_with", driver.correlated_with}});
     }
   }
   json["failure_drivers"] = Json::array();
@@ -247,10 +253,20 @@ std::string SummaryJson(const CampaignSummary& summary) {
                       {"p", Number(driver.p)},
                       {"false_discovery_rate", Number(driver.false_discovery_rate)}});
     }
+    Json pairs = Json::array();
+    for (const FailurePair& pair : requirement.pairs) {
+      pairs.push_back({{"inputs", {pair.first, pair.second}},
+                       {"keys", {pair.first_key, pair.second_key}},
+                       {"features", {pair.first_feature, pair.second_feature}},
+                       {"correlation", Number(pair.correlation)},
+                       {"p", Number(pair.p)},
+                       {"false_discovery_rate", Number(pair.false_discovery_rate)}});
+    }
     json["failure_drivers"].push_back({{"metric", requirement.metric},
                                        {"basis", requirement.nearest ? "nearest" : "failed"},
                                        {"flights", requirement.flights},
-                                       {"inputs", std::move(list)}});
+                                       {"inputs", std::move(list)},
+                                       {"pairs", std::move(pairs)}});
   }
   json["quarantined"] = Json::array();
   for (const QuarantinedCase& quarantined : summary.quarantined) {

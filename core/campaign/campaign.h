@@ -24,6 +24,9 @@ namespace dispersa {
 
 enum class SamplingMethod { kMonteCarlo, kLatinHypercube, kSobol, kCorners, kOneAtATime, kGrid, kList };
 
+/// Cases are independent and identically distributed, so that binomial limits hold.
+inline bool IsIndependent(SamplingMethod method) { return method == SamplingMethod::kMonteCarlo; }
+
 /// The meaning of "±", which a file always states.
 enum class Distribution {
   kConstant,         ///< the same value in every case
@@ -72,9 +75,13 @@ struct Requirement {
   std::optional<std::array<double, 2>> within = {};  ///< between both, strictly
   std::string own_expression = {};                   ///< of a metric of the campaign's own
   VerdictPlan plan = {};
+  bool every_case = false;  ///< of a study, in place of probability and risk: no point may violate it
   /// Not the campaign's own: the vehicle gives limits of its structure, and the campaign does not say how
   /// they are to be judged. While it is undecided and nothing has failed it, it holds no verdict up.
   bool by_default = false;
+  std::string id = {};         ///< the project's own number of it; these three change no verdict
+  std::string rationale = {};  ///< why it is required
+  std::string source = {};     ///< the document that requires it
 };
 
 /// How the requirements are judged together, and whether their verdicts end the campaign.
@@ -83,6 +90,7 @@ struct Verdicts {
       false;  ///< all verdicts together keep the largest consumer risk (S. Holm, 1979), else each its own
   bool stop_when_decided =
       false;  ///< end at the look at which every requirement is decided (else all cases are flown)
+  std::uint64_t attempts = 1;  ///< so many campaigns of one design share each requirement's risk evenly
 };
 
 struct Sampling {
@@ -115,11 +123,14 @@ struct Campaign {
   std::vector<OwnMetric> own_metrics;
   std::vector<Requirement> requirements;
   Verdicts verdicts;
+  std::vector<std::string> assumptions;  ///< what the verdicts take for granted, in the project's words
 
+  std::string vehicle_file;     ///< as the campaign file names it, without folders; no part of any id
   std::string canonical_yaml;   ///< everything inlined; what campaign.yaml holds
   std::string id;               ///< SHA-256 of canonical_yaml, hexadecimal
   std::string flight_id;        ///< SHA-256 of what decides a case
-  std::string requirements_id;  ///< SHA-256 of the requirements and how they are judged
+  std::string requirements_id;  ///< SHA-256 of what is required, in any order, and of how it is judged
+  std::string design_id;        ///< SHA-256 of what is flown, without seed, number of cases and engine
   std::string own_metrics_id;   ///< SHA-256 of the flight id and the own metrics; empty without any
 
   /// Of what decides a case's result: the flight, and which metrics it measures.

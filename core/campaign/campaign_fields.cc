@@ -16,6 +16,8 @@ constexpr std::uint64_t kMaxReplicates = 10000;
 constexpr double kMaxDesignBytes = 4e9;
 // More looks than these are better served by an anytime plan.
 constexpr std::uint64_t kMaxLooks = 100;
+// Each of more would have next to no risk to spend.
+constexpr std::uint64_t kMaxAttempts = 100;
 constexpr std::int64_t kMaxCornerFactors = 20;
 
 // How often one requirement, or all of them, may be looked at. `plan` is what holds without these keys.
@@ -134,6 +136,19 @@ void Correlate(Fields& fields, const Correlation& correlation, const std::vector
     for (std::size_t j = 0; j <= i; ++j) dispersions[members[i]].mix.emplace_back(members[j], factor[i][j]);
 }
 
+// What share of flights must keep the limit, and how that is judged.
+void DescribeShare(Fields& fields, Requirement& requirement) {
+  fields.Number("probability", Inside(0.0, 1.0), requirement.probability,
+                "share of flights that must keep the limit");
+  fields.Hint("probability", Inside(1.0, 100.0), "in percent",
+              [](double x) { return ShortShare(x / 100.0); });
+  fields.Number("consumer_risk", Inside(0.0, 0.5), requirement.consumer_risk,
+                "largest chance to pass a vehicle whose share is smaller");
+  fields.Hint("consumer_risk", Inside(0.5, 1.0), "a confidence",
+              [](double x) { return ShortShare(1.0 - x); });
+  DescribePlan(fields, requirement.plan);
+}
+
 std::int64_t Count(const std::vector<Dispersion>& dispersions, Distribution kind) {
   return std::count_if(dispersions.begin(), dispersions.end(),
                        [&](const Dispersion& dispersion) { return dispersion.distribution.kind == kind; });
@@ -203,6 +218,11 @@ void Describe(Fields& fields, Verdicts& verdicts, VerdictPlan& plan, Sampling& s
                       "at a look at which every requirement is decided, or after all cases", false);
   if (verdicts.stop_when_decided && sampling.method != SamplingMethod::kMonteCarlo)
     fields.Refuse("stop", "a design study decides nothing", "method: monte_carlo");
+  fields.Integer(
+      "attempts", 1, kMaxAttempts, verdicts.attempts,
+      "so many campaigns of one design share each requirement's risk evenly; later ones are judged "
+      "by all their cases together",
+      1);
   fields.When(Has("max_cases"), [&] {
     fields.Integer("max_cases", 1, kMaxCases, sampling.cases,
                    "of a campaign that stops when decided, in place of cases");
@@ -223,6 +243,9 @@ void Describe(Fields& fields, OwnMetric& metric, const std::vector<std::string>&
 }
 
 void Describe(Fields& fields, Requirement& requirement, const std::vector<std::string>& metrics) {
+  fields.Text("id", requirement.id, "the project's own number of it", "");
+  fields.Text("rationale", requirement.rationale, "why it is required", "");
+  fields.Text("source", requirement.source, "the document that requires it", "");
   constexpr const char* kOneLimit = "either below: x, above: x or within: [low, high]";
   fields.Name("metric", metrics, "a metric", requirement.metric, "of cases.csv, without its prefix");
   fields.OptionalNumber("below", kAnyNumber, requirement.below, "what it must stay below");
@@ -245,15 +268,18 @@ void Describe(Fields& fields, Requirement& requirement, const std::vector<std::s
                   : limits == 2 && !has_band ? "'below' and 'above' are both given"
                                              : "more than one limit is given",
                   kOneLimit);
-  fields.Number("probability", Inside(0.0, 1.0), requirement.probability,
-                "share of flights that must keep the limit");
-  fields.Hint("probability", Inside(1.0, 100.0), "in percent",
-              [](double x) { return ShortShare(x / 100.0); });
-  fields.Number("consumer_risk", Inside(0.0, 0.5), requirement.consumer_risk,
-                "largest chance to pass a vehicle whose share is smaller");
-  fields.Hint("consumer_risk", Inside(0.5, 1.0), "a confidence",
-              [](double x) { return ShortShare(1.0 - x); });
-  DescribePlan(fields, requirement.plan);
+  fields.Either({{Has("every_case"),
+                  [&] {
+                    fields.Flag("every_case", requirement.every_case, false,
+                                "no point of a design study may violate it, in place of a probability");
+                    if (!requirement.every_case)
+                      fields.Refuse("every_case", "'every_case: false' requires nothing",
+                                    "every_case: true, or probability and consumer_risk");
+                    for (const char* key : {"probability", "consumer_risk", "looks", "anytime"})
+                      fields.Misplaced(key, {}, "'{}' and 'every_case' are both given",
+                                       "either every_case: true or probability and consumer_risk");
+                  }},
+                 {Else(), [&] { DescribeShare(fields, requirement); }}});
 }
 
 void Describe(Fields& fields, Correlation& correlation, std::vector<Dispersion>& dispersions) {

@@ -55,6 +55,15 @@ std::string RequirementsId(const InputNode& campaign) {
   }
   if (InputNode limited = LimitedMetrics(campaign); !limited.items.empty())
     SetMember(judged, "metrics", std::move(limited));
+  // Neither words about a requirement nor its place among the others change what is required.
+  if (InputNode* requirements = judged.Find("requirements")) {
+    for (InputNode& requirement : requirements->items)
+      std::erase_if(requirement.members, [](const InputMember& member) {
+        return member.key == "id" || member.key == "rationale" || member.key == "source";
+      });
+    std::sort(requirements->items.begin(), requirements->items.end(),
+              [](const InputNode& a, const InputNode& b) { return CanonicalText(a) < CanonicalText(b); });
+  }
   return Sha256Hex(CanonicalText(judged));
 }
 
@@ -63,6 +72,20 @@ std::string OwnMetricsId(const std::string& flight_id, const std::vector<OwnMetr
   std::string text = flight_id + "\n";
   for (const OwnMetric& metric : metrics) text += metric.name + " = " + metric.expression + "\n";
   return Sha256Hex(text);
+}
+
+std::string DesignId(const InputNode& campaign) {
+  InputNode design = MapAt(campaign);
+  for (const char* key : {"vehicle", "reference", "autopilot", "guidance", "dispersions", "correlations"}) {
+    if (const InputNode* value = campaign.Find(key)) SetMember(design, key, *value);
+  }
+  const InputNode& sampling = *campaign.Find("sampling");
+  InputNode points = MapAt(campaign);
+  for (const char* key : {"method", "replicates", "table"}) {
+    if (const InputNode* value = sampling.Find(key)) SetMember(points, key, *value);
+  }
+  SetMember(design, "sampling", std::move(points));
+  return Sha256Hex(CanonicalText(design));
 }
 
 std::string FlightId(const InputNode& campaign, SamplingMethod method) {

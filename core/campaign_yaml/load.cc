@@ -2,7 +2,9 @@
 
 #include <algorithm>
 #include <filesystem>
+#include <string>
 #include <tuple>
+#include <utility>
 
 #include "core/campaign_yaml/campaign_ids.h"
 #include "core/campaign_yaml/canonical.h"
@@ -11,6 +13,7 @@
 #include "core/campaign_yaml/describe_file.h"
 #include "core/campaign_yaml/named_files.h"
 #include "core/campaign_yaml/parse_yaml.h"
+#include "core/campaign_yaml/plan_warnings.h"
 #include "core/campaign_yaml/standard_input.h"
 #include "core/input/read_value.h"
 
@@ -76,16 +79,22 @@ void OverrideAutopilot(InputNode& root, const CampaignOverrides& overrides, Prob
 Campaign FinishCampaign(InputNode root, FileNames names, const CampaignOverrides& overrides, CampaignUse use,
                         ProblemList problems, std::vector<InputProblem>* warnings) {
   OverrideAutopilot(root, overrides, problems);
+  std::string vehicle_file;
+  if (const InputNode* vehicle = root.Find("vehicle");
+      vehicle != nullptr && vehicle->kind == InputNode::Kind::kScalar)
+    vehicle_file = std::filesystem::path(vehicle->text).filename().string();
   Override(root, overrides);
   NamedFiles files(names);
   DecodedCampaign decoded = DecodeCampaign(root, use, problems, &files, warnings);
   ThrowIfAny(std::move(problems), root);
   Campaign& campaign = decoded.campaign;
+  campaign.vehicle_file = std::move(vehicle_file);
   campaign.canonical_yaml = CanonicalText(root);
   campaign.id = Sha256Hex(campaign.canonical_yaml);
   campaign.flight_id = FlightId(root, campaign.sampling.method);
   campaign.requirements_id = RequirementsId(root);
   campaign.own_metrics_id = OwnMetricsId(campaign.flight_id, campaign.own_metrics);
+  campaign.design_id = DesignId(root);
   return std::move(campaign);
 }
 
@@ -194,8 +203,11 @@ FileCheck CheckFile(const InputSource& source) {
   } else if (schema == nullptr) {
     AddProblem(problems, root, "", "missing key 'schema'", SchemaNames());
   } else if (schema->text == kCampaignSchema) {
-    check.vehicle =
-        DecodeCampaign(root, CampaignUse::kCheck, problems, &files, &check.warnings).campaign.vehicle;
+    const Campaign campaign =
+        DecodeCampaign(root, CampaignUse::kCheck, problems, &files, &check.warnings).campaign;
+    if (problems.empty())
+      for (InputProblem& warning : PlanWarnings(campaign, root)) check.warnings.push_back(std::move(warning));
+    check.vehicle = campaign.vehicle;
   } else if (schema->text == kVehicleSchema) {
     check.vehicle = DecodeVehicle(root, "", problems, &files, &check.warnings);
     check.is_vehicle = true;

@@ -18,14 +18,18 @@ std::string Share(double index) { return fmt::format("{:.1f} %", 100.0 * index);
 std::string Bar(const Driver& driver) {
   std::string names = InputNames(driver.key, driver.input);
   for (const std::string& same : driver.same_as) names += " = <code>" + HtmlText(same) + "</code>";
+  std::string correlated;
+  for (const std::string& other : driver.correlated_with)
+    correlated +=
+        (correlated.empty() ? ", drawn together with <code>" : ", <code>") + HtmlText(other) + "</code>";
   return fmt::format(
-      "<li><span class=\"cause\">{} <span class=\"soft\">by {}{}</span></span><span class=\"n\"><b>{}</b> "
+      "<li><span class=\"cause\">{} <span class=\"soft\">by {}{}{}</span></span><span class=\"n\"><b>{}</b> "
       "<span class=\"soft\">{} to {}</span></span><svg viewBox=\"0 0 1000 10\" preserveAspectRatio=\"none\" "
       "aria-hidden=\"true\"><rect class=\"track\" width=\"1000\" height=\"10\"/><rect class=\"bar\" "
       "width=\"{:.1f}\" "
       "height=\"10\"/><path class=\"whisker\" d=\"M{:.1f} 5H{:.1f}\"/></svg></li>\n",
       names, HtmlText(driver.feature),
-      std::isfinite(driver.partial) ? ", partial " + FixedText(driver.partial, 2) : std::string(),
+      std::isfinite(driver.partial) ? ", partial " + FixedText(driver.partial, 2) : std::string(), correlated,
       Share(driver.index), Share(driver.low), Share(driver.high), 1000.0 * driver.index, 1000.0 * driver.low,
       1000.0 * driver.high);
 }
@@ -34,16 +38,14 @@ std::string Bar(const Driver& driver) {
 
 std::string CausesSection(const CampaignSummary& summary) {
   std::string html =
-      "<h2 id=\"causes\">Causes</h2>\n<p>First-order Sobol indices from the flown cases: the share of a "
+      "<h2 id=\"causes\">Causes</h2>\n<p>At most five inputs for each metric. The share is how much of the "
       "metric’s "
-      "variance over the completed flights that each input explains by itself, signed, symmetric or "
-      "circular, with "
-      "its interval of 95 %. The feature is the function of the input that ranks the flights best; “along” "
-      "is a "
-      "magnitude in a direction. The partial rank correlation holds the other inputs. Inputs that rank the "
-      "flights alike (“=”) cannot be told apart. What the shares leave "
-      "is "
-      "interaction and noise.</p>\n";
+      "variance an input explains when the inputs above it are known, with its interval of 95 %. A magnitude "
+      "and its "
+      "direction count together (“along”). “by” names the function of the input that ranks the flights best. "
+      "Inputs "
+      "that rank the flights alike (“=”) cannot be told apart. What the shares leave is interaction and "
+      "noise.</p>\n";
   bool any = false;
   for (const MetricDrivers& metric : summary.drivers) {
     if (metric.drivers.empty()) continue;
@@ -55,18 +57,37 @@ std::string CausesSection(const CampaignSummary& summary) {
   }
   if (!any) html += "<p>Fewer than 30 completed flights, or nothing that varies: no cause can be told.</p>\n";
   for (const FailureDrivers& requirement : summary.failure_drivers) {
-    if (requirement.drivers.empty()) continue;
+    if (requirement.drivers.empty() && requirement.pairs.empty()) continue;
     html += fmt::format("<h3>{} of {}: {} {}</h3>\n", requirement.nearest ? "Nearest to failing" : "Failing",
                         HtmlText(DescribeMetric(requirement.metric).title), requirement.flights,
                         requirement.flights == 1 ? "flight" : "flights");
-    HtmlTable table(
-        {{"Input"}, {"Feature"}, {"Among them"}, {"p", true}, {"False discoveries up to here", true}});
+    HtmlTable table({{"Input"},
+                     {"Feature"},
+                     {"Among them"},
+                     {"p", true},
+                     {"Expected false alarms in the list so far", true}});
     for (const FailureDriver& driver : requirement.drivers) {
       table.Row({InputNames(driver.key, driver.input), HtmlText(driver.feature),
                  driver.larger ? "larger" : "smaller", ReadableText(driver.p),
                  Share(driver.false_discovery_rate)});
     }
     html += table.Html("causes");
+    if (requirement.pairs.empty()) continue;
+    html +=
+        "<p>Combinations: two inputs that belong together among the failing flights and not among the "
+        "others.</p>\n";
+    HtmlTable pairs({{"Inputs"},
+                     {"Among the failing flights"},
+                     {"Rank correlation", true},
+                     {"p", true},
+                     {"Expected false alarms in the list so far", true}});
+    for (const FailurePair& pair : requirement.pairs) {
+      pairs.Row({InputNames(pair.first_key, pair.first) + " by " + HtmlText(pair.first_feature) + " and " +
+                     InputNames(pair.second_key, pair.second) + " by " + HtmlText(pair.second_feature),
+                 pair.correlation > 0.0 ? "large together" : "one is large where the other is small",
+                 FixedText(pair.correlation, 2), ReadableText(pair.p), Share(pair.false_discovery_rate)});
+    }
+    html += pairs.Html("causes");
   }
   return html;
 }

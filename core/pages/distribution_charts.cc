@@ -178,8 +178,9 @@ std::string DistributionFigures(const std::string& metric, const CampaignSummary
   for (const RequirementSummary* requirement : requirements) {
     bars.VerticalLimit(requirement->limit, "limit: " + LimitWords(*requirement, info.unit));
     tail.VerticalLimit(requirement->limit, "limit");
-    tail.HorizontalLimit(1.0 - requirement->probability,
-                         fmt::format("{} allowed", PercentText(1.0 - requirement->probability)));
+    if (!requirement->every_case)
+      tail.HorizontalLimit(1.0 - requirement->probability,
+                           fmt::format("{} allowed", PercentText(1.0 - requirement->probability)), "allowed");
     if (!requirement->bound) continue;
     bars.VerticalLimit(*requirement->bound, "bound", "bound");
     tail.VerticalLimit(*requirement->bound, "bound", "bound");

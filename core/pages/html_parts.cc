@@ -2,6 +2,8 @@
 
 #include <fmt/format.h>
 
+#include <algorithm>
+
 #include "core/pages/embedded.h"
 #include "core/results/text.h"
 
@@ -51,7 +53,7 @@ void HtmlTable::Wide(const std::string& cell, std::string_view row_class) {
 std::string HtmlTable::Html(std::string_view table_class) const {
   std::string head;
   for (const Column& column : columns_) {
-    head += fmt::format("<th{}>{}</th>", column.number ? " class=\"n\"" : "", column.title);
+    head += fmt::format("<th scope=\"col\"{}>{}</th>", column.number ? " class=\"n\"" : "", column.title);
   }
   return fmt::format(
       "<div class=\"scroll\"><table{}><thead><tr>{}</tr></thead>\n<tbody>\n{}</tbody></table></div>\n",
@@ -67,8 +69,14 @@ std::string VerdictBadge(std::string_view verdict) {
                                 : verdict == "fail"         ? "✗"
                                 : verdict == "inconclusive" ? "?"
                                 : verdict == "study"        ? "◇"
-                                                            : "…";
-  return fmt::format("<span class=\"badge {}\">{} {}</span>", verdict, sign, verdict);
+                                : verdict == "incomplete"   ? "…"
+                                                            : "⊘";
+  // "not evidence" is of the class "not-evidence".
+  std::string name(verdict), spoken(verdict);
+  std::replace_if(
+      name.begin(), name.end(), [](char c) { return c == ' ' || c == '_'; }, '-');
+  std::replace(spoken.begin(), spoken.end(), '_', ' ');
+  return fmt::format("<span class=\"badge {}\">{} {}</span>", name, sign, spoken);
 }
 
 std::string PageHead(const std::string& title, const std::string& footer, const std::string& more_style) {

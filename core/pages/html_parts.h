@@ -31,7 +31,8 @@ class HtmlTable {
 /// A chart with what to see in it.
 std::string Figure(const std::string& svg, const std::string& caption_html);
 
-/// "pass", "fail", "inconclusive", "incomplete" as a coloured label that is also readable without colour.
+/// "pass", "fail", "inconclusive", "not_evidence", "post hoc", "incomplete" as a coloured label that is also
+/// readable without colour.
 std::string VerdictBadge(std::string_view verdict);
 
 /// A number of the head of a page above what it counts.

@@ -21,6 +21,13 @@
             value: x => { const u = a + (b - a) * (x - p) / (q - p); return log ? 10 ** u : u; }};
   }
 
+  // A path's first point, and the sums of its steps.
+  function Points(path) {
+    const numbers = path.match(/-?[\d.]+/g).map(Number), points = [];
+    for (let i = 0, x = 0, y = 0; i < numbers.length; i += 2) points.push([x += numbers[i], y += numbers[i + 1]]);
+    return points;
+  }
+
   const charts = [...document.querySelectorAll("svg.chart[data-x]")].map(svg => {
     const plot = svg.querySelector(".plot"), v = plot.viewBox.baseVal;
     plot.insertAdjacentHTML("beforeend", '<g class="marks"></g>');
@@ -31,7 +38,7 @@
     for (const label of chart.labels) label.dataset.x0 = label.getAttribute("x");
     chart.lines = [...plot.querySelectorAll("path[data-case]")].map(path => ({
       path, index: +path.dataset.case,
-      points: path.getAttribute("d").slice(1).split("L").map(pair => pair.split(" ").map(Number))}));
+      points: Points(path.getAttribute("d"))}));
     if (chart.mx !== undefined) {
       chart.px = data.values[chart.mx].map(value => value === null ? NaN : chart.x.at(value));
       chart.py = chart.my === undefined ? null : data.values[chart.my].map(value => value === null ? NaN : chart.y.at(value));

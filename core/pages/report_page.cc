@@ -20,7 +20,7 @@ constexpr char kNavigation[] =
     "cases</a><a "
     "href=\"#nominal\">Nominal flight</a>"
     "<a href=\"#statistics\">Statistics</a><a href=\"#dispersions\">Dispersions</a><a href=\"#limits\">Not "
-    "modelled</a>"
+    "modelled</a><a href=\"#credibility\">Credibility</a>"
     "<a href=\"#provenance\">Provenance</a></nav>\n";
 
 }  // namespace
@@ -29,7 +29,7 @@ std::string ReportPage(const Campaign& campaign, const CampaignSummary& summary,
                        const FlightHistories& histories) {
   std::string page = PageHead(
       summary.name, fmt::format("Dispersion campaign {} · {}", summary.name, summary.id.substr(0, 16)));
-  page += HeaderSection(summary);
+  page += "<main>\n" + FirstPage(campaign, summary);
   page += kNavigation;
   page += RequirementsSection(summary);
   page += OutcomesSection(summary);
@@ -93,9 +93,10 @@ std::string ReportPage(const Campaign& campaign, const CampaignSummary& summary,
   page += StatisticsSection(summary);
   page += DispersionsSection(summary);
   page += NotModelledSection(campaign);
+  page += CredibilitySection(summary);
   page += ProvenanceSection(campaign, summary);
-  page +=
-      "<script type=\"application/json\" id=\"cases\">" + CaseData(summary, cases) + "</script>\n<script>";
+  page += "</main>\n<script type=\"application/json\" id=\"cases\">" + CaseData(summary, cases) +
+          "</script>\n<script>";
   page += ReportScript();
   return page + "</script>\n</body>\n</html>\n";
 }

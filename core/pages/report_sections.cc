@@ -14,13 +14,6 @@
 namespace dispersa {
 namespace {
 
-/// For the middle of a sentence.
-std::string Lower(std::string title) {
-  if (!title.empty() && title[0] >= 'A' && title[0] <= 'Z')
-    title[0] = static_cast<char>(title[0] - 'A' + 'a');
-  return HtmlText(title);
-}
-
 std::string ReplayCell(const CampaignSummary& summary, std::uint64_t case_index) {
   if (summary.python_law) return fmt::format("<span data-case=\"{}\">–</span>", case_index);
   return fmt::format("<code class=\"copy\" data-case=\"{}\">{}</code>", case_index,
@@ -31,56 +24,6 @@ std::string OutcomeWords(Outcome outcome) {
   std::string words = OutcomeName(outcome);
   std::replace(words.begin(), words.end(), '_', ' ');
   return words;
-}
-
-std::ptrdiff_t Violated(const CampaignSummary& summary) {
-  return std::count_if(summary.requirements.begin(), summary.requirements.end(),
-                       [](const RequirementSummary& requirement) { return requirement.failures > 0; });
-}
-
-std::string PassSentence(const CampaignSummary& summary) {
-  const auto met =
-      std::count_if(summary.requirements.begin(), summary.requirements.end(),
-                    [](const RequirementSummary& requirement) { return requirement.verdict == "pass"; });
-  const bool open = static_cast<std::size_t>(met) < summary.requirements.size();
-  // All that may be open in a pass: the limits that nobody asked for, kept by too few flights to say more.
-  return (met == 0   ? "The campaign states no requirements"
-          : met == 1 ? "The one requirement is met"
-                     : fmt::format("All {} requirements are met", met)) +
-         std::string(open ? ", and no flight exceeded a limit of the vehicle." : ".");
-}
-
-/// What the requirements come to together, in one sentence.
-std::string VerdictSentence(const CampaignSummary& summary) {
-  const auto count = [&](const char* verdict) {
-    return std::count_if(
-        summary.requirements.begin(), summary.requirements.end(),
-        [&](const RequirementSummary& requirement) { return requirement.verdict == verdict; });
-  };
-  const std::size_t all = summary.requirements.size();
-  switch (summary.verdict) {
-    case CampaignVerdict::kStudy:
-      return fmt::format("A design study of {} points: each requirement is met at every one.", summary.cases);
-    case CampaignVerdict::kStudyViolated:
-      return fmt::format("A design study of {} points: {} of {} requirements {} violated at some.",
-                         summary.cases, Violated(summary), all, Violated(summary) == 1 ? "is" : "are");
-    case CampaignVerdict::kIncomplete:
-      if (summary.flown == summary.cases)
-        return fmt::format("{} of the design's {} points were flown.", summary.flown, summary.design_points);
-      return fmt::format("{} of {} cases have a result{}.", summary.flown, summary.cases,
-                         summary.quarantined.empty()
-                             ? "; the campaign can be resumed"
-                             : fmt::format("; {} are quarantined", summary.quarantined.size()));
-    case CampaignVerdict::kFail:
-      return fmt::format("{} of {} requirements {} not met.", count("fail"), all,
-                         count("fail") == 1 ? "is" : "are");
-    case CampaignVerdict::kInconclusive:
-      return fmt::format("{} of {} requirements cannot be decided with {} cases; none has failed.",
-                         count("inconclusive"), all, summary.flown);
-    case CampaignVerdict::kPass:
-      return PassSentence(summary);
-  }
-  return "";
 }
 
 /// An estimate with its limits below it, or the bound that is all the sample gives.
@@ -126,55 +69,6 @@ std::string OwnDefinition(const CampaignSummary& summary, const std::string& met
 }
 
 }  // namespace
-
-std::string HeaderSection(const CampaignSummary& summary) {
-  const std::uint64_t completed = summary.outcomes[static_cast<std::size_t>(Outcome::kCompleted)];
-  std::string html = fmt::format(
-      "<header>\n<h1>Dispersion campaign {}</h1>\n<p class=\"soft\">{} · reference {} · autopilot {} · {}, "
-      "{} cases, seed "
-      "{}</p>\n",
-      HtmlText(summary.name), HtmlText(summary.vehicle), HtmlText(summary.reference),
-      HtmlText(summary.autopilot), SamplingMethodTitle(summary.sampling), summary.cases, summary.seed);
-  const bool certain_fail =
-      summary.verdict == CampaignVerdict::kIncomplete &&
-      std::any_of(summary.requirements.begin(), summary.requirements.end(),
-                  [](const RequirementSummary& requirement) { return requirement.verdict == "fail"; });
-  const char* beyond =
-      summary.beyond_limits == 0 ? "" : "<span class=\"badge fail\">structural limit exceeded</span>";
-  html += fmt::format("<div class=\"headline{}\">{}{}{}<p>{}</p></div>\n",
-                      summary.beyond_limits == 0 ? "" : " exceeded",
-                      VerdictBadge(CampaignVerdictName(summary.verdict)), beyond,
-                      certain_fail ? VerdictBadge("fail")
-                      : IsIndependent(summary.sampling) || summary.verdict == CampaignVerdict::kStudy ||
-                              summary.verdict == CampaignVerdict::kStudyViolated
-                          ? ""
-                          : "<span class=\"badge design\">design study</span>",
-                      VerdictSentence(summary));
-  const std::vector<std::string> warnings = Warnings(summary);
-  if (!warnings.empty()) {
-    html += "<ul class=\"warnings\">";
-    for (const std::string& warning : warnings) html += "<li>" + HtmlText(warning) + "</li>";
-    html += "</ul>\n";
-  }
-  html += "<div class=\"tiles\">";
-  html += Tile(fmt::format("{} / {}", summary.flown, summary.cases), "cases flown");
-  const auto share = [&](std::uint64_t flights) {
-    return summary.flown == 0
-               ? "–"
-               : PercentText(static_cast<double>(flights) / static_cast<double>(summary.flown));
-  };
-  html += Tile(share(completed), "of them completed");
-  // Limits that end no flight do not show among the outcomes.
-  if (summary.beyond_limits > 0) html += Tile(share(summary.beyond_limits), "exceeded a structural limit");
-  for (const MetricSummary& metric : summary.metrics) {
-    const auto declared = std::find_if(Metrics().begin(), Metrics().end(), [&](const Metric& candidate) {
-      return candidate.name == metric.name && candidate.is_usual;
-    });
-    if (declared != Metrics().end())
-      html += Tile(WithUnit(metric.statistics.p50, declared->unit), "median " + Lower(declared->title));
-  }
-  return html + "</div>\n</header>\n";
-}
 
 std::string OutcomesSection(const CampaignSummary& summary) {
   std::string html = "<h2 id=\"outcomes\">Outcomes</h2>\n";

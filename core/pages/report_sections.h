@@ -9,8 +9,8 @@
 
 namespace dispersa {
 
-/// Name, overall verdict and the numbers to read first.
-std::string HeaderSection(const CampaignSummary& summary);
+/// What stands, requirement by requirement. All of it is between the marks of what differs from run to run.
+std::string FirstPage(const Campaign& campaign, const CampaignSummary& summary);
 std::string RequirementsSection(const CampaignSummary& summary);
 std::string OutcomesSection(const CampaignSummary& summary);
 std::string WorstCasesSection(const CampaignSummary& summary, const FlightHistories& histories);
@@ -20,6 +20,8 @@ std::string StatisticsSection(const CampaignSummary& summary);
 std::string InjectionSection(const InjectionSummary& injection);
 std::string DispersionsSection(const CampaignSummary& summary);
 std::string NotModelledSection(const Campaign& campaign);
+/// What the campaign shows of each credibility factor of NASA-STD-7009, and what it does not.
+std::string CredibilitySection(const CampaignSummary& summary);
 std::string ProvenanceSection(const Campaign& campaign, const CampaignSummary& summary);
 
 }  // namespace dispersa

@@ -44,7 +44,7 @@ CampaignSummary WriteReports(const ResultFolder& folder, const Campaign& campaig
         "--no-histories; with them dispersa.report(DIR, law=...) in Python");
   }
   const std::filesystem::path cases_csv = folder.directory() / "cases.csv";
-  CasesCsv csv(cases_csv, folder);
+  CasesCsv csv(cases_csv, folder, StoredColumns(folder));
   const CaseColumns cases =
       ReadColumns(folder, DispersedInputs(campaign), [&csv](const CaseResult& result) { csv.Write(result); });
   RefuseFewer(cases_csv, csv.rows());
@@ -59,6 +59,7 @@ CampaignSummary WriteReports(const ResultFolder& folder, const Campaign& campaig
     RemoveHistories(folder);
   }
   WriteFile(folder.directory() / "summary.json", SummaryJson(summary));
+  WriteStanding(folder, summary);
   RecordLooks(folder, campaign, summary);
   WriteFile(folder.directory() / "report.html", ReportPage(campaign, summary, cases, histories));
   return summary;

@@ -25,7 +25,7 @@ const char* LookName(Verdict verdict) {
 std::string PlanWords(const RequirementSummary& requirement) {
   switch (requirement.plan.kind) {
     case PlanKind::kFixed:
-      return fmt::format("one look at {} cases", requirement.planned);
+      return fmt::format("judged once, after {} flights", requirement.planned);
     case PlanKind::kGroupSequential:
       return fmt::format("{} looks up to {} cases, {} spending", requirement.plan.looks, requirement.planned,
                          requirement.plan.spending == Spending::kPocock ? "Pocock" : "O’Brien–Fleming");
@@ -37,10 +37,10 @@ std::string PlanWords(const RequirementSummary& requirement) {
 
 /// The value that the claim is read by, or why there is none.
 std::string BoundWords(const RequirementSummary& requirement, const std::string& unit) {
-  if (!requirement.bound)
-    return requirement.beyond_plan ? "no bound beyond the plan" : "no bound: too few cases or too many lost";
-  return fmt::format("bound {}, margin {}", WithUnit(*requirement.bound, unit),
-                     WithUnit(*requirement.margin, unit));
+  if (!requirement.bound) return "no bound: too few cases or too many lost";
+  return fmt::format("With {} confidence {} of flights keep to {} (margin {}).",
+                     PercentText(1.0 - requirement.consumer_risk), PercentText(requirement.probability),
+                     WithUnit(*requirement.bound, unit), WithUnit(*requirement.margin, unit));
 }
 
 /// The worst of the completed flights, which is no bound of anything but says where the sample ends.
@@ -76,8 +76,11 @@ std::string ChanceFigure(const RequirementSummary& requirement) {
     cases.push_back(static_cast<double>(each.cases));
     chance.push_back(each.probability);
   }
-  chart.Line(cases, chance, "line-0", "at the failure rate seen here");
-  const std::string caption = "Probability that a new campaign passes, against its number of cases.";
+  chart.Line(cases, chance, "line-0", "by what was seen here");
+  const std::string caption =
+      "Probability that a new campaign passes, against its number of cases, over the failure rates that "
+      "these "
+      "flights leave possible.";
   return "<div class=\"figures\">" + Figure(chart.Svg(caption), caption) + "</div>\n";
 }
 
@@ -105,7 +108,7 @@ std::string ConvergenceFigure(const RequirementSummary& requirement) {
   chart.Band(n, lower, upper, "band-outer", "between its bounds");
   chart.Line(n, observed, "line-0", "observed");
   chart.HorizontalLimit(1.0 - requirement.probability,
-                        fmt::format("{} allowed", PercentText(1.0 - requirement.probability)));
+                        fmt::format("{} allowed", PercentText(1.0 - requirement.probability)), "allowed");
   for (const Look& look : requirement.looks) chart.Mark(static_cast<double>(look.n), LookName(look.verdict));
   const std::string caption = fmt::format(
       "{}: {} in {} cases at the end. Each bound holds with {} confidence at its number of cases taken "
@@ -122,12 +125,14 @@ std::string Card(const RequirementSummary& requirement, const CampaignSummary& s
                                                    static_cast<double>(requirement.n);
   const bool study = requirement.verdict == "study";
   std::string html = fmt::format(
-      "<section class=\"requirement\"><p class=\"claim\">{}{}<b>{}</b> {} for {} of flights, consumer risk "
-      "{}<br><code>{}</code>{}</p>\n<p class=\"sentence\">{}</p>\n<dl class=\"facts\">",
-      VerdictBadge(requirement.verdict),
-      requirement.post_hoc ? " <span class=\"badge design\">post hoc</span>" : "", HtmlText(info.title),
-      HtmlText(LimitWords(requirement, info.unit)), PercentText(requirement.probability),
-      PercentText(requirement.consumer_risk), HtmlText(requirement.metric),
+      "<section class=\"requirement\"><p class=\"claim\"><b>{}</b> {} {}<br><code>{}</code>{}</p>\n<p "
+      "class=\"sentence\">{}</p>\n<dl class=\"facts\">",
+      HtmlText(info.title), HtmlText(LimitWords(requirement, info.unit)),
+      requirement.every_case
+          ? std::string("in every case")
+          : fmt::format("for {} of flights, consumer risk {}", PercentText(requirement.probability),
+                        PercentText(requirement.consumer_risk)),
+      HtmlText(requirement.metric),
       requirement.by_default ? ", required because the vehicle gives limits"
       : study                ? ""
                              : " <span class=\"value\">" + BoundWords(requirement, info.unit) + "</span>",
@@ -143,10 +148,13 @@ std::string Card(const RequirementSummary& requirement, const CampaignSummary& s
                                         : "none: design study");
   if (!study) {
     html += Fact("plan", PlanWords(requirement));
-    html += Fact("failures that decide",
-                 fmt::format("pass {}, fail {}",
-                             requirement.accepts ? fmt::format("≤ {}", *requirement.accepts) : "none",
-                             requirement.rejects ? fmt::format("≥ {}", *requirement.rejects) : "none"));
+    html += Fact(
+        "decision rule",
+        fmt::format(
+            "{}; {}",
+            requirement.accepts ? fmt::format("pass with {} failures or fewer", *requirement.accepts)
+                                : "no number of failures passes",
+            requirement.rejects ? fmt::format("fail with {} or more", *requirement.rejects) : "none fails"));
   }
   return html + "</dl>\n" + LooksTable(requirement) + ChanceFigure(requirement) + "</section>\n";
 }

@@ -4,6 +4,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <cstdint>
 #include <limits>
 #include <set>
 #include <utility>
@@ -73,10 +74,65 @@ void ThinColumn(const std::vector<Point>& column, std::vector<Point>* out) {
   out->push_back(column.back());
 }
 
+double DistanceToSegment(const Point& point, const Point& a, const Point& b) {
+  const double dx = b.x - a.x, dy = b.y - a.y;
+  const double squared = dx * dx + dy * dy;
+  const double along =
+      squared > 0.0 ? std::clamp(((point.x - a.x) * dx + (point.y - a.y) * dy) / squared, 0.0, 1.0) : 0.0;
+  return std::hypot(point.x - a.x - along * dx, point.y - a.y - along * dy);
+}
+
+/// Without the points from which the line through the others is nowhere farther than the eye sees (D. H.
+/// Douglas and T. K. Peucker, Cartographica 10 (1973) 112-122).
+std::vector<Point> Straightened(const std::vector<Point>& run) {
+  constexpr double kUnseen = 0.2;  // of a pixel
+  if (run.size() < 3) return run;
+  std::vector<bool> kept(run.size());
+  kept.front() = kept.back() = true;
+  std::vector<std::pair<std::size_t, std::size_t>> open = {{0, run.size() - 1}};
+  while (!open.empty()) {
+    const auto [first, last] = open.back();
+    open.pop_back();
+    double most = kUnseen;
+    std::size_t farthest = 0;
+    for (std::size_t i = first + 1; i < last; ++i) {
+      const double distance = DistanceToSegment(run[i], run[first], run[last]);
+      if (!(distance > most)) continue;
+      most = distance;
+      farthest = i;
+    }
+    if (farthest == 0) continue;
+    kept[farthest] = true;
+    open.push_back({first, farthest});
+    open.push_back({farthest, last});
+  }
+  std::vector<Point> straightened;
+  for (std::size_t i = 0; i < run.size(); ++i)
+    if (kept[i]) straightened.push_back(run[i]);
+  return straightened;
+}
+
+/// Tenths of a pixel as pixels, in as few letters as SVG reads: "-.3", "12", "0".
+std::string Step(std::int64_t tenths) {
+  std::string text = Coordinate(static_cast<double>(tenths) / 10.0);
+  const std::size_t zero = text.find("0.");
+  if (zero == 0 || (zero == 1 && text[0] == '-')) text.erase(zero, 1);
+  return text;
+}
+
+/// The first point, then steps: these have fewer digits. Steps are between rounded points, so that their
+/// sum is exact.
 std::string Path(const std::vector<Point>& points) {
   std::string path;
+  std::int64_t x = 0, y = 0;
   for (std::size_t i = 0; i < points.size(); ++i) {
-    path += (i == 0 ? "M" : "L") + Coordinate(points[i].x) + " " + Coordinate(points[i].y);
+    const auto next_x = static_cast<std::int64_t>(std::llround(10.0 * points[i].x));
+    const auto next_y = static_cast<std::int64_t>(std::llround(10.0 * points[i].y));
+    const std::string dx = Step(next_x - x), dy = Step(next_y - y);
+    path += i == 0 ? "M" : i == 1 ? "l" : dx[0] == '-' ? "" : " ";
+    path += dx + (dy[0] == '-' ? "" : " ") + dy;
+    x = next_x;
+    y = next_y;
   }
   return path;
 }
@@ -104,6 +160,7 @@ std::vector<std::vector<Point>> Runs(const std::vector<double>& x, const std::ve
   }
   flush();
   if (runs.back().empty()) runs.pop_back();
+  for (std::vector<Point>& run : runs) run = Straightened(run);
   return runs;
 }
 
@@ -156,8 +213,8 @@ void SvgChart::VerticalLimit(double x, const std::string& legend, const std::str
   series_.push_back({Series::Kind::kVerticalLimit, {x}, {}, {}, style, legend});
 }
 
-void SvgChart::HorizontalLimit(double y, const std::string& legend) {
-  series_.push_back({Series::Kind::kHorizontalLimit, {}, {y}, {}, "limit", legend});
+void SvgChart::HorizontalLimit(double y, const std::string& legend, const std::string& style) {
+  series_.push_back({Series::Kind::kHorizontalLimit, {}, {y}, {}, style, legend});
 }
 
 void SvgChart::Mark(double x, const std::string& label) { spans_.push_back({x, x, label}); }
@@ -344,7 +401,7 @@ std::string SvgChart::Svg(const std::string& description) const {
         svg += Segment(xs.At(series.x[0]), top, xs.At(series.x[0]), bottom, series.style.c_str());
         break;
       case Series::Kind::kHorizontalLimit:
-        svg += Segment(kLeft, ys.At(series.low[0]), right, ys.At(series.low[0]), "limit");
+        svg += Segment(kLeft, ys.At(series.low[0]), right, ys.At(series.low[0]), series.style.c_str());
         break;
     }
   }

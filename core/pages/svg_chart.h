@@ -40,7 +40,7 @@ class SvgChart {
   /// Dashed lines that belong to a requirement. The axes grow to show them, unless they lie so far from the
   /// data that these could not be told apart: then the legend says where they are.
   void VerticalLimit(double x, const std::string& legend, const std::string& style = "limit");
-  void HorizontalLimit(double y, const std::string& legend);
+  void HorizontalLimit(double y, const std::string& legend, const std::string& style = "limit");
   /// A labelled event, and a labelled span of time.
   void Mark(double x, const std::string& label);
   void Shade(double from, double to, const std::string& label);

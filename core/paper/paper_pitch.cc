@@ -93,11 +93,11 @@ std::string RequirementRows(const PaperFlights& flown) {
   for (const Requirement& requirement : flown.campaign.requirements) {
     const RequirementSummary verdict =
         Judge(requirement, flown.campaign.sampling.method, flown.flights.cases, 0);
-    table.Row(
-        {fmt::format("<code>{}</code> {} {} with {}", requirement.metric, verdict.below ? "below" : "above",
-                     ReadableText(verdict.limit), PercentText(verdict.probability)),
-         HtmlText(verdict.sentence), fmt::format("{} / {}", verdict.failures, verdict.n),
-         VerdictBadge(verdict.verdict)});
+    table.Row({fmt::format("<code>{}</code> {} {} {}", requirement.metric, verdict.below ? "below" : "above",
+                           ReadableText(verdict.limit),
+                           verdict.every_case ? "in every case" : "with " + PercentText(verdict.probability)),
+               HtmlText(verdict.sentence), fmt::format("{} / {}", verdict.failures, verdict.n),
+               VerdictBadge(verdict.verdict)});
   }
   return table.Html();
 }

@@ -3,32 +3,61 @@
 #include <fmt/format.h>
 
 #include <array>
+#include <cmath>
 #include <fstream>
+#include <numeric>
+#include <optional>
 #include <string>
+#include <utility>
 
 #include "core/flight/flight_inputs.h"
 #include "core/results/text.h"
 
 namespace dispersa {
 
-std::string CasesCsvHeader(const MetricList& list, const std::vector<std::size_t>& metrics) {
+CsvColumns StoredColumns(const ResultFolder& folder) {
+  CsvColumns columns{std::vector<std::size_t>(InputCount(folder.stages())), folder.metrics()};
+  std::iota(columns.inputs.begin(), columns.inputs.end(), std::size_t{0});
+  return columns;
+}
+
+CsvColumns VaryingColumns(const ResultFolder& folder) {
+  const CsvColumns stored = StoredColumns(folder);
+  std::optional<CaseResult> first;
+  std::vector<bool> inputs(InputCount(folder.stages())), metrics(folder.metric_list().size());
+  // Undefined equals undefined here: neither has a text.
+  const auto differ = [](double a, double b) { return !(a == b) && !(std::isnan(a) && std::isnan(b)); };
+  folder.ForEach([&](const CaseResult& result) {
+    if (!first) first = result;
+    for (const std::size_t i : stored.inputs)
+      if (differ(result.inputs[i], first->inputs[i])) inputs[i] = true;
+    for (const std::size_t i : stored.metrics)
+      if (differ(result.metrics[i], first->metrics[i])) metrics[i] = true;
+  });
+  CsvColumns columns = stored;
+  std::erase_if(columns.inputs, [&](std::size_t i) { return !inputs[i]; });
+  std::erase_if(columns.metrics, [&](std::size_t i) { return !metrics[i]; });
+  return columns;
+}
+
+std::string CasesCsvHeader(const MetricList& list, const CsvColumns& columns) {
   std::string line = "case_index,outcome,end_time_s,end_stage,reason";
-  for (std::size_t i = 0; i < InputCount(list.stages()); ++i) line += ",input_" + InputColumns()[i].name;
-  for (const std::size_t i : metrics) line += ",metric_" + list.NameAt(i);
+  for (const std::size_t i : columns.inputs) line += ",input_" + InputColumns()[i].name;
+  for (const std::size_t i : columns.metrics) line += ",metric_" + list.NameAt(i);
   return line + ",digest\n";
 }
 
-std::string CasesCsvLine(const CaseResult& result, const std::vector<std::size_t>& metrics) {
+std::string CasesCsvLine(const CaseResult& result, const CsvColumns& columns) {
   std::string line = fmt::format("{},{},{},{},{}", result.case_index, OutcomeName(result.outcome),
                                  ShortestText(result.end_time_s), result.end_stage, CsvField(result.reason));
-  for (const double value : result.inputs) line += "," + ShortestText(value);
-  for (const std::size_t i : metrics) line += "," + ShortestText(result.metrics[i]);
+  for (const std::size_t i : columns.inputs) line += "," + ShortestText(result.inputs[i]);
+  for (const std::size_t i : columns.metrics) line += "," + ShortestText(result.metrics[i]);
   return line + "," + result.digest.Hex() + "\n";
 }
 
-CasesCsv::CasesCsv(const std::filesystem::path& file, const ResultFolder& folder)
-    : file_(file), metrics_(folder.metrics()) {
-  file_.Write(CasesCsvHeader(folder.metric_list(), metrics_));
+CasesCsv::CasesCsv(const std::filesystem::path& file, const ResultFolder& folder, CsvColumns columns)
+    : file_(file), columns_(std::move(columns)) {
+  file_.Write(CasesCsvHeader(folder.metric_list(), columns_));
 }
 
 std::uint64_t CountCases(const std::filesystem::path& file) {
@@ -46,8 +75,8 @@ std::uint64_t CountCases(const std::filesystem::path& file) {
   return lines == 0 ? 0 : lines - 1;  // without the header
 }
 
-void WriteCasesCsv(const ResultFolder& folder, const std::filesystem::path& file) {
-  CasesCsv csv(file, folder);
+void WriteCasesCsv(const ResultFolder& folder, const CsvColumns& columns, const std::filesystem::path& file) {
+  CasesCsv csv(file, folder, columns);
   folder.ForEach([&csv](const CaseResult& result) { csv.Write(result); });
   csv.Commit();
 }

@@ -13,20 +13,28 @@
 
 namespace dispersa {
 
-/// Both with their line break, with the metrics at these positions of the list. Doubles in the shortest text
-/// that reads back to the same bits.
-std::string CasesCsvHeader(const MetricList& list, const std::vector<std::size_t>& metrics);
-std::string CasesCsvLine(const CaseResult& result, const std::vector<std::size_t>& metrics);
+/// Positions in a case's inputs and in the folder's list of metrics.
+struct CsvColumns {
+  std::vector<std::size_t> inputs;
+  std::vector<std::size_t> metrics;
+};
+/// All that a folder stores.
+CsvColumns StoredColumns(const ResultFolder& folder);
+/// Those of them that differ between cases.
+CsvColumns VaryingColumns(const ResultFolder& folder);
+
+/// Both with their line break. Doubles in the shortest text that reads back to the same bits.
+std::string CasesCsvHeader(const MetricList& list, const CsvColumns& columns);
+std::string CasesCsvLine(const CaseResult& result, const CsvColumns& columns);
 
 /// The growing file. It replaces the old one as a whole.
 class CasesCsv {
  public:
-  /// Of what the folder stores.
-  CasesCsv(const std::filesystem::path& file, const ResultFolder& folder);
+  CasesCsv(const std::filesystem::path& file, const ResultFolder& folder, CsvColumns columns);
 
   /// In ascending order of case index.
   void Write(const CaseResult& result) {
-    file_.Write(CasesCsvLine(result, metrics_));
+    file_.Write(CasesCsvLine(result, columns_));
     ++rows_;
   }
   std::uint64_t rows() const { return rows_; }
@@ -34,14 +42,14 @@ class CasesCsv {
 
  private:
   OutputFile file_;
-  std::vector<std::size_t> metrics_;
+  CsvColumns columns_;
   std::uint64_t rows_ = 0;
 };
 
 /// Number of cases of an earlier file; 0 if there is none.
 std::uint64_t CountCases(const std::filesystem::path& file);
 
-/// All that is stored.
-void WriteCasesCsv(const ResultFolder& folder, const std::filesystem::path& file);
+/// All cases that are stored.
+void WriteCasesCsv(const ResultFolder& folder, const CsvColumns& columns, const std::filesystem::path& file);
 
 }  // namespace dispersa

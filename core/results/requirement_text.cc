@@ -25,6 +25,9 @@ std::string LimitText(const Requirement& requirement) {
 
 std::string RequirementLine(const Requirement& requirement) {
   const Limits limits = LimitsOf(requirement);
+  if (requirement.every_case)
+    return fmt::format("{} above {} below {} every_case", requirement.metric, ShortestText(limits.low),
+                       ShortestText(limits.high));
   const char* plan = requirement.plan.kind == PlanKind::kAnytime      ? "anytime"
                      : requirement.plan.spending == Spending::kPocock ? "pocock"
                                                                       : "obrien_fleming";

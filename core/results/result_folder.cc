@@ -485,6 +485,15 @@ void ResultFolder::RecordLook(const LookRecord& look) const {
   insert.Step();
 }
 
+std::vector<LookRecord> ResultFolder::Looks() const {
+  std::vector<LookRecord> looks;
+  Statement select =
+      database_->Prepare("SELECT requirements_id, requirement, n, failures, verdict FROM looks ORDER BY n");
+  while (select.Step())
+    looks.push_back({select.Text(0), select.Text(1), select.Integer(2), select.Integer(3), select.Text(4)});
+  return looks;
+}
+
 std::int64_t ResultFolder::PlannedCases() const { return std::stoll(Provenance("planned_cases")); }
 
 std::vector<std::int64_t> ResultFolder::PastLooks() const {

@@ -77,6 +77,8 @@ class ResultFolder : public ResultStore {
   /// Remembers, once each, that verdicts were read from the first n cases. A record of what people saw, not
   /// of what was flown: so a folder that is only reported on may get one too.
   void RecordLook(const LookRecord& look) const;
+  /// All of them, by number of cases.
+  std::vector<LookRecord> Looks() const;
   /// Numbers of cases at which any verdict was read, ascending.
   std::vector<std::int64_t> PastLooks() const override;
   std::int64_t PlannedCases() const override;

@@ -42,8 +42,6 @@ const char* SamplingMethodTitle(SamplingMethod method) {
   return "";
 }
 
-bool IsIndependent(SamplingMethod method) { return method == SamplingMethod::kMonteCarlo; }
-
 bool IsEnumerated(SamplingMethod method) {
   return method == SamplingMethod::kCorners || method == SamplingMethod::kOneAtATime ||
          method == SamplingMethod::kGrid || method == SamplingMethod::kList;

@@ -11,8 +11,6 @@ namespace dispersa {
 const char* SamplingMethodName(SamplingMethod method);
 /// "Monte Carlo", "Latin hypercube", ...
 const char* SamplingMethodTitle(SamplingMethod method);
-/// Cases are independent and identically distributed, so that binomial limits hold.
-bool IsIndependent(SamplingMethod method);
 /// The design enumerates its points: corners, one at a time, grid, list.
 bool IsEnumerated(SamplingMethod method);
 

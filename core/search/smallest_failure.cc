@@ -127,11 +127,20 @@ class Search {
     return starts;
   }
 
-  /// From the point that is nearest to failing along the slope of the margin, until something fails.
-  std::vector<Flown> Approach(const std::vector<Flown>& flown) {
-    const auto nearest = std::min_element(flown.begin(), flown.end(),
-                                          [](const Flown& a, const Flown& b) { return a.margin < b.margin; });
-    Flown now = *nearest;
+  /// From each of the points that are nearest to failing, the nearest first, until something fails.
+  std::vector<Flown> Approach(std::vector<Flown> flown) {
+    std::stable_sort(flown.begin(), flown.end(),
+                     [](const Flown& a, const Flown& b) { return a.margin < b.margin; });
+    flown.resize(std::min(flown.size(), options_.starts));
+    for (const Flown& start : flown) {
+      std::vector<Flown> failing = ApproachFrom(start);
+      if (!failing.empty()) return failing;
+    }
+    return {};
+  }
+
+  /// Along the slope of the margin.
+  std::vector<Flown> ApproachFrom(Flown now) {
     for (int round = 0; round < 6; ++round) {
       std::vector<Point> points = TowardsLimit(now, {1.0, 0.5}, {1.0, 1.02, 1.1, 1.3});
       std::erase_if(points, [&](const Point& point) { return Distance(point) > options_.reach; });

@@ -39,7 +39,7 @@ double DistanceOf(const std::vector<Coordinate>& coordinates, const std::vector<
 /// 1. Every coordinate alone at ±3, and points drawn at one and two standard deviations; the failing ones
 /// nearest to
 ///    zero are the starts. Without any, the points nearest to failing are stretched up to `reach`, and the
-///    last resort is to follow the margin's slope.
+///    last resort is to follow the margin's slope from each of them.
 /// 2. From each start: shrink along the ray to zero; set to zero what the failure does not need (in the
 /// manner of A.
 ///    Zeller and R. Hildebrandt, IEEE Trans. Softw. Eng. 28 (2002) 183-200); go to the nearest point of the

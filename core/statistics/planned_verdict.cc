@@ -141,12 +141,22 @@ std::vector<PlannedVerdict> DecideAll(const std::vector<PlannedRequirement>& req
   return verdicts;
 }
 
-double PassProbability(double probability, double risk, std::int64_t n, double failure_rate) {
+double PassProbability(double probability, double risk, std::int64_t n, std::int64_t seen,
+                       std::int64_t failures) {
   const std::optional<std::int64_t> most = MaxFailures(probability, risk, n);
   if (!most) return 0.0;
-  if (failure_rate <= 0.0) return 1.0;
-  if (failure_rate >= 1.0) return *most >= n ? 1.0 : 0.0;
-  return ConsumerRisk(1.0 - failure_rate, n, *most);
+  // The sum of the beta-binomial distribution up to the most failures allowed.
+  const double a = static_cast<double>(failures) + 0.5;
+  const double b = static_cast<double>(seen - failures) + 0.5;
+  const auto all = static_cast<double>(n);
+  double term = std::lgamma(all + b) + std::lgamma(a + b) - std::lgamma(b) - std::lgamma(all + a + b);
+  double sum = 0.0;
+  for (std::int64_t k = 0; k <= std::min(*most, n); ++k) {
+    sum += std::exp(term);
+    const auto at = static_cast<double>(k);
+    if (k < n) term += std::log((all - at) / (at + 1.0) * (a + at) / (b + all - at - 1.0));
+  }
+  return std::min(sum, 1.0);
 }
 
 }  // namespace dispersa

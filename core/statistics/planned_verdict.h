@@ -78,7 +78,10 @@ std::vector<PlannedVerdict> DecideAll(const std::vector<PlannedRequirement>& req
                                       std::int64_t n, const std::vector<CaseTally>& tallies,
                                       const std::vector<std::int64_t>& past_looks = {});
 
-/// Probability that a campaign of n cases with one look passes when each case fails with `failure_rate`.
-double PassProbability(double probability, double risk, std::int64_t n, double failure_rate);
+/// Probability that a new campaign of n cases with one look passes, after `failures` of `seen` cases failed:
+/// over the failure probabilities that these leave possible (Jeffreys' prior: Beta(failures + 1/2, seen -
+/// failures + 1/2)), not at the rate seen, which after few cases is nearly always too good.
+double PassProbability(double probability, double risk, std::int64_t n, std::int64_t seen,
+                       std::int64_t failures);
 
 }  // namespace dispersa

@@ -132,6 +132,19 @@ SensitivityIndex FirstOrderIndex(const Ranked& x, const std::vector<double>& y, 
           std::clamp(index + 1.96 * spread, 0.0, 1.0)};
 }
 
+std::vector<double> RestOf(const Ranked& x, const std::vector<double>& y) {
+  assert(x.size() == y.size());
+  const std::size_t count = ClassCount(x.size());
+  const std::vector<std::uint8_t> classes = Classes(x, count);
+  std::vector<double> sums(count), sizes(count), rest = y;
+  for (std::size_t i = 0; i < y.size(); ++i) {
+    sums[classes[i]] += y[i];
+    sizes[classes[i]] += 1.0;
+  }
+  for (std::size_t i = 0; i < y.size(); ++i) rest[i] -= sums[classes[i]] / sizes[classes[i]];
+  return rest;
+}
+
 double FirstOrderShare(const Ranked& x, const std::vector<double>& y) {
   assert(x.size() == y.size());
   if (x.size() < 8) return 0.0;

@@ -44,6 +44,9 @@ SensitivityIndex FirstOrderIndex(const Ranked& x, const std::vector<double>& y, 
 /// The index alone, unlimited below: what chance explains may come out negative.
 double FirstOrderShare(const Ranked& x, const std::vector<double>& y);
 
+/// y less its mean within the same classes of x: what x alone does not explain.
+std::vector<double> RestOf(const Ranked& x, const std::vector<double>& y);
+
 /// Pearson's correlation of the ranks; 0 where either has no variance.
 double RankCorrelation(const Ranked& x, const Ranked& y);
 

@@ -1,16 +1,48 @@
 #include "services/cli/campaign_output.h"
 
+#include <fcntl.h>
 #include <fmt/format.h>
+#include <spawn.h>
+#include <unistd.h>
 
+#include <algorithm>
+#include <cstdlib>
+#include <cstring>
 #include <limits>
 #include <map>
 #include <nlohmann/json.hpp>
 #include <string>
 
 #include "core/results/text.h"
+#include "services/log/log.h"
 #include "services/program/option_values.h"
 
 namespace dispersa {
+
+namespace {
+
+/// What a reader of this verdict does next.
+std::string NextStep(const CampaignSummary& summary) {
+  switch (summary.standing.verdict) {
+    case StandingVerdict::kPass:
+      return "read the report's assumptions and warnings";
+    case StandingVerdict::kNothingJudged:
+      return "state what must hold under 'requirements:' of the campaign file";
+    case StandingVerdict::kInconclusive:
+      return "fly more cases; the sentences above say how many";
+    case StandingVerdict::kNotEvidence:
+      return IsIndependent(summary.sampling)
+                 ? "fly the requirements as they stand with another seed, or read the reasons above"
+                 : "require 'every_case: true', or sample by monte_carlo";
+    case StandingVerdict::kFail:
+      return "read the causes in the report; 'dispersa search' finds the smallest dispersion that fails";
+    case StandingVerdict::kIncomplete:
+      return "the same command with --resume flies what is missing";
+  }
+  return "";
+}
+
+}  // namespace
 
 void AddReflownOptions(CLI::App& command, ReflownFlights& flights) {
   const std::map<std::string, std::uint64_t> words = {{"all", std::numeric_limits<std::uint64_t>::max()}};
@@ -23,6 +55,30 @@ void AddReflownOptions(CLI::App& command, ReflownFlights& flights) {
       ->transform(WholeNumber(1, UINT64_MAX))
       ->transform(CLI::Transformer(words).description("{all}"))
       ->default_str(std::to_string(flights.envelope));
+}
+
+void AddGateOption(CLI::App& command, bool& gate) {
+  command.add_flag("--gate", gate,
+                   "for continuous integration: exit code 7 instead of 0 when nothing is required");
+}
+
+void AddOpenOption(CLI::App& command, bool& open) {
+  command.add_flag("--open", open, "show report.html in the browser ($BROWSER, or xdg-open)");
+}
+
+void OpenPage(const std::filesystem::path& page) {
+  const char* chosen = std::getenv("BROWSER");
+  std::string program = chosen != nullptr && *chosen != '\0' ? chosen : "xdg-open";
+  std::string file = std::filesystem::absolute(page).string();
+  char* const arguments[] = {program.data(), file.data(), nullptr};
+  posix_spawn_file_actions_t actions;
+  posix_spawn_file_actions_init(&actions);
+  for (const int stream : {STDIN_FILENO, STDOUT_FILENO, STDERR_FILENO})
+    posix_spawn_file_actions_addopen(&actions, stream, "/dev/null", O_RDWR, 0);
+  pid_t pid = 0;
+  const int error = posix_spawnp(&pid, arguments[0], &actions, nullptr, arguments, environ);
+  posix_spawn_file_actions_destroy(&actions);
+  if (error != 0) LogWarning("--open: {}: {}; open {} yourself", program, std::strerror(error), file);
 }
 
 void PrintSummary(const CampaignSummary& summary, const std::filesystem::path& directory, bool json) {
@@ -39,13 +95,18 @@ void PrintSummary(const CampaignSummary& summary, const std::filesystem::path& d
   }
   if (!summary.quarantined.empty()) fmt::print(", {} quarantined", summary.quarantined.size());
   fmt::print("\n");
+  for (const std::string& note : StandingNotes(summary.standing, summary)) fmt::print("warning: {}\n", note);
   for (const std::string& warning : Warnings(summary)) fmt::print("warning: {}\n", warning);
-  for (const RequirementSummary& requirement : summary.requirements) {
+  for (std::size_t i = 0; i < summary.requirements.size(); ++i) {
+    const RequirementSummary& requirement = summary.requirements[i];
+    std::string verdict = summary.standing.requirements[i].verdict;
+    std::replace(verdict.begin(), verdict.end(), '_', ' ');
     fmt::print(
-        "{}: {}{}: {}\n", requirement.verdict, RequirementWords(requirement),
+        "{}: {}{}: {}\n", verdict, RequirementWords(requirement),
         requirement.bound ? fmt::format(", bound {}", ReadableText(*requirement.bound)) : std::string(),
         requirement.sentence);
   }
+  fmt::print("VERDICT {}, next: {}\n", StandingBadge(summary.standing), NextStep(summary));
   fmt::print("report: {}\nresult: {}\n", (directory / "report.html").string(), directory.string());
 }
 

@@ -11,6 +11,14 @@ namespace dispersa {
 /// --no-histories and --envelope.
 void AddReflownOptions(CLI::App& command, ReflownFlights& flights);
 
+/// --gate.
+void AddGateOption(CLI::App& command, bool& gate);
+
+/// --open.
+void AddOpenOption(CLI::App& command, bool& open);
+/// Starts the browser with a page and does not wait for it: $BROWSER, or xdg-open. A failure is a warning.
+void OpenPage(const std::filesystem::path& page);
+
 /// Prints the verdicts, the report's place, and as the last line "result: DIR". With `json`: summary.json
 /// plus `directory`.
 void PrintSummary(const CampaignSummary& summary, const std::filesystem::path& directory, bool json);

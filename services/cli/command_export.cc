@@ -29,6 +29,7 @@ struct ExportOptions {
   std::string directory;
   ExportFormat format = ExportFormat::kCsv;
   std::string out;
+  bool only_varying = false;
 };
 
 /// Flies the cases again: their rows do not say where stages separated.
@@ -58,11 +59,15 @@ ExitCode Export(const ExportOptions& options, const GlobalOptions& global) {
   std::FILE* const stream = StreamBeside("--out", options.out, global);
   if (stream == stderr && options.format == ExportFormat::kHdf5)
     throw InputError("--out: HDF5 cannot be written to standard output", "a file");
+  if (options.only_varying && options.format != ExportFormat::kCsv)
+    throw InputError("--columns: only a CSV file can leave columns out", "--format csv");
   const StoredCampaign stored = OpenStored(options.directory);
   RequireWritableFile("--out", options.out);
   switch (options.format) {
     case ExportFormat::kCsv:
-      WriteCasesCsv(stored.folder, options.out);
+      WriteCasesCsv(stored.folder,
+                    options.only_varying ? VaryingColumns(stored.folder) : StoredColumns(stored.folder),
+                    options.out);
       break;
     case ExportFormat::kJsonLines:
       ExportJsonLines(stored.folder, options.out);
@@ -103,10 +108,18 @@ void AddExportCommand(CLI::App& app, Invocation& invocation) {
                    "flights, whose cases are flown again, and footprints")
       ->required()
       ->transform(CLI::CheckedTransformer(formats).description(CLI::detail::generate_map(formats, true)));
+  const std::map<std::string, bool> columns = {{"all", false}, {"varying", true}};
+  command
+      ->add_option("--columns", options->only_varying,
+                   "of a CSV file: varying leaves out inputs and metrics that are the same in all cases")
+      ->transform(CLI::CheckedTransformer(columns).description("{all,varying}"))
+      ->default_str("all");
   command->add_option("--out", options->out, "file to write; -: standard output")
       ->required()
       ->type_name(kFileType);
-  command->footer("Example: dispersa export results/table3-1a2b3c4d --format junit --out requirements.xml");
+  command->footer(
+      "Examples: dispersa export results/table3-1a2b3c4d --format junit --out requirements.xml\n"
+      "          dispersa export results/table3-1a2b3c4d --format csv --columns varying --out cases.csv");
   command->callback([options, &invocation] {
     invocation.command = [options](const GlobalOptions& global) { return Export(*options, global); };
   });

@@ -23,6 +23,8 @@ struct ReportCommand {
   ReflownFlights reflown;
   std::string template_file;
   std::string out;
+  bool gate = false;
+  bool open = false;
 };
 
 /// Nothing is flown and nothing in the folder changes: the template reads summary.json as it stands.
@@ -35,7 +37,7 @@ ExitCode Fill(const ReportCommand& options) {
   } else {
     WriteFile(options.out, text);
   }
-  return CampaignExitCode(BuildSummary(stored.folder, stored.campaign).verdict, 0);
+  return CampaignExitCode(BuildSummary(stored.folder, stored.campaign).standing.verdict, 0, options.gate);
 }
 
 ExitCode ReportAgain(const ReportCommand& options, const GlobalOptions& global) {
@@ -52,7 +54,8 @@ ExitCode ReportAgain(const ReportCommand& options, const GlobalOptions& global) 
   const CampaignSummary summary =
       MakeReports(stored.folder, stored.campaign, UsableCores(), options.reflown, observer);
   PrintSummary(summary, stored.folder.directory(), global.json);
-  return CampaignExitCode(summary.verdict, 0);
+  if (options.open) OpenPage(stored.folder.directory() / "report.html");
+  return CampaignExitCode(summary.standing.verdict, 0, options.gate);
 }
 
 }  // namespace
@@ -62,6 +65,8 @@ void AddReportCommand(CLI::App& app, Invocation& invocation) {
   CLI::App* command = app.add_subcommand("report", "write the reports of a result folder again");
   command->add_option("directory", options->directory, "result folder")->required()->type_name(kFolderType);
   AddReflownOptions(*command, options->reflown);
+  AddGateOption(*command, options->gate);
+  AddOpenOption(*command, options->open);
   command
       ->add_option("--template", options->template_file,
                    "Jinja template to fill from summary.json, instead of writing the reports")

@@ -22,6 +22,7 @@ namespace {
 struct RunCommand {
   RunRequest request;
   RunOptions run;
+  bool open = false;
 };
 
 std::string ResumeCommand(const RunCommand& options, const std::filesystem::path& directory) {
@@ -32,6 +33,8 @@ std::string ResumeCommand(const RunCommand& options, const std::filesystem::path
   if (overrides.autopilot) command += " --autopilot " + ShellWord(*overrides.autopilot);
   if (options.run.workers >= 0) command += fmt::format(" --workers {}", options.run.workers);
   if (options.run.threads > 0) command += fmt::format(" --threads {}", options.run.threads);
+  if (!options.request.fresh.empty()) command += " --fresh " + ShellWord(options.request.fresh);
+  if (options.run.gate) command += " --gate";
   return command + " --out " + ShellWord(directory.string()) + " --resume";
 }
 
@@ -43,6 +46,7 @@ ExitCode Fly(const RunCommand& options, PreparedRun prepared, const GlobalOption
   try {
     const RunResult result = RunCampaign(std::move(prepared), run, observer);
     PrintSummary(result.summary, directory, global.json);
+    if (options.open) OpenPage(directory / "report.html");
     return result.code;
   } catch (const Interrupted&) {
     observer.EndPhase();
@@ -95,6 +99,12 @@ void AddRunCommand(CLI::App& app, Invocation& invocation) {
       ->type_name(kYamlType);
   AddReflownOptions(*command, options->run.reflown);
   command->add_flag("--resume", request.resume, "continue in a result folder of the same flight id");
+  AddGateOption(*command, options->run.gate);
+  AddOpenOption(*command, options->open);
+  command
+      ->add_option("--fresh", request.fresh,
+                   "reason why earlier attempts at this design shall not count; the report shows it")
+      ->type_name("REASON");
   command->footer(
       "Example: dispersa run campaigns/table3.yaml --cases 200 --out results/trial\n"
       "         dispersa run campaigns/table3.yaml --cases 500 --out results/trial --resume");

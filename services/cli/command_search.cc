@@ -14,6 +14,7 @@
 #include "core/cases/campaign_flights.h"
 #include "core/flight/flight.h"
 #include "core/input/input_error.h"
+#include "core/input/read_value.h"
 #include "core/optimization/parallel_for.h"
 #include "core/results/json_number.h"
 #include "core/results/metric_catalogue.h"
@@ -21,6 +22,7 @@
 #include "core/results/requirement_text.h"
 #include "core/results/text.h"
 #include "core/search/smallest_failure.h"
+#include "core/statistics/intervals.h"
 #include "services/cli/command.h"
 #include "services/cli/progress.h"
 #include "services/cli/stream_beside.h"
@@ -35,6 +37,8 @@ namespace {
 
 /// Flights that go side by side on one thread.
 constexpr std::size_t kTogether = 8;
+/// Of all flights one in so many is a random one.
+constexpr std::size_t kRandomShare = 4;
 /// Shares of the distance that are printed.
 constexpr double kPrintedShare = 0.001;
 
@@ -43,7 +47,15 @@ struct SearchCommand {
   std::string metric;
   std::optional<double> below, above;
   FailureSearchOptions options;
+  std::optional<std::uint64_t> seed;
   std::string out;
+};
+
+/// As the campaign draws them, each with its own gusts and noise: what the search must not contradict.
+struct RandomFlights {
+  std::size_t flown = 0;
+  std::size_t failures = 0;
+  std::uint64_t first = 0;  ///< case that fails
 };
 
 /// A limit of the command line, or the campaign's own.
@@ -117,6 +129,26 @@ class Searcher {
   Progress progress_;
 };
 
+/// The first cases of a Monte Carlo campaign with this seed.
+RandomFlights FlyAtRandom(Campaign campaign, const Requirement& requirement, std::uint64_t seed,
+                          std::size_t count) {
+  campaign.sampling = {SamplingMethod::kMonteCarlo, count, seed};
+  const CampaignFlights flights(campaign);
+  const Limits limits = LimitsOf(requirement);
+  const std::size_t metric = MetricsOf(campaign).PositionOf(requirement.metric);
+  RandomFlights random;
+  random.first = count;
+  std::vector<CaseOrder> orders(count);
+  for (std::size_t i = 0; i < count; ++i) orders[i].case_index = i;
+  flights.FlyCases(orders, UsableCores(), [&](std::size_t, const CaseResult& result, const auto&...) {
+    ++random.flown;
+    if (result.outcome == Outcome::kCompleted && limits.Meets(result.metrics[metric])) return;
+    ++random.failures;
+    random.first = std::min(random.first, result.case_index);
+  });
+  return random;
+}
+
 /// The share of a coordinate in the squared distance.
 double ShareOf(const FailureSearchResult& result, const DispersionSpace& space, std::size_t i) {
   if (space.coordinates()[i].kind != CoordinateKind::kNormal || result.distance == 0.0) return 0.0;
@@ -129,19 +161,43 @@ const char* KindName(CoordinateKind kind) {
                                               : "held";
 }
 
-std::string Sentence(const FailureSearchResult& result, const Requirement& requirement, double reach) {
+std::string RandomSentence(const RandomFlights& random, std::uint64_t seed) {
+  if (random.failures > 0)
+    return fmt::format("Of {} random flights (seed {}) {} failed, the first is case {}.", random.flown, seed,
+                       random.failures, random.first);
+  const double most = 1.0 - ClopperPearsonLower(static_cast<std::int64_t>(random.flown),
+                                                static_cast<std::int64_t>(random.flown), 0.9);
+  return fmt::format(
+      "None of {} random flights (seed {}) failed: with 90 % confidence at most {} of flights do.",
+      random.flown, seed, PercentText(most));
+}
+
+std::string Sentence(const FailureSearchResult& result, const RandomFlights& random, std::uint64_t seed,
+                     const Requirement& requirement, double reach) {
+  const std::string told = " " + RandomSentence(random, seed);
   if (result.found && result.distance == 0.0)
-    return fmt::format("The flight without dispersions fails {}.", LimitText(requirement));
+    return fmt::format("The flight without dispersions fails {}.", LimitText(requirement)) + told;
   if (result.found) {
     return fmt::format(
-        "Fails {} at a distance of {} standard deviations from the nominal, the smallest found by a local "
-        "search of {} flights. A smaller one may exist.",
-        LimitText(requirement), ReadableText(result.distance), result.flights);
+               "Fails {} at a distance of {} standard deviations from the nominal, the smallest found by a "
+               "local "
+               "search of {} flights. A smaller one may exist.",
+               LimitText(requirement), ReadableText(result.distance), result.flights) +
+           told;
   }
+  if (random.failures > 0)
+    return RandomSentence(random, seed) +
+           fmt::format(
+               " They fail {} by many dispersions together, or by gusts and noise of their own: a local "
+               "search of "
+               "{} flights found no few dispersions within {} standard deviations that fail it.",
+               LimitText(requirement), result.flights, ReadableText(reach));
   return fmt::format(
-      "No flight within {} standard deviations was found to fail {} in a local search of {} flights. This "
-      "does not show that there is none.",
-      ReadableText(reach), LimitText(requirement), result.flights);
+             "No flight within {} standard deviations was found to fail {} in a local search of {} flights. "
+             "This "
+             "does not show that there is none.",
+             ReadableText(reach), LimitText(requirement), result.flights) +
+         told;
 }
 
 ExitCode SearchFor(const SearchCommand& command, const GlobalOptions& global) {
@@ -149,25 +205,35 @@ ExitCode SearchFor(const SearchCommand& command, const GlobalOptions& global) {
   std::FILE* const stream = StreamBeside("--out", command.out, global);
   RequireWritableFile("--out", command.out);
   const Requirement requirement = WantedRequirement(command, campaign);
-  Searcher searcher(campaign, requirement, command.options.max_flights, global.quiet);
+  FailureSearchOptions options = command.options;
+  options.seed = command.seed.value_or(campaign.sampling.seed);
+  const RandomFlights random =
+      FlyAtRandom(campaign, requirement, options.seed, options.max_flights / kRandomShare);
+  options.max_flights -= random.flown;
+  Searcher searcher(campaign, requirement, options.max_flights, global.quiet);
   const DispersionSpace& space = searcher.space();
   const FailureSearchResult result = FindSmallestFailure(
-      space.coordinates(), [&](const auto& points) { return searcher.Margins(points); }, command.options);
+      space.coordinates(), [&](const auto& points) { return searcher.Margins(points); }, options);
+  const std::string sentence = Sentence(result, random, options.seed, requirement, options.reach);
 
-  nlohmann::ordered_json json = {{"schema", "dispersa/search/1"},
-                                 {"campaign", campaign.name},
-                                 {"flight_id", campaign.flight_id},
-                                 {"requirement", LimitText(requirement)},
-                                 {"metric", requirement.metric},
-                                 {"sentence", Sentence(result, requirement, command.options.reach)},
-                                 {"local_search", true},
-                                 {"found", result.found},
-                                 {"flights", result.flights},
-                                 {"max_flights", command.options.max_flights},
-                                 {"reach", command.options.reach},
-                                 {"seed", command.options.seed},
-                                 {"least_margin", Number(result.least_margin)}};
-  std::string text = Sentence(result, requirement, command.options.reach) + "\n";
+  nlohmann::ordered_json json = {
+      {"schema", "dispersa/search/1"},
+      {"campaign", campaign.name},
+      {"flight_id", campaign.flight_id},
+      {"requirement", LimitText(requirement)},
+      {"metric", requirement.metric},
+      {"sentence", sentence},
+      {"random_flights", random.flown},
+      {"random_failures", random.failures},
+      {"first_random_failure", random.failures > 0 ? nlohmann::ordered_json(random.first) : nullptr},
+      {"local_search", true},
+      {"found", result.found},
+      {"flights", result.flights},
+      {"max_flights", command.options.max_flights},
+      {"reach", command.options.reach},
+      {"seed", options.seed},
+      {"least_margin", Number(result.least_margin)}};
+  std::string text = sentence + "\n";
   if (result.found) {
     const CaseResult flown = searcher.Fly(result.point);
     const double value = flown.metrics[MetricsOf(campaign).PositionOf(requirement.metric)];
@@ -224,7 +290,8 @@ void AddSearchCommand(CLI::App& app, Invocation& invocation) {
   command
       ->add_option("--reach", options->options.reach, "farthest distance in standard deviations, default 6")
       ->check(CLI::Range(0.1, 8.0));
-  command->add_option("--seed", options->options.seed, "seed of the starting points, default 1");
+  command->add_option("--seed", options->seed,
+                      "seed of the random flights and of the starting points; default: the campaign's");
   command->add_option("--out", options->out, "file for the object that --json prints")->type_name(kFileType);
   command->footer(
       "Example: dispersa search campaigns/full.yaml --metric pitch_error_peak_deg --below 0.5 --flights "

@@ -85,11 +85,13 @@ std::string SourceHash(const std::string& text) {
 const char* CodeWords(int code) {
   switch (code) {
     case kExitDone:
-      return "every requirement met";
+      return "every requirement met, or none stated";
     case kExitRequirementFailed:
       return "a requirement failed";
     case kExitInconclusive:
       return "more cases needed";
+    case kExitNotEvidence:
+      return "not evidence";
     case kExitIncomplete:
       return "incomplete";
     case kExitBadInput:
@@ -168,6 +170,7 @@ RequirementSummary SummaryOf(const Json& requirement) {
   summary.below = !below.is_null();
   summary.limit = summary.below ? below : above;
   if (summary.below && !above.is_null()) summary.low_limit = above.get<double>();
+  summary.every_case = requirement.value("every_case", false);
   summary.probability = requirement.at("probability");
   summary.consumer_risk = requirement.at("consumer_risk");
   return summary;
@@ -182,11 +185,14 @@ std::string RequirementsHtml(const Json& requirements) {
     const std::string so_far = HtmlText(requirement.at("so_far").get<std::string>());
     html += fmt::format(
         "<section class=\"requirement\"><p class=\"claim\"><span class=\"badge so-far {}\">{} so far</span>"
-        "<b>{}</b> {} for {} of flights, consumer risk {}<br><code>{}</code></p>\n<p "
+        "<b>{}</b> {} {}<br><code>{}</code></p>\n<p "
         "class=\"sentence\">{}</p></section>\n",
         so_far, so_far, HtmlText(info.title), HtmlText(LimitWords(summary, info.unit)),
-        PercentText(summary.probability), PercentText(summary.consumer_risk), HtmlText(summary.metric),
-        HtmlText(StandingText(requirement)));
+        summary.every_case
+            ? std::string("in every case")
+            : fmt::format("for {} of flights, consumer risk {}", PercentText(summary.probability),
+                          PercentText(summary.consumer_risk)),
+        HtmlText(summary.metric), HtmlText(StandingText(requirement)));
   }
   return html;
 }

@@ -61,6 +61,14 @@ def main(summary_file, template_file):
         autoescape=template_file.suffix in (".html", ".htm", ".xml"))
     environment.filters.update(number=number, percent=percent)
     summary = json.loads(pathlib.Path(summary_file).read_text(encoding="utf-8"))
+    # What stands after earlier attempts and changes is not the summary's to say.
+    execution = pathlib.Path(summary_file).parent / "execution.json"
+    told = json.loads(execution.read_text(encoding="utf-8")) if execution.is_file() else {}
+    standing = {"verdict": told.get("standing_verdict") or summary["verdict"], "attempts": told.get("attempts", []),
+                "requirements": [], "notes": [], "post_hoc": False} | told.get("standing", {})
+    for k, requirement in enumerate(summary["requirements"]):
+        known = standing["requirements"][k]["verdict"] if k < len(standing["requirements"]) else requirement["verdict"]
+        requirement["standing_verdict"] = known
 
     def too_long(*_):
         raise TimeoutError(f"takes longer than {PATIENCE_S} s")
@@ -69,7 +77,7 @@ def main(summary_file, template_file):
     signal.alarm(PATIENCE_S)
     try:
         template = environment.get_template(template_file.name)
-        text = template.render(summary, summary=summary)
+        text = template.render(summary, summary=summary, standing=standing)
     except jinja2.TemplateSyntaxError as error:
         fail(f"{error.filename or template_file}:{error.lineno}: {error.message}")
     except jinja2.TemplateNotFound as error:

@@ -21,6 +21,7 @@
 #include "services/client/execution_file.h"
 #include "services/client/local_workers.h"
 #include "services/coordinator/coordinator.h"
+#include "services/ledger/campaign_attempt.h"
 #include "services/ledger/campaign_book.h"
 #include "services/log/log.h"
 #include "services/program/threads.h"
@@ -283,6 +284,8 @@ RunResult FlyAndReport(const RunOptions& options, PreparedRun prepared, Executio
       execution.problem = error.what();
     } catch (const Interrupted&) {
       note_end();
+      book.KeepTally();
+      NoteCancelledIn(ResultRoot(book.folder().directory()), book.folder().directory(), book);
       throw;
     }
   }
@@ -301,10 +304,14 @@ RunResult FlyAndReport(const RunOptions& options, PreparedRun prepared, Executio
   for (const CaseBlames& blamed : book.ledger().Quarantined()) {
     LogWarning("case {} is quarantined: {}", blamed.case_index, fmt::join(blamed.reasons, "; "));
   }
+  execution.Write();  // the report shows when and how long
   CampaignSummary summary = MakeReports(book.folder(), book.campaign(), workers, options.reflown, observer);
   execution.ended_utc = UtcNow();
   execution.Write();
-  code = WorseOf(code, CampaignExitCode(summary.verdict, book.ledger().Progress().conflicts));
+  WriteStanding(book.folder(), summary);
+  NoteEndedIn(ResultRoot(book.folder().directory()), book.folder(), book.campaign(), summary);
+  code = WorseOf(
+      code, CampaignExitCode(summary.standing.verdict, book.ledger().Progress().conflicts, options.gate));
   return {std::move(summary), code, execution.problem};
 }
 
@@ -314,6 +321,7 @@ RunResult RunCampaign(PreparedRun prepared, const RunOptions& options, Observer&
   ExecutionFile execution;
   execution.directory = prepared.folder.directory();
   execution.started_utc = UtcNow();
+  execution.vehicle_file = prepared.campaign.vehicle_file;
   try {
     return FlyAndReport(options, std::move(prepared), execution, observer);
   } catch (const Interrupted&) {

@@ -18,6 +18,7 @@ struct RunOptions {
   int threads = 0;   ///< without workers (0: the usable cores)
   std::filesystem::path worker_program;  ///< dispersa-worker
   ReflownFlights reflown;
+  bool gate = false;  ///< nothing passes of which nothing is judged
 };
 
 struct RunResult {

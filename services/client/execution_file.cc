@@ -1,5 +1,6 @@
 #include "services/client/execution_file.h"
 
+#include <pwd.h>
 #include <unistd.h>
 
 #include <nlohmann/json.hpp>
@@ -15,6 +16,12 @@ using Json = nlohmann::ordered_json;
 template <typename T>
 Json OrNull(const std::optional<T>& value) {
   return value ? Json(*value) : Json(nullptr);
+}
+
+/// Who started the run; empty where the system has no name for him.
+std::string UserName() {
+  const passwd* user = getpwuid(geteuid());
+  return user == nullptr ? "" : user->pw_name;
 }
 
 }  // namespace
@@ -45,7 +52,9 @@ void ExecutionFile::Write() const {
                      {"workers", processes},
                      {"cases_before", cases_before},
                      {"cases_flown", cases_flown},
-                     {"flying_s", flying_s}};
+                     {"flying_s", flying_s},
+                     {"user", UserName()},
+                     {"vehicle_file", vehicle_file}};
   WriteFile(directory / "execution.json", file.dump(2) + "\n");
 }
 

@@ -15,6 +15,7 @@ namespace dispersa {
 struct ExecutionFile {
   std::filesystem::path directory;
   std::string started_utc;
+  std::string vehicle_file;   ///< empty: inlined
   std::optional<int> domain;  ///< none: flown in process
   int workers_wanted = 0;
   std::uint64_t cases_before = 0;  ///< stored by earlier runs

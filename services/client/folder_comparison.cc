@@ -8,6 +8,7 @@
 #include "core/campaign/case_result.h"
 #include "core/flight/flight_inputs.h"
 #include "core/input/input_error.h"
+#include "core/input/read_value.h"
 #include "core/results/output_file.h"
 #include "services/client/campaign_differences.h"
 #include "services/client/stored_campaign.h"

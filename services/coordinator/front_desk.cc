@@ -332,6 +332,7 @@ std::string FrontDesk::Tally(const std::string& arguments) const {
       requirements.push_back({{"metric", requirement.metric},
                               {"above", Number(limits.low)},
                               {"below", Number(limits.high)},
+                              {"every_case", requirement.every_case},
                               {"probability", requirement.probability},
                               {"consumer_risk", requirement.consumer_risk},
                               {"n", standings[i].n},

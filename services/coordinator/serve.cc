@@ -15,6 +15,7 @@
 #include "services/coordinator/prometheus_text.h"
 #include "services/coordinator/service.h"
 #include "services/coordinator/watchdog.h"
+#include "services/ledger/campaign_attempt.h"
 #include "services/log/log.h"
 #include "services/program/exit_code.h"
 #include "services/program/failure.h"
@@ -101,8 +102,9 @@ ExitCode ServeCampaign(const ServeOptions& options, const RunRequest& request,
     if (StopRequested()) throw Interrupted();
     coordinator.Dismiss();
     const CampaignSummary summary = WriteReports(book.folder(), book.campaign(), report);
+    NoteEndedIn(ResultRoot(book.folder().directory()), book.folder(), book.campaign(), summary);
     fmt::print("result: {}\n", book.folder().directory().string());
-    return CampaignExitCode(summary.verdict, book.ledger().Progress().conflicts);
+    return CampaignExitCode(summary.standing.verdict, book.ledger().Progress().conflicts);
   } catch (const Interrupted&) {
     throw Failure{kExitInterrupted, "stopped; repeat the command with --resume to continue"};
   }

@@ -19,6 +19,7 @@
 #include "services/coordinator/dump_any_text.h"
 #include "services/coordinator/epoch.h"
 #include "services/coordinator/packed_files.h"
+#include "services/ledger/campaign_attempt.h"
 #include "services/ledger/open_book.h"
 #include "services/log/log.h"
 #include "services/program/exit_code.h"
@@ -169,9 +170,9 @@ void Service::StartReport() {
   try {
     reporting_.emplace();
     reporting_->id = id;
-    reporting_->verdict = std::async(
-        std::launch::async,
-        [this, text = catalogue_.TextOf(id), name = entry.name, results = catalogue_.ResultsOf(id)] {
+    reporting_->verdict =
+        std::async(std::launch::async, [this, text = catalogue_.TextOf(id), name = entry.name,
+                                        results = catalogue_.ResultsOf(id), root = options_.data] {
           ReportOptions options;
           options.threads = options_.report_threads;
           options.progress = [this](const std::string&, std::uint64_t, std::uint64_t) {
@@ -179,9 +180,11 @@ void Service::StartReport() {
           };
           ResultFolder folder = ResultFolder::Open(results);
           folder.Lock();
-          const CampaignVerdict verdict = WriteReports(folder, ParseCampaign(text, name), options).verdict;
+          const Campaign campaign = ParseCampaign(text, name);
+          const CampaignSummary summary = WriteReports(folder, campaign, options);
+          NoteEndedIn(root, folder, campaign, summary);
           TryToPack(results);
-          return verdict;
+          return summary.standing.verdict;
         });
   } catch (...) {
     reporting_.reset();
@@ -195,7 +198,7 @@ void Service::FinishReport() {
   Reporting reported = *std::move(reporting_);
   reporting_.reset();
   try {
-    const CampaignVerdict verdict = reported.verdict.get();
+    const StandingVerdict verdict = reported.verdict.get();
     End(entry, CampaignState::kDone, CampaignExitCode(verdict, entry.conflicts));
   } catch (...) {
     Fail(entry, std::current_exception());
@@ -253,8 +256,9 @@ void Service::StartOpening() {
 }
 
 void Service::BeginToOpen(const CatalogueEntry& entry) {
-  BookRequest opening{catalogue_.TextOf(entry.id), entry.name, catalogue_.ResultsOf(entry.id), {}, ++opened_,
-                      workforce_.audit()};
+  BookRequest opening{
+      catalogue_.TextOf(entry.id), entry.name, catalogue_.ResultsOf(entry.id), options_.data, {}, ++opened_,
+      workforce_.audit()};
   for (const auto& [id, other] : catalogue_.entries()) {
     if (id != entry.id && other.flight_id == entry.flight_id)
       opening.same_flights.push_back(catalogue_.ResultsOf(id));
@@ -478,7 +482,7 @@ const RunningTally* Service::TallyOf(const std::string& id) const {
 
 std::vector<std::filesystem::path> Service::Journals() const {
   std::vector<std::filesystem::path> files;
-  for (const char* name : {kDeletedFile, kExpelledFile, kEpochFile}) {
+  for (const char* name : {kDeletedFile, kExpelledFile, kEpochFile, kLedgerName}) {
     std::error_code error;
     if (std::filesystem::is_regular_file(options_.data / name, error)) files.push_back(options_.data / name);
   }
@@ -628,7 +632,15 @@ void Service::Cancel(const std::string& id) {
   cancelled.state = CampaignState::kCancelled;
   cancelled.code = kExitIncomplete;
   catalogue_.Write(cancelled);
-  if (flying_.contains(id)) TakeBack(id);
+  if (flying_.contains(id)) {
+    const Book book = TakeBack(id);
+    try {
+      NoteCancelledIn(options_.data, catalogue_.ResultsOf(id), *book);
+    } catch (const ResultError& error) {
+      LogError("campaign {} ({}): that it was cancelled is in no ledger of attempts: {}", entry.name,
+               id.substr(0, 8), error.what());
+    }
+  }
   End(entry, CampaignState::kCancelled, kExitIncomplete, entry.problem);
 }
 

@@ -69,7 +69,8 @@ class Service {
 
   const Catalogue& catalogue() const { return catalogue_; }
   std::uint64_t max_cases() const { return options_.max_cases; }
-  /// Files of the data directory that belong to no campaign: deletions, expelled workers, the last start.
+  /// Files of the data directory that belong to no campaign: deletions, expelled workers, the last start,
+  /// attempts.
   std::vector<std::filesystem::path> Journals() const;
   /// The one with this name. Throws Refused.
   std::filesystem::path JournalAt(const std::filesystem::path& name) const;
@@ -112,7 +113,7 @@ class Service {
   };
   struct Reporting {
     std::string id;
-    std::future<CampaignVerdict> verdict;
+    std::future<StandingVerdict> verdict;
   };
 
   void CloseBroken();

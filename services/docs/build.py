@@ -21,17 +21,6 @@ REPOSITORY = HERE.parent.parent
 LINK = re.compile(r"(!?)\[((?:[^\[\]]|\[[^\[\]]*\])*)\]\(([^)\s]+)\)")
 # Nothing here draws it: that would be a script from elsewhere.
 DIAGRAM = "\n*A diagram, as the text that Mermaid draws it from:*\n\n```text\n"
-EXIT_CODES = [
-    (0, "done; for a campaign: every requirement is met"),
-    (1, "internal error, or a machine returned other bits"),
-    (2, "bad input: a file, an option, a command"),
-    (3, "a requirement failed, or `optimize`, `tune` or `margins` missed a target"),
-    (4, "more cases are needed to decide"),
-    (5, "incomplete: quarantined cases, no workers, no answer from the coordinator, a full disk, a closed standard output, a "
-        "cancelled campaign"),
-    (6, "`replay` found a result that differs from the stored one"),
-    (130, "interrupted"),
-]
 
 
 def help_of(program, *command):
@@ -62,11 +51,11 @@ def commands_page(programs):
 
 
 def exit_codes_page():
-    rows = "\n".join(f"| {code} | {meaning} |" for code, meaning in EXIT_CODES)
+    """The section of services/README.md, which a test holds to the programs."""
+    page = (REPOSITORY / "services" / "README.md").read_text()
+    section = page.split("## Exit codes\n", 1)[1].split("\n## ", 1)[0]
     return ("# Exit codes\n\nEvery command ends with one of these codes. The code of `run`, `watch` and `report` is the "
-            "campaign's verdict, so that a script or a pipeline can act on it.\n\n"
-            f"| code | meaning |\n|---|---|\n{rows}\n\n"
-            "If two codes fit, the command returns the first of 130, 2, 1, 5, 6, 3, 4, 0.\n")
+            f"campaign's verdict, so that a script or a pipeline can act on it. {section}")
 
 
 def schemas_page(programs, folder):

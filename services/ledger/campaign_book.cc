@@ -39,18 +39,20 @@ std::string By(const std::string& worker, const std::string& title = "") {
 
 }  // namespace
 
-ExitCode CampaignExitCode(CampaignVerdict verdict, std::uint64_t conflicts) {
+ExitCode CampaignExitCode(StandingVerdict verdict, std::uint64_t conflicts, bool gate) {
   if (conflicts > 0) return kExitInternalError;
   switch (verdict) {
-    case CampaignVerdict::kPass:
+    case StandingVerdict::kPass:
       return kExitDone;
-    case CampaignVerdict::kInconclusive:
-    case CampaignVerdict::kStudy:
+    case StandingVerdict::kNothingJudged:
+      return gate ? kExitNotEvidence : kExitDone;
+    case StandingVerdict::kInconclusive:
       return kExitInconclusive;
-    case CampaignVerdict::kFail:
-    case CampaignVerdict::kStudyViolated:
+    case StandingVerdict::kNotEvidence:
+      return kExitNotEvidence;
+    case StandingVerdict::kFail:
       return kExitRequirementFailed;
-    case CampaignVerdict::kIncomplete:
+    case StandingVerdict::kIncomplete:
       return kExitIncomplete;
   }
   return kExitInternalError;

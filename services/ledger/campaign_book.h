@@ -22,9 +22,9 @@
 
 namespace dispersa {
 
-/// The exit code of a campaign with this verdict. One conflict (two different results of a case) makes it an
-/// internal error (1), whatever the verdict is.
-ExitCode CampaignExitCode(CampaignVerdict verdict, std::uint64_t conflicts);
+/// The exit code of a campaign whose verdict stands so. One conflict (two different results of a case) makes
+/// it an internal error (1), whatever the verdict is. A `gate` lets nothing pass if nothing was judged.
+ExitCode CampaignExitCode(StandingVerdict verdict, std::uint64_t conflicts, bool gate = false);
 
 /// The worker's name when the process that writes the folder flies the cases itself.
 inline constexpr char kInProcess[] = "in process";

@@ -9,6 +9,7 @@
 #include "core/campaign/case_design.h"
 #include "core/campaign_yaml/load.h"
 #include "core/flight/flight_inputs.h"
+#include "services/ledger/campaign_attempt.h"
 #include "services/log/log.h"
 
 namespace dispersa {
@@ -136,6 +137,7 @@ std::unique_ptr<CampaignBook> OpenBook(const BookRequest& opening) {
     LogWarning("{}: {} results of {} are removed; their cases are flown again", opening.results.string(),
                removed, worker);
   }
+  BeginAttemptIn(opening.root, opening.results, campaign);
   // Each time: what a start that was killed did not take over is taken now. A campaign that stops by itself
   // takes none, because what it flies depends on its own looks alone.
   if (!campaign.verdicts.stop_when_decided) {

@@ -7,6 +7,7 @@
 #include <vector>
 
 #include "core/cases/plugin_check.h"
+#include "services/ledger/campaign_attempt.h"
 #include "services/log/log.h"
 
 namespace dispersa {
@@ -61,9 +62,7 @@ std::vector<CaseResult> Check(const Campaign& campaign, const StopCheck& should_
   return CheckPluginIsDeterministic(CampaignFlights(campaign), campaign.sampling.cases, wait);
 }
 
-}  // namespace
-
-PreparedRun PrepareRun(const RunRequest& request, const StopCheck& should_stop) {
+PreparedRun PrepareUnrecorded(const RunRequest& request, const StopCheck& should_stop) {
   std::vector<InputProblem> warnings;
   Campaign campaign = LoadCampaign(request.campaign, request.overrides, &warnings);
   for (const InputProblem& warning : warnings) LogWarning("{}", warning.Text());
@@ -104,6 +103,21 @@ PreparedRun PrepareRun(const RunRequest& request, const StopCheck& should_stop) 
   if (const std::uint64_t unmeasured = folder.UnmeasuredCount(); unmeasured > 0)
     LogInfo("{}: {} cases are flown again for the campaign's own metrics", directory.string(), unmeasured);
   return {std::move(campaign), std::move(folder), std::move(flown)};
+}
+
+}  // namespace
+
+PreparedRun PrepareRun(const RunRequest& request, const StopCheck& should_stop) {
+  PreparedRun prepared = PrepareUnrecorded(request, should_stop);
+  const fs::path& directory = prepared.folder.directory();
+  BeginAttemptIn(ResultRoot(directory), directory, prepared.campaign, request.fresh);
+  return prepared;
+}
+
+fs::path ResultRoot(const fs::path& directory) {
+  std::error_code error;
+  const fs::path whole = fs::absolute(directory, error).lexically_normal();
+  return (whole.has_filename() ? whole : whole.parent_path()).parent_path();
 }
 
 }  // namespace dispersa

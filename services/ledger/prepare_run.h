@@ -17,6 +17,7 @@ struct RunRequest {
   CampaignOverrides overrides;
   std::string out;  ///< empty: results/<name>-<first 8 of id>, then -2, -3, ...
   bool resume = false;
+  std::string fresh;  ///< why earlier attempts at the design shall not count; empty: they do
 };
 
 struct PreparedRun {
@@ -24,6 +25,9 @@ struct PreparedRun {
   ResultFolder folder;
   std::vector<CaseResult> flown;  ///< flown beforehand to check that a plug-in is deterministic
 };
+
+/// The folder that a result folder is in: its campaigns know of each other as attempts.
+std::filesystem::path ResultRoot(const std::filesystem::path& directory);
 
 /// Without `resume` the folder must be new or empty. With `resume` a folder of the same flight id is
 /// continued, and a new or empty folder is started. Without `out` the last of the default folders is used.

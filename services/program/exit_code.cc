@@ -1,16 +1,32 @@
 #include "services/program/exit_code.h"
 
 #include <algorithm>
-#include <iterator>
 
 namespace dispersa {
 
+const std::vector<ExitMeaning>& ExitMeanings() {
+  static const std::vector<ExitMeaning> meanings = {
+      {kExitInterrupted, "interrupted; what was flown is kept"},
+      {kExitBadInput, "wrong usage or wrong input"},
+      {kExitInternalError, "internal error"},
+      {kExitIncomplete, "incomplete: no workers, disk full, output lost, quarantined cases, cancelled"},
+      {kExitReplayMismatch, "a replayed flight differs from the stored one"},
+      {kExitRequirementFailed,
+       "a requirement failed (one point of a study is enough), or the optimiser's target is out of reach"},
+      {kExitNotEvidence,
+       "not evidence: a requirement was loosened, dropped or added after flights; earlier attempts used up "
+       "the risk; a study states a probability; with --gate nothing is required"},
+      {kExitInconclusive, "undecided: more cases can decide"},
+      {kExitDone, "done: every requirement is met as planned, or the file requires nothing"},
+  };
+  return meanings;
+}
+
 ExitCode WorseOf(ExitCode a, ExitCode b) {
-  constexpr ExitCode kWorstFirst[] = {
-      kExitInterrupted,    kExitBadInput,          kExitInternalError, kExitIncomplete,
-      kExitReplayMismatch, kExitRequirementFailed, kExitInconclusive,  kExitDone};
-  return *std::find_if(std::begin(kWorstFirst), std::end(kWorstFirst),
-                       [&](ExitCode code) { return code == a || code == b; });
+  const std::vector<ExitMeaning>& order = ExitMeanings();
+  return std::find_if(order.begin(), order.end(),
+                      [&](const ExitMeaning& one) { return one.code == a || one.code == b; })
+      ->code;
 }
 
 }  // namespace dispersa

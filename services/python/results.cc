@@ -63,8 +63,8 @@ py::tuple Run(const std::string& name, const std::string& text, const std::strin
   const CallsLaw calls_law(law, law_sha256, observer);
   std::filesystem::path folder;
   const RunResult result = observer.Watch([&] {
-    PreparedRun prepared =
-        PrepareRun({InputSource(name, text), {}, out, resume}, [&observer] { return observer.ShouldStop(); });
+    PreparedRun prepared = PrepareRun({InputSource(name, text), {}, out, resume, {}},
+                                      [&observer] { return observer.ShouldStop(); });
     folder = prepared.folder.directory();
     return RunCampaign(std::move(prepared),
                        {workers, calls_law.Threads(threads), worker_program, Reflown(envelope)}, observer);
@@ -102,7 +102,7 @@ int MakeAgain(const std::string& directory, std::optional<std::uint64_t> envelop
     stored.folder.Lock();
     const CampaignSummary summary = MakeReports(
         stored.folder, stored.campaign, calls_law.Threads(UsableCores()), Reflown(envelope), observer);
-    return static_cast<int>(CampaignExitCode(summary.verdict, 0));
+    return static_cast<int>(CampaignExitCode(summary.standing.verdict, 0));
   });
 }
 
@@ -118,7 +118,7 @@ py::dict Results(const std::string& directory) {
     stored.folder.ForEach([&](const CaseResult& result) { columns->Add(result); });
     engine = stored.folder.Provenance("engine");
     const CampaignSummary built = BuildSummary(stored.folder, stored.campaign);
-    code = CampaignExitCode(built.verdict, 0);
+    code = CampaignExitCode(built.standing.verdict, 0);
     summary = SummaryJson(built);
   }
   py::dict answer = columns->Take();

@@ -6,7 +6,7 @@ import os
 import sqlite3
 import subprocess
 
-from processes import CAMPAIGN, PATIENCE_S, main, wait_for
+from processes import CAMPAIGN, PATIENCE_S, content, main, wait_for
 from service_case import ServiceCase
 
 
@@ -27,7 +27,7 @@ class AuditTest(ServiceCase):
         self.assertEqual(coordinator.wait(timeout=2 * PATIENCE_S), self.reference.code, self.log.read_text())
         self.assertRegex(self.log.read_text(), r"\d+ results were flown again and agree")
         for name in ("cases.csv", "summary.json", "report.html"):
-            self.assertEqual((self.data / "out" / name).read_bytes(), (self.reference.out / name).read_bytes(), name)
+            self.assertEqual(content(self.data / "out", name), content(self.reference.out, name), name)
         with sqlite3.connect(f"file:{self.data}/out/results.sqlite?mode=ro", uri=True) as database:
             workers = database.execute("SELECT count(DISTINCT worker), count(*) FROM execution").fetchone()
             self.assertEqual(workers, (1, self.CASES))

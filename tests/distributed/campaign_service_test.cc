@@ -549,8 +549,8 @@ class OpeningTest : public ServiceTest {
   std::unique_ptr<CampaignBook> Open(const Campaign& campaign, std::vector<std::filesystem::path> others,
                                      std::uint64_t number = 1, std::vector<std::string> distrusted = {},
                                      const AuditOptions& audit = {}) {
-    return OpenBook({campaign.canonical_yaml, campaign.name, folder_ / "results", std::move(others), number,
-                     audit, std::move(distrusted)});
+    return OpenBook({campaign.canonical_yaml, campaign.name, folder_ / "results", folder_.path(),
+                     std::move(others), number, audit, std::move(distrusted)});
   }
   std::string flier_ = "node1_ab";
 };

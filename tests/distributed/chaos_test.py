@@ -16,7 +16,8 @@ import time
 import unittest
 
 from hosts import Hosts
-from processes import BINARIES, CAMPAIGN, PATIENCE_S, Run, end, main, shared_memory_segments, stored, wait_for
+from processes import BINARIES, CAMPAIGN, PATIENCE_S, Run, content, end, main, shared_memory_segments, stored,
+                       wait_for
 
 TROUBLES = int(os.environ.get("DISPERSA_TROUBLES", "3"))
 SEED = int(os.environ.get("DISPERSA_SEED", random.SystemRandom().randrange(10**6)))
@@ -163,7 +164,7 @@ class ChaosTest(unittest.TestCase):
             out = self.root / f"fetched{seed}"
             self.assertEqual(self.client("fetch", identity, "--out", out)[0], 0)
             for name in ("cases.csv", *(["summary.json", "report.html"] if is_last else [])):
-                self.assertEqual((out / name).read_bytes(), (reference.out / name).read_bytes(), name)
+                self.assertEqual(content(out, name), content(reference.out, name), name)
             self.assertEqual(*(self.before_histories(folder) for folder in (out, reference.out)))
             self.assertTrue((out / "report.html").read_bytes().endswith(b"</html>\n"), "cut off")
             shutil.rmtree(out), shutil.rmtree(reference.out)

@@ -6,6 +6,7 @@ import fcntl
 import json
 import os
 import pathlib
+import re
 import shutil
 import socket
 import sqlite3
@@ -76,6 +77,12 @@ def stored(out):
             return database.execute("SELECT count(*) FROM cases").fetchone()[0]
     except sqlite3.OperationalError:
         return 0
+
+
+def content(folder, name):
+    """A file's bytes; of the report without what differs from run to run."""
+    data = (folder / name).read_bytes()
+    return re.sub(rb"<!-- run:begin -->.*?<!-- run:end -->", b"", data, flags=re.S) if name == "report.html" else data
 
 
 class Run:

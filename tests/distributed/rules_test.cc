@@ -4,6 +4,8 @@
 #include <csignal>
 #include <cstdlib>
 #include <filesystem>
+#include <fstream>
+#include <iterator>
 #include <memory>
 #include <string>
 #include <vector>
@@ -41,23 +43,47 @@ TEST(Rules, AConflictFailsTheCampaignWhateverItsVerdict) {
   book.Accept("w", "h", 1, result, 0.0);
   book.Accept("w", "h", 1, result, 0.0);
   const auto conflicts = [&] { return book.ledger().Progress().conflicts; };
-  EXPECT_EQ(CampaignExitCode(CampaignVerdict::kPass, conflicts()), 0);
-  EXPECT_EQ(CampaignExitCode(CampaignVerdict::kFail, conflicts()), 3);
+  EXPECT_EQ(CampaignExitCode(StandingVerdict::kPass, conflicts()), 0);
+  EXPECT_EQ(CampaignExitCode(StandingVerdict::kFail, conflicts()), 3);
   result.end_time_s = 1.0;
   book.Accept("other", "h", 1, result, 0.0);
-  for (const auto verdict : {CampaignVerdict::kPass, CampaignVerdict::kFail, CampaignVerdict::kInconclusive,
-                             CampaignVerdict::kIncomplete}) {
+  for (const auto verdict : {StandingVerdict::kPass, StandingVerdict::kFail, StandingVerdict::kInconclusive,
+                             StandingVerdict::kIncomplete}) {
     EXPECT_EQ(CampaignExitCode(verdict, conflicts()), 1);
   }
 }
 
 TEST(Rules, AVerdictHasItsExitCode) {
-  EXPECT_EQ(CampaignExitCode(CampaignVerdict::kPass, 0), 0);
-  EXPECT_EQ(CampaignExitCode(CampaignVerdict::kFail, 0), 3);
-  EXPECT_EQ(CampaignExitCode(CampaignVerdict::kStudyViolated, 0), 3);
-  EXPECT_EQ(CampaignExitCode(CampaignVerdict::kStudy, 0), 4);
-  EXPECT_EQ(CampaignExitCode(CampaignVerdict::kInconclusive, 0), 4);
-  EXPECT_EQ(CampaignExitCode(CampaignVerdict::kIncomplete, 0), 5);
+  EXPECT_EQ(CampaignExitCode(StandingVerdict::kPass, 0), 0);
+  EXPECT_EQ(CampaignExitCode(StandingVerdict::kNothingJudged, 0), 0);
+  EXPECT_EQ(CampaignExitCode(StandingVerdict::kNothingJudged, 0, true), 7);
+  EXPECT_EQ(CampaignExitCode(StandingVerdict::kPass, 0, true), 0);
+  EXPECT_EQ(CampaignExitCode(StandingVerdict::kFail, 0), 3);
+  EXPECT_EQ(CampaignExitCode(StandingVerdict::kInconclusive, 0), 4);
+  EXPECT_EQ(CampaignExitCode(StandingVerdict::kNotEvidence, 0), 7);
+  EXPECT_EQ(CampaignExitCode(StandingVerdict::kIncomplete, 0), 5);
+}
+
+TEST(Rules, OfTwoExitCodesTheWorseIsReported) {
+  const std::vector<int> order = {130, 2, 1, 5, 6, 3, 7, 4, 0};
+  ASSERT_EQ(ExitMeanings().size(), order.size());
+  for (std::size_t i = 0; i < order.size(); ++i) {
+    EXPECT_EQ(ExitMeanings()[i].code, order[i]);
+    for (std::size_t k = i; k < order.size(); ++k) {
+      const auto worse = static_cast<ExitCode>(order[i]), other = static_cast<ExitCode>(order[k]);
+      EXPECT_EQ(WorseOf(worse, other), worse);
+      EXPECT_EQ(WorseOf(other, worse), worse);
+    }
+  }
+}
+
+TEST(Rules, ThePageOfExitCodesIsTheTable) {
+  std::ifstream stream(DISPERSA_TEST_DATA "/../../services/README.md");
+  const std::string page((std::istreambuf_iterator<char>(stream)), std::istreambuf_iterator<char>());
+  std::string table = "| code | means |\n|---|---|\n";
+  for (const ExitMeaning& one : ExitMeanings())
+    table += "| " + std::to_string(one.code) + " | " + one.meaning + " |\n";
+  EXPECT_NE(page.find(table), std::string::npos) << table;
 }
 
 // Statuses as waitpid gives them.

@@ -141,11 +141,8 @@ class RunTest(unittest.TestCase):
             extended = self.run_dispersa("extended", "--workers", 1, "--resume", cases=cases).finish()
             self.assertEqual(extended.code, self.reference.code, extended.stderr)
             self.assertEqual(extended.csv(), self.reference.csv())
-            # The same cases, but looked at twice: the summary says so.
-            summary = json.loads((extended.out / "summary.json").read_text())
-            for requirement in summary["requirements"]:
-                self.assertEqual([look["n"] for look in requirement["looks"]], [self.cases // 2, self.cases])
-                self.assertTrue(requirement["beyond_plan"])
+            # The summary is that of a campaign flown at once; that it was read before is no part of it.
+            self.assertEqual(*((run.out / "summary.json").read_bytes() for run in (extended, self.reference)))
         fewer = extended
         self.assertIn(f"{fewer.out} holds more cases than the {self.cases // 2} asked for: "
                       f"the campaign is extended to {self.cases}", fewer.stderr)

@@ -15,7 +15,7 @@ import threading
 import time
 import unittest
 
-from processes import BINARIES, CAMPAIGN, ISOLATED, PATIENCE_S, Run, end, main, wait_for
+from processes import BINARIES, CAMPAIGN, ISOLATED, PATIENCE_S, Run, content, end, main, wait_for
 
 PROBE = BINARIES.parent / "tests" / "security_probe"
 CASES = 60
@@ -166,7 +166,7 @@ class SecurityTest(unittest.TestCase):
         out = self.root / "signed"
         self.client("fetch", identity, "--out", out)
         for name in ("cases.csv", "summary.json", "report.html", "campaign.yaml"):
-            self.assertEqual((out / name).read_bytes(), (self.reference.out / name).read_bytes(), name)
+            self.assertEqual(content(out, name), content(self.reference.out, name), name)
         wait_for(lambda: len(json.loads(self.client("status", "--json"))["workers"]) == 2, "both workers")
         names = {w["id"].partition("_")[0] for w in json.loads(self.client("status", "--json"))["workers"]}
         self.assertEqual(names, {"one", "two"})

@@ -9,7 +9,7 @@ import subprocess
 import tempfile
 import unittest
 
-from processes import BINARIES, PATIENCE_S, Run, end
+from processes import BINARIES, PATIENCE_S, Run, content, end
 
 
 class ServiceCase(unittest.TestCase):
@@ -70,7 +70,7 @@ class ServiceCase(unittest.TestCase):
     def assert_same_folder(self, identity, reference):
         out = self.fetch(identity)
         for name in ("cases.csv", "summary.json", "report.html", "campaign.yaml"):
-            self.assertEqual((out / name).read_bytes(), (reference.out / name).read_bytes(), name)
+            self.assertEqual(content(out, name), content(reference.out, name), name)
         self.assertEqual(sorted(p.name for p in (out / "histories").iterdir()),
                          sorted(p.name for p in (reference.out / "histories").iterdir()))
         return out

@@ -13,7 +13,7 @@ import sys
 import urllib.request
 
 sys.path.insert(0, str(pathlib.Path(__file__).resolve().parents[1] / "distributed"))
-from processes import CAMPAIGN, PATIENCE_S, Run, main, wait_for  # noqa: E402
+from processes import CAMPAIGN, PATIENCE_S, Run, content, main, wait_for  # noqa: E402
 from service_case import ServiceCase  # noqa: E402
 from web_test import Viewer  # noqa: E402
 
@@ -39,7 +39,7 @@ class SmokeTest(ServiceCase):
         run = Run(self.root / name, "--cases", CASES, *arguments).finish()
         self.assertEqual(run.code, self.reference.code, run.stderr)
         for file in FILES:
-            self.assertEqual((run.out / file).read_bytes(), (self.reference.out / file).read_bytes(), file)
+            self.assertEqual(content(run.out, file), content(self.reference.out, file), file)
 
     def test_threads(self):
         self.run_dispersa("threads", "--workers", 0, "--threads", 2)

@@ -2,6 +2,9 @@
 #include "core/analysis/drivers.h"
 
 #include <cmath>
+#include <set>
+#include <string>
+#include <vector>
 
 #include <gmock/gmock.h>
 
@@ -106,6 +109,32 @@ TEST_F(Planted, AGustIsPairedWithItsOwnSpeed) {
   EXPECT_GT(drivers[0].index, 0.9);
 }
 
+// An input without any effect, drawn with a correlation of 0.9 with the cause.
+TEST_F(Planted, WhatIsMerelyDrawnTogetherWithACauseExplainsNothing) {
+  CaseColumn& drag = cases_.inputs[static_cast<std::size_t>(FindInput("drag_factor"))];
+  for (std::size_t k = 0; k < drag.size(); ++k)
+    drag[k] = 0.9 * bias_[k] + std::sqrt(1.0 - 0.81) * Stream(3, k, "beside").Normal();
+  const auto drivers = DriversWhen([&](std::size_t k) { return bias_[k] + 0.3 * noise_[k]; });
+  ASSERT_EQ(drivers.size(), 1u);
+  EXPECT_EQ(drivers[0].input, "gyro_bias_pitch_deg_s");
+  EXPECT_THAT(drivers[0].correlated_with, testing::ElementsAre("drag_factor"));
+}
+
+TEST_F(Planted, SharesSumToOneAtMostAndFamiliesCountOnce) {
+  const auto drivers = DriversWhen([&](std::size_t k) {
+    return tilt_[k] * (1.5 + std::sin(clock_[k] * kRadPerDeg)) + bias_[k] + 0.1 * noise_[k];
+  });
+  double sum = 0.0;
+  for (const Driver& driver : drivers) {
+    sum += driver.index;
+    EXPECT_GT(driver.low, 0.0) << driver.input;
+    EXPECT_TRUE(driver.correlated_with.empty());
+  }
+  EXPECT_LE(sum, 1.0);
+  EXPECT_GT(sum, 0.9);
+  EXPECT_EQ(drivers.size(), 2u) << "the tilt with its clock, and the bias";
+}
+
 TEST_F(Planted, AMagnitudeInADirectionIsSeenAsAPair) {
   const auto drivers = DriversWhen(
       [&](std::size_t k) { return tilt_[k] * std::sin(clock_[k] * kRadPerDeg) + 0.1 * noise_[k]; });
@@ -141,6 +170,32 @@ TEST_F(Planted, WhatFailingFlightsShareIsFound) {
   // Nothing planted: a false discovery is rare, and stated as such.
   DriversWhen([&](std::size_t k) { return noise_[k]; });
   EXPECT_LE(FindFailureDrivers(campaign_, cases_).at(0).drivers.size(), 1u);
+}
+
+// Neither input alone tells the failing flights, because both fail by either sign: their product does.
+TEST_F(Planted, ACombinationOfTwoInputsMarksTheFailingFlights) {
+  const std::vector<double>& drag = cases_.inputs[static_cast<std::size_t>(FindInput("drag_factor"))];
+  Requirement requirement;
+  requirement.metric = kPeak;
+  requirement.below = 0.5;
+  campaign_.requirements = {requirement};
+  const auto pairs_when = [&](auto metric) {
+    std::vector<double> values;
+    for (std::size_t k = 0; k < cases_.rows(); ++k) values.push_back(metric(k));
+    cases_.metrics[MetricColumn(kPeak)] = values;
+    return FindFailureDrivers(campaign_, cases_).at(0).pairs;
+  };
+  const auto pairs =
+      pairs_when([&](std::size_t k) { return (drag[k] - 1.0) / 0.02 * bias_[k] > 0.8 ? 1.0 : 0.0; });
+  ASSERT_FALSE(pairs.empty());
+  EXPECT_EQ((std::set<std::string>{pairs[0].first, pairs[0].second}),
+            (std::set<std::string>{"gyro_bias_pitch_deg_s", "drag_factor"}));
+  EXPECT_GT(pairs[0].correlation, 0.8);
+  EXPECT_LT(pairs[0].p, 1e-10);
+  EXPECT_LT(pairs[0].false_discovery_rate, 1e-8);
+  // Each by itself is no combination, and neither is chance.
+  EXPECT_TRUE(pairs_when([&](std::size_t k) { return bias_[k] > 1.5 ? 1.0 : 0.0; }).empty());
+  EXPECT_TRUE(pairs_when([&](std::size_t k) { return noise_[k] > 1.0 ? 1.0 : 0.0; }).empty());
 }
 
 TEST_F(Planted, InputsThatRankTheFlightsAlikeAreNamedTogether) {

@@ -5,7 +5,9 @@
 
 #include <cmath>
 #include <nlohmann/json.hpp>
+#include <utility>
 
+#include "core/analysis/junit.h"
 #include "core/analysis/stopping_rule.h"
 #include "core/flight/engine_version.h"
 #include "tests/unit/made_up_results.h"
@@ -42,8 +44,8 @@ TEST(Judge, NeedsTheCasesOfTheExactBinomial) {
   EXPECT_FALSE(enough.cases_needed.has_value());
   EXPECT_NEAR(*enough.success_lower, std::pow(0.10, 1.0 / 852), 1e-12);  // Clopper-Pearson without a failure
   EXPECT_EQ(enough.sentence,
-            "Met: 0 failures in 852 cases show a probability of at least 99.73 % with 90 % confidence; 99.73 "
-            "% is required.");
+            "0 of 852 flights broke the limit. With 90 % confidence at least 99.73 % of flights meet it; "
+            "99.73 % required.");
 
   const RequirementSummary one_less = Judge(requirement, SamplingMethod::kMonteCarlo, Columns(851, 0), 0);
   EXPECT_EQ(one_less.verdict, "inconclusive");
@@ -65,13 +67,14 @@ TEST(Judge, SaysWhyNothingIsDecided) {
       Judge(PeakBelow(0.5, 0.9973, 0.10), SamplingMethod::kMonteCarlo, Columns(200, 0), 0);
   EXPECT_EQ(
       open.sentence,
-      "Not decided: 0 failures in 200 cases show a probability of 98.855 % to 100 %, either bound with 90 % "
-      "confidence; 99.73 % is required. At the failure rate seen here a new campaign of 852 cases passes "
-      "with a probability of 100 %.");
-  // 8 failures in 2000 cases are more than 0.27 %: no number of cases is likely to pass.
-  EXPECT_THAT(
-      Judge(PeakBelow(0.5, 0.9973, 0.10), SamplingMethod::kMonteCarlo, Columns(2000, 8), 0).sentence,
-      testing::EndsWith("At the failure rate seen here a larger campaign is not likely to pass either."));
+      "0 of 200 flights broke the limit. Between 98.855 % and 100 % of flights meet it, each bound with 90 % "
+      "confidence; 99.73 % required. A new campaign can pass with 852 flights or more. By what was seen "
+      "here, "
+      "one of 6816 flights passes with a probability of 61 %. This one, extended, needs 1104 flights in all "
+      "with no further failure (any-time rule).");
+  // One flight says next to nothing, and so does the advice.
+  EXPECT_THAT(Judge(PeakBelow(0.5, 0.9973, 0.10), SamplingMethod::kMonteCarlo, Columns(1, 0), 0).sentence,
+              testing::HasSubstr("passes with a probability of 5.5 %"));
 }
 
 TEST(Judge, BoundsTheMetricByTheOrderStatisticThatDecides) {
@@ -145,8 +148,8 @@ TEST(Judge, SaysWhatAPlanDecidedWithoutWiderBounds) {
   const RequirementSummary met = Judge(requirement, SamplingMethod::kMonteCarlo, Columns(5000, 8), 0);
   // The first 8 cases failed: too few to fail early, few enough to pass at the end.
   EXPECT_EQ(met.sentence,
-            "Met by its plan (5 looks up to 5000 cases): 8 failures in 5000 cases at a risk of 10 %; "
-            "99.73 % is required.");
+            "8 of 5000 flights broke the limit. That is few enough by its plan (judged 5 times up to 5000 "
+            "flights) at a risk of 10 %; 99.73 % required.");
   EXPECT_EQ(met.looks[0].verdict, Verdict::kInconclusive);
   CaseColumns late = Columns(5000, 0);
   for (std::size_t i = 4000; i < 4008; ++i) late.metrics[MetricColumn(kPeak)][i] = 0.9;
@@ -156,8 +159,8 @@ TEST(Judge, SaysWhatAPlanDecidedWithoutWiderBounds) {
   EXPECT_EQ(early.looks[1].verdict, Verdict::kPass);
   EXPECT_EQ(
       early.sentence,
-      "Met by its plan (5 looks up to 5000 cases): 8 failures in 5000 cases at a risk of 10 %; 99.73 % is "
-      "required. Decided by the look at 2000 cases, with 0 failures.");
+      "8 of 5000 flights broke the limit. That is few enough by its plan (judged 5 times up to 5000 flights) "
+      "at a risk of 10 %; 99.73 % required. The look after 2000 flights decided, with 0 failures.");
 }
 
 TEST(Judge, TakesRowsOfWhateverNumbers) {
@@ -288,7 +291,8 @@ TEST_F(FiveCases, RanksByTheSideOfTheRequirement) {
 }
 
 TEST_F(FiveCases, TheVerdict) {
-  EXPECT_EQ(BuildSummary(folder_, campaign_).verdict, CampaignVerdict::kPass);  // nothing is required
+  EXPECT_EQ(BuildSummary(folder_, campaign_).verdict, CampaignVerdict::kNothingJudged);
+  EXPECT_EQ(BuildSummary(folder_, campaign_).standing.verdict, StandingVerdict::kNothingJudged);
   campaign_.requirements = {PeakBelow(10.0, 0.5, 0.40)};  // 1 failure of 5: P(X <= 1 | 0.5) = 6/32 < 0.4
   EXPECT_EQ(BuildSummary(folder_, campaign_).verdict, CampaignVerdict::kPass);
   campaign_.requirements.push_back(PeakBelow(10.0, 0.99, 0.10));  // P(X >= 1 | 0.99) = 0.049 <= 0.1
@@ -350,8 +354,9 @@ TEST_F(FiveCases, JsonHoldsTheContract) {
   EXPECT_EQ(requirement["verdict"], "inconclusive");
   EXPECT_TRUE(requirement["cases_needed"].is_number_integer());
   EXPECT_EQ(requirement["plan"]["kind"], "fixed");
-  EXPECT_EQ(requirement["plan"]["cases"], 5);
-  EXPECT_EQ(requirement["post_hoc"], true);  // the folder was made without requirements
+  EXPECT_EQ(requirement["plan"]["cases"], 6);  // as if the campaign were the first in the folder
+  EXPECT_NEAR(requirement["attained_risk"], 0.98415, 1e-6);  // one failure, one case missing, of 6 at 10 %
+  EXPECT_EQ(requirement["post_hoc"], true);                  // the folder was made without requirements
   EXPECT_EQ(json["quarantined"],
             nlohmann::json::parse(R"([{"case_index": 5, "reason": "killed 3 workers"}])"));
   EXPECT_EQ(json["worst_cases"][0]["case_index"], 2);
@@ -394,17 +399,20 @@ TEST_F(Misuse, ExtendingUntilItPassesDoesNotPassAndShows) {
   EXPECT_EQ(summary_.requirements[0].cases_needed, 129);
   EXPECT_TRUE(Warnings(summary_).empty());
   Fly(129, 1);
-  const RequirementSummary& requirement = summary_.requirements[0];
-  EXPECT_EQ(requirement.verdict, "inconclusive");
-  EXPECT_TRUE(requirement.beyond_plan);
-  EXPECT_EQ(requirement.planned, 76);
-  EXPECT_THAT(requirement.looks, ElementsAre(Look{76, 1, true, Verdict::kInconclusive},
-                                             Look{129, 1, false, Verdict::kInconclusive}));
-  ASSERT_EQ(Warnings(summary_).size(), 1u);
+  // By itself the larger campaign passes, and its summary is that of one flown at once.
+  EXPECT_EQ(summary_.requirements[0].verdict, "pass");
+  EXPECT_EQ(summary_.requirements[0].planned, 129);
+  EXPECT_FALSE(summary_.requirements[0].beyond_plan);
+  EXPECT_TRUE(Warnings(summary_).empty());
+  // What stands is another matter: 76 cases could have passed, and spent the risk.
+  EXPECT_EQ(summary_.standing.verdict, StandingVerdict::kNotEvidence);
+  EXPECT_EQ(summary_.standing.requirements[0].verdict, "not_evidence");
+  EXPECT_EQ(StandingBadge(summary_.standing), "not evidence");
+  ASSERT_EQ(StandingNotes(summary_.standing, summary_).size(), 1u);
   EXPECT_THAT(
-      Warnings(summary_)[0],
-      testing::StartsWith("Beyond the plan: pitch_error_peak_deg was planned for 76 cases, 129 are in the "
-                          "campaign; its looks read one by one carry a risk of 14."));
+      StandingNotes(summary_.standing, summary_)[0],
+      testing::StartsWith("pitch_error_peak_deg: Earlier campaigns of this design have used up the risk "
+                          "of 10 %. All 129 flights together show 1 failure; under the any-time rule "));
   // Reading it again is no further look.
   const std::string before = SummaryJson(summary_);
   Fly(129, 1);
@@ -421,13 +429,141 @@ TEST_F(Misuse, ALimitThatWasChangedAfterTheFirstCaseShows) {
   Fly(40, 0);
   EXPECT_EQ(summary_.requirements[0].verdict, "pass");
   EXPECT_TRUE(summary_.requirements[0].post_hoc);
+  EXPECT_EQ(summary_.standing.verdict, StandingVerdict::kNotEvidence);
+  EXPECT_EQ(StandingBadge(summary_.standing), "post hoc");
   EXPECT_THAT(
-      Warnings(summary_),
-      ElementsAre("Post hoc: pitch_error_peak_deg below 0.5 for 90 % of flights at 10 % risk is not what was "
-                  "required before the first case was flown."));
+      StandingNotes(summary_.standing, summary_),
+      ElementsAre(
+          "Post hoc: pitch_error_peak_deg below 0.5 for 90 % of flights at 10 % risk was not required "
+          "before the first case was flown.",
+          "Post hoc: the requirement \"pitch_error_peak_deg above  below 0.05 probability 0.9 "
+          "consumer_risk 0.1 looks 1 obrien_fleming\" was changed or left out after the first case was "
+          "flown. Its last verdict: fail."));
+  EXPECT_THAT(JUnitXml(summary_), testing::HasSubstr("errors=\"2\""));
   campaign_.requirements.clear();
   Fly(40, 0);
-  EXPECT_EQ(Warnings(summary_).size(), 1u);  // dropped, which shows too
+  EXPECT_EQ(summary_.standing.verdict, StandingVerdict::kNotEvidence) << "dropped";
+  EXPECT_EQ(StandingNotes(summary_.standing, summary_).size(), 1u);
+  // A requirement that fails goes before: it is known, whenever it was stated.
+  campaign_.requirements = {PeakBelow(0.04, 0.9, 0.10)};
+  Fly(40, 0);
+  EXPECT_EQ(summary_.standing.verdict, StandingVerdict::kFail);
+  // As it was: it counts again.
+  campaign_.requirements = {PeakBelow(0.05, 0.9, 0.10)};
+  campaign_.requirements_id = "original";
+  Fly(40, 0);
+  EXPECT_EQ(summary_.standing.verdict, StandingVerdict::kFail);
+  EXPECT_FALSE(summary_.standing.is_post_hoc);
+}
+
+TEST_F(Misuse, ATightenedLimitIsNoEvidenceAndKeepsTheOldVerdict) {
+  campaign_.requirements = {PeakBelow(0.5, 0.9, 0.10)};
+  Fly(40, 0);
+  EXPECT_EQ(summary_.standing.verdict, StandingVerdict::kPass);
+  campaign_.requirements = {PeakBelow(0.3, 0.9, 0.10)};
+  campaign_.requirements_id = "changed";
+  Fly(40, 0);
+  EXPECT_EQ(summary_.standing.verdict, StandingVerdict::kNotEvidence);
+  ASSERT_EQ(summary_.standing.dropped.size(), 1u);
+  EXPECT_EQ(summary_.standing.dropped[0].verdict, "pass");
+}
+
+TEST_F(Misuse, WordsAndOrderOfRequirementsAreNoChange) {
+  campaign_.requirements = {PeakBelow(0.5, 0.9, 0.10), PeakBelow(0.6, 0.9, 0.10)};
+  Fly(40, 0);
+  std::swap(campaign_.requirements[0], campaign_.requirements[1]);
+  campaign_.requirements[0].id = "REQ-7";
+  campaign_.requirements[0].rationale = "fairing";
+  campaign_.requirements[0].source = "spec 4.2";
+  Fly(40, 0);
+  EXPECT_EQ(summary_.standing.verdict, StandingVerdict::kPass);
+  const auto json = nlohmann::json::parse(SummaryJson(summary_))["requirements"][0];
+  EXPECT_EQ(json["id"], "REQ-7");
+  EXPECT_EQ(json["rationale"], "fairing");
+  EXPECT_EQ(json["source"], "spec 4.2");
+  EXPECT_NEAR(json["attained_risk"], std::pow(0.9, 40), 1e-12);
+}
+
+TEST_F(Misuse, AStudyIsJudgedByEveryCaseAndShowsNoProbability) {
+  campaign_.sampling.method = SamplingMethod::kLatinHypercube;
+  campaign_.requirements = {PeakBelow(0.5, 0.9, 0.10)};
+  Fly(40, 0);
+  EXPECT_EQ(summary_.standing.verdict, StandingVerdict::kNotEvidence);
+  EXPECT_EQ(
+      summary_.standing.requirements[0].reason,
+      "The points of a design study are chosen, so they show no probability; require every_case: true.");
+  campaign_.requirements[0].every_case = true;
+  EXPECT_EQ(RequirementWords(BuildSummary(ResultFolder::Open(temporary_ / "out"), campaign_).requirements[0]),
+            "pitch_error_peak_deg below 0.5 in every case");
+}
+
+TEST_F(Misuse, EveryCaseOfAStudyIsMetOrFails) {
+  campaign_.sampling.method = SamplingMethod::kLatinHypercube;
+  campaign_.requirements = {PeakBelow(0.5, 0.0, 0.0)};
+  campaign_.requirements[0].every_case = true;
+  Fly(40, 0);
+  EXPECT_EQ(summary_.standing.verdict, StandingVerdict::kPass);
+  EXPECT_THAT(JUnitXml(summary_), testing::HasSubstr("failures=\"0\" errors=\"0\" skipped=\"0\""));
+  const auto json = nlohmann::json::parse(SummaryJson(summary_))["requirements"][0];
+  EXPECT_EQ(json["probability"], nullptr);
+  EXPECT_EQ(json["every_case"], true);
+  EXPECT_EQ(json["attained_risk"], nullptr);
+}
+
+TEST_F(Misuse, AttemptsInTheFoldersLedgerCount) {
+  campaign_.requirements = {PeakBelow(0.5, 0.9, 0.10)};
+  campaign_.design_id = "design";
+  Fly(40, 0);
+  EXPECT_EQ(summary_.standing.verdict, StandingVerdict::kPass);
+  AttemptRecord earlier = RecordOf(campaign_);
+  earlier.id = "earlier";
+  earlier.seed = 8;
+  earlier.cases = 40;
+  earlier.requirements[0].failures = 9;
+  earlier.requirements[0].verdict = "fail";
+  earlier.verdict = "fail";
+  const AttemptLedger ledger(temporary_ / "out" / kFolderLedgerName);
+  ledger.Write(earlier);
+  Fly(40, 0);
+  EXPECT_EQ(summary_.standing.verdict, StandingVerdict::kNotEvidence);
+  EXPECT_EQ(summary_.standing.requirements[0].pool_cases, 80);
+  EXPECT_EQ(summary_.standing.requirements[0].pool_failures, 9);
+  EXPECT_EQ(StandingNotes(summary_.standing, summary_).back(),
+            "Attempt 2 at this design. Earlier ones here: seed 8, 40 flights: fail.");
+  EXPECT_THAT(JUnitXml(summary_), testing::HasSubstr("errors=\"1\""));
+  // Another design is another matter.
+  earlier.design_id = "other";
+  ledger.Write(earlier);
+  Fly(40, 0);
+  EXPECT_EQ(summary_.standing.verdict, StandingVerdict::kPass);
+  // Whoever says why he starts anew may be green; the reason and the earlier verdict are said.
+  earlier.design_id = "design";
+  ledger.Write(earlier);
+  AttemptRecord own = RecordOf(campaign_);
+  own.fresh = "the actuator was measured again";
+  ledger.Write(own);
+  Fly(40, 0);
+  EXPECT_EQ(summary_.standing.verdict, StandingVerdict::kPass);
+  const std::string junit = JUnitXml(summary_);
+  EXPECT_THAT(junit, testing::HasSubstr("the actuator was measured again"));
+  EXPECT_THAT(junit, testing::HasSubstr("seed 8, 40 flights: fail"));
+}
+
+TEST_F(Misuse, CasesThatWereFlownUnderAnotherLimitElsewhereShowNothing) {
+  campaign_.requirements = {PeakBelow(0.05, 0.9, 0.10)};
+  campaign_.design_id = "design";
+  AttemptRecord earlier = RecordOf(campaign_);
+  earlier.id = "earlier";
+  earlier.cases = 40;
+  earlier.requirements[0].verdict = "fail";
+  campaign_.requirements = {PeakBelow(0.5, 0.9, 0.10)};
+  Fly(40, 0);
+  AttemptLedger(temporary_ / "out" / kFolderLedgerName).Write(earlier);
+  Fly(40, 0);
+  EXPECT_EQ(summary_.standing.verdict, StandingVerdict::kNotEvidence);
+  EXPECT_TRUE(summary_.standing.is_post_hoc);
+  ASSERT_EQ(summary_.standing.dropped.size(), 1u);
+  EXPECT_EQ(summary_.standing.dropped[0].verdict, "fail");
 }
 
 TEST_F(Misuse, HalfADesignIsIncomplete) {
@@ -616,7 +752,7 @@ TEST(StructuralLimits, OfAStudyThatAsksNothingLeaveItAsItWas) {
   LimitedCampaign study(10);
   study.campaign.requirements.erase(study.campaign.requirements.begin());
   study.campaign.sampling.method = SamplingMethod::kSobol;
-  EXPECT_EQ(study.Summary().verdict, CampaignVerdict::kPass);
+  EXPECT_EQ(study.Summary().verdict, CampaignVerdict::kNothingJudged);
 }
 
 TEST(StructuralLimits, DoNotKeepACampaignFromStopping) {

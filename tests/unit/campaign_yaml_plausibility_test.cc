@@ -99,10 +99,17 @@ TEST(CampaignYamlPlausibility, LimitsAreRequiredUnlessTheCampaignSaysHow) {
              "requirements:\n  - {metric: structural_limit_exceeded, below: 1, probability: 0.9, "
              "consumer_risk: 0.2}\n");
   const Campaign own = LoadCampaign(files.Path("campaign.yaml"));
-  ASSERT_EQ(own.requirements.size(), 2u);
+  ASSERT_EQ(own.requirements.size(), 3u) << "a looser one switches nothing off";
   EXPECT_EQ(own.requirements[0].probability, 0.9);
   EXPECT_FALSE(own.requirements[0].by_default);
+  EXPECT_TRUE(own.requirements[2].by_default);
   EXPECT_EQ(own.flight_id, campaign.flight_id) << "requirements decide no case";
+  EXPECT_EQ(own.design_id, campaign.design_id);
+  files.Edit("campaign.yaml", "below: 1, probability: 0.9, consumer_risk: 0.2",
+             "below: 1, probability: 0.999, consumer_risk: 0.05");
+  const Campaign strict = LoadCampaign(files.Path("campaign.yaml"));
+  ASSERT_EQ(strict.requirements.size(), 2u) << "one that is as strict takes its place";
+  EXPECT_FALSE(strict.requirements[0].by_default);
 
   files.Edit("vehicle.yaml", "limits: {q_alpha_kpa_rad: 10, axial_load_g: 12, terminate: false}\n", "");
   const Campaign unlimited = LoadCampaign(files.Path("campaign.yaml"));
@@ -110,6 +117,75 @@ TEST(CampaignYamlPlausibility, LimitsAreRequiredUnlessTheCampaignSaysHow) {
   EXPECT_EQ(LoadOptimization(files.Path("campaign.yaml")).vehicle_sha256,
             LoadOptimization(DISPERSA_TEST_DATA "/yaml/campaign.yaml").vehicle_sha256)
       << "and no trajectory";
+}
+
+// Its words and its place are no part of what is required; its limits are.
+TEST(CampaignYamlPlausibility, TheIdOfRequirementsIsOfWhatIsRequired) {
+  const InputFiles files;
+  const std::string one =
+      "  - {metric: yaw_error_peak_deg, below: 2, probability: 0.9, consumer_risk: 0.1}\n";
+  files.Edit("campaign.yaml", "requirements:\n", "requirements:\n" + one);
+  const Campaign campaign = LoadCampaign(files.Path("campaign.yaml"));
+  files.Edit(
+      "campaign.yaml", one,
+      "  - {metric: yaw_error_peak_deg, below: 2, probability: 0.90, consumer_risk: 0.1, id: R1, rationale: "
+      "the fairing, source: spec 3}\n");
+  const Campaign worded = LoadCampaign(files.Path("campaign.yaml"));
+  EXPECT_EQ(worded.requirements_id, campaign.requirements_id);
+  EXPECT_NE(worded.id, campaign.id);
+  EXPECT_EQ(worded.requirements[0].id, "R1");
+  EXPECT_EQ(worded.requirements[0].rationale, "the fairing");
+  EXPECT_EQ(worded.requirements[0].source, "spec 3");
+  EXPECT_EQ(LoadCampaign(files.Path("campaign.yaml"), {.cases = 3, .seed = 9}).design_id, campaign.design_id);
+  files.Edit("campaign.yaml", "metric: yaw_error_peak_deg, below: 2", "metric: yaw_error_peak_deg, below: 3");
+  EXPECT_NE(LoadCampaign(files.Path("campaign.yaml")).requirements_id, campaign.requirements_id);
+}
+
+TEST(CampaignYamlPlausibility, EveryCaseIsOfStudies) {
+  const InputFiles files;
+  files.Edit(
+      "campaign.yaml", "requirements:\n",
+      "requirements:\n  - {metric: yaw_error_peak_deg, below: 2, every_case: true, probability: 0.9}\n");
+  EXPECT_THAT(files.Texts(CheckFile(files.Path("campaign.yaml")).errors),
+              HasSubstr("'probability' and 'every_case' are both given, allowed: either every_case: true or "
+                        "probability and consumer_risk\n"));
+  files.Edit("campaign.yaml", "every_case: true, probability: 0.9}", "every_case: true}");
+  EXPECT_THAT(
+      files.Texts(CheckFile(files.Path("campaign.yaml")).errors),
+      HasSubstr("requirements[0].every_case: 'every_case' is of a design study, allowed: probability and "
+                "consumer_risk, or another sampling method\n"));
+  files.Edit("campaign.yaml", "method: monte_carlo", "method: sobol");
+  const Campaign study = LoadCampaign(files.Path("campaign.yaml"));
+  EXPECT_TRUE(study.requirements[0].every_case);
+  EXPECT_TRUE(study.requirements.back().by_default);
+  EXPECT_TRUE(study.requirements.back().every_case);
+}
+
+TEST(CampaignYamlPlausibility, PlansThatCannotDecideAreWarnedOf) {
+  const InputFiles files;
+  files.Edit(
+      "campaign.yaml", "requirements:\n",
+      "requirements:\n"
+      "  - {metric: yaw_error_peak_deg, below: 20, probability: 0.99999, consumer_risk: 0.49}\n"
+      "  - {metric: roll_error_peak_deg, below: -1, probability: 0.5, consumer_risk: 0.1}\n"
+      "  - {metric: roll_error_peak_deg, below: -1, probability: 0.5, consumer_risk: 0.1}\n"
+      "  - {metric: injection_altitude_error_km, within: [-1, 1], probability: 0.5, consumer_risk: 0.1}\n");
+  const std::string text = files.Texts(CheckFile(files.Path("campaign.yaml")).warnings);
+  for (const char* warning :
+       {"requirements[0].below: a flight whose error passes 15 deg for 0.5 s has lost control",
+        "requirements[0].consumer_risk: a vehicle that just misses passes with a probability of 49 %",
+        "cases can never show 99.999 % at a risk of 49 %",
+        "requirements[1].below: a magnitude is never below -1",
+        "requirements[2].metric: the same requirement stands in requirements[1]",
+        "requirements[3].within: guidance is open loop: nothing corrects what dispersed thrust and drag do "
+        "to the "
+        "orbit"})
+    EXPECT_THAT(text, HasSubstr(warning));
+  files.Edit("campaign.yaml", "method: monte_carlo", "method: sobol");
+  EXPECT_THAT(
+      files.Texts(CheckFile(files.Path("campaign.yaml")).warnings),
+      HasSubstr("requirements[0].probability: the points of a design study are chosen, so that they show no "
+                "probability (exit code 7)"));
 }
 
 TEST(CampaignYamlPlausibility, AReferenceThatMissesItsTargetSaysSo) {

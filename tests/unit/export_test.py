@@ -10,6 +10,7 @@ import re
 import shutil
 import subprocess
 import tempfile
+import time
 import unittest
 import xml.etree.ElementTree
 
@@ -42,6 +43,47 @@ class ExportTest(unittest.TestCase):
         file = self.folder / name
         file.write_text(text)
         return file
+
+
+class Columns(ExportTest):
+    def test_a_table_without_what_is_the_same_in_all_cases(self):
+        file = self.folder / "varying.csv"
+        done = dispersa("export", self.results, "--format", "csv", "--columns", "varying", "--out", file)
+        self.assertEqual((done.returncode, done.stderr), (0, ""))
+        with open(file, newline="") as stream:
+            rows = list(csv.DictReader(stream))
+        varying = [name for name in self.rows[0] if not name.startswith(("input_", "metric_"))
+                   or len({row[name] for row in self.rows}) > 1]
+        self.assertEqual(list(rows[0]), varying)
+        self.assertLess(len(varying), len(self.rows[0]) / 2)
+        self.assertEqual(rows, [{name: row[name] for name in varying} for row in self.rows])
+        done = dispersa("export", self.results, "--format", "jsonl", "--columns", "varying", "--out", file)
+        self.assertEqual((done.returncode, done.stderr),
+                         (2, "--columns: only a CSV file can leave columns out, allowed: --format csv\n"))
+
+
+class Ending(ExportTest):
+    def test_the_last_lines_say_what_to_do_next(self):
+        done = dispersa("report", self.results, "--no-histories", "--quiet")
+        self.assertEqual(done.stdout.splitlines()[-3:], [
+            "VERDICT pass, next: read the report's assumptions and warnings",
+            f"report: {self.results}/report.html", f"result: {self.results}"])
+
+    def test_the_report_in_a_browser(self):
+        browser, seen = self.folder / "browser", self.folder / "seen"
+        browser.write_text(f'#!/bin/sh\nprintf %s "$1" > {seen}.part && mv {seen}.part {seen}\n')
+        browser.chmod(0o755)
+        command = [BINARIES / "dispersa", "report", self.results, "--no-histories", "--quiet", "--open"]
+        done = run(*command, env={**os.environ, "BROWSER": str(browser)})
+        self.assertEqual((done.returncode, done.stderr), (0, ""))
+        deadline = time.monotonic() + 30.0
+        while not seen.exists() and time.monotonic() < deadline:
+            time.sleep(0.02)
+        self.assertEqual(seen.read_text(), f"{self.results}/report.html")
+        done = run(*command, env={**os.environ, "BROWSER": "no-such-browser"})
+        self.assertEqual(done.returncode, 0)
+        self.assertIn(f"--open: no-such-browser: No such file or directory; open {self.results}/report.html yourself",
+                      done.stderr)
 
 
 class Templates(ExportTest):

@@ -142,6 +142,11 @@ class StudyTest(unittest.TestCase):
         unknown = dispersa("compare", adaptive, pd, "--metric", "speed")
         self.assertEqual((unknown.returncode, unknown.stderr),
                          (2, "--metric: 'speed' is not a metric, allowed: a name in cases.csv without its prefix 'metric_'\n"))
+        for command in (("compare", adaptive, pd), ("search", CAMPAIGNS / "smoke.yaml")):
+            slip = dispersa(*command, "--metric", "pitch_error_peek_deg")
+            self.assertEqual((slip.returncode, slip.stderr),
+                             (2, "--metric: 'pitch_error_peek_deg' is not a metric (did you mean 'pitch_error_peak_deg'?), "
+                                 "allowed: a name in cases.csv without its prefix 'metric_'\n"))
 
 
 if __name__ == "__main__":

@@ -5,6 +5,7 @@
 
 #include <cmath>
 #include <limits>
+#include <numeric>
 
 #include "core/results/text.h"
 #include "tests/unit/made_up_results.h"
@@ -24,7 +25,12 @@ using testing::StartsWith;
 
 // Of the law that has every metric.
 std::vector<std::size_t> AllMetrics() { return MetricsUnder(kUsualStages, ControlLaw::kAdaptiveFuzzy); }
-std::string Header() { return CasesCsvHeader(kUsualStages, AllMetrics()); }
+CsvColumns AllColumns() {
+  CsvColumns columns{std::vector<std::size_t>(InputCount(kUsualStages)), AllMetrics()};
+  std::iota(columns.inputs.begin(), columns.inputs.end(), std::size_t{0});
+  return columns;
+}
+std::string Header() { return CasesCsvHeader(MetricList(kUsualStages), AllColumns()); }
 
 TEST(CasesCsv, WritesDoublesThatReadBackToTheSameBits) {
   EXPECT_EQ(ShortestText(0.1 + 0.2), "0.30000000000000004");
@@ -58,7 +64,7 @@ TEST(CasesCsv, HasTheMetricsOfItsLawAlone) {
   campaign.autopilot.pitch.law = ControlLaw::kPd;
   ResultFolder folder = ResultFolder::Create(temporary / "out", campaign);
   folder.Append({{MakeCase(0)}});
-  WriteCasesCsv(folder, temporary / "out" / "cases.csv");
+  WriteCasesCsv(folder, StoredColumns(folder), temporary / "out" / "cases.csv");
   const std::string csv = ReadText(temporary / "out" / "cases.csv");
   EXPECT_THAT(csv, Not(HasSubstr("lyapunov")));
   EXPECT_THAT(csv, Not(HasSubstr("rules_fired")));
@@ -84,7 +90,7 @@ TEST(CasesCsv, WritesOneLineACase) {
   std::string expected = "12,lost_control,77.31,2,\"error above 15 deg, for 0.5 s\"";
   for (std::size_t i = 0; i < result.inputs.size(); ++i) expected += ",0.25";
   for (std::size_t i = 0; i < result.metrics.size(); ++i) expected += ",";
-  EXPECT_EQ(CasesCsvLine(result, AllMetrics()), expected + ",000000000000000d0000000000abcdef\n");
+  EXPECT_EQ(CasesCsvLine(result, AllColumns()), expected + ",000000000000000d0000000000abcdef\n");
 }
 
 TEST(CasesCsv, DoesNotDependOnTheOrderOfArrival) {
@@ -96,25 +102,46 @@ TEST(CasesCsv, DoesNotDependOnTheOrderOfArrival) {
   for (std::uint64_t k = 0; k < 50; ++k) batch.push_back(MakeCase((k * 37 + 11) % 50));  // 37 is prime to 50
   shuffled.Append(batch);
   shuffled.Append(batch);
-  WriteCasesCsv(ascending, temporary / "ascending" / "cases.csv");
-  WriteCasesCsv(shuffled, temporary / "shuffled" / "cases.csv");
+  WriteCasesCsv(ascending, StoredColumns(ascending), temporary / "ascending" / "cases.csv");
+  WriteCasesCsv(shuffled, StoredColumns(shuffled), temporary / "shuffled" / "cases.csv");
   const std::string csv = ReadText(temporary / "ascending" / "cases.csv");
   EXPECT_EQ(csv, ReadText(temporary / "shuffled" / "cases.csv"));
   std::string expected = Header();
-  for (std::uint64_t k = 0; k < 50; ++k) expected += CasesCsvLine(MakeCase(k), AllMetrics());
+  for (std::uint64_t k = 0; k < 50; ++k) expected += CasesCsvLine(MakeCase(k), AllColumns());
   EXPECT_EQ(csv, expected);
+}
+
+TEST(CasesCsv, LeavesOutWhatIsTheSameInAllCases) {
+  TemporaryFolder temporary;
+  ResultFolder folder = ResultFolder::Create(temporary / "out", MakeCampaign(2));
+  CaseResult first = MakeCase(0), second = MakeCase(1);
+  std::fill(first.inputs.begin(), first.inputs.end(), 1.0);
+  std::fill(first.metrics.begin(), first.metrics.end(), 2.0);
+  second.inputs = first.inputs;
+  second.metrics = first.metrics;
+  second.inputs[3] = 1.5;
+  second.metrics[0] = kNaN;  // defined in one of them
+  first.metrics[1] = second.metrics[1] = kNaN;
+  folder.Append({{first, second}});
+  WriteCasesCsv(folder, VaryingColumns(folder), temporary / "out" / "varying.csv");
+  const std::string csv = ReadText(temporary / "out" / "varying.csv");
+  EXPECT_EQ(csv.substr(0, csv.find('\n')), "case_index,outcome,end_time_s,end_stage,reason,input_" +
+                                               InputColumns()[3].name + ",metric_" + MetricNames()[0] +
+                                               ",digest");
+  EXPECT_THAT(csv, HasSubstr(",1,2," + first.digest.Hex() + "\n"));
+  EXPECT_THAT(csv, HasSubstr(",1.5,," + second.digest.Hex() + "\n"));
 }
 
 TEST(CasesCsv, CountsTheCasesOfAFileHoweverTheyAreQuoted) {
   TemporaryFolder temporary;
   EXPECT_EQ(CountCases(temporary / "none"), 0u);
   ResultFolder folder = ResultFolder::Create(temporary / "out", MakeCampaign(3));
-  WriteCasesCsv(folder, temporary / "cases.csv");
+  WriteCasesCsv(folder, StoredColumns(folder), temporary / "cases.csv");
   EXPECT_EQ(CountCases(temporary / "cases.csv"), 0u) << "a header alone";
   CaseResult quoted = MakeCase(1);
   quoted.reason = "two\nlines, \"so\nto say\"";
   folder.Append({{MakeCase(0), quoted, MakeCase(2)}});
-  WriteCasesCsv(folder, temporary / "cases.csv");
+  WriteCasesCsv(folder, StoredColumns(folder), temporary / "cases.csv");
   EXPECT_EQ(CountCases(temporary / "cases.csv"), 3u);
 }
 
@@ -125,10 +152,10 @@ TEST(CasesCsv, ShowsNegativeZeroAsZeroAndUndefinedAsEmpty) {
   result.metrics[0] = -0.0;
   result.metrics[1] = kNaN;
   folder.Append({{result}});
-  WriteCasesCsv(folder, temporary / "out" / "cases.csv");
+  WriteCasesCsv(folder, StoredColumns(folder), temporary / "out" / "cases.csv");
   CaseResult normalised = result;
   normalised.metrics[0] = 0.0;
-  EXPECT_EQ(ReadText(temporary / "out" / "cases.csv"), Header() + CasesCsvLine(normalised, AllMetrics()));
+  EXPECT_EQ(ReadText(temporary / "out" / "cases.csv"), Header() + CasesCsvLine(normalised, AllColumns()));
 }
 
 }  // namespace

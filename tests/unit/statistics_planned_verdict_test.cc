@@ -189,12 +189,15 @@ TEST(Together, HolmKeepsTheRiskOfAll) {
   EXPECT_TRUE(DecideAll({}, true, 1000, {}).empty());
 }
 
-TEST(PassProbability, IsTheBinomial) {
-  // 2000 cases allow 2 failures: at a failure rate of 0.1 % that many come with 68 %.
-  EXPECT_NEAR(PassProbability(0.9973, 0.10, 2000, 0.001), 0.6767, 1e-4);
-  EXPECT_EQ(PassProbability(0.9973, 0.10, 851, 0.0), 0.0);
-  EXPECT_EQ(PassProbability(0.9973, 0.10, 852, 0.0), 1.0);
-  EXPECT_EQ(PassProbability(0.9973, 0.10, 2000, 1.0), 0.0);
+TEST(PassProbability, IsTheBetaBinomialOverWhatTheCasesLeavePossible) {
+  // After a great many cases the rate is known: 2000 cases allow 2 failures, which 0.1 % shows with 68 %.
+  EXPECT_NEAR(PassProbability(0.9973, 0.10, 2000, 1000000000, 1000000), 0.6767, 1e-3);
+  EXPECT_EQ(PassProbability(0.9973, 0.10, 851, 100, 0), 0.0);
+  // After one good flight 852 more without a failure are unlikely: B(1/2, 854 1/2 - 1 + 1) / B(1/2, 3/2).
+  const double beta = std::exp(std::lgamma(853.5) + std::lgamma(2.0) - std::lgamma(1.5) - std::lgamma(854.0));
+  EXPECT_NEAR(PassProbability(0.9973, 0.10, 852, 1, 0), beta, 1e-9);
+  EXPECT_LT(PassProbability(0.9973, 0.10, 852, 1, 0), 0.05);
+  EXPECT_NEAR(PassProbability(0.5, 0.10, 5000, 5000, 0), 1.0, 1e-9);
 }
 
 // A design exactly at the requirement passes, and fails, at most at the stated risk, when it is looked at and

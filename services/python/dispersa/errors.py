@@ -13,6 +13,7 @@ class ExitCode(enum.IntEnum):
     INCONCLUSIVE = 4
     INCOMPLETE = 5
     REPLAY_MISMATCH = 6
+    NOT_EVIDENCE = 7
     INTERRUPTED = 130
 
 

@@ -136,7 +136,8 @@ def exceedance(results, metric, *, ax=None):
         for requirement in results.requirements:
             if requirement["metric"] == metric and requirement.get("limit") is not None:
                 ax.axvline(requirement["limit"], color=LIMIT, linestyle=(0, (5, 3)), linewidth=1.2,
-                           label=f"limit, for {100 * requirement['probability']:g} %")
+                           label="limit, in every case" if requirement["every_case"]
+                           else f"limit, for {100 * requirement['probability']:g} %")
         ax.set_yscale("log")
         ax.set_ylim(0.5 / n, 1.2)
         ax.yaxis.set_major_formatter(matplotlib.ticker.FuncFormatter(lambda y, _: f"{100 * y:g} %"))

@@ -1,0 +1,393 @@
+#include "core/analysis/standing.h"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <fstream>
+#include <map>
+#include <nlohmann/json.hpp>
+#include <sstream>
+#include <utility>
+
+#include "core/analysis/campaign_summary.h"
+#include "core/flight/engine_version.h"
+#include "core/results/output_file.h"
+#include "core/results/requirement_text.h"
+#include "core/results/text.h"
+#include "core/statistics/attempts.h"
+
+namespace dispersa {
+namespace {
+
+using StandingJson = nlohmann::ordered_json;
+
+/// What was required of these cases before the first of them was flown.
+struct Registered {
+  std::vector<std::pair<std::string, std::string>> lines;  ///< RequirementLine() and the verdict that it had
+  bool is_known = false;
+  bool is_judged_otherwise = false;  ///< the same requirements, but verdicts' rules differ
+};
+
+std::vector<std::string> LinesOf(const std::string& text) {
+  std::vector<std::string> lines;
+  std::istringstream stream(text);
+  for (std::string line; std::getline(stream, line);) lines.push_back(line);
+  return lines;
+}
+
+bool Holds(const std::vector<std::pair<std::string, std::string>>& lines, const std::string& line) {
+  return std::any_of(lines.begin(), lines.end(), [&](const auto& one) { return one.first == line; });
+}
+
+/// Earlier attempts that count: from the last one on that started anew.
+std::vector<AttemptRecord> Counted(std::vector<AttemptRecord> earlier) {
+  const auto fresh = std::find_if(earlier.rbegin(), earlier.rend(),
+                                  [](const AttemptRecord& record) { return !record.fresh.empty(); });
+  if (fresh != earlier.rend()) earlier.erase(earlier.begin(), fresh.base() - 1);
+  return earlier;
+}
+
+Registered RegisteredIn(const ResultFolder& folder, const Campaign& campaign,
+                        const std::vector<LookRecord>& looks, const std::vector<AttemptRecord>& earlier) {
+  Registered registered;
+  const std::string id = folder.Provenance("requirements_id");
+  for (const std::string& line : LinesOf(folder.Provenance("requirements"))) {
+    std::string verdict;
+    for (const LookRecord& look : looks)
+      if (look.requirement == line) verdict = look.verdict;
+    registered.lines.emplace_back(line, verdict);
+  }
+  registered.is_known = true;
+  const auto is_required = [&](const std::string& line) {
+    return std::any_of(campaign.requirements.begin(), campaign.requirements.end(),
+                       [&](const Requirement& requirement) { return RequirementLine(requirement) == line; });
+  };
+  const bool same = registered.lines.size() == campaign.requirements.size() &&
+                    std::all_of(registered.lines.begin(), registered.lines.end(),
+                                [&](const auto& one) { return is_required(one.first); });
+  registered.is_judged_otherwise = same && id != campaign.requirements_id;
+  if (!same || registered.is_judged_otherwise) return registered;
+  // The folder is as it began: were its cases flown before, under other requirements?
+  const auto first = std::find_if(earlier.begin(), earlier.end(), [&](const AttemptRecord& record) {
+    return record.seed == campaign.sampling.seed && record.cases > 0;
+  });
+  if (first == earlier.end()) return registered;
+  registered.lines.clear();
+  for (const RequirementRecord& one : first->requirements)
+    registered.lines.emplace_back(one.line, one.verdict);
+  return registered;
+}
+
+/// The attempts as one requirement sees them, the campaign's own last.
+std::vector<Attempt> AttemptsAt(const Requirement& requirement, const RequirementSummary& shown,
+                                const CampaignSummary& summary, const std::vector<LookRecord>& looks,
+                                std::int64_t planned_first, const std::vector<AttemptRecord>& earlier) {
+  std::vector<Attempt> attempts;
+  const std::string limit = LimitText(requirement);
+  for (const AttemptRecord& record : earlier) {
+    for (const RequirementRecord& one : record.requirements) {
+      if (one.limit != limit) continue;
+      const bool as_strict =
+          one.probability >= requirement.probability && one.consumer_risk <= requirement.consumer_risk;
+      attempts.push_back({record.seed, record.planned, record.cases, one.failures, one.plan,
+                          as_strict && one.verdict == "pass"});
+      break;
+    }
+  }
+  const Attempt own = {summary.seed,
+                       static_cast<std::int64_t>(summary.max_cases),
+                       static_cast<std::int64_t>(summary.cases),
+                       shown.failures + static_cast<std::int64_t>(summary.cases) - shown.n,
+                       requirement.plan,
+                       shown.verdict == "pass"};
+  // Of this folder, before its number of cases was changed: known without a ledger, too.
+  if (own.planned != planned_first) {
+    std::map<std::int64_t, Attempt> here;
+    here[planned_first] = {own.seed, planned_first, std::min(planned_first, own.cases), 0, requirement.plan};
+    for (const LookRecord& look : looks)
+      if (look.requirement == RequirementLine(requirement) && look.n < own.cases)
+        here[look.n] = {own.seed, look.n, look.n, look.failures, requirement.plan, look.verdict == "pass"};
+    for (const auto& [planned, attempt] : here)
+      if (std::none_of(attempts.begin(), attempts.end(), [&](const Attempt& other) {
+            return other.seed == own.seed && other.planned == attempt.planned;
+          }))
+        attempts.push_back(attempt);
+  }
+  std::erase_if(attempts, [&](const Attempt& attempt) {
+    return attempt.seed == own.seed && attempt.planned == own.planned;
+  });
+  attempts.push_back(own);
+  return attempts;
+}
+
+std::string FlightsText(std::int64_t count) {
+  return fmt::format("{} flight{}", count, count == 1 ? "" : "s");
+}
+
+std::string SpentReason(const RequirementSummary& shown, const AttemptsVerdict& verdict) {
+  std::string text = fmt::format(
+      "Earlier campaigns of this design have used up the risk of {}. All {} together show {} "
+      "failure{}",
+      PercentText(shown.consumer_risk), FlightsText(verdict.pool_cases), verdict.pool_failures,
+      verdict.pool_failures == 1 ? "" : "s");
+  if (!verdict.pool_needed) return text + "; no number of flights can decide.";
+  return text + fmt::format("; under the any-time rule {} flights with no further failure would decide.",
+                            *verdict.pool_needed);
+}
+
+std::string SeenReason(const AttemptsVerdict& verdict) {
+  return fmt::format(
+      "You added flights after seeing results; the stricter any-time rule now applies: {} flights with {} "
+      "failure{} are needed.",
+      verdict.pool_needed.value_or(0), verdict.pool_failures, verdict.pool_failures == 1 ? "" : "s");
+}
+
+void Judge(const Requirement& requirement, const RequirementSummary& shown, const CampaignSummary& summary,
+           const std::vector<Attempt>& attempts, std::uint64_t reserved, Standing::Requirement& standing) {
+  if (!IsIndependent(summary.sampling)) {
+    standing.verdict = shown.failures > 0 ? "fail" : requirement.every_case ? "pass" : "not_evidence";
+    if (standing.verdict == "not_evidence")
+      standing.reason =
+          "The points of a design study are chosen, so they show no probability; require every_case: true.";
+    return;
+  }
+  standing.verdict = shown.verdict.empty() ? "inconclusive" : shown.verdict;
+  if (shown.n == 0) return;
+  const AttemptsVerdict verdict =
+      JudgeAttempts(requirement.probability, requirement.consumer_risk, reserved, attempts);
+  standing.pool_cases = verdict.pool_cases;
+  standing.pool_failures = verdict.pool_failures;
+  if (standing.verdict == "fail") return;
+  if (standing.verdict == "pass") {
+    if (verdict.passed || verdict.passed_before) return;
+    standing.verdict = verdict.is_spent ? "not_evidence" : "inconclusive";
+    standing.reason =
+        verdict.is_spent ? SpentReason(shown, verdict)
+        : reserved > 1 && attempts.size() == 1
+            ? fmt::format("{} attempts share the risk of {}: this one has {}.", reserved,
+                          PercentText(requirement.consumer_risk),
+                          PercentText(requirement.consumer_risk / static_cast<double>(reserved)))
+            : SeenReason(verdict);
+    return;
+  }
+  if (verdict.passed && !shown.contradicted) {
+    standing.verdict = "pass";
+    standing.reason =
+        fmt::format("All attempts together decide: {} show {} failure{}.", FlightsText(verdict.pool_cases),
+                    verdict.pool_failures, verdict.pool_failures == 1 ? "" : "s");
+  } else if (attempts.size() > 1 && verdict.pool_needed) {
+    standing.reason = SeenReason(verdict);
+  }
+}
+
+StandingVerdict Together(const Campaign& campaign, const CampaignSummary& summary, const Standing& standing) {
+  if (summary.verdict == CampaignVerdict::kIncomplete) return StandingVerdict::kIncomplete;
+  bool own = false, passed = false, open = false, not_evidence = standing.is_post_hoc;
+  for (std::size_t i = 0; i < standing.requirements.size(); ++i) {
+    const std::string& verdict = standing.requirements[i].verdict;
+    // What the campaign did not ask itself counts from its first failure on.
+    const bool counts = !campaign.requirements[i].by_default || summary.requirements[i].failures > 0;
+    own = own || !campaign.requirements[i].by_default;
+    if (verdict == "fail") return StandingVerdict::kFail;
+    passed = passed || verdict == "pass";
+    open = open || (counts && verdict == "inconclusive");
+    not_evidence = not_evidence || (counts && verdict == "not_evidence");
+  }
+  if (not_evidence) return StandingVerdict::kNotEvidence;
+  if (open) return StandingVerdict::kInconclusive;
+  return own || passed ? StandingVerdict::kPass : StandingVerdict::kNothingJudged;
+}
+
+StandingJson ExecutionOf(const ResultFolder& folder) {
+  std::ifstream stream(folder.directory() / "execution.json");
+  StandingJson json = StandingJson::parse(stream, nullptr, false);
+  return json.is_object() ? json : StandingJson::object();
+}
+
+RunInfo RunOf(const ResultFolder& folder) {
+  const StandingJson json = ExecutionOf(folder);
+  const auto text = [&](const char* key) {
+    const auto found = json.find(key);
+    return found != json.end() && found->is_string() ? found->get<std::string>() : std::string();
+  };
+  RunInfo run{text("started_utc"), text("user"), text("host"), text("vehicle_file"), 0.0};
+  if (const auto found = json.find("flying_s"); found != json.end() && found->is_number())
+    run.flying_s = found->get<double>();
+  return run;
+}
+
+std::string AttemptsNote(const Standing& standing) {
+  if (standing.attempts.size() < 2) return "";
+  std::string list;
+  for (std::size_t i = 0; i + 1 < standing.attempts.size(); ++i) {
+    const Standing::AttemptLine& one = standing.attempts[i];
+    std::string verdict = one.verdict.empty() ? "not ended" : one.verdict;
+    std::replace(verdict.begin(), verdict.end(), '_', ' ');
+    list +=
+        fmt::format("{}seed {}, {}: {}", list.empty() ? "" : "; ", one.seed, FlightsText(one.cases), verdict);
+  }
+  return fmt::format("Attempt {} at this design. Earlier ones here: {}.", standing.attempts.size(), list);
+}
+
+}  // namespace
+
+const char* StandingVerdictName(StandingVerdict verdict) {
+  switch (verdict) {
+    case StandingVerdict::kPass:
+      return "pass";
+    case StandingVerdict::kNothingJudged:
+      return "nothing_judged";
+    case StandingVerdict::kInconclusive:
+      return "inconclusive";
+    case StandingVerdict::kNotEvidence:
+      return "not_evidence";
+    case StandingVerdict::kFail:
+      return "fail";
+    case StandingVerdict::kIncomplete:
+      return "incomplete";
+  }
+  return "";
+}
+
+std::string StandingBadge(const Standing& standing) {
+  if (standing.verdict == StandingVerdict::kNotEvidence && standing.is_post_hoc) return "post hoc";
+  std::string name = StandingVerdictName(standing.verdict);
+  std::replace(name.begin(), name.end(), '_', ' ');
+  return name;
+}
+
+Standing StandingOf(const ResultFolder& folder, const Campaign& campaign, const CampaignSummary& summary) {
+  Standing standing;
+  standing.run = RunOf(folder);
+  std::vector<AttemptRecord> all = AttemptLedger(folder.directory() / kFolderLedgerName).Read();
+  const auto own =
+      std::find_if(all.begin(), all.end(), [&](const AttemptRecord& one) { return one.id == campaign.id; });
+  if (own != all.end()) {
+    standing.fresh = own->fresh;
+    standing.earlier_designs = own->earlier_designs;
+    standing.earlier_designs_of_seed = own->earlier_designs_of_seed;
+  }
+  std::vector<AttemptRecord> earlier;
+  for (auto one = all.begin(); one != own; ++one)
+    if (one->design_id == campaign.design_id) earlier.push_back(*one);
+  for (const AttemptRecord& one : earlier)
+    standing.attempts.push_back({one.id, one.seed, one.cases, one.verdict, one.begun_utc, one.fresh});
+  const std::vector<AttemptRecord> counted =
+      standing.fresh.empty() ? Counted(earlier) : std::vector<AttemptRecord>();
+
+  const std::vector<LookRecord> looks = folder.Looks();
+  const Registered registered = RegisteredIn(folder, campaign, looks, counted);
+  for (const auto& [line, verdict] : registered.lines) {
+    const bool kept = std::any_of(
+        campaign.requirements.begin(), campaign.requirements.end(),
+        [&, &text = line](const Requirement& requirement) { return RequirementLine(requirement) == text; });
+    if (!kept) standing.dropped.push_back({line, verdict});
+  }
+  standing.is_post_hoc = !standing.dropped.empty() || registered.is_judged_otherwise;
+  const std::int64_t planned_first = folder.PlannedCases();
+  for (std::size_t i = 0; i < campaign.requirements.size(); ++i) {
+    const Requirement& requirement = campaign.requirements[i];
+    const RequirementSummary& shown = summary.requirements[i];
+    Standing::Requirement& one = standing.requirements.emplace_back();
+    Judge(requirement, shown, summary, AttemptsAt(requirement, shown, summary, looks, planned_first, counted),
+          campaign.verdicts.attempts, one);
+    if (Holds(registered.lines, RequirementLine(requirement))) continue;
+    one.post_hoc = standing.is_post_hoc = true;
+    if (one.verdict == "fail") continue;
+    one.verdict = "not_evidence";
+    one.reason = "It was stated after its flights were flown. Flights with another seed can show it.";
+  }
+  standing.verdict = Together(campaign, summary, standing);
+  standing.attempts.push_back({campaign.id, campaign.sampling.seed, static_cast<std::int64_t>(summary.cases),
+                               StandingVerdictName(standing.verdict),
+                               own == all.end() ? std::string() : own->begun_utc, standing.fresh});
+  return standing;
+}
+
+std::vector<std::string> StandingNotes(const Standing& standing, const CampaignSummary& summary) {
+  std::vector<std::string> notes;
+  for (std::size_t i = 0; i < standing.requirements.size(); ++i) {
+    const Standing::Requirement& one = standing.requirements[i];
+    if (one.post_hoc)
+      notes.push_back(fmt::format("Post hoc: {} was not required before the first case was flown.",
+                                  RequirementWords(summary.requirements[i])));
+    else if (!one.reason.empty())
+      notes.push_back(fmt::format("{}: {}", summary.requirements[i].metric, one.reason));
+  }
+  for (const Standing::Dropped& one : standing.dropped)
+    notes.push_back(
+        fmt::format("Post hoc: the requirement \"{}\" was changed or left out after the first case "
+                    "was flown. Its last verdict: {}.",
+                    one.line, one.verdict.empty() ? "none" : one.verdict));
+  if (standing.is_post_hoc && standing.dropped.empty() &&
+      std::none_of(standing.requirements.begin(), standing.requirements.end(),
+                   [](const Standing::Requirement& one) { return one.post_hoc; }))
+    notes.push_back(
+        "Post hoc: the way the requirements are judged together was changed after the first case was flown.");
+  if (!standing.fresh.empty())
+    notes.push_back(
+        fmt::format("Started anew, so that earlier attempts do not count: \"{}\".", standing.fresh));
+  if (std::string attempts = AttemptsNote(standing); !attempts.empty()) notes.push_back(std::move(attempts));
+  if (standing.earlier_designs > 0)
+    notes.push_back(fmt::format("Earlier designs here: {}, of which {} with this seed.",
+                                standing.earlier_designs, standing.earlier_designs_of_seed));
+  return notes;
+}
+
+AttemptRecord AttemptOf(const Campaign& campaign, const CampaignSummary& summary, AttemptRecord begun) {
+  AttemptRecord record = RecordOf(campaign);
+  record.begun_utc = begun.begun_utc;
+  record.fresh = begun.fresh;
+  record.earlier_designs = begun.earlier_designs;
+  record.earlier_designs_of_seed = begun.earlier_designs_of_seed;
+  record.cases = static_cast<std::int64_t>(summary.reached);
+  record.verdict = StandingVerdictName(summary.standing.verdict);
+  for (std::size_t i = 0; i < record.requirements.size(); ++i) {
+    const RequirementSummary& shown = summary.requirements[i];
+    record.requirements[i].failures = shown.failures + record.cases - shown.n;
+    record.requirements[i].verdict =
+        shown.verdict == "study" ? (shown.failures > 0 ? "fail" : "study") : shown.verdict;
+  }
+  return record;
+}
+
+void WriteStanding(const ResultFolder& folder, const CampaignSummary& summary) {
+  const std::filesystem::path file = folder.directory() / "execution.json";
+  StandingJson json = ExecutionOf(folder);
+  if (!json.contains("schema")) json = {{"schema", "dispersa/execution/1"}, {"engine", EngineVersion()}};
+  const Standing& standing = summary.standing;
+  json["standing_verdict"] = StandingVerdictName(standing.verdict);
+  json["attempts"] = StandingJson::array();
+  for (const Standing::AttemptLine& one : standing.attempts) {
+    StandingJson line = {{"id", one.id}, {"seed", one.seed}, {"cases", one.cases}};
+    line["verdict"] = one.verdict.empty() ? StandingJson(nullptr) : StandingJson(one.verdict);
+    if (!one.fresh.empty()) line["fresh"] = one.fresh;
+    json["attempts"].push_back(std::move(line));
+  }
+  json["standing"] = {{"requirements", StandingJson::array()},
+                      {"dropped", StandingJson::array()},
+                      {"post_hoc", standing.is_post_hoc},
+                      {"notes", StandingNotes(standing, summary)}};
+  for (std::size_t i = 0; i < standing.requirements.size(); ++i) {
+    const Standing::Requirement& one = standing.requirements[i];
+    json["standing"]["requirements"].push_back({{"metric", summary.requirements[i].metric},
+                                                {"verdict", one.verdict},
+                                                {"post_hoc", one.post_hoc},
+                                                {"reason", one.reason},
+                                                {"cases_of_all_attempts", one.pool_cases},
+                                                {"failures_of_all_attempts", one.pool_failures}});
+  }
+  for (const Standing::Dropped& one : standing.dropped)
+    json["standing"]["dropped"].push_back({{"requirement", one.line}, {"verdict", one.verdict}});
+  WriteFile(file, json.dump(2) + "\n");
+}
+
+std::optional<std::string> RecordAttempt(const std::filesystem::path& root, const ResultFolder& folder,
+                                         const Campaign& campaign, const CampaignSummary& summary) {
+  AttemptRecord begun;
+  for (const AttemptRecord& one : AttemptLedger(folder.directory() / kFolderLedgerName).Read())
+    if (one.id == campaign.id) begun = one;
+  return NoteAttempt(root, folder.directory(), AttemptOf(campaign, summary, std::move(begun)));
+}
+
+}  // namespace dispersa

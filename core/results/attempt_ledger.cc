@@ -1,0 +1,211 @@
+#include "core/results/attempt_ledger.h"
+
+#include <fcntl.h>
+#include <fmt/format.h>
+#include <sys/file.h>
+#include <unistd.h>
+
+#include <algorithm>
+#include <cerrno>
+#include <cstring>
+#include <fstream>
+#include <nlohmann/json.hpp>
+#include <utility>
+
+#include "core/flight/engine_version.h"
+#include "core/results/requirement_text.h"
+#include "core/results/result_error.h"
+
+namespace dispersa {
+namespace {
+
+using AttemptJson = nlohmann::ordered_json;
+namespace fs = std::filesystem;
+
+const char* PlanWord(const VerdictPlan& plan) {
+  if (plan.kind == PlanKind::kAnytime) return "anytime";
+  return plan.spending == Spending::kPocock ? "pocock" : "obrien_fleming";
+}
+
+VerdictPlan PlanOf(const AttemptJson& json) {
+  VerdictPlan plan;
+  plan.looks = std::clamp<std::int64_t>(json.at("looks").get<std::int64_t>(), 1, 1000);
+  plan.kind = json.at("plan") == "anytime" ? PlanKind::kAnytime
+              : plan.looks > 1             ? PlanKind::kGroupSequential
+                                           : PlanKind::kFixed;
+  plan.spending = json.at("plan") == "pocock" ? Spending::kPocock : Spending::kOBrienFleming;
+  return plan;
+}
+
+AttemptJson ToJson(const AttemptRecord& record) {
+  AttemptJson json = {{"schema", "dispersa/attempt/1"},
+                      {"id", record.id},
+                      {"design_id", record.design_id},
+                      {"name", record.name},
+                      {"engine", record.engine},
+                      {"seed", record.seed},
+                      {"planned", record.planned},
+                      {"cases", record.cases},
+                      {"begun_utc", record.begun_utc},
+                      {"fresh", record.fresh},
+                      {"verdict", record.verdict},
+                      {"earlier_designs", record.earlier_designs},
+                      {"earlier_designs_of_seed", record.earlier_designs_of_seed},
+                      {"requirements", AttemptJson::array()}};
+  for (const RequirementRecord& one : record.requirements)
+    json["requirements"].push_back({{"limit", one.limit},
+                                    {"line", one.line},
+                                    {"probability", one.probability},
+                                    {"consumer_risk", one.consumer_risk},
+                                    {"looks", one.plan.looks},
+                                    {"plan", PlanWord(one.plan)},
+                                    {"by_default", one.by_default},
+                                    {"failures", one.failures},
+                                    {"verdict", one.verdict}});
+  return json;
+}
+
+AttemptRecord ToRecord(const AttemptJson& json) {
+  AttemptRecord record;
+  record.id = json.at("id");
+  record.design_id = json.at("design_id");
+  record.name = json.at("name");
+  record.engine = json.at("engine");
+  record.seed = json.at("seed");
+  record.planned = json.at("planned");
+  record.cases = json.at("cases");
+  record.begun_utc = json.at("begun_utc");
+  record.fresh = json.at("fresh");
+  record.verdict = json.at("verdict");
+  record.earlier_designs = json.at("earlier_designs");
+  record.earlier_designs_of_seed = json.at("earlier_designs_of_seed");
+  for (const AttemptJson& one : json.at("requirements"))
+    record.requirements.push_back({one.at("limit"), one.at("line"), one.at("probability"),
+                                   one.at("consumer_risk"), PlanOf(one), one.at("by_default"),
+                                   one.at("failures"), one.at("verdict")});
+  return record;
+}
+
+[[noreturn]] void FailLedger(const fs::path& file, int error) {
+  throw ResultError(error == ENOSPC ? ResultError::Kind::kDiskFull : ResultError::Kind::kFile,
+                    fmt::format("{}: {}", file.string(), std::strerror(error)));
+}
+
+template <typename Action>
+std::optional<std::string> ReasonOf(Action action) {
+  try {
+    action();
+  } catch (const ResultError& error) {
+    if (error.kind() == ResultError::Kind::kDiskFull) throw;
+    return error.what();
+  }
+  return std::nullopt;
+}
+
+}  // namespace
+
+AttemptRecord RecordOf(const Campaign& campaign) {
+  AttemptRecord record;
+  record.id = campaign.id;
+  record.design_id = campaign.design_id;
+  record.name = campaign.name;
+  record.engine = EngineVersion();
+  record.seed = campaign.sampling.seed;
+  record.planned = static_cast<std::int64_t>(campaign.sampling.cases);
+  for (const Requirement& requirement : campaign.requirements)
+    record.requirements.push_back({LimitText(requirement), RequirementLine(requirement),
+                                   requirement.probability, requirement.consumer_risk, requirement.plan,
+                                   requirement.by_default, 0, ""});
+  return record;
+}
+
+std::vector<AttemptRecord> AttemptLedger::Read() const {
+  std::error_code error;
+  if (!fs::exists(file_, error)) return {};
+  std::ifstream stream(file_);
+  if (!stream) FailLedger(file_, errno);
+  std::vector<AttemptRecord> records;
+  for (std::string line; std::getline(stream, line);) {
+    try {
+      AttemptRecord record = ToRecord(AttemptJson::parse(line));
+      const auto same = std::find_if(records.begin(), records.end(),
+                                     [&](const AttemptRecord& other) { return other.id == record.id; });
+      if (same == records.end())
+        records.push_back(std::move(record));
+      else
+        *same = std::move(record);
+    } catch (const nlohmann::json::exception&) {
+      continue;  // of a process that was killed while it wrote
+    }
+  }
+  return records;
+}
+
+void AttemptLedger::Write(const AttemptRecord& record) const {
+  const std::string line = ToJson(record).dump() + "\n";
+  const int file = open(file_.c_str(), O_RDWR | O_APPEND | O_CREAT | O_CLOEXEC, 0666);
+  if (file < 0) FailLedger(file_, errno);
+  flock(file, LOCK_EX);
+  // After a line that was cut off a new one begins.
+  char last = '\n';
+  const off_t size = lseek(file, 0, SEEK_END);
+  if (size > 0) (void)!pread(file, &last, 1, size - 1);
+  const std::string text = last == '\n' ? line : "\n" + line;
+  const ssize_t written = write(file, text.data(), text.size());
+  const int problem = written == static_cast<ssize_t>(text.size()) ? 0 : (written < 0 ? errno : ENOSPC);
+  close(file);
+  if (problem != 0) FailLedger(file_, problem);
+}
+
+std::optional<std::string> BeginAttempt(const fs::path& root, const fs::path& results,
+                                        const Campaign& campaign, const std::string& begun_utc,
+                                        const std::string& fresh) {
+  const AttemptLedger here(results / kFolderLedgerName);
+  const AttemptLedger all(root / kLedgerName);
+  std::vector<AttemptRecord> known;
+  AttemptRecord own = RecordOf(campaign);
+  own.begun_utc = begun_utc;
+  own.fresh = fresh;
+  const auto begin_in_root = [&] {
+    known = all.Read();
+    const auto same =
+        std::find_if(known.begin(), known.end(), [&](const AttemptRecord& one) { return one.id == own.id; });
+    if (same != known.end()) {
+      const std::string reason = fresh.empty() ? same->fresh : fresh;
+      own = *same;
+      own.fresh = reason;
+      known.erase(same, known.end());
+    } else {
+      std::vector<std::string> designs, of_seed;
+      for (const AttemptRecord& one : known) {
+        if (one.design_id == own.design_id) continue;
+        designs.push_back(one.design_id);
+        if (one.seed == own.seed) of_seed.push_back(one.design_id);
+      }
+      for (auto [list, count] :
+           {std::pair{&designs, &own.earlier_designs}, std::pair{&of_seed, &own.earlier_designs_of_seed}}) {
+        std::sort(list->begin(), list->end());
+        *count = std::unique(list->begin(), list->end()) - list->begin();
+      }
+      all.Write(own);
+    }
+  };
+  std::optional<std::string> problem = ReasonOf(begin_in_root);
+  const std::vector<AttemptRecord> kept = here.Read();
+  const auto is_kept = [&](const AttemptRecord& one) {
+    return std::any_of(kept.begin(), kept.end(),
+                       [&](const AttemptRecord& other) { return other.id == one.id; });
+  };
+  for (const AttemptRecord& one : known)
+    if (one.design_id == own.design_id && !is_kept(one)) here.Write(one);
+  if (!is_kept(own)) here.Write(own);
+  return problem;
+}
+
+std::optional<std::string> NoteAttempt(const fs::path& root, const fs::path& results,
+                                       const AttemptRecord& record) {
+  AttemptLedger(results / kFolderLedgerName).Write(record);
+  return ReasonOf([&] { AttemptLedger(root / kLedgerName).Write(record); });
+}
+
+}  // namespace dispersa
