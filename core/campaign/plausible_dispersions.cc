@@ -4,7 +4,6 @@
 
 #include <algorithm>
 #include <cmath>
-#include <string_view>
 
 #include "core/campaign/dispersion_table.h"
 #include "core/campaign/drawn_value.h"
@@ -12,56 +11,6 @@
 
 namespace dispersa {
 namespace {
-
-/// Columns that begin so, in their own unit.
-struct Usual {
-  std::string_view columns;
-  double low, high;
-  const char* source;
-};
-constexpr Usual kUsual[] = {
-    {"thrust_misalignment_clock", -HUGE_VAL, HUGE_VAL, ""},
-    {"thrust_offset_clock", -HUGE_VAL, HUGE_VAL, ""},
-    {"cg_offset_clock", -HUGE_VAL, HUGE_VAL, ""},
-    {"thrust_misalignment", -1.5, 1.5, "0.1 to 0.5 deg of solid motors"},
-    {"thrust_offset", -0.1, 0.1, "millimetres"},
-    {"cg_offset", -0.2, 0.2, "millimetres to centimetres"},
-    {"thrust_factor", 0.8, 1.2, "1 to 5 % of motors"},
-    {"mass_flow_factor", 0.8, 1.2, "1 to 5 % of motors"},
-    {"specific_impulse_factor", 0.94, 1.06, "0.3 to 1 %"},
-    {"dry_mass_factor", 0.8, 1.2, "1 to 5 %"},
-    {"propellant_factor", 0.9, 1.1, "0.3 to 1 %"},
-    {"wind_max_speed_m_s", 0.0, 130.0, "the strongest jet streams have 100 to 120 m/s"},
-    {"wind_altitude_m", 3000.0, 60000.0, "jet streams are at 9 to 16 km"},
-    {"wind_width_m", 1000.0, 60000.0, "some kilometres"},
-    {"wind_profile", -130.0, 130.0, "the strongest jet streams have 100 to 120 m/s"},
-    {"gust_speed_m_s", -30.0, 30.0, "9 m/s of MIL-F-8785C's and NASA's discrete gusts"},
-    {"gust_length_m", 5.0, 3000.0, "30 to 300 m"},
-    {"drag_factor", 0.4, 1.6, "10 to 20 %"},
-    {"lift_factor", 0.4, 1.6, "10 to 20 %"},
-    {"cp_factor", 0.4, 1.6, "of the distance from the nose"},
-    {"cg_factor", 0.7, 1.3, "of the distance from the nose"},
-    {"density_factor", 0.4, 1.6, "5 to 30 % by altitude and season"},
-    {"inertia_factor", 0.5, 1.5, "2 to 10 %"},
-    {"actuator_bandwidth_factor", 0.3, 2.0, "10 to 20 %"},
-    {"bending_frequency_factor", 0.6, 1.5, "5 to 15 %"},
-    {"tip_off", -5.0, 5.0, "0.1 to 2 deg/s of a separation"},
-    {"gyro_bias", -0.1, 0.1, "0.0001 to 0.01 deg/s of inertial units"},
-    {"gyro_noise", 0.0, 0.5, "0.001 to 0.05 deg/s a sample"},
-    {"ignition_delay", -10.0, 10.0, "fractions of a second"},
-    {"separation_delay", -10.0, 10.0, "fractions of a second"},
-    {"launch_azimuth_error", -2.0, 2.0, "0.01 to 0.2 deg of an alignment"},
-    {"initial_", -5.0, 5.0, "fractions of a degree on the pad"},
-    {"navigation_position_error", -20000.0, 20000.0, "10 m aided by satellites, kilometres of a free unit"},
-    {"navigation_velocity_error", -50.0, 50.0, "0.1 m/s aided by satellites, metres a second of a free unit"},
-    {"accelerometer_scale_factor", 0.99, 1.01, "0.0001 to 0.001"},
-};
-
-const Usual* Find(const std::string& column) {
-  for (const Usual& usual : kUsual)
-    if (column.compare(0, usual.columns.size(), usual.columns) == 0) return &usual;
-  return nullptr;
-}
 
 bool IsOfNavigation(const std::string& column) {
   return column.rfind("navigation_", 0) == 0 || column.rfind("accelerometer_", 0) == 0;
@@ -114,14 +63,13 @@ std::vector<UnusualDispersion> UnusualDispersions(const Campaign& campaign) {
              "nothing uses it: the flight has no closed-loop guidance, and the autopilot has sensors of its "
              "own",
              "guidance: {mode: closed_loop}, or none of navigation's errors"});
-      const Usual* usual = Find(column.name);
-      if (usual == nullptr) continue;
+      const UsualValues& usual = column.usual;
       const double low = reach[0] / column.unit, high = reach[1] / column.unit;
-      if (low >= usual->low && high <= usual->high) continue;
+      if (low >= usual.low && high <= usual.high) continue;
       add({key,
            fmt::format("draws from {:.4g} to {:.4g} ({}) but for 0.27 % of the cases", low, high,
                        column.name),
-           fmt::format("{:g} to {:g} ({})", usual->low, usual->high, usual->source)});
+           fmt::format("{:g} to {:g} ({})", usual.low, usual.high, usual.source)});
     }
   }
   if (const auto& table = campaign.wind_table) {

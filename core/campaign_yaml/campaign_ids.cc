@@ -5,6 +5,7 @@
 
 #include "core/campaign_yaml/canonical.h"
 #include "core/campaign_yaml/load.h"
+#include "core/campaign_yaml/sha256.h"
 #include "core/flight/engine_version.h"
 
 namespace dispersa {

@@ -2,6 +2,7 @@
 #include "core/campaign_yaml/decode.h"
 #include "core/campaign_yaml/describe_file.h"
 #include "core/campaign_yaml/load.h"
+#include "core/campaign_yaml/sha256.h"
 #include "core/campaign_yaml/text_problems.h"
 #include "core/containment/contained.h"
 #include "core/control/law_here.h"
@@ -17,13 +18,9 @@ bool IsUtf8(const PluginDescription& description) {
   return CheckUtf8(all, "", ignored);
 }
 
-bool IsSha256(const std::string& text) {
-  return text.size() == 64 && text.find_first_not_of("0123456789abcdef") == std::string::npos;
-}
-
 // What a campaign that was flown under a law in Python says of it. No file of a user's own has it.
 void OpenPythonLaw(Fields& fields, PythonLaws laws, PluginConfig& plugin) {
-  if (!IsSha256(plugin.sha256)) {
+  if (!IsSha256Hex(plugin.sha256)) {
     fields.Refuse("sha256", "is no SHA-256", "64 hexadecimal digits");
   } else if (std::optional<PluginConfig> here = OfferedLaw(plugin.sha256)) {
     plugin.library = std::move(here->library);

@@ -14,6 +14,7 @@
 #include "core/campaign_yaml/named_files.h"
 #include "core/campaign_yaml/parse_yaml.h"
 #include "core/campaign_yaml/plan_warnings.h"
+#include "core/campaign_yaml/sha256.h"
 #include "core/campaign_yaml/standard_input.h"
 #include "core/input/read_value.h"
 

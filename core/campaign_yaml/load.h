@@ -91,7 +91,4 @@ struct FileCheck {
 };
 FileCheck CheckFile(const InputSource& source);
 
-/// 64 lower-case hexadecimal digits.
-std::string Sha256Hex(std::string_view bytes);
-
 }  // namespace dispersa

@@ -7,6 +7,7 @@
 #include "core/campaign_yaml/parse_csv.h"
 #include "core/campaign_yaml/parse_rasp.h"
 #include "core/campaign_yaml/parse_yaml.h"
+#include "core/campaign_yaml/sha256.h"
 #include "core/campaign_yaml/standard_input.h"
 #include "core/input/read_value.h"
 

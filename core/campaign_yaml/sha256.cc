@@ -1,9 +1,9 @@
+#include "core/campaign_yaml/sha256.h"
+
 #include <openssl/evp.h>
 
 #include <array>
 #include <stdexcept>
-
-#include "core/campaign_yaml/load.h"
 
 namespace dispersa {
 
@@ -21,6 +21,10 @@ std::string Sha256Hex(std::string_view bytes) {
     hex += kDigits[byte & 15];
   }
   return hex;
+}
+
+bool IsSha256Hex(std::string_view text) {
+  return text.size() == 64 && text.find_first_not_of("0123456789abcdef") == std::string_view::npos;
 }
 
 }  // namespace dispersa

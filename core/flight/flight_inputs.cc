@@ -20,47 +20,66 @@ const InputDeclarations& Declared() {
 
 }  // namespace
 
-void InputDeclarations::One(double FlightInputs::*field, const std::string& name, double unit,
-                            const Dispersal& dispersal) {
-  columns_.push_back({name, unit, OffsetOf(&(nominal_.*field))});
+InputDeclarations& InputDeclarations::One(double FlightInputs::*field, const std::string& name, double unit,
+                                          const Dispersal& dispersal) {
+  Begin();
+  columns_.push_back({name, unit, OffsetOf(&(nominal_.*field)), {}});
   Disperse(dispersal, DrawnFor::kFlight, name);
+  return *this;
 }
 
-void InputDeclarations::EachStage(PerStage FlightInputs::*field, const std::string& stem,
-                                  const std::string& unit_suffix, double unit, const Dispersal& dispersal) {
+InputDeclarations& InputDeclarations::EachStage(PerStage FlightInputs::*field, const std::string& stem,
+                                                const std::string& unit_suffix, double unit,
+                                                const Dispersal& dispersal) {
+  Begin();
   for (std::size_t i = 0; i < kMaxStages; ++i)
     ColumnsWith(i).push_back(
         {stem + "_stage" + std::to_string(i + 1) + unit_suffix, unit, OffsetOf(&(nominal_.*field)[i])});
   Disperse(dispersal, DrawnFor::kEachStage, stem + "_{stage}" + unit_suffix);
+  return *this;
 }
 
-void InputDeclarations::EachNozzle(PerNozzle FlightInputs::*field, const std::string& stem,
-                                   const std::string& unit_suffix, double unit) {
+InputDeclarations& InputDeclarations::EachNozzle(PerNozzle FlightInputs::*field, const std::string& stem,
+                                                 const std::string& unit_suffix, double unit) {
+  Begin();
   for (std::size_t i = 0; i < kMaxStages; ++i)
     for (std::size_t nozzle = 0; nozzle < kNozzles; ++nozzle)
       ColumnsWith(i).push_back(
           {stem + "_stage" + std::to_string(i + 1) + "_" + kNozzleNames[nozzle] + unit_suffix, unit,
            OffsetOf(&(nominal_.*field)[i][nozzle])});
+  return *this;
 }
 
-void InputDeclarations::EachMode(std::array<double, kModes> FlightInputs::*field, const std::string& stem,
-                                 const Dispersal& dispersal) {
+InputDeclarations& InputDeclarations::EachMode(std::array<double, kModes> FlightInputs::*field,
+                                               const std::string& stem, const Dispersal& dispersal) {
+  Begin();
   for (std::size_t i = 0; i < kModes; ++i)
     columns_.push_back({stem + "_mode" + std::to_string(i + 1), 1.0, OffsetOf(&(nominal_.*field)[i])});
   Disperse(dispersal, DrawnFor::kEachMode, stem + "_{mode}");
+  return *this;
 }
 
-void InputDeclarations::EachLevel(std::array<double, kWindLevels> FlightInputs::*field,
-                                  const std::string& stem) {
+InputDeclarations& InputDeclarations::EachLevel(std::array<double, kWindLevels> FlightInputs::*field,
+                                                const std::string& stem) {
+  Begin();
   for (std::size_t i = 0; i < kWindLevels; ++i)
     columns_.push_back({stem + "_" + std::to_string(i + 1), 1.0, OffsetOf(&(nominal_.*field)[i])});
+  return *this;
 }
 
-void InputDeclarations::EachLaunchAxis(std::array<double, 3> FlightInputs::*field, const std::string& stem,
-                                       const std::string& unit_suffix) {
+InputDeclarations& InputDeclarations::EachLaunchAxis(std::array<double, 3> FlightInputs::*field,
+                                                     const std::string& stem,
+                                                     const std::string& unit_suffix) {
+  Begin();
   const char* const axes[] = {"_downrange", "_right", "_down"};
   for (std::size_t i = 0; i < 3; ++i)
     columns_.push_back({stem + axes[i] + unit_suffix, 1.0, OffsetOf(&(nominal_.*field)[i])});
+  return *this;
+}
+
+void InputDeclarations::Usually(const UsualValues& usual) {
+  for (std::size_t i = last_; i < columns_.size(); ++i) columns_[i].usual = usual;
+  for (std::size_t i = last_rare_; i < rare_.size(); ++i) rare_[i].usual = usual;
 }
 
 std::vector<InputColumn> InputDeclarations::AllColumns() const {
@@ -72,6 +91,11 @@ std::vector<InputColumn> InputDeclarations::AllColumns() const {
 std::size_t InputDeclarations::OffsetOf(const double* value) const {
   const char* const first = reinterpret_cast<const char*>(&nominal_);
   return static_cast<std::size_t>(reinterpret_cast<const char*>(value) - first);
+}
+
+void InputDeclarations::Begin() {
+  last_ = columns_.size();
+  last_rare_ = rare_.size();
 }
 
 std::vector<InputColumn>& InputDeclarations::ColumnsWith(std::size_t stage) {

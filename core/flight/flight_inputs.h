@@ -2,6 +2,7 @@
 #pragma once
 
 #include <array>
+#include <cmath>
 #include <cstddef>
 #include <string>
 #include <vector>
@@ -129,11 +130,18 @@ struct FlightInputs {
   PerNozzle nozzle_offset_z_m{};
 };
 
+/// What values vehicles and days have, in the unit of the column: beyond it a campaign is warned about.
+struct UsualValues {
+  double low = -HUGE_VAL, high = HUGE_VAL;
+  const char* source = "";  ///< why
+};
+
 /// A column of the applied inputs: its name carries the unit, e.g. "thrust_misalignment_stage1_deg".
 struct InputColumn {
   std::string name;
   double unit = 1.0;       ///< internal value = value in the unit of the name * unit
   std::size_t offset = 0;  ///< in bytes from the start of FlightInputs
+  UsualValues usual = {};
 };
 
 /// How a campaign disperses an input by its own key: one draw, or one for each stage or mode. A dispersion
@@ -154,17 +162,20 @@ struct DispersedInput {
 /// Columns that have been declared: those of stages that few vehicles have behind all others.
 class InputDeclarations {
  public:
-  void One(double FlightInputs::*field, const std::string& name, double unit = 1.0,
-           const Dispersal& dispersal = {});
-  void EachStage(PerStage FlightInputs::*field, const std::string& stem, const std::string& unit_suffix = "",
-                 double unit = 1.0, const Dispersal& dispersal = {});
-  void EachNozzle(PerNozzle FlightInputs::*field, const std::string& stem,
-                  const std::string& unit_suffix = "", double unit = 1.0);
-  void EachMode(std::array<double, kModes> FlightInputs::*field, const std::string& stem,
-                const Dispersal& dispersal = {});
-  void EachLevel(std::array<double, kWindLevels> FlightInputs::*field, const std::string& stem);
-  void EachLaunchAxis(std::array<double, 3> FlightInputs::*field, const std::string& stem,
-                      const std::string& unit_suffix);
+  InputDeclarations& One(double FlightInputs::*field, const std::string& name, double unit = 1.0,
+                         const Dispersal& dispersal = {});
+  InputDeclarations& EachStage(PerStage FlightInputs::*field, const std::string& stem,
+                               const std::string& unit_suffix = "", double unit = 1.0,
+                               const Dispersal& dispersal = {});
+  InputDeclarations& EachNozzle(PerNozzle FlightInputs::*field, const std::string& stem,
+                                const std::string& unit_suffix = "", double unit = 1.0);
+  InputDeclarations& EachMode(std::array<double, kModes> FlightInputs::*field, const std::string& stem,
+                              const Dispersal& dispersal = {});
+  InputDeclarations& EachLevel(std::array<double, kWindLevels> FlightInputs::*field, const std::string& stem);
+  InputDeclarations& EachLaunchAxis(std::array<double, 3> FlightInputs::*field, const std::string& stem,
+                                    const std::string& unit_suffix);
+  /// Of the columns declared last.
+  void Usually(const UsualValues& usual);
 
   std::size_t usual() const { return columns_.size(); }
   std::vector<InputColumn> AllColumns() const;
@@ -172,61 +183,85 @@ class InputDeclarations {
 
  private:
   std::size_t OffsetOf(const double* value) const;
+  void Begin();
   std::vector<InputColumn>& ColumnsWith(std::size_t stage);
   void Disperse(const Dispersal& dispersal, DrawnFor drawn_for, const std::string& column);
 
   const FlightInputs nominal_;
   std::vector<InputColumn> columns_, rare_;
+  std::size_t last_ = 0, last_rare_ = 0;  ///< where the columns declared last begin
   std::vector<DispersedInput> dispersed_;
 };
 
-/// The field, the column and the plain dispersal of every input, in the order of the columns.
+// Usual values that several declarations have.
+inline constexpr UsualValues kUsualMisalignment = {-1.5, 1.5, "0.1 to 0.5 deg of solid motors"};
+inline constexpr UsualValues kUsualThrustOffset = {-0.1, 0.1, "millimetres"};
+inline constexpr UsualValues kUsualCgOffset = {-0.2, 0.2, "millimetres to centimetres"};
+inline constexpr UsualValues kUsualMotor = {0.8, 1.2, "1 to 5 % of motors"};
+inline constexpr UsualValues kUsualCoefficient = {0.4, 1.6, "10 to 20 %"};
+inline constexpr UsualValues kUsualCp = {0.4, 1.6, "of the distance from the nose"};
+inline constexpr UsualValues kUsualCg = {0.7, 1.3, "of the distance from the nose"};
+inline constexpr UsualValues kUsualInertia = {0.5, 1.5, "2 to 10 %"};
+inline constexpr UsualValues kUsualBandwidth = {0.3, 2.0, "10 to 20 %"};
+inline constexpr UsualValues kUsualTipOff = {-5.0, 5.0, "0.1 to 2 deg/s of a separation"};
+inline constexpr UsualValues kUsualGyroBias = {-0.1, 0.1, "0.0001 to 0.01 deg/s of inertial units"};
+inline constexpr UsualValues kUsualDelay = {-10.0, 10.0, "fractions of a second"};
+inline constexpr UsualValues kUsualPadError = {-5.0, 5.0, "fractions of a degree on the pad"};
+
+/// Field, column, plain dispersal and usual values of every input, in the order of the columns.
 inline void DeclareInputs(InputDeclarations& inputs) {
   using In = FlightInputs;
-  inputs.EachStage(&In::thrust_misalignment_rad, "thrust_misalignment", "_deg", kRadPerDeg);
+  inputs.EachStage(&In::thrust_misalignment_rad, "thrust_misalignment", "_deg", kRadPerDeg)
+      .Usually(kUsualMisalignment);
   inputs.EachStage(&In::thrust_misalignment_clock_rad, "thrust_misalignment_clock", "_deg", kRadPerDeg);
-  inputs.EachStage(&In::thrust_offset_m, "thrust_offset", "_m");
+  inputs.EachStage(&In::thrust_offset_m, "thrust_offset", "_m").Usually(kUsualThrustOffset);
   inputs.EachStage(&In::thrust_offset_clock_rad, "thrust_offset_clock", "_deg", kRadPerDeg);
-  inputs.EachNozzle(&In::nozzle_misalignment_rad, "nozzle_misalignment", "_deg", kRadPerDeg);
+  inputs.EachNozzle(&In::nozzle_misalignment_rad, "nozzle_misalignment", "_deg", kRadPerDeg)
+      .Usually(kUsualMisalignment);
   inputs.EachNozzle(&In::nozzle_misalignment_clock_rad, "nozzle_misalignment_clock", "_deg", kRadPerDeg);
-  inputs.EachNozzle(&In::nozzle_offset_m, "nozzle_offset", "_m");
+  inputs.EachNozzle(&In::nozzle_offset_m, "nozzle_offset", "_m").Usually(kUsualThrustOffset);
   inputs.EachNozzle(&In::nozzle_offset_clock_rad, "nozzle_offset_clock", "_deg", kRadPerDeg);
-  inputs.EachNozzle(&In::nozzle_thrust_factor, "nozzle_thrust_factor");
-  inputs.EachStage(&In::cg_offset_m, "cg_offset", "_m");
+  inputs.EachNozzle(&In::nozzle_thrust_factor, "nozzle_thrust_factor").Usually(kUsualMotor);
+  inputs.EachStage(&In::cg_offset_m, "cg_offset", "_m").Usually(kUsualCgOffset);
   inputs.EachStage(&In::cg_offset_clock_rad, "cg_offset_clock", "_deg", kRadPerDeg);
-  inputs.EachStage(&In::thrust_factor, "thrust_factor");
-  inputs.EachStage(&In::mass_flow_factor, "mass_flow_factor");
-  inputs.EachStage(&In::specific_impulse_factor, "specific_impulse_factor");
-  inputs.One(&In::wind_max_speed_m_s, "wind_max_speed_m_s");
+  inputs.EachStage(&In::thrust_factor, "thrust_factor").Usually(kUsualMotor);
+  inputs.EachStage(&In::mass_flow_factor, "mass_flow_factor").Usually(kUsualMotor);
+  inputs.EachStage(&In::specific_impulse_factor, "specific_impulse_factor")
+      .Usually({0.94, 1.06, "0.3 to 1 %"});
+  inputs.One(&In::wind_max_speed_m_s, "wind_max_speed_m_s")
+      .Usually({0.0, 130.0, "the strongest jet streams have 100 to 120 m/s"});
   inputs.One(&In::wind_azimuth_rad, "wind_azimuth_deg", kRadPerDeg);
-  inputs.One(&In::wind_altitude_m, "wind_altitude_m");
-  inputs.One(&In::wind_width_m, "wind_width_m");
-  inputs.One(&In::gust_speed_m_s, "gust_speed_m_s");
+  inputs.One(&In::wind_altitude_m, "wind_altitude_m")
+      .Usually({3000.0, 60000.0, "jet streams are at 9 to 16 km"});
+  inputs.One(&In::wind_width_m, "wind_width_m").Usually({1000.0, 60000.0, "some kilometres"});
+  inputs.One(&In::gust_speed_m_s, "gust_speed_m_s")
+      .Usually({-30.0, 30.0, "9 m/s of MIL-F-8785C's and NASA's discrete gusts"});
   inputs.One(&In::gust_altitude_m, "gust_altitude_m");
-  inputs.One(&In::gust_length_m, "gust_length_m");
+  inputs.One(&In::gust_length_m, "gust_length_m").Usually({5.0, 3000.0, "30 to 300 m"});
   inputs.One(&In::gust_azimuth_rad, "gust_azimuth_deg", kRadPerDeg);
   inputs.EachLevel(&In::wind_profile_north, "wind_profile_north");
   inputs.EachLevel(&In::wind_profile_east, "wind_profile_east");
   inputs.One(&In::turbulence_exceedance, "turbulence_exceedance");
   inputs.One(&In::turbulence_wind_20ft_m_s, "turbulence_wind_20ft_m_s");
   inputs.One(&In::turbulence_scale, "turbulence_scale");
-  inputs.One(&In::drag_factor, "drag_factor");
-  inputs.One(&In::lift_factor, "lift_factor");
-  inputs.One(&In::cg_factor, "cg_factor");
-  inputs.One(&In::cp_factor, "cp_factor");
-  inputs.One(&In::density_factor, "density_factor");
-  inputs.One(&In::inertia_factor, "inertia_factor");
-  inputs.One(&In::actuator_bandwidth_factor, "actuator_bandwidth_factor");
-  inputs.EachMode(&In::bending_frequency_factor, "bending_frequency_factor");
+  inputs.One(&In::drag_factor, "drag_factor").Usually(kUsualCoefficient);
+  inputs.One(&In::lift_factor, "lift_factor").Usually(kUsualCoefficient);
+  inputs.One(&In::cg_factor, "cg_factor").Usually(kUsualCg);
+  inputs.One(&In::cp_factor, "cp_factor").Usually(kUsualCp);
+  inputs.One(&In::density_factor, "density_factor").Usually({0.4, 1.6, "5 to 30 % by altitude and season"});
+  inputs.One(&In::inertia_factor, "inertia_factor").Usually(kUsualInertia);
+  inputs.One(&In::actuator_bandwidth_factor, "actuator_bandwidth_factor").Usually(kUsualBandwidth);
+  inputs.EachMode(&In::bending_frequency_factor, "bending_frequency_factor").Usually({0.6, 1.5, "5 to 15 %"});
   inputs.One(&In::bending_damping_factor, "bending_damping_factor");
   inputs.One(&In::bending_slope_factor, "bending_slope_factor");
-  inputs.EachStage(&In::tip_off_pitch_rad_s, "tip_off_pitch", "_deg_s", kRadPerDeg);
-  inputs.EachStage(&In::tip_off_yaw_rad_s, "tip_off_yaw", "_deg_s", kRadPerDeg);
-  inputs.EachStage(&In::tip_off_roll_rad_s, "tip_off_roll", "_deg_s", kRadPerDeg);
-  inputs.One(&In::gyro_bias_roll_rad_s, "gyro_bias_roll_deg_s", kRadPerDeg);
-  inputs.One(&In::gyro_bias_pitch_rad_s, "gyro_bias_pitch_deg_s", kRadPerDeg);
-  inputs.One(&In::gyro_bias_yaw_rad_s, "gyro_bias_yaw_deg_s", kRadPerDeg);
-  inputs.One(&In::gyro_noise_rad_s, "gyro_noise_deg_s", kRadPerDeg);
+  inputs.EachStage(&In::tip_off_pitch_rad_s, "tip_off_pitch", "_deg_s", kRadPerDeg).Usually(kUsualTipOff);
+  inputs.EachStage(&In::tip_off_yaw_rad_s, "tip_off_yaw", "_deg_s", kRadPerDeg).Usually(kUsualTipOff);
+  inputs.EachStage(&In::tip_off_roll_rad_s, "tip_off_roll", "_deg_s", kRadPerDeg).Usually(kUsualTipOff);
+  inputs.One(&In::gyro_bias_roll_rad_s, "gyro_bias_roll_deg_s", kRadPerDeg).Usually(kUsualGyroBias);
+  inputs.One(&In::gyro_bias_pitch_rad_s, "gyro_bias_pitch_deg_s", kRadPerDeg).Usually(kUsualGyroBias);
+  inputs.One(&In::gyro_bias_yaw_rad_s, "gyro_bias_yaw_deg_s", kRadPerDeg).Usually(kUsualGyroBias);
+  inputs.One(&In::gyro_noise_rad_s, "gyro_noise_deg_s", kRadPerDeg)
+      .Usually({0.0, 0.5, "0.001 to 0.05 deg/s a sample"});
   inputs.One(&In::stuck_nozzle, "stuck_nozzle");
   inputs.One(&In::stuck_nozzle_stage, "stuck_nozzle_stage");
   inputs.One(&In::stuck_nozzle_rad, "stuck_nozzle_deg", kRadPerDeg);
@@ -239,38 +274,47 @@ inline void DeclareInputs(InputDeclarations& inputs) {
   inputs.One(&In::loop_delay_s, "loop_delay_s", 1.0,
              {"loop_delay", "time by which the commands come late", kTime, kNonNegative});
   inputs.One(&In::loop_stage, "loop_stage");
-  inputs.EachLaunchAxis(&In::navigation_position_error_m, "navigation_position_error", "_m");
-  inputs.EachLaunchAxis(&In::navigation_velocity_error_m_s, "navigation_velocity_error", "_m_s");
-  inputs.One(&In::accelerometer_scale_factor, "accelerometer_scale_factor");
-  inputs.EachStage(&In::dry_mass_factor, "dry_mass_factor");
-  inputs.EachStage(&In::propellant_factor, "propellant_factor");
+  inputs.EachLaunchAxis(&In::navigation_position_error_m, "navigation_position_error", "_m")
+      .Usually({-20000.0, 20000.0, "10 m aided by satellites, kilometres of a free unit"});
+  inputs.EachLaunchAxis(&In::navigation_velocity_error_m_s, "navigation_velocity_error", "_m_s")
+      .Usually({-50.0, 50.0, "0.1 m/s aided by satellites, metres a second of a free unit"});
+  inputs.One(&In::accelerometer_scale_factor, "accelerometer_scale_factor")
+      .Usually({0.99, 1.01, "0.0001 to 0.001"});
+  inputs.EachStage(&In::dry_mass_factor, "dry_mass_factor").Usually({0.8, 1.2, "1 to 5 %"});
+  inputs.EachStage(&In::propellant_factor, "propellant_factor").Usually({0.9, 1.1, "0.3 to 1 %"});
   inputs.One(&In::payload_mass_kg, "payload_mass_kg");
   inputs.One(&In::payload_element, "payload_element");
   inputs.EachStage(&In::product_of_inertia_xy_kg_m2, "product_of_inertia_xy", "_kg_m2");
   inputs.EachStage(&In::product_of_inertia_xz_kg_m2, "product_of_inertia_xz", "_kg_m2");
   inputs.EachStage(&In::product_of_inertia_yz_kg_m2, "product_of_inertia_yz", "_kg_m2");
-  inputs.EachStage(&In::ignition_delay_s, "ignition_delay", "_s");
-  inputs.EachStage(&In::separation_delay_s, "separation_delay", "_s");
-  inputs.One(&In::launch_azimuth_error_rad, "launch_azimuth_error_deg", kRadPerDeg);
-  inputs.One(&In::initial_roll_error_rad, "initial_roll_error_deg", kRadPerDeg);
-  inputs.One(&In::initial_pitch_error_rad, "initial_pitch_error_deg", kRadPerDeg);
-  inputs.One(&In::initial_yaw_error_rad, "initial_yaw_error_deg", kRadPerDeg);
-  inputs.EachStage(&In::stack_drag_factor, "drag_factor");
-  inputs.EachStage(&In::stack_lift_factor, "lift_factor");
-  inputs.EachStage(&In::stack_cg_factor, "cg_factor");
-  inputs.EachStage(&In::stack_cp_factor, "cp_factor");
-  inputs.EachStage(&In::stack_inertia_factor, "inertia_factor");
-  inputs.EachStage(&In::stack_actuator_bandwidth_factor, "actuator_bandwidth_factor");
-  inputs.EachStage(&In::thrust_misalignment_y_rad, "thrust_misalignment_y", "_deg", kRadPerDeg);
-  inputs.EachStage(&In::thrust_misalignment_z_rad, "thrust_misalignment_z", "_deg", kRadPerDeg);
-  inputs.EachStage(&In::thrust_offset_y_m, "thrust_offset_y", "_m");
-  inputs.EachStage(&In::thrust_offset_z_m, "thrust_offset_z", "_m");
-  inputs.EachStage(&In::cg_offset_y_m, "cg_offset_y", "_m");
-  inputs.EachStage(&In::cg_offset_z_m, "cg_offset_z", "_m");
-  inputs.EachNozzle(&In::nozzle_misalignment_y_rad, "nozzle_misalignment_y", "_deg", kRadPerDeg);
-  inputs.EachNozzle(&In::nozzle_misalignment_z_rad, "nozzle_misalignment_z", "_deg", kRadPerDeg);
-  inputs.EachNozzle(&In::nozzle_offset_y_m, "nozzle_offset_y", "_m");
-  inputs.EachNozzle(&In::nozzle_offset_z_m, "nozzle_offset_z", "_m");
+  inputs.EachStage(&In::ignition_delay_s, "ignition_delay", "_s").Usually(kUsualDelay);
+  inputs.EachStage(&In::separation_delay_s, "separation_delay", "_s").Usually(kUsualDelay);
+  inputs.One(&In::launch_azimuth_error_rad, "launch_azimuth_error_deg", kRadPerDeg)
+      .Usually({-2.0, 2.0, "0.01 to 0.2 deg of an alignment"});
+  inputs.One(&In::initial_roll_error_rad, "initial_roll_error_deg", kRadPerDeg).Usually(kUsualPadError);
+  inputs.One(&In::initial_pitch_error_rad, "initial_pitch_error_deg", kRadPerDeg).Usually(kUsualPadError);
+  inputs.One(&In::initial_yaw_error_rad, "initial_yaw_error_deg", kRadPerDeg).Usually(kUsualPadError);
+  inputs.EachStage(&In::stack_drag_factor, "drag_factor").Usually(kUsualCoefficient);
+  inputs.EachStage(&In::stack_lift_factor, "lift_factor").Usually(kUsualCoefficient);
+  inputs.EachStage(&In::stack_cg_factor, "cg_factor").Usually(kUsualCg);
+  inputs.EachStage(&In::stack_cp_factor, "cp_factor").Usually(kUsualCp);
+  inputs.EachStage(&In::stack_inertia_factor, "inertia_factor").Usually(kUsualInertia);
+  inputs.EachStage(&In::stack_actuator_bandwidth_factor, "actuator_bandwidth_factor")
+      .Usually(kUsualBandwidth);
+  inputs.EachStage(&In::thrust_misalignment_y_rad, "thrust_misalignment_y", "_deg", kRadPerDeg)
+      .Usually(kUsualMisalignment);
+  inputs.EachStage(&In::thrust_misalignment_z_rad, "thrust_misalignment_z", "_deg", kRadPerDeg)
+      .Usually(kUsualMisalignment);
+  inputs.EachStage(&In::thrust_offset_y_m, "thrust_offset_y", "_m").Usually(kUsualThrustOffset);
+  inputs.EachStage(&In::thrust_offset_z_m, "thrust_offset_z", "_m").Usually(kUsualThrustOffset);
+  inputs.EachStage(&In::cg_offset_y_m, "cg_offset_y", "_m").Usually(kUsualCgOffset);
+  inputs.EachStage(&In::cg_offset_z_m, "cg_offset_z", "_m").Usually(kUsualCgOffset);
+  inputs.EachNozzle(&In::nozzle_misalignment_y_rad, "nozzle_misalignment_y", "_deg", kRadPerDeg)
+      .Usually(kUsualMisalignment);
+  inputs.EachNozzle(&In::nozzle_misalignment_z_rad, "nozzle_misalignment_z", "_deg", kRadPerDeg)
+      .Usually(kUsualMisalignment);
+  inputs.EachNozzle(&In::nozzle_offset_y_m, "nozzle_offset_y", "_m").Usually(kUsualThrustOffset);
+  inputs.EachNozzle(&In::nozzle_offset_z_m, "nozzle_offset_z", "_m").Usually(kUsualThrustOffset);
 }
 
 /// All columns in their fixed order, names without the prefix `input_`.

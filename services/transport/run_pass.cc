@@ -7,6 +7,7 @@
 #include <charconv>
 #include <sstream>
 
+#include "core/campaign_yaml/sha256.h"
 #include "services/transport/network.h"
 
 namespace dispersa {
@@ -16,10 +17,6 @@ constexpr char kPassHead[] = "dispersa-run/1";
 constexpr std::size_t kMaxPass = 64 << 10;
 
 [[noreturn]] void RefusePass() { throw NetworkError("--run-pass: the data is not from `dispersa run`"); }
-
-bool IsDigest(const std::string& text) {
-  return text.size() == 64 && text.find_first_not_of("0123456789abcdef") == std::string::npos;
-}
 
 }  // namespace
 
@@ -35,12 +32,12 @@ RunPass ParseRunPass(const std::string& text) {
   std::istringstream lines(text);
   std::string head, secret, plugin;
   RunPass pass;
-  if (!std::getline(lines, head) || head != kPassHead || !std::getline(lines, secret) || !IsDigest(secret))
+  if (!std::getline(lines, head) || head != kPassHead || !std::getline(lines, secret) || !IsSha256Hex(secret))
     RefusePass();
   for (std::size_t i = 0; i < pass.secret.size(); ++i)
     std::from_chars(secret.data() + 2 * i, secret.data() + 2 * i + 2, pass.secret[i], 16);
   while (std::getline(lines, plugin)) {
-    if (!IsDigest(plugin)) RefusePass();
+    if (!IsSha256Hex(plugin)) RefusePass();
     pass.plugins.insert(plugin);
   }
   return pass;

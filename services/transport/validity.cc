@@ -4,6 +4,7 @@
 #include <array>
 #include <cstdio>
 
+#include "core/campaign_yaml/sha256.h"
 #include "core/flight/flight_inputs.h"
 #include "core/flight/metrics.h"
 
@@ -21,12 +22,6 @@ bool IsName(const std::string& text, std::size_t limit) {
   return !text.empty() && text.size() <= limit && std::all_of(text.begin(), text.end(), [](char c) {
     return (c >= '0' && c <= '9') || (c >= 'a' && c <= 'z') || (c >= 'A' && c <= 'Z') || c == '-' || c == '_';
   });
-}
-
-bool IsFlightId(const std::string& text) {
-  return text.size() == 64 && std::all_of(text.begin(), text.end(), [](char c) {
-           return (c >= '0' && c <= '9') || (c >= 'a' && c <= 'f');
-         });
 }
 
 std::string FirstOf(std::initializer_list<std::pair<bool, const char*>> problems) {
@@ -52,7 +47,7 @@ std::string WhyInvalid(const WorkerStatus& status) {
 
 std::string WhyInvalid(const Orders& orders) {
   const bool flights = std::all_of(orders.assignments.begin(), orders.assignments.end(),
-                                   [](const FlyOrder& order) { return IsFlightId(order.flight_id); });
+                                   [](const FlyOrder& order) { return IsSha256Hex(order.flight_id); });
   return FirstOf({{!IsName(orders.worker, 64), kBadWorker},
                   {orders.coordinator_epoch == 0, "the epoch is 0"},
                   {!flights, kBadFlight},
@@ -75,7 +70,7 @@ std::string WhyInvalid(const Report& report) {
            flown.result.end_stage <= kMaxStage;
   };
   return FirstOf({{!IsName(report.worker, 64), kBadWorker},
-                  {!IsFlightId(report.flight_id), kBadFlight},
+                  {!IsSha256Hex(report.flight_id), kBadFlight},
                   {report.flown.size() > kMaxCasesPerReport || report.started.size() > kMaxCasesPerReport,
                    "too many cases"},
                   {!std::all_of(report.flown.begin(), report.flown.end(), has_sizes),
@@ -85,13 +80,13 @@ std::string WhyInvalid(const Report& report) {
 }
 
 std::string WhyInvalid(const TextRequest& request) {
-  return FirstOf({{!IsName(request.worker, 64), kBadWorker}, {!IsFlightId(request.flight_id), kBadFlight}});
+  return FirstOf({{!IsName(request.worker, 64), kBadWorker}, {!IsSha256Hex(request.flight_id), kBadFlight}});
 }
 
 std::string WhyInvalid(const TextPart& part) {
   return FirstOf(
       {{!IsName(part.worker, 64), kBadWorker},
-       {!IsFlightId(part.flight_id), kBadFlight},
+       {!IsSha256Hex(part.flight_id), kBadFlight},
        {part.name.size() > kMaxName || part.engine_version.size() > kMaxName, "a text is too long"},
        {part.size > kMaxTextBytes, "the campaign's text is larger than 64 MiB"},
        {part.offset > part.size || part.bytes.size() > part.size - part.offset, "a part beyond the text"}});
@@ -100,12 +95,12 @@ std::string WhyInvalid(const TextPart& part) {
 std::string WhyInvalid(const CampaignRefusal& refusal) {
   return FirstOf(
       {{!IsName(refusal.worker, 64), kBadWorker},
-       {!IsFlightId(refusal.flight_id), kBadFlight},
+       {!IsSha256Hex(refusal.flight_id), kBadFlight},
        {refusal.reason.empty() || refusal.reason.size() > kMaxReason, "no reason, or too long a one"}});
 }
 
 std::string WhyInvalid(const CampaignProgress& progress) {
-  return FirstOf({{!IsFlightId(progress.flight_id), kBadFlight}});
+  return FirstOf({{!IsSha256Hex(progress.flight_id), kBadFlight}});
 }
 
 std::string WhyInvalid(const Request& request) {

@@ -48,6 +48,16 @@ TEST(UnusualDispersions, AreThoseBeyondWhatIsKnown) {
                            "cases | -0.1 to 0.1 (0.0001 to 0.01 deg/s of inertial units)"));
 }
 
+TEST(UnusualDispersions, AreThoseOfOneNozzleAsOfAStage) {
+  Campaign campaign;
+  campaign.dispersions = {Normal("nozzle_misalignment_stage1_left_deg", 0.0, 1.0 * kRadPerDeg)};
+  EXPECT_THAT(
+      Texts(campaign),
+      testing::ElementsAre(testing::HasSubstr(
+          "draws from -3 to 3 (nozzle_misalignment_stage1_left_deg) but for 0.27 % of the cases | -1.5 "
+          "to 1.5 (0.1 to 0.5 deg of solid motors)")));
+}
+
 TEST(UnusualDispersions, AreErrorsOfNavigationThatNothingUses) {
   Campaign campaign;
   campaign.dispersions = {Normal("navigation_velocity_error_downrange_m_s", 0.0, 0.1)};

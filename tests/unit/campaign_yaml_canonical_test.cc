@@ -5,6 +5,7 @@
 #include "core/campaign_yaml/canonical.h"
 #include "core/campaign_yaml/load.h"
 #include "core/campaign_yaml/parse_yaml.h"
+#include "core/campaign_yaml/sha256.h"
 #include "core/math/constants.h"
 #include "tests/unit/input_files.h"
 
@@ -104,6 +105,9 @@ TEST(CampaignYamlCanonical, TablesAreInlined) {
 TEST(CampaignYamlCanonical, IdsAreThoseOfTheTexts) {
   // NIST FIPS 180-4's example.
   EXPECT_EQ(Sha256Hex("abc"), "ba7816bf8f01cfea414140de5dae2223b00361a396177a9cb410ff61f20015ad");
+  EXPECT_TRUE(IsSha256Hex(Sha256Hex("abc")));
+  EXPECT_FALSE(IsSha256Hex(Sha256Hex("abc") + "0"));
+  EXPECT_FALSE(IsSha256Hex(std::string(64, 'A')));
   const Campaign campaign = Original();
   EXPECT_EQ(campaign.id, Sha256Hex(campaign.canonical_yaml));
   EXPECT_NE(campaign.id, campaign.flight_id);
