@@ -80,7 +80,7 @@ Pairing FindPairing(const CaseColumns& a, const CaseColumns& b, const SharedRows
                         Cases(pairing.shared))
           : fmt::format(
                 "Paired: {} of the {} inputs that vary have the same value in both campaigns in all of {} "
-                "shared; the others were changed and are listed.",
+                "shared; the changed inputs are listed.",
                 pairing.same.size(), varying, Cases(pairing.shared));
   if (pairing.only_a + pairing.only_b > 0) {
     pairing.sentence += fmt::format(" {} of A and {} of B have no partner and are left out.",
@@ -425,9 +425,8 @@ std::string SentenceOf(const Comparison& comparison) {
       differs += metric.finding == "differs";
     }
     sentence = fmt::format(
-        "Of {} metrics B is better in {} and worse in {}, and differs in {} that are neither good nor bad; "
-        "in the others no difference is "
-        "shown.",
+        "Of {} metrics, B is better in {} and worse in {}. It differs in {} that are neither good nor bad. "
+        "The others show no difference.",
         comparison.metrics.size(), better, worse, differs);
   } else {
     sentence =

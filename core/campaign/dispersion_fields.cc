@@ -113,7 +113,8 @@ class DispersionFields {
       if (row.draws == Draws::kOnce) return Add(name, distribution, row.columns);
       bool each = true;
       if (row.draws == Draws::kEachMode)
-        map.Choice<bool>("per", {{"mode", true}, {"vehicle", false}}, each, "a draw a mode, or one for all");
+        map.Choice<bool>("per", {{"mode", true}, {"vehicle", false}}, each,
+                         "one draw per mode, or one for all");
       if (!each) return Add(name, distribution, all);
       for (std::size_t i = 0; i < all.size(); ++i) {
         constexpr const char* kLaunchAxes[] = {"downrange", "right", "down"};
@@ -145,7 +146,7 @@ class DispersionFields {
       map.Group("choice_of_stages", std::to_string(first) + "_to_" + std::to_string(last),
                 [&](Fields& group) {
                   group.Several("stage", first, last, "stage", "that this disperses", of.stages,
-                                "these stages alone; without, all");
+                                "only these stages; default: all");
                 });
       of.all = of.stages.empty();
       for (int stage = first; of.all && stage <= last; ++stage) of.stages.push_back(stage);
@@ -185,14 +186,14 @@ class DispersionFields {
     std::vector<std::pair<std::string, Per>> choices = {{"stage", Per::kStage}, {"vehicle", Per::kVehicle}};
     if (!row.nozzle_columns.empty()) choices.emplace_back("nozzle", Per::kNozzle);
     Per per = Per::kStage;
-    map.Choice<Per>("per", choices, per, "what has a draw of its own");
+    map.Choice<Per>("per", choices, per, "what gets its own draw");
     return per;
   }
   static Per PerVehicle(Fields& map) {
     Per per = Per::kVehicle;
     const auto choice = [&](Per absent) {
       map.Choice<Per>("per", {{"stage", Per::kStage}, {"vehicle", Per::kVehicle}}, per,
-                      "what has a draw of its own", absent);
+                      "what gets its own draw", absent);
     };
     map.Either({{Has("stage"), [&] { choice(Per::kStage); }}, {Else(), [&] { choice(Per::kVehicle); }}});
     return per;
@@ -335,7 +336,7 @@ class DispersionFields {
     bool is_uniform = false;
     map.Quantity("max_speed", kSpeed, Between(0.0, 200.0), most_m_s, "of the jet stream");
     map.Choice<bool>("speed", {{"fixed", false}, {"uniform", true}}, is_uniform,
-                     "the largest, or from 0 to it", false);
+                     "the largest, or uniform from 0 to it", false);
     Add("wind/speed", is_uniform ? Uniform(0.0, most_m_s) : Constant(most_m_s), row.columns);
   }
 
@@ -352,16 +353,16 @@ class DispersionFields {
     const auto named = [&] {
       std::size_t level = 0;
       map.Choice<std::size_t>("severity", {{"light", 0}, {"moderate", 1}, {"severe", 2}}, level,
-                              "a probability of exceedance aloft, and a wind near the ground");
+                              "sets exceedance aloft and the wind near the ground");
       severity = kLevels[level];
     };
     map.Either({{Has("severity"), named},
                 {Has("exceedance"),
                  [&] {
                    map.Number("exceedance", Between(kLeastExceedance, kLargestExceedance),
-                              severity.exceedance, "probability that picks the intensity");
+                              severity.exceedance, "probability that sets the intensity");
                    map.Quantity("wind_20ft", kSpeed, Between(0.0, 50.0), severity.wind_m_s,
-                                "mean, near the ground");
+                                "mean wind near the ground");
                  }},
                 {Else(), named}});
     Add("turbulence/exceedance", Constant(severity.exceedance), {row.columns[0]});
@@ -371,10 +372,9 @@ class DispersionFields {
   // The tables are kept from the start: their checks come when the whole map is read.
   void WindProfile(Fields& map, const DispersionRow& row) {
     bool has_table = false, has_statistics = false;
-    map.OptionalTable(
-        "table", has_table, "a CSV file of a profile that every flight meets", [&](Fields& columns) {
-          dispersa::Describe(columns, campaign_.wind_table.emplace(), "one value an altitude in each column");
-        });
+    map.OptionalTable("table", has_table, "a CSV file of the profile of all flights", [&](Fields& columns) {
+      dispersa::Describe(columns, campaign_.wind_table.emplace(), "one value an altitude in each column");
+    });
     map.When(Has("statistics"), [&] {
       WindStatistics& statistics = campaign_.wind_statistics.emplace();
       dispersa::Describe(map, statistics);

@@ -91,7 +91,7 @@ std::vector<DispersionRow> MakeRows() {
   add(OffAxis("thrust_offset", kLength, "thrust_offset", "_m", "nozzle_offset",
               "lateral distance of the thrust line"));
   add(OffAxis("center_of_gravity_offset", kLength, "cg_offset", "_m", "",
-              "lateral distance of the centre of gravity of the stack without the propellant that it burns"));
+              "lateral distance of the stack's centre of gravity, without the propellant that it burns"));
   add({"thrust",
        "factor of the thrust",
        Draws::kThrust,
@@ -101,23 +101,23 @@ std::vector<DispersionRow> MakeRows() {
   add(stages("burn_rate", {"thrust_factor_{stage}", "mass_flow_factor_{stage}"},
              "factor of thrust and flow together"));
   add({"propellant_temperature",
-       "of a solid propellant above its nominal temperature: a burn rate",
+       "difference to the nominal temperature of a solid propellant; sets the burn rate",
        Draws::kPropellantTemperature,
        {kTemperatureDifference, Between(-200.0, 200.0), kOfTemperature},
        {"thrust_factor_{stage}", "mass_flow_factor_{stage}"}});
   add(stages("specific_impulse", {"specific_impulse_factor_{stage}"},
              "factor of the thrust at the same flow"));
   add(stages("dry_mass", {"dry_mass_factor_{stage}"},
-             "factor of every element of a stage's structure; of the last stage with its payload"));
+             "factor of a stage's whole structure; in the last stage with the payload"));
   add(stages("propellant_load", {"propellant_factor_{stage}"}, "factor of the propellant at ignition"))
       .limits = LimitsOfPropellant;
   add({"payload_mass",
-       "by which one element of the last stage's structure is heavier",
+       "added to one element of the last stage's structure",
        Draws::kPayloadMass,
        Any(kMass),
        {"payload_mass_kg", "payload_element"}});
   DispersionRow& products =
-      add({"product_of_inertia", "about the centre of gravity, of the stack, constant over the burn",
+      add({"product_of_inertia", "of the stack, about its centre of gravity, constant over the burn",
            Draws::kParts});
   for (const char* plane : {"xy", "xz", "yz"}) {
     DispersionRow& part = products.parts.emplace_back(
@@ -129,23 +129,23 @@ std::vector<DispersionRow> MakeRows() {
     part.limits = LimitsOfProduct;
   }
   DispersionRow& ignition = add({"ignition_delay",
-                                 "time by which a stage ignites late; the first one's is before lift-off",
+                                 "delay of a stage's ignition; stage 1 ignites before lift-off",
                                  Draws::kStages,
                                  Any(kTime),
                                  {"ignition_delay_{stage}_s"}});
   ignition.first_stage = 2;
   ignition.limits = LimitsOfIgnition;
   DispersionRow& separation = add({"separation_delay",
-                                   "time by which a stage separates late; the last one stays",
+                                   "delay of a stage's separation; the last stage does not separate",
                                    Draws::kStages,
                                    Any(kTime),
                                    {"separation_delay_{stage}_s"}});
   separation.last_stages_without = 1;
   separation.limits = LimitsOfSeparation;
   add(once("launch_azimuth_error", Any(kAngle), "launch_azimuth_error_deg",
-           "clockwise off the launch azimuth, of vehicle and inertial unit, unnoticed"));
+           "clockwise, of the vehicle and the inertial unit; not measured"));
   add(BodyAxes("initial_attitude_error", Draws::kOnce, kAngle, "initial_{body}_error_deg",
-               "of the body off the program at lift-off, which the inertial unit sees"));
+               "of the body from the program at lift-off; the inertial unit measures it"));
   add({"wind",
        "jet stream",
        Draws::kWind,
@@ -174,7 +174,7 @@ std::vector<DispersionRow> MakeRows() {
         {"length", "in altitude", Draws::kFixed, {kLength, Between(1.0, 10e3)}, {"gust_length_m"}},
         {"azimuth", "where it comes from", Draws::kDirection, Any(kAngle), {"gust_azimuth_deg"}}}});
   add({"wind_profile",
-       "a profile in every flight, the nominal too, or statistics from which one is drawn",
+       "one profile for all flights, the nominal too, or statistics to draw profiles from",
        Draws::kWindProfile,
        Any(kSpeed),
        {"wind_profile_north_{level}", "wind_profile_east_{level}"}});
@@ -209,25 +209,25 @@ std::vector<DispersionRow> MakeRows() {
   add(once("bending_damping", kPositiveFactor, "bending_damping_factor",
            "factor of the modes' damping ratio"));
   add(once("bending_slope", {{}, kNonNegative}, "bending_slope_factor",
-           "factor of the slopes that sensors feel"));
+           "factor of the modes' slopes at the sensors"));
   DispersionRow& tip_off =
       add(BodyAxes("tip_off_rate", Draws::kEachStage, kAngularRate, "tip_off_{body}_{stage}_deg_s",
-                   "given to the upper stack at each separation"));
+                   "of the upper stack at each separation"));
   for (DispersionRow& part : tip_off.parts) part.last_stages_without = 1;
   add(BodyAxes("gyro_bias", Draws::kOnce, kAngularRate, "gyro_bias_{body}_deg_s", "of the rate gyros"));
   add(once("gyro_noise", {kAngularRate, kNonNegative}, "gyro_noise_deg_s", "standard deviation of a sample"));
   add({"navigation_position_error",
-       "constant error of what closed-loop guidance is told",
+       "constant navigation error of closed-loop guidance",
        Draws::kEachAxis,
        Any(kLength),
        {"navigation_position_error_{axis}_m"}});
   add({"navigation_velocity_error",
-       "constant error of what closed-loop guidance is told",
+       "constant navigation error of closed-loop guidance",
        Draws::kEachAxis,
        Any(kSpeed),
        {"navigation_velocity_error_{axis}_m_s"}});
   add(once("accelerometer_scale", kPositiveFactor, "accelerometer_scale_factor",
-           "factor of the specific force that guidance is told"));
+           "factor of the specific force measured for guidance"));
   add({"stuck_nozzle",
        "a nozzle that does not follow its commands",
        Draws::kStuckNozzle,

@@ -66,7 +66,7 @@ class DistributionFields {
       else
         fields_.NoChoice("distribution", word, "'" + word + "' is not among those of this quantity",
                          "one of " + JoinWords(offered));
-    fields_.Choice("distribution", choices, distribution_.kind, "what \"±\" means");
+    fields_.Choice("distribution", choices, distribution_.kind, "kind of distribution");
     fields_.Either(alternatives);
     fields_.Check([&fields = fields_, scalar = scalar_, distribution = distribution_] {
       CheckRange(fields, scalar, distribution);
@@ -92,13 +92,13 @@ class DistributionFields {
   }
   void Mean() {
     std::optional<double> mean;
-    fields_.OptionalQuantity("mean", positions_, kAnyNumber, mean, "if it is not the nominal value");
+    fields_.OptionalQuantity("mean", positions_, kAnyNumber, mean, "default: the nominal value");
     distribution_.nominal = mean.value_or(scalar_.Nominal());
   }
   // Both ends, of which neither has a default.
   void Ends() {
-    Position("low", distribution_.low, "below the high value");
-    Position("high", distribution_.high, "above the low value");
+    Position("low", distribution_.low, "lower value");
+    Position("high", distribution_.high, "upper value");
   }
 
   void Normal() {
@@ -126,22 +126,21 @@ class DistributionFields {
   void LogNormal() {
     std::optional<double> median;
     if (scalar_.IsFactor())
-      fields_.OptionalQuantity("median", positions_, kPositive, median, "1 unless given");
+      fields_.OptionalQuantity("median", positions_, kPositive, median, "default: 1");
     else
-      fields_.Quantity("median", positions_, kPositive, median.emplace(),
-                       "the value that half of the cases exceed");
+      fields_.Quantity("median", positions_, kPositive, median.emplace(), "half of the cases exceed it");
     distribution_.nominal = median.value_or(scalar_.Nominal());
     fields_.Number("sigma_log", kPositive, distribution_.sigma,
                    "standard deviation of the natural logarithm");
   }
   void Empirical() {
     fields_.Column("samples", positions_, kAnyNumber, 2, distribution_.values,
-                   "drawn from; linear between the sorted samples");
+                   "to draw from; linear between the sorted samples");
     std::sort(distribution_.values.begin(), distribution_.values.end());
   }
   void UniformOne() { SpreadOrEnds("bound", "± about the nominal value"); }
   void TwoPoint() {
-    SpreadOrEnds("plus_minus", "± about the nominal value: a corner of a design, else a fair coin");
+    SpreadOrEnds("plus_minus", "± about the nominal value: design corners, else equally likely");
   }
   void SpreadOrEnds(const char* stem, const char* meaning) {
     const std::string allowed = Join(Keys(stem, spreads_)) + ", or both " + Join(Keys("low", positions_)) +
@@ -156,22 +155,21 @@ class DistributionFields {
       distribution_.high = scalar_.Nominal() + value.value_or(0.0);
     };
     std::optional<double> value, unit_only;
-    fields_.Either(
-        {{Has("low", positions_), ends},
-         {Has("high", positions_), ends},
-         {Has(stem, spreads_), [&] { spread(value); }},
-         {Else(), [&] {
-            spread(value);
-            fields_.OptionalQuantity("low", positions_, kAnyNumber, unit_only, "below the high value");
-            fields_.OptionalQuantity("high", positions_, kAnyNumber, unit_only, "above the low value");
-            fields_.Missing(Keys(stem, spreads_), allowed.c_str());
-          }}});
+    fields_.Either({{Has("low", positions_), ends},
+                    {Has("high", positions_), ends},
+                    {Has(stem, spreads_), [&] { spread(value); }},
+                    {Else(), [&] {
+                       spread(value);
+                       fields_.OptionalQuantity("low", positions_, kAnyNumber, unit_only, "lower value");
+                       fields_.OptionalQuantity("high", positions_, kAnyNumber, unit_only, "upper value");
+                       fields_.Missing(Keys(stem, spreads_), allowed.c_str());
+                     }}});
   }
   void Values() {
     fields_.Quantities("values", positions_, kAnyNumber, 1, SIZE_MAX, distribution_.values,
-                       "an axis of a grid or list, else drawn from");
+                       "of a grid or list, else drawn at random");
     fields_.Numbers("weights", kPositive, 0, SIZE_MAX, distribution_.weights,
-                    "one a value; without, all alike");
+                    "one per value; default: all equal");
     fields_.Check(
         [&fields = fields_, values = distribution_.values.size(), weights = distribution_.weights.size()] {
           if (weights != 0 && weights != values)

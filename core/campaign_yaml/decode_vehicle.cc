@@ -45,6 +45,13 @@ Stage BurnAgain(const Stage& commands, Stage& before) {
   return stage;
 }
 
+// A restart bends as its stage does: the file has an entry for each stage but restarts.
+void CompleteBeam(const std::vector<Stage>& stages, std::vector<BeamStage>& beam) {
+  if (beam.empty()) return;  // a table of modes
+  for (std::size_t i = 1; i < stages.size(); ++i)
+    if (stages[i].restarts) beam.insert(beam.begin() + static_cast<std::ptrdiff_t>(i), beam[i - 1]);
+}
+
 // What follows from the fields of a file, once all are read.
 void Complete(Vehicle& vehicle) {
   for (std::size_t i = 0; i < vehicle.stages.size(); ++i) {
@@ -54,6 +61,7 @@ void Complete(Vehicle& vehicle) {
     else
       CompleteMotor(stage.propellant_mass_kg, stage.motor);
   }
+  if (vehicle.structure_beam) CompleteBeam(vehicle.stages, vehicle.structure_beam->stages);
   CompleteMotor(vehicle.boosters.propellant_mass_kg, vehicle.boosters.motor);
   // They have left before the first stage burns again.
   for (std::size_t i = 1; i < vehicle.stages.size() && vehicle.stages[i].restarts; ++i)

@@ -16,7 +16,7 @@ void OfOne(F describe) {
 
 void DescribeVehicleFile(Fields& fields, Vehicle& vehicle) {
   fields.Schema(kVehicleSchema);
-  fields.Base("based_on", kVehicleSchema, "a vehicle file, whose keys stand where this one has none");
+  fields.Base("based_on", kVehicleSchema, "a vehicle file that gives the keys missing here");
   Describe(fields, vehicle);
 }
 

@@ -10,20 +10,20 @@ constexpr Range kLead = Between(0.0, 1.0);
 
 void DescribeGains(Fields& fields, AxisGains& gains) {
   fields.Quantity("kp", kPerTimeSquared, kPositive, gains.kp_1_s2, "of the error dynamics s^2 + kd s + kp");
-  fields.Quantity("kd", kPerTime, kPositive, gains.kd_1_s, "of those dynamics");
+  fields.Quantity("kd", kPerTime, kPositive, gains.kd_1_s, "of the same error dynamics");
 }
 
 void DescribeSection(Fields& fields, FilterSection& section) {
-  fields.Quantity("zeros", kFrequency, kPositive, section.zeros_rad_s, "of a notch; without, a low pass",
+  fields.Quantity("zeros", kFrequency, kPositive, section.zeros_rad_s, "of a notch; default: a low pass",
                   0.0);
-  fields.Number("zeros_damping", kNonNegative, section.zeros_damping, "of them", 0.0);
+  fields.Number("zeros_damping", kNonNegative, section.zeros_damping, "of the zeros", 0.0);
   fields.Quantity("poles", kFrequency, kPositive, section.poles_rad_s, "of the section");
-  fields.Number("poles_damping", kPositive, section.poles_damping, "of them");
+  fields.Number("poles_damping", kPositive, section.poles_damping, "of the poles");
 }
 
 void DescribeFilter(Fields& fields, FilterSection& section) {
   DescribeSection(fields, section);
-  fields.Integer("stage", 1, kMaxStages, section.stage, "in whose burn it acts; without, in all", 0);
+  fields.Integer("stage", 1, kMaxStages, section.stage, "in whose burn it acts; default: all", 0);
 }
 
 // ---- schedule ----
@@ -40,17 +40,17 @@ std::vector<FilterSection> FiltersBefore(const AxisConfig& axis, std::size_t ent
 void DescribeEntry(Fields& fields, AxisConfig& axis, ScheduleEntry& entry) {
   bool has_filters = false;
   fields.When(HasList("filters"), [&] { has_filters = true; });
-  fields.Integer("stage", 1, kMaxStages, entry.stage, "whose burn it is", 0);
+  fields.Integer("stage", 1, kMaxStages, entry.stage, "in whose burn it applies", 0);
   fields.Quantity("at", kTime, kPositive, entry.at_s, "since its ignition");
   DescribeGains(fields, entry.gains);
-  constexpr const char* kOfIntegral = "gain of the integral, of a law that has one";
+  constexpr const char* kOfIntegral = "gain of the integral, for a law with one";
   std::optional<double> of_other_laws;
   if (InfoOf(axis.law).integral)
     fields.Number("ki_1_s3", kNonNegative, entry.ki_1_s3, kOfIntegral);
   else
     fields.OptionalNumber("ki_1_s3", kNonNegative, of_other_laws, kOfIntegral);
-  fields.List("filters", 0, kFilterSections, entry.filters,
-              "in place of those before, as many and in their order", DescribeSection);
+  fields.List("filters", 0, kFilterSections, entry.filters, "replace those before: same number, same order",
+              DescribeSection);
   if (!has_filters)
     entry.filters = FiltersBefore(axis, static_cast<std::size_t>(&entry - axis.schedule.data()));
 }
@@ -65,7 +65,7 @@ void Describe(Fields& fields, FuzzyRules& rules) {
 }
 
 void Describe(Fields& fields, Adaptation& adaptation) {
-  fields.Numbers("gamma", kNonNegative, 1, kMaxStages, adaptation.gamma, "adaptation gain, one a stage");
+  fields.Numbers("gamma", kNonNegative, 1, kMaxStages, adaptation.gamma, "adaptation gain, one per stage");
   Matrix2& q = adaptation.q;
   std::vector<std::vector<double>> rows = {{q(0, 0), q(0, 1)}, {q(1, 0), q(1, 1)}};
   fields.Rows("q", 2, 2, 2, rows, "[[q11, q12], [q12, q22]]",
@@ -75,50 +75,52 @@ void Describe(Fields& fields, Adaptation& adaptation) {
   std::vector<double> p_n;
   if (adaptation.p_n) p_n = {adaptation.p_n->x(), adaptation.p_n->y()};
   fields.OptionalNumbers("p_n", kAnyNumber, 2, 2, p_n,
-                         "last column of P; it follows from gains and Q, and must agree with them");
+                         "last column of P; it follows from gains and Q and must agree with them");
   if (p_n.size() == 2) adaptation.p_n = Vector2(p_n[0], p_n[1]);
   fields.Flag("allow_unproven", adaptation.allow_unproven, false,
-              "a P_n that does not follow from gains and Q is flown");
+              "fly a P_n that does not follow from gains and Q");
   fields.Quantity("projection_bound", kAngularAcceleration, kNonNegative, adaptation.projection_bound_rad_s2,
-                  "each consequent stays within this distance of its start; 0: anywhere", 0.0);
+                  "largest change of a consequent from its start; 0: unlimited", 0.0);
   fields.Quantity("leakage", kPerTime, kNonNegative, adaptation.leakage_1_s,
                   "sigma modification: pulls the consequents to their start", 0.0);
   fields.Quantity("spread", kPerTime, kNonNegative, adaptation.spread_1_s,
-                  "pulls departures from the start to their mean over the rules", 0.0);
+                  "pulls the consequents' changes to their mean over the rules", 0.0);
   fields.Quantity("dead_zone", kAngle, kNonNegative, adaptation.dead_zone_rad,
-                  "no adaptation while |e' P_n| / p12 is below", 0.0);
-  fields.Flag("normalized", adaptation.normalized, false, "the regressor of (32) over its squared norm");
+                  "no adaptation while |e' P_n| / p12 is smaller", 0.0);
+  fields.Flag("normalized", adaptation.normalized, false,
+              "divides the regressor of (32) by its squared norm");
   fields.Number("composite", kNonNegative, adaptation.composite,
-                "so many p22 of the prediction's error drive (32) besides", 0.0);
+                "adds this times p22 times the prediction error to (32)", 0.0);
   fields.Quantity("predictor", kPerTime, kNonNegative, adaptation.predictor_1_s,
-                  "how fast the prediction is drawn to what is measured", 0.0);
+                  "how fast the prediction follows the measurement", 0.0);
   fields.Flag("freeze_when_saturated", adaptation.freeze_when_saturated, false,
               "no adaptation into a deflection limit");
   fields.Flag("reset_at_ignition", adaptation.reset_at_ignition, false,
-              "consequents start anew with each stage");
+              "consequents restart with each stage");
   fields.Number("supervisory_bound", kNonNegative, adaptation.supervisory_bound,
                 "the supervisory term acts while V exceeds it; 0: never", 0.0);
 }
 
 void Describe(Fields& fields, IntegralAction& integral) {
   fields.Numbers("ki_1_s3", kNonNegative, 1, kMaxStages, integral.ki_1_s3,
-                 "gain of the integral, one a stage");
+                 "gain of the integral, one per stage");
   fields.Quantity("bound", kAngularAcceleration, kNonNegative, integral.bound_rad_s2,
                   "of the integral's share; 0: none", 0.0);
-  fields.Flag("reset_at_ignition", integral.reset_at_ignition, false, "it starts anew with each stage");
+  fields.Flag("reset_at_ignition", integral.reset_at_ignition, false,
+              "the integral restarts with each stage");
 }
 
 void Describe(Fields& fields, AdaptiveAugmentation& augmentation) {
   fields.Quantity("adaptive_gain", kPerTime, kNonNegative, augmentation.adaptive_gain_1_s,
-                  "on the square of the departure from the reference model, in rad");
-  fields.Quantity("leakage", kPerTime, kNonNegative, augmentation.leakage_1_s, "draws the total gain to 1");
+                  "on the squared error from the reference model, in rad");
+  fields.Quantity("leakage", kPerTime, kNonNegative, augmentation.leakage_1_s, "pulls the total gain to 1");
   fields.Quantity("spectral_gain", kPerTime, kNonNegative, augmentation.spectral_gain_1_s,
-                  "on the square of the command's fast part, in rad/s^2");
+                  "on the squared high-passed command, in rad/s^2");
   fields.Quantity("high_pass", kFrequency, kPositive, augmentation.high_pass_rad_s,
                   "of the spectral damper, above the loop's bandwidth");
   fields.Quantity("low_pass", kFrequency, kPositive, augmentation.low_pass_rad_s, "of the spectral damper");
-  fields.Number("minimum_total_gain", kPositive, augmentation.minimum_total_gain, "floor");
-  fields.Number("maximum_total_gain", kPositive, augmentation.maximum_total_gain, "ceiling");
+  fields.Number("minimum_total_gain", kPositive, augmentation.minimum_total_gain, "lower limit");
+  fields.Number("maximum_total_gain", kPositive, augmentation.maximum_total_gain, "upper limit");
 }
 
 // The blocks that a law reads must be there; others may be (the same file with another law is a comparison).
@@ -142,16 +144,16 @@ void Describe(Fields& fields, AxisConfig& axis) {
   std::vector<std::pair<std::string, ControlLaw>> laws;
   for (const LawInfo& law : kLaws) laws.emplace_back(law.name, law.law);
   fields.Choice<ControlLaw>("law", laws, axis.law, "of the axis");
-  fields.List("gains", 1, kMaxStages, axis.gains, "one a stage", DescribeGains);
-  fields.List("filters", 0, kFilterSections, axis.filters, "in series, behind the law", DescribeFilter);
-  fields.List("schedule", 0, SIZE_MAX, axis.schedule, "what the law holds at times within a stage's burn",
+  fields.List("gains", 1, kMaxStages, axis.gains, "one per stage", DescribeGains);
+  fields.List("filters", 0, kFilterSections, axis.filters, "in series, after the law", DescribeFilter);
+  fields.List("schedule", 0, SIZE_MAX, axis.schedule, "values of the law at times in a stage's burn",
               [&axis](Fields& map, ScheduleEntry& entry) { DescribeEntry(map, axis, entry); });
   bool feeds_forward = axis.feed_forward.has_value();
-  fields.OptionalMap("feed_forward", feeds_forward, "the program's own angular acceleration, behind the law",
+  fields.OptionalMap("feed_forward", feeds_forward, "adds the program's angular acceleration, after the law",
                      [&](Fields& map) {
                        if (!axis.feed_forward) axis.feed_forward.emplace();
                        map.Quantity("lead", kTime, kLead, axis.feed_forward->lead_s,
-                                    "by what the program is read ahead: delay and actuators");
+                                    "how far the program is read ahead: delay and actuators");
                      });
   DescribeBlock(fields, "rules", axis.law, &LawInfo::rules, axis.rules, "fuzzy sets");
   DescribeBlock(fields, "adaptation", axis.law, &LawInfo::adaptation, axis.adaptation, "equation (32)");
@@ -161,7 +163,7 @@ void Describe(Fields& fields, AxisConfig& axis) {
 }
 
 void Describe(Fields& fields, ReactionControlLogic& logic) {
-  fields.Quantity("deadband", kAngle, kPositive, logic.deadband_rad, "no firing within");
+  fields.Quantity("deadband", kAngle, kPositive, logic.deadband_rad, "no firing inside it");
   fields.Quantity("rate_gain", kTime, kNonNegative, logic.rate_gain_s,
                   "of the switching line e + rate_gain de/dt");
   fields.Number("hysteresis", {0.0, 1.0, false, true}, logic.hysteresis,
@@ -172,14 +174,14 @@ void Describe(Fields& fields, ReactionControlLogic& logic) {
 
 void DescribeShare(Fields& fields, GyroShare& share) {
   fields.Text("gyro", share.gyro, "of the vehicle's sensors");
-  fields.Number("weight", Between(-10.0, 10.0), share.weight, "of what it measures", 1.0);
-  fields.Integer("stage", 0, kMaxStages, share.stage, "in whose burn it counts; 0: in all", 0);
+  fields.Number("weight", Between(-10.0, 10.0), share.weight, "of its measurement", 1.0);
+  fields.Integer("stage", 0, kMaxStages, share.stage, "in whose burn it counts; 0: all", 0);
 }
 
 void Describe(Fields& fields, PluginConfig& plugin, const OpenPlugin& open) {
   const auto python = [&] {
     plugin.in_python = true;
-    fields.Map("python", "a law in Python, of a campaign that was flown under it", [&](Fields& law) {
+    fields.Map("python", "a law in Python, in a campaign flown under it", [&](Fields& law) {
       law.Text("name", plugin.name, "of the law");
       law.Text("sha256", plugin.sha256, "of its source");
       law.Check([&] { open(law, "", plugin); });
@@ -210,11 +212,11 @@ void Describe(Fields& fields, AutopilotConfig& autopilot, const OpenPlugin& open
   fields.Quantity("tick", kTime, Between(1e-4, 0.1), autopilot.tick_s, "between two commands");
   for (const auto& [key, config] :
        {std::pair("pitch", &autopilot.pitch), {"yaw", &autopilot.yaw}, {"roll", &autopilot.roll}})
-    fields.Map(key, "the law of this axis", [config = config](Fields& map) {
+    fields.Map(key, "control law of this axis", [config = config](Fields& map) {
       map.Group("axis", "law", [config](Fields& axis) { Describe(axis, *config); });
     });
   fields.List("rate_gyros", 0, SIZE_MAX, autopilot.rate_gyros,
-              "whose measurements are the rates; without, the inertial unit's", DescribeShare);
+              "measure the rates; default: the inertial unit", DescribeShare);
   bool has_plugin = false;
   fields.OptionalMap("plugin", has_plugin, "a control law of your own",
                      [&](Fields& plugin) { Describe(plugin, autopilot.plugin.emplace(), open); });

@@ -1,5 +1,7 @@
 #include "core/dynamics/jettison.h"
 
+#include <algorithm>
+
 #include "core/math/functions.h"
 #include "core/vehicle/burning_stack.h"
 
@@ -87,28 +89,74 @@ RigidBodyState AfterSeparation(const LauncherPlant& plant, int below, unsigned j
                     above, MassOf(plant, below + 1, jettisoned).At(above.burn.propellant_mass_kg)));
 }
 
-void TakeAlong(const LauncherStack& below, const double* modal, RigidBodyState& above) {
-  if (!below.bending) return;
-  const BendingTable& table = *below.bending;
-  Vector3 moved = Vector3::Zero(), speed = Vector3::Zero(), turned = Vector3::Zero(), rate = Vector3::Zero();
+namespace {
+
+// How bending moves and turns what is left, in the body: by the coordinates and by the rates of the modes.
+class MeanMotion {
+ public:
+  void Add(int plane, double shift, double turn_1_m, double q_m, double q_m_s) {
+    // Plane y moves along y and turns about -z, plane z along z and about y.
+    const int along = plane == 0 ? 1 : 2, about = plane == 0 ? 2 : 1;
+    const double turn = plane == 0 ? -turn_1_m : turn_1_m;
+    moved_[along] += shift * q_m;
+    speed_[along] += shift * q_m_s;
+    turned_[about] += turn * q_m;
+    rate_[about] += turn * q_m_s;
+  }
+  void Give(RigidBodyState& body) const {
+    body.p_EoC_I += Rotate(body.q_IB, moved_);
+    body.v_IC_I += Rotate(body.q_IB, speed_);
+    body.q_IB = Normalized(body.q_IB * FromRotationVector(turned_));
+    body.w_IB_B += rate_;
+  }
+
+ private:
+  Vector3 moved_ = Vector3::Zero(), speed_ = Vector3::Zero(), turned_ = Vector3::Zero(),
+          rate_ = Vector3::Zero();
+};
+
+}  // namespace
+
+void TakeAlong(const LauncherStack& below, unsigned jettisoned, const double* modal, RigidBodyState& above) {
+  const BendingTable* const table = below.BendingWithout(jettisoned);
+  if (table == nullptr) return;
+  MeanMotion mean;
   for (int plane = 0; plane < kPlanes; ++plane)
-    for (int mode = 0; mode < table.modes; ++mode) {
+    for (int mode = 0; mode < table->modes; ++mode) {
       const auto at = [&](int column) {
-        return table.At(table.planes == 1 ? 0 : plane, mode, column, below.burn.left_kg);
+        return table->At(table->planes == 1 ? 0 : plane, mode, column, below.burn.left_kg);
       };
-      const double shift = at(BendingTable::kUpperShift), turn = at(BendingTable::kUpperTurn);
-      const double q_m = modal[plane * kModes + mode], q_m_s = modal[(kPlanes + plane) * kModes + mode];
-      // Plane y moves along y and turns about -z, plane z along z and about y.
-      const int along = plane == 0 ? 1 : 2, about = plane == 0 ? 2 : 1;
-      moved[along] += shift * q_m;
-      speed[along] += shift * q_m_s;
-      turned[about] += (plane == 0 ? -turn : turn) * q_m;
-      rate[about] += (plane == 0 ? -turn : turn) * q_m_s;
+      mean.Add(plane, at(BendingTable::kUpperShift), at(BendingTable::kUpperTurn),
+               modal[plane * kModes + mode], modal[(kPlanes + plane) * kModes + mode]);
     }
-  above.p_EoC_I += Rotate(above.q_IB, moved);
-  above.v_IC_I += Rotate(above.q_IB, speed);
-  above.q_IB = Normalized(above.q_IB * FromRotationVector(turned));
-  above.w_IB_B += rate;
+  mean.Give(above);
+}
+
+void LetGoBent(const LauncherStack& stack, unsigned before, unsigned after, double propellant_kg,
+               double* modal, RigidBodyState& left) {
+  if (!stack.lighter_bending) return;
+  const ModalPassage passage = stack.lighter_bending->Passage(before, after, propellant_kg);
+  const int modes = stack.bending->modes;
+  MeanMotion mean;
+  double flown[2 * kPlanes * kModes];
+  std::copy(modal, modal + 2 * kPlanes * kModes, flown);
+  for (int plane = 0; plane < kPlanes; ++plane) {
+    const std::size_t p = static_cast<std::size_t>(plane);
+    for (int mode = 0; mode < modes; ++mode) {
+      const std::size_t k = static_cast<std::size_t>(mode);
+      const double* const coordinates = flown + plane * kModes;
+      const double* const rates = coordinates + kPlanes * kModes;
+      mean.Add(plane, passage.shift[p][k], passage.turn_1_m[p][k], coordinates[mode], rates[mode]);
+      double q_m = 0.0, q_m_s = 0.0;
+      for (int old = 0; old < modes; ++old) {
+        q_m += passage.onto[p][k][static_cast<std::size_t>(old)] * coordinates[old];
+        q_m_s += passage.onto[p][k][static_cast<std::size_t>(old)] * rates[old];
+      }
+      modal[plane * kModes + mode] = q_m;
+      modal[(kPlanes + plane) * kModes + mode] = q_m_s;
+    }
+  }
+  mean.Give(left);
 }
 
 }  // namespace dispersa

@@ -41,6 +41,12 @@ RigidBodyState AfterJettison(const LauncherPlant& plant, int stack, unsigned bef
 /// What the bending of the stack below leaves to the body above at a separation: its centre of gravity, its
 /// attitude, its momentum and its angular momentum are those that its masses had by the modes. `modal`: of
 /// the burnt stack, as in the state of a launcher (kModalState). The body itself leaves unbent.
-void TakeAlong(const LauncherStack& below, const double* modal, RigidBodyState& above);
+void TakeAlong(const LauncherStack& below, unsigned jettisoned, const double* modal, RigidBodyState& above);
+
+/// What the bending of a stack becomes as it jettisons bodies (bits of LauncherPhase::jettisoned before and
+/// after). What is left takes along, as above, and bends on: `modal` becomes the coordinates and rates of the
+/// lighter stack's modes that its masses have at that instant. Modes that do not fly get none.
+void LetGoBent(const LauncherStack& stack, unsigned before, unsigned after, double propellant_kg,
+               double* modal, RigidBodyState& left);
 
 }  // namespace dispersa

@@ -50,6 +50,9 @@ struct OneLane {
     if (plant.nozzles_listed)
       Accelerate(now.command_rad.data() + kNozzles, y + kSecondAngle, y + kSecondRate, second);
     lanes::SetLane(bending, 0, from, now.stack);
+    if (now.jettisoned != 0)
+      lanes::SetTable(bending, 0,
+                      from.stacks[static_cast<std::size_t>(now.stack)].BendingWithout(now.jettisoned));
     if (bending.modes == 0) return;
     lanes::ShapesAt(bending, masses.propellant_kg);
     for (int plane = 0; plane < kPlanes; ++plane) {

@@ -120,12 +120,15 @@ DISPERSA_INLINE void SetLane(LauncherPlantLanes<T>& p, int lane, const LauncherP
   Lane(p.lateral_moment_z_kg_m, lane) = s.lateral_moment_z_kg_m;
 }
 
+/// Modes of another stack, or of one that has let go of a body (null: it is rigid).
+template <class T>
+DISPERSA_INLINE void SetTable(BendingTableLanes<T>& b, int lane, const BendingTable* table) {
+  b.table[lane] = table != nullptr && table->modes > 0 ? table : nullptr;
+}
 /// The bending of a lane on its stack. ShapesAt sets the values that depend on propellant.
 template <class T>
 DISPERSA_INLINE void SetLane(BendingTableLanes<T>& b, int lane, const LauncherPlant& plant, int stack) {
-  const BendingTable* table = plant.stacks.data()[stack].bending.get();
-  b.table[lane] = table != nullptr && table->modes > 0 ? table : nullptr;
-  table = b.table[lane];
+  SetTable(b, lane, plant.stacks.data()[stack].bending.get());
   for (int mode = 0; mode < kModes; ++mode)
     Lane(b.frequency_factor[mode], lane) = plant.bending.frequency.data()[mode];
   Lane(b.damping_ratio, lane) = plant.bending.damping_ratio;

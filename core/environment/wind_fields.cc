@@ -30,7 +30,7 @@ void Describe(Fields& fields, WindStatistics& statistics) {
   fields.Number("correlation_ne", Inside(-1.0, 1.0), statistics.correlation_ne,
                 "of the north and the east component at one altitude");
   fields.Quantity("correlation_length", kLength, kPositive, statistics.correlation_length_m,
-                  "distance in altitude over which a component's correlation with itself falls to 1/e");
+                  "difference in altitude at which a component's autocorrelation is 1/e");
 }
 
 void DescribeLevels(Fields& fields, WindStatistics& statistics, std::size_t most) {

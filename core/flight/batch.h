@@ -284,7 +284,7 @@ void Batch<T>::SetMass(int lane) {
   if (slot.jettisoned == 0) return;
   StackMass mass;
   slot.record->MassWithout(slot.stack, slot.jettisoned, mass);
-  step_.SetMass(lane, mass);
+  step_.SetMass(lane, mass, slot.record->BendingWithout(slot.stack, slot.jettisoned));
 }
 
 template <class T>

@@ -54,6 +54,40 @@ LauncherPlant BuildNominalPlant(const Vehicle& vehicle) {
   return plant;
 }
 
+namespace {
+
+// The bending of every stack. `modes_of`: how many fly of a stage's, which has these with all it carries. Of
+// a plant that has its nominal modes: near these.
+template <typename ModesOf>
+void SetBending(const Vehicle& vehicle, const ModesOf& modes_of, LauncherPlant& plant) {
+  std::shared_ptr<const Vehicle> kept;  // by the stacks that jettison
+  for (std::size_t i = 0; i < plant.stacks.size(); ++i) {
+    LauncherStack& stack = plant.stacks[i];
+    if (vehicle.stages[i].restarts) {
+      stack.modes = plant.stacks[i - 1].modes;
+      stack.bending = plant.stacks[i - 1].bending;
+      stack.lighter_bending = plant.stacks[i - 1].lighter_bending;
+      continue;
+    }
+    const int stage = static_cast<int>(i);
+    // A table of modes is of the nominal masses, and is scaled to others as it stands.
+    const StackModes* const near = stack.modes && stack.modes->basis ? stack.modes.get() : nullptr;
+    const auto whole = std::make_shared<const StackModes>(BuildStackModes(vehicle, stage, 0, near));
+    const int modes = modes_of(i, *whole);
+    stack.bending =
+        std::make_shared<const BendingTable>(BuildBendingTable(vehicle, *whole, *stack.loads, modes));
+    if (!stack.modes) stack.modes = whole;
+    const std::shared_ptr<const JettisonedBending> nominal = std::move(stack.lighter_bending);
+    stack.lighter_bending = nullptr;
+    if (modes == 0 || CarriedBy(vehicle, stage) == 0) continue;
+    if (!kept) kept = std::make_shared<const Vehicle>(vehicle);
+    stack.lighter_bending =
+        std::make_shared<const JettisonedBending>(kept, whole, stack.bending, stack.loads, nominal);
+  }
+}
+
+}  // namespace
+
 void SetMasses(const Vehicle& vehicle, LauncherPlant& plant) {
   plant.jettisoned_masses = BuildJettisonedMasses(vehicle);
   const std::vector<StackMass> masses = BuildStackMasses(vehicle);
@@ -67,12 +101,8 @@ void SetMasses(const Vehicle& vehicle, LauncherPlant& plant) {
       stack.loads = std::make_shared<const LoadTable>(BuildLoadTable(vehicle, static_cast<int>(i)));
   }
   if (plant.bending_modes() == 0) return;
-  const std::vector<StackModes> stacks = BuildBendingModes(vehicle);
-  for (std::size_t i = 0; i < stacks.size(); ++i) {
-    LauncherStack& stack = plant.stacks[i];
-    stack.bending = std::make_shared<const BendingTable>(
-        BuildBendingTable(vehicle, stacks[i], *stack.loads, stack.bending->modes));
-  }
+  const auto modes = [&](std::size_t i, const StackModes&) { return plant.stacks[i].bending->modes; };
+  SetBending(vehicle, modes, plant);
 }
 
 void CutOffStage(const Vehicle& vehicle, int stage, double since_ignition_s, LauncherPlant& plant) {
@@ -84,10 +114,18 @@ void CutOffStage(const Vehicle& vehicle, int stage, double since_ignition_s, Lau
 void AddBending(const Vehicle& vehicle, double tick_s, LauncherPlant& plant) {
   if (!vehicle.structure_beam || vehicle.structure_beam->flown_modes == 0) return;
   plant.bending.damping_ratio = vehicle.structure_beam->damping_ratio;
-  const std::vector<StackModes> stacks = BuildBendingModes(vehicle);
-  for (std::size_t i = 0; i < stacks.size(); ++i)
-    plant.stacks[i].bending = std::make_shared<const BendingTable>(BuildBendingTable(
-        vehicle, stacks[i], *plant.stacks[i].loads, ModesBelow(vehicle, stacks[i], kPi / tick_s)));
+  const double highest_rad_s = kPi / tick_s;
+  SetBending(
+      vehicle,
+      [&](std::size_t i, const StackModes& whole) {
+        const int stage = static_cast<int>(i);
+        const unsigned carried = CarriedBy(vehicle, stage);
+        if (carried == 0) return ModesBelow(vehicle, whole, highest_rad_s);
+        // Without a mass no frequency is lower: what flies with none of the bodies flies with any.
+        const StackModes bare = BuildStackModes(vehicle, stage, carried);
+        return std::min(ModesBelow(vehicle, whole, highest_rad_s), ModesBelow(vehicle, bare, highest_rad_s));
+      },
+      plant);
 }
 
 namespace {

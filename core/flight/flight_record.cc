@@ -320,10 +320,12 @@ unsigned FlightRecord::LetGo(int stack, unsigned jettisoned, double time_s, doub
   const Vector3 ground = s.p_EoC_I.cross(Vector3(0.0, 0.0, -plant.environment.earth.rotation_rate_rad_s));
   const unsigned due =
       DueJettisons(plant, stack, jettisoned, {time_s, altitude_m, density_kg_m3, (s.v_IC_I - ground).norm()});
-  if (due != 0)
-    WriteState(AfterJettison(plant, stack, jettisoned, jettisoned | due, propellant_kg,
-                             time_s - events.front().time_s, s),
-               y);
+  if (due == 0) return due;
+  RigidBodyState left = AfterJettison(plant, stack, jettisoned, jettisoned | due, propellant_kg,
+                                      time_s - events.front().time_s, s);
+  LetGoBent(plant.stacks[static_cast<std::size_t>(stack)], jettisoned, jettisoned | due, propellant_kg,
+            y + kModalState, left);
+  WriteState(left, y);
   return due;
 }
 
@@ -350,13 +352,22 @@ void FlightRecord::MassWithout(int stack, unsigned jettisoned, StackMass& mass) 
   mass = MassOf(plant, stack, jettisoned);
 }
 
+const BendingTable* FlightRecord::BendingWithout(int stack, unsigned jettisoned) const {
+  return plant.stacks[static_cast<std::size_t>(stack)].BendingWithout(jettisoned);
+}
+
 void FlightRecord::Separate(int stage, unsigned jettisoned, double* y) {
   const std::size_t below = static_cast<std::size_t>(stage);
   RigidBodyState s = AfterSeparation(plant, stage, jettisoned, ReadState(y));
-  TakeAlong(plant.stacks[below], y + kModalState, s);
-  if (!model_.definition().vehicle.stages[below + 1].restarts)  // nothing has left
-    s.w_IB_B += Vector3(inputs.tip_off_roll_rad_s[below], inputs.tip_off_pitch_rad_s[below],
-                        inputs.tip_off_yaw_rad_s[below]);
+  if (model_.definition().vehicle.stages[below + 1].restarts) {  // nothing has left: it bends on
+    std::fill(y, y + kModalState, 0.0);
+    std::fill(y + kBentLauncherSize, y + kLauncherSize, 0.0);
+    WriteState(s, y);
+    return;
+  }
+  TakeAlong(plant.stacks[below], jettisoned, y + kModalState, s);
+  s.w_IB_B += Vector3(inputs.tip_off_roll_rad_s[below], inputs.tip_off_pitch_rad_s[below],
+                      inputs.tip_off_yaw_rad_s[below]);
   std::fill(y, y + kLauncherSize, 0.0);
   WriteState(s, y);
 }

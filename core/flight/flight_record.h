@@ -102,6 +102,7 @@ class FlightRecord {
   unsigned LetGo(int stack, unsigned jettisoned, double time_s, double altitude_m, double density_kg_m3,
                  double propellant_kg, double* y);
   void MassWithout(int stack, unsigned jettisoned, StackMass& mass) const;
+  const BendingTable* BendingWithout(int stack, unsigned jettisoned) const;
   /// Inertial speed at which a stage's engine is cut off, m/s; 0 for an engine without such a cut-off.
   double CutOffVelocity(int stage) const;
   /// Its engine will be cut off at `time_s`, by command: events from there on are new.

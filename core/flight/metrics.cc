@@ -88,31 +88,33 @@ double SemiMajorAxis(const Earth& earth, double radius_m, double speed_m_s) {
 // end and is not in the digest.
 constexpr Row kRows[] = {
     {"pitch_error_rms", kDegrees, "rms e_θ", kAttitude, "Pitch error, RMS",
-     "root mean square over powered flight of the component about body y of the rotation vector from the "
-     "reference attitude to the true one",
+     "root mean square over powered flight; the error is the body y component of the rotation vector from "
+     "the reference attitude to the true one",
      kLarger, [](const Measured& m) { return Rms(m.pitch); }, kUsualByPhase},
     {"pitch_error_peak", kDegrees, "max |e_θ|", kAttitude, "Pitch error, peak",
-     "largest magnitude of the same error over powered flight", kLarger,
+     "largest magnitude of the pitch error over powered flight", kLarger,
      [](const Measured& m) { return Peak(m.pitch); }, kUsualByPhase},
     {"pitch_error_peak_time", kSeconds, "t(max |e_θ|)", kAttitude, "Time of the pitch error's peak",
-     "since lift-off; the first time, if there are several", kAnyway,
+     "since lift-off; the first one, if there are several", kAnyway,
      [](const Measured& m) { return m.pitch.count > 0.0 ? m.pitch.peak_time_s : kUndefined; }, kByPhase},
     {"pitch_error_itae", kDegreeSeconds2, "∫ t |e_θ| dt", kAttitude, "Pitch error, ITAE",
-     "integral over powered flight of the time since lift-off times the magnitude of the error", kLarger,
+     "integral over powered flight of time since lift-off times magnitude of the pitch error", kLarger,
      [](const Measured& m) { return m.sums.itae_rad_s2 * kDegPerRad; }},
-    {"yaw_error_rms", kDegrees, "rms e_ψ", kAttitude, "Yaw error, RMS", "about body z, over powered flight",
-     kLarger, [](const Measured& m) { return Rms(m.sums.yaw); }},
+    {"yaw_error_rms", kDegrees, "rms e_ψ", kAttitude, "Yaw error, RMS",
+     "root mean square about body z over powered flight", kLarger,
+     [](const Measured& m) { return Rms(m.sums.yaw); }},
     {"yaw_error_peak", kDegrees, "max |e_ψ|", kAttitude, "Yaw error, peak",
      "largest magnitude about body z over powered flight", kLarger,
      [](const Measured& m) { return Peak(m.sums.yaw); }},
-    {"roll_error_rms", kDegrees, "rms e_φ", kAttitude, "Roll error, RMS", "about body x, over powered flight",
-     kLarger, [](const Measured& m) { return Rms(m.sums.roll); }},
+    {"roll_error_rms", kDegrees, "rms e_φ", kAttitude, "Roll error, RMS",
+     "root mean square about body x over powered flight", kLarger,
+     [](const Measured& m) { return Rms(m.sums.roll); }},
     {"roll_error_peak", kDegrees, "max |e_φ|", kAttitude, "Roll error, peak",
      "largest magnitude about body x over powered flight", kLarger,
      [](const Measured& m) { return Peak(m.sums.roll); }},
 
     {"deflection_peak", kDegrees, "max |δ|", kControlEffort, "Deflection, peak",
-     "largest magnitude of any nozzle's angle over powered flight; of a listed nozzle, about each hinge",
+     "largest magnitude of any nozzle's angle over powered flight; nozzles in a list count about each hinge",
      kLarger, [](const Measured& m) { return Peak(m.sums.deflection); }, kUsual},
     {"deflection_rms", kDegrees, "rms δ", kControlEffort, "Deflection, RMS",
      "root mean square over the nozzles and powered flight", kLarger,
@@ -124,22 +126,21 @@ constexpr Row kRows[] = {
      "fraction of powered flight in which a nozzle is commanded to its limit or beyond", kLarger,
      [](const Measured& m) { return Ratio(m.sums.saturated_ticks, m.pitch.count); }},
     {"deflection_travel", kDegrees, "∫ |dδ|", kControlEffort, "Deflection travel",
-     "path of a nozzle within burns, mean of the drives: wear of the actuators", kLarger,
+     "angle travelled by a drive during burns, mean of all drives; shows the wear of actuators", kLarger,
      [](const Measured& m) { return m.sums.travel_rad * kDegPerRad; }},
     {"deflection_ripple", kDegrees, "δ_pp", kControlEffort, "Deflection ripple",
-     "worst peak-to-peak of the pitch, yaw or roll deflection in windows of 1 s, ten begun a second, less "
-     "the "
-     "least-squares line; windows leave out the first 5 s after an ignition, the kick (t1 to t2) and the "
-     "gust's altitudes; of whatever origin, turbulence too",
+     "largest peak-to-peak of the pitch, yaw or roll deflection in windows of 1 s (10 per second), minus the "
+     "least-squares line; without the first 5 s after an ignition, the kick (t1 to t2) and the gust's "
+     "altitudes; of any origin, also turbulence",
      kLarger, [](const Measured& m) { return Swing(m.sums.ripple_rad); }},
     {"deflection_limit_cycle", kDegrees, "δ_lc", kControlEffort, "Limit cycle of the deflection",
-     "largest peak-to-peak of a sustained periodic oscillation of the pitch, yaw or roll deflection, 12 to "
-     "24 "
-     "periods of 0.3125 to 10 Hz with one phase, outside the same times; 0: none",
+     "largest peak-to-peak of a sustained periodic oscillation of the pitch, yaw or roll deflection: 12 to "
+     "24 periods of 0.3125 to 10 Hz with one phase, at the times of the deflection ripple; 0: none",
      kLarger, [](const Measured& m) { return Swing(m.sums.limit_cycle_rad); }},
 
-    {"q_max", kPascals, "max q", kLoads, "Dynamic pressure, maximum", "outside the coast, burnouts included",
-     kLarger, [](const Measured& m) { return m.sums.q_max_pa; }},
+    {"q_max", kPascals, "max q", kLoads, "Dynamic pressure, maximum",
+     "largest outside the coast, burnouts included", kLarger,
+     [](const Measured& m) { return m.sums.q_max_pa; }},
     {"q_alpha_max", kPascalRadians, "max qα", kLoads, "Product of dynamic pressure and incidence, maximum",
      "where the dynamic pressure is at least 1 kPa", kLarger,
      [](const Measured& m) { return m.sums.q_alpha_max_pa_rad; }, kUsual},
@@ -151,11 +152,12 @@ constexpr Row kRows[] = {
      "burnouts included",
      kLarger, [](const Measured& m) { return m.sums.axial_load_max_g; }},
     {"lateral_load_max", kStandardGravities, "max n_yz", kLoads, "Lateral load, maximum",
-     "specific force normal to the body axis at the centre of gravity, likewise", kLarger,
-     [](const Measured& m) { return m.sums.lateral_load_max_g; }},
+     "specific force normal to the body axis at the centre of gravity, over 9.80665 m/s²; outside the coast, "
+     "burnouts included",
+     kLarger, [](const Measured& m) { return m.sums.lateral_load_max_g; }},
     {"bending_moment_max", kNewtonMetres, "max M", kLoads, "Bending moment, maximum",
-     "of the cross-sections at eighths of the stack's length: inertia and flow ahead of them, bending "
-     "included; outside the coast",
+     "largest at the cross-sections at eighths of the stack's length, from inertia and flow ahead of them, "
+     "with bending; outside the coast",
      kLarger,
      [](const Measured& m) {
        return m.sums.bending_moment_max_n_m > 0.0 ? m.sums.bending_moment_max_n_m : kUndefined;
@@ -166,17 +168,17 @@ constexpr Row kRows[] = {
        return m.sums.bending_moment_max_n_m > 0.0 ? m.sums.bending_moment_station_m : kUndefined;
      }},
     {"structural_limit_exceeded", kPure, "–", kLoads, "Structural limit exceeded",
-     "1 when a limit of the vehicle file was exceeded", kLarger,
+     "1 if a limit of the vehicle file was exceeded, else 0", kLarger,
      [](const Measured& m) { return ExceedsStructure(m.definition.vehicle.limits, m.sums) ? 1.0 : 0.0; }},
 
     {"handover_attitude_error", kDegrees, "|e|(t_ign)", kAttitude, "Attitude error at the last ignition",
-     "magnitude of the rotation that the reaction control leaves to the gimbals", kLarger,
+     "magnitude of the rotation error that the reaction control leaves to the gimbals", kLarger,
      [](const Measured& m) { return m.AtHandover(m.sums.handover_angle_rad * kDegPerRad); }},
     {"handover_rate_error", kDegreesPerSecond, "|ω_e|(t_ign)", kAttitude, "Rate error at the last ignition",
-     "magnitude, likewise", kLarger,
+     "magnitude of the rate error that the reaction control leaves to the gimbals", kLarger,
      [](const Measured& m) { return m.AtHandover(m.sums.handover_rate_rad_s * kDegPerRad); }},
     {"rcs_propellant", kKilograms, "m_rcs", kControlEffort, "Reaction control propellant",
-     "expelled in coasts, and in roll under thrust where nozzles cannot", kLarger,
+     "expelled in coasts, and under thrust for roll if the nozzles do not control it", kLarger,
      [](const Measured& m) { return m.sums.expelled_kg; }},
 
     {"injection_altitude", kKilometres, "h", kInjection, "Injection altitude",
@@ -189,45 +191,48 @@ constexpr Row kRows[] = {
      "inertial, above the plane normal to the radius, at the end of the last burn", kFarther,
      [](const Measured& m) { return m.AtInjection(m.sums.orbit.flight_path_angle_rad * kDegPerRad); }},
     {"apogee", kKilometres, "h_a", kInjection, "Apogee",
-     "altitude over the equatorial radius of the osculating two-body orbit at injection", kAnyway,
+     "altitude above the equatorial radius, of the osculating two-body orbit at injection", kAnyway,
      [](const Measured& m) { return m.AtInjection(m.sums.orbit.apogee_altitude_m * 1e-3); }},
-    {"perigee", kKilometres, "h_p", kInjection, "Perigee", "likewise", kSmaller,
+    {"perigee", kKilometres, "h_p", kInjection, "Perigee",
+     "altitude above the equatorial radius, of the osculating two-body orbit at injection", kSmaller,
      [](const Measured& m) { return m.AtInjection(m.sums.orbit.perigee_altitude_m * 1e-3); }},
     {"inclination", kDegrees, "i", kInjection, "Inclination", "of the osculating orbit at injection", kAnyway,
      [](const Measured& m) { return m.AtInjection(m.sums.orbit.inclination_rad * kDegPerRad); }},
-    {"injection_altitude_error", kKilometres, "Δh", kInjection, "Injection altitude error", "less the target",
-     kFarther,
+    {"injection_altitude_error", kKilometres, "Δh", kInjection, "Injection altitude error",
+     "altitude at injection minus the target's", kFarther,
      [](const Measured& m) {
        return m.AtInjection((m.sums.injection_altitude_m - m.definition.target.altitude_m) * 1e-3);
      }},
     {"injection_velocity_error", kMetresPerSecond, "ΔV", kInjection, "Injection velocity error",
-     "less the target", kFarther,
+     "velocity at injection minus the target's", kFarther,
      [](const Measured& m) {
        return m.AtInjection(m.sums.orbit.speed_m_s - m.definition.target.velocity_m_s);
      }},
     {"injection_flight_path_angle_error", kDegrees, "Δγ", kInjection, "Injection flight path angle error",
-     "less the target", kFarther,
+     "flight path angle at injection minus the target's", kFarther,
      [](const Measured& m) {
        return m.AtInjection((m.sums.orbit.flight_path_angle_rad - m.definition.target.flight_path_angle_rad) *
                             kDegPerRad);
      }},
 
     {"lyapunov_outside_fraction", kPure, "t(V > V_0)/t", kControlLaw, "Outside the residual set",
-     "fraction of powered flight with the pitch law's V = ½ eᵀPe above that of 0.05° of error at rest",
+     "fraction of powered flight with the pitch law's V = ½ eᵀPe above its value for an error of 0.05° at "
+     "rest",
      kLarger, [](const Measured& m) { return Ratio(m.sums.v_outside_ticks, m.pitch.count); }, kOfRules},
     {"lyapunov_decreasing_fraction", kPure, "t(dV < 0)/t(V > V_0)", kControlLaw,
      "Lyapunov function decreasing",
-     "fraction of the powered flight outside the residual set with V below that of the tick before", kSmaller,
-     [](const Measured& m) { return Ratio(m.sums.v_falling_ticks, m.sums.v_outside_ticks); }, kOfRules},
-    {"adaptation_norm_peak", kDegreesPerSecond2, "max ‖Δα̂‖", kControlLaw, "Adaptation, largest norm",
-     "distance of the pitch rules' consequents from their start", kLarger,
-     [](const Measured& m) { return Sqrt(m.sums.departure_norm2_peak) * kDegPerRad; }, kOfAdaptation},
-    {"rules_fired", kPure, "n_rules", kControlLaw, "Rules fired", "pitch rules that were active at any time",
-     kAnyway, [](const Measured& m) { return static_cast<double>(std::popcount(m.sums.rules_fired)); },
+     "fraction of the powered flight outside the residual set in which V is below its value one tick before",
+     kSmaller, [](const Measured& m) { return Ratio(m.sums.v_falling_ticks, m.sums.v_outside_ticks); },
      kOfRules},
+    {"adaptation_norm_peak", kDegreesPerSecond2, "max ‖Δα̂‖", kControlLaw, "Adaptation, largest norm",
+     "largest distance of the pitch rules' consequents from their start", kLarger,
+     [](const Measured& m) { return Sqrt(m.sums.departure_norm2_peak) * kDegPerRad; }, kOfAdaptation},
+    {"rules_fired", kPure, "n_rules", kControlLaw, "Rules fired",
+     "number of pitch rules that were active at any time", kAnyway,
+     [](const Measured& m) { return static_cast<double>(std::popcount(m.sums.rules_fired)); }, kOfRules},
 
     {"semi_major_axis_error", kKilometres, "Δa", kInjection, "Semi-major axis error",
-     "osculating, at injection, less that of the target's speed at the target's altitude there", kFarther,
+     "osculating, at injection, minus its value with the target's speed at the target's altitude", kFarther,
      [](const Measured& m) {
        const OrbitElements& orbit = m.sums.orbit;
        const Earth earth = Wgs84();
@@ -239,28 +244,28 @@ constexpr Row kRows[] = {
      },
      kNotDigested},
     {"inclination_error", kDegrees, "Δi", kInjection, "Inclination error",
-     "at injection, less the target's, or the reference's where the target names none", kFarther,
+     "inclination at injection minus the target's, or the reference's if the target names none", kFarther,
      [](const Measured& m) {
        return m.AtInjection((m.sums.orbit.inclination_rad - m.definition.target.inclination_rad) *
                             kDegPerRad);
      },
      kNotDigested},
     {"guidance_converged", kPure, "–", kGuidance, "Guidance converged",
-     "1 when the last plan reaches the target, and the last in which altitude still counted did; of "
-     "closed-loop guidance",
+     "1 if the last guidance plan reaches the target, and also the last plan that controlled altitude; else "
+     "0",
      kSmaller, [](const Measured& m) { return m.Guided(m.sums.guidance.arrives ? 1.0 : 0.0); }, kNotDigested},
     {"guidance_ignition_shift", kSeconds, "Δt_ign", kGuidance, "Last ignition, moved by guidance",
-     "less the reference's", kAnyway,
+     "time of the last ignition minus the reference's", kAnyway,
      [](const Measured& m) { return m.Guided(m.sums.guidance.ignition_shift_s); }, kNotDigested},
     {"guidance_postponement", kSeconds, "t_wait", kGuidance, "Last ignition, postponed",
-     "because the attitude had not settled", kLarger,
+     "wait of the last ignition until the attitude settled", kLarger,
      [](const Measured& m) { return m.Guided(m.sums.guidance.postponed_s); }, kNotDigested},
     {"guidance_excess_velocity", kMetresPerSecond, "ΔV_x", kGuidance, "Excess velocity",
-     "of the last burn, that its turn in yaw takes away, as planned at ignition", kAnyway,
+     "of the last burn, used up by its turn in yaw, as planned at ignition", kAnyway,
      [](const Measured& m) { return m.Guided(m.sums.guidance.excess_m_s); }, kNotDigested},
-    {"step_limit_fraction", kPure, "f/f_step", kIntegration, "Fastest part, of what a step resolves",
-     "frequency of the actuator or bending mode, as dispersed, that comes nearest to the limit of the "
-     "integration's step, as a fraction of that limit",
+    {"step_limit_fraction", kPure, "f/f_step", kIntegration, "Fastest part relative to the step limit",
+     "largest ratio of the frequency of an actuator or bending mode, as dispersed, to the limit that the "
+     "integration step resolves",
      kLarger, [](const Measured& m) { return m.sums.step_limit_fraction; }, kNotDigested},
 };
 

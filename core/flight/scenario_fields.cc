@@ -116,11 +116,11 @@ void DescribeAerodynamics(Fields& fields, ScenarioStage& stage) {
   BodyAerodynamics& body = stage.aerodynamics;
   fields.Quantity("reference_area", kArea, kPositive, body.area_m2, "of the coefficients");
   fields.Quantity("moment_reference_station", kLength, kAnyNumber, body.moment_reference_station_m,
-                  "about which cm is", 0.0);
+                  "reference point of cm", 0.0);
   fields.Quantity("minimum_airspeed", kSpeed, kNonNegative, body.minimum_airspeed_m_s,
-                  "below it there is no rate damping", 0.0);
+                  "no rate damping below it", 0.0);
   fields.Choice<bool>("damping_rates", {{"earth_relative", false}, {"inertial", true}},
-                      stage.inertial_damping_rates, "rates that damp", false);
+                      stage.inertial_damping_rates, "rates in the damping moments", false);
   const auto coefficient = [&fields](const char* key, Coefficient& value, bool over_incidence,
                                      const char* meaning) {
     std::optional<double> number;
@@ -129,8 +129,8 @@ void DescribeAerodynamics(Fields& fields, ScenarioStage& stage) {
       table.Numbers("mach", kNonNegative, 0, SIZE_MAX, rows.mach, "increasing");
       if (over_incidence)
         table.Quantities("incidence", kAngle, Between(0.0, kHalfTurn), 0, SIZE_MAX, rows.incidence_rad,
-                         "increasing, the same for each mach number");
-      table.Numbers(key, kAnyNumber, 2, SIZE_MAX, rows.values, "a value a row");
+                         "increasing, the same for each Mach number");
+      table.Numbers(key, kAnyNumber, 2, SIZE_MAX, rows.values, "one value per row");
       table.OneOrMore(over_incidence ? std::vector<std::string>{"mach", "incidence_deg", "incidence_rad"}
                                      : std::vector<std::string>{"mach"});
       table.Check([&table, key, over_incidence, rows, &value] {
@@ -161,12 +161,12 @@ Matrix3 Tensor(double xx, double yy, double zz, double xy, double xz, double yz)
 }
 
 constexpr const char* kMoments[] = {"ixx", "iyy", "izz", "ixy", "ixz", "iyz"};
-constexpr const char* kOfMoment = "about the centre of gravity; of a product the integral of x y dm";
+constexpr const char* kOfMoment = "about the centre of gravity; a product is an integral such as x y dm";
 
 void DescribeConstantMass(Fields& fields, ScenarioMass& mass) {
   double mass_kg = 0.0, cg_station_m = 0.0;
   double i[6] = {};
-  fields.Quantity("mass", kMass, kPositive, mass_kg, "of everything");
+  fields.Quantity("mass", kMass, kPositive, mass_kg, "total");
   fields.Quantity("cg_station", kLength, kAnyNumber, cg_station_m, "of the centre of gravity", 0.0);
   for (int k = 0; k < 6; ++k)
     fields.Quantity(kMoments[k], kInertia, kAnyNumber, i[k], kOfMoment,
@@ -176,7 +176,7 @@ void DescribeConstantMass(Fields& fields, ScenarioMass& mass) {
 
 void DescribeMassTable(Fields& fields, ScenarioMass& mass) {
   fields.Quantities("propellant", kMass, kNonNegative, 2, SIZE_MAX, mass.propellant_kg, "from 0, increasing");
-  fields.Quantities("mass", kMass, kPositive, 2, SIZE_MAX, mass.mass_kg, "of everything");
+  fields.Quantities("mass", kMass, kPositive, 2, SIZE_MAX, mass.mass_kg, "total");
   fields.Quantities("cg_station", kLength, kAnyNumber, 2, SIZE_MAX, mass.cg_station_m,
                     "of the centre of gravity");
   std::array<std::vector<double>, 6> i;
@@ -204,7 +204,7 @@ void Describe(Fields& fields, ScenarioMotor& motor, double propellant_kg) {
                which, value);
   motor.flow_kg_s = which == 0 ? value : propellant_kg / value;
   fields.Quantity("nozzle_exit_area", kArea, kNonNegative, motor.nozzle_exit_area_m2,
-                  "on which the air's pressure acts", 0.0);
+                  "for the pressure term, p A_e", 0.0);
   fields.Quantity("nozzle_station", kLength, kAnyNumber, motor.nozzle_station_m, "where the thrust acts");
   fields.Quantity("nozzle_y", kLength, kAnyNumber, motor.nozzle_y_m, "off the axis to the right", 0.0);
   fields.Quantity("nozzle_z", kLength, kAnyNumber, motor.nozzle_z_m, "off the axis downwards", 0.0);
@@ -222,7 +222,7 @@ void CheckProblems(Fields& fields, const T& checked) {
 
 void DescribeAnyStage(Fields& fields, ScenarioStage& stage) {
   fields.Text("name", stage.name, "of the stage", "body");
-  fields.Table("mass_properties", "a map, or a CSV file", "of the whole vehicle as it is then",
+  fields.Table("mass_properties", "a map, or a CSV file", "of the whole vehicle in this stage",
                [&](Fields& mass) {
                  const auto table = [&] { DescribeMassTable(mass, stage.mass); };
                  mass.Either({{Has("propellant", kMass), table},
@@ -231,7 +231,7 @@ void DescribeAnyStage(Fields& fields, ScenarioStage& stage) {
                });
   const double propellant_kg = stage.mass.propellant_kg.empty() ? 0.0 : stage.mass.propellant_kg.back();
   bool is_there = false;
-  fields.OptionalMap("aerodynamics", is_there, "without, the air does nothing",
+  fields.OptionalMap("aerodynamics", is_there, "default: no aerodynamic forces",
                      [&](Fields& map) { DescribeAerodynamics(map, stage); });
   fields.OptionalMap("motor", is_there, "constant thrust along the body axis",
                      [&](Fields& map) { Describe(map, stage.motor.emplace(), propellant_kg); });
@@ -241,7 +241,7 @@ void Describe(Fields& fields, ScenarioStage& stage, bool is_body) {
   fields.Group("body", "scenario", [&](Fields& group) { DescribeAnyStage(group, stage); });
   if (!is_body)
     fields.OptionalQuantity("separation_time", kTime, kPositive, stage.separation_time_s,
-                            "without, at burnout; the last stage has none");
+                            "default: at burnout; the last stage has none");
   CheckProblems(fields, stage);
 }
 
@@ -250,7 +250,7 @@ void Describe(Fields& fields, Earth& earth) {
   double radius_m = 0.0;
   fields.Choice<bool>("model", {{"wgs84", false}, {"sphere", true}}, is_sphere, "its shape");
   fields.Flag("rotating", is_rotating, true, "about its axis");
-  const auto j2 = [&](bool absent) { fields.Flag("j2", has_j2, absent, "the gravity of its oblateness"); };
+  const auto j2 = [&](bool absent) { fields.Flag("j2", has_j2, absent, "gravity of the oblateness"); };
   fields.Either({{Is("model", {"sphere"}),
                   [&] {
                     fields.Quantity("radius", kLength, kPositive, radius_m, "of the sphere");
@@ -299,13 +299,14 @@ void DescribeInitial(Fields& fields, Scenario& scenario) {
   fields.Quantity("longitude", kAngle, Between(-kHalfTurn, kHalfTurn), scenario.place.longitude_rad, "east");
   fields.Quantity("altitude", kLength, kAnyNumber, scenario.place.altitude_m, "above the ellipsoid");
   quantity("yaw", kAngle, scenario.attitude.yaw, "of the body against north, east, down");
-  fields.Quantity("pitch", kAngle, kQuarter, scenario.attitude.pitch, "likewise", 0.0);
-  quantity("roll", kAngle, scenario.attitude.roll, "likewise");
+  fields.Quantity("pitch", kAngle, kQuarter, scenario.attitude.pitch, "of the body against north, east, down",
+                  0.0);
+  quantity("roll", kAngle, scenario.attitude.roll, "of the body against north, east, down");
   quantity("velocity_north", kSpeed, scenario.v_EC_N.x(), "relative to the Earth");
-  quantity("velocity_east", kSpeed, scenario.v_EC_N.y(), "likewise");
-  quantity("velocity_down", kSpeed, scenario.v_EC_N.z(), "likewise");
+  quantity("velocity_east", kSpeed, scenario.v_EC_N.y(), "relative to the Earth");
+  quantity("velocity_down", kSpeed, scenario.v_EC_N.z(), "relative to the Earth");
   fields.Choice<bool>("rates_relative_to", {{"inertial", true}, {"earth", false}},
-                      scenario.rates_are_inertial, "what p, q and r are measured against");
+                      scenario.rates_are_inertial, "frame of the rates p, q and r");
   quantity("p", kAngularRate, scenario.rates_rad_s.x(), "about body x");
   quantity("q", kAngularRate, scenario.rates_rad_s.y(), "about body y");
   quantity("r", kAngularRate, scenario.rates_rad_s.z(), "about body z");
@@ -320,14 +321,14 @@ void Describe(Fields& fields, Scenario& scenario) {
   fields.Map("earth", "its shape and gravity",
              [&](Fields& map) { Describe(map, scenario.environment.earth); });
   bool is_there = false;
-  fields.OptionalMap("wind", is_there, "without, calm; its parts add up",
+  fields.OptionalMap("wind", is_there, "default: calm; the parts add up",
                      [&](Fields& map) { Describe(map, scenario.environment.wind); });
   fields.Map("initial", "at time 0", [&](Fields& map) { DescribeInitial(map, scenario); });
   bool is_body = false;
   ScenarioStage body;
-  fields.OptionalMap("body", is_body, "what flies in one piece",
+  fields.OptionalMap("body", is_body, "vehicle in one piece",
                      [&](Fields& map) { Describe(map, body, true); });
-  fields.List("stages", 0, SIZE_MAX, scenario.stages, "what flies between two separations",
+  fields.List("stages", 0, SIZE_MAX, scenario.stages, "vehicle between two separations",
               [](Fields& map, ScenarioStage& stage) { Describe(map, stage, false); });
   fields.ExactlyOne({"body", "stages"});
   if (is_body == !scenario.stages.empty())
@@ -336,7 +337,7 @@ void Describe(Fields& fields, Scenario& scenario) {
   if (is_body) scenario.stages.assign(1, body);
   fields.Quantity("duration", kTime, kPositive, scenario.duration_s, "of the flight");
   fields.Quantity("output_step", kTime, kPositive, scenario.output_step_s, "between two samples");
-  fields.Quantity("integration_step", kTime, kPositive, scenario.integration_step_s, "at most");
+  fields.Quantity("integration_step", kTime, kPositive, scenario.integration_step_s, "largest");
   CheckProblems(fields, scenario);
 }
 

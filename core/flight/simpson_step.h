@@ -83,8 +83,10 @@ class StepState {
     ClearCommands(lane);
     MarkMoved(lane);
   }
-  void SetMass(int lane, const StackMass& mass) {
+  /// Of the stack without what it has jettisoned: its masses and its modes (null: it is rigid).
+  void SetMass(int lane, const StackMass& mass, const BendingTable* bending) {
     SetLane(plant_.stack, lane, mass);
+    SetTable(bending_, lane, bending);
     MarkMoved(lane);
   }
   void Ignite(int lane, double time_s, bool lights_boosters) {

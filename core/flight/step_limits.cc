@@ -27,11 +27,16 @@ void Take(const std::string& part, double rad_s, double tick_s, double limit_rad
     greatest = {fraction, part + " (" + Text(rad_s / kTwoPi) + " Hz)", limit_rad / tick_s / kTwoPi};
 }
 
+// The jettisons that a plant has, all of them.
+unsigned AllJettisoned(const LauncherPlant& plant) {
+  return ((1u << plant.jettisons.size()) - 1u) | (plant.boosters ? kBoostersGone : 0u);
+}
+
 // f(mode, its highest frequency over the burn in either plane, with the flight's factor) of every mode that
-// flies.
+// flies: without what the stack jettisons, as no frequency is lower with less mass.
 template <typename F>
 void EachMode(const LauncherPlant& plant, std::size_t stack, F f) {
-  const BendingTable* table = plant.stacks[stack].bending.get();
+  const BendingTable* table = plant.stacks[stack].BendingWithout(AllJettisoned(plant));
   if (table == nullptr) return;
   for (int mode = 0; mode < table->modes; ++mode) {
     double highest_rad_s = 0.0;
@@ -47,8 +52,7 @@ void EachMode(const LauncherPlant& plant, std::size_t stack, F f) {
 // moments are least.
 bool IsInertia(const LauncherPlant& plant, std::size_t index) {
   const LauncherStack& stack = plant.stacks[index];
-  const unsigned gone = ((1u << plant.jettisons.size()) - 1u) | (plant.boosters ? kBoostersGone : 0u);
-  const MassProperties empty = MassOf(plant, static_cast<int>(index), gone).At(0.0);
+  const MassProperties empty = MassOf(plant, static_cast<int>(index), AllJettisoned(plant)).At(0.0);
   const double a = empty.axial_inertia_kg_m2, t = empty.transverse_inertia_kg_m2;
   const double xy = stack.product_xy_kg_m2, xz = stack.product_xz_kg_m2, yz = stack.product_yz_kg_m2;
   const double determinant = a * (t * t - yz * yz) - xy * (xy * t + xz * yz) - xz * (xz * t + xy * yz);

@@ -24,32 +24,32 @@ struct GuidanceConfig {
 
 inline void Describe(Fields& fields, GuidanceConfig& guidance) {
   fields.Choice<bool>("mode", {{"open_loop", false}, {"closed_loop", true}}, guidance.closed_loop,
-                      "the reference's attitude and ignition time as they are, or solved anew in flight");
+                      "fly the reference's attitude and ignition time, or solve them anew in flight");
   fields.Choice<bool>("last_burn", {{"steered", true}, {"as_planned", false}}, guidance.steers_last_burn,
-                      "solved anew while it burns, or flown as it was planned at its ignition",
+                      "solve anew while it burns, or fly as planned at its ignition",
                       guidance.steers_last_burn);
   fields.Quantity("period", kTime, Between(0.1, 10.0), guidance.period_s,
-                  "between two solutions while a motor burns", guidance.period_s);
+                  "between two solutions under thrust", guidance.period_s);
   // A launcher's attitude loops follow some degrees a second. A faster turn would be a loss of control.
   constexpr Range kRate = UpTo(20.0 * kRadPerDeg);
   fields.OptionalQuantity(
       "turn_rate", kAngularRate, kRate, guidance.turn_rate_rad_s,
-      "of the commanded attitude under thrust; without, 3 deg/s or 1.5 s of turn_acceleration, the less");
+      "largest commanded under thrust; default: 3 deg/s or 1.5 s x turn_acceleration, the smaller");
   fields.OptionalQuantity(
       "turn_acceleration", kAngularAcceleration, kRate, guidance.turn_acceleration_rad_s2,
-      "of that attitude; without, 2 deg/s2 or a quarter of what the nozzles can do, the less");
+      "largest commanded under thrust; default: 2 deg/s2 or 1/4 of the nozzles' most, the smaller");
   fields.OptionalQuantity(
       "coast_rate", kAngularRate, kRate, guidance.coast_rate_rad_s,
-      "of the commanded attitude in the coast; without, 0.5 deg/s or 10 s of coast_acceleration, the less");
+      "largest commanded in the coast; default: 0.5 deg/s or 10 s x coast_acceleration, the smaller");
   fields.OptionalQuantity(
       "coast_acceleration", kAngularAcceleration, kRate, guidance.coast_acceleration_rad_s2,
-      "of that attitude; without, 0.05 deg/s2 or a third of what the thrusters can do, the less");
+      "largest commanded in the coast; default: 0.05 deg/s2 or 1/3 of the thrusters' most, the smaller");
   fields.OptionalQuantity("settled", kAngle, kRate, guidance.settled_angle_rad,
-                          "the last stage ignites only with its attitude this near to what is commanded; "
-                          "without, 0.25 deg or 1.5 deadbands, the greater");
+                          "largest attitude error at which the last stage ignites; default: 0.25 deg or 1.5 "
+                          "deadbands, the larger");
   fields.OptionalQuantity("settled_rate", kAngularRate, kRate, guidance.settled_rate_rad_s,
-                          "and with its rate; without, 0.2 deg/s or 1.5 times what one firing changes, the "
-                          "greater");
+                          "largest rate error at which it ignites; default: 0.2 deg/s or 1.5 x the change by "
+                          "one firing, the larger");
 }
 
 }  // namespace dispersa

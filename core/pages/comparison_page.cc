@@ -14,10 +14,10 @@ namespace dispersa {
 namespace {
 
 constexpr char kComparisonNavigation[] =
-    "<nav><a href=\"#compared\">What is compared</a><a href=\"#requirements\">Requirements</a><a "
+    "<nav><a href=\"#compared\">Compared campaigns</a><a href=\"#requirements\">Requirements</a><a "
     "href=\"#cases\">Harmed and rescued</a><a href=\"#metrics\">Metrics</a><a "
-    "href=\"#figures\">Figures</a><a "
-    "href=\"#changes\">Largest changes</a><a href=\"#methods\">Methods</a></nav>\n";
+    "href=\"#figures\">Figures</a><a href=\"#changes\">Largest changes</a><a "
+    "href=\"#methods\">Methods</a></nav>\n";
 /// A longer table can be collapsed. compare.json has all rows.
 constexpr std::size_t kOpenRows = 20;
 constexpr std::size_t kListedCases = 1000;
@@ -73,9 +73,11 @@ std::string Header(const Comparison& c) {
                          [&](const MetricComparison& metric) { return metric.finding == finding; });
   };
   std::string html = fmt::format(
-      "<header>\n<h1>{} against {}</h1>\n<p class=\"soft\">B is held against A: differences are B less "
-      "A.</p>\n"
-      "<div class=\"headline\"><span class=\"badge design\">{}</span><p>{}</p></div>\n<div class=\"tiles\">",
+      "<header>\n"
+      "<h1>{} against {}</h1>\n"
+      "<p class=\"soft\">B is compared with A. Differences are B minus A.</p>\n"
+      "<div class=\"headline\"><span class=\"badge design\">{}</span><p>{}</p></div>\n"
+      "<div class=\"tiles\">",
       HtmlText(c.b.name), HtmlText(c.a.name), c.pairing.paired ? "paired" : "unpaired", HtmlText(c.sentence));
   html += c.pairing.paired ? Tile(std::to_string(c.pairing.shared), "pairs of flights")
                            : Tile(fmt::format("{} and {}", c.a.flown, c.b.flown), "flights");
@@ -91,7 +93,7 @@ std::string Header(const Comparison& c) {
 }
 
 std::string ComparedSection(const Comparison& c) {
-  std::string html = "<h2 id=\"compared\">What is compared</h2>\n";
+  std::string html = "<h2 id=\"compared\">Compared campaigns</h2>\n";
   HtmlTable table({{""}, {"A"}, {"B"}});
   const auto row = [&](const char* title, const std::string& a, const std::string& b) {
     table.Row({title, HtmlText(a), HtmlText(b)});
@@ -182,7 +184,7 @@ std::string CasesTable(const std::vector<ChangedCase>& cases, const Comparison& 
                        const char* what) {
   std::string html = fmt::format("<h3>{}: {}</h3>\n", title, cases.size());
   if (cases.empty()) return html + fmt::format("<p>{}</p>\n", what);
-  HtmlTable table({{"Case", true}, {"Requirement"}, {"A", true}, {"B", true}, {"To fly both again"}});
+  HtmlTable table({{"Case", true}, {"Requirement"}, {"A", true}, {"B", true}, {"Replay both"}});
   std::size_t listed = 0;
   for (const ChangedCase& one : cases) {
     if (++listed > kListedCases) break;
@@ -209,14 +211,11 @@ std::string CasesTable(const std::vector<ChangedCase>& cases, const Comparison& 
 std::string CasesSection(const Comparison& c) {
   std::string html = "<h2 id=\"cases\">Harmed and rescued cases</h2>\n";
   if (!c.pairing.paired)
-    return html +
-           "<p>The campaigns are not paired: no case of one is the counterpart of a case of the other.</p>\n";
+    return html + "<p>The campaigns are not paired: no case of one has a partner in the other.</p>\n";
   html +=
-      "<p>Harmed: a requirement that the case meets in A fails in B, or the flight is lost. Rescued: the "
-      "other way "
-      "round. The commands run where the comparison was started and check that the flight comes out the same "
-      "to the "
-      "last bit.</p>\n";
+      "<p>Harmed: the case meets a requirement in A and fails it in B, or its flight is lost in B. Rescued: "
+      "the reverse. Run the commands in the folder where the comparison was started. They check that the "
+      "flight is the same to the last bit.</p>\n";
   return html + CasesTable(c.harmed, c, "Harmed", "None.") + CasesTable(c.rescued, c, "Rescued", "None.");
 }
 
@@ -226,13 +225,11 @@ bool IsPart(const std::string& metric) {
 
 std::string MetricsSection(const Comparison& c) {
   std::string html = fmt::format(
-      "<h2 id=\"metrics\">Every metric</h2>\n<p>{} Under each difference its limits of 95 %. The tail is "
-      "that of the "
-      "bad side: 95 and 99 %, of metrics of which less is worse 5 and 1 %; the other percentiles are in "
-      "<code>compare.json</code>. “Not shown”: Holm’s adjusted p is above 5 %, which does not say that they "
-      "are "
-      "equal.</p>\n",
-      c.pairing.paired ? "The difference is the median of B less A over the pairs."
+      "<h2 id=\"metrics\">Every metric</h2>\n"
+      "<p>{} Its 95 % limits stand below it. The tails are on the bad side: 95 and 99 %, or 5 and 1 % if "
+      "less is worse. <code>compare.json</code> has the other percentiles. “Not shown”: Holm’s adjusted p is "
+      "above 5 %. This does not show that the campaigns are equal.</p>\n",
+      c.pairing.paired ? "The difference is the median of B minus A over the pairs."
                        : "The difference is that of the medians.");
   HtmlTable table({{"Metric"},
                    {"Unit", true},
@@ -355,8 +352,10 @@ std::string FiguresSection(const Comparison& c, const CaseColumns& a, const Case
 std::string ChangesSection(const Comparison& c) {
   std::string html = "<h2 id=\"changes\">Largest changes</h2>\n";
   if (!c.pairing.paired) return html + "<p>The campaigns are not paired.</p>\n";
-  html += "<p>The pairs in which B loses and gains most, whether or not a limit lies between.</p>\n";
-  HtmlTable table({{"Metric"}, {""}, {"Case", true}, {"A", true}, {"B", true}, {"To fly both again"}});
+  html +=
+      "<p>The pairs in which B loses most and gains most, with or without a limit between the two "
+      "values.</p>\n";
+  HtmlTable table({{"Metric"}, {""}, {"Case", true}, {"A", true}, {"B", true}, {"Replay both"}});
   for (const MetricComparison* metric : ShownMetrics(c)) {
     bool titled = false;
     const bool neither = metric->info.worse == Worse::kNeither;
@@ -383,29 +382,22 @@ std::string MethodsSection(const Comparison& c) {
   std::string html = "<h2 id=\"methods\">Methods</h2>\n<ul>\n";
   if (!c.independent) {
     html +=
-        "<li>The points of at least one campaign are chosen, not drawn independently. No limits and no "
-        "p-values can be "
-        "stated; differences hold for these points alone.</li>\n";
+        "<li>The points of at least one campaign are chosen, not drawn independently. There are no limits "
+        "and no p-values. Differences hold for these points only.</li>\n";
   }
-  html += c.pairing.paired ? "<li>Pairs are cases of equal index whose draws match. The limits of the median "
-                             "difference are order "
-                             "statistics of the pairs’ differences, exact for any distribution (H. A. David "
-                             "and H. N. Nagaraja, "
-                             "<i>Order Statistics</i>, 2003, 7.1); p is that of the exact sign test.</li>\n"
-                           : "<li>The samples are independent. The limits of the difference of medians join "
-                             "the order-statistic "
-                             "limits of each (see the tails); p is that of Wilcoxon’s rank sum in its normal "
-                             "approximation with "
-                             "ties.</li>\n";
+  html += c.pairing.paired
+              ? "<li>Pairs are cases of equal index with the same draws. The limits of the median difference "
+                "are order statistics of the pairs’ differences, exact for any distribution (H. A. David and "
+                "H. N. Nagaraja, <i>Order Statistics</i>, 2003, 7.1); p is from the exact sign test.</li>\n"
+              : "<li>The samples are independent. The limits of the difference of medians join the "
+                "order-statistic limits of each (see the tails); p is from Wilcoxon’s rank sum test, by the "
+                "normal approximation with ties.</li>\n";
   html += fmt::format(
-      "<li>Tails: each campaign’s percentile has limits by order statistics, of any distribution; limits of "
-      "the "
-      "difference join them by the method of variance estimates recovery (G. Y. Zou and A. Donner, "
-      "<i>Statist. Med.</i> 27 "
-      "(2008) 1693{}). The joined limits hold as the samples grow; their simulated coverage is stated in "
-      "<code>core/statistics/README.md</code>. Where a sample is too small for a bound there is none. p is "
-      "exact, of as "
-      "many flights beyond the pooled percentile in both ({}).</li>\n",
+      "<li>Tails: the limits of each campaign’s percentile are order statistics, valid for any distribution. "
+      "Limits of the difference join them by the method of variance estimates recovery (G. Y. Zou and A. "
+      "Donner, <i>Statist. Med.</i> 27 (2008) 1693{}). The joined limits hold as the samples grow. "
+      "<code>core/statistics/README.md</code> states their simulated coverage. If a sample is too small, "
+      "there is no limit. p is exact, for equal shares of flights beyond the pooled percentile ({}).</li>\n",
       c.pairing.paired ? ", with the correlation of the pairs" : "",
       c.pairing.paired ? "McNemar’s test" : "Fisher’s test");
   html += c.pairing.paired ? "<li>Requirements: McNemar’s exact test on the pairs in which only one flight "
@@ -417,15 +409,13 @@ std::string MethodsSection(const Comparison& c) {
                              "the same way.</li>\n";
   return html +
          "<li>Holm’s adjustment (<i>Scand. J. Statist.</i> 6 (1979) 65) is over the metrics for the medians, "
-         "over the "
-         "metrics for each percentile, and over the requirements: within such a family any wrong finding has "
-         "at most 5 "
-         "%.</li>\n<li>A lost flight counts as worse than any value (J. M. Lachin, <i>Control. Clin. "
-         "Trials</i> 20 (1999) "
-         "408), so that no campaign gains by losing its worst flights; of a metric that is neither good nor "
-         "bad lost "
-         "flights are left out. Of a metric that is worse farther from zero the magnitude is "
-         "compared.</li>\n</ul>\n";
+         "over the metrics for each percentile, and over the requirements. In such a family the probability "
+         "of any wrong finding is at most 5 %.</li>\n"
+         "<li>A lost flight counts as worse than any value (J. M. Lachin, <i>Control. Clin. Trials</i> 20 "
+         "(1999) 408), so that no campaign gains by losing its worst flights. If a metric is neither good "
+         "nor bad, lost flights are left out. If a metric is worse farther from zero, its magnitude is "
+         "compared.</li>\n"
+         "</ul>\n";
 }
 
 }  // namespace

@@ -153,7 +153,7 @@ std::string NominalFigures(const History& nominal) {
 
   SvgChart velocity({.label = kTimeAxis}, {.label = "inertial velocity, m/s"});
   velocity.Line(time_s, Column(nominal, "inertial_velocity_m_s"), "line-0", "");
-  add(velocity, "Inertial speed; it begins with the Earth's rotation.");
+  add(velocity, "Inertial speed; at lift-off it is that of the Earth's rotation.");
 
   SvgChart angle({.label = kTimeAxis}, {.label = "flight path angle, °"});
   angle.Line(time_s, Column(nominal, "flight_path_angle_deg"), "line-0", "");
@@ -207,7 +207,7 @@ std::string EnvelopeFigures(const FlightHistories& histories, const CampaignSumm
        .label = "altitude minus that of the nominal, km",
        .factor = 1e-3,
        .deviation = true},
-      "How far the flights lie above the nominal one at the same time.");
+      "Altitude of the flights above the nominal flight at the same time.");
   add({.column = "deflection_pitch_deg", .label = "pitch deflection, °"}, "Deflection of the pitch channel.");
   add({.column = "yaw_error_deg", .label = "yaw error, °", .nominal = false}, "Yaw error.");
   add({.column = "roll_error_deg", .label = "roll error, °", .nominal = false}, "Roll error.");

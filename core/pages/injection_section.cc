@@ -10,11 +10,10 @@ namespace dispersa {
 std::string InjectionSection(const InjectionSummary& injection) {
   const PointScatter& scatter = injection.scatter;
   std::string html = fmt::format(
-      "<h3>Covariance of the injection</h3>\n<p>Of {} completed flights, in altitude, velocity and flight "
-      "path angle together; "
-      "<code>summary.json</code> has the covariance itself. An ellipsoid holds the stated share if the "
-      "scatter is "
-      "normal; what it really holds of these flights says whether it is.</p>\n",
+      "<h3>Covariance of the injection</h3>\n"
+      "<p>Joint scatter of {} completed flights in altitude, velocity and flight path angle. "
+      "<code>summary.json</code> has the covariance. If the scatter is normal, an ellipsoid contains the "
+      "stated share. The share of these flights inside shows whether it is normal.</p>\n",
       scatter.n);
   HtmlTable spread(
       {{""}, {"Mean", true}, {"Std", true}, {"Correlation with altitude", true}, {"with velocity", true}});

@@ -118,9 +118,10 @@ std::string ModesPage(const Vehicle& vehicle, const std::vector<StackModes>& sta
       "station, which grows aft. A mode is the same one at every propellant level, by the modal "
       "assurance criterion with the mass as weight.</p>\n";
   for (const StackModes& stack : stacks) {
-    page += fmt::format("<h2>Stack of {}{}</h2>\n<div class=\"figures\">\n",
+    const bool is_last = LastBurn(vehicle, stack.stage) + 1 == static_cast<int>(vehicle.stages.size());
+    page += fmt::format("<h2>Stack of {}{}{}</h2>\n<div class=\"figures\">\n",
                         HtmlText(vehicle.stages[static_cast<std::size_t>(stack.stage)].name),
-                        stack.stage + 1 < static_cast<int>(stacks.size()) ? " and all above" : "");
+                        is_last ? "" : " and all above", HtmlText(WithoutText(vehicle, stack)));
     for (std::size_t plane = 0; plane < PlanesOf(stack); ++plane)
       page += ShapeFigure(vehicle, stack, plane) + FrequencyFigure(stack, plane);
     page += "</div>\n" + ModeTable(vehicle, stack);

@@ -62,7 +62,7 @@ std::string FlightProgramFigures(const FlightProgram& program, const std::vector
   return Draw(std::move(whole),
               stages > 1 ? fmt::format("Flight program over the whole flight; S1 to S{}: ignitions.", stages)
                          : std::string("Flight program over the whole flight; S1: ignition.")) +
-         Draw(std::move(kick), "The same in the initial pitch-over, with the program's three times.");
+         Draw(std::move(kick), "Flight program in the initial pitch-over, with t1, t3 and t2.");
 }
 
 std::string ReferenceFigures(const std::vector<AscentSample>& history) {
@@ -79,10 +79,10 @@ std::string ReferenceFigures(const std::vector<AscentSample>& history) {
   add("height, km", Column(history, [](const AscentSample& s) { return s.altitude_m * 1e-3; }),
       "Geodetic height.");
   add("velocity, m/s", Column(history, [](const AscentSample& s) { return s.velocity_m_s; }),
-      "Inertial speed; it begins with the Earth's rotation.");
+      "Inertial speed; at lift-off it is that of the Earth's rotation.");
   add("flight path angle, °",
       Column(history, [](const AscentSample& s) { return s.flight_path_angle_rad * kDegPerRad; }),
-      "Inertial flight path angle, above the plane at right angles to the radius.");
+      "Inertial flight path angle, above the plane normal to the radius.");
   return figures;
 }
 

@@ -58,7 +58,7 @@ std::string VariableTable(const Reference& reference) {
                bound.empty() ? "" : "<span class=\"badge design\">" + bound + "</span>"});
   };
   row("α<sub>max</sub>, °", program.alpha_max_rad, problem.alpha_max_rad, kRadPerDeg);
-  row("t1, begin of the pitch-over, s", program.t1_s, problem.t1_s, 1.0);
+  row("t1, start of the pitch-over, s", program.t1_s, problem.t1_s, 1.0);
   row("t3, maximum incidence, s", program.t3_s, problem.t3_s, 1.0);
   row("t2, end of the pitch-over, s", program.t2_s, problem.t2_s, 1.0);
   row("Coast before the last stage, s", program.coast_s, problem.coast_s, 1.0);
@@ -109,7 +109,7 @@ std::string SearchFigures(const OptimizationResult& result) {
                                    "Search over all variables of the flight program. Misses within the tie "
                                    "tolerance of the best are equal, so the "
                                    "best may rise while the peak of q·α falls.") +
-                        DrawSearch(fraction, "Individuals that break no constraint.");
+                        DrawSearch(fraction, "Individuals that satisfy every constraint.");
   if (result.selection.log.empty()) return figures;
   std::vector<double> step, load;
   for (const GenerationRecord& record : result.selection.log) {
@@ -185,9 +185,9 @@ std::optional<double> LiftOffSidereal(const Reference& reference) {
 
 std::string OrbitSentence(const Reference& reference) {
   const Orbit& orbit = reference.orbit;
-  std::string text = fmt::format(
-      "inclination {:.4f} deg, ascending node {:.4f} deg east of Greenwich as it stands at lift-off",
-      Deg(orbit.inclination_rad), Deg(orbit.node_longitude_rad));
+  std::string text =
+      fmt::format("inclination {:.4f} deg, ascending node {:.4f} deg east of Greenwich at lift-off",
+                  Deg(orbit.inclination_rad), Deg(orbit.node_longitude_rad));
   if (reference.problem.velocity_is_free) text += fmt::format(", velocity {:.3f} m/s", orbit.velocity_m_s);
   if (const std::optional<double> sidereal_rad = LiftOffSidereal(reference))
     text += fmt::format(
@@ -231,9 +231,8 @@ std::string TrajectoryPage(const OptimizationResult& result, const std::optional
                         : "");
   page += "<h2>Flight program</h2>\n" + VariableTable(reference);
   page +=
-      "<p class=\"soft\">A variable at a bound was held back by it: what lies beyond was not searched, and "
-      "may be "
-      "better.</p>\n";
+      "<p class=\"soft\">A variable at its bound was limited by it. A better value may lie beyond the bound, "
+      "which was not searched.</p>\n";
   page += "<h2>Constraints</h2>\n" + ConstraintTable(reference);
   if (const std::string text = LimitsThatDoNotBind(reference); !text.empty())
     page += "<p>" + HtmlText(text) + ".</p>\n";

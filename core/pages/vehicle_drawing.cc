@@ -147,7 +147,7 @@ class Drawing {
     Line("cut", X(stage.bottom_station_m), kAbove_px - 24.0, X(stage.bottom_station_m), bottom_px_ + 40.0);
     const double middle_px = 0.5 * (X(top_m) + X(stage.bottom_station_m));
     Text("name", middle_px, 22.0, stage.name);
-    Text("soft", middle_px, 38.0, ReadableText(stage.liftoff_mass_kg * 1e-3) + " t, with all ahead");
+    Text("soft", middle_px, 38.0, ReadableText(stage.liftoff_mass_kg * 1e-3) + " t, with all stages ahead");
     const double rule_px = bottom_px_ + 30.0;
     Line("rule", X(top_m) + 2.0, rule_px, X(stage.bottom_station_m) - 2.0, rule_px);
     Text("soft", middle_px, rule_px + 16.0,

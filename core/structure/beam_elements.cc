@@ -154,6 +154,20 @@ Eigen::MatrixXd StiffnessMatrix(const std::vector<BeamElement>& elements) {
   return stiffness;
 }
 
+Eigen::MatrixXd MassTimes(const Eigen::MatrixXd& mass, const Eigen::MatrixXd& shapes) {
+  Eigen::MatrixXd product(shapes.rows(), shapes.cols());
+  for (Eigen::Index column = 0; column < shapes.cols(); ++column)
+    for (Eigen::Index row = 0; row < shapes.rows(); ++row) {
+      const Eigen::Index node = row - row % 2;
+      const Eigen::Index first = std::max<Eigen::Index>(node - 2, 0),
+                         last = std::min(node + 4, shapes.rows());
+      double sum = 0.0;
+      for (Eigen::Index k = first; k < last; ++k) sum += mass(k, row) * shapes(k, column);  // symmetric
+      product(row, column) = sum;
+    }
+  return product;
+}
+
 Eigen::MatrixXd RigidShapes(const std::vector<double>& stations, double station_m) {
   Eigen::MatrixXd shapes(2 * static_cast<Eigen::Index>(stations.size()), 2);
   for (std::size_t i = 0; i < stations.size(); ++i) {

@@ -56,6 +56,10 @@ Eigen::MatrixXd MassMatrix(const Beam& beam, const std::vector<double>& stations
 /// The whole stiffness matrix, of two rows a node. For checks: FreeFreeModes does without it.
 Eigen::MatrixXd StiffnessMatrix(const std::vector<BeamElement>& elements);
 
+/// The mass matrix times shapes. It couples a node with its neighbours alone, so this takes a tenth of a
+/// product of full matrices.
+Eigen::MatrixXd MassTimes(const Eigen::MatrixXd& mass, const Eigen::MatrixXd& shapes);
+
 /// Columns: the unit displacement, and the unit rotation about `station_m`.
 Eigen::MatrixXd RigidShapes(const std::vector<double>& stations, double station_m);
 

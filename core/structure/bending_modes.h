@@ -11,6 +11,7 @@
 #pragma once
 
 #include <array>
+#include <memory>
 #include <string>
 #include <vector>
 
@@ -32,12 +33,16 @@ struct BendingLevel {
   std::vector<BendingMode> modes;
 };
 
+struct ModeBasis;  ///< more modes of the same stack, in bending_modes.cc alone
+
 struct StackModes {
   int stage = 0;                                    ///< the stack's lowest, from 0
+  unsigned gone = 0;                                ///< without these jettisoned bodies (BuildBeamMasses)
   bool axisymmetric = true;                         ///< plane z is plane y
   std::array<std::vector<double>, 2> station_m;     ///< of the nodes, by plane
   std::array<std::vector<double>, 2> shear_ratio;   ///< of the elements between them
   std::array<std::vector<BendingLevel>, 2> levels;  ///< by plane, in order of falling propellant
+  std::shared_ptr<const ModeBasis> basis;  ///< among which those of other masses are sought (null: a table)
 };
 
 /// Shape at a station. Beyond the ends of the beam it goes on straight.
@@ -47,12 +52,23 @@ struct StationShape {
 };
 StationShape ShapeOf(const StackModes& stack, BeamPlane plane, const BendingMode& mode, double station_m);
 
-/// The stack's modes, one StackModes a stage.
+/// The modes of the stack of a stage that is no restart.
 ///
 /// Further levels are added between those of the file where a mode changes so much that its modal assurance
 /// criterion falls below 0.9, down to 1/32 of a step. Precondition: a vehicle with a beam and without
 /// Problems(). A table's shapes and generalised masses are scaled as above. Its modes are tracked likewise,
-/// with the vehicle's mass model as weight.
+/// with the vehicle's mass model as weight; then nothing is jettisoned (`gone` 0).
+///
+/// `near`: of the same vehicle with other masses. The modes are then sought among its own (SolveFreeFreeNear)
+/// on its mesh.
+StackModes BuildStackModes(const Vehicle& vehicle, int stage, unsigned gone = 0,
+                           const StackModes* near = nullptr);
+/// Those that pages show: of each stage that is no restart with all it carries, then without what it
+/// jettisons.
+std::vector<StackModes> ShownStacks(const Vehicle& vehicle);
+/// "", or ", without fairing": what has left.
+std::string WithoutText(const Vehicle& vehicle, const StackModes& stack);
+/// One a stage, with all that it carries at lift-off. A restart has its stage's.
 std::vector<StackModes> BuildBendingModes(const Vehicle& vehicle);
 
 /// A mode of one plane at a place over the propellant, for a flight: falling propellant, as the levels.

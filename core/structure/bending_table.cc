@@ -2,18 +2,17 @@
 
 #include <algorithm>
 #include <optional>
-#include <utility>
 
-#include "core/math/functions.h"
-#include "core/structure/inertia_moment.h"
+#include "core/structure/free_body.h"
+#include "core/structure/mass_points.h"
 #include "core/vehicle/beam_masses.h"
 
 namespace dispersa {
 
 namespace {
 
-/// Places along the beam at which the shortening is summed.
-constexpr int kShorteningSteps = 400;
+/// Pieces of the beam in which the shortening is summed.
+constexpr int kShorteningPieces = 400;
 
 bool FliesAtAllLevels(const StackModes& stack, std::size_t mode, double highest_rad_s) {
   for (const std::vector<BendingLevel>& plane : stack.levels)
@@ -22,23 +21,31 @@ bool FliesAtAllLevels(const StackModes& stack, std::size_t mode, double highest_
   return true;
 }
 
-// The share of the mass ahead of each place, from the nose aft.
-std::vector<double> MassAhead(const BeamMasses& masses, const std::vector<double>& places) {
-  const double step = places[1] - places[0];
-  std::vector<double> ahead(places.size());
-  double sum = 0.0;
-  for (std::size_t i = 0; i < places.size(); ++i) {
-    double here = 0.0;
-    for (const SpreadMass& m : masses.spread)
-      if (places[i] >= m.top_station_m && places[i] < m.bottom_station_m)
-        here += m.MassPerLength(places[i]) * step;
-    for (const FixedMass& m : masses.fixed)
-      if (m.station_m >= places[i] - 0.5 * step && m.station_m < places[i] + 0.5 * step) here += m.mass_kg;
-    ahead[i] = sum + 0.5 * here;
-    sum += here;
+// Of even pieces of the beam, from the nose aft.
+struct EvenPieces {
+  double top_m = 0.0, length_m = 0.0;
+
+  explicit EvenPieces(const std::vector<double>& stations)
+      : top_m(stations.front()), length_m((stations.back() - stations.front()) / kShorteningPieces) {}
+  double Middle(std::size_t i) const { return top_m + length_m * (static_cast<double>(i) + 0.5); }
+};
+
+// The integral of the product of two modes' slopes (at the middles of the pieces), weighted with the share of
+// the mass ahead: each mass counts for all of the beam behind it.
+double Shortening(const std::vector<MassPoint>& points, const EvenPieces& pieces,
+                  const std::vector<double>& slopes, const std::vector<double>& other) {
+  std::vector<double> behind(slopes.size() + 1, 0.0);  // from each edge of the pieces to the end
+  for (std::size_t i = slopes.size(); i-- > 0;)
+    behind[i] = behind[i + 1] + slopes[i] * other[i] * pieces.length_m;
+  double sum = 0.0, mass_kg = 0.0;
+  for (const MassPoint& m : points) {
+    const double at =
+        std::clamp((m.fixed_at_m - pieces.top_m) / pieces.length_m, 0.0, static_cast<double>(slopes.size()));
+    const std::size_t i = std::min(static_cast<std::size_t>(at), slopes.size() - 1);
+    sum += m.mass_kg * (behind[i] + (at - static_cast<double>(i)) * (behind[i + 1] - behind[i]));
+    mass_kg += m.mass_kg;
   }
-  for (double& share : ahead) share /= sum;
-  return ahead;
+  return sum / mass_kg;
 }
 
 // What the lift by a unit of a mode does. `deflections`: of each mode that flies, at the middle of each
@@ -71,60 +78,12 @@ void AddLift(const LoadTable& loads, const std::vector<std::vector<double>>& def
   }
 }
 
-/// The stages above, which a separation leaves as a body of their own.
-struct UpperBody {
-  BeamMasses masses;
-  double mass_kg = 0.0, cg_station_m = 0.0, inertia_kg_m2 = 0.0;  ///< across the axis
-
-  /// By how much a shape moves its centre of gravity and turns it: what leaves it the momentum and angular
-  /// momentum of its masses.
-  template <typename Shape>
-  StationShape MeanOf(const Shape& at) const {
-    StationShape sum;
-    ForEachMass(at, [&](double mass, double station_m, double own_inertia, const StationShape& shape) {
-      sum.deflection += mass * shape.deflection;
-      sum.slope_1_m += mass * shape.deflection * (station_m - cg_station_m) + own_inertia * shape.slope_1_m;
-    });
-    return {sum.deflection / mass_kg, sum.slope_1_m / inertia_kg_m2};
-  }
-
-  explicit UpperBody(BeamMasses of) : masses(std::move(of)) {
-    double first = 0.0;
-    const auto still = [](double) { return StationShape{}; };
-    ForEachMass(still, [&](double mass, double station_m, double, const StationShape&) {
-      mass_kg += mass;
-      first += mass * station_m;
-    });
-    cg_station_m = first / mass_kg;
-    ForEachMass(still, [&](double mass, double station_m, double own_inertia, const StationShape&) {
-      inertia_kg_m2 += mass * Square(station_m - cg_station_m) + own_inertia;
-    });
-  }
-
- private:
-  // Every mass with its centre, its inertia about that, and the shape there.
-  template <typename Shape, typename Take>
-  void ForEachMass(const Shape& at, const Take& take) const {
-    constexpr int kPieces = 50;
-    for (const SpreadMass& m : masses.spread) {
-      const double step = (m.bottom_station_m - m.top_station_m) / kPieces;
-      for (int i = 0; i < kPieces; ++i) {
-        const double x = m.top_station_m + step * (i + 0.5), mass = m.MassPerLength(x) * step;
-        take(mass, x, mass * m.Gyration2(x), at(x));
-      }
-    }
-    for (const FixedMass& m : masses.fixed) {
-      StationShape shape = at(m.station_m);
-      shape.deflection += shape.slope_1_m * (m.cg_station_m - m.station_m);
-      take(m.mass_kg, m.cg_station_m, m.inertia_kg_m2, shape);
-    }
-  }
-};
-
-std::optional<UpperBody> UpperOf(const Vehicle& vehicle, int stage) {
-  const std::size_t above = static_cast<std::size_t>(stage) + 1;
-  if (above == vehicle.stages.size()) return {};
-  return UpperBody(BuildBeamMasses(vehicle, stage + 1, vehicle.stages[above].propellant_mass_kg));
+// The stages above, which a separation leaves as a body of their own.
+std::optional<FreeBody> UpperOf(const Vehicle& vehicle, const StackModes& stack) {
+  const int above = LastBurn(vehicle, stack.stage) + 1;
+  if (above == static_cast<int>(vehicle.stages.size())) return {};
+  const double full_kg = vehicle.stages[static_cast<std::size_t>(above)].propellant_mass_kg;
+  return FreeBody(BuildBeamMasses(vehicle, above, full_kg, stack.gone), stack.station_m[0]);
 }
 
 }  // namespace
@@ -156,21 +115,20 @@ BendingTable BuildBendingTable(const Vehicle& vehicle, const StackModes& stack, 
   table.planes = stack.axisymmetric ? 1 : 2;
   for (const BendingLevel& level : stack.levels[0]) table.propellant_kg.push_back(level.propellant_kg);
 
-  const std::optional<UpperBody> upper = UpperOf(vehicle, stack.stage);
+  const std::optional<FreeBody> upper = UpperOf(vehicle, stack);
   for (std::size_t p = 0; p < static_cast<std::size_t>(table.planes); ++p) {
     const BeamPlane plane = kBeamPlanes[p];
-    const double top = stack.station_m[p].front();
-    const double step = (stack.station_m[p].back() - top) / kShorteningSteps;
-    std::vector<double> places;
-    for (int i = 0; i < kShorteningSteps; ++i) places.push_back(top + step * (i + 0.5));
+    const EvenPieces pieces(stack.station_m[p]);
+    std::vector<double> cuts_m = stack.station_m[p];
+    cuts_m.insert(cuts_m.end(), loads.station_m.begin(), loads.station_m.end());
     for (const BendingLevel& level : stack.levels[p]) {
-      const BeamMasses masses = BuildBeamMasses(vehicle, stack.stage, level.propellant_kg);
-      const std::vector<double> ahead = MassAhead(masses, places);
+      const std::vector<MassPoint> points =
+          MassPointsOf(BuildBeamMasses(vehicle, stack.stage, level.propellant_kg, stack.gone), cuts_m);
       std::vector<std::vector<double>> slopes(static_cast<std::size_t>(table.modes)),
           deflections(slopes.size());
       for (std::size_t k = 0; k < slopes.size(); ++k) {
-        for (const double place : places)
-          slopes[k].push_back(ShapeOf(stack, plane, level.modes[k], place).slope_1_m);
+        for (std::size_t i = 0; i < kShorteningPieces; ++i)
+          slopes[k].push_back(ShapeOf(stack, plane, level.modes[k], pieces.Middle(i)).slope_1_m);
         for (const LiftPiece& piece : loads.lift.pieces)
           deflections[k].push_back(ShapeOf(stack, plane, level.modes[k], piece.Middle()).deflection);
       }
@@ -186,11 +144,8 @@ BendingTable BuildBendingTable(const Vehicle& vehicle, const StackModes& stack, 
         row[BendingTable::kUnitSlope] = at(vehicle.sensors.inertial_unit_station_m).slope_1_m;
         for (std::size_t g = 0; g < vehicle.sensors.rate_gyros.size(); ++g)
           row[BendingTable::kGyroSlope + g] = at(vehicle.sensors.rate_gyros[g].station_m).slope_1_m;
-        for (std::size_t j = 0; j < slopes.size(); ++j) {
-          double sum = 0.0;
-          for (std::size_t i = 0; i < places.size(); ++i) sum += ahead[i] * slopes[j][i] * slopes[k][i];
-          row[BendingTable::kShortening + j] = sum * step;
-        }
+        for (std::size_t j = 0; j < slopes.size(); ++j)
+          row[BendingTable::kShortening + j] = Shortening(points, pieces, slopes[j], slopes[k]);
         for (std::size_t i = 0; i < loads.lift.pieces.size(); ++i) {
           const LiftPiece& piece = loads.lift.pieces[i];
           row[BendingTable::kStraightLift] += (piece.area_to - piece.area_from) * deflections[k][i];
@@ -198,12 +153,15 @@ BendingTable BuildBendingTable(const Vehicle& vehicle, const StackModes& stack, 
         }
         AddLift(loads, deflections, at, row.data());
         if (upper) {
-          const StationShape mean = upper->MeanOf(at);
+          const StationShape mean = upper->MeanOf(AtStations(at));
           row[BendingTable::kUpperShift] = mean.deflection;
           row[BendingTable::kUpperTurn] = mean.slope_1_m;
         }
+        std::vector<StationShape> shapes;
+        for (const MassPoint& m : points) shapes.push_back(at(m.fixed_at_m));
+        const auto at_point = [&](const MassPoint&, std::size_t i) { return shapes[i]; };
         for (std::size_t i = 0; i < kLoadStations; ++i)
-          row[BendingTable::kMomentAt + i] = InertiaMoment(masses, loads.station_m[i], at);
+          row[BendingTable::kMomentAt + i] = InertiaMoment(points, loads.station_m[i], at_point);
         table.rows.insert(table.rows.end(), row.begin(), row.end());
       }
     }

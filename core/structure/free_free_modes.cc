@@ -3,6 +3,7 @@
 #include <Eigen/Cholesky>
 #include <algorithm>
 #include <cmath>
+#include <utility>
 
 #include "core/math/matrices.h"
 
@@ -37,21 +38,23 @@ BeamMassProperties MassPropertiesOf(const Eigen::MatrixXd& mass, const std::vect
   // About the middle first, so that nothing cancels.
   const double middle = 0.5 * (stations.front() + stations.back());
   const Eigen::MatrixXd rigid = RigidShapes(stations, middle);
-  const Eigen::Matrix2d moments = rigid.transpose() * mass * rigid;
+  const Eigen::Matrix2d moments = rigid.transpose() * MassTimes(mass, rigid);
   const double arm = moments(0, 1) / moments(0, 0);
   return {moments(0, 0), middle + arm, moments(1, 1) - moments(0, 0) * arm * arm};
 }
 
-FreeFreeModes SolveFreeFree(const std::vector<double>& stations, const std::vector<BeamElement>& elements,
-                            const Eigen::MatrixXd& mass, int count) {
+namespace {
+
+// The modes for shapes of unit energy. Takes the rigid motion, in the sense of the masses, from them.
+FreeFreeModes ModesAmong(Eigen::MatrixXd shape, const std::vector<double>& stations,
+                         const Eigen::MatrixXd& mass, int count) {
   const BeamMassProperties whole = MassPropertiesOf(mass, stations);
   const Eigen::MatrixXd rigid = RigidShapes(stations, whole.cg_station_m);
-  Eigen::MatrixXd shape = DisplacementsByEnergy(elements);
-  Eigen::MatrixXd momenta = rigid.transpose() * mass * shape;
+  Eigen::MatrixXd momenta = MassTimes(mass, rigid).transpose() * shape;
   momenta.row(0) /= whole.mass_kg;
   momenta.row(1) /= whole.transverse_inertia_kg_m2;
   shape -= rigid * momenta;
-  const auto [values, vectors] = EigenOfSymmetric(shape.transpose() * mass * shape);
+  const auto [values, vectors] = EigenOfSymmetric(shape.transpose() * MassTimes(mass, shape));
   // Values at rounding of the greatest are no modes: what has no mass does not vibrate.
   const double least = 1e-12 * values[values.size() - 1];
   Eigen::Index found = 0;
@@ -63,6 +66,20 @@ FreeFreeModes SolveFreeFree(const std::vector<double>& stations, const std::vect
     modes.shape.col(i) = shape * vectors.col(column) * modes.frequency_rad_s[i];
   }
   return modes;
+}
+
+}  // namespace
+
+FreeFreeModes SolveFreeFree(const std::vector<double>& stations, const std::vector<BeamElement>& elements,
+                            const Eigen::MatrixXd& mass, int count) {
+  return ModesAmong(DisplacementsByEnergy(elements), stations, mass, count);
+}
+
+FreeFreeModes SolveFreeFreeNear(const std::vector<double>& stations, const FreeFreeModes& basis,
+                                const Eigen::MatrixXd& mass, int count) {
+  Eigen::MatrixXd shape = basis.shape;  // whose energies are the squares of the frequencies
+  for (Eigen::Index i = 0; i < shape.cols(); ++i) shape.col(i) /= basis.frequency_rad_s[i];
+  return ModesAmong(std::move(shape), stations, mass, count);
 }
 
 }  // namespace dispersa

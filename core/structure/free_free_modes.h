@@ -34,4 +34,10 @@ struct FreeFreeModes {
 FreeFreeModes SolveFreeFree(const std::vector<double>& stations, const std::vector<BeamElement>& elements,
                             const Eigen::MatrixXd& mass, int count);
 
+/// The same for masses that are not far from those of `basis`, modes of the same mesh and stiffness, as the
+/// method of Rayleigh and Ritz finds them among its shapes and the rigid motions. Frequencies are too high by
+/// the square of what the shapes miss; their limits are in near_modes_test. A fiftieth of the work.
+FreeFreeModes SolveFreeFreeNear(const std::vector<double>& stations, const FreeFreeModes& basis,
+                                const Eigen::MatrixXd& mass, int count);
+
 }  // namespace dispersa

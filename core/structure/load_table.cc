@@ -4,7 +4,7 @@
 #include <vector>
 
 #include "core/math/functions.h"
-#include "core/structure/inertia_moment.h"
+#include "core/structure/mass_points.h"
 #include "core/vehicle/beam_masses.h"
 
 namespace dispersa {
@@ -24,16 +24,22 @@ LoadTable BuildLoadTable(const Vehicle& vehicle, int stage) {
                        }
                      });
   const double full = lowest.propellant_mass_kg;
-  const BeamMasses masses[3] = {BuildBeamMasses(vehicle, stage, 0.0),
-                                BuildBeamMasses(vehicle, stage, 0.5 * full),
-                                BuildBeamMasses(vehicle, stage, full)};
+  const auto masses_at = [&](double propellant_kg) {
+    return MassPointsOf(BuildBeamMasses(vehicle, stage, propellant_kg),
+                        {table.station_m.begin(), table.station_m.end()});
+  };
+  const std::vector<MassPoint> masses[3] = {masses_at(0.0), masses_at(0.5 * full), masses_at(full)};
   for (std::size_t i = 0; i < kLoadStations; ++i) {
     const double station = table.station_m[i];
     // The body accelerated sideways, and turning about the nose.
     double first[3], second[3];
     for (int k = 0; k < 3; ++k) {
-      first[k] = InertiaMoment(masses[k], station, [](double) { return StationShape{1.0, 0.0}; });
-      second[k] = InertiaMoment(masses[k], station, [](double x) { return StationShape{x, 1.0}; });
+      first[k] = InertiaMoment(masses[k], station, [](const MassPoint&, std::size_t) {
+        return StationShape{1.0, 0.0};
+      });
+      second[k] = InertiaMoment(masses[k], station, [](const MassPoint& m, std::size_t) {
+        return StationShape{m.fixed_at_m, 1.0};
+      });
     }
     // The grain's mass per length follows its mass, its section's inertia the square of it: parabolas.
     const auto parabola = [&](const double(&at)[3]) -> std::array<double, 3> {

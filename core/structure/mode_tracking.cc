@@ -1,12 +1,16 @@
 #include "core/structure/mode_tracking.h"
 
+#include "core/structure/beam_elements.h"
+
 namespace dispersa {
 
 std::vector<ModeMatch> MatchModes(const Eigen::MatrixXd& earlier, const Eigen::MatrixXd& later,
                                   const Eigen::MatrixXd& mass) {
-  const Eigen::MatrixXd product = earlier.transpose() * mass * later;
-  const Eigen::VectorXd earlier_norm = (earlier.transpose() * mass * earlier).diagonal();
-  const Eigen::VectorXd later_norm = (later.transpose() * mass * later).diagonal();
+  const Eigen::MatrixXd moved = MassTimes(mass, later);
+  const Eigen::MatrixXd product = earlier.transpose() * moved;
+  const Eigen::VectorXd earlier_norm =
+      earlier.cwiseProduct(MassTimes(mass, earlier)).colwise().sum().transpose();
+  const Eigen::VectorXd later_norm = later.cwiseProduct(moved).colwise().sum().transpose();
   Eigen::MatrixXd mac = product.array().square().matrix();
   for (Eigen::Index row = 0; row < mac.rows(); ++row) {
     for (Eigen::Index column = 0; column < mac.cols(); ++column)

@@ -53,8 +53,8 @@ void DescribeEllipse(Fields& fields, TrajectoryProblem& problem) {
   if (!problem.target_apogee_m) problem.target_apogee_m.emplace();
   double& apogee_m = *problem.target_apogee_m;
   fields.Quantity("perigee_altitude", kLength, kPositive, problem.target_altitude_m,
-                  "of an ellipse that is entered at its perigee, over the equator's radius");
-  fields.Quantity("apogee_altitude", kLength, kPositive, apogee_m, "of that ellipse");
+                  "of an ellipse, entered at its perigee; above the equator's radius");
+  fields.Quantity("apogee_altitude", kLength, kPositive, apogee_m, "of the same ellipse");
   if (problem.target_altitude_m > apogee_m)
     fields.Refuse("", "the perigee is above the apogee", "perigee_altitude up to apogee_altitude");
   else
@@ -65,7 +65,7 @@ void DescribeInjection(Fields& fields, TrajectoryProblem& problem) {
   fields.Quantity("altitude", kLength, kPositive, problem.target_altitude_m, "geodetic, at injection");
   const auto velocity = [&] {
     fields.Quantity("velocity", kSpeed, kPositive, problem.target_velocity_m_s,
-                    "inertial; a target with an inclination may leave it open");
+                    "inertial; a target with an inclination need not give it");
   };
   fields.Either(
       {{Has("velocity", kSpeed), velocity, !problem.velocity_is_free},
@@ -83,9 +83,9 @@ void DescribeTarget(Fields& fields, TrajectoryProblem& problem) {
   fields.OptionalQuantity("inclination", kAngle, Between(0.0, kPi), problem.target_inclination_rad,
                           "of the orbit");
   fields.OptionalQuantity("node", kAngle, Between(0.0, kTwoPi), problem.target_node_rad,
-                          "right ascension; the time of day of the lift-off meets it");
+                          "right ascension; it sets the time of day of the lift-off");
   fields.OptionalQuantity("argument_of_perigee", kAngle, Between(0.0, kTwoPi),
-                          problem.target_argument_of_perigee_rad, "of an ellipse, with an inclination");
+                          problem.target_argument_of_perigee_rad, "for an ellipse with an inclination");
   if (problem.target_argument_of_perigee_rad && !(problem.target_inclination_rad && problem.target_apogee_m))
     fields.Refuse(
         "", "an argument of perigee counts along an ellipse from its node",
@@ -102,36 +102,36 @@ void DescribeSteering(Fields& fields, std::size_t stage, bool steers,
 
 void DescribeDecisionBounds(Fields& fields, TrajectoryProblem& problem) {
   DescribeBounds(fields, "alpha_max", kAngle, kIncidence, problem.alpha_max_rad,
-                 "[low, high] of the largest incidence, nose down; equal limits freeze it");
+                 "[low, high] of the largest incidence, nose down; equal: fixed");
   DescribeBounds(fields, "t1", kTime, kNonNegative, problem.t1_s,
                  "[low, high] of the end of the vertical ascent");
   DescribeBounds(fields, "t3", kTime, kNonNegative, problem.t3_s,
                  "[low, high] of the time of the largest incidence");
   DescribeBounds(fields, "t2", kTime, kNonNegative, problem.t2_s,
-                 "[low, high] of the begin of the gravity turn");
+                 "[low, high] of the start of the gravity turn");
   DescribeBounds(fields, "coast", kTime, kNonNegative, problem.coast_s,
                  "[low, high] of the coast before the last stage ignites");
   DescribeAzimuthBounds(fields, problem.launch_azimuth_rad);
   for (std::size_t stage = 1; stage < kMaxStages; ++stage)
     DescribeBounds(fields, StageKey(stage, "coast"), kTime, kNonNegative, problem.earlier_coast_s[stage],
-                   "[low, high] of the coast before this stage, which a timer ignites", false);
+                   "[low, high] of the coast before this stage, ignited by a timer", false);
   for (std::size_t stage = 1; stage < kMaxStages; ++stage) {
     auto& steering = problem.steering[stage];
     DescribeSteering(fields, stage, !steering.empty(), [&](const std::string& begin, const std::string& end) {
       DescribeBounds(fields, begin, kAngle, kSteered, steering.begin_rad,
                      "[low, high] of this stage's incidence in the plane of ascent at ignition");
       DescribeBounds(fields, end, kAngle, kSteered, steering.end_rad,
-                     "[low, high] of it where the propellant would be used up");
+                     "[low, high] of it when the propellant would be used up");
     });
   }
 }
 
 // The weights of objective (8). A target with more conditions has more weights.
 void DescribeWeights(Fields& fields, TrajectoryProblem& problem, bool of_inclination, bool of_argument) {
-  fields.Map("weights", "of the target's misses in the objective, equation (8)", [&](Fields& weights) {
-    weights.Quantity("altitude", kPerLength, kNonNegative, problem.weight_altitude_1_m, "G1");
-    weights.Quantity("velocity", kPerSpeed, kNonNegative, problem.weight_velocity_s_m, "G2");
-    weights.Quantity("flight_path_angle", kPerAngle, kNonNegative, problem.weight_angle_1_rad, "G3");
+  fields.Map("weights", "of the target errors in the objective, equation (8)", [&](Fields& weights) {
+    weights.Quantity("altitude", kPerLength, kNonNegative, problem.weight_altitude_1_m, "G1 of (8)");
+    weights.Quantity("velocity", kPerSpeed, kNonNegative, problem.weight_velocity_s_m, "G2 of (8)");
+    weights.Quantity("flight_path_angle", kPerAngle, kNonNegative, problem.weight_angle_1_rad, "G3 of (8)");
     if (of_inclination)
       weights.Quantity("inclination", kPerAngle, kNonNegative, problem.weight_inclination_1_rad,
                        "of a target with an inclination");
@@ -147,13 +147,14 @@ void DescribeConstraints(Fields& fields, TrajectoryProblem& problem) {
   fields.Quantity("alpha", kAngle, {0.0, kPi / 2.0, true, true}, problem.alpha_limit_rad,
                   "largest incidence");
   fields.Quantity("turn_rate", kAngularRate, kPositive, problem.turn_rate_limit_rad_s,
-                  "of the body axis in the pitch-over; without, it is reported only", 0.0);
-  fields.Number("transonic_mach_low", kPositive, problem.transonic_mach_low, "zero incidence from here");
-  fields.Number("transonic_mach_high", kPositive, problem.transonic_mach_high, "to here");
-  fields.Quantity("q_max", kPressure, kPositive, problem.q_max_limit_pa,
-                  "largest; without, it is reported only", 0.0);
+                  "of the body axis in the pitch-over; default: only reported", 0.0);
+  fields.Number("transonic_mach_low", kPositive, problem.transonic_mach_low,
+                "zero incidence from this Mach number");
+  fields.Number("transonic_mach_high", kPositive, problem.transonic_mach_high, "to this one");
+  fields.Quantity("q_max", kPressure, kPositive, problem.q_max_limit_pa, "largest; default: only reported",
+                  0.0);
   fields.Quantity("q_alpha", kPressureAngle, kPositive, problem.q_alpha_limit_pa_rad,
-                  "largest; without, it is reported only", 0.0);
+                  "largest; default: only reported", 0.0);
 }
 
 void DescribeProgram(Fields& fields, Reference& reference) {
@@ -161,18 +162,18 @@ void DescribeProgram(Fields& fields, Reference& reference) {
   fields.Quantity("alpha_max", kAngle, kIncidence, program.alpha_max_rad, "largest incidence, nose down");
   fields.Quantity("t1", kTime, kNonNegative, program.t1_s, "end of the vertical ascent");
   fields.Quantity("t3", kTime, kNonNegative, program.t3_s, "of the largest incidence");
-  fields.Quantity("t2", kTime, kNonNegative, program.t2_s, "begin of the gravity turn");
+  fields.Quantity("t2", kTime, kNonNegative, program.t2_s, "start of the gravity turn");
   fields.Quantity("coast", kTime, kNonNegative, program.coast_s, "before the last stage ignites");
   fields.Quantity("launch_azimuth", kAngle, kAzimuth, program.launch_azimuth_rad, "clockwise from north");
   fields.Quantity("last_ignition", kTime, kNonNegative, reference.last_ignition_s,
-                  "timer since lift-off of the last stage; 0 of a single one");
+                  "timer of the last stage, since lift-off; 0: a single stage");
   for (std::size_t stage = 1; stage < kMaxStages; ++stage) {
     const std::string coast = StageKey(stage, "coast"), ignition = StageKey(stage, "ignition");
     double& ignition_s = reference.earlier_ignition_s[stage];
     const auto timer = [&] {
       fields.Quantity(coast.c_str(), kTime, kNonNegative, program.earlier_coast_s[stage],
-                      "before this stage, which a timer ignites");
-      fields.Quantity(ignition.c_str(), kTime, kPositive, ignition_s, "that timer since lift-off");
+                      "before this stage, ignited by a timer");
+      fields.Quantity(ignition.c_str(), kTime, kPositive, ignition_s, "the ignition timer, since lift-off");
     };
     fields.Either({{Has(coast, kTime), timer, ignition_s > 0.0}, {Has(ignition, kTime), timer}});
   }
@@ -182,7 +183,7 @@ void DescribeProgram(Fields& fields, Reference& reference) {
       fields.Quantity(begin.c_str(), kAngle, kSteered, steering.begin_rad,
                       "this stage's incidence in the plane of ascent at ignition");
       fields.Quantity(end.c_str(), kAngle, kSteered, steering.end_rad,
-                      "and where the propellant would be used up");
+                      "its incidence when the propellant would be used up");
     });
   }
   fields.Check([&fields, &program] {
@@ -197,8 +198,7 @@ void DescribeOrbit(Fields& fields, Orbit& orbit) {
   fields.Quantity("flight_path_angle", kAngle, kAnyNumber, orbit.flight_path_angle_rad, "inertial");
   fields.Quantity("inclination", kAngle, Between(0.0, kPi), orbit.inclination_rad, "of the orbit");
   fields.Quantity("node_longitude", kAngle, Between(0.0, kTwoPi), orbit.node_longitude_rad,
-                  "where the plane crosses the equator northwards, east of Greenwich as it stood at lift-off",
-                  0.0);
+                  "of the ascending node, east of Greenwich at lift-off", 0.0);
   fields.Quantity("argument_of_latitude", kAngle, Between(0.0, kTwoPi), orbit.argument_of_latitude_rad,
                   "from the node along the orbit", 0.0);
 }
@@ -210,7 +210,7 @@ void DescribeErrors(Fields& fields, const Reference& reference) {
   std::optional<double> inclination_rad, argument_rad;
   if (problem.target_inclination_rad) inclination_rad = errors.inclination_rad;
   if (problem.target_argument_of_perigee_rad) argument_rad = errors.argument_of_perigee_rad;
-  constexpr const char* kMeaning = "orbit less target";
+  constexpr const char* kMeaning = "orbit - target";
   fields.Quantity("altitude", kLength, kAnyNumber, errors.altitude_m, kMeaning);
   fields.Quantity("velocity", kSpeed, kAnyNumber, errors.velocity_m_s, kMeaning);
   fields.Quantity("flight_path_angle", kAngle, kAnyNumber, errors.flight_path_angle_rad, kMeaning);
@@ -219,18 +219,17 @@ void DescribeErrors(Fields& fields, const Reference& reference) {
 }
 
 void DescribeConstraint(Fields& fields, ConstraintMargin& constraint) {
-  fields.Name("name", {}, "a constraint", constraint.name, "what is limited, unit in the name");
-  fields.Number("value", kAnyNumber, constraint.value, "that the trajectory has");
+  fields.Name("name", {}, "a constraint", constraint.name, "the limited quantity, with its unit");
+  fields.Number("value", kAnyNumber, constraint.value, "of the trajectory");
   fields.Number("limit", kAnyNumber, constraint.limit, "of the problem");
-  fields.Number("margin", kAnyNumber, constraint.margin, "limit less value");
-  fields.Flag("enforced", constraint.enforced, true, "or reported only");
+  fields.Number("margin", kAnyNumber, constraint.margin, "limit - value");
+  fields.Flag("enforced", constraint.enforced, true, "false: reported only");
 }
 
 void DescribeProvenance(Fields& fields, Reference& reference) {
-  fields.Text("engine", reference.engine, "version that found it");
-  fields.Text("vehicle_sha256", reference.vehicle_sha256, "of the canonical vehicle that it was found for");
-  fields.Integer("evaluations", 0, INT64_MAX, reference.evaluations,
-                 "trajectories that were flown to find it");
+  fields.Text("engine", reference.engine, "version of the engine");
+  fields.Text("vehicle_sha256", reference.vehicle_sha256, "of the canonical vehicle");
+  fields.Integer("evaluations", 0, INT64_MAX, reference.evaluations, "number of trajectories flown");
 }
 
 struct AttitudeColumn {
@@ -281,12 +280,12 @@ void DescribeProblem(Fields& fields, TrajectoryProblem& problem) {
        {Else(), [&] { DescribeWeights(fields, problem, false, false); }}});
   fields.Map("limits", "constraints", [&](Fields& limits) { DescribeConstraints(limits, problem); });
   fields.Quantity("velocity_reserve", kSpeed, Between(0.0, 1000.0), problem.velocity_reserve_m_s,
-                  "the trajectory shall be so much faster, for guidance to spend", 0.0);
+                  "extra velocity of the trajectory, for guidance to use", 0.0);
   fields.Quantity("reaction_control_propellant", kMass, kNonNegative, problem.reaction_control_propellant_kg,
-                  "that a flight will have expelled before the last stage burns", 0.0);
+                  "expelled in flight before the last stage burns", 0.0);
   fields.Integer("population", 4, 65535, problem.population, "of the genetic algorithm");
   fields.Integer("generations", 1, 65535, problem.generations, "of the genetic algorithm");
-  fields.Integer("seed", 0, UINT64_MAX, problem.seed, "of its draws");
+  fields.Integer("seed", 0, UINT64_MAX, problem.seed, "of the genetic algorithm's draws");
 }
 
 }  // namespace
@@ -297,16 +296,15 @@ void Describe(Fields& fields, TrajectoryProblem& problem) {
 
 void Describe(Fields& fields, Reference& reference) {
   fields.Text("name", reference.name, "of the reference");
-  fields.Text("target_missed", reference.target_missed, "how far the search got when it missed its target",
-              "");
-  fields.Map("problem", "that was solved", [&](Fields& problem) { Describe(problem, reference.problem); });
-  fields.Map("flight_program", "what was found; times since lift-off",
+  fields.Text("target_missed", reference.target_missed, "how near the search came to a missed target", "");
+  fields.Map("problem", "the solved problem", [&](Fields& problem) { Describe(problem, reference.problem); });
+  fields.Map("flight_program", "the result; times since lift-off",
              [&](Fields& program) { DescribeProgram(program, reference); });
-  fields.Map("orbit", "that is reached, by the optimiser's own simulation",
+  fields.Map("orbit", "reached, by the optimiser's own simulation",
              [&](Fields& orbit) { DescribeOrbit(orbit, reference.orbit); });
   fields.Map("errors", "of that orbit", [&](Fields& errors) { DescribeErrors(errors, reference); });
-  fields.List("constraints", 0, SIZE_MAX, reference.constraints, "how they are kept", DescribeConstraint);
-  fields.Map("provenance", "who found it, for what",
+  fields.List("constraints", 0, SIZE_MAX, reference.constraints, "values and margins", DescribeConstraint);
+  fields.Map("provenance", "of the search",
              [&](Fields& provenance) { DescribeProvenance(provenance, reference); });
   fields.Map("attitude", "over the flight",
              [&](Fields& attitude) { DescribeAttitude(attitude, reference.attitude); });

@@ -156,7 +156,7 @@ class Tuner {
   std::string MissedInFlight(std::size_t kind, double violation) const {
     if (kind == 0)
       return fmt::format("{:.0f} of {} flights are lost", violation * options_.cases, options_.cases);
-    return fmt::format("a deflection swings by {:.2f} deg, {:.2f} are allowed",
+    return fmt::format("a deflection oscillates by {:.2f} deg, {:.2f} deg is allowed",
                        (1.0 + violation) * kLimitCycleLimit_deg, kLimitCycleLimit_deg);
   }
 

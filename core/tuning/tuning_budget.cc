@@ -29,7 +29,7 @@ void CheckTuning(const Campaign& campaign, const AutopilotConfig& autopilot, con
     problems.push_back({"", 0, 0, path, message, allowed});
   };
   if (options.seed == campaign.sampling.seed)
-    add("seed", "the tuning would see the cases of campaign '" + campaign.name + "'",
+    add("seed", "the tuning would fly the cases of campaign '" + campaign.name + "'",
         "any but the campaign's own, " + std::to_string(campaign.sampling.seed));
   if (options.cases < 1 || options.cases > 10000)
     add("cases", std::to_string(options.cases) + " is out of range", "1 to 10000");

@@ -19,54 +19,53 @@ void DescribeStiffness(Fields& fields, BeamSection& section, bool timoshenko) {
   Taper& shear = section.shear_stiffness_n;
   Taper& diameter = section.outer_diameter_m;
   Taper& wall = section.thickness_m;
-  fields.Either(
-      {{Has("outer_diameter", kLength),
-        [&] {
-          fields.Misplaced("bending_stiffness", kBendingStiffness,
-                           "both a bending stiffness and a tube are given", kAllowed);
-          fields.Ends("outer_diameter", kLength, kDiameters, diameter.top, diameter.bottom, true,
-                      "of a round tube");
-          fields.Ends("thickness", kLength, kDiameters, wall.top, wall.bottom, true,
-                      "of its wall; half the diameter is a solid rod");
-          fields.Quantity("modulus", kModulus, kModuli, section.modulus_pa, "of elasticity, of the tube");
-          fields.Number("poisson_ratio", Between(0.0, 0.5), section.poisson_ratio,
-                        "of the tube, for its shear", 0.3);
-        }},
-       {Has("bending_stiffness", kBendingStiffness),
-        [&] {
-          fields.Ends("bending_stiffness", kBendingStiffness, kStiffnesses, bending.top, bending.bottom, true,
-                      "E I in plane y, in place of a tube");
-          fields.Ends("shear_stiffness", kForce, kStiffnesses, shear.top, shear.bottom, timoshenko,
-                      "kappa G A in plane y, which Timoshenko's theory needs; without, it does not shear");
-        }},
-       {Else(), [&] {
-          fields.Missing({"bending_stiffness_n_m2", "outer_diameter_m"}, kAllowed);
-        }}});
+  fields.Either({{Has("outer_diameter", kLength),
+                  [&] {
+                    fields.Misplaced("bending_stiffness", kBendingStiffness,
+                                     "both a bending stiffness and a tube are given", kAllowed);
+                    fields.Ends("outer_diameter", kLength, kDiameters, diameter.top, diameter.bottom, true,
+                                "of a round tube");
+                    fields.Ends("thickness", kLength, kDiameters, wall.top, wall.bottom, true,
+                                "of its wall; half the diameter: a solid rod");
+                    fields.Quantity("modulus", kModulus, kModuli, section.modulus_pa,
+                                    "Young's modulus of the tube");
+                    fields.Number("poisson_ratio", Between(0.0, 0.5), section.poisson_ratio,
+                                  "of the tube, for shear", 0.3);
+                  }},
+                 {Has("bending_stiffness", kBendingStiffness),
+                  [&] {
+                    fields.Ends("bending_stiffness", kBendingStiffness, kStiffnesses, bending.top,
+                                bending.bottom, true, "E I in plane y, instead of a tube");
+                    fields.Ends("shear_stiffness", kForce, kStiffnesses, shear.top, shear.bottom, timoshenko,
+                                "kappa G A in plane y; needed with theory: timoshenko");
+                  }},
+                 {Else(), [&] {
+                    fields.Missing({"bending_stiffness_n_m2", "outer_diameter_m"}, kAllowed);
+                  }}});
 }
 
 void Describe(Fields& fields, LumpedMass& lump) {
   fields.Quantity("station", kLength, kNonNegative, lump.station_m, "where it is fixed to the beam");
   fields.Either({{Has("element"),
                   [&] {
-                    fields.Text(
-                        "element", lump.element,
-                        "of the stage's structure: fixed there in place of being spread along the beam");
+                    fields.Text("element", lump.element,
+                                "of the stage's structure, or a body it jettisons; fixed at the station, not "
+                                "spread along the beam");
                     lump.name = lump.element;
                   }},
                  {Else(), [&] {
-                    fields.Text("name", lump.name, "of a body in a stage whose sections give masses");
+                    fields.Text("name", lump.name, "of a body, if the stage's sections give masses");
                     fields.Quantity("mass", kMass, kPositive, lump.mass_kg, "of the body");
                     fields.Quantity("cg_station", kLength, kNonNegative, lump.cg_station_m,
-                                    "its centre of gravity; where it is fixed unless given", lump.station_m);
+                                    "of its centre of gravity; default: station_*", lump.station_m);
                     fields.Quantity("inertia", kInertia, kNonNegative, lump.inertia_kg_m2,
-                                    "across the axis, about its own centre of gravity", 0.0);
+                                    "transverse, about its own centre of gravity", 0.0);
                   }}});
 }
 
 void Describe(Fields& fields, BeamStage& stage, bool timoshenko) {
   fields.List("sections", 1, 50, stage.sections,
-              "those of a stack follow one another without a gap and carry all its mass; where they overlap, "
-              "stiffnesses add",
+              "they cover a stack without gaps and carry all its mass; where they overlap, stiffnesses add",
               [&](Fields& section, BeamSection& value) { Describe(section, value, timoshenko); });
   const auto with_mass = static_cast<std::size_t>(
       std::count_if(stage.sections.begin(), stage.sections.end(),
@@ -77,7 +76,7 @@ void Describe(Fields& fields, BeamStage& stage, bool timoshenko) {
                   "mass_per_length_kg_m in every section of the stage, or in none: then the stage's "
                   "structure says what it "
                   "weighs");
-  fields.List("lumped_masses", 0, 50, stage.lumped_masses, "bodies that do not bend",
+  fields.List("lumped_masses", 0, 50, stage.lumped_masses, "rigid bodies",
               [](Fields& body, LumpedMass& lump) { Describe(body, lump); });
   for (std::size_t i = 0; i < stage.lumped_masses.size(); ++i) {
     const std::string item = "lumped_masses[" + std::to_string(i) + "]";
@@ -100,16 +99,17 @@ constexpr Unit kModeFrequency[] = {{"hz", kTwoPi}, {"rad_s", 1.0}};
 
 void Describe(Fields& fields, ModeRows& rows, std::size_t stages) {
   const double last_stage = static_cast<double>(stages > 0 ? stages : kMaxStages);
-  fields.Numbers("stage", Between(1.0, last_stage), 1, SIZE_MAX, rows.stage, "the stack's lowest, from 1");
+  fields.Numbers("stage", Between(1.0, last_stage), 1, SIZE_MAX, rows.stage,
+                 "lowest stage of the stack, from 1");
   fields.Quantities("propellant", kMass, kNonNegative, 1, SIZE_MAX, rows.propellant_kg, "of that stage");
-  fields.Words("plane", {"y", "z"}, rows.plane, "y alone stands for both");
+  fields.Words("plane", {"y", "z"}, rows.plane, "y alone: the same in both planes");
   fields.Numbers("mode", Between(1.0, 20.0), 1, SIZE_MAX, rows.mode, "from 1");
   fields.Quantities("frequency", kModeFrequency, kPositive, 1, SIZE_MAX, rows.frequency_rad_s, "of the mode");
   fields.Quantities("generalized_mass", kMass, kPositive, 1, SIZE_MAX, rows.mass_kg, "of the mode");
   fields.Quantities("station", kLength, kNonNegative, 1, SIZE_MAX, rows.station_m, "increasing");
-  fields.Numbers("deflection", kAnyNumber, 1, SIZE_MAX, rows.deflection, "there");
+  fields.Numbers("deflection", kAnyNumber, 1, SIZE_MAX, rows.deflection, "at the station");
   fields.Numbers("slope_1_m", kAnyNumber, 1, SIZE_MAX, rows.slope_1_m,
-                 "there, by the station, which grows aft");
+                 "d deflection / d station; stations grow aft");
 }
 
 using ModeKey =
@@ -248,47 +248,46 @@ void Describe(Fields& fields, BeamSection& section, bool timoshenko) {
                   "lower end, not aft of the stage's bottom_station_*");
   DescribeStiffness(fields, section, timoshenko);
   fields.Number("z_to_y_stiffness", Between(0.01, 100.0), section.z_to_y_stiffness,
-                "plane z is so many times as stiff, in bending and shear", 1.0);
+                "stiffness of plane z over plane y, in bending and shear", 1.0);
   fields.Ends("mass_per_length", kMassPerLength, kMassesPerLength, section.mass_per_length_kg_m.top,
               section.mass_per_length_kg_m.bottom, false,
-              "dry; in every section of a stage or in none, then its structure says what it weighs");
+              "dry; in all sections of a stage, or in none: its structure then gives the mass");
 }
 
-void Describe(Fields& fields, StructureBeam& beam, std::size_t stages) {
+void Describe(Fields& fields, StructureBeam& beam, std::size_t stages, std::size_t bodies) {
   fields.List("sensors", 0, 100, beam.sensors,
-              "places whose deflection and slope are shown, beside the nozzle pivot");
+              "places at which to show deflection and slope, besides the nozzle pivot");
   fields.Flag("rotary_inertia", beam.rotary_inertia, true,
-              "of the cross-sections; without, the beam turns more easily than the vehicle");
+              "of the cross-sections; false: the beam has less inertia than the vehicle");
   fields.Integer("flown_modes", 0, kMostFlownModes, beam.flown_modes,
-                 "that flights have in each plane; 0 flies the rigid vehicle. Only modes below half the "
-                 "autopilot's sampling "
-                 "frequency fly, and none above the first that is not",
+                 "modes flown per plane; 0: rigid vehicle. Modes from the first above half the autopilot's "
+                 "sampling frequency on do not fly",
                  3);
   fields.Number("damping_ratio", Between(0.0, 0.5), beam.damping_ratio, "of every mode in flight", 0.01);
   ModeRows rows;
-  fields.Either(
-      {{Has("modes_table"),
-        [&] {
-          fields.Table("modes_table", "a CSV file",
-                       "a CSV file of the modes of a finite-element model, in place of what "
-                       "follows",
-                       [&](Fields& columns) {
-                         Describe(columns, rows, stages);
-                         columns.Check([&] { beam.table = ModeTable(columns, rows).Modes(); });
-                       });
-        }},
-       {Else(), [&] {
-          fields.Choice<bool>("theory", {{"euler_bernoulli", false}, {"timoshenko", true}}, beam.timoshenko,
-                              "a beam that does not shear, or one that does", false);
-          fields.Integer("modes", 1, 10, beam.modes, "in each plane", 3);
-          fields.Integer("propellant_levels", 2, 101, beam.propellant_levels, "evenly from full to empty",
-                         11);
-          fields.Integer("elements", 20, 400, beam.elements, "at least so many along a stack", 60);
-          fields.List("stages", std::max<std::size_t>(stages, 1), stages > 0 ? stages : kMaxStages,
-                      beam.stages,
-                      "one entry for each of the vehicle's; its sections fly while the stage is attached",
-                      [&](Fields& stage, BeamStage& value) { Describe(stage, value, beam.timoshenko); });
-        }}});
+  fields.Either({{Has("modes_table"),
+                  [&] {
+                    fields.Table("modes_table", "a CSV file",
+                                 "a CSV file of a finite-element model's modes, instead of the keys below",
+                                 [&](Fields& columns) {
+                                   Describe(columns, rows, stages);
+                                   columns.Check([&] { beam.table = ModeTable(columns, rows).Modes(); });
+                                 });
+                  }},
+                 {Else(), [&] {
+                    fields.Choice<bool>("theory", {{"euler_bernoulli", false}, {"timoshenko", true}},
+                                        beam.timoshenko, "a beam without shear, or with shear", false);
+                    fields.Integer("modes", 1, 10, beam.modes, "in each plane", 3);
+                    fields.Integer("propellant_levels", 2, 101, beam.propellant_levels,
+                                   "evenly spaced from full to empty", 11);
+                    fields.Integer("elements", 20, 400, beam.elements, "least number along a stack", 60);
+                    fields.List(
+                        "stages", std::max<std::size_t>(bodies, 1), bodies > 0 ? bodies : kMaxStages,
+                        beam.stages,
+                        "one entry per stage of the vehicle, none for a restart; its sections fly while the "
+                        "stage is attached",
+                        [&](Fields& stage, BeamStage& value) { Describe(stage, value, beam.timoshenko); });
+                  }}});
 }
 
 }  // namespace dispersa

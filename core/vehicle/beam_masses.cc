@@ -54,6 +54,22 @@ FixedMass Fixed(const LumpedMass& lump) {
   return {lump.station_m, lump.mass_kg, lump.cg_station_m, lump.inertia_kg_m2};
 }
 
+// A tube of the mass model: spread over its length, or fixed at one station if the beam lumps it.
+template <class Tube>
+void AddTube(const Tube& tube, double mass_kg, const BeamStage& beam, BeamMasses& masses) {
+  const SpreadMass spread = Spread(mass_kg, tube.top_station_m, tube.bottom_station_m, tube.outer_diameter_m,
+                                   tube.inner_diameter_m);
+  const auto lump = std::find_if(beam.lumped_masses.begin(), beam.lumped_masses.end(),
+                                 [&](const LumpedMass& l) { return l.element == tube.name; });
+  if (lump == beam.lumped_masses.end()) {
+    masses.spread.push_back(spread);
+    return;
+  }
+  const double length = tube.bottom_station_m - tube.top_station_m;
+  masses.fixed.push_back({lump->station_m, mass_kg, 0.5 * (tube.top_station_m + tube.bottom_station_m),
+                          mass_kg * (spread.gyration2_m2.top + Square(length) / 12.0)});
+}
+
 }  // namespace
 
 double SpreadMass::MassPerLength(double station_m) const {
@@ -65,9 +81,9 @@ double SpreadMass::Gyration2(double station_m) const {
   return gyration2_m2.At((station_m - top_station_m) / (bottom_station_m - top_station_m));
 }
 
-bool IsLumped(const BeamStage& stage, const MassElement& element) {
+bool IsLumped(const BeamStage& stage, const std::string& element) {
   return std::any_of(stage.lumped_masses.begin(), stage.lumped_masses.end(),
-                     [&](const LumpedMass& lump) { return lump.element == element.name; });
+                     [&](const LumpedMass& lump) { return lump.element == element; });
 }
 
 OwnMassScale ScaleOwnMasses(const Vehicle& vehicle, int stage) {
@@ -135,9 +151,12 @@ OwnMassScale ScaleOwnMasses(const Vehicle& vehicle, int stage) {
   return scale;
 }
 
-BeamMasses BuildBeamMasses(const Vehicle& vehicle, int stage, double propellant_kg) {
+BeamMasses BuildBeamMasses(const Vehicle& vehicle, int stage, double propellant_kg, unsigned gone) {
   const BeamStage nothing_lumped;  // a rigid vehicle, or one with a table of modes
   BeamMasses masses;
+  std::size_t jettison = 0;  // of the vehicle's, those of the stages below passed over
+  for (std::size_t i = 0; i < static_cast<std::size_t>(stage); ++i)
+    jettison += vehicle.stages[i].jettisoned.size();
   for (std::size_t i = static_cast<std::size_t>(stage), last; i < vehicle.stages.size(); i = last + 1) {
     last = static_cast<std::size_t>(LastBurn(vehicle, static_cast<int>(i)));
     const Stage& s = vehicle.stages[i];
@@ -153,25 +172,12 @@ BeamMasses BuildBeamMasses(const Vehicle& vehicle, int stage, double propellant_
       }
       for (const LumpedMass& lump : beam.lumped_masses) masses.fixed.push_back(Fixed(lump));
     } else {
-      for (const MassElement& e : s.structure) {
-        const double mass_kg = dry_kg * e.fraction;
-        const SpreadMass spread =
-            Spread(mass_kg, e.top_station_m, e.bottom_station_m, e.outer_diameter_m, e.inner_diameter_m);
-        const auto lump = std::find_if(beam.lumped_masses.begin(), beam.lumped_masses.end(),
-                                       [&](const LumpedMass& l) { return l.element == e.name; });
-        if (lump == beam.lumped_masses.end()) {
-          masses.spread.push_back(spread);
-          continue;
-        }
-        const double length = e.bottom_station_m - e.top_station_m;
-        masses.fixed.push_back({lump->station_m, mass_kg, 0.5 * (e.top_station_m + e.bottom_station_m),
-                                mass_kg * (spread.gyration2_m2.top + Square(length) / 12.0)});
-      }
+      for (const MassElement& e : s.structure) AddTube(e, dry_kg * e.fraction, beam, masses);
     }
-    // As long as they are carried; of a stack that has let go of them its loads are nothing to speak of.
-    for (const Jettison& j : vehicle.stages[last].jettisoned)
-      masses.spread.push_back(
-          Spread(j.mass_kg, j.top_station_m, j.bottom_station_m, j.outer_diameter_m, j.inner_diameter_m));
+    for (const Jettison& j : vehicle.stages[last].jettisoned) {
+      if (!(gone >> jettison & 1u)) AddTube(j, j.mass_kg, beam, masses);
+      ++jettison;
+    }
     const bool burning = i == static_cast<std::size_t>(stage);
     const double grain_kg = burning ? propellant_kg : s.propellant_mass_kg;
     if (!(grain_kg > 0.0)) continue;

@@ -35,16 +35,16 @@ struct BeamMasses {
 };
 
 /// The masses of the stack of stages `stage` (from 0) and above, with `propellant_kg` left in its lowest
-/// stage.
+/// stage. Bit i of `gone`: jettison i (BuildJettisonedMasses) has left.
 ///
-/// Structure elements and grains are the tubes of the mass model. They are spread evenly over their length,
-/// or fixed at one station if the beam lumps them. So mass, centre of gravity and transverse inertia are
-/// those of StackMass::At to rounding, at any level, with or without a beam. A stage that gives its own
-/// masses has them scaled (ScaleOwnMasses).
-BeamMasses BuildBeamMasses(const Vehicle& vehicle, int stage, double propellant_kg);
+/// Structure elements, jettisoned bodies and grains are the tubes of the mass model. They are spread evenly
+/// over their length, or fixed at one station if the beam lumps them. So mass, centre of gravity and
+/// transverse inertia are those of StackMass::At to rounding, at any level, with or without a beam. A stage
+/// that gives its own masses has them scaled (ScaleOwnMasses).
+BeamMasses BuildBeamMasses(const Vehicle& vehicle, int stage, double propellant_kg, unsigned gone = 0);
 
-/// Whether the beam has the element of its stage's structure among its lumped masses.
-bool IsLumped(const BeamStage& stage, const MassElement& element);
+/// Whether the beam has this element of its stage's structure, or jettisoned body, among its lumped masses.
+bool IsLumped(const BeamStage& stage, const std::string& element);
 
 /// Scaling of a stage's own mass per length to its mass model. It is multiplied by the quadratic polynomial
 /// in station that makes mass, first and second moment, with the lumped masses, those of the dry stage. The

@@ -61,11 +61,11 @@ struct Tank {
 inline void Describe(Fields& fields, Tank& tank) {
   fields.Text("name", tank.name, "what it holds");
   fields.Quantity("propellant_mass", kMass, kPositive, tank.propellant_mass_kg,
-                  "at ignition, with what stays as residual");
+                  "at ignition, residual included");
   fields.Quantity("density", kDensity, kPositive, tank.density_kg_m3, "of the liquid");
   fields.Quantity("top_station", kLength, kNonNegative, tank.top_station_m, "upper end");
   fields.Quantity("bottom_station", kLength, kPositive, tank.bottom_station_m,
-                  "lower end, where the liquid stands");
+                  "lower end, bottom of the liquid");
   fields.Quantity("diameter", kLength, kPositive, tank.diameter_m, "inside");
 }
 
@@ -95,16 +95,15 @@ inline constexpr int kMaxJettisons = 8;
 inline void Describe(Fields& fields, Jettison& jettison) {
   fields.Text("name", jettison.name, "what it is");
   fields.Quantity("mass", kMass, kPositive, jettison.mass_kg,
-                  "part of the stage's lift-off mass, beside its dry mass");
+                  "in the stage's lift-off mass, not in its dry mass");
   DescribeTube(fields, jettison, "inside", 0.0);
   fields.Map("at", "when it leaves", [&](Fields& at) {
     std::size_t trigger = static_cast<std::size_t>(jettison.trigger);
-    at.OneOf(
-        {{"time", kTime, kPositive, "since lift-off"},
-         {"altitude", kLength, kPositive, "geodetic"},
-         {"heat_flux", kHeatFlux, kPositive,
-          "above 80 km, as half density times the cube of the speed over the rotating Earth falls to it"}},
-        trigger, jettison.threshold);
+    at.OneOf({{"time", kTime, kPositive, "since lift-off"},
+              {"altitude", kLength, kPositive, "geodetic"},
+              {"heat_flux", kHeatFlux, kPositive,
+               "above 80 km, when half density times speed cubed over the rotating Earth falls to it"}},
+             trigger, jettison.threshold);
     jettison.trigger = static_cast<JettisonTrigger>(trigger);
   });
 }

@@ -21,17 +21,16 @@ struct Nozzle {
 
 /// One of `count` nozzles.
 inline void Describe(Fields& fields, Nozzle& nozzle, std::size_t count) {
-  fields.Text("name", nozzle.name, "by which dispersions name it");
+  fields.Text("name", nozzle.name, "used by dispersions");
   fields.Quantity("y", kLength, kAnyNumber, nozzle.y_m, "of its pivot, off the axis to the right", 0.0);
   fields.Quantity("z", kLength, kAnyNumber, nozzle.z_m, "of its pivot, off the axis downwards", 0.0);
   fields.Number("thrust_share", UpTo(1.0), nozzle.thrust_share,
-                "of the stage's thrust; all alike unless given", 1.0 / static_cast<double>(count));
-  fields.Quantities(
-      "turns_towards", kAngle, Between(-2.0 * kPi, 2.0 * kPi), 0, 2, nozzle.towards_rad,
-      "directions towards which positive angles of its hinges turn the thrust, from body y towards body z; "
-      "without, it is fixed");
+                "of the stage's thrust; default: equal shares", 1.0 / static_cast<double>(count));
+  fields.Quantities("turns_towards", kAngle, Between(-2.0 * kPi, 2.0 * kPi), 0, 2, nozzle.towards_rad,
+                    "for each hinge, the direction in which a positive angle turns the thrust, from body y "
+                    "towards body z; none: fixed");
   fields.Quantity("limit", kAngle, Inside(0.0, kQuarterTurn), nozzle.limit_rad,
-                  "of its whole deflection; the gimbal's unless given", 0.0);
+                  "of its total deflection; default: the gimbal's", 0.0);
 }
 
 /// Without a list: four nozzles at 90°, each hinged in one plane. Two serve pitch (right, left), two yaw
@@ -56,11 +55,11 @@ struct Gimbal {
 
 inline void Describe(Fields& fields, Gimbal& gimbal) {
   fields.Quantity("pivot_station", kLength, kPositive, gimbal.pivot_station_m, "of the hinges");
-  fields.List("nozzles", 0, kNozzles, gimbal.nozzles, "in place of four in a cross",
+  fields.List("nozzles", 0, kNozzles, gimbal.nozzles, "instead of four in a cross",
               [&](Fields& item, Nozzle& nozzle, std::size_t count) { Describe(item, nozzle, count); });
   fields.Unless(Has("nozzles"), [&] {
     fields.Quantity("radius", kLength, kPositive, gimbal.radius_m,
-                    "of the nozzles' centres from the axis, of four in a cross");
+                    "from the axis to the centres of four nozzles in a cross");
   });
   fields.Quantity("limit", kAngle, Inside(0.0, kQuarterTurn), gimbal.limit_rad, "of each drive");
   fields.Quantity("rate_limit", kAngularRate, kPositive, gimbal.rate_limit_rad_s, "of each drive");
@@ -70,19 +69,18 @@ inline void Describe(Fields& fields, Gimbal& gimbal) {
   fields.Integer("delay_ticks", 0, 50, gimbal.delay_ticks,
                  "ticks of the autopilot between command and actuator");
   fields.Quantity("dead_zone", kAngle, kNonNegative, gimbal.dead_zone_rad,
-                  "distance from the command that the servo does not feel", 0.0);
+                  "largest error to which the servo does not react", 0.0);
   fields.Quantity("friction", kAngle, kNonNegative, gimbal.friction_rad,
-                  "distance from the command at which a drive at rest breaks loose", 0.0);
+                  "error at which a drive at rest starts to move", 0.0);
   fields.Quantity("resolution", kAngle, kNonNegative, gimbal.resolution_rad,
-                  "step in which the command reaches the servo", 0.0);
+                  "step of the command at the servo", 0.0);
 }
 
 /// The turning mass of one nozzle. In a list each stage has its own entry.
 inline void DescribeTurningNozzle(Fields& fields, Gimbal& gimbal) {
-  fields.Quantity("mass", kMass, kPositive, gimbal.nozzle_mass_kg, "what turns, of one nozzle");
-  fields.Quantity("cg_aft_of_pivot", kLength, kAnyNumber, gimbal.nozzle_cg_m, "its centre of gravity");
-  fields.Quantity("inertia_about_hinge", kInertia, kPositive, gimbal.nozzle_inertia_kg_m2,
-                  "its moment of inertia");
+  fields.Quantity("mass", kMass, kPositive, gimbal.nozzle_mass_kg, "of the turning part of one nozzle");
+  fields.Quantity("cg_aft_of_pivot", kLength, kAnyNumber, gimbal.nozzle_cg_m, "of its centre of gravity");
+  fields.Quantity("inertia_about_hinge", kInertia, kPositive, gimbal.nozzle_inertia_kg_m2, "of that part");
 }
 
 }  // namespace dispersa

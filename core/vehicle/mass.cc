@@ -116,6 +116,14 @@ std::vector<JettisonedMass> BuildJettisonedMasses(const Vehicle& vehicle) {
   return all;
 }
 
+unsigned CarriedBy(const Vehicle& vehicle, int stage) {
+  unsigned carried = 0, bit = 1;
+  for (std::size_t i = 0; i < vehicle.stages.size(); ++i)
+    for (std::size_t k = 0; k < vehicle.stages[i].jettisoned.size(); ++k, bit <<= 1)
+      if (static_cast<int>(i) >= stage) carried |= bit;
+  return carried;
+}
+
 StackMass Without(StackMass stack, int lowest_stage, const std::vector<JettisonedMass>& jettisons,
                   unsigned gone) {
   for (std::size_t i = 0; i < jettisons.size(); ++i) {

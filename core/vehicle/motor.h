@@ -26,9 +26,9 @@ enum class CutOff {
 
 inline void Describe(Fields& fields, Throttle& throttle) {
   fields.Quantities("time", kTime, kNonNegative, 2, kThrustCurveCorners, throttle.time_s,
-                    "since ignition, from 0; linear between");
+                    "since ignition, from 0; linear between points");
   fields.Quantities("level", kShare, Between(0.0, 1.0), 2, kThrustCurveCorners, throttle.level,
-                    "of full thrust; the last one holds, and a last one of 0 ends the burn");
+                    "of full thrust; the last one holds; a last value of 0 ends the burn");
   fields.Check([&] {
     if (throttle.time_s.size() != throttle.level.size())
       fields.Refuse("",
@@ -71,15 +71,15 @@ void SetThrustCurve(ThrustCurve curve, Motor& motor);
 /// Commands of an engine in one of its burns.
 inline void DescribeCommands(Fields& fields, Motor& motor) {
   bool is_throttled = !motor.throttle.empty(), is_cut_off = motor.cut_off != CutOff::kAtDepletion;
-  fields.OptionalTable("throttle", is_throttled, "thrust over the time since ignition, or a CSV file of it",
+  fields.OptionalTable("throttle", is_throttled, "thrust over time since ignition, or its CSV file",
                        [&](Fields& throttle) { Describe(throttle, motor.throttle); });
   fields.OptionalMap(
-      "cut_off", is_cut_off, "what ends the burn, unless the propellant is used up before", [&](Fields& cut) {
+      "cut_off", is_cut_off, "end of the burn, unless the propellant is used up before", [&](Fields& cut) {
         cut.Choice<CutOff>("at",
                            {{"depletion", CutOff::kAtDepletion},
                             {"time", CutOff::kAtTime},
                             {"inertial_velocity", CutOff::kAtVelocity}},
-                           motor.cut_off, "what is waited for");
+                           motor.cut_off, "event that ends the burn");
         cut.When(Is("at", {"time"}),
                  [&] { cut.Quantity("after", kTime, kPositive, motor.cut_off_s, "since ignition"); });
         cut.When(Is("at", {"inertial_velocity"}), [&] {
@@ -92,14 +92,14 @@ inline void DescribeLiquid(Fields& fields, Motor& motor) {
   fields.Quantity("thrust", kForce, kPositive, motor.thrust_n, "at full thrust, of all nozzles, in vacuum");
   fields.Quantity("specific_impulse", kTime, kPositive, motor.specific_impulse_s, "in vacuum");
   fields.Quantity("residual_mass", kMass, kNonNegative, motor.residual_mass_kg,
-                  "of the propellant: never flows", 0.0);
+                  "propellant that stays in the tanks", 0.0);
   DescribeCommands(fields, motor);
 }
 
 inline void DescribeThrustCurve(Fields& fields, Motor& motor) {
   bool in_vacuum = true;
   fields.Choice<bool>("reference", {{"vacuum", true}, {"sea_level", false}}, in_vacuum,
-                      "where it was measured; at sea level p A_e of the nozzles' exits is added");
+                      "where it was measured; p A_e is added to sea-level thrust");
   fields.Table("table",
                "a CSV file (time_s, thrust_n, optional mass_flow_kg_s), an .eng file, or the columns",
                "a CSV file, an .eng file, or the columns",
@@ -117,9 +117,9 @@ inline void DescribeThrustCurve(Fields& fields, Motor& motor) {
 
 inline void DescribeExit(Fields& fields, Motor& motor) {
   fields.Quantity("nozzle_exit_area", kArea, kNonNegative, motor.nozzle_exit_area_m2,
-                  "of all nozzles; thrust is that in vacuum less p A_e. 0 switches the term off", 0.0);
+                  "of all nozzles; thrust = vacuum thrust - p A_e. 0: without this term", 0.0);
   fields.Quantity("published_mass_flow", kMassFlow, kNonNegative, motor.published_mass_flow_kg_s,
-                  "as printed in the source; only compared", 0.0);
+                  "as printed in the source; for comparison only", 0.0);
 }
 
 /// `message` says why a map may not have constant thrust and its ramps. {} is replaced by the key.
@@ -136,13 +136,13 @@ inline void DescribeSolid(Fields& fields, Motor& motor) {
                   [&] {
                     RefuseRamps(fields, "'{}' and 'thrust_curve' are both given, and the curve says it all",
                                 "either thrust_curve, or thrust_* with burning_time_* and ramps");
-                    fields.Map("thrust_curve", "thrust over the time since ignition",
+                    fields.Map("thrust_curve", "thrust over time since ignition",
                                [&](Fields& curve) { DescribeThrustCurve(curve, motor); });
                   }},
                  {Else(), [&] {
                     fields.Quantity("thrust", kForce, kPositive, motor.thrust_n, "of all nozzles, in vacuum");
                     fields.Quantity("burning_time", kTime, kPositive, motor.burning_time_s,
-                                    "in which the propellant would be used up at full thrust");
+                                    "to use up the propellant at full thrust");
                     fields.Quantity("ignition_rise", kTime, kNonNegative, motor.ignition_rise_s,
                                     "linear rise to full thrust", 0.0);
                     fields.Quantity("tail_off", kTime, kNonNegative, motor.tail_off_s,

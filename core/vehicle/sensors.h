@@ -21,13 +21,13 @@ struct RateGyro {
 inline constexpr int kRateGyros = 3;
 
 inline void Describe(Fields& fields, RateGyro& gyro) {
-  fields.Text("name", gyro.name, "by which the autopilot names it");
+  fields.Text("name", gyro.name, "used by the autopilot");
   fields.Quantity("station", kLength, kNonNegative, gyro.station_m, "where it is");
   fields.Quantity("bandwidth", kFrequency, kPositive, gyro.bandwidth_rad_s,
-                  "natural frequency; without, it follows at once", 0.0);
-  fields.Number("damping_ratio", kPositive, gyro.damping_ratio, "beside a bandwidth", 0.7);
-  fields.Quantity("quantum", kAngularRate, kPositive, gyro.quantum_rad_s,
-                  "step of its output; none unless given", 0.0);
+                  "natural frequency; default: no lag", 0.0);
+  fields.Number("damping_ratio", kPositive, gyro.damping_ratio, "of a gyro with a bandwidth", 0.7);
+  fields.Quantity("quantum", kAngularRate, kPositive, gyro.quantum_rad_s, "step of its output; default: none",
+                  0.0);
   fields.Integer("sample_ticks", 1, 100, gyro.sample_ticks, "ticks of the autopilot between samples", 1);
 }
 
@@ -38,11 +38,10 @@ struct Sensors {
 };
 
 inline void Describe(Fields& fields, Sensors& sensors) {
-  fields.Map("inertial_unit", "whose attitude is measured", [&](Fields& unit) {
+  fields.Map("inertial_unit", "measures the attitude", [&](Fields& unit) {
     unit.Quantity("station", kLength, kNonNegative, sensors.inertial_unit_station_m, "where it is");
   });
-  fields.List("rate_gyros", 0, kRateGyros, sensors.rate_gyros,
-              "whose rates are measured in place of the unit's");
+  fields.List("rate_gyros", 0, kRateGyros, sensors.rate_gyros, "measure the rates, instead of the unit");
 }
 
 }  // namespace dispersa

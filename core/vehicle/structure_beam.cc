@@ -44,10 +44,10 @@ class BeamChecker {
           "one for each of the " + std::to_string(vehicle_.stages.size()) + " stages");
       return std::move(problems_);
     }
-    for (std::size_t i = 0; i < beam_.stages.size(); ++i) CheckStage(i);
-    if (problems_.empty()) {
-      for (std::size_t i = 0; i < beam_.stages.size(); ++i) CheckStack(i);
-    }
+    for (std::size_t i = 0; i < beam_.stages.size(); ++i)
+      if (!vehicle_.stages[i].restarts) CheckStage(i);
+    for (std::size_t i = 0; problems_.empty() && i < beam_.stages.size(); ++i)
+      if (!vehicle_.stages[i].restarts) CheckStack(i);
     return std::move(problems_);
   }
 
@@ -56,21 +56,36 @@ class BeamChecker {
     problems_.push_back({"structure_beam." + path, message, allowed});
   }
 
+  // A restart of a stage has no entry of its own in the file.
+  std::string EntryOf(std::size_t i) const {
+    const auto first = vehicle_.stages.begin();
+    const auto restarts = std::count_if(first, first + static_cast<std::ptrdiff_t>(i),
+                                        [](const Stage& stage) { return stage.restarts; });
+    return "stages[" + std::to_string(i - static_cast<std::size_t>(restarts)) + "]";
+  }
+
+  // What leaves in any of the stage's burns.
+  const std::vector<Jettison>& JettisonedOf(std::size_t i) const {
+    return vehicle_.stages[static_cast<std::size_t>(LastBurn(vehicle_, static_cast<int>(i)))].jettisoned;
+  }
+
   void CheckStage(std::size_t i) {
     const BeamStage& stage = beam_.stages[i];
-    const std::string path = "stages[" + std::to_string(i) + "]";
+    const std::string path = EntryOf(i);
     for (std::size_t k = 0; k < stage.sections.size(); ++k)
       CheckSection(stage.sections[k], vehicle_.stages[i].bottom_station_m,
                    path + ".sections[" + std::to_string(k) + "]");
-    const std::vector<MassElement>& structure = vehicle_.stages[i].structure;
+    std::vector<std::string> names;
+    for (const MassElement& e : vehicle_.stages[i].structure) names.push_back(e.name);
+    for (const Jettison& j : JettisonedOf(i)) names.push_back(j.name);
     for (std::size_t k = 0; k < stage.lumped_masses.size(); ++k) {
       const LumpedMass& lump = stage.lumped_masses[k];
       const std::string item = path + ".lumped_masses[" + std::to_string(k) + "]";
       if (lump.element.empty()) continue;
-      const auto named = [&](const MassElement& e) { return e.name == lump.element; };
-      if (std::none_of(structure.begin(), structure.end(), named))
-        Add(item + ".element", "'" + lump.element + "' is no element of the stage's structure",
-            "one of " + ElementNames(structure));
+      if (std::find(names.begin(), names.end(), lump.element) == names.end())
+        Add(item + ".element",
+            "'" + lump.element + "' is no element of the stage's structure and no body that it jettisons",
+            "one of " + Joined(names));
       for (std::size_t j = 0; j < k; ++j) {
         if (stage.lumped_masses[j].element == lump.element)
           Add(item + ".element", "'" + lump.element + "' is lumped twice", "each element once");
@@ -98,9 +113,9 @@ class BeamChecker {
 
   // The stack of stages i and above: one beam without a gap, and all that it carries between its ends.
   void CheckStack(std::size_t i) {
-    const std::string path = "stages[" + std::to_string(i) + "]";
+    const std::string path = EntryOf(i);
     std::vector<std::pair<double, double>> pieces;
-    for (std::size_t k = i; k < beam_.stages.size(); ++k) {
+    for (std::size_t k = i; k < beam_.stages.size(); ++k) {  // a restart's are those of its stage again
       for (const BeamSection& s : beam_.stages[k].sections)
         pieces.emplace_back(s.top_station_m, s.bottom_station_m);
     }
@@ -134,15 +149,17 @@ class BeamChecker {
         Add(path + ".lumped_masses[" + std::to_string(k) + "].station_m", "lies outside of " + beam,
             "a station of the beam");
     }
+    const auto check_tube = [&](const auto& tube, const char* of) {
+      if (!IsLumped(beam_.stages[i], tube.name) && !inside(tube.top_station_m, tube.bottom_station_m))
+        Add(path + ".sections", "'" + tube.name + "' of the stage's " + of + " lies outside of " + beam,
+            "sections along the whole element, or the element among lumped_masses");
+    };
+    for (const Jettison& j : JettisonedOf(i)) check_tube(j, "jettisoned bodies");
     if (beam_.stages[i].own_masses) {
       CheckOwnMasses(i, path);
       return;
     }
-    for (const MassElement& e : stage.structure) {
-      if (!IsLumped(beam_.stages[i], e) && !inside(e.top_station_m, e.bottom_station_m))
-        Add(path + ".sections", "'" + e.name + "' of the stage's structure lies outside of " + beam,
-            "sections along the whole element, or the element among lumped_masses");
-    }
+    for (const MassElement& e : stage.structure) check_tube(e, "structure");
   }
 
   void CheckOwnMasses(std::size_t i, const std::string& path) {
@@ -161,11 +178,22 @@ class BeamChecker {
 
   void CheckTable() {
     for (std::size_t i = 0; i < vehicle_.stages.size(); ++i) {
+      if (!vehicle_.stages[i].jettisoned.empty())
+        Add("modes_table",
+            "has the modes of a stack that carries all its bodies, but stage " + std::to_string(i + 1) +
+                " jettisons some",
+            "structure_beam.stages, from which the modes of both follow");
+      if (vehicle_.stages[i].restarts) continue;
       if (std::none_of(beam_.table.begin(), beam_.table.end(),
                        [&](const TabledMode& m) { return m.stage == static_cast<int>(i); }))
         Add("modes_table", "has no modes of stage " + std::to_string(i + 1), "modes of every stage's stack");
     }
     for (const TabledMode& m : beam_.table) {
+      if (vehicle_.stages[static_cast<std::size_t>(m.stage)].restarts) {
+        Add("modes_table", "has modes of stage " + std::to_string(m.stage + 1) + ", a restart",
+            "modes of the stage that burns again: they hold for all its burns");
+        return;
+      }
       const double full = vehicle_.stages[static_cast<std::size_t>(m.stage)].propellant_mass_kg;
       if (m.propellant_kg > full * (1.0 + 1e-9)) {
         Add("modes_table",
@@ -177,10 +205,10 @@ class BeamChecker {
     }
   }
 
-  static std::string ElementNames(const std::vector<MassElement>& structure) {
-    std::string names;
-    for (const MassElement& e : structure) names += (names.empty() ? "" : ", ") + e.name;
-    return names;
+  static std::string Joined(const std::vector<std::string>& names) {
+    std::string all;
+    for (const std::string& name : names) all += (all.empty() ? "" : ", ") + name;
+    return all;
   }
 
   const Vehicle& vehicle_;

@@ -100,12 +100,12 @@ struct StructureBeam {
   int flown_modes = 3;
   double damping_ratio = 0.01;
   std::vector<BeamSensor> sensors;
-  std::vector<BeamStage> stages;  ///< in the order of the vehicle's stages, none with a table
+  std::vector<BeamStage> stages;  ///< as the vehicle's; a restart has its stage's (none with a table)
   std::vector<TabledMode> table;  ///< by stage, falling propellant, plane and mode (none with stages)
 };
 
-/// The keys of the beam of a vehicle of `stages` stages (0: number unknown).
-void Describe(Fields& fields, StructureBeam& beam, std::size_t stages);
+/// The keys of the beam of a vehicle of `stages` stages, `bodies` of which are no restart (0: unknown).
+void Describe(Fields& fields, StructureBeam& beam, std::size_t stages, std::size_t bodies);
 
 struct Vehicle;
 

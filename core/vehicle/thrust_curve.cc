@@ -37,11 +37,11 @@ ThrustCurve InVacuum(ThrustCurve at_sea_level, double exit_area_m2) {
 
 void Describe(Fields& fields, ThrustCurve& curve) {
   fields.Quantities("time", kTime, kNonNegative, 2, kThrustCurveCorners, curve.time_s,
-                    "since ignition, from 0; linear between");
+                    "since ignition, from 0; linear between points");
   fields.Quantities("thrust", kForce, kNonNegative, 2, kThrustCurveCorners, curve.thrust_n, "as measured");
   fields.OptionalQuantities(
       "mass_flow", kMassFlow, kNonNegative, 2, kThrustCurveCorners, curve.flow_kg_s,
-      "sums up to the propellant within 1 %; without, the flow is proportional to the thrust");
+      "its integral is the propellant, within 1 %; default: proportional to the thrust");
   fields.Check([&] {
     const auto refuse_count = [&](std::size_t count, const std::string& what, const std::string& allowed) {
       fields.Refuse(

@@ -200,8 +200,6 @@ void CheckRestarts(const Vehicle& vehicle, Checker& check) {
   for (std::size_t i = 0; i < vehicle.stages.size(); ++i) {
     if (!vehicle.stages[i].restarts) continue;
     const std::string path = "stages[" + std::to_string(i) + "].restarts";
-    check.Require(!vehicle.structure_beam, path, "of a vehicle that bends is not modelled",
-                  "none beside structure_beam");
     if (i == 0) continue;  // said at its ignition
     const Stage& before = vehicle.stages[i - 1];
     if (before.motor.cut_off == CutOff::kAtVelocity) continue;  // what it leaves a flight tells
@@ -221,9 +219,6 @@ void CheckJettisons(const Vehicle& vehicle, Checker& check) {
     count += static_cast<int>(here);
     check.Require(count <= kMaxJettisons, path, "makes " + std::to_string(count) + " in all",
                   "up to " + std::to_string(kMaxJettisons) + " of a vehicle");
-    check.Require(here == 0 || !vehicle.structure_beam, path,
-                  "changes the modes of a vehicle that bends, which is not modelled",
-                  "none beside structure_beam");
   }
 }
 

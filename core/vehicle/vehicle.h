@@ -58,14 +58,13 @@ struct Stage {
 
 inline void DescribeIgnition(Fields& fields, Stage& stage) {
   fields.Map("ignition", "what ignites it", [&](Fields& ignition) {
-    ignition.Choice<IgnitionTrigger>(
-        "trigger",
-        {{"lift_off", IgnitionTrigger::kLiftOff},
-         {"burnout_detection", IgnitionTrigger::kBurnoutDetection},
-         {"timer", IgnitionTrigger::kTimer}},
-        stage.ignition,
-        "lift-off; separation of the stage below; or the flight program's time: the vehicle "
-        "coasts before it under its reaction control");
+    ignition.Choice<IgnitionTrigger>("trigger",
+                                     {{"lift_off", IgnitionTrigger::kLiftOff},
+                                      {"burnout_detection", IgnitionTrigger::kBurnoutDetection},
+                                      {"timer", IgnitionTrigger::kTimer}},
+                                     stage.ignition,
+                                     "lift-off; separation of the stage below; or the flight program's "
+                                     "timer, after a coast under reaction control");
     ignition.Quantity("delay", kTime, kNonNegative, stage.ignition_delay_s,
                       "after separation of the stage below", 0.0);
   });
@@ -73,43 +72,43 @@ inline void DescribeIgnition(Fields& fields, Stage& stage) {
 
 inline void Describe(Fields& fields, Stage& stage) {
   fields.Flag("restarts", stage.restarts, false,
-              "it is the stage before, a liquid one, whose engine burns again: the same body, its propellant "
-              "what is left. "
-              "What the stage jettisons may leave in any of its burns");
+              "the liquid stage before burns again: the same body, with the propellant left. Its jettisoned "
+              "masses may leave in any of its burns");
   fields.Text("name", stage.name, "what it is");
   fields.Either(
       {{Is("restarts", {"true"}), [&] { DescribeCommands(fields, stage.motor); }},
        {Else(), [&] {
           fields.Quantity("liftoff_mass", kMass, kPositive, stage.liftoff_mass_kg,
-                          "of this stage and everything above it (Table 1)");
+                          "of this stage and all above it (Table 1)");
           fields.Quantity("propellant_mass", kMass, kPositive, stage.propellant_mass_kg, "at ignition");
           fields.Quantity("diameter", kLength, kPositive, stage.diameter_m, "of its body");
           fields.Quantity("bottom_station", kLength, kPositive, stage.bottom_station_m,
-                          "where the stack ends while this stage is its lowest");
+                          "aft end of the stack, while this stage is its lowest");
           fields.Map("motor", "motor or engine", [&](Fields& motor) { Describe(motor, stage.motor); });
-          fields.Either({{Has("motor.liquid"),
-                          [&] {
-                            fields.Misplaced("grain", {}, "the motor is liquid",
-                                             "tanks in place of the grain");
-                            fields.List("tanks", 1, SIZE_MAX, stage.tanks,
-                                        "of a liquid engine: upright cylinders round the axis, which may be "
-                                        "inside one another's length");
-                          }},
-                         {Else(), [&] {
-                            fields.Misplaced("tanks", {}, "the motor is not liquid",
-                                             "a grain in place of the tanks, or motor: {liquid: {...}}");
-                            fields.Map("grain", "of a solid motor",
-                                       [&](Fields& grain) { Describe(grain, stage.grain); });
-                          }}});
-          fields.List("structure", 1, SIZE_MAX, stage.structure, "its dry mass; the fractions sum up to 1");
+          fields.Either(
+              {{Has("motor.liquid"),
+                [&] {
+                  fields.Misplaced("grain", {}, "the motor is liquid", "tanks in place of the grain");
+                  fields.List(
+                      "tanks", 1, SIZE_MAX, stage.tanks,
+                      "of a liquid engine: upright cylinders about the axis; their lengths may overlap");
+                }},
+               {Else(), [&] {
+                  fields.Misplaced("tanks", {}, "the motor is not liquid",
+                                   "a grain in place of the tanks, or motor: {liquid: {...}}");
+                  fields.Map("grain", "of a solid motor",
+                             [&](Fields& grain) { Describe(grain, stage.grain); });
+                }}});
+          fields.List("structure", 1, SIZE_MAX, stage.structure,
+                      "elements of its dry mass; the fractions add up to 1");
           fields.List("jettisoned", 0, kMaxJettisons, stage.jettisoned,
-                      "masses on the axis that leave while the stage is attached: fairing, tower, skirt");
+                      "masses on the axis, jettisoned while the stage is attached: fairing, tower, skirt");
           fields.Map("gimbal", "what turns the thrust",
                      [&](Fields& gimbal) { Describe(gimbal, stage.gimbal); });
         }}});
   DescribeIgnition(fields, stage);
   fields.Quantity("separation_delay", kTime, kNonNegative, stage.separation_delay_s,
-                  "after burnout is detected; the last stage does not separate", 0.0);
+                  "from detected burnout; the last stage does not separate", 0.0);
 }
 
 /// Cold-gas couples about each axis, on the stack of the last stage: torque without net force.
@@ -122,13 +121,13 @@ struct ReactionControl {
 };
 
 inline void Describe(Fields& fields, ReactionControl& control) {
-  fields.Quantity("thrust", kForce, kPositive, control.thrust_n, "of one thruster; two fire at a time");
+  fields.Quantity("thrust", kForce, kPositive, control.thrust_n, "of one thruster; they fire in pairs");
   fields.Quantity("pitch_yaw_arm", kLength, kPositive, control.pitch_yaw_arm_m,
                   "half the distance between the two thrusters of a couple");
-  fields.Quantity("roll_arm", kLength, kPositive, control.roll_arm_m, "the same of a couple of roll");
+  fields.Quantity("roll_arm", kLength, kPositive, control.roll_arm_m, "the same for a roll couple");
   fields.Quantity("specific_impulse", kTime, kPositive, control.specific_impulse_s, "of the thrusters");
   fields.Quantity("minimum_on_time", kTime, kPositive, control.minimum_on_time_s,
-                  "least impulse of a thruster over its thrust");
+                  "shortest firing of a thruster");
 }
 
 /// Boosters at most.
@@ -155,11 +154,11 @@ struct Boosters {
 };
 
 inline void Describe(Fields& fields, Boosters& boosters) {
-  fields.Integer("count", 2, kMaxBoosters, boosters.count, "how many, all alike");
+  fields.Integer("count", 2, kMaxBoosters, boosters.count, "number of equal boosters");
   fields.Quantity("dry_mass", kMass, kPositive, boosters.dry_mass_kg,
-                  "of one, a thin tube from top to bottom station");
+                  "of one: a thin tube from top to bottom station");
   fields.Quantity("propellant_mass", kMass, kPositive, boosters.propellant_mass_kg, "of one");
-  fields.Quantity("radius", kLength, kPositive, boosters.radius_m, "of their axes from the vehicle's");
+  fields.Quantity("radius", kLength, kPositive, boosters.radius_m, "from the vehicle's axis to theirs");
   fields.Quantity("diameter", kLength, kPositive, boosters.diameter_m, "of one");
   fields.Quantity("top_station", kLength, kNonNegative, boosters.top_station_m, "upper end");
   fields.Quantity("bottom_station", kLength, kPositive, boosters.bottom_station_m, "lower end");
@@ -175,7 +174,7 @@ inline void Describe(Fields& fields, Boosters& boosters) {
   });
   fields.Map("grain", "of one, about its own axis", [&](Fields& grain) { Describe(grain, boosters.grain); });
   fields.Quantity("separation_delay", kTime, kNonNegative, boosters.separation_delay_s,
-                  "after burnout is detected, before the stage's own", 0.0);
+                  "from detected burnout; before the stage separates", 0.0);
 }
 enum class ProfileShape { kTangentOgive, kCone, kCylinder, kFrustum };
 
@@ -195,7 +194,7 @@ inline void Describe(Fields& fields, ProfileSection& section) {
                               section.shape, "of the piece");
   fields.Quantity("length", kLength, kPositive, section.length_m, "along the axis");
   fields.Quantity("aft_diameter", kLength, kPositive, section.aft_diameter_m,
-                  "the fore diameter is the piece's before, 0 at the nose tip");
+                  "aft; its fore diameter is that of the piece before, 0 at the tip");
 }
 
 /// Aerodynamic coefficients of one stack (the stages still attached) over Mach number and total incidence, in
@@ -231,10 +230,11 @@ inline void Describe(Fields& fields, StructuralLimits& limits) {
                   "dynamic pressure times incidence", 0.0);
   fields.Quantity("axial_load", kAcceleration, kPositive, limits.axial_load_g,
                   "specific force along the axis", 0.0);
-  fields.Quantity("lateral_load", kAcceleration, kPositive, limits.lateral_load_g, "and across it", 0.0);
+  fields.Quantity("lateral_load", kAcceleration, kPositive, limits.lateral_load_g,
+                  "specific force across the axis", 0.0);
   fields.Quantity("bending_moment", kMoment, kPositive, limits.bending_moment_n_m, "at any station", 0.0);
   fields.Flag("terminate", limits.terminate, false,
-              "a flight that exceeds one ends as structural_limit, else it is only flagged");
+              "a violation ends the flight as structural_limit; false: it is only flagged");
 }
 
 struct LaunchSite {
@@ -273,15 +273,14 @@ inline void DescribePlainKeys(Fields& fields, Vehicle& vehicle) {
   fields.Text("name", vehicle.name, "of the vehicle");
   fields.Map("site", "where it is launched", [&](Fields& site) { Describe(site, vehicle.site); });
   fields.Quantity("hold_down", kTime, kNonNegative, vehicle.hold_down_s,
-                  "stage 1 burns so long before release; lift-off is time 0", 0.0);
+                  "burn of stage 1 before release; lift-off is time 0", 0.0);
   fields.Flag("made_up", vehicle.made_up, false,
-              "what is impossible of it, as a textbook's frozen coefficients may be, is warned about and not "
-              "refused");
+              "not a real vehicle: impossible values (frozen coefficients) give warnings, not errors");
   fields.Flag("jet_damping", vehicle.jet_damping, true, "moment of the flow through a turning vehicle");
   fields.Flag("flow_coriolis", vehicle.flow_coriolis, true,
-              "force of that flow, and the motion of the centre of gravity through the body");
+              "Coriolis force of that flow, and motion of the centre of gravity in the body");
   fields.Quantity("surface_roughness", kLength, kNonNegative, vehicle.surface_roughness_m,
-                  "equivalent sand grain, for skin friction", 0.0);
+                  "equivalent sand grain size, for skin friction", 0.0);
 }
 /// All keys.
 void Describe(Fields& fields, Vehicle& vehicle);
@@ -291,7 +290,7 @@ int LastBurn(const Vehicle& vehicle, int stage);
 /// Whether some engine is cut off at a velocity: when it will is known only in flight.
 bool CutsOffAtVelocity(const Vehicle& vehicle);
 
-/// Where a vehicle contradicts itself.
+/// Contradictions within a vehicle.
 std::vector<StructProblem> Problems(const Vehicle& vehicle);
 
 }  // namespace dispersa

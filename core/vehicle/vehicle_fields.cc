@@ -12,18 +12,18 @@ struct AeroRows {
 
 void Describe(Fields& fields, AeroRows& rows) {
   fields.Numbers("mach", kNonNegative, 4, SIZE_MAX, rows.mach,
-                 "increasing, the same for all incidences of a block");
+                 "increasing; equal in the block of rows of one Mach number");
   fields.Quantities("incidence", kAngle, Between(0.0, kHalfTurn), 4, SIZE_MAX, rows.incidence_rad,
-                    "increasing, the same for each mach number");
-  fields.Numbers("ca", kAnyNumber, 4, SIZE_MAX, rows.ca, "axial force, power on");
+                    "increasing, the same for each Mach number");
+  fields.Numbers("ca", kAnyNumber, 4, SIZE_MAX, rows.ca, "axial force coefficient, motor burning");
   fields.Numbers("cn", kAnyNumber, 4, SIZE_MAX, rows.cn, "normal force");
   fields.Quantities("xcp_station", kLength, kAnyNumber, 4, SIZE_MAX, rows.xcp_station_m,
                     "where the normal force acts");
   fields.Numbers(
       "cmq_per_rad", kAnyNumber, 4, SIZE_MAX, rows.cmq_per_rad,
-      "pitch and yaw damping about the centre of gravity, on q d / (2 V); one value a mach number");
+      "pitch and yaw damping about the centre of gravity, on q d / (2 V); one value per Mach number");
   fields.Numbers("clp_per_rad", kAnyNumber, 4, SIZE_MAX, rows.clp_per_rad,
-                 "roll damping, on p d / (2 V); one value a mach number");
+                 "roll damping, on p d / (2 V); one value per Mach number");
 }
 
 // The rows, mach by mach with the same incidences each, to the grid.
@@ -90,7 +90,7 @@ void CheckRestarts(Fields& fields, const std::vector<Stage>& stages) {
 void DescribeTurningNozzles(Fields& fields, std::vector<Stage>& stages) {
   std::vector<Gimbal> turning;
   fields.List("nozzles", 0, kMaxStages, turning,
-              "what turns of one nozzle, an entry a stage. Without, turning a nozzle takes no momentum",
+              "turning part of one nozzle, one entry per stage. Default: nozzles without inertia",
               [](Fields& nozzle, Gimbal& gimbal) { DescribeTurningNozzle(nozzle, gimbal); });
   if (turning.empty()) return;
   if (turning.size() != stages.size()) {
@@ -112,9 +112,9 @@ void DescribeTurningNozzles(Fields& fields, std::vector<Stage>& stages) {
 void Describe(Fields& fields, AeroTable& table) {
   fields.Quantity("reference_area", kArea, kPositive, table.reference_area_m2, "of the coefficients");
   fields.Quantity("reference_length", kLength, kPositive, table.reference_length_m,
-                  "of the dampings: the diameter");
+                  "of the damping terms: the diameter");
   AeroRows rows;
-  fields.Table("table", "a CSV file", "a CSV file, a full grid mach by mach", [&](Fields& columns) {
+  fields.Table("table", "a CSV file", "a CSV file: a full grid, Mach by Mach", [&](Fields& columns) {
     Describe(columns, rows);
     columns.Check([&] { FillGrid(columns, rows, table); });
   });
@@ -125,37 +125,35 @@ void Describe(Fields& fields, Vehicle& vehicle) {
   fields.List("stages", 1, kMaxStages, vehicle.stages, "in the order of flight");
   CheckRestarts(fields, vehicle.stages);
   bool has_boosters = vehicle.boosters.count > 0;
-  fields.OptionalMap(
-      "boosters", has_boosters,
-      "solid motors beside the first stage, ignited with it and part of its lift-off mass; the built-up "
-      "aerodynamics know the core alone",
-      [&](Fields& boosters) { Describe(boosters, vehicle.boosters); });
+  fields.OptionalMap("boosters", has_boosters,
+                     "solid motors beside the first stage, ignited with it, in its lift-off mass; computed "
+                     "aerodynamics leave them out",
+                     [&](Fields& boosters) { Describe(boosters, vehicle.boosters); });
   fields.List("profile", 1, SIZE_MAX, vehicle.profile, "outer mould line, from the nose aft");
   bool has_tables = !vehicle.aerodynamics.empty();
-  fields.OptionalMap("aerodynamics", has_tables, "in place of what is built up from the profile",
+  fields.OptionalMap("aerodynamics", has_tables, "replaces coefficients computed from the profile",
                      [&](Fields& aerodynamics) {
-                       aerodynamics.List("tables", 1, kMaxStages, vehicle.aerodynamics, "one a stack");
+                       aerodynamics.List("tables", 1, kMaxStages, vehicle.aerodynamics, "one per stack");
                      });
   // A single stage has no coast.
   bool has_thrusters = vehicle.reaction_control.thrust_n > 0.0;
-  fields.OptionalMap(
-      "reaction_control", has_thrusters,
-      "cold-gas thrusters of the last stage; a single stage whose nozzles command roll may lack them",
-      [&](Fields& control) { Describe(control, vehicle.reaction_control); });
+  fields.OptionalMap("reaction_control", has_thrusters,
+                     "cold-gas thrusters of the last stage; a single stage with nozzles for roll needs none",
+                     [&](Fields& control) { Describe(control, vehicle.reaction_control); });
   if (!has_thrusters && vehicle.stages.size() > 1)
     fields.Refuse("", "missing key 'reaction_control'", "a map");
   bool has_limits = true;
-  fields.OptionalMap("limits", has_limits,
-                     "of the structure; a vehicle that gives any is required to keep them",
+  fields.OptionalMap("limits", has_limits, "of the structure; if any is given, they become a requirement",
                      [&](Fields& limits) { Describe(limits, vehicle.limits); });
   DescribeTurningNozzles(fields, vehicle.stages);
   bool has_sensors = true;
-  fields.OptionalMap("sensors", has_sensors,
-                     "what measures attitude and rates; a vehicle that bends must have them",
+  fields.OptionalMap("sensors", has_sensors, "of attitude and rates; a flexible vehicle needs them",
                      [&](Fields& sensors) { Describe(sensors, vehicle.sensors); });
   bool bends = vehicle.structure_beam.has_value();
-  fields.OptionalMap("structure_beam", bends, "how it bends. Without, it is rigid", [&](Fields& beam) {
-    Describe(beam, vehicle.structure_beam.emplace(), vehicle.stages.size());
+  fields.OptionalMap("structure_beam", bends, "elastic beam; default: a rigid vehicle", [&](Fields& beam) {
+    const auto bodies = std::count_if(vehicle.stages.begin(), vehicle.stages.end(),
+                                      [](const Stage& stage) { return !stage.restarts; });
+    Describe(beam, vehicle.structure_beam.emplace(), vehicle.stages.size(), static_cast<std::size_t>(bodies));
   });
   if (!has_sensors && bends && vehicle.structure_beam->flown_modes > 0)
     fields.Refuse("", "missing key 'sensors'",

@@ -11,7 +11,7 @@ using Json = nlohmann::ordered_json;
 std::string ShortId(const Json& what) { return what.at("id").get<std::string>().substr(0, 12); }
 
 std::string StandingText(const Json& standing) {
-  return fmt::format("{} of {} break {} ({} so far)", standing.at("failures").get<std::int64_t>(),
+  return fmt::format("{} of {} fail {} ({} so far)", standing.at("failures").get<std::int64_t>(),
                      standing.at("n").get<std::int64_t>(), standing.at("metric").get<std::string>(),
                      standing.at("so_far").get<std::string>());
 }

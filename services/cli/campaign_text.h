@@ -8,7 +8,7 @@ namespace dispersa {
 
 /// The first digits of the id of a campaign or worker, as people use it.
 std::string ShortId(const nlohmann::ordered_json& what);
-/// "2 of 140 break pitch_error_peak_deg (fail so far)"
+/// "2 of 140 fail pitch_error_peak_deg (fail so far)"
 std::string StandingText(const nlohmann::ordered_json& standing);
 /// One line, and one for each requirement, of an element of `campaigns` in the answer to `list`.
 std::string CampaignStatusText(const nlohmann::ordered_json& campaign);

@@ -52,7 +52,8 @@ double Nearness(const LoopMargins& m) {
 
 void PrintDispersed(const CampaignMargins& dispersed) {
   fmt::print(
-      "\nDispersed: the least of {} cases, linearised about each one's own flight, with its case and time.\n"
+      "\n"
+      "Dispersed: the least margins of {} cases, each linearised about its own flight, with case and time.\n"
       "Gates: gain {:.0f} dB both ways, phase {:.0f} deg.\n"
       "{:<8}{:<6} {:>23} {:>23} {:>23} {:>23}\n",
       dispersed.cases, kDispersedGainGate_db, kDispersedPhaseGate_deg, "", "", "gain up dB", "gain down dB",
@@ -83,18 +84,19 @@ void PrintSkipped(const std::vector<SkippedInstant>& skipped) {
 }
 
 std::string FrequenciesText(const MarginModel& of) {
-  if (of.frequency_band == 0.0) return "the modes' frequencies as they are";
+  if (of.frequency_band == 0.0) return "nominal frequencies of the modes";
   return fmt::format(
-      "each margin the least with the modes' frequencies as they are, and {0:g} % lower and higher, all "
-      "together "
-      "and each mode alone",
+      "each margin the least with nominal frequencies of the modes, and {0:g} % lower and higher, all "
+      "together and each mode alone",
       100.0 * of.frequency_band);
 }
 
-// What each departure of the modes' frequencies leaves: the least of a stage, adapting.
+// The least margins of each stage for each set of mode frequencies, adapting.
 void PrintBySet(const MarginsResult& result) {
   if (!result.bends || result.of.frequency_band == 0.0) return;
-  fmt::print("\nLeast of each stage by the modes' frequencies (gain either way, phase, bending's phase):\n");
+  fmt::print(
+      "\nLeast margins of each stage by frequencies of the modes (gain both ways, phase, phase of "
+      "bending):\n");
   for (const MeasuredMargins& stage : result.measured) {
     std::vector<SetMargins> least;
     for (const ComputedMargins& m : result.computed) {
@@ -123,11 +125,11 @@ void PrintText(const MarginsResult& result) {
       "augmentation:\n"
       "{:.0f} dB and {:.0f} deg).\n",
       result.autopilot,
-      result.bends
-          ? fmt::format("Bending modes, no slosh; {}.\nBending: largest response, and its least angle "
-                        "from -1 where it is not {:.0f} dB down, to the phase's gate.",
-                        FrequenciesText(result.of), kGainMarginGate_db)
-          : "RIGID-BODY MARGINS: no bending modes, no slosh.",
+      result.bends ? fmt::format("Bending modes, no slosh; {}.\n"
+                                 "Bending: largest response, and its least angle from -1 where it is above "
+                                 "-{:.0f} dB, against the phase gate.",
+                                 FrequenciesText(result.of), kGainMarginGate_db)
+                   : "RIGID-BODY MARGINS: no bending modes, no slosh.",
       result.of.path == LateralPath::kDrifts
           ? "The path drifts: lateral velocity changes the incidence of pitch and yaw too.\n"
           : "",
@@ -145,7 +147,7 @@ void PrintText(const MarginsResult& result) {
       PrintLoop(named ? m.place : "(between)", "learnt", m, *m.learnt);
   }
   PrintSkipped(result.skipped);
-  fmt::print("\nNearest to a gate in each stage, named instants or between:\n");
+  fmt::print("\nNearest to a gate in each stage, at named instants or between:\n");
   for (const MeasuredMargins& stage : result.measured) {
     for (const char* kind : {"frozen", "adapting", "learnt"}) {
       const ComputedMargins* nearest = nullptr;
@@ -206,8 +208,8 @@ void AddMarginsCommand(CLI::App& app, Invocation& invocation) {
       ->transform(WholeNumber(1, kMostCases));
   command
       ->add_option("--frequency-band", options->margins.frequency_band_percent,
-                   "bending: each margin is the least with the modes' frequencies as they are, and lowered "
-                   "and raised by this percentage (default 15), together and each mode alone")
+                   "bending: each margin is the least with nominal frequencies of the modes, and lowered and "
+                   "raised by this percentage (default 15), together and each mode alone")
       ->check(CLI::Range(0.0, 50.0));
   command->add_flag(
       "--drift", options->margins.drift,

@@ -62,6 +62,7 @@ nlohmann::ordered_json ModeJson(const Vehicle& vehicle, const StackModes& stack,
 nlohmann::ordered_json StacksJson(const Vehicle& vehicle, const std::vector<StackModes>& stacks,
                                   bool shapes) {
   const std::vector<StackMass> masses = BuildStackMasses(vehicle);
+  const std::vector<JettisonedMass> jettisons = BuildJettisonedMasses(vehicle);
   auto json = nlohmann::ordered_json::array();
   for (const StackModes& stack : stacks) {
     std::vector<double> levels;
@@ -79,8 +80,11 @@ nlohmann::ordered_json StacksJson(const Vehicle& vehicle, const std::vector<Stac
             modes.push_back(ModeJson(vehicle, stack, plane, i, level.modes[i], shapes));
         }
       }
-      const MassProperties rigid = masses[static_cast<std::size_t>(stack.stage)].At(propellant_kg);
+      const MassProperties rigid =
+          Without(masses[static_cast<std::size_t>(stack.stage)], stack.stage, jettisons, stack.gone)
+              .At(propellant_kg);
       json.push_back({{"stage", stack.stage + 1},
+                      {"jettisoned", stack.gone != 0},
                       {"propellant_kg", propellant_kg},
                       {"mass_kg", rigid.mass_kg},
                       {"cg_station_m", rigid.cg_station_m},
@@ -93,7 +97,7 @@ nlohmann::ordered_json StacksJson(const Vehicle& vehicle, const std::vector<Stac
 void PrintStack(const Vehicle& vehicle, const StackModes& stack, BeamPlane plane) {
   const std::vector<BendingLevel>& levels = stack.levels[plane == BeamPlane::kY ? 0 : 1];
   const std::size_t count = levels.front().modes.size();
-  fmt::print("\nstage {} and above, plane {}\n{:>14}", stack.stage + 1,
+  fmt::print("\nstage {} and above{}, plane {}\n{:>14}", stack.stage + 1, WithoutText(vehicle, stack),
              stack.axisymmetric ? "y, z" : PlaneName(plane), "propellant kg");
   for (std::size_t i = 0; i < count; ++i) fmt::print("{:>11} {} Hz{:>9} kg", "mode", i + 1, "gen.");
   fmt::print("\n");
@@ -138,7 +142,7 @@ ExitCode Modes(const ModesOptions& options, const GlobalOptions& global) {
   Warn(warnings);
   const fs::path page = options.out.empty() ? fs::path() : PageFile(options.out);
   RequireWritableFile("--out", page);
-  const std::vector<StackModes> stacks = BuildBendingModes(vehicle);
+  const std::vector<StackModes> stacks = ShownStacks(vehicle);
   if (!page.empty()) WriteFile(page, ModesPage(vehicle, stacks));
   if (global.json) {
     nlohmann::ordered_json json = {{"schema", "dispersa/modes/1"},

@@ -97,7 +97,7 @@ void AddPlanCommand(CLI::App& app, Invocation& invocation) {
   command->add_option("--seed", options->overrides.seed, "seed, instead of the file's");
   command->add_flag("--csv", options->csv, "all inputs, in the columns of cases.csv");
   command->add_flag("--all", options->all,
-                    "every dispersed input of every case, not only as many as fit on a screen");
+                    "every dispersed input of every case, without the limit to one screen");
   command->footer(
       "Prints the declared and the drawn distribution of each dispersed input, then its values in the first "
       "cases.\n"

@@ -45,7 +45,7 @@ ExitCode Do(const std::string& method, const Json& arguments, const char* done, 
   return kExitDone;
 }
 
-/// What is asked again when an answer gets lost names the campaign for sure.
+/// The full id, so that a request repeated after a lost answer names the same campaign.
 std::string FullId(Session& session, const std::string& id) {
   return Json::parse(session.Ask("list", {{"id", id}}).text).at("campaigns").at(0).at("id");
 }
@@ -71,15 +71,15 @@ void AddStatusCommands(CLI::App& app, Invocation& invocation) {
   CLI::App* remove = app.add_subcommand("delete", "delete a campaign that has ended, with its results");
   remove->footer(
       "Example: dispersa delete 5f3a --peer coordinator-host\n"
-      "One line of it stays in the coordinator's deleted.jsonl.");
+      "The coordinator's deleted.jsonl keeps one line about it.");
   BindSession(remove, invocation, [id = AddIdOption(remove)](Session& session, const GlobalOptions& global) {
     return Do("delete", {{"id", FullId(session, *id)}}, "deleted", session, global);
   });
 
   CLI::App* repair =
-      app.add_subcommand("repair", "remove what a worker returned to a campaign and fly those cases again");
+      app.add_subcommand("repair", "remove a worker's results from a campaign and fly those cases again");
   const auto worker = std::make_shared<std::string>();
-  repair->add_option("--worker", *worker, "its name, or that of its keys")->required();
+  repair->add_option("--worker", *worker, "name of the worker, or of its keys")->required();
   repair->footer(
       "Example: dispersa repair 5f3a --worker node1 --peer coordinator-host && dispersa watch 5f3a\n"
       "results.sqlite names the worker of each case in its table `execution`.");

@@ -54,15 +54,16 @@ std::string LawText(ControlLaw law) {
     line += " " + word;
   }
   return text + line +
-         "\n# Gains are those of the error dynamics s² + kd s + kp, one entry a stage; roll has those of "
+         "\n"
+         "# Gains are those of the error dynamics s² + kd s + kp, one entry per stage; roll has those of "
          "pitch.\n";
 }
 
 // The weights behind a regulator's gains.
 std::string RegulatorText(const AxisConfig& axis) {
   std::string text =
-      "# They are a linear-quadratic regulator's, optimal for e'' = -u and the weights of (∫e)², e², e'² "
-      "beside u²:\n";
+      "# They are those of a linear-quadratic regulator, optimal for e'' = -u and these weights of (∫e)², "
+      "e², e'² beside u²:\n";
   for (std::size_t i = 0; i < axis.gains.size(); ++i) {
     const RegulatorWeights q =
         WeightsOf({axis.integral.ki_1_s3[i], axis.gains[i].kp_1_s2, axis.gains[i].kd_1_s});
@@ -88,7 +89,7 @@ constexpr char kMissed[] = " (misses a constraint)";
 std::string Header(const TuneOptions& options, const TuningResult& result) {
   std::string text = LawText(result.autopilot.pitch.law);
   if (!result.feasible)
-    text += "# NOT TO BE FLOWN: no design was found that meets every constraint; this is the best.\n";
+    text += "# DO NOT FLY: no design was found that meets every constraint; this is the best one.\n";
   if (options.tuning.regulator) text += RegulatorText(result.autopilot.pitch);
   text += fmt::format("#\n# Tuned by\n#   {}\n", CommandText(options));
   text += fmt::format("# which tried {} designs in {} flights.", result.evaluations, result.flights);
@@ -110,7 +111,7 @@ std::string Header(const TuneOptions& options, const TuningResult& result) {
                         MarginsText(result.stages[i].adapting));
   }
   if (!result.skipped.empty())
-    text += fmt::format("# None at {} instants with less than {:g} % of full thrust.\n",
+    text += fmt::format("# No margins at {} instants with less than {:g} % of full thrust.\n",
                         result.skipped.size(), 100.0 * kLeastThrustFraction);
   if (result.feasible && options.tuning.dispersed > 0)
     text += fmt::format(

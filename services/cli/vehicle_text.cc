@@ -72,7 +72,7 @@ std::string VehicleText(const Vehicle& vehicle) {
     if (value > 0.0)
       limits += fmt::format("{}{} {}", limits.empty() ? "" : ", ", limit.metric, ReadableText(value));
   }
-  return text + "limits: " + (limits.empty() ? "none, so no load is judged" : limits) + "\n";
+  return text + "limits: " + (limits.empty() ? "none, so no load is checked" : limits) + "\n";
 }
 
 nlohmann::ordered_json VehicleJson(const Vehicle& vehicle) {

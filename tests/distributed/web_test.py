@@ -138,7 +138,7 @@ class WebTest(ServiceCase):
             self.assertIn(f"done Exit code {self.reference.code}:", text(viewer.parts["progress"]))
             requirement = summary["requirements"][0]
             self.assertIn("Pitch error, peak below 1 ° for 80 % of flights, consumer risk 10 % pitch_error_peak_deg "
-                          f"{requirement['failures']} of {CASES} break pitch_error_peak_deg (",
+                          f"{requirement['failures']} of {CASES} fail pitch_error_peak_deg (",
                           text(viewer.parts["requirements"]))
             self.assert_histograms(viewer, rows)
 

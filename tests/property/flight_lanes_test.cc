@@ -88,6 +88,15 @@ FlightDefinition Definition(const std::string& law, bool with_winds, bool guided
     // Each flight's masses have modes of their own, which would take ten times as long as flying them.
     definition.vehicle.structure_beam->elements = 12;
     definition.vehicle.structure_beam->propellant_levels = 5;
+    // Bodies that leave at times of their own: the modes of flights side by side change at different times.
+    std::vector<Stage>& stages = definition.vehicle.stages;
+    stages[0].jettisoned = {{"skirt", 40.0, 14.8, 15.2, 1.2, 1.0, JettisonTrigger::kAtTime, 20.0}};
+    stages[3].jettisoned = {{"fairing", 50.0, 0.1, 2.5, 0.6, 0.57, JettisonTrigger::kAtAltitude, 60e3}};
+    LumpedMass fairing;
+    fairing.name = fairing.element = "fairing";
+    fairing.station_m = 1.65;
+    definition.vehicle.structure_beam->stages[3].lumped_masses.push_back(fairing);
+    definition.jettison_s = {20.0, 85.0};
   }
   if (autopilot == "pid_aac" ||
       autopilot == "pid") {  // drives of all kinds, side by side as their flights' stages are

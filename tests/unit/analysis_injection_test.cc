@@ -43,7 +43,7 @@ TEST(InjectionSummary, CovarianceAndContainment) {
   for (const Containment& one : injection->containment)
     EXPECT_NEAR(one.empirical, one.stated, 4.0 * std::sqrt(one.stated * (1.0 - one.stated) / 4000.0));
   const std::string html = InjectionSection(*injection);
-  EXPECT_THAT(html, testing::HasSubstr("Of 3999 completed flights"));
+  EXPECT_THAT(html, testing::HasSubstr("Joint scatter of 3999 completed flights"));
   EXPECT_THAT(html, testing::ContainsRegex(">-0\\.(79|80)"));  // altitude and velocity: -40 / (5 x 10)
 }
 

@@ -160,7 +160,7 @@ constexpr BadInput kBadInputs[] = {
      "beam, which reaches from station 0.500000 m to 8.500000 m, allowed: a station of the beam\n"},
     {"UnknownElement", "element: nozzles", "element: nozzle",
      "flexible.yaml:12:21: structure_beam.stages[0].lumped_masses[0].element: 'nozzle' is no element "
-     "of the stage's structure, allowed: one of case, nozzles\n"},
+     "of the stage's structure and no body that it jettisons, allowed: one of case, nozzles\n"},
     {"StageMissing",
      "    - sections:\n        - {name: case, top_station_m: 0.5, bottom_station_m: 4, "
      "bending_stiffness_mn_m2: [100, 150], shear_stiffness_kn: 200e3}\n",

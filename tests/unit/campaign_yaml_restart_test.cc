@@ -3,6 +3,7 @@
 
 #include "core/campaign_yaml/load.h"
 #include "core/pages/vehicle_drawing.h"
+#include "core/vehicle/beam_masses.h"
 #include "core/vehicle/mass.h"
 #include "core/vehicle/propulsion.h"
 #include "tests/unit/bad_input.h"
@@ -20,6 +21,15 @@ class Vega {
   void Edit(const std::string& from, const std::string& to) const { files_.Edit("vehicle.yaml", from, to); }
   Vehicle Load() const { return LoadVehicle(files_.Path("vehicle.yaml")); }
   std::string Problems() const { return files_.Texts(CheckFile(files_.Path("vehicle.yaml")).errors); }
+  // The same with a beam, in a file that is based on it.
+  void Bend() const {
+    files_.Write("bending.yaml", ReadWholeFile(DISPERSA_TEST_DATA "/vega_that_bends.yaml"));
+  }
+  void EditBeam(const std::string& from, const std::string& to) const {
+    files_.Edit("bending.yaml", from, to);
+  }
+  Vehicle LoadBending() const { return LoadVehicle(files_.Path("bending.yaml")); }
+  std::string BeamProblems() const { return files_.Texts(CheckFile(files_.Path("bending.yaml")).errors); }
 
  private:
   InputFiles files_;
@@ -50,6 +60,40 @@ TEST(RestartFile, IsDrawnOnce) {
   EXPECT_NE(drawing.find(">avum<"), std::string::npos);
   EXPECT_EQ(drawing.find("avum again"), std::string::npos);
   EXPECT_EQ(drawing.find(">0 m"), std::string::npos);
+}
+
+TEST(RestartFile, BendsAsItsStageDoes) {
+  const Vega file;
+  file.Bend();
+  const Vehicle vehicle = file.LoadBending();
+  ASSERT_EQ(vehicle.structure_beam->stages.size(), 5u);
+  EXPECT_EQ(vehicle.structure_beam->stages[4].lumped_masses.size(), 3u);
+  // The fairing's entry of the last stage stands for both burns; the beam carries it until it leaves.
+  for (const int stage : {0, 3}) {
+    double mass_kg = 0.0;
+    for (const unsigned gone : {0u, 1u}) {
+      const double before_kg = mass_kg;
+      mass_kg = 0.0;
+      const BeamMasses masses = BuildBeamMasses(vehicle, stage, 0.0, gone);
+      for (const SpreadMass& m : masses.spread)
+        mass_kg += m.MassPerLength(0.5 * (m.top_station_m + m.bottom_station_m)) *
+                   (m.bottom_station_m - m.top_station_m);
+      for (const FixedMass& m : masses.fixed) mass_kg += m.mass_kg;
+      if (gone == 0u) continue;
+      EXPECT_NEAR(before_kg - mass_kg, 540.0, 1e-9) << stage;
+    }
+  }
+}
+
+TEST(RestartFile, WhatIsJettisonedLiesOnTheBeam) {
+  const Vega file;
+  file.Bend();
+  file.EditBeam("        - {element: fairing, station_m: 7.9}\n", "");
+  EXPECT_EQ(
+      file.BeamProblems(),
+      "bending.yaml:30:9: structure_beam.stages[3].sections: 'fairing' of the stage's jettisoned bodies "
+      "lies outside of the beam, which reaches from station 7.300000 m to 9.600000 m, allowed: sections "
+      "along the whole element, or the element among lumped_masses\n");
 }
 
 TEST(RestartFile, KnowsWhatATimedBurnLeaves) {

@@ -583,7 +583,7 @@ TEST(CliProgram, TuneRefusesTheSeedOfTheVerdict) {
   const Output output = Dispersa("tune " + kSmoke + " --out " + file + " --seed 20260101");
   EXPECT_EQ(output.code, 2);
   EXPECT_EQ(output.error,
-            "seed: the tuning would see the cases of campaign 'smoke', allowed: any but the campaign's own, "
+            "seed: the tuning would fly the cases of campaign 'smoke', allowed: any but the campaign's own, "
             "20260101\n");
   EXPECT_EQ(ReadWholeFile(file), "");
 }

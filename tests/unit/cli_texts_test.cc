@@ -50,7 +50,7 @@ TEST(VehicleText, IsTheRocketEquationInATable) {
             "second              3000        1000      2000     0.667      50.0     20.0    102.0        405 "
             "     1.70     2.55");
   EXPECT_EQ(lines[6], "together" + std::string(84, ' ') + "1141");
-  EXPECT_EQ(lines[8], "limits: none, so no load is judged");
+  EXPECT_EQ(lines[8], "limits: none, so no load is checked");
 }
 
 TEST(VehicleText, NamesBoostersJettisonsAndLimits) {
@@ -134,7 +134,7 @@ TEST(CampaignStatusText, SaysHowFarACampaignIs) {
       {{"failures", 3}, {"n", 40}, {"metric", "alpha_max_deg"}, {"so_far", "inconclusive"}});
   EXPECT_EQ(CampaignStatusText(campaign),
             "0123456789ab  flying            40/100       trial  12.3/s  1m05s left  2 quarantined\n"
-            "  3 of 40 break alpha_max_deg (inconclusive so far)\n");
+            "  3 of 40 fail alpha_max_deg (inconclusive so far)\n");
   campaign = SampleCampaign();
   campaign["state"] = "ended";
   campaign["code"] = 1;

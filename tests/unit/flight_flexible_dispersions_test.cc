@@ -82,7 +82,8 @@ TEST(FlexibleDispersions, AreThoseOfAVehicleOfThoseMasses) {
     ASSERT_EQ(is.rows.size(), should_be.rows.size());
     double moved = 0.0;
     for (std::size_t i = 0; i < is.rows.size(); ++i) {
-      EXPECT_NEAR(is.rows[i], should_be.rows[i], 1e-7 * (1.0 + std::fabs(should_be.rows[i])));
+      // Sought among the nominal modes, not solved anew.
+      EXPECT_NEAR(is.rows[i], should_be.rows[i], 1e-6 * (1.0 + std::fabs(should_be.rows[i])));
       moved = std::max(moved, std::fabs(is.rows[i] - was.rows[i]));
     }
     EXPECT_GT(moved, 1e-3);

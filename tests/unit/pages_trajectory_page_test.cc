@@ -58,9 +58,8 @@ TEST(TrajectoryPage, SaysWhenToLiftOffForANode) {
   result.reference.orbit.node_longitude_rad = 110.0 * kRadPerDeg;
   EXPECT_NEAR(*LiftOffSidereal(result.reference), 270.0 * kRadPerDeg, 1e-14);
   EXPECT_EQ(OrbitSentence(result.reference),
-            "inclination 0.0000 deg, ascending node 110.0000 deg east of Greenwich as it stands at lift-off; "
-            "for the "
-            "node at 20 deg lift off at 270.0000 deg (18.0000 h) of Greenwich sidereal time");
+            "inclination 0.0000 deg, ascending node 110.0000 deg east of Greenwich at lift-off; for the node "
+            "at 20 deg lift off at 270.0000 deg (18.0000 h) of Greenwich sidereal time");
 }
 
 TEST(TrajectoryPage, ShowsAnAzimuthWithinBoundsThatPassNorth) {

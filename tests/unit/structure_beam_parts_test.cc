@@ -6,12 +6,16 @@
 
 #include "core/structure/bending_modes.h"
 #include "core/structure/bending_table.h"
-#include "core/structure/inertia_moment.h"
+#include "core/structure/mass_points.h"
 #include "core/vehicle/mass.h"
 #include "tests/unit/flexible_sample.h"
 
 namespace dispersa::structure_beam_parts_test {
 namespace {
+
+double Moment(const BeamMasses& masses, double station_m, StationShape (*shape)(double)) {
+  return InertiaMoment(MassPointsOf(masses, {station_m}), station_m, AtStations(shape));
+}
 
 // A rod that moves as a rigid body loads a section as a body at one station does that has its mass, centre
 // and inertia.
@@ -25,14 +29,14 @@ TEST(InertiaMoment, OfALumpedBodyIsThatOfTheRodItStandsFor) {
                    mass_kg * (length_m * length_m / 12.0 + kGyration2_m2)}};
   const auto aside = [](double) { return StationShape{1.0, 0.0}; };
   const auto turning = [](double x) { return StationShape{x - 1.0, 1.0}; };
-  EXPECT_NEAR(InertiaMoment(lumped, kSection_m, aside), InertiaMoment(rod, kSection_m, aside), 1e-9);
-  EXPECT_NEAR(InertiaMoment(lumped, kSection_m, turning), InertiaMoment(rod, kSection_m, turning), 1e-9);
+  EXPECT_NEAR(Moment(lumped, kSection_m, aside), Moment(rod, kSection_m, aside), 1e-9);
+  EXPECT_NEAR(Moment(lumped, kSection_m, turning), Moment(rod, kSection_m, turning), 1e-9);
   // By hand: m a lever, and its moment of inertia against the turn.
-  EXPECT_NEAR(InertiaMoment(rod, kSection_m, aside), mass_kg * 4.0, 1e-9);
-  EXPECT_NEAR(InertiaMoment(rod, kSection_m, turning),
+  EXPECT_NEAR(Moment(rod, kSection_m, aside), mass_kg * 4.0, 1e-9);
+  EXPECT_NEAR(Moment(rod, kSection_m, turning),
               mass_kg * (2.5 * 4.0 - length_m * length_m / 12.0 - kGyration2_m2), 1e-9);
   // Behind the section it loads nothing.
-  EXPECT_EQ(InertiaMoment(lumped, 4.9, turning), 0.0);
+  EXPECT_EQ(Moment(lumped, 4.9, turning), 0.0);
 }
 
 TEST(BeamMasses, HaveWhatIsStillToBeJettisoned) {

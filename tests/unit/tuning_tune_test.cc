@@ -372,7 +372,7 @@ TEST(Tune, RefusesTheCampaignsSeedAndWhatIsOutOfRange) {
   options.seed = 77;
   EXPECT_EQ(
       ErrorOf(campaign, campaign.autopilot, options),
-      "seed: the tuning would see the cases of campaign 'sample', allowed: any but the campaign's own, 77");
+      "seed: the tuning would fly the cases of campaign 'sample', allowed: any but the campaign's own, 77");
   options = Small();
   options.cases = 0;
   options.evaluations = 31;

@@ -19,7 +19,7 @@
 #include "core/margins/flight_margins.h"
 #include "core/margins/linear_axis.h"
 #include "core/structure/beam_elements.h"
-#include "core/structure/inertia_moment.h"
+#include "core/structure/mass_points.h"
 #include "tests/slv4_flight.h"
 
 namespace dispersa::bending_flight_test {
@@ -405,7 +405,8 @@ TEST(BendingFlight, ASeparationLeavesTheUpperStackItsMomentum) {
   const StackModes& stack = stacks[0];
   const BendingLevel& burnt = stack.levels[0].back();
   ASSERT_EQ(burnt.propellant_kg, 0.0);
-  const BeamMasses upper = BuildBeamMasses(vehicle, 1, vehicle.stages[1].propellant_mass_kg);
+  const std::vector<MassPoint> points =
+      MassPointsOf(BuildBeamMasses(vehicle, 1, vehicle.stages[1].propellant_mass_kg), stack.station_m[0]);
   const MassProperties mass = above.mass.At(vehicle.stages[1].propellant_mass_kg);
   for (int plane = 0; plane < kPlanes; ++plane)
     for (int mode = 0; mode < 3; ++mode) {
@@ -413,7 +414,8 @@ TEST(BendingFlight, ASeparationLeavesTheUpperStackItsMomentum) {
         return ShapeOf(stack, BeamPlane::kY, burnt.modes[static_cast<std::size_t>(mode)], s);
       };
       const double near_m = 25.0, far_m = 26.0;  // behind all of it
-      const double near = InertiaMoment(upper, near_m, shape), far = InertiaMoment(upper, far_m, shape);
+      const double near = InertiaMoment(points, near_m, AtStations(shape)),
+                   far = InertiaMoment(points, far_m, AtStations(shape));
       const double momentum = (far - near) / (far_m - near_m);
       const double angular = near_m * momentum - near - mass.cg_station_m * momentum;
       double modal[2 * kPlanes * kModes] = {};
@@ -424,7 +426,7 @@ TEST(BendingFlight, ASeparationLeavesTheUpperStackItsMomentum) {
       state.q_IB = FromRotationVector(Vector3(0.3, -0.7, 1.1));
       state.w_IB_B = Vector3(0.01, 0.02, -0.03);
       const RigidBodyState before = state;
-      TakeAlong(below, modal, state);
+      TakeAlong(below, 0, modal, state);
       const Vector3 along = plane == 0 ? Vector3::UnitY() : Vector3::UnitZ(),
                     about = plane == 0 ? Vector3(-Vector3::UnitZ()) : Vector3(Vector3::UnitY());
       const double move = momentum / mass.mass_kg, turn = angular / mass.transverse_inertia_kg_m2;
@@ -459,7 +461,7 @@ TEST(BendingFlight, TheUpperStackFliesOnWithTheModesMomentum) {
   const LauncherPlant plant = model.PlantFor(inputs);
   RigidBodyState left;
   left.q_IB = {};
-  TakeAlong(plant.stacks[0], before->bending.data(), left);
+  TakeAlong(plant.stacks[0], 0, before->bending.data(), left);
   const Vector3 jump = after->state.w_IB_B - before->state.w_IB_B;
   EXPECT_GT(left.w_IB_B.norm(), 1e-6);
   EXPECT_LT((jump - left.w_IB_B).norm(), 0.5 * left.w_IB_B.norm())

@@ -30,20 +30,23 @@ FlightProgram Program() {
 // SLV-4 with a liquid last stage of the same masses, which burns twice; `end_first` says how the first burn
 // ends.
 template <class F>
-Vehicle Restarting(F end_first) {
-  Vehicle vehicle = LoadVehicle(DISPERSA_CAMPAIGNS "/vehicles/slv4.yaml");
+Vehicle Restarting(F end_first, const char* file = "slv4.yaml") {
+  Vehicle vehicle = LoadVehicle(std::string(DISPERSA_CAMPAIGNS "/vehicles/") + file);
   MakeLiquid(vehicle.stages[kFirstBurn]);
   Stage again = vehicle.stages[kFirstBurn];
   again.restarts = true;
   end_first(vehicle.stages[kFirstBurn].motor);
   vehicle.stages.push_back(again);
+  if (vehicle.structure_beam) vehicle.structure_beam->stages.push_back(vehicle.structure_beam->stages.back());
   return vehicle;
 }
-Vehicle CutAtHalfTime() {
-  Vehicle vehicle = Restarting([](Motor& engine) {
-    engine.cut_off = CutOff::kAtTime;
-    engine.cut_off_s = 0.5 * engine.burning_time_s;
-  });
+Vehicle CutAtHalfTime(const char* file = "slv4.yaml") {
+  Vehicle vehicle = Restarting(
+      [](Motor& engine) {
+        engine.cut_off = CutOff::kAtTime;
+        engine.cut_off_s = 0.5 * engine.burning_time_s;
+      },
+      file);
   Stage& again = vehicle.stages[kSecondBurn];
   again.liftoff_mass_kg -= 0.5 * again.propellant_mass_kg;
   again.propellant_mass_kg *= 0.5;
@@ -68,8 +71,9 @@ AscentResult Ascend(const Vehicle& vehicle, const FlightProgram& program = Progr
 }
 
 // In six degrees of freedom along the point mass's ascent.
-FlightDefinition Following(const Vehicle& vehicle, const AscentResult& ascent) {
-  FlightDefinition definition = Slv4Definition(DISPERSA_CAMPAIGNS);
+FlightDefinition Following(const Vehicle& vehicle, const AscentResult& ascent,
+                           const char* autopilot = "adaptive_fuzzy") {
+  FlightDefinition definition = Slv4Definition(DISPERSA_CAMPAIGNS, autopilot);
   definition.vehicle = vehicle;
   definition.program = ascent.attitude;
   definition.last_ignition_s = ascent.last_ignition_s;
@@ -140,6 +144,44 @@ TEST(Restart, BurnsWhatTheFirstBurnLeft) {
     EXPECT_NEAR(burns.end_s[kSecondBurn] - burns.begin_s[kSecondBurn],
                 (1.0 - 0.5 * flow) * engine.motor.burning_time_s, 1e-6);
   }
+}
+
+// A stack that bends bends on: nothing leaves at a restart, so its modes go on ringing, and its second burn
+// has the modes of the first at the propellant that is left.
+TEST(Restart, ABendingStackRingsOn) {
+  Vehicle vehicle = CutAtHalfTime("slv4_flexible.yaml");
+  // Soft enough for a mode of the last stack to fly.
+  for (const std::size_t stage : {kFirstBurn, kSecondBurn})
+    for (BeamSection& section : vehicle.structure_beam->stages[stage].sections) section.modulus_pa *= 0.1;
+  ASSERT_TRUE(Problems(vehicle).empty()) << Problems(vehicle).front().message;
+  const AscentResult ascent = Ascend(vehicle);
+  ASSERT_TRUE(ascent.completed);
+  const FlightDefinition definition = Following(vehicle, ascent, "flexible");
+  const FlightModel model(definition);
+  const std::vector<LauncherStack>& stacks = model.nominal_plant().stacks;
+  ASSERT_TRUE(stacks[kFirstBurn].bending);
+  EXPECT_EQ(stacks[kFirstBurn].bending, stacks[kSecondBurn].bending);
+  std::vector<TickSample> samples;
+  FlightOptions options;
+  options.observe = [&](const TickSample& s) {
+    if (s.stack >= static_cast<int>(kFirstBurn)) samples.push_back(s);
+  };
+  FlightInputs inputs;
+  inputs.thrust_misalignment_rad[kFirstBurn] = inputs.thrust_misalignment_rad[kSecondBurn] =
+      0.25 * kRadPerDeg;
+  ASSERT_EQ(Fly(model, inputs, options).outcome, Outcome::kCompleted);
+  const auto next = std::find_if(samples.begin(), samples.end(),
+                                 [](const TickSample& s) { return s.stack == int{kSecondBurn}; });
+  ASSERT_TRUE(next != samples.begin() && next != samples.end());
+  const auto ringing = [](const TickSample& s) {
+    double sum = 0.0;
+    for (const double value : s.bending) sum += std::fabs(value);
+    return sum;
+  };
+  EXPECT_GT(ringing(*(next - 1)), 0.0);
+  EXPECT_GT(ringing(*next), 0.2 * ringing(*(next - 1)));
+  // Bent again by the second burn.
+  EXPECT_GT(ringing(samples.back()), 1e-9);
 }
 
 // Without a pause the two burns are one: what is gained differs by gravity in the tick that detection takes.

@@ -129,7 +129,7 @@ TEST(SimpsonStep, SeesWhatWasWritten) {
   const std::pair<const char*, std::function<void(Step&)>> writers[] = {
       {"WriteLane", [&](Step& step) { step.WriteLane(0, moved); }},
       {"SetStack", [&](Step& step) { step.SetStack(0, stretch.plant(), 1); }},
-      {"SetMass", [&](Step& step) { step.SetMass(0, lighter); }},
+      {"SetMass", [&](Step& step) { step.SetMass(0, lighter, nullptr); }},
       {"Ignite", [](Step& step) { step.Ignite(0, 5.0, false); }},
       {"BurnOut", [](Step& step) { step.BurnOut(0); }},
       {"StickNozzle", [&](Step& step) { step.StickNozzle(0, gimbal, 1, 0.03); }},

@@ -1,0 +1,48 @@
+// What is left of a beam once a part of it has gone: the rest moves on with the momentum of its masses.
+#pragma once
+
+#include <vector>
+
+#include "core/structure/mass_points.h"
+
+namespace dispersa {
+
+/// A body that has come free. Its masses keep the places and the speeds that the modes of the whole gave
+/// them. Shapes are given by the StationShape of a point's beam, by the point and its number.
+struct FreeBody {
+  std::vector<MassPoint> points;
+  double mass_kg = 0.0, cg_station_m = 0.0, inertia_kg_m2 = 0.0;  ///< across the axis
+
+  /// `cuts_m`: as of MassPointsOf.
+  FreeBody(const BeamMasses& masses, const std::vector<double>& cuts_m);
+
+  /// By how much a shape moves its centre of gravity and turns it: what leaves it the momentum and angular
+  /// momentum of its masses.
+  template <typename Shape>
+  StationShape MeanOf(const Shape& at) const {
+    StationShape sum;
+    for (std::size_t i = 0; i < points.size(); ++i) {
+      const MassPoint& m = points[i];
+      const StationShape shape = m.Move(at(m, i));
+      sum.deflection += m.mass_kg * shape.deflection;
+      sum.slope_1_m +=
+          m.mass_kg * shape.deflection * (m.cg_station_m - cg_station_m) + m.inertia_kg_m2 * shape.slope_1_m;
+    }
+    return {sum.deflection / mass_kg, sum.slope_1_m / inertia_kg_m2};
+  }
+
+  /// The integral over its masses of one shape times another, kg: the work of the inertia of `b` on `a`.
+  template <typename A, typename B>
+  double Product(const A& a, const B& b) const {
+    double sum = 0.0;
+    for (std::size_t i = 0; i < points.size(); ++i) {
+      const MassPoint& m = points[i];
+      const StationShape of_a = m.Move(a(m, i)), of_b = m.Move(b(m, i));
+      sum +=
+          m.mass_kg * of_a.deflection * of_b.deflection + m.inertia_kg_m2 * of_a.slope_1_m * of_b.slope_1_m;
+    }
+    return sum;
+  }
+};
+
+}  // namespace dispersa
