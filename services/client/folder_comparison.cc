@@ -8,7 +8,6 @@
 #include "core/campaign/case_result.h"
 #include "core/flight/flight_inputs.h"
 #include "core/input/input_error.h"
-#include "core/input/read_value.h"
 #include "core/results/output_file.h"
 #include "services/client/campaign_differences.h"
 #include "services/client/stored_campaign.h"
@@ -20,6 +19,18 @@ CaseColumns AllColumns(const ResultFolder& folder) {
   std::vector<int> inputs(InputCount(folder.stages()));
   std::iota(inputs.begin(), inputs.end(), 0);
   return ReadColumns(folder, inputs);
+}
+
+/// A name that neither campaign has is no fault of one of them.
+void CheckKnown(const Campaign& a, const Campaign& b, const std::vector<std::string>& metrics) {
+  for (const std::string& metric : metrics) {
+    const std::vector<std::string>& names = MetricNames();
+    if (MetricsOf(a).Find(metric) || MetricsOf(b).Find(metric) ||
+        std::find(names.begin(), names.end(), metric) != names.end())
+      continue;
+    throw InputError("--metric: '" + metric + "' " + WhyNotMeasured(a, metric),
+                     "a name in cases.csv without its prefix 'metric_'");
+  }
 }
 
 /// Both must have what is asked for.
@@ -52,6 +63,7 @@ FolderComparison CompareFolders(const std::string& name_a, const std::string& na
                                 const std::vector<std::string>& metrics) {
   const StoredCampaign a = OpenStored(name_a);
   const StoredCampaign b = OpenStored(name_b);
+  CheckKnown(a.campaign, b.campaign, metrics);
   CheckMeasured(name_a, a.campaign, metrics);
   CheckMeasured(name_b, b.campaign, metrics);
   CheckSameDefinitions(a.campaign, b.campaign, metrics);

@@ -8,11 +8,14 @@ const std::vector<ExitMeaning>& ExitMeanings() {
   static const std::vector<ExitMeaning> meanings = {
       {kExitInterrupted, "interrupted; what was flown is kept"},
       {kExitBadInput, "wrong usage or wrong input"},
-      {kExitInternalError, "internal error"},
-      {kExitIncomplete, "incomplete: no workers, disk full, output lost, quarantined cases, cancelled"},
+      {kExitInternalError, "internal error, or a machine returned other bits"},
+      {kExitIncomplete,
+       "incomplete: no workers, no answer from the coordinator, disk full, closed standard output, "
+       "quarantined cases, cancelled"},
       {kExitReplayMismatch, "a replayed flight differs from the stored one"},
       {kExitRequirementFailed,
-       "a requirement failed (one point of a study is enough), or the optimiser's target is out of reach"},
+       "a requirement failed (one point of a study is enough), or `optimize`, `tune` or `margins` missed a "
+       "target"},
       {kExitNotEvidence,
        "not evidence: a requirement was loosened, dropped or added after flights; earlier attempts used up "
        "the risk; a study states a probability; with --gate nothing is required"},

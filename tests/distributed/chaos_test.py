@@ -16,8 +16,8 @@ import time
 import unittest
 
 from hosts import Hosts
-from processes import BINARIES, CAMPAIGN, PATIENCE_S, Run, content, end, main, shared_memory_segments, stored,
-                       wait_for
+from processes import (BINARIES, CAMPAIGN, PATIENCE_S, Run, content, end, main, shared_memory_segments, stored,
+                       wait_for)
 
 TROUBLES = int(os.environ.get("DISPERSA_TROUBLES", "3"))
 SEED = int(os.environ.get("DISPERSA_SEED", random.SystemRandom().randrange(10**6)))

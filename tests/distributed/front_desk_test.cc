@@ -363,7 +363,8 @@ TEST_F(FrontDeskTest, OfACampaignThatHasEndedTheFilesOfItsFolderAlone) {
   EXPECT_EQ(answer.at("code"), kExitIncomplete);
   std::map<std::string, std::uint64_t> sizes;
   for (const Json& file : answer.at("files")) sizes[file.at("path")] = file.at("size");
-  EXPECT_THAT(sizes, ElementsAre(std::pair("campaign.yaml", fs::file_size(results / "campaign.yaml")),
+  EXPECT_THAT(sizes, ElementsAre(std::pair("attempts.jsonl", fs::file_size(results / "attempts.jsonl")),
+                                 std::pair("campaign.yaml", fs::file_size(results / "campaign.yaml")),
                                  std::pair("histories/a.csv", large.size()),
                                  std::pair("results.sqlite", fs::file_size(results / "results.sqlite"))));
   for (const char* path : {"../state.json", "../campaign.yaml", "/etc/hostname", "link", "half.csv.tmp",

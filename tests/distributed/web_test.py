@@ -155,7 +155,7 @@ class WebTest(ServiceCase):
 
         watch = self.watch(identity)
         viewer = self.viewer()
-        wait_for(lambda: f" of {done} break " in viewer.parts.get("requirements", ""), "all that was flown before")
+        wait_for(lambda: f" of {done} fail " in viewer.parts.get("requirements", ""), "all that was flown before")
         before = dict(viewer.parts)
 
         coordinator.kill()

@@ -84,7 +84,7 @@ class Pipelines(unittest.TestCase):
         for flow in (self.github, self.gitlab):
             code, root, error = flow(limit=1)
             self.assertEqual((code, self.failures(root)), (0, 0), error)
-            self.assertEqual(sorted(os.listdir(root / "gate")), ["report.md", "requirements.xml", "results"])
+            self.assertEqual(sorted(os.listdir(root / "gate")), ["dispersa-attempts.jsonl", "report.md", "requirements.xml", "results"])
 
     def test_one_that_is_not_stops_and_keeps_its_artifacts(self):
         for flow in (self.github, self.gitlab):

@@ -1,7 +1,7 @@
 // Texts from any source: however large, nested or damaged, reading ends soon, with a message.
 #include <gtest/gtest.h>
 
-#include <chrono>
+#include <ctime>
 #include <string>
 #include <vector>
 
@@ -17,14 +17,14 @@ namespace {
 constexpr double kSoon_s = 20.0;
 
 std::string MessageOf(const std::string& text) {
-  const auto start = std::chrono::steady_clock::now();
+  const std::clock_t start = std::clock();  // of the process: what runs beside it does not count
   std::string message = "no error";
   try {
     ParseCampaign(text, "text");
   } catch (const InputError& error) {
     message = error.what();
   }
-  EXPECT_LT(std::chrono::duration<double>(std::chrono::steady_clock::now() - start).count(), kSoon_s);
+  EXPECT_LT(static_cast<double>(std::clock() - start) / CLOCKS_PER_SEC, kSoon_s);
   return message.substr(0, message.find('\n'));
 }
 
