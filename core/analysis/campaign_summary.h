@@ -22,8 +22,8 @@
 
 namespace dispersa {
 
-/// What a campaign comes to. A study's points are chosen: it neither passes nor fails, but a point that
-/// violates a requirement is a fact.
+/// The verdict of a campaign by itself. A study's points are chosen, so it neither passes nor fails. But a
+/// point that violates a requirement is reported.
 enum class CampaignVerdict {
   kPass,
   kNothingJudged,
@@ -40,7 +40,7 @@ struct MetricSummary {
   std::string name;    ///< without the prefix
   Summary statistics;  ///< of the flights that were completed
   double skewness = kUndefined;
-  std::vector<Percentile> percentiles;  ///< with what the sample says of them
+  std::vector<Percentile> percentiles;  ///< each with its confidence limits
 };
 
 struct WorstCase {
@@ -59,8 +59,8 @@ struct CampaignSummary {
   std::string id;
   std::string flight_id;
   std::uint64_t seed = 0;
-  std::uint64_t cases = 0;      ///< asked for; of a campaign that stops when decided, up to where it stopped
-  std::uint64_t max_cases = 0;  ///< up to which it would have gone on
+  std::uint64_t cases = 0;      ///< requested; in a campaign that stops when decided: flown until it stopped
+  std::uint64_t max_cases = 0;  ///< largest number that it could have flown
   std::uint64_t flown = 0;
   std::uint64_t reached = 0;  ///< up to the last case that has a result
   std::uint64_t replicates = 1;
@@ -71,7 +71,7 @@ struct CampaignSummary {
   std::string reference;
   Orbit reference_orbit;  ///< that the optimiser reached with it
   std::string autopilot;
-  /// A control law in Python: nobody without it can fly these cases again, so nobody is told how to.
+  /// A control law in Python. Without it the cases cannot be flown again, so no replay command is shown.
   struct PythonLaw {
     std::string name;
     std::string sha256;
@@ -84,64 +84,63 @@ struct CampaignSummary {
   MetricList metric_list;                ///< of the nominal flight and of every result
   std::vector<OwnMetric> own_metrics;
   std::vector<RequirementSummary> requirements;
-  /// One that the vehicle gives, against the largest load of every flown case, completed or not.
+  /// A limit of the vehicle, compared with the largest load of every flown case, completed or not.
   struct Limit {
     std::string metric;  ///< of the load
     double limit = 0.0;  ///< in the metric's unit
     std::uint64_t exceeded = 0;
-    std::optional<double> largest = {};  ///< and the case that it is of; none: no case defines it
+    std::optional<double> largest = {};  ///< largest load; none: no case defines it
     std::uint64_t largest_case = 0;
   };
   std::vector<Limit> limits;
   std::uint64_t beyond_limits = 0;    ///< flights that exceeded any
   std::uint64_t near_step_limit = 0;  ///< flights whose fastest part comes near what a step resolves
   bool holm = false;                  ///< the requirements' verdicts hold together
-  /// How likely it is at most that a campaign that misses any requirement passes them all, and that any of
-  /// the requirements' own verdicts to pass is wrong.
+  /// Upper bound of the probability that a campaign which misses any requirement passes them all.
   double overall_risk = 0.0;
-  double any_risk = 0.0;
-  std::string requirements_id;             ///< hash of the requirements now,
-  std::string registered_requirements_id;  ///< and before the first case was flown
+  double any_risk = 0.0;                   ///< upper bound of the probability that any single pass is wrong
+  std::string requirements_id;             ///< hash of the requirements now
+  std::string registered_requirements_id;  ///< the same before the first case was flown
   std::int64_t planned_cases = 0;          ///< of the plan by which the requirements are judged
   std::vector<QuarantinedCase> quarantined;
   std::vector<WorstCases> worst_cases;
   std::vector<DispersionSummary> dispersions;
-  std::optional<InjectionSummary> injection;    ///< none where fewer than two flights got there
+  std::optional<InjectionSummary> injection;    ///< none with fewer than two injections
   std::vector<MetricDrivers> drivers;           ///< of KeyMetrics()
   std::vector<FailureDrivers> failure_drivers;  ///< of the requirements
-  /// Flights that the envelope was made of, when they were flown: percentiles from the first cases, minimum
-  /// and maximum besides from those that are extreme in any metric.
+  /// Numbers of flights in the envelope. Percentiles come from the first cases. Minimum and maximum also come
+  /// from cases that are extreme in any metric.
   struct Envelope {
     std::size_t flights = 0;
     std::size_t extreme_flights = 0;
   };
   std::optional<Envelope> envelope;
-  std::optional<CaseResult> nominal;  ///< flown without dispersions, when it was flown
-  /// What stands after earlier attempts and changes; no part of summary.json.
+  std::optional<CaseResult> nominal;  ///< the flight without dispersions, if it was flown
+  /// The verdict after earlier attempts and changes. It is no part of summary.json.
   Standing standing;
 };
 
-/// What a reader must not miss before any number: cases that are missing, studies, lost flights. Sentences,
-/// of which the first screen shows each, after those of StandingNotes().
+/// Sentences that the first screen shows before any number, after those of StandingNotes(): missing cases,
+/// studies, lost flights.
 std::vector<std::string> Warnings(const CampaignSummary& summary);
 
 /// The sentence for each requirement's verdict taken together.
 std::string JointRiskSentence(const CampaignSummary& summary);
 
-/// Keeps in the folder that these verdicts were read, if the campaign is complete and gives any.
+/// Records in the folder that these verdicts were read, if the campaign is complete and has verdicts.
 void RecordLooks(const ResultFolder& folder, const Campaign& campaign, const CampaignSummary& summary);
 
-/// From what is stored, without flying anything (so without `nominal`).
+/// From the stored results. It flies nothing, so `nominal` is empty.
 CampaignSummary BuildSummary(const ResultFolder& folder, const Campaign& campaign);
 /// The same from columns that hold at least the inputs of DispersedInputs(campaign).
 CampaignSummary BuildSummary(const ResultFolder& folder, const Campaign& campaign, const CaseColumns& cases);
 
-/// Metrics of the requirements first, then those that any report shows in full.
+/// Metrics of the requirements first, then those that every report shows in full.
 std::vector<std::string> KeyMetrics(const Campaign& campaign);
 
-/// What re-flies a case, for a shell in the result folder: no report holds the folder's path.
+/// The command that flies a case again, for a shell in the result folder. No report holds the folder's path.
 std::string ReplayCommand(std::uint64_t case_index);
-/// The same up to the index.
+/// The same without the index.
 std::string ReplayCommand();
 
 /// The contents of summary.json: schema "dispersa/summary/1", two spaces of indent, a final newline.

@@ -1,4 +1,4 @@
-// What drives a metric, and what sets failing flights apart, from the inputs as the flights applied them.
+// Inputs that drive a metric, and inputs that distinguish failing flights. Both use the inputs as applied.
 #pragma once
 
 #include <cstdint>
@@ -10,17 +10,18 @@
 
 namespace dispersa {
 
-/// One input, or a magnitude along a direction, of one metric over the completed flights. A magnitude, its
-/// direction and both together are one family, which is named by what of it explains most.
+/// One cause of a metric over the completed flights: an input, or a magnitude along a direction. A magnitude,
+/// its direction and their product are one family. The member that explains most gives the family its name.
 struct Driver {
   std::string input;  ///< column without prefix; "magnitude * cos angle" columns joined by " along "
-  std::string key;    ///< what the campaign file calls it, likewise
-  /// Inputs that rank the flights alike or in reverse (one dispersion may feed two): nothing can tell them
-  /// apart.
+  std::string key;    ///< its name in the campaign file, joined in the same way
+  /// Inputs that rank the flights in the same or in reverse order, so they cannot be told apart. One
+  /// dispersion may feed two inputs.
   std::vector<std::string> same_as = {};
-  std::string feature;  ///< through which it acts most: "x", "|x|" (about the nominal), "sin x", "cos x"
-  /// Share of the metric's variance that the family explains when those that explain more are known, with
-  /// its interval of 95 %: the first-order Sobol index where inputs are independent. Together at most 1.
+  std::string feature;  ///< the form with the largest share: "x", "|x|" (about the nominal), "sin x", "cos x"
+  /// Share of the metric's variance that the family explains when the families before it are known. `low` and
+  /// `high` are its 95 % interval. For independent inputs it is the first-order Sobol index. All shares sum
+  /// to 1 at most.
   double index = 0.0;
   double low = 0.0;
   double high = 0.0;
@@ -34,8 +35,8 @@ struct MetricDrivers {
   std::vector<Driver> drivers;  ///< by falling index, at most five, none whose interval holds 0
 };
 
-/// Of each metric, from the first 50,000 flights that define it; empty for one that fewer than 30 completed
-/// flights define, or that does not vary.
+/// The drivers of each metric, from the first 50,000 flights that define it. A metric has none if fewer than
+/// 30 completed flights define it, or if it does not vary.
 std::vector<MetricDrivers> FindDrivers(const Campaign& campaign, const std::vector<std::string>& metrics,
                                        const CaseColumns& cases);
 
@@ -48,28 +49,28 @@ struct FailureDriver {
   double false_discovery_rate = 1.0;  ///< of this and all that rank before it (Benjamini and Hochberg)
 };
 
-/// Two inputs that stand in a relation among the failing flights and in none, or in another one, among the
-/// others: it is their combination that fails.
+/// Two inputs whose combination fails: they are correlated among the failing flights, and otherwise not or
+/// differently.
 struct FailurePair {
   std::string first, second;  ///< columns without prefix
   std::string first_key, second_key;
   std::string first_feature, second_feature;
   double correlation = 0.0;  ///< of ranks among the failing flights
-  double p = 1.0;            ///< that it is the others'
+  double p = 1.0;            ///< p-value: the correlation is equal among the other flights
   double false_discovery_rate = 1.0;
 };
 
-/// What the failing flights of a requirement have in common, against the others of the first 50,000. Where
-/// fewer than ten fail, the tenth of the flights nearest to failing, the failing among them.
+/// Inputs that distinguish the failing flights of a requirement from the others of the first 50,000. If fewer
+/// than ten fail, the tenth of the flights nearest to the limit stands for them, failing ones included.
 struct FailureDrivers {
   std::string metric;
-  bool nearest = false;  ///< not only those that failed
+  bool nearest = false;  ///< true: flights near the limit stand for failing ones
   std::size_t flights = 0;
   std::vector<FailureDriver> drivers;  ///< up to a false discovery rate of 10 %, by rising p
-  std::vector<FailurePair> pairs;      ///< likewise, at most five; none of flights that are only nearest
+  std::vector<FailurePair> pairs;      ///< in the same way, at most five; none if `nearest`
 };
 
-/// In the order of the campaign's requirements; without drivers where there are fewer than 30 flights.
+/// In the order of the campaign's requirements. No drivers with fewer than 30 flights.
 std::vector<FailureDrivers> FindFailureDrivers(const Campaign& campaign, const CaseColumns& cases);
 
 }  // namespace dispersa

@@ -7,8 +7,9 @@
 
 namespace dispersa {
 
-/// JUnit XML: a test case a requirement. Not met: a failure; not decided or incomplete: an error; a study's:
-/// skipped, or a failure where a flown point violates it. Without requirements one test case for the flights.
+/// JUnit XML with one test case for each requirement. Not met: a failure. Undecided, incomplete or not
+/// evidence: an error. In a study: skipped, or a failure if a flown point violates it. Without requirements:
+/// one test case for the flights.
 std::string JUnitXml(const CampaignSummary& summary);
 
 }  // namespace dispersa

@@ -14,8 +14,8 @@
 
 namespace dispersa {
 
-/// Whether a lost flight fails a requirement whatever it measured. Of the vehicle's own limits a loss says
-/// nothing: they are held against what the flight bore until then.
+/// Whether a lost flight fails a requirement whatever it measured. Limits of the vehicle (`by_default`) are
+/// compared with the loads up to the loss, so a loss alone does not fail them.
 inline bool LossFails(const Requirement& requirement) { return !requirement.by_default; }
 
 struct RequirementSummary {
@@ -39,31 +39,31 @@ struct RequirementSummary {
   std::optional<double> success_upper;
   /// When inconclusive: the least number of cases that could pass with as many failures.
   std::optional<std::int64_t> cases_needed;
-  /// The probability that a design that just misses shows so few failures: the risk at which these cases
-  /// would pass. A case without a result counts as a failure. None in a design study.
+  /// The probability that a design which just misses shows at most this many failures: the risk at which
+  /// these cases would pass. A case without a result counts as a failure. None in a design study.
   std::optional<double> attained_risk;
   std::vector<Look> looks;  ///< at the counts, ascending; none in a design study
   std::optional<std::int64_t>
-      accepts;  ///< so many failures or fewer pass at the last look; none: no number does
-  std::optional<std::int64_t> rejects;  ///< so many or more fail
+      accepts;  ///< this many failures or fewer pass at the last look; none: no number passes
+  std::optional<std::int64_t> rejects;  ///< this many failures or more fail
   bool contradicted = false;
   bool beyond_plan = false;
   std::optional<double> naive_risk;  ///< see PlannedVerdict
-  bool post_hoc = false;             ///< not as it stood before the first case was flown
-  /// The metric's value that a share `probability` of the flights keeps to, with confidence 1 -
-  /// consumer_risk: the order statistic that decides the requirement (one value, below which or above which
-  /// they stay). None where the cases are too few, or so many flights were lost.
+  bool post_hoc = false;             ///< the requirement was changed after the first case was flown
+  /// With confidence 1 - consumer_risk, a share `probability` of the flights stays on the good side of this
+  /// value. It is the order statistic that decides the requirement. None if there are too few cases or too
+  /// many lost flights.
   std::optional<double> bound;
-  std::optional<double> margin;  ///< from it to the limit, positive inside, in the metric's unit
-  /// Probability that a new campaign of so many cases with one look passes at the failure rate seen here.
+  std::optional<double> margin;  ///< from `bound` to the limit, positive if met, in the metric's unit
+  /// Probability that a new campaign of `cases` cases with one look passes (PassProbability()).
   struct PassChance {
     std::int64_t cases = 0;
     double probability = 0.0;
   };
   std::vector<PassChance> pass_chances;
-  /// What the first n cases with a result say of the success probability, for n in about equal ratios up to
-  /// all of them. Each bound is one-sided and holds at its n taken alone (Clopper and Pearson); none of a
-  /// design study.
+  /// Bounds of the success probability from the first n cases with a result. n grows by about equal ratios up
+  /// to all cases. Each bound is one-sided and holds for its n alone (Clopper and Pearson). A design study
+  /// has none.
   struct Convergence {
     std::int64_t n = 0;
     std::int64_t failures = 0;
@@ -79,7 +79,7 @@ std::string LimitWords(const RequirementSummary& requirement, const std::string&
 /// "pitch_error_peak_deg below 0.5 for 99.73 % of flights at 10 % risk".
 std::string RequirementWords(const RequirementSummary& requirement);
 
-/// What a verdict rests on besides the cases.
+/// The facts about a campaign that a verdict needs beside its cases.
 struct JudgingContext {
   SamplingMethod method = SamplingMethod::kMonteCarlo;
   std::uint64_t cases = 0;  ///< of the campaign; those that are not among the rows are missing
@@ -92,13 +92,13 @@ struct JudgingContext {
 };
 
 /// The verdicts on all requirements. Only independent cases give one (Decide()). The points of a design study
-/// are chosen: its verdict is "study", and what is said is how many of the points meet the limit; independent
+/// are chosen. Its verdict is "study", and its sentence counts the points that meet the limit. Independent
 /// replicates of a Latin hypercube or Sobol design give bounds of the probability (ReplicateBounds()).
 std::vector<RequirementSummary> JudgeAll(const std::vector<Requirement>& requirements,
                                          const JudgingContext& context, const CaseColumns& cases);
 
-/// One requirement over these rows, whatever cases they are, as a campaign with so many cases as planned, of
-/// which `missing` more have no result.
+/// One requirement over the given rows. They count as a campaign that was flown as planned; `missing` further
+/// cases have no result.
 RequirementSummary Judge(const Requirement& requirement, SamplingMethod method, const CaseColumns& cases,
                          std::int64_t missing);
 

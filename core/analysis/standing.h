@@ -1,5 +1,5 @@
-// What a campaign's verdicts are worth after all that was flown and required before it: the verdict that
-// stands, which decides the exit code. It depends on other campaigns and on the order of events, so it is no
+// The verdict that stands: the campaign's own verdict after earlier attempts and earlier requirements are
+// counted. It decides the exit code. It depends on other campaigns and on the order of events, so it is no
 // part of summary.json.
 #pragma once
 
@@ -19,7 +19,7 @@ enum class StandingVerdict {
   kPass,           ///< every requirement is met as it was planned
   kNothingJudged,  ///< the campaign requires nothing
   kInconclusive,   ///< more cases can decide
-  kNotEvidence,    ///< what looks like a pass shows nothing: see the reasons
+  kNotEvidence,    ///< the pass by itself is no evidence: see the reasons
   kFail,
   kIncomplete,
 };
@@ -28,7 +28,7 @@ const char* StandingVerdictName(StandingVerdict verdict);
 /// The same for people: "not evidence", "post hoc" when a requirement was changed after flights.
 std::string StandingBadge(const struct Standing& standing);
 
-/// Who flew a folder's campaign last, and when; empty where nobody noted it.
+/// The last run of a folder's campaign: person, host and time. Fields that are not recorded are empty.
 struct RunInfo {
   std::string started_utc;
   std::string user;
@@ -41,14 +41,14 @@ struct Standing {
   struct Requirement {
     std::string verdict;  ///< "pass", "fail", "inconclusive", "not_evidence"
     bool post_hoc = false;
-    std::string reason;  ///< why it differs from what the campaign shows by itself; empty: it does not
+    std::string reason;  ///< why it differs from the campaign's own verdict; empty: it does not differ
     std::int64_t pool_cases = 0;  ///< of all attempts together
     std::int64_t pool_failures = 0;
   };
-  /// Required before the first case and not any more.
+  /// A requirement from before the first case that is not in the file any more.
   struct Dropped {
     std::string line;     ///< RequirementLine()
-    std::string verdict;  ///< that it had last; empty: none yet
+    std::string verdict;  ///< its last verdict; empty: none yet
   };
   struct AttemptLine {
     std::string id;
@@ -56,7 +56,7 @@ struct Standing {
     std::int64_t cases = 0;
     std::string verdict;  ///< StandingVerdictName(); empty: it has not ended
     std::string begun_utc;
-    std::string fresh;  ///< why it started anew
+    std::string fresh;  ///< reason of `--fresh`; empty: none
   };
 
   StandingVerdict verdict = StandingVerdict::kIncomplete;
@@ -70,20 +70,20 @@ struct Standing {
   RunInfo run;
 };
 
-/// Of a folder whose summary is made. Reads the folder's own ledger and record of looks.
+/// The standing of a folder with this summary. Reads the folder's own ledger and its record of looks.
 Standing StandingOf(const ResultFolder& folder, const Campaign& campaign, const CampaignSummary& summary);
 
-/// What a reader must know of it before any number, in sentences.
+/// Sentences about the standing that a reader needs before any number.
 std::vector<std::string> StandingNotes(const Standing& standing, const CampaignSummary& summary);
 
-/// The attempt as it is now, for its ledger.
+/// The attempt in its present state, for its ledger.
 AttemptRecord AttemptOf(const Campaign& campaign, const CampaignSummary& summary, AttemptRecord begun);
 
-/// Writes `standing_verdict`, `attempts` and what belongs to them into the folder's execution.json; what else
-/// is there stays.
+/// Writes `standing_verdict`, `attempts` and their details into the folder's execution.json. Other members
+/// stay.
 void WriteStanding(const ResultFolder& folder, const CampaignSummary& summary);
-/// The same in the ledgers: of the folder and of the folder `root` that it is in. Why the latter could not be
-/// written, if so.
+/// Writes the attempt into the ledger of the folder and into that of `root`, the folder above it. Returns the
+/// error text if the latter cannot be written.
 std::optional<std::string> RecordAttempt(const std::filesystem::path& root, const ResultFolder& folder,
                                          const Campaign& campaign, const CampaignSummary& summary);
 

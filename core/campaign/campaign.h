@@ -60,9 +60,9 @@ struct Dispersion {
   std::vector<int>
       inputs;             ///< columns (FindInput) that take the value (several draws of one factor multiply)
   bool absolute = false;  ///< take the magnitude of the draw: lateral deviations with a clock angle
-  /// Of a correlated normal: its standard normal is the sum of weight times that of the dispersion at a
-  /// position in Campaign::dispersions. The weights are a row of the Cholesky factor of the correlations.
-  /// Empty: its own normal alone.
+  /// For a correlated normal: positions in Campaign::dispersions, and weights. The standard normal is the
+  /// weighted sum of those of the named dispersions. The weights are a row of the Cholesky factor of the
+  /// correlations. Empty: not correlated.
   std::vector<std::pair<std::size_t, double>> mix = {};
 };
 
@@ -75,11 +75,11 @@ struct Requirement {
   std::optional<std::array<double, 2>> within = {};  ///< between both, strictly
   std::string own_expression = {};                   ///< of a metric of the campaign's own
   VerdictPlan plan = {};
-  bool every_case = false;  ///< of a study, in place of probability and risk: no point may violate it
-  /// Not the campaign's own: the vehicle gives limits of its structure, and the campaign does not say how
-  /// they are to be judged. While it is undecided and nothing has failed it, it holds no verdict up.
+  bool every_case = false;  ///< study only, in place of probability and risk: no point may violate it
+  /// True: the requirement comes from the vehicle's structural limits, and the campaign does not state how to
+  /// judge them. It delays no verdict while it is undecided and no flight has failed it.
   bool by_default = false;
-  std::string id = {};         ///< the project's own number of it; these three change no verdict
+  std::string id = {};         ///< the project's number of this requirement; these three change no verdict
   std::string rationale = {};  ///< why it is required
   std::string source = {};     ///< the document that requires it
 };
@@ -90,7 +90,8 @@ struct Verdicts {
       false;  ///< all verdicts together keep the largest consumer risk (S. Holm, 1979), else each its own
   bool stop_when_decided =
       false;  ///< end at the look at which every requirement is decided (else all cases are flown)
-  std::uint64_t attempts = 1;  ///< so many campaigns of one design share each requirement's risk evenly
+  std::uint64_t attempts =
+      1;  ///< number of campaigns of one design that share each requirement's risk evenly
 };
 
 struct Sampling {
@@ -98,7 +99,7 @@ struct Sampling {
   std::uint64_t cases =
       0;  ///< at most this many (a design of m runs repeats after m cases with other random draws)
   std::uint64_t seed = 0;
-  /// Latin hypercube and Sobol: so many designs of cases / replicates points, each randomised by itself.
+  /// Latin hypercube and Sobol: number of independent designs, of cases / replicates points each.
   std::uint64_t replicates = 1;
 };
 
@@ -123,17 +124,17 @@ struct Campaign {
   std::vector<OwnMetric> own_metrics;
   std::vector<Requirement> requirements;
   Verdicts verdicts;
-  std::vector<std::string> assumptions;  ///< what the verdicts take for granted, in the project's words
+  std::vector<std::string> assumptions;  ///< assumptions of the verdicts, in the project's words
 
   std::string vehicle_file;     ///< as the campaign file names it, without folders; no part of any id
-  std::string canonical_yaml;   ///< everything inlined; what campaign.yaml holds
+  std::string canonical_yaml;   ///< everything inlined: the text of campaign.yaml
   std::string id;               ///< SHA-256 of canonical_yaml, hexadecimal
   std::string flight_id;        ///< SHA-256 of what decides a case
   std::string requirements_id;  ///< SHA-256 of what is required, in any order, and of how it is judged
   std::string design_id;        ///< SHA-256 of what is flown, without seed, number of cases and engine
   std::string own_metrics_id;   ///< SHA-256 of the flight id and the own metrics; empty without any
 
-  /// Of what decides a case's result: the flight, and which metrics it measures.
+  /// Id of everything that decides a case's result: the flight and the measured metrics.
   const std::string& result_id() const { return own_metrics_id.empty() ? flight_id : own_metrics_id; }
 };
 

@@ -192,12 +192,11 @@ void Describe(Fields& fields, Sampling& sampling) {
                                  {"grid", SamplingMethod::kGrid},
                                  {"list", SamplingMethod::kList}},
                                 sampling.method, "how cases are drawn");
-  fields.Integer("cases", 1, kMaxCases, sampling.cases, "so many flights, at most");
+  fields.Integer("cases", 1, kMaxCases, sampling.cases,
+                 "number of flights, or the largest if it stops when decided");
   fields.Integer("seed", 0, UINT64_MAX, sampling.seed, "of all draws");
-  fields.Integer(
-      "replicates", 1, kMaxReplicates, sampling.replicates,
-      "of a Latin hypercube or Sobol design: so many of cases / replicates points, each randomised by itself",
-      1);
+  fields.Integer("replicates", 1, kMaxReplicates, sampling.replicates,
+                 "independent Latin hypercube or Sobol designs of cases / replicates points each", 1);
   if (sampling.replicates <= 1) return;
   if (sampling.method != SamplingMethod::kLatinHypercube && sampling.method != SamplingMethod::kSobol)
     fields.Refuse("replicates", "only a Latin hypercube or Sobol design has replicates",
@@ -220,8 +219,8 @@ void Describe(Fields& fields, Verdicts& verdicts, VerdictPlan& plan, Sampling& s
     fields.Refuse("stop", "a design study decides nothing", "method: monte_carlo");
   fields.Integer(
       "attempts", 1, kMaxAttempts, verdicts.attempts,
-      "so many campaigns of one design share each requirement's risk evenly; later ones are judged "
-      "by all their cases together",
+      "number of campaigns of one design that share each requirement's risk evenly; later ones are "
+      "judged by all cases together",
       1);
   fields.When(Has("max_cases"), [&] {
     fields.Integer("max_cases", 1, kMaxCases, sampling.cases,
@@ -237,7 +236,7 @@ void Describe(Fields& fields, OwnMetric& metric, const std::vector<std::string>&
                   "a small letter, then small letters, digits and '_', 60 at most");
   else if (std::find(others.begin(), others.end(), metric.name) != others.end())
     fields.Refuse("name", "'" + metric.name + "' is a metric already", "another name");
-  fields.Text("expression", metric.expression, "of columns of histories, at every tick");
+  fields.Text("expression", metric.expression, "from columns of histories, at every tick");
   metric.expression = WithSingleSpaces(metric.expression);
   fields.Text("description", metric.meaning, "for the report", "");
 }
@@ -248,8 +247,8 @@ void Describe(Fields& fields, Requirement& requirement, const std::vector<std::s
   fields.Text("source", requirement.source, "the document that requires it", "");
   constexpr const char* kOneLimit = "either below: x, above: x or within: [low, high]";
   fields.Name("metric", metrics, "a metric", requirement.metric, "of cases.csv, without its prefix");
-  fields.OptionalNumber("below", kAnyNumber, requirement.below, "what it must stay below");
-  fields.OptionalNumber("above", kAnyNumber, requirement.above, "what it must stay above");
+  fields.OptionalNumber("below", kAnyNumber, requirement.below, "the metric must stay below");
+  fields.OptionalNumber("above", kAnyNumber, requirement.above, "the metric must stay above");
   bool has_band = false;
   fields.When(Has("within"), [&] {
     has_band = true;

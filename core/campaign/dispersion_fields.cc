@@ -186,14 +186,14 @@ class DispersionFields {
     std::vector<std::pair<std::string, Per>> choices = {{"stage", Per::kStage}, {"vehicle", Per::kVehicle}};
     if (!row.nozzle_columns.empty()) choices.emplace_back("nozzle", Per::kNozzle);
     Per per = Per::kStage;
-    map.Choice<Per>("per", choices, per, "what gets its own draw");
+    map.Choice<Per>("per", choices, per, "one draw for each");
     return per;
   }
   static Per PerVehicle(Fields& map) {
     Per per = Per::kVehicle;
     const auto choice = [&](Per absent) {
-      map.Choice<Per>("per", {{"stage", Per::kStage}, {"vehicle", Per::kVehicle}}, per,
-                      "what gets its own draw", absent);
+      map.Choice<Per>("per", {{"stage", Per::kStage}, {"vehicle", Per::kVehicle}}, per, "one draw for each",
+                      absent);
     };
     map.Either({{Has("stage"), [&] { choice(Per::kStage); }}, {Else(), [&] { choice(Per::kVehicle); }}});
     return per;

@@ -16,10 +16,10 @@ enum class Draws {
   kEachMode,         ///< `per: mode`, or `vehicle`: one value for all
   kEachStage,        ///< of the stages that `stage` names, else of all
   kStages,           ///< as above, with `per: stage`, or `vehicle` (one value for all stages)
-  kVehicleOrStages,  ///< likewise, but the whole vehicle's column unless `per` or `stage` says otherwise
-  kOffAxis,          ///< likewise as kStages, by magnitude and `clock_angle` or by components
+  kVehicleOrStages,  ///< as above; without `per` and `stage` the whole vehicle's column
+  kOffAxis,          ///< as kStages, by magnitude and `clock_angle` or by components
   kFixed,            ///< one value, drawn or not: "stem_unit: x" or "stem: {distribution: ...}"
-  kFixedOrAbsent,    ///< likewise, or none
+  kFixedOrAbsent,    ///< as above, or absent
   kDirection,        ///< "uniform", {fixed_deg: x} or a distribution
   kParts,            ///< a map of dispersions, one or more
   // With keys of their own (dispersion_fields.cc).

@@ -1,5 +1,5 @@
-// Dispersions of a size that no vehicle and no day has: a sigma in per cent typed for a fraction, metres for
-// centimetres, an error that nothing uses. They are flown, with a warning.
+// Warnings about dispersions that are far larger than any known vehicle's. Examples: a sigma in per cent
+// typed for a fraction, metres for centimetres, an error that no part uses. They are flown, with a warning.
 #pragma once
 
 #include <string>

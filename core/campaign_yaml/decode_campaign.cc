@@ -165,8 +165,8 @@ class CampaignDescription {
     fields.Text("name", campaign_.name, "of the campaign, and of its folder");
     CheckName(fields, campaign_.name);
     std::string description;
-    fields.Text("description", description, "what it is for", "");
-    fields.Document("vehicle", kVehicleSchema, true, "a vehicle file", "what flies",
+    fields.Text("description", description, "purpose", "");
+    fields.Document("vehicle", kVehicleSchema, true, "a vehicle file", "the vehicle",
                     [this](InputNode& node, const std::string& path) {
                       vehicle_ = {&node, path};
                       campaign_.vehicle = DecodeVehicle(node, path, problems_, files_, warnings_);
@@ -289,7 +289,8 @@ class CampaignDescription {
 
   // A trajectory that is yet to be found needs nothing that flies it.
   void DescribeFlights(Fields& fields, bool needed) {
-    fields.Document("autopilot", kAutopilotSchema, needed, "an autopilot file", "what flies the trajectory",
+    fields.Document("autopilot", kAutopilotSchema, needed, "an autopilot file",
+                    "autopilot that flies the trajectory",
                     [this](InputNode& node, const std::string& path) { ReadAutopilotOf(node, path); });
     bool is_guided = false;
     fields.OptionalMap("guidance", is_guided,
@@ -332,7 +333,7 @@ class CampaignDescription {
   void DescribeDispersions(Fields& fields) {
     const std::size_t before = problems_.size();
     bool has_dispersions = false;
-    fields.OptionalMap("dispersions", has_dispersions, "what differs from case to case",
+    fields.OptionalMap("dispersions", has_dispersions, "inputs that differ from case to case",
                        [&](Fields& map) { dispersa::DescribeDispersions(map, before == 0, campaign_); });
     if (list_.node != nullptr)
       ReadFields(*list_.node, list_.path, problems_, files_,
@@ -392,8 +393,8 @@ class CampaignDescription {
     std::vector<std::string> metrics = MetricNames();
     if (root_ != nullptr) metrics.resize(MetricCount(stages));
     for (const OwnMetric& metric : campaign_.own_metrics) metrics.push_back(metric.name);
-    fields.OptionalList("requirements", 1, SIZE_MAX, campaign_.requirements,
-                        "what is required of the flights", [&](Fields& map, Requirement& requirement) {
+    fields.OptionalList("requirements", 1, SIZE_MAX, campaign_.requirements, "requirements on the flights",
+                        [&](Fields& map, Requirement& requirement) {
                           requirement.plan = plan;
                           dispersa::Describe(map, requirement, metrics);
                           CheckMeasured(map, requirement.metric);
@@ -408,7 +409,7 @@ class CampaignDescription {
       RequireLimitsKept(plan, campaign_.sampling.method, campaign_.requirements);
     fields.When(Has("assumptions"), [&] {
       fields.Texts("assumptions", 1, SIZE_MAX, campaign_.assumptions,
-                   "what the verdicts take for granted; the report's first page lists it");
+                   "assumptions of the verdicts; on the report's first page");
     });
   }
 

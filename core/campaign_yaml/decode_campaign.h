@@ -19,7 +19,7 @@ struct DecodedCampaign {
 /// The use of a campaign, which decides the keys that it needs.
 enum class CampaignUse {
   kFly,       ///< autopilot, sampling and a reference
-  kRead,      ///< likewise, but a control law in Python need not be here
+  kRead,      ///< as kFly, but a control law in Python may be missing
   kOptimize,  ///< a vehicle, and a reference or an `optimize` block
   kCheck,     ///< the first if it has a reference, else the second
 };

@@ -44,8 +44,7 @@ Campaign LoadCampaign(const InputSource& source, const CampaignOverrides& overri
 /// canonical text, the same ids as LoadCampaign of the original.
 Campaign ParseCampaign(const std::string& yaml_text, const std::string& display_name);
 
-/// The campaign of a result folder's campaign.yaml, to be looked at: a control law in Python that it was
-/// flown under need not be here.
+/// Reads a result folder's campaign.yaml without flying it. A control law in Python may be missing.
 Campaign ReadFlownCampaign(const InputSource& source);
 
 /// A campaign's part for `optimize`: the trajectory problem in its `optimize` block, or that of its

@@ -1,4 +1,4 @@
-// What a campaign requires and cannot show: legal, and never of use.
+// Warnings about requirements that are allowed but that no flight can show.
 #pragma once
 
 #include <vector>
@@ -9,7 +9,7 @@
 
 namespace dispersa {
 
-/// Of a valid campaign and the tree that it was read from, each at its place in the file.
+/// The warnings about a valid campaign. `root` is the tree that it was read from, for the places in the file.
 std::vector<InputProblem> PlanWarnings(const Campaign& campaign, const InputNode& root);
 
 }  // namespace dispersa

@@ -55,10 +55,10 @@ PluginDescription DescribeContained(const PluginConfig& config);
 /// Which parts of the sandbox hold for children of this process.
 SandboxParts SandboxHere();
 
-/// Whether this process loads campaigns with plug-ins: until RefusePlugins, which says why not, and the
-/// SHA-256 of those that it loads all the same. To be called before any thread starts.
+/// After this call the process loads no plug-ins, for the reason `why`, except those with a SHA-256 in `but`.
+/// Call it before any thread starts.
 void RefusePlugins(const std::string& why, std::set<std::string> but = {});
-/// Why this library is not loaded; empty if it is.
+/// The reason why this library is not loaded. Empty if it may be loaded.
 std::string PluginRefusal(const std::string& sha256);
 
 }  // namespace dispersa

@@ -10,7 +10,7 @@ constexpr Range kLead = Between(0.0, 1.0);
 
 void DescribeGains(Fields& fields, AxisGains& gains) {
   fields.Quantity("kp", kPerTimeSquared, kPositive, gains.kp_1_s2, "of the error dynamics s^2 + kd s + kp");
-  fields.Quantity("kd", kPerTime, kPositive, gains.kd_1_s, "of the same error dynamics");
+  fields.Quantity("kd", kPerTime, kPositive, gains.kd_1_s, "gain on the rate of the error");
 }
 
 void DescribeSection(Fields& fields, FilterSection& section) {
@@ -167,7 +167,7 @@ void Describe(Fields& fields, ReactionControlLogic& logic) {
   fields.Quantity("rate_gain", kTime, kNonNegative, logic.rate_gain_s,
                   "of the switching line e + rate_gain de/dt");
   fields.Number("hysteresis", {0.0, 1.0, false, true}, logic.hysteresis,
-                "fraction of the deadband by which a firing overshoots into it");
+                "a firing ends inside the deadband by this fraction of it");
   fields.Integer("cycle_ticks", 1, 100, logic.cycle_ticks,
                  "between decisions: thrusters open for whole cycles");
 }

@@ -38,14 +38,14 @@ unsigned DueJettisons(const LauncherPlant& plant, int stack, unsigned jettisoned
 RigidBodyState AfterJettison(const LauncherPlant& plant, int stack, unsigned before, unsigned after,
                              double propellant_kg, double since_ignition_s, const RigidBodyState& state);
 
-/// What the bending of the stack below leaves to the body above at a separation: its centre of gravity, its
-/// attitude, its momentum and its angular momentum are those that its masses had by the modes. `modal`: of
-/// the burnt stack, as in the state of a launcher (kModalState). The body itself leaves unbent.
+/// Adds the bending of the stack below to the body above at a separation. Centre of gravity, attitude,
+/// momentum and angular momentum become those that its masses had in the modes. `modal`: coordinates of the
+/// burnt stack, as in the state of a launcher (kModalState). The body itself is straight afterwards.
 void TakeAlong(const LauncherStack& below, unsigned jettisoned, const double* modal, RigidBodyState& above);
 
-/// What the bending of a stack becomes as it jettisons bodies (bits of LauncherPhase::jettisoned before and
-/// after). What is left takes along, as above, and bends on: `modal` becomes the coordinates and rates of the
-/// lighter stack's modes that its masses have at that instant. Modes that do not fly get none.
+/// Changes the bending of a stack when it jettisons bodies (bits of LauncherPhase::jettisoned before and
+/// after). The remaining stack takes over momentum as above and bends on. `modal` becomes the coordinates and
+/// rates of the lighter stack's modes at that instant. Modes that do not fly get none.
 void LetGoBent(const LauncherStack& stack, unsigned before, unsigned after, double propellant_kg,
                double* modal, RigidBodyState& left);
 

@@ -23,11 +23,11 @@ inline constexpr const char* kNozzleNames[kNozzles] = {"right", "left", "bottom"
 inline constexpr int kNozzleAngle = kRigidBodySize;
 inline constexpr int kNozzleRate = kNozzleAngle + kNozzles;
 inline constexpr int kRigidLauncherSize = kNozzleRate + kNozzles;
-/// Of a vehicle that bends, then the modal coordinates by plane and mode, and their rates.
+/// Then, if the vehicle bends, the modal coordinates by plane and mode, and their rates.
 inline constexpr int kModalState = kRigidLauncherSize;
 inline constexpr int kModalRate = kModalState + kPlanes * kModes;
 inline constexpr int kBentLauncherSize = kModalRate + kPlanes * kModes;
-/// Of a vehicle with a list of nozzles, then the angles and rates about the second hinges.
+/// Then, if the vehicle has a list of nozzles, the angles and rates about the second hinges.
 inline constexpr int kSecondAngle = kBentLauncherSize;
 inline constexpr int kSecondRate = kSecondAngle + kNozzles;
 inline constexpr int kLauncherSize = kSecondRate + kNozzles;
@@ -61,10 +61,10 @@ struct LauncherStack {
   double thrust_offset_y_m = 0.0;
   double thrust_offset_z_m = 0.0;
   std::array<NozzleDeparture, kNozzles> nozzles;
-  /// Of everything but the burning propellant, whose own centre is on the axis: mass times lateral offset.
+  /// Mass times lateral offset of everything but the burning propellant, whose own centre is on the axis.
   double lateral_moment_y_kg_m = 0.0;
   double lateral_moment_z_kg_m = 0.0;
-  // Besides the plant's own.
+  // In addition to the plant's factors.
   double cg_factor = 1.0;
   double inertia_factor = 1.0;
   /// Integrals of x y, x z and y z over the mass about C in body axes. They are constant over the burn, since
@@ -114,7 +114,7 @@ struct LauncherPlant {
   bool flow_coriolis = true;
   BendingFactors bending;
 
-  // Of all stacks, so that what is computed does not depend on where a flight stands.
+  // The largest over all stacks, so that the computation does not depend on the flight's progress.
   int bending_modes() const;   ///< in one plane (0: the vehicle is rigid)
   int bending_planes() const;  ///< that differ
   bool nozzles_have_mass() const;

@@ -137,8 +137,8 @@ DISPERSA_INLINE void SetLane(BendingTableLanes<T>& b, int lane, const LauncherPl
   b.planes = plant.bending_planes();
 }
 
-/// Of the first hinges as of the second. `stuck`: index of a nozzle that does not move, or -1. `longest_s`:
-/// of what Propagate will be asked for.
+/// For first and second hinges. `stuck`: index of a nozzle that does not move, or -1. `longest_s`: longest
+/// time that Propagate will get.
 template <class T>
 DISPERSA_INLINE void SetLane(GimbalLanes<T>& d, int lane, const Gimbal& gimbal, int stuck,
                              double longest_s = 0.0) {

@@ -1,4 +1,5 @@
-// A number that input files compute from other numbers. README.md beside this file has the grammar.
+// Expressions: a campaign file computes a number from other numbers. README.md in this folder has the
+// grammar.
 #pragma once
 
 #include <cstddef>
@@ -9,10 +10,10 @@
 
 namespace dispersa {
 
-/// A text that is no expression.
+/// The text is not a valid expression.
 class ExpressionError : public std::runtime_error {
  public:
-  /// `at`: of the first character that is wrong, from 0.
+  /// `at`: position of the first wrong character, from 0.
   ExpressionError(const std::string& message, std::string allowed_instead, std::size_t at)
       : std::runtime_error("at character " + std::to_string(at + 1) + ": " + message),
         allowed(std::move(allowed_instead)) {}
@@ -20,19 +21,19 @@ class ExpressionError : public std::runtime_error {
   const std::string allowed;
 };
 
-/// The value that a name stands for: its position among those that Evaluate gets.
+/// The value of a name, as its position in the array that Evaluate gets.
 struct NamedValue {
   int position = 0;
   bool is_condition = false;  ///< its value is 1 or 0
 };
-/// Throws UnknownName for a name that stands for nothing here.
+/// Throws UnknownName if the name has no value here.
 using LookUp = std::function<NamedValue(const std::string& name)>;
 struct UnknownName {
   std::string message;
   std::string allowed;
 };
 
-/// One operation on the last values: those that it takes are replaced by its result.
+/// One operation of a stack machine. It replaces its operands on top of the stack by its result.
 struct ExpressionStep {
   enum class Kind {
     kNumber,
@@ -61,28 +62,28 @@ struct ExpressionStep {
   };
   Kind kind;
   double number = 0.0;
-  int position = 0;  ///< of a value, or an exponent
+  int position = 0;  ///< position of a value, or the exponent of kPower
 };
 
-/// Immutable once made.
+/// Immutable after construction.
 class Expression {
  public:
-  /// As many values as are kept at the same time, at most.
+  /// Largest number of values on the stack.
   static constexpr std::size_t kDepth = 32;
 
   Expression() = default;
   explicit Expression(std::vector<ExpressionStep> steps) : steps_(std::move(steps)) {}
 
-  /// Not finite where it is undefined. The same bits on every machine.
+  /// The result. It is not finite if it is undefined. The same bits on every machine.
   double Evaluate(const double* values) const;
-  /// Positions of the values that it reads, ascending.
+  /// Positions of the values that the expression reads, ascending.
   std::vector<int> Positions() const;
 
  private:
   std::vector<ExpressionStep> steps_;
 };
 
-/// One number of other numbers. Throws ExpressionError.
+/// Parses an expression of one number. Throws ExpressionError.
 Expression ParseExpression(const std::string& text, const LookUp& look_up);
 
 }  // namespace dispersa

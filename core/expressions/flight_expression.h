@@ -1,4 +1,5 @@
-// One number of a flight, from values that it has at each tick. README.md beside this file has the grammar.
+// Expressions that give one number of a flight from its values at each tick. README.md in this folder has the
+// grammar.
 #pragma once
 
 #include <optional>
@@ -13,33 +14,33 @@ namespace dispersa {
 struct OverFlight {
   enum class Kind { kMax, kMin, kMean, kRms, kIntegral, kFirst, kLast, kDuration, kAt };
   Kind kind;
-  Expression value;  ///< of kDuration: none
+  Expression value;  ///< empty for kDuration
   std::optional<Expression> while_true = {};
-  double at_s = 0.0;  ///< of kAt
+  double at_s = 0.0;  ///< for kAt
 };
 
-/// Immutable once made.
+/// Immutable after construction.
 struct FlightExpression {
   std::vector<OverFlight> parts;
-  Expression whole;  ///< of the parts' values
+  Expression whole;  ///< its values are those of the parts
 };
 
-/// Throws ExpressionError.
+/// Parses the text. Throws ExpressionError.
 FlightExpression ParseFlightExpression(const std::string& text, const LookUp& look_up);
 
-/// The parts of one flight's expression, tick after tick. The expression must outlive it.
+/// Evaluates an expression over one flight, tick by tick. The expression must outlive the meter.
 class FlightMeter {
  public:
   explicit FlightMeter(const FlightExpression& expression);
 
   void Add(double time_s, double tick_s, const double* values);
-  /// Not finite where it is undefined.
+  /// The result. It is not finite if it is undefined.
   double Value() const;
 
  private:
   struct Sum {
     double value = 0.0;  ///< largest, smallest, sum, first, last or time
-    double count = 0.0;  ///< of ticks
+    double count = 0.0;  ///< number of ticks
   };
   const FlightExpression& expression_;
   std::vector<Sum> sums_;

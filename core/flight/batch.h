@@ -277,7 +277,7 @@ void Batch<T>::SetStack(int lane, int stack) {
     SetLane(allocation_, lane, slot.record->plant.stacks.data()[stack].layout);
 }
 
-/// Of what the lane's stack still carries.
+/// Sets the mass of the bodies that the lane's stack still carries.
 template <class T>
 void Batch<T>::SetMass(int lane) {
   const Slot& slot = slot_[lane];

@@ -164,8 +164,8 @@ void Batch<T>::DriftOn() {
   }
 }
 
-/// The unit samples at every tick, also where nobody looks: over the n ticks of a cycle of the reaction
-/// control it turns by the mean of n samples, of which the one at its beginning is known.
+/// The unit samples at every tick, although the samples within a cycle of the reaction control are not used.
+/// Over the n ticks of a cycle it turns by the mean of n samples; the first one is known.
 template <class T>
 void Batch<T>::AverageNoise() {
   for (int lane = 0; lane < kLanes; ++lane) {
@@ -291,8 +291,8 @@ void Batch<T>::PassCommands(M powered) {
   line_at_ = (line_at_ + 1) & (kDelayLine - 1);
 }
 
-/// Of stages whose nozzles cannot: by the couples of the coast, decided at the same cycles, while the motor
-/// burns.
+/// Roll control of stages whose nozzles cannot roll: the thrusters of the coast fire in the same cycles while
+/// the motor burns.
 template <class T>
 void Batch<T>::RollByThrusters(M rolling) {
   const AutopilotModel& autopilot = model_.autopilot();

@@ -52,8 +52,8 @@ std::vector<FlightResult> FlyAll(const FlightModel& model, const std::vector<Fli
 /// State at lift-off: at rest on the site, attitude as the pitch program begins, with the flight's own
 /// errors.
 RigidBodyState LiftOffState(const FlightModel& model, const FlightInputs& inputs = {});
-/// Of a true attitude at rest what the inertial unit takes it for: it does not know how far it stands off the
-/// launch azimuth.
+/// The attitude that the inertial unit measures for a true attitude at rest. The unit does not know its error
+/// of the launch azimuth.
 Quaternion BelievedAttitude(const FlightModel& model, const FlightInputs& inputs, const Quaternion& q_IB);
 /// Attitude error, reference less true, and its rate.
 AttitudeError ErrorAt(const FlightModel& model, const ReferenceAttitude& reference,

@@ -1,4 +1,5 @@
-// Everything by which one flight differs from the nominal: what a case draws, applies and echoes.
+// The inputs of a flight: every number by which it differs from the nominal flight. A case draws them, the
+// flight applies them, the result contains them.
 #pragma once
 
 #include <array>
@@ -42,19 +43,19 @@ struct FlightInputs {
   PerStage thrust_misalignment_rad{};        ///< tilt of the thrust against the body axis
   PerStage thrust_misalignment_clock_rad{};  ///< direction of the tilt: from body y towards body z
   PerStage thrust_offset_m{};                ///< lateral offset of the thrust line
-  PerStage thrust_offset_clock_rad{};        ///< direction of the offset, likewise
-  PerNozzle nozzle_misalignment_rad{};       ///< the same of one nozzle, besides the stage's
+  PerStage thrust_offset_clock_rad{};        ///< direction of the offset: from body y towards body z
+  PerNozzle nozzle_misalignment_rad{};       ///< tilt of one nozzle, added to the stage's
   PerNozzle nozzle_misalignment_clock_rad{};
   PerNozzle nozzle_offset_m{};
   PerNozzle nozzle_offset_clock_rad{};
-  PerNozzle nozzle_thrust_factor = AllNozzles(1.0);  ///< of its share of the thrust, at the same flow
-  PerStage cg_offset_m{};          ///< of the CG off the axis, of the stack without what it burns
-  PerStage cg_offset_clock_rad{};  ///< direction of the offset, likewise
+  PerNozzle nozzle_thrust_factor = AllNozzles(1.0);  ///< factor of a nozzle's thrust at the same flow
+  PerStage cg_offset_m{};  ///< distance of the CG from the axis, of the stack without its burning propellant
+  PerStage cg_offset_clock_rad{};  ///< direction of the offset: from body y towards body z
   PerStage thrust_factor = AllStages(1.0);
   PerStage mass_flow_factor = AllStages(1.0);         ///< flow at full thrust: more flow shortens the burn
   PerStage specific_impulse_factor = AllStages(1.0);  ///< thrust at the same flow
   double wind_max_speed_m_s = 0.0;                    ///< of the jet stream
-  double wind_azimuth_rad = 0.0;                      ///< where it comes from, clockwise from north
+  double wind_azimuth_rad = 0.0;                      ///< from where the wind comes, clockwise from north
   double wind_altitude_m = 12000.0;                   ///< of the maximum
   double wind_width_m = 12000.0;                      ///< full width at half the maximum
   double gust_speed_m_s = 0.0;                        ///< 1 - cosine gust
@@ -87,37 +88,39 @@ struct FlightInputs {
   double stuck_nozzle = 0.0;        ///< 0 none, 1..4 right, left, bottom, top
   double stuck_nozzle_stage = 0.0;  ///< 1-based
   double stuck_nozzle_rad = 0.0;    ///< angle at which it stays
-  double pn_error_factor = 1.0;     ///< of the first component of P_n, the paper's Fig. 5
-  double pn_rate_factor = 1.0;      ///< of the second
-  double loop_gain_factor = 1.0;    ///< of every commanded deflection: measures the gain margin
-  double loop_delay_s = 0.0;        ///< further delay of the commands: measures the delay margin
-  double loop_stage = 0.0;          ///< the stage (1-based) whose loop they change, 0 all
+  double pn_error_factor = 1.0;     ///< factor of the first component of P_n, the paper's Fig. 5
+  double pn_rate_factor = 1.0;      ///< factor of the second component of P_n
+  double loop_gain_factor = 1.0;    ///< factor of every commanded deflection; measures the gain margin
+  double loop_delay_s = 0.0;        ///< additional delay of the commands; measures the delay margin
+  double loop_stage = 0.0;          ///< stage (1-based) whose loop gain and delay are changed; 0: all
   std::array<double, 3> navigation_position_error_m{};    ///< navigated less true, constant, along L's axes
-  std::array<double, 3> navigation_velocity_error_m_s{};  ///< likewise
+  std::array<double, 3> navigation_velocity_error_m_s{};  ///< the same for the velocity
   double accelerometer_scale_factor = 1.0;                ///< of the sensed specific force
   // Later inputs go to the end: a Sobol design's dimensions are the columns' positions.
-  PerStage dry_mass_factor = AllStages(1.0);    ///< of a stage's dry mass (dispersed_vehicle.h)
+  PerStage dry_mass_factor = AllStages(1.0);    ///< factor of a stage's dry mass (dispersed_vehicle.h)
   PerStage propellant_factor = AllStages(1.0);  ///< of the propellant at ignition
-  double payload_mass_kg = 0.0;                 ///< above the nominal payload's
-  double payload_element = 0.0;                 ///< 1-based: of the last stage's structure, where that is
-  PerStage product_of_inertia_xy_kg_m2{};       ///< integral of x y dm about C, of the stack, all the burn
+  double payload_mass_kg = 0.0;                 ///< additional mass of the payload
+  double payload_element = 0.0;  ///< 1-based position of the payload in the last stage's structure
+  PerStage
+      product_of_inertia_xy_kg_m2{};  ///< integral of x y dm about C, of the stack, during the whole burn
   PerStage product_of_inertia_xz_kg_m2{};
   PerStage product_of_inertia_yz_kg_m2{};
   PerStage ignition_delay_s{};    ///< delay of the stage's ignition, without effect for the first stage
-  PerStage separation_delay_s{};  ///< by which the stage separates late
-  double launch_azimuth_error_rad = 0.0;  ///< vehicle and inertial unit turned clockwise, unnoticed
+  PerStage separation_delay_s{};  ///< delay of the stage's separation
+  double launch_azimuth_error_rad =
+      0.0;  ///< vehicle and inertial unit are turned clockwise; the flight software does not know
   double initial_roll_error_rad =
-      0.0;  ///< of the body at lift-off, about its axes, and measured by the inertial unit
+      0.0;  ///< rotation of the body at lift-off about its axes; the inertial unit measures it
   double initial_pitch_error_rad = 0.0;
   double initial_yaw_error_rad = 0.0;
-  // Of one stack each, besides the factor of the whole vehicle.
+  // One stack each, in addition to the factor of the whole vehicle.
   PerStage stack_drag_factor = AllStages(1.0);
   PerStage stack_lift_factor = AllStages(1.0);
   PerStage stack_cg_factor = AllStages(1.0);
   PerStage stack_cp_factor = AllStages(1.0);
   PerStage stack_inertia_factor = AllStages(1.0);
   PerStage stack_actuator_bandwidth_factor = AllStages(1.0);
-  // Components towards body y and z, besides magnitude and clock angle.
+  // Components towards body y and z, in addition to magnitude and clock angle.
   PerStage thrust_misalignment_y_rad{};
   PerStage thrust_misalignment_z_rad{};
   PerStage thrust_offset_y_m{};
@@ -130,10 +133,10 @@ struct FlightInputs {
   PerNozzle nozzle_offset_z_m{};
 };
 
-/// What values vehicles and days have, in the unit of the column: beyond it a campaign is warned about.
+/// The usual range of an input, in the unit of its column. `validate --strict` warns about values outside it.
 struct UsualValues {
   double low = -HUGE_VAL, high = HUGE_VAL;
-  const char* source = "";  ///< why
+  const char* source = "";  ///< reason of the range
 };
 
 /// A column of the applied inputs: its name carries the unit, e.g. "thrust_misalignment_stage1_deg".
@@ -159,7 +162,7 @@ struct DispersedInput {
   std::string column;  ///< {stage} and {mode} stand for the name of each
 };
 
-/// Columns that have been declared: those of stages that few vehicles have behind all others.
+/// The declared columns. Columns of stages that few vehicles have come last.
 class InputDeclarations {
  public:
   InputDeclarations& One(double FlightInputs::*field, const std::string& name, double unit = 1.0,
@@ -174,7 +177,7 @@ class InputDeclarations {
   InputDeclarations& EachLevel(std::array<double, kWindLevels> FlightInputs::*field, const std::string& stem);
   InputDeclarations& EachLaunchAxis(std::array<double, 3> FlightInputs::*field, const std::string& stem,
                                     const std::string& unit_suffix);
-  /// Of the columns declared last.
+  /// Usual values of the columns that were declared last.
   void Usually(const UsualValues& usual);
 
   std::size_t usual() const { return columns_.size(); }
@@ -266,13 +269,13 @@ inline void DeclareInputs(InputDeclarations& inputs) {
   inputs.One(&In::stuck_nozzle_stage, "stuck_nozzle_stage");
   inputs.One(&In::stuck_nozzle_rad, "stuck_nozzle_deg", kRadPerDeg);
   inputs.One(&In::pn_error_factor, "pn_error_factor", 1.0,
-             {"pn_error", "factor of the first component of P_n: a study, no limits", {}, kAnyNumber});
+             {"pn_error", "factor of P_n's first component, for studies; no limits", {}, kAnyNumber});
   inputs.One(&In::pn_rate_factor, "pn_rate_factor", 1.0,
-             {"pn_rate", "factor of the second component of P_n: a study, no limits", {}, kAnyNumber});
+             {"pn_rate", "factor of P_n's second component, for studies; no limits", {}, kAnyNumber});
   inputs.One(&In::loop_gain_factor, "loop_gain_factor", 1.0,
-             {"loop_gain", "factor of the commands", {}, kPositive});
+             {"loop_gain", "factor of the commanded deflections", {}, kPositive});
   inputs.One(&In::loop_delay_s, "loop_delay_s", 1.0,
-             {"loop_delay", "time by which the commands come late", kTime, kNonNegative});
+             {"loop_delay", "additional delay of the commands", kTime, kNonNegative});
   inputs.One(&In::loop_stage, "loop_stage");
   inputs.EachLaunchAxis(&In::navigation_position_error_m, "navigation_position_error", "_m")
       .Usually({-20000.0, 20000.0, "10 m aided by satellites, kilometres of a free unit"});
@@ -319,13 +322,13 @@ inline void DeclareInputs(InputDeclarations& inputs) {
 
 /// All columns in their fixed order, names without the prefix `input_`.
 const std::vector<InputColumn>& InputColumns();
-/// Those that a key of their own disperses, in the order of their columns.
+/// Inputs with a key of their own in `dispersions`, in the order of their columns.
 const std::vector<DispersedInput>& DeclaredDispersals();
 /// Position of a name in InputColumns(), or -1.
 int FindInput(const std::string& name);
 /// The input of a column, in internal units.
 double& InputValue(FlightInputs& inputs, int column);
-/// Columns that a vehicle of so many stages has: the first so many of InputColumns().
+/// Number of columns of a vehicle with `stages` stages. They are the first of InputColumns().
 std::size_t InputCount(std::size_t stages);
 /// Values of a vehicle's columns, in the units of their names.
 std::vector<double> InputValues(const FlightInputs& inputs, std::size_t stages = kUsualStages);

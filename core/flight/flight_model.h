@@ -30,7 +30,7 @@ struct InjectionTarget {
   double inclination_rad = 0.0;  ///< of the reference's orbit
 };
 
-/// Everything that decides a flight besides its inputs.
+/// Everything that decides a flight, except its inputs.
 struct FlightDefinition {
   Vehicle vehicle;
   AutopilotConfig autopilot;
@@ -47,13 +47,13 @@ struct FlightDefinition {
   std::shared_ptr<const TurbulencePath> turbulence_path = {};
   GuidanceConfig guidance;
   double velocity_reserve_m_s = 0.0;  ///< by which the program arrives faster than the target
-  /// When the reference's ascent lets go of each of the plant's jettisons, s since lift-off: what autopilot
-  /// and guidance know beforehand. Infinite, or missing: never.
+  /// Times of the jettisons in the reference's ascent, s since lift-off. Autopilot and guidance know them
+  /// before lift-off. Infinite, or missing: never.
   std::vector<double> jettison_s = {};
-  /// How long the reference's engines burn that are cut off at a velocity, by stage, s: known beforehand
-  /// likewise. Infinite: to depletion.
+  /// Burning times of the reference's engines that are cut off at a velocity, by stage, s. They are known
+  /// before lift-off too. Infinite: to depletion.
   std::array<double, kMaxStages> cut_off_s = AllStages(HUGE_VAL);
-  std::vector<OwnMetric> own_metrics = {};  ///< they change nothing of a flight
+  std::vector<OwnMetric> own_metrics = {};  ///< they do not change a flight
 };
 
 /// Ends a stage's burn by command. The remaining propellant belongs to the next stage if that stage restarts

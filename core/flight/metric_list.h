@@ -21,7 +21,7 @@ class MetricList {
   const std::vector<std::string>& own() const { return own_; }
   const std::string& NameAt(std::size_t position) const;
   std::optional<std::size_t> Find(const std::string& name) const;
-  /// Of a metric that is in the list.
+  /// Position of a metric that is in the list.
   std::size_t PositionOf(const std::string& name) const;
 
  private:

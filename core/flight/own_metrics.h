@@ -1,4 +1,4 @@
-// Metrics that a campaign defines itself: expressions over the columns of histories, evaluated at every tick.
+// A campaign's own metrics: expressions over the columns of histories, evaluated at every tick.
 #pragma once
 
 #include <cstddef>
@@ -11,34 +11,34 @@
 
 namespace dispersa {
 
-/// Of one campaign.
+/// Largest number of own metrics in a campaign.
 inline constexpr std::size_t kMaxOwnMetrics = 100;
 
 struct OwnMetric {
-  std::string name;        ///< with its unit at the end, as of every metric
+  std::string name;        ///< ends in its unit, as every metric's name
   std::string expression;  ///< single spaces
-  std::string meaning;     ///< what the file says of it (may be empty)
+  std::string meaning;     ///< from the campaign file; may be empty
   FlightExpression parsed = {};
 
-  /// Equal definitions give a flight equal values.
+  /// Equal definitions have equal values in each flight.
   bool IsSameAs(const OwnMetric& other) const { return name == other.name && expression == other.expression; }
 };
 
-/// Where each of `wanted` stands among `known`, with an equal definition. None: one of them does not.
+/// Position in `known` of each metric of `wanted` with an equal definition. None if any of them is missing.
 std::optional<std::vector<std::size_t>> FindOwn(const std::vector<OwnMetric>& wanted,
                                                 const std::vector<OwnMetric>& known);
 
-/// Of a vehicle of so many stages under this autopilot. Throws ExpressionError.
+/// Parses a metric for a vehicle of `stages` stages under this autopilot. Throws ExpressionError.
 FlightExpression ParseOwnMetric(const std::string& expression, int stages, const AutopilotConfig& autopilot);
 
-/// The values of a campaign's own metrics in one flight.
+/// Evaluates a campaign's own metrics in one flight.
 class OwnMetricsMeter {
  public:
-  /// The metrics must outlive it.
+  /// The metrics must outlive the meter.
   OwnMetricsMeter(const std::vector<OwnMetric>& metrics, double tick_s);
 
-  /// One tick. `row`: the values of HistoryColumns(). It is left longer. `burning_stage`: from 1; 0: none
-  /// burns.
+  /// Adds one tick. `row` has the values of HistoryColumns(); further values are appended to it.
+  /// `burning_stage` counts from 1; 0: no stage burns.
   void Add(double time_s, int burning_stage, bool coasting, std::vector<double>& row);
   /// NaN where a metric is undefined.
   std::vector<double> Values() const;

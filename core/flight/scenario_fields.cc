@@ -274,7 +274,8 @@ void Describe(Fields& fields, Wind& wind) {
                 {Else(), [&] {
                    double speed_m_s = 0.0, azimuth_rad = 0.0;
                    map.Quantity("speed", kSpeed, kNonNegative, speed_m_s, "over the ground");
-                   map.Quantity("azimuth_from", kAngle, kAnyNumber, azimuth_rad, "where it comes from");
+                   map.Quantity("azimuth_from", kAngle, kAnyNumber, azimuth_rad,
+                                "direction from which it blows");
                    wind.steady = FromAzimuth(speed_m_s, azimuth_rad);
                  }}});
   });
@@ -284,9 +285,9 @@ void Describe(Fields& fields, Wind& wind) {
   fields.OptionalMap("gust", is_there, "1 - cosine gust", [&](Fields& map) {
     Gust& gust = wind.gusts.emplace_back();
     map.Quantity("speed", kSpeed, kAnyNumber, gust.speed_m_s, "the largest");
-    map.Quantity("altitude", kLength, kAnyNumber, gust.start_altitude_m, "where it starts");
+    map.Quantity("altitude", kLength, kAnyNumber, gust.start_altitude_m, "altitude at which it begins");
     map.Quantity("length", kLength, kPositive, gust.length_m, "in altitude");
-    map.Quantity("azimuth_from", kAngle, kAnyNumber, gust.azimuth_from_rad, "where it comes from");
+    map.Quantity("azimuth_from", kAngle, kAnyNumber, gust.azimuth_from_rad, "direction from which it blows");
   });
 }
 

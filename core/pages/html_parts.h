@@ -20,7 +20,7 @@ class HtmlTable {
   void Row(const std::vector<std::string>& cells, std::string_view row_class = "");
   /// One cell over the whole width.
   void Wide(const std::string& cell, std::string_view row_class);
-  /// As wide as the page, or only as its contents.
+  /// The table as HTML.
   std::string Html(std::string_view table_class = "") const;
 
  private:
@@ -28,17 +28,17 @@ class HtmlTable {
   std::string rows_;
 };
 
-/// A chart with what to see in it.
+/// A chart with its caption.
 std::string Figure(const std::string& svg, const std::string& caption_html);
 
 /// "pass", "fail", "inconclusive", "not_evidence", "post hoc", "incomplete" as a coloured label that is also
 /// readable without colour.
 std::string VerdictBadge(std::string_view verdict);
 
-/// A number of the head of a page above what it counts.
+/// A number in the head of a page, above its label.
 std::string Tile(const std::string& value, const std::string& label);
 std::string Code(const std::string& text);
-/// An input as the campaign file calls it, with its column beside.
+/// The name of an input in the campaign file, and its column.
 std::string InputNames(const std::string& key, const std::string& column);
 /// "12.5 deg"; without a unit the number alone.
 std::string WithUnit(double value, const std::string& unit);

@@ -9,7 +9,8 @@
 
 namespace dispersa {
 
-/// What stands, requirement by requirement. All of it is between the marks of what differs from run to run.
+/// The verdict that stands, for each requirement. All of it is between the marks `run:begin` and `run:end`,
+/// because it depends on the run.
 std::string FirstPage(const Campaign& campaign, const CampaignSummary& summary);
 std::string RequirementsSection(const CampaignSummary& summary);
 std::string OutcomesSection(const CampaignSummary& summary);
@@ -20,7 +21,7 @@ std::string StatisticsSection(const CampaignSummary& summary);
 std::string InjectionSection(const InjectionSummary& injection);
 std::string DispersionsSection(const CampaignSummary& summary);
 std::string NotModelledSection(const Campaign& campaign);
-/// What the campaign shows of each credibility factor of NASA-STD-7009, and what it does not.
+/// The evidence of the campaign for each credibility factor of NASA-STD-7009, and the gaps.
 std::string CredibilitySection(const CampaignSummary& summary);
 std::string ProvenanceSection(const Campaign& campaign, const CampaignSummary& summary);
 

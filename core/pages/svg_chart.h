@@ -11,7 +11,7 @@ namespace dispersa {
 
 struct ChartAxis {
   std::string label;               ///< with the unit
-  std::optional<double> low = {};  ///< as the data, when absent
+  std::optional<double> low = {};  ///< none: the least value of the data
   std::optional<double> high = {};
   bool logarithmic = false;  ///< base 10; values that are not positive are left out
   bool percent = false;      ///< tick labels of 0.01 read "1 %"
@@ -24,10 +24,10 @@ class SvgChart {
   /// Points joined by lines; NaN interrupts. `style` is a class of the style sheet ("line-0" ... "line-3").
   void Line(std::vector<double> x, std::vector<double> y, const std::string& style,
             const std::string& legend);
-  /// The same of one case, which the page's script may mark.
+  /// The line of one case. The page's script can mark it.
   void CaseLine(std::vector<double> x, std::vector<double> y, const std::string& style,
                 std::uint64_t case_index);
-  /// Says that positions along x, and along y if that is not empty, are a metric of the cases.
+  /// Positions along x are this metric of the cases, and positions along y too if `y_metric` is not empty.
   void ShowsCases(const std::string& x_metric, const std::string& y_metric = "");
   /// Dots.
   void Points(std::vector<double> x, std::vector<double> y, const std::string& style,
@@ -37,15 +37,15 @@ class SvgChart {
             const std::string& style, const std::string& legend);
   /// counts[i] between edges[i] and edges[i + 1], from zero up.
   void Bars(std::vector<double> edges, std::vector<double> counts, const std::string& legend);
-  /// Dashed lines that belong to a requirement. The axes grow to show them, unless they lie so far from the
-  /// data that these could not be told apart: then the legend says where they are.
+  /// Dashed lines that belong to a requirement. The axes grow to show them. A limit that is too far from the
+  /// data is not drawn; the legend then gives its value.
   void VerticalLimit(double x, const std::string& legend, const std::string& style = "limit");
   void HorizontalLimit(double y, const std::string& legend, const std::string& style = "limit");
   /// A labelled event, and a labelled span of time.
   void Mark(double x, const std::string& label);
   void Shade(double from, double to, const std::string& label);
 
-  /// The element, with `description` for those who cannot see it.
+  /// The SVG element. Screen readers read `description`.
   std::string Svg(const std::string& description) const;
 
  private:

@@ -1,5 +1,5 @@
-// The result of `dispersa optimize` as one self-contained page: the injection, the flight program and its
-// trajectory, the constraints, and the course of the search.
+// The result of `dispersa optimize` as one self-contained page. It shows injection, flight program,
+// trajectory, constraints and the course of the search.
 #pragma once
 
 #include <optional>

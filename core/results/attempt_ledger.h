@@ -1,6 +1,6 @@
-// The attempts at one design: which campaigns flew it, with which seeds and numbers of cases, and what came
-// of each requirement. A text file of one JSON object a line, in the folder that result folders are made in,
-// and a copy of what mattered beside the results.
+// The ledger of attempts. It records which campaigns flew a design, with seed, number of cases and the
+// verdict on each requirement. It is a text file with one JSON object in each line, in the parent of the
+// result folders. Each result folder has a copy of the lines that its verdict depends on.
 #pragma once
 
 #include <cstdint>
@@ -13,11 +13,11 @@
 
 namespace dispersa {
 
-/// Beside the result folders, and in each of them.
+/// File names: in the parent of the result folders, and in each result folder.
 inline constexpr char kLedgerName[] = "dispersa-attempts.jsonl";
 inline constexpr char kFolderLedgerName[] = "attempts.jsonl";
 
-/// One requirement of an attempt.
+/// A requirement of an attempt.
 struct RequirementRecord {
   std::string limit;  ///< LimitText(): metric, side and limit, by which attempts are matched
   std::string line;   ///< RequirementLine()
@@ -25,7 +25,7 @@ struct RequirementRecord {
   double consumer_risk = 0.0;
   VerdictPlan plan;
   bool by_default = false;
-  std::int64_t failures = 0;  ///< of the cases that count; one without a result is a failure
+  std::int64_t failures = 0;  ///< among the cases that count; a case without a result is a failure
   std::string verdict;        ///< by its own plan: "pass", "fail", "inconclusive"; empty: none yet
 };
 
@@ -35,42 +35,42 @@ struct AttemptRecord {
   std::string name;
   std::string engine;
   std::uint64_t seed = 0;
-  std::int64_t planned = 0;  ///< cases that it was to fly
-  std::int64_t cases = 0;    ///< that count: up to the last one assigned; 0: none yet
+  std::int64_t planned = 0;  ///< planned number of cases
+  std::int64_t cases = 0;    ///< cases that count: up to the last one assigned; 0: none yet
   std::string begun_utc;
-  std::string fresh;    ///< why it starts anew in spite of earlier attempts; empty: it does not
+  std::string fresh;    ///< reason of `--fresh`: earlier attempts do not count; empty: they do
   std::string verdict;  ///< StandingVerdictName(); empty: it has not ended
-  /// Other designs that were flown here before it, and how many of those with its seed.
+  /// Number of other designs that were flown here before, and of those with this seed.
   std::int64_t earlier_designs = 0;
   std::int64_t earlier_designs_of_seed = 0;
   std::vector<RequirementRecord> requirements;
 };
 
-/// As it is before the first case.
+/// The record of a campaign before its first case.
 AttemptRecord RecordOf(const Campaign& campaign);
 
-/// Throws ResultError when it cannot be read or written.
+/// Reads and writes the file. Throws ResultError on an error of the file system.
 class AttemptLedger {
  public:
   explicit AttemptLedger(std::filesystem::path file) : file_(std::move(file)) {}
 
-  /// Every attempt once, in the order in which they began, each as it was written last. Lines that are no
-  /// record are left out.
+  /// Each attempt once, in the order of beginning. The last line of an attempt counts. Lines that are not
+  /// records are skipped.
   std::vector<AttemptRecord> Read() const;
-  /// Adds a line; several processes may do so at once.
+  /// Adds a line. Several processes may do so at the same time.
   void Write(const AttemptRecord& record) const;
 
  private:
   std::filesystem::path file_;
 };
 
-/// Enters a campaign, before its first case, in the ledger of the folder `root` (and completes the copy in
-/// its result folder by the attempts at the same design that began before it). When `root` cannot be written
-/// the reason is returned: the campaign flies all the same, and only its own folder remembers it.
+/// Enters a campaign in the ledger of the folder `root` before its first case. The copy in its result folder
+/// also gets the earlier attempts at the same design. If `root` cannot be written, the error text is
+/// returned. The campaign then flies, and only its own folder records the attempt.
 std::optional<std::string> BeginAttempt(const std::filesystem::path& root,
                                         const std::filesystem::path& results, const Campaign& campaign,
                                         const std::string& begun_utc, const std::string& fresh = "");
-/// Notes in both what has come of it.
+/// Writes the present record into both files. Returns the error text if `root` cannot be written.
 std::optional<std::string> NoteAttempt(const std::filesystem::path& root,
                                        const std::filesystem::path& results, const AttemptRecord& record);
 

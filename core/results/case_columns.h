@@ -21,7 +21,7 @@ struct CaseColumns {
   std::vector<CaseColumn> inputs;  ///< one for each input of the vehicle (empty if not asked for)
   std::vector<CaseColumn>
       metrics;  ///< one for each metric of the vehicle (empty if its control law does not measure it)
-  std::vector<std::string> own_metrics;  ///< names of the last of `metrics`: the campaign's own
+  std::vector<std::string> own_metrics;  ///< names of the campaign's own metrics, the last ones of `metrics`
   std::vector<LostFlight> lost_flights;  ///< the first kListedLostFlights lost flights
 
   std::size_t rows() const { return index.size(); }

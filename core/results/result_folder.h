@@ -1,4 +1,4 @@
-// The folder that a campaign leaves: its results in SQLite, and the campaign as flown beside them.
+// The result folder of a campaign: its results in SQLite, and the campaign as flown.
 #pragma once
 
 #include <cstddef>
@@ -42,14 +42,14 @@ class ResultFolder : public ResultStore {
   /// object lives. `lock` is the caller's lock, if it has one already.
   static ResultFolder Create(const std::filesystem::path& directory, const Campaign& campaign,
                              std::optional<FolderLock> lock = {});
-  /// Opens a folder to go on with, possibly with more cases, other requirements or another name. Where the
-  /// campaign has metrics of its own that were not measured, every case is to be flown again.
-  /// InputError if it holds another flight id or engine, or more cases than the campaign has. Rows that are
-  /// damaged are removed, so that their cases are flown again. Locked as by Create.
+  /// Opens a folder to go on with, possibly with more cases, other requirements or another name. If the
+  /// campaign has own metrics that were not measured, every case is flown again. InputError if it holds
+  /// another flight id or engine, or more cases than the campaign has. Rows that are damaged are removed, so
+  /// that their cases are flown again. Locked as by Create.
   static ResultFolder Resume(const std::filesystem::path& directory, const Campaign& campaign,
                              std::optional<FolderLock> lock = {});
-  /// Opens a folder as it is, without a lock: to read it. InputError if it is none, or its columns are not
-  /// this program's.
+  /// Opens a folder for reading, without a lock. InputError if it is not a result folder, or if this program
+  /// has other columns.
   static ResultFolder Open(const std::filesystem::path& directory);
 
   ResultFolder(ResultFolder&&) noexcept;
@@ -57,15 +57,15 @@ class ResultFolder : public ResultStore {
   ~ResultFolder() override;
 
   const std::filesystem::path& directory() const { return directory_; }
-  /// Of the vehicle, as far as its results' columns depend on it: kUsualStages or kMaxStages.
+  /// Number of stages for which the results have columns: kUsualStages or kMaxStages.
   std::size_t stages() const { return list_.stages(); }
-  /// The positions of metrics in its results.
+  /// Names and positions of the metrics in the results.
   const MetricList& metric_list() const { return list_; }
-  /// Positions of those that are stored: of the vehicle, of the law that was flown, and the campaign's own.
+  /// Positions of the stored metrics: those of the vehicle, of the control law and of the campaign.
   const std::vector<std::size_t>& metrics() const { return metrics_; }
-  /// As they were measured. Their expressions are not parsed.
+  /// The campaign's own metrics as they were measured. Their expressions are not parsed.
   const std::vector<OwnMetric>& own_metrics() const { return own_metrics_; }
-  /// The highest index that was flown, also without the campaign's own metrics.
+  /// The highest index that was flown, with or without the campaign's own metrics.
   std::optional<std::uint64_t> LastCase() const;
   /// Cases that were flown without all of the campaign's own metrics.
   std::uint64_t UnmeasuredCount() const;
@@ -74,8 +74,8 @@ class ResultFolder : public ResultStore {
   /// (RequirementLine() each).
   std::string Provenance(const std::string& key) const;
 
-  /// Remembers, once each, that verdicts were read from the first n cases. A record of what people saw, not
-  /// of what was flown: so a folder that is only reported on may get one too.
+  /// Records once that verdicts were read from the first n cases. The record is about reading, not about
+  /// flights. So a report of a folder that nobody flies may add one.
   void RecordLook(const LookRecord& look) const;
   /// All of them, by number of cases.
   std::vector<LookRecord> Looks() const;
@@ -96,7 +96,7 @@ class ResultFolder : public ResultStore {
 
   /// Cases that have a result.
   std::uint64_t CaseCount() const;
-  /// The database as it is now, in the place of `file`: one that is whole, whoever reads or writes here
+  /// Replaces `file` by a complete copy of the database. Other processes may read and write the database
   /// meanwhile.
   void CopyDatabase(const std::filesystem::path& file) const;
   /// Indices that have a result, ascending.

@@ -10,14 +10,14 @@
 
 namespace dispersa {
 
-/// How far inside its limit the metric is at each point, all flown side by side: positive inside, 0 or less
-/// outside, NaN of a flight that was lost.
+/// The distance of the metric to its limit at each point; all points are flown side by side. Positive inside,
+/// 0 or less outside, NaN for a lost flight.
 using PointMargins = std::function<std::vector<double>(const std::vector<std::vector<double>>& points)>;
 
 struct FailureSearchOptions {
   std::size_t max_flights = 1000;
-  std::size_t starts = 4;  ///< points from which is searched
-  double reach = 6.0;      ///< no farther than so from nothing dispersed
+  std::size_t starts = 4;  ///< number of starting points
+  double reach = 6.0;      ///< largest distance from zero, in standard deviations
   std::uint64_t seed = 1;
 };
 
@@ -27,26 +27,25 @@ struct FailureSearchResult {
   double distance = 0.0;
   double margin = 0.0;  ///< NaN: lost
   std::size_t flights = 0;
-  double least_margin = 0.0;  ///< of all flights, the lost ones aside
+  double least_margin = 0.0;  ///< of all flights that were not lost
 };
 
-/// Euclidean over the coordinates that count.
+/// Euclidean distance from zero, over the coordinates that count.
 double DistanceOf(const std::vector<Coordinate>& coordinates, const std::vector<double>& point);
 
-/// The failing point nearest to nothing dispersed that a local search finds, and a smaller one that it did
-/// not find may exist. Deterministic, at most max_flights flights:
+/// Searches the failing point nearest to zero (no dispersion). The search is local, so a nearer one may
+/// exist. Deterministic, at most max_flights flights:
 ///
-/// 1. Every coordinate alone at ±3, and points drawn at one and two standard deviations; the failing ones
-/// nearest to
-///    zero are the starts. Without any, the points nearest to failing are stretched up to `reach`, and the
-///    last resort is to follow the margin's slope from each of them.
-/// 2. From each start: shrink along the ray to zero; set to zero what the failure does not need (in the
-/// manner of A.
-///    Zeller and R. Hildebrandt, IEEE Trans. Softw. Eng. 28 (2002) 183-200); go to the nearest point of the
-///    plane that differences of the margin span (R. Rackwitz and B. Fiessler, Comput. Struct. 9 (1978)
-///    489-494) while that comes nearer; turn directions to where the margin is least.
+/// 1. Fly every coordinate alone at ±3, and points drawn at one and two standard deviations. The failing ones
+///    nearest to zero are the starts. If none fails, stretch the points nearest to failing up to `reach`; if
+///    none fails then, follow the margin's slope from each of them.
+/// 2. From each start: shrink along the ray to zero. Set to zero what the failure does not need (in the
+/// manner
+///    of A. Zeller and R. Hildebrandt, IEEE Trans. Softw. Eng. 28 (2002) 183-200). Go to the nearest point of
+///    the plane that differences of the margin span (R. Rackwitz and B. Fiessler, Comput. Struct. 9 (1978)
+///    489-494) while that comes nearer. Turn directions to where the margin is least.
 ///
-/// Steps are accepted only if they fail and are nearer, so that what is returned has been flown and fails.
+/// A step is accepted only if its point fails and is nearer. So the returned point has been flown and fails.
 FailureSearchResult FindSmallestFailure(const std::vector<Coordinate>& coordinates,
                                         const PointMargins& margins_at, const FailureSearchOptions& options);
 

@@ -1,5 +1,4 @@
-// The verdict on a requirement by its plan, from the cases in the order of their indices, whoever looked
-// when.
+// The verdict on a requirement by its plan. It uses the cases in the order of their indices.
 #pragma once
 
 #include <cstdint>
@@ -13,15 +12,16 @@ namespace dispersa {
 
 enum class Verdict { kPass, kFail, kInconclusive };
 
-/// What is to be shown, and how it may be looked at.
+/// A requirement with its verdict plan.
 struct PlannedRequirement {
   double probability = 0.9973;  ///< in (0, 1)
-  double risk = 0.10;           ///< in (0, 0.5): of passing what just misses, and of failing what just meets
+  double risk =
+      0.10;  ///< in (0, 0.5): of a pass of a design that just misses, and of a fail of one that just meets
   VerdictPlan plan;
   std::int64_t planned = 0;  ///< cases that were planned before the first was flown
 };
 
-/// Cases by index: those that failed, and those without a result; each ascending.
+/// Indices of the cases that failed and of those without a result, each in ascending order.
 struct CaseTally {
   std::vector<std::int64_t> failed;
   std::vector<std::int64_t> missing;
@@ -42,21 +42,22 @@ struct Look {
 
 struct PlannedVerdict {
   Verdict verdict = Verdict::kInconclusive;
-  /// A look passed and another one failed: the cases contradict themselves, and nothing is decided.
+  /// One look passed and another failed. The cases contradict each other, and nothing is decided.
   bool contradicted = false;
-  /// The number of cases is not the planned one any more.
+  /// The number of cases is no longer the planned one.
   bool beyond_plan = false;
   std::vector<Look> looks;  ///< ascending in n, the last at all cases
   LookBoundary boundary;    ///< that holds at the last look
-  /// Beyond the plan: the risk of passing what just misses if each of these looks were read as the only one.
+  /// Beyond the plan: the risk that a design which just misses passes if each look were judged as the only
+  /// one.
   std::optional<double> naive_risk;
-  /// Of the success probability, one-sided, each with confidence 1 - risk: Clopper-Pearson where there is one
-  /// look, else a confidence sequence. A missing case counts as failed for the lower and as met for the
+  /// One-sided bounds of the success probability, each with confidence 1 - risk. One look: Clopper-Pearson.
+  /// Several looks: a confidence sequence. A missing case counts as failed for the lower and as met for the
   /// upper.
   double success_lower = 0.0;
   double success_upper = 1.0;
-  /// When inconclusive: the least number of cases that could pass with as many failures: of a new campaign
-  /// with one look, or of this one when its plan is an anytime plan.
+  /// When inconclusive: the least number of cases that could pass with the present number of failures. It is
+  /// for a new campaign with one look. With an anytime plan it is for this campaign.
   std::optional<std::int64_t> cases_needed;
 };
 
@@ -64,23 +65,23 @@ struct PlannedVerdict {
 /// read before.
 ///
 /// Planned looks decide by Boundaries(), on the first cases by index. A look that was not planned decides
-/// only by evidence that holds at any time (anytime.h), with what the plan leaves of the risk; so a pass of a
-/// design that just misses has at most the stated risk however often the campaign is extended. For a pass a
-/// missing case counts as failed, for a fail as met.
+/// only by evidence that holds at any time (anytime.h), with the risk that the plan has left. So a design
+/// that just misses passes with at most the stated risk, even if the campaign is extended many times. For a
+/// pass a missing case counts as failed, for a fail as met.
 PlannedVerdict Decide(const PlannedRequirement& requirement, std::int64_t n, const CaseTally& tally,
                       const std::vector<std::int64_t>& past_looks = {});
 
-/// All of them, one tally each. With `holm` the verdicts hold together: that any of them is wrong has at most
-/// the largest of the risks (S. Holm, Scand. J. Statist. 6 (1979) 65-70); each is decided at its risk divided
-/// by the number of those that are not yet decided, until no further one is. Without, each keeps its own
-/// risk.
+/// Decides all requirements, with one tally each. With `holm` the verdicts hold together: any of them is
+/// wrong with at most the largest of the risks (S. Holm, Scand. J. Statist. 6 (1979) 65-70). Each is decided
+/// at its risk divided by the number of undecided requirements, until none is decided any more. Without
+/// `holm` each keeps its own risk.
 std::vector<PlannedVerdict> DecideAll(const std::vector<PlannedRequirement>& requirements, bool holm,
                                       std::int64_t n, const std::vector<CaseTally>& tallies,
                                       const std::vector<std::int64_t>& past_looks = {});
 
-/// Probability that a new campaign of n cases with one look passes, after `failures` of `seen` cases failed:
-/// over the failure probabilities that these leave possible (Jeffreys' prior: Beta(failures + 1/2, seen -
-/// failures + 1/2)), not at the rate seen, which after few cases is nearly always too good.
+/// Probability that a new campaign of n cases with one look passes, after `failures` of `seen` cases failed.
+/// It is the mean over the posterior of the failure probability (Jeffreys' prior: Beta(failures + 1/2, seen -
+/// failures + 1/2)). The observed rate would be too optimistic after few cases.
 double PassProbability(double probability, double risk, std::int64_t n, std::int64_t seen,
                        std::int64_t failures);
 

@@ -1,5 +1,5 @@
-// What drives an output, from the cases that were flown anyway: nothing is flown for it, and no model is
-// fitted.
+// The influence of inputs on an output, from the flown cases. No further flight and no fitted model is
+// needed.
 #pragma once
 
 #include <cstddef>
@@ -10,7 +10,7 @@
 
 namespace dispersa {
 
-/// Values sorted once, to be held against many others.
+/// Values that are sorted once and compared with many others.
 class Ranked {
  public:
   Ranked(const std::vector<double>& values);
@@ -33,18 +33,19 @@ struct SensitivityIndex {
   double high = 0.0;
 };
 
-/// First-order Sobol index of y with respect to x, from given data: the share of y's variance that the mean
-/// of y within equally filled classes of x explains, corrected for what chance explains (E. Plischke, "How to
-/// compute variance-based sensitivity indicators with your spreadsheet software", Environ. Model. Softw. 35
-/// (2012) 188; the correction is that of the analysis of variance, Kelley's epsilon squared). It sees any
-/// dependence on x alone, signed, symmetric or circular. Equal x stay in one class. 0 without variance of x
-/// or of y. Values are finite, as many of each. The samples' bits depend on `seed` alone.
+/// First-order Sobol index of y with respect to x, from given data. It is the share of y's variance that the
+/// mean of y within equally filled classes of x explains. The share that chance explains is subtracted (E.
+/// Plischke, "How to compute variance-based sensitivity indicators with your spreadsheet software", Environ.
+/// Model. Softw. 35 (2012) 188; the correction is that of the analysis of variance, Kelley's epsilon
+/// squared). It sees any dependence on x alone, signed, symmetric or circular. Equal x stay in one class. 0
+/// without variance of x or of y. Values are finite; x and y have the same length. The samples' bits depend
+/// on `seed` alone.
 SensitivityIndex FirstOrderIndex(const Ranked& x, const std::vector<double>& y, std::uint64_t seed = 1);
 
-/// The index alone, unlimited below: what chance explains may come out negative.
+/// The index alone, without a lower limit: it may be negative after the correction for chance.
 double FirstOrderShare(const Ranked& x, const std::vector<double>& y);
 
-/// y less its mean within the same classes of x: what x alone does not explain.
+/// The part of y that x alone does not explain: y minus its mean within the same classes of x.
 std::vector<double> RestOf(const Ranked& x, const std::vector<double>& y);
 
 /// Pearson's correlation of the ranks; 0 where either has no variance.
@@ -54,12 +55,13 @@ double RankCorrelation(const Ranked& x, const Ranked& y);
 /// (S. Marino et al., J. Theor. Biol. 254 (2008) 178-196).
 std::vector<double> PartialRankCorrelations(const std::vector<const Ranked*>& x, const Ranked& y);
 
-/// Two-sided p-value that x is as large among the marked cases as among the others: Wilcoxon, Mann and
-/// Whitney's rank sum in its normal approximation with ties. 1 when either side is empty.
+/// Two-sided p-value of the hypothesis that x is equally large among the marked cases and the others. It is
+/// the rank sum of Wilcoxon, Mann and Whitney in its normal approximation with ties. 1 if either side is
+/// empty.
 double RankSumP(const Ranked& x, const std::vector<bool>& marked);
 
-/// p-values adjusted so that those up to q are false discoveries in a share of at most q (Y. Benjamini and
-/// Y. Hochberg, J. R. Statist. Soc. B 57 (1995) 289-300); in the order given.
+/// Adjusted p-values: among those up to q, the share of false discoveries is at most q (Y. Benjamini and Y.
+/// Hochberg, J. R. Statist. Soc. B 57 (1995) 289-300); in the order given.
 std::vector<double> FalseDiscoveryRates(const std::vector<double>& p_values);
 
 }  // namespace dispersa

@@ -22,7 +22,8 @@ namespace dispersa {
 struct BendingMode {
   double frequency_rad_s = 0.0;
   double generalized_mass_kg = 0.0;
-  double mac = 1.0;  ///< with the same mode one step back, with more propellant: how surely it is the same
+  double mac =
+      1.0;  ///< modal assurance criterion with the same mode at the level before, which has more propellant
   std::vector<double> deflection;  ///< at the nodes
   std::vector<double> slope_1_m;
 };
@@ -42,7 +43,8 @@ struct StackModes {
   std::array<std::vector<double>, 2> station_m;     ///< of the nodes, by plane
   std::array<std::vector<double>, 2> shear_ratio;   ///< of the elements between them
   std::array<std::vector<BendingLevel>, 2> levels;  ///< by plane, in order of falling propellant
-  std::shared_ptr<const ModeBasis> basis;  ///< among which those of other masses are sought (null: a table)
+  std::shared_ptr<const ModeBasis>
+      basis;  ///< basis for the modes of other masses (null: the modes come from a table)
 };
 
 /// Shape at a station. Beyond the ends of the beam it goes on straight.
@@ -56,19 +58,19 @@ StationShape ShapeOf(const StackModes& stack, BeamPlane plane, const BendingMode
 ///
 /// Further levels are added between those of the file where a mode changes so much that its modal assurance
 /// criterion falls below 0.9, down to 1/32 of a step. Precondition: a vehicle with a beam and without
-/// Problems(). A table's shapes and generalised masses are scaled as above. Its modes are tracked likewise,
-/// with the vehicle's mass model as weight; then nothing is jettisoned (`gone` 0).
+/// Problems(). A table's shapes and generalised masses are scaled as above. Its modes are tracked in the same
+/// way, with the vehicle's mass model as weight. Then nothing is jettisoned (`gone` 0).
 ///
-/// `near`: of the same vehicle with other masses. The modes are then sought among its own (SolveFreeFreeNear)
-/// on its mesh.
+/// `near`: the modes of the same vehicle with other masses. The new modes are then combinations of them
+/// (SolveFreeFreeNear), on the same mesh.
 StackModes BuildStackModes(const Vehicle& vehicle, int stage, unsigned gone = 0,
                            const StackModes* near = nullptr);
-/// Those that pages show: of each stage that is no restart with all it carries, then without what it
-/// jettisons.
+/// The modes that pages show: of each stage that is no restart with all its bodies, then without those that
+/// it jettisons.
 std::vector<StackModes> ShownStacks(const Vehicle& vehicle);
 /// "", or ", without fairing": what has left.
 std::string WithoutText(const Vehicle& vehicle, const StackModes& stack);
-/// One a stage, with all that it carries at lift-off. A restart has its stage's.
+/// One for each stage, with all bodies that it carries at lift-off. A restart has the modes of its stage.
 std::vector<StackModes> BuildBendingModes(const Vehicle& vehicle);
 
 /// A mode of one plane at a place over the propellant, for a flight: falling propellant, as the levels.

@@ -1,5 +1,5 @@
-// Bending of one stack as a flight needs it: a row a mode over the propellant, at the places where forces
-// act and sensors sit. Plain data, for dynamics/bending.h; the modes themselves are bending_modes.h's.
+// Bending data of one stack for flights: for each mode a row over the propellant, at the places of forces and
+// sensors. Plain data for dynamics/bending.h. bending_modes.h has the modes themselves.
 #pragma once
 
 #include <array>
@@ -11,7 +11,7 @@
 
 namespace dispersa {
 
-/// Modes that fly in one plane at most.
+/// Largest number of modes that fly in one plane.
 inline constexpr int kModes = kMostFlownModes;
 inline constexpr int kPlanes = 2;
 
@@ -25,8 +25,9 @@ enum LiftEffect : int {
   kSectionEffects = kWorkEffects + kModes,
   kLiftEffects = kSectionEffects + kLoadStations
 };
-/// By which the lift comes about: a mode's slope is an incidence, and so is its rate over the airspeed. By
-/// slender-body theory, and for each metre that the centre of pressure is aft of it (lift_distribution.h).
+/// Causes of the lift. The slope of a mode is an incidence, and so is its rate over the airspeed. Each acts
+/// by slender-body theory, and in proportion to the shift of the centre of pressure aft of it
+/// (lift_distribution.h).
 enum LiftCause : int { kSlopeSlender, kSlopeShift, kRateSlender, kRateShift, kLiftCauses };
 
 struct BendingTable {

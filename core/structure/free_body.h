@@ -1,4 +1,4 @@
-// What is left of a beam once a part of it has gone: the rest moves on with the momentum of its masses.
+// The rest of a beam after a part has left. It moves on with the momentum of its masses.
 #pragma once
 
 #include <vector>
@@ -7,17 +7,18 @@
 
 namespace dispersa {
 
-/// A body that has come free. Its masses keep the places and the speeds that the modes of the whole gave
-/// them. Shapes are given by the StationShape of a point's beam, by the point and its number.
+/// A body after the separation. Its masses keep the positions and velocities that they had in the modes of
+/// the whole beam. A shape is a function of a point and its number; it returns the StationShape of the beam
+/// there.
 struct FreeBody {
   std::vector<MassPoint> points;
   double mass_kg = 0.0, cg_station_m = 0.0, inertia_kg_m2 = 0.0;  ///< across the axis
 
-  /// `cuts_m`: as of MassPointsOf.
+  /// `cuts_m`: see MassPointsOf.
   FreeBody(const BeamMasses& masses, const std::vector<double>& cuts_m);
 
-  /// By how much a shape moves its centre of gravity and turns it: what leaves it the momentum and angular
-  /// momentum of its masses.
+  /// The mean displacement and rotation of the body by a shape. A rigid motion by these has the momentum and
+  /// the angular momentum of the masses.
   template <typename Shape>
   StationShape MeanOf(const Shape& at) const {
     StationShape sum;

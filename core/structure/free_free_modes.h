@@ -23,8 +23,8 @@ struct FreeFreeModes {
 
 /// The `count` lowest elastic modes of K x = omega² M x, or fewer if the mesh has no more.
 ///
-/// Solving with K and M themselves would be too inexact. Between the first mode and the highest one of a fine
-/// mesh are ten decades of omega², and rounding of K would disturb the lowest modes by that. But a beam is
+/// Solving with K and M themselves would be too inexact. In a fine mesh, omega² of the highest mode is ten
+/// decades above that of the first. Rounding of K would disturb the lowest modes by as much. But a beam is
 /// statically determinate. The rotations e of the elements' ends relative to their chords give every
 /// displacement from one end on: x = C e. The energy is e' D e / 2 with D in blocks of two. Let D = L L', and
 /// let P take the rigid motion (in M's sense) from x. Then the modes are x = P C L'^-1 y with (P C L'^-1)' M
@@ -34,9 +34,9 @@ struct FreeFreeModes {
 FreeFreeModes SolveFreeFree(const std::vector<double>& stations, const std::vector<BeamElement>& elements,
                             const Eigen::MatrixXd& mass, int count);
 
-/// The same for masses that are not far from those of `basis`, modes of the same mesh and stiffness, as the
-/// method of Rayleigh and Ritz finds them among its shapes and the rigid motions. Frequencies are too high by
-/// the square of what the shapes miss; their limits are in near_modes_test. A fiftieth of the work.
+/// The same for masses near those of `basis`, which are modes of the same mesh and stiffness. The method of
+/// Rayleigh and Ritz combines the shapes of `basis` and the rigid motions. Frequencies are too high by the
+/// square of the shapes' error; near_modes_test has the limits. It takes a fiftieth of the work.
 FreeFreeModes SolveFreeFreeNear(const std::vector<double>& stations, const FreeFreeModes& basis,
                                 const Eigen::MatrixXd& mass, int count);
 

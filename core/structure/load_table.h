@@ -1,5 +1,5 @@
-// The loads of a stack's cross-sections: the place of the normal force along the body, and the inertia of the
-// mass ahead of a station. Plain data, for dynamics/body_sections.h.
+// Data for the loads of a stack's cross-sections: where the normal force acts along the body, and the inertia
+// of the mass ahead of a station. Plain data, for dynamics/body_sections.h.
 #pragma once
 
 #include <array>

@@ -1,4 +1,4 @@
-// The masses of a beam as points: every sum over them is a sum over these.
+// The masses of a beam as points. Sums over the masses are sums over these points.
 #pragma once
 
 #include <algorithm>
@@ -9,14 +9,14 @@
 
 namespace dispersa {
 
-/// A small part of a beam's mass. It moves as the beam does at `fixed_at_m`.
+/// A small part of a beam's mass. It moves with the beam's cross-section at `fixed_at_m`.
 struct MassPoint {
   double fixed_at_m = 0.0;    ///< station of the beam
-  double cg_station_m = 0.0;  ///< of the part: another one if it is a lumped body
+  double cg_station_m = 0.0;  ///< of the part; a lumped body has its own
   double mass_kg = 0.0;
   double inertia_kg_m2 = 0.0;  ///< about its own centre, across the axis
 
-  /// As a rigid body moves that is fixed to the beam at one station.
+  /// The motion of the part, as a rigid body that is fixed to the beam at `fixed_at_m`.
   StationShape Move(StationShape at_fixed) const {
     at_fixed.deflection += at_fixed.slope_1_m * (cg_station_m - fixed_at_m);
     return at_fixed;
@@ -35,10 +35,10 @@ auto AtStations(const Shape& shape) {
   return [&shape](const MassPoint& m, std::size_t) { return StationShape(shape(m.fixed_at_m)); };
 }
 
-/// What the mass ahead of a station, accelerated as a shape says (m/s² and 1/s², as deflection and slope),
-/// loads the section there with: the integral of m (deflection (s - x) - g² slope), N m; g: the radius of
-/// gyration of the mass about its own section. `points`: cut at the station. `shape_at`: the StationShape of
-/// a point's beam, by the point and its number.
+/// Moment (N m) on the section at a station s by the inertia of the mass ahead of it. A shape gives the
+/// acceleration: m/s² as deflection, 1/s² as slope. The moment is the integral of m (deflection (s - x) - g²
+/// slope); g is the radius of gyration of the mass about its own section. `points` are cut at the station.
+/// `shape_at` returns the StationShape of the beam at a point, by the point and its number.
 template <typename Shape>
 double InertiaMoment(const std::vector<MassPoint>& points, double station_m, const Shape& shape_at) {
   double sum = 0.0;

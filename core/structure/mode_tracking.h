@@ -1,4 +1,4 @@
-// Which mode is which when the beam changes.
+// Finds the same mode again when the beam has changed.
 #pragma once
 
 #include <Eigen/Core>

@@ -54,7 +54,7 @@ void DescribeEllipse(Fields& fields, TrajectoryProblem& problem) {
   double& apogee_m = *problem.target_apogee_m;
   fields.Quantity("perigee_altitude", kLength, kPositive, problem.target_altitude_m,
                   "of an ellipse, entered at its perigee; above the equator's radius");
-  fields.Quantity("apogee_altitude", kLength, kPositive, apogee_m, "of the same ellipse");
+  fields.Quantity("apogee_altitude", kLength, kPositive, apogee_m, "apogee of the same ellipse");
   if (problem.target_altitude_m > apogee_m)
     fields.Refuse("", "the perigee is above the apogee", "perigee_altitude up to apogee_altitude");
   else

@@ -45,7 +45,7 @@ void DescribeStiffness(Fields& fields, BeamSection& section, bool timoshenko) {
 }
 
 void Describe(Fields& fields, LumpedMass& lump) {
-  fields.Quantity("station", kLength, kNonNegative, lump.station_m, "where it is fixed to the beam");
+  fields.Quantity("station", kLength, kNonNegative, lump.station_m, "station of the beam that carries it");
   fields.Either({{Has("element"),
                   [&] {
                     fields.Text("element", lump.element,
@@ -242,7 +242,7 @@ class ModeTable {
 }  // namespace
 
 void Describe(Fields& fields, BeamSection& section, bool timoshenko) {
-  fields.Text("name", section.name, "what it is");
+  fields.Text("name", section.name, "name of the section");
   fields.Quantity("top_station", kLength, kNonNegative, section.top_station_m, "upper end");
   fields.Quantity("bottom_station", kLength, kPositive, section.bottom_station_m,
                   "lower end, not aft of the stage's bottom_station_*");
@@ -256,7 +256,7 @@ void Describe(Fields& fields, BeamSection& section, bool timoshenko) {
 
 void Describe(Fields& fields, StructureBeam& beam, std::size_t stages, std::size_t bodies) {
   fields.List("sensors", 0, 100, beam.sensors,
-              "places at which to show deflection and slope, besides the nozzle pivot");
+              "further places with deflection and slope; the nozzle pivot is always shown");
   fields.Flag("rotary_inertia", beam.rotary_inertia, true,
               "of the cross-sections; false: the beam has less inertia than the vehicle");
   fields.Integer("flown_modes", 0, kMostFlownModes, beam.flown_modes,

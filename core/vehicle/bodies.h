@@ -30,7 +30,7 @@ struct MassElement {
 };
 
 inline void Describe(Fields& fields, MassElement& element) {
-  fields.Text("name", element.name, "what it is");
+  fields.Text("name", element.name, "name of the element");
   fields.Number("fraction", UpTo(1.0), element.fraction, "part of the stage's dry mass");
   DescribeTube(fields, element, "inside", 0.0);
 }
@@ -59,7 +59,7 @@ struct Tank {
 };
 
 inline void Describe(Fields& fields, Tank& tank) {
-  fields.Text("name", tank.name, "what it holds");
+  fields.Text("name", tank.name, "name of the propellant");
   fields.Quantity("propellant_mass", kMass, kPositive, tank.propellant_mass_kg,
                   "at ignition, residual included");
   fields.Quantity("density", kDensity, kPositive, tank.density_kg_m3, "of the liquid");
@@ -89,11 +89,11 @@ struct Jettison {
   JettisonTrigger trigger = JettisonTrigger::kAtTime;
   double threshold = 0.0;  ///< of the trigger, in its unit
 };
-/// Of a vehicle, at most.
+/// Largest number of jettisoned bodies of a vehicle.
 inline constexpr int kMaxJettisons = 8;
 
 inline void Describe(Fields& fields, Jettison& jettison) {
-  fields.Text("name", jettison.name, "what it is");
+  fields.Text("name", jettison.name, "name of the body");
   fields.Quantity("mass", kMass, kPositive, jettison.mass_kg,
                   "in the stage's lift-off mass, not in its dry mass");
   DescribeTube(fields, jettison, "inside", 0.0);

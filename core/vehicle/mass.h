@@ -15,7 +15,7 @@ struct MassProperties {
   double axial_inertia_kg_m2 = 0.0;
   double transverse_inertia_kg_m2 = 0.0;
   double axial_inertia_per_kg = 0.0;       ///< derivative by propellant mass, m²
-  double transverse_inertia_per_kg = 0.0;  ///< likewise, about the moving CG
+  double transverse_inertia_per_kg = 0.0;  ///< derivative by propellant mass about the moving CG, m²
 };
 
 /// Liquids that drain in a constant mixture: polynomials of the remaining mass m.

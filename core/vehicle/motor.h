@@ -99,7 +99,7 @@ inline void DescribeLiquid(Fields& fields, Motor& motor) {
 inline void DescribeThrustCurve(Fields& fields, Motor& motor) {
   bool in_vacuum = true;
   fields.Choice<bool>("reference", {{"vacuum", true}, {"sea_level", false}}, in_vacuum,
-                      "where it was measured; p A_e is added to sea-level thrust");
+                      "where the thrust was measured; p A_e is added at sea level");
   fields.Table("table",
                "a CSV file (time_s, thrust_n, optional mass_flow_kg_s), an .eng file, or the columns",
                "a CSV file, an .eng file, or the columns",

@@ -22,7 +22,7 @@ inline constexpr int kRateGyros = 3;
 
 inline void Describe(Fields& fields, RateGyro& gyro) {
   fields.Text("name", gyro.name, "used by the autopilot");
-  fields.Quantity("station", kLength, kNonNegative, gyro.station_m, "where it is");
+  fields.Quantity("station", kLength, kNonNegative, gyro.station_m, "station of the gyro");
   fields.Quantity("bandwidth", kFrequency, kPositive, gyro.bandwidth_rad_s,
                   "natural frequency; default: no lag", 0.0);
   fields.Number("damping_ratio", kPositive, gyro.damping_ratio, "of a gyro with a bandwidth", 0.7);
@@ -39,7 +39,8 @@ struct Sensors {
 
 inline void Describe(Fields& fields, Sensors& sensors) {
   fields.Map("inertial_unit", "measures the attitude", [&](Fields& unit) {
-    unit.Quantity("station", kLength, kNonNegative, sensors.inertial_unit_station_m, "where it is");
+    unit.Quantity("station", kLength, kNonNegative, sensors.inertial_unit_station_m,
+                  "station of the inertial unit");
   });
   fields.List("rate_gyros", 0, kRateGyros, sensors.rate_gyros, "measure the rates, instead of the unit");
 }

@@ -35,7 +35,7 @@ struct BeamSection {
   Taper thickness_m;
   double modulus_pa = 0.0;        ///< E of the tube (0: the stiffness is given)
   double poisson_ratio = 0.0;     ///< of the tube
-  double z_to_y_stiffness = 1.0;  ///< plane z is so many times as stiff, in bending and shear
+  double z_to_y_stiffness = 1.0;  ///< stiffness in plane z over that in plane y, in bending and shear
   Taper mass_per_length_kg_m;     ///< of a stage that gives its own masses
 
   double BendingStiffness(BeamPlane plane, double station_m) const;
@@ -72,7 +72,7 @@ struct BeamSensor {
 
 inline void Describe(Fields& fields, BeamSensor& sensor) {
   fields.Text("name", sensor.name, "as `dispersa modes` lists it");
-  fields.Quantity("station", kLength, kNonNegative, sensor.station_m, "where it is");
+  fields.Quantity("station", kLength, kNonNegative, sensor.station_m, "station of the sensor");
 }
 
 /// A mode of a finite-element model, at one propellant level of one stack.

@@ -21,8 +21,8 @@
 
 namespace dispersa {
 
-/// Inputs and metrics have one column a stage: of vehicles with up to so many stages this many, of others
-/// kMaxStages.
+/// Inputs and metrics have one column for each stage. Vehicles with at most this many stages have this many
+/// columns, others kMaxStages.
 inline constexpr int kUsualStages = 4;
 
 enum class IgnitionTrigger {
@@ -46,8 +46,8 @@ struct Stage {
   IgnitionTrigger ignition = IgnitionTrigger::kLiftOff;
   double ignition_delay_s = 0.0;    ///< after separation of the stage below (kBurnoutDetection)
   double separation_delay_s = 0.0;  ///< after burnout detection, without effect for the last stage
-  /// It is the stage before, whose engine burns again: the same body, with the propellant that was left.
-  /// Nothing separates in between. Each burn counts as a stage of its own.
+  /// The stage before burns again: the same body, with the remaining propellant. Nothing separates in
+  /// between. Each burn counts as a stage of its own.
   bool restarts = false;
 
   bool is_liquid() const { return !tanks.empty(); }
@@ -57,7 +57,7 @@ struct Stage {
 };
 
 inline void DescribeIgnition(Fields& fields, Stage& stage) {
-  fields.Map("ignition", "what ignites it", [&](Fields& ignition) {
+  fields.Map("ignition", "event that ignites the stage", [&](Fields& ignition) {
     ignition.Choice<IgnitionTrigger>("trigger",
                                      {{"lift_off", IgnitionTrigger::kLiftOff},
                                       {"burnout_detection", IgnitionTrigger::kBurnoutDetection},
@@ -74,7 +74,7 @@ inline void Describe(Fields& fields, Stage& stage) {
   fields.Flag("restarts", stage.restarts, false,
               "the liquid stage before burns again: the same body, with the propellant left. Its jettisoned "
               "masses may leave in any of its burns");
-  fields.Text("name", stage.name, "what it is");
+  fields.Text("name", stage.name, "name of the stage");
   fields.Either(
       {{Is("restarts", {"true"}), [&] { DescribeCommands(fields, stage.motor); }},
        {Else(), [&] {
@@ -103,7 +103,7 @@ inline void Describe(Fields& fields, Stage& stage) {
                       "elements of its dry mass; the fractions add up to 1");
           fields.List("jettisoned", 0, kMaxJettisons, stage.jettisoned,
                       "masses on the axis, jettisoned while the stage is attached: fairing, tower, skirt");
-          fields.Map("gimbal", "what turns the thrust",
+          fields.Map("gimbal", "actuators of the nozzle",
                      [&](Fields& gimbal) { Describe(gimbal, stage.gimbal); });
         }}});
   DescribeIgnition(fields, stage);
@@ -149,7 +149,7 @@ struct Boosters {
   Grain grain;                      ///< of one, about its own axis
   double separation_delay_s = 0.0;  ///< after burnout is detected
 
-  /// Of all of them, with their propellant.
+  /// Mass of all boosters with their propellant.
   double LiftOffMass() const { return count * (dry_mass_kg + propellant_mass_kg); }
 };
 
@@ -271,7 +271,7 @@ struct Vehicle {
 /// Keys on which no other key depends.
 inline void DescribePlainKeys(Fields& fields, Vehicle& vehicle) {
   fields.Text("name", vehicle.name, "of the vehicle");
-  fields.Map("site", "where it is launched", [&](Fields& site) { Describe(site, vehicle.site); });
+  fields.Map("site", "launch site", [&](Fields& site) { Describe(site, vehicle.site); });
   fields.Quantity("hold_down", kTime, kNonNegative, vehicle.hold_down_s,
                   "burn of stage 1 before release; lift-off is time 0", 0.0);
   fields.Flag("made_up", vehicle.made_up, false,

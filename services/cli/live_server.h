@@ -19,8 +19,9 @@ namespace dispersa {
 using LiveParts = std::map<std::string, std::string>;
 
 /// Serves one page to the browsers of this machine and sends them its changes. It listens on 127.0.0.1 only,
-/// and answers only under the names of this machine. So no page from elsewhere reaches it by a name of its
-/// own. It keeps the present page for any number of browsers. A browser that stops reading is dropped.
+/// and answers only under the names of this machine. So a page from another site cannot reach it under
+/// another name. It keeps the present page for any number of browsers. A browser that stops reading is
+/// dropped.
 class LiveServer {
  public:
   /// `page` connects to "events" (LivePage()). Port 0: any that is free. Throws std::runtime_error.

@@ -11,7 +11,8 @@
 
 namespace dispersa {
 
-/// Of the newest run in a result folder. Each Write replaces the file as a whole; it throws ResultError.
+/// Writes execution.json of the newest run in a result folder. Each Write replaces the file as a whole; it
+/// throws ResultError.
 struct ExecutionFile {
   std::filesystem::path directory;
   std::string started_utc;

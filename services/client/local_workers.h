@@ -28,8 +28,8 @@ WorkerEnd ClassifyExit(int status, std::string* how);
 /// Every worker dies with the thread that started it, even if that is killed. Not thread-safe.
 class LocalWorkers {
  public:
-  /// Each worker is `program arguments... --uuid <its own>`. A pass that is not empty reaches it through a
-  /// pipe that nobody else can read (`--run-pass DESCRIPTOR`). Starts nothing yet.
+  /// Each worker is `program arguments... --uuid <its own>`. A pass that is not empty goes to it through a
+  /// pipe that no other process can read (`--run-pass DESCRIPTOR`). Starts nothing yet.
   LocalWorkers(std::filesystem::path program, std::vector<std::string> arguments, int count,
                std::string pass = "");
   /// Kills the remaining workers.

@@ -26,8 +26,9 @@ struct FetchedCampaign {
 /// ResultError.
 FetchedCampaign FetchCampaign(Session& session, const std::string& id, const std::string& target);
 
-/// The data directory of a coordinator as it is now, of campaigns that fly too, into `target`, new or empty:
-/// another coordinator goes on with it. Returns how many campaigns it has. Throws as FetchCampaign.
+/// Copies the present data directory of a coordinator into `target`, new or empty, including campaigns that
+/// fly. Another coordinator can go on with the copy. Returns the number of campaigns. Throws as
+/// FetchCampaign.
 std::uint64_t BackUp(Session& session, const std::string& target);
 
 }  // namespace dispersa

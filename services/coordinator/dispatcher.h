@@ -85,7 +85,7 @@ class Dispatcher {
     std::uint64_t flown;
   };
   std::vector<WorkerView> Workers() const;
-  /// Of a campaign that flies.
+  /// The flight id of a flying campaign.
   std::string FlightIdOf(const std::string& result_id) const;
   /// The reason of one worker, if every worker refuses this campaign. Nothing without workers.
   std::optional<std::string> RefusalByAll(const std::string& flight_id) const;

@@ -18,10 +18,10 @@ struct ServeOptions {
   /// share of the results that is flown again (empty: see Coordinator)
   std::optional<double> audit = {};
   std::vector<std::string>
-      again;  ///< the command that takes this program's place when it hears nobody any more
+      again;  ///< command that replaces this program when it receives no messages any more
 };
 
-/// One campaign: serves it, writes its reports, ends. Gives up after `patience_s` without a worker.
+/// One campaign: serves it, writes its reports, ends. Ends early after `patience_s` without a worker.
 ExitCode ServeCampaign(const ServeOptions& options, const RunRequest& request,
                        std::optional<double> patience_s);
 

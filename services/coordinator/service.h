@@ -77,7 +77,7 @@ class Service {
   CampaignView View(const std::string& id) const;
   /// The statistics of its results so far, also of one that flew lately; nullptr if unknown.
   const RunningTally* TallyOf(const std::string& id) const;
-  /// Whether nobody writes its results, now or soon.
+  /// Whether no part of the service writes its results, now or soon.
   bool IsAtRest(const std::string& id) const;
   /// Whether any campaign has not ended.
   bool HasWork() const;
@@ -87,7 +87,7 @@ class Service {
   // Changes by clients. They are on the disk before the client is told so. These throw ResultError, and have
   // then changed nothing.
 
-  /// Puts a campaign that is known into the queue again if it was cancelled, failed or gave cases up, and
+  /// Puts a campaign that is known into the queue again if it was cancelled, failed or quarantined cases, and
   /// changes its priority.
   void Relaunch(const std::string& id, int priority);
   /// Takes a new one.
@@ -148,7 +148,7 @@ class Service {
   Workforce& workforce_;
   Catalogue catalogue_;
   std::map<std::string, Flying> flying_;                   ///< by id
-  std::deque<std::pair<std::string, RunningTally>> flew_;  ///< by id: what the last ones came to
+  std::deque<std::pair<std::string, RunningTally>> flew_;  ///< by id: the tallies of the last campaigns
   std::optional<Opening> opening_;
   std::deque<std::string> to_report_;  ///< ids; their folders are closed meanwhile
   std::optional<Reporting> reporting_;

@@ -15,11 +15,10 @@ namespace dispersa {
 inline constexpr double kUsualAuditShare = 0.01;
 
 struct AuditOptions {
-  double share = 0.0;  ///< of the results, 0 (none) to 1
-  std::uint64_t salt =
-      0;  ///< selects the audited results; it is secret, so that nobody knows which forgery would be noticed
-  /// Also where the control law is a plug-in: a law that differs from machine to machine then has its workers
-  /// expelled. Otherwise it has the campaign refused.
+  double share = 0.0;      ///< of the results, 0 (none) to 1
+  std::uint64_t salt = 0;  ///< selects the audited results; secret, so that a forger cannot avoid the audit
+  /// Audit campaigns with a plug-in too. If its results differ between machines, their workers are then
+  /// expelled. Without this option the campaign is refused.
   bool with_plugins = true;
 };
 
@@ -36,7 +35,7 @@ class Audit {
   /// Results to be flown again now. Call Settle once for each of them.
   std::vector<Claim> Take();
   void Settle() { --flying_; }
-  /// Nothing that the workers returned that `worker` means needs to be flown again any more.
+  /// Forgets all results of the workers that `worker` denotes: they need not be flown again.
   void Drop(const std::string& worker);
   bool IsSettled() const { return waiting_.empty() && flying_ == 0; }
 

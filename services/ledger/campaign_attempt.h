@@ -8,16 +8,16 @@
 
 namespace dispersa {
 
-/// Before the first case. What goes wrong in `root` is logged.
+/// Before the first case. Errors in `root` are logged.
 void BeginAttemptIn(const std::filesystem::path& root, const std::filesystem::path& results,
                     const Campaign& campaign, const std::string& fresh = "");
 
-/// Of one that ends before it is complete: it counts up to its last assigned case, and a case without a
-/// result as a failure. The book keeps a tally.
+/// For a campaign that ends before it is complete. Its cases count up to the last assigned one, and a case
+/// without a result counts as a failure. The book keeps a tally.
 void NoteCancelledIn(const std::filesystem::path& root, const std::filesystem::path& results,
                      const CampaignBook& book);
 
-/// Of one whose reports are written.
+/// For a campaign whose reports are written.
 void NoteEndedIn(const std::filesystem::path& root, const ResultFolder& folder, const Campaign& campaign,
                  const CampaignSummary& summary);
 

@@ -66,7 +66,7 @@ class CampaignBook {
 
   /// Starts a tally from the stored results. Call it before the first result arrives.
   void KeepTally();
-  /// Of a book that keeps a tally: how the requirements stand after the accepted results.
+  /// The state of the requirements after the accepted results. The book keeps a tally.
   const RunningTally& tally() const { return *tally_; }
 
   /// From now on the campaign is complete only when its audit is; stored results are audited too. No effect
@@ -83,7 +83,7 @@ class CampaignBook {
   bool IsDrawnSo(const CaseResult& result) const;
   /// Whether it has as many metrics as the campaign measures.
   bool HasItsMetrics(const CaseResult& result) const;
-  /// Whatever the workers returned that `worker` means (IsMeantBy) is flown again. A campaign that stops when
+  /// All cases of the workers that `worker` denotes (IsMeantBy) are flown again. A campaign that stops when
   /// it is decided keeps the cases that it was extended to.
   void Disown(const std::string& worker);
 

@@ -77,8 +77,8 @@ struct LedgerProgress {
 
 /// Cases 0 .. cases - 1 of one campaign. Each ends done or quarantined. Rules of blame: only a case that its
 /// worker reported as started is blamed. A blamed case (a suspect) waits until the queue is empty, and then
-/// flies alone, on a worker that holds nothing else. The N-th blame quarantines it. A late result is
-/// accepted, even of a quarantined case.
+/// flies alone, on a worker without other cases. The N-th blame quarantines it. A late result is accepted,
+/// even of a quarantined case.
 class Ledger {
  public:
   Ledger(std::string engine_version, std::uint64_t cases, const LedgerOptions& options = {});
@@ -118,10 +118,9 @@ class Ledger {
   /// The worker is gone: its cases return to the queue. `reason` is kept with each blame.
   void Lost(const std::string& worker, WorkerEnd end, const std::string& reason);
 
-  /// Takes the cases of stuck workers away from them, with a blame for those that flew too long, and
-  /// returns these workers; they get no more cases until they report something or are idle. When nothing else
-  /// waits and a worker has nothing to do, overdue cases are taken away sooner, once each and without a
-  /// blame.
+  /// Takes the cases of stuck workers away from them and blames the cases that flew too long. Returns these
+  /// workers. They get no more cases until they report something or are idle. When nothing else waits and a
+  /// worker has nothing to do, overdue cases are taken away sooner, once each and without a blame.
   std::vector<std::string> Expire(double now_s);
   /// The assignments to send now, if all workers fly for this ledger alone.
   std::vector<Assignment> Assign(double now_s);

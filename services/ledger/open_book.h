@@ -16,12 +16,13 @@ struct BookRequest {
   std::string text;  ///< canonical
   std::string name;  ///< for messages
   std::filesystem::path results;
-  std::filesystem::path root;  ///< of the ledger of attempts
+  std::filesystem::path root;  ///< folder of the ledger of attempts
   /// Result folders of the same flight id that no process writes now.
   std::vector<std::filesystem::path> same_flights;
   std::uint64_t number = 1;  ///< of this book: books of one coordinator use different attempt numbers
   AuditOptions audit;
-  /// Workers (IsMeantBy) whose results are removed, flown again, and taken over from nowhere.
+  /// Workers (IsMeantBy) whose results are removed and flown again. Their results in other folders are not
+  /// copied.
   std::vector<std::string> distrusted = {};
 };
 

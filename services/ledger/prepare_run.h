@@ -17,7 +17,7 @@ struct RunRequest {
   CampaignOverrides overrides;
   std::string out;  ///< empty: results/<name>-<first 8 of id>, then -2, -3, ...
   bool resume = false;
-  std::string fresh;  ///< why earlier attempts at the design shall not count; empty: they do
+  std::string fresh;  ///< reason why earlier attempts at the design do not count; empty: they count
 };
 
 struct PreparedRun {
@@ -26,7 +26,7 @@ struct PreparedRun {
   std::vector<CaseResult> flown;  ///< flown beforehand to check that a plug-in is deterministic
 };
 
-/// The folder that a result folder is in: its campaigns know of each other as attempts.
+/// The parent of a result folder. Its campaigns share a ledger of attempts.
 std::filesystem::path ResultRoot(const std::filesystem::path& directory);
 
 /// Without `resume` the folder must be new or empty. With `resume` a folder of the same flight id is

@@ -1,5 +1,5 @@
-// Errors for programs that read them: with --json, one object on standard output. The text goes to stderr all
-// the same.
+// Errors for programs that read them: with --json, one object on standard output. The text also goes to
+// stderr.
 #pragma once
 
 #include <nlohmann/json.hpp>

@@ -22,11 +22,11 @@ struct ExitMeaning {
   const char* meaning;
 };
 
-/// Every code with its meaning, in the order in which one is reported where several hold. services/README.md
-/// shows this table; a test holds it to it.
+/// Every code with its meaning. If several hold, the first in this order is reported. services/README.md
+/// shows this table; a test compares the two.
 const std::vector<ExitMeaning>& ExitMeanings();
 
-/// Of two that hold, the one to report.
+/// The code to report if both hold.
 ExitCode WorseOf(ExitCode a, ExitCode b);
 
 }  // namespace dispersa

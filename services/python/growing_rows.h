@@ -26,7 +26,7 @@ class GrowingRows {
 
   double* data() const { return data_; }
   std::size_t size() const { return size_; }
-  /// Room for so many more at the end, which the caller fills.
+  /// Adds room for `count` doubles at the end. The caller fills it.
   double* Extend(std::size_t count) {
     const std::size_t needed = (size_ + count) * sizeof(double);
     if (needed > capacity_) {

@@ -39,8 +39,8 @@ class LawTick {
   pybind11::dict memory_;
 };
 
-/// Made and destroyed with the interpreter's lock, and used without by flights, which it must outlive and
-/// which take the lock at every tick.
+/// Make and destroy it with the interpreter's lock. Flights use it without the lock and take the lock at
+/// every tick. It must outlive them.
 class PythonLaw {
  public:
   /// `law(tick)` returns angular accelerations, rad/s²: three, for roll, pitch and yaw, or a number if it
@@ -54,7 +54,7 @@ class PythonLaw {
   Campaign OnAxes(Campaign campaign, unsigned axes) const;
   /// Campaigns that this thread loads and that name this hash have this law.
   void Offer(const std::string& sha256);
-  /// The note to an exception speaks of no case.
+  /// The note to an exception names no case.
   void FliesTheNominal() { flies_the_nominal_ = true; }
 
  private:

@@ -14,7 +14,7 @@
 
 namespace dispersa {
 
-/// To be made and destroyed with the interpreter's lock, used without.
+/// Make and destroy it with the interpreter's lock; use it without.
 class PythonObserver : public Observer {
  public:
   /// `progress(phase, done, total, note)`, or None.

@@ -23,7 +23,7 @@ inline std::vector<std::string> NamesOf(const MetricList& list, const std::vecto
   return names;
 }
 
-/// Gathered without the interpreter's lock, taken with it.
+/// Gather without the interpreter's lock; take with it.
 class ResultColumns {
  public:
   /// `metrics`: positions in the list of those that are kept.

@@ -11,7 +11,7 @@ namespace dispersa {
 /// Options of a command line about keys.
 struct Admission {
   std::string keys;       ///< folder (empty: none)
-  bool insecure = false;  ///< none: beyond this machine all the same, on it with all users
+  bool insecure = false;  ///< work without keys: beyond this machine too, and with all users of this machine
   bool allow_plugins = false;
 };
 

@@ -20,12 +20,12 @@ Validity ValidFor(int days);
 
 /// An authority is a folder:
 ///
-///   authority/identity_ca.{key,pem}      signs who somebody is
-///   authority/permissions_ca.{key,pem}   signs who may do what; apart from the first, because whoever has a
-///                                        certificate of that one could sign permissions for himself
-///   authority/governance.p7s             how everything is protected
-///   issued/<role>-<name>/                one folder for each participant, all that it needs
-///   revoked.p7s                          keys that are believed no more (revocations.h), once there are any
+///   authority/identity_ca.{key,pem}      signs the identity of each participant
+///   authority/permissions_ca.{key,pem}   signs permissions. It is separate: otherwise a participant with a
+///                                        certificate could sign permissions for itself
+///   authority/governance.p7s             the protection of all topics
+///   issued/<role>-<name>/                one folder for each participant, with all that it needs
+///   revoked.p7s                          revoked keys (revocations.h), once there are any
 ///
 /// The first two functions make a folder as a whole or not at all, readable by the owner alone, and throw
 /// InputError rather than overwrite one.

@@ -1,4 +1,4 @@
-// Warnings about useless data from others. Their rate is limited, so that nobody can fill the log.
+// Warnings about useless data from others. Their rate is limited, so that no sender can fill the log.
 #pragma once
 
 #include <cstdint>

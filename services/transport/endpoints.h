@@ -28,8 +28,8 @@
 namespace dispersa {
 
 /// Samples that a writer keeps for a reader that has not acknowledged them, and that a reader keeps for us.
-/// Older ones are dropped; whoever needs them repeats them. So a reader that stops reading has a limited
-/// cost.
+/// Older ones are dropped; the side that needs them repeats them. So a reader that stops reading has a
+/// limited cost.
 inline constexpr int kDepth = 512;
 /// Number of samples after which a writer is replaced, so that no reader has to skip more (sieve.h).
 inline constexpr std::uint64_t kRenewAfter = 1 << 20;

@@ -16,8 +16,8 @@ inline constexpr std::array<Role, 4> kRoles = {Role::kCoordinator, Role::kWorker
 const char* Name(Role role);
 std::optional<Role> ParseRole(const std::string& text);
 
-/// Workers and clients with keys are called NAME_… after their keys: nobody else may speak and hear under
-/// such a name. Names of keys have no '_'.
+/// Workers and clients with keys are called NAME_… after their keys. No other participant may write or read
+/// under such a name. Names of keys have no '_'.
 std::string OwnPrefix(const std::string& name);
 /// The name of the keys of a participant named `who`; empty if it has none.
 std::string KeyNameOf(const std::string& who);

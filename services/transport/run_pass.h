@@ -1,4 +1,4 @@
-// The secret that `dispersa run` gives its workers through a pipe, which nobody else can read.
+// The secret that `dispersa run` gives its workers through a pipe that no other process can read.
 #pragma once
 
 #include <set>
