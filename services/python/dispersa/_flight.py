@@ -1,4 +1,4 @@
-"""What was flown: outcomes, inputs, metrics, time histories."""
+"""Results of flights: outcomes, inputs, metrics, time histories."""
 import difflib
 import operator
 
@@ -111,7 +111,7 @@ class Flights:
                       self.history(i))
 
     def _position(self, i):
-        """Of flight i, those before 0 from the end. Raises IndexError."""
+        """The history of flight i; a negative i counts from the end. Raises IndexError."""
         try:
             return range(len(self))[operator.index(i)]
         except IndexError:

@@ -1,10 +1,10 @@
 """The name and hash of a control law written in Python.
 
-A campaign that is flown with one is not the campaign without it, nor that with another one, so the law's hash goes into the
-flight id. It is taken over what can be seen to decide what the law does: its bytecode, defaults, closure, attributes and
-constants, the globals and attributes that it names, and functions and objects among these in turn, objects by what pickle
-keeps of them. Modules of the user go in by their source too, libraries by name and version. A law that holds what pickle
-cannot keep is refused. What a law reads from elsewhere, and what it changes as it flies, cannot be seen.
+The law decides the flights, so its hash is a part of the flight id. The hash covers the data that decide the law's commands:
+bytecode, defaults, closure, attributes and constants, the globals and attributes that it names, and in turn the functions and
+objects among these. An object counts by the data that pickle keeps, a module of the user also by its source, a library by name
+and version. A law that holds an object which pickle cannot keep is refused. The hash does not see data that a law reads from
+elsewhere or changes in flight.
 """
 import copyreg
 import dis
@@ -150,7 +150,7 @@ class _Fingerprint:
         self._add(value.__module__, value.__qualname__, _version(value.__module__))
 
     def _pickled(self, value):
-        """What pickle keeps of a value."""
+        """Adds the data that pickle keeps of a value."""
         reduce = copyreg.dispatch_table.get(type(value))
         try:
             kept = reduce(value) if reduce else value.__reduce_ex__(4)
@@ -228,7 +228,7 @@ class _Fingerprint:
             self._imported(name, level, function.__globals__.get("__package__"))
 
     def _imported(self, name, level, package):
-        """What a law imports as it flies is imported now."""
+        """Imports now what the law would import in flight."""
         try:
             module = importlib.import_module("." * level + name, package)
         except Exception:  # whatever it raises: the law will see
@@ -258,7 +258,7 @@ def _codes(code):
 
 
 def _names(code):
-    """Of globals and attributes."""
+    """Names of globals and attributes."""
     return sorted({name for each in _codes(code) for name in each.co_names})
 
 

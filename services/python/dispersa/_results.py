@@ -181,7 +181,7 @@ class Results:
             return History(numpy.genfromtxt(stream, delimiter=",", ndmin=2), columns)
 
     def _text(self, name):
-        """What a file holds; None: there is none."""
+        """The text of a file; None if it does not exist."""
         try:
             return (self.directory / name).read_text(encoding="utf-8", errors="replace")
         except FileNotFoundError:
@@ -292,13 +292,13 @@ def _refuse_unheeded(where, **arguments):
 
 
 def _folder_of(campaign, out):
-    """Where a run's results go."""
+    """The folder of a run's results."""
     return os.fspath(out) or os.path.join("results", f"{campaign.name}-{campaign.id[:8]}")
 
 
 def _fly_a_stored_case_again(folder, law):
-    """What a law reads from elsewhere is not in its hash: a folder goes on only under one that has the bits of its first
-    case. Raises BadInput."""
+    """Checks that the law gives the stored bits of the folder's first case. The law's hash does not see data that it reads
+    from elsewhere. Raises BadInput."""
     if not os.path.exists(os.path.join(folder, "results.sqlite")):
         return
     stored = Results(folder)

@@ -1,4 +1,4 @@
-"""What ends a command of the program with an exit code, as exceptions, and the codes themselves."""
+"""The exit codes of the program, and an exception for each code that is not a verdict."""
 import dataclasses
 import enum
 
@@ -28,11 +28,11 @@ class Problem:
     column: int
     """From 1."""
     path: str
-    """Of the value in its file: "stages[1].motor.thrust_kn"; empty: the file as a whole."""
+    """The value's path in its file, such as "stages[1].motor.thrust_kn"; empty: the file as a whole."""
     message: str
-    """What is wrong."""
+    """The fault."""
     allowed: str
-    """What is allowed; for a warning, what is usual. May be empty."""
+    """The allowed values; for a warning the usual ones. May be empty."""
 
     def __str__(self):
         place = f"{self.file}:{self.line}:{self.column}: " if self.line else f"{self.file}: " if self.file else ""

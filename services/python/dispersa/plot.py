@@ -43,7 +43,7 @@ def style():
 
 
 def label(name):
-    """What an axis of a metric, an input or a history column says: "Pitch error, peak, °"."""
+    """The title of an axis of a metric, an input or a history column: "Pitch error, peak, °"."""
     name = name.removeprefix("metric_").removeprefix("input_")
     title, unit, definition, _ = _core.describe(name)
     if not definition:
@@ -82,7 +82,7 @@ def history(flights, columns, *, labels=None, axes=None):
 
 
 def bands(what, column, *, nominal=True, ax=None):
-    """How a history column spreads over the cases: least to largest, 5 to 95 % and median of the flights still flying.
+    """The spread of a history column over the cases: least to largest, 5 to 95 % and median of the flights still flying.
 
     `what`: Results, whose report has made the bands, or Flights with histories of `time_s` and the column. `nominal`:
     of Results, with the nominal flight. Raises BadInput for a column that there are no bands or histories of.
@@ -170,7 +170,7 @@ def drivers(results, metric, *, count=3, axes=None):
 
 
 def ground_track(flights, *, labels=None, ax=None):
-    """Where flights are above the Earth, from lift-off to the end of each: longitude and latitude, to scale at the middle
+    """The ground track of flights, from lift-off to the end of each: longitude and latitude, to scale at the middle
     of the picture. `flights`: a Flight or History, Flights, or a list. Raises BadInput for a flight without a history of
     both, for no flights, and for labels that are not as many."""
     histories = _histories_of(flights, ["longitude_deg", "latitude_deg"], labels)
