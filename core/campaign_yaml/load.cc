@@ -110,18 +110,6 @@ auto Decode(const InputSource& source, F decode) {
   return value;
 }
 
-AutopilotConfig DecodeAutopilotFile(const InputSource& source) {
-  return Decode(source, [](InputNode& root, ProblemList& problems, FileSource* files) {
-    return DecodeAutopilot(root, "", 0, problems, files);
-  });
-}
-
-Reference DecodeReferenceFile(const InputSource& source) {
-  return Decode(source, [](InputNode& root, ProblemList& problems, FileSource* files) {
-    return DecodeFile<Reference>(root, "", problems, files, DescribeReferenceFile);
-  });
-}
-
 }  // namespace
 
 Campaign LoadCampaign(const InputSource& source, const CampaignOverrides& overrides,
@@ -164,26 +152,28 @@ OptimizationInput LoadOptimization(const InputSource& source, std::optional<std:
   return input;
 }
 
-Vehicle LoadVehicle(const std::string& path, std::vector<InputProblem>* warnings) {
-  return Decode(path, [&](InputNode& root, ProblemList& problems, FileSource* files) {
+Vehicle LoadVehicle(const InputSource& source, std::vector<InputProblem>* warnings) {
+  return Decode(source, [&](InputNode& root, ProblemList& problems, FileSource* files) {
     return DecodeVehicle(root, "", problems, files, warnings);
   });
 }
 
-Scenario LoadScenario(const std::string& path) {
-  return Decode(path, [](InputNode& root, ProblemList& problems, FileSource* files) {
+Scenario LoadScenario(const InputSource& source) {
+  return Decode(source, [](InputNode& root, ProblemList& problems, FileSource* files) {
     return DecodeFile<Scenario>(root, "", problems, files, DescribeScenarioFile);
   });
 }
 
-AutopilotConfig LoadAutopilot(const std::string& path) { return DecodeAutopilotFile(path); }
-AutopilotConfig ReadAutopilot(const std::string& yaml_text, const std::string& display_name) {
-  return DecodeAutopilotFile({display_name, yaml_text});
+AutopilotConfig LoadAutopilot(const InputSource& source) {
+  return Decode(source, [](InputNode& root, ProblemList& problems, FileSource* files) {
+    return DecodeAutopilot(root, "", 0, problems, files);
+  });
 }
 
-Reference LoadReference(const std::string& path) { return DecodeReferenceFile(path); }
-Reference ReadReference(const std::string& yaml_text, const std::string& display_name) {
-  return DecodeReferenceFile({display_name, yaml_text});
+Reference LoadReference(const InputSource& source) {
+  return Decode(source, [](InputNode& root, ProblemList& problems, FileSource* files) {
+    return DecodeFile<Reference>(root, "", problems, files, DescribeReferenceFile);
+  });
 }
 
 bool IsScenarioFile(const std::string& path) {

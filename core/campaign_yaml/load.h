@@ -61,25 +61,21 @@ struct OptimizationInput {
 OptimizationInput LoadOptimization(const InputSource& source, std::optional<std::uint64_t> seed = {},
                                    std::vector<InputProblem>* warnings = nullptr);
 
-Vehicle LoadVehicle(const std::string& path, std::vector<InputProblem>* warnings = nullptr);
-AutopilotConfig LoadAutopilot(const std::string& path);
-Reference LoadReference(const std::string& path);
-Scenario LoadScenario(const std::string& path);
+Vehicle LoadVehicle(const InputSource& source, std::vector<InputProblem>* warnings = nullptr);
+AutopilotConfig LoadAutopilot(const InputSource& source);
+Reference LoadReference(const InputSource& source);
+Scenario LoadScenario(const InputSource& source);
 /// True if the file is YAML with `schema: dispersa/scenario/1`. False for a file that cannot be read.
 bool IsScenarioFile(const std::string& path);
 
 /// YAML text of a reference, with angles in degrees and lengths in km. A number is the shortest text that
 /// reads back to the same bits. A few radian values are no double's worth of degrees and become the nearest
-/// value that is. So ReadReference(WriteReference(x)) may differ from x in the last bit. Writing and reading
+/// value that is. So the text of a reference may differ from x in the last bit. Writing and reading
 /// again changes nothing more, neither value nor text.
 std::string WriteReference(const Reference& reference);
-/// The reference in a text, as LoadReference.
-Reference ReadReference(const std::string& yaml_text, const std::string& display_name);
 
 /// YAML text of an autopilot, with the blocks that its laws read. Numbers as in WriteReference.
 std::string WriteAutopilot(const AutopilotConfig& autopilot);
-/// The autopilot in a text, as LoadAutopilot.
-AutopilotConfig ReadAutopilot(const std::string& yaml_text, const std::string& display_name);
 
 /// The result of checking a file of any kind. Its `schema` names the kind.
 struct FileCheck {

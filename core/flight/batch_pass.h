@@ -196,7 +196,7 @@ void Batch<T>::FlyGimbals() {
   if (!listed) return;
   const M rolling = powered & (allocation_.rolls_by_thrusters > T(0.0));
   if (!Any(rolling)) return;
-  Blend<T>(rolling, of_roll, axes_[kRoll]);  // a law whose commands nothing carries out learns nothing
+  Blend<T>(rolling, of_roll, axes_[kRoll]);  // restores roll memory: its command was not applied
   RollByThrusters(rolling);
 }
 

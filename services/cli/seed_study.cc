@@ -94,7 +94,7 @@ std::vector<SeedRow> RunSeedStudy(const OptimizationInput& input, int seeds, con
     row.seed = problem.seed;
     result.reference.name = input.name;
     result.reference.vehicle_sha256 = input.vehicle_sha256;
-    const Reference read = ReadReference(WriteReference(result.reference), input.name);
+    const Reference read = LoadReference({input.name, WriteReference(result.reference)});
     const auto errors = [&](const AscentSteps& steps) {
       return ErrorsOf(read.problem,
                       FlyAscent(model, read.program, AscentOptionsOf(read.problem, steps)).orbit);

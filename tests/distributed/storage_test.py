@@ -48,7 +48,7 @@ class StorageTest(ServiceCase):
         self.addCleanup(subprocess.run, ["umount", "--lazy", self.data], check=True)
         coordinator = self.start_coordinator()
         flying = self.dispersa("launch", CAMPAIGN, "--cases", CASES).strip()
-        wait_for(lambda: stored(self.results(flying)) == 0 and (self.results(flying) / "results.sqlite").exists(), "an open campaign")
+        wait_for(lambda: stored(self.results(flying)) == 0 and (self.results(flying) / "results.sqlite").exists(), "a flying campaign")
         filling = self.fill()
         self.start_worker()
         self.wait_until_it_waits(flying)
@@ -75,7 +75,7 @@ class StorageTest(ServiceCase):
     def test_a_campaign_whose_database_somebody_reads_is_fetched_whole(self):
         self.start_coordinator()
         identity = self.dispersa("launch", self.tiny, "--cases", SMALL).strip()
-        wait_for((self.results(identity) / "results.sqlite").exists, "an open campaign")
+        wait_for((self.results(identity) / "results.sqlite").exists, "a flying campaign")
         reader = sqlite3.connect(f"file:{self.results(identity)}/results.sqlite?mode=ro", uri=True, isolation_level=None)
         self.addCleanup(reader.close)
         reader.execute("BEGIN")

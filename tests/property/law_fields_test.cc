@@ -166,7 +166,7 @@ class LawFields : public testing::TestWithParam<Law> {
     EXPECT_TRUE(is_new_text) << name << " has the text of " << text_of->second;
     const auto [id_of, is_new_id] = ids_.emplace(FlightId(autopilot), name);
     EXPECT_TRUE(is_new_id) << name << " has the flight id of " << id_of->second;
-    EXPECT_EQ(WriteAutopilot(ReadAutopilot(text, "text")), text) << name;
+    EXPECT_EQ(WriteAutopilot(LoadAutopilot({"text", text})), text) << name;
   }
 
   InputFiles files_;
@@ -237,7 +237,7 @@ TEST(RateGyroFields, ChangeTextAndFlightId) {
   std::map<std::string, std::size_t> ids;
   for (std::size_t i = 0; i < all.size(); ++i) {
     const std::string text = WriteAutopilot(all[i]);
-    EXPECT_EQ(WriteAutopilot(ReadAutopilot(text, "text")), text);
+    EXPECT_EQ(WriteAutopilot(LoadAutopilot({"text", text})), text);
     files.Write("autopilot.yaml", text);
     const auto [other, is_new] = ids.emplace(LoadCampaign(files.Path("campaign.yaml")).flight_id, i);
     EXPECT_TRUE(is_new) << i << " has the flight id of " << other->second;

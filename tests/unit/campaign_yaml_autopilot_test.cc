@@ -59,17 +59,17 @@ reaction_control: {deadband_deg: 0.05, rate_gain_s: 0.5, hysteresis: 0.25, cycle
 )";
 
 TEST(WriteAutopilot, WritesWhatWasReadToTheCharacter) {
-  EXPECT_EQ(WriteAutopilot(ReadAutopilot(kEverything, "text")), kEverything);
+  EXPECT_EQ(WriteAutopilot(LoadAutopilot({"text", kEverything})), kEverything);
 }
 
 TEST(WriteAutopilot, QuotesANameThatYamlWouldReadAsSomethingElse) {
-  AutopilotConfig autopilot = ReadAutopilot(kEverything, "text");
+  AutopilotConfig autopilot = LoadAutopilot({"text", kEverything});
   autopilot.name = "1: a #'\"\n";
-  EXPECT_EQ(ReadAutopilot(WriteAutopilot(autopilot), "text").name, autopilot.name);
+  EXPECT_EQ(LoadAutopilot({"text", WriteAutopilot(autopilot)}).name, autopilot.name);
 }
 
 TEST(WriteAutopilot, LeavesOutGuardsThatAreOff) {
-  AutopilotConfig autopilot = ReadAutopilot(kEverything, "text");
+  AutopilotConfig autopilot = LoadAutopilot({"text", kEverything});
   Adaptation bare;
   bare.gamma = {1.0, 2.0};
   bare.q = autopilot.pitch.adaptation.q;
@@ -82,7 +82,7 @@ TEST(WriteAutopilot, ShippedAutopilotsKeepEveryKey) {
   for (const auto& entry : std::filesystem::directory_iterator(DISPERSA_CAMPAIGNS "/autopilots")) {
     const AutopilotConfig autopilot = LoadAutopilot(entry.path().string());
     const std::string text = WriteAutopilot(autopilot);
-    EXPECT_EQ(WriteAutopilot(ReadAutopilot(text, "text")), text) << entry.path();
+    EXPECT_EQ(WriteAutopilot(LoadAutopilot({"text", text})), text) << entry.path();
   }
 }
 
@@ -110,7 +110,7 @@ TEST(WriteAutopilot, WritesThePidLawAndFilters) {
     reset_at_ignition: true
 )";
   const std::string text = WithRoll(pid);
-  EXPECT_EQ(WriteAutopilot(ReadAutopilot(text, "text")), text);
+  EXPECT_EQ(WriteAutopilot(LoadAutopilot({"text", text})), text);
 }
 
 TEST(WriteAutopilot, WritesAScheduleInFull) {
@@ -137,8 +137,8 @@ TEST(WriteAutopilot, WritesAScheduleInFull) {
       "    - {stage: 1, at_s: 12.5, kp_1_s2: 8, kd_1_s: 7, ki_1_s3: 0, filters: [{poles_rad_s: 30, "
       "poles_damping: 1}]}\n"
       "    - {stage: 2, at_s: 3, kp_1_s2: 8, kd_1_s: 7, ki_1_s3: 2}\n");
-  EXPECT_EQ(WriteAutopilot(ReadAutopilot(short_text, "text")), full_text);
-  EXPECT_EQ(WriteAutopilot(ReadAutopilot(full_text, "text")), full_text);
+  EXPECT_EQ(WriteAutopilot(LoadAutopilot({"text", short_text})), full_text);
+  EXPECT_EQ(WriteAutopilot(LoadAutopilot({"text", full_text})), full_text);
 }
 
 TEST(ReadAutopilot, SaysWhereAScheduleIsWrong) {
@@ -147,7 +147,7 @@ TEST(ReadAutopilot, SaysWhereAScheduleIsWrong) {
     const std::string gains = "    - {kp_1_s2: 7, kd_1_s: 8}\n";
     text.insert(text.find(gains) + gains.size(), "  schedule:\n" + entries);
     try {
-      ReadAutopilot(text, "text");
+      LoadAutopilot({"text", text});
     } catch (const InputError& error) {
       return std::string(error.what());
     }
@@ -173,7 +173,7 @@ TEST(ReadAutopilot, NamesALawInPythonButDoesNotHoldIt) {
   const std::string text = WithRoll(roll) + "plugin: {python: {name: mine, sha256: " + sha256 + "}}\n";
   const auto problem = [&text] {
     try {
-      ReadAutopilot(text, "flown.yaml");
+      LoadAutopilot({"flown.yaml", text});
     } catch (const InputError& error) {
       return std::string(error.what());
     }
@@ -189,7 +189,7 @@ TEST(ReadAutopilot, NamesALawInPythonButDoesNotHoldIt) {
     PluginConfig offer = law.Config({{"law", 3.0}});
     offer.sha256 = sha256;
     law.Offer(offer);
-    const AutopilotConfig autopilot = ReadAutopilot(text, "flown.yaml");
+    const AutopilotConfig autopilot = LoadAutopilot({"flown.yaml", text});
     ASSERT_TRUE(autopilot.plugin.has_value());
     EXPECT_TRUE(autopilot.plugin->in_python);
     EXPECT_EQ(autopilot.plugin->name, "mine");

@@ -199,7 +199,7 @@ TEST(CampaignYamlPlausibility, AReferenceThatMissesItsTargetSaysSo) {
       HasSubstr(
           "reference.yaml:3:16: target_missed: the reference misses its own target: 12 km short, allowed: "
           "a reference that reaches it\n"));
-  EXPECT_EQ(ReadReference(WriteReference(campaign.reference), "again").target_missed, "12 km short");
+  EXPECT_EQ(LoadReference({"again", WriteReference(campaign.reference)}).target_missed, "12 km short");
 }
 
 class BadTextTest : public testing::TestWithParam<BadInput> {};

@@ -84,9 +84,9 @@ Reference RandomReference() {
 TEST(CampaignYamlReference, IsAFixedPointOfWritingAndReading) {
   const Reference original = RandomReference();
   const std::string text = WriteReference(original);
-  const Reference read = ReadReference(text, "reference.yaml");
+  const Reference read = LoadReference({"reference.yaml", text});
   EXPECT_EQ(WriteReference(read), text);
-  const Reference again = ReadReference(WriteReference(read), "reference.yaml");
+  const Reference again = LoadReference({"reference.yaml", WriteReference(read)});
   ASSERT_EQ(again.attitude.knots.size(), 500u);
   for (std::size_t i = 0; i < 500; ++i) {
     const AttitudeKnot& knot = read.attitude.knots[i];
@@ -100,7 +100,7 @@ TEST(CampaignYamlReference, IsAFixedPointOfWritingAndReading) {
 
 TEST(CampaignYamlReference, KeepsEveryField) {
   const Reference original = RandomReference();
-  const Reference read = ReadReference(WriteReference(original), "reference.yaml");
+  const Reference read = LoadReference({"reference.yaml", WriteReference(original)});
   EXPECT_EQ(read.name, original.name);
   EXPECT_EQ(read.problem.target_altitude_m, 500e3);
   EXPECT_EQ(read.problem.t3_s.low, 6.0);
@@ -127,7 +127,7 @@ TEST(CampaignYamlReference, KeepsEveryField) {
 TEST(CampaignYamlReference, OfASingleStageIgnitesAtLiftOff) {
   Reference original = RandomReference();
   original.last_ignition_s = 0.0;
-  EXPECT_EQ(ReadReference(WriteReference(original), "reference.yaml").last_ignition_s, 0.0);
+  EXPECT_EQ(LoadReference({"reference.yaml", WriteReference(original)}).last_ignition_s, 0.0);
 }
 
 TEST(CampaignYamlReference, KeepsWhatATargetAndCoastsHaveBesides) {
@@ -144,7 +144,7 @@ TEST(CampaignYamlReference, KeepsWhatATargetAndCoastsHaveBesides) {
   original.orbit.inclination_rad = 51.5 * kRadPerDeg;
   original.orbit.node_longitude_rad = 123.0 * kRadPerDeg;
   const std::string text = WriteReference(original);
-  const Reference read = ReadReference(text, "reference.yaml");
+  const Reference read = LoadReference({"reference.yaml", text});
   EXPECT_EQ(WriteReference(read), text);
   EXPECT_EQ(read.problem.target_inclination_rad, 51.6 * kRadPerDeg);
   EXPECT_EQ(read.problem.target_node_rad, 200.0 * kRadPerDeg);
@@ -167,7 +167,7 @@ TEST(CampaignYamlReference, AzimuthBoundsThatFallGoThroughNorth) {
   std::string text = ReadWholeFile(DISPERSA_TEST_DATA "/yaml/reference.yaml");
   const std::string from = "launch_azimuth_deg: [90, 170]";
   text.replace(text.find(from), from.size(), "launch_azimuth_deg: [350, 10]");
-  const Reference read = ReadReference(text, "reference.yaml");
+  const Reference read = LoadReference({"reference.yaml", text});
   EXPECT_EQ(read.problem.launch_azimuth_rad.low, 350.0 * kRadPerDeg);
   EXPECT_NEAR(read.problem.launch_azimuth_rad.high, 370.0 * kRadPerDeg, 1e-15);
 }
@@ -178,7 +178,7 @@ TEST(CampaignYamlReference, AnEllipseIsEnteredAtItsPerigee) {
   original.problem.target_altitude_m = 200e3;
   original.problem.target_apogee_m = 800e3;
   original.problem.target_flight_path_angle_rad = 0.0;
-  const Reference read = ReadReference(WriteReference(original), "reference.yaml");
+  const Reference read = LoadReference({"reference.yaml", WriteReference(original)});
   const double mu = 3.986004418e14, radius = 6378137.0;
   EXPECT_EQ(read.problem.target_altitude_m, 200e3);
   EXPECT_EQ(read.problem.target_apogee_m, 800e3);

@@ -69,7 +69,7 @@ TEST(OptimizeTrajectory, MeetsTheTargetToTheMetreAndStillDoesAfterTheFileIsReadB
     Reference written = result.reference;
     written.name = "again";
     written.vehicle_sha256 = input.vehicle_sha256;
-    ExpectOnTarget(FlyAgain(input, ReadReference(WriteReference(written), "again.yaml")), kMetre);
+    ExpectOnTarget(FlyAgain(input, LoadReference({"again.yaml", WriteReference(written)})), kMetre);
   }
 }
 
