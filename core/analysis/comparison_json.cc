@@ -10,20 +10,6 @@ using Json = nlohmann::ordered_json;
 
 Json IntervalJson(const Interval& interval) { return {Number(interval.lower), Number(interval.upper)}; }
 
-const char* WorseName(Worse worse) {
-  switch (worse) {
-    case Worse::kLarger:
-      return "larger";
-    case Worse::kSmaller:
-      return "smaller";
-    case Worse::kFartherFromZero:
-      return "farther_from_zero";
-    case Worse::kNeither:
-      return "neither";
-  }
-  return "";
-}
-
 Json SideJson(const Comparison::Side& side) {
   return {{"directory", side.folder},    {"name", side.name},           {"id", side.id},
           {"flight_id", side.flight_id}, {"engine", side.engine},       {"vehicle", side.vehicle},

@@ -70,4 +70,18 @@ double Badness(Worse worse, double value) {
   return value;
 }
 
+const char* WorseName(Worse worse) {
+  switch (worse) {
+    case Worse::kLarger:
+      return "larger";
+    case Worse::kSmaller:
+      return "smaller";
+    case Worse::kFartherFromZero:
+      return "farther_from_zero";
+    case Worse::kNeither:
+      return "neither";
+  }
+  return "";
+}
+
 }  // namespace dispersa

@@ -29,8 +29,10 @@ struct NameAndUnit {
 };
 NameAndUnit SplitUnit(const std::string& name);
 
-/// The value by which cases are ranked: larger is worse. A metric that is neither good nor bad is ranked by
-/// its magnitude.
+/// The value by which cases are ranked: larger is worse. A metric that is neither good nor bad is ranked as
+/// it is.
 double Badness(Worse worse, double value);
+/// "larger", "smaller", "farther_from_zero", "neither".
+const char* WorseName(Worse worse);
 
 }  // namespace dispersa

@@ -11,10 +11,11 @@
 //     });
 //   }
 //
-// It is declared below and called in program.cc. The function that it stores returns an ExitCode. Results go
-// to stdout, everything else to stderr (the log writes there). Commands need not handle exceptions:
-// InputError ends the program with its text and 2, any other with its message and 1. With --json both are
-// also printed as an object. The type names below appear in help texts, and completion works by them.
+// CMakeLists.txt lists the names of the commands, and makes the source's name, the declaration and the call
+// from them. The function that it stores returns an ExitCode. Results go to stdout, everything else to stderr
+// (the log writes there). Commands need not handle exceptions: InputError ends the program with its text and
+// 2, any other with its message and 1. With --json both are also printed as an object. The type names below
+// appear in help texts, and completion works by them.
 #pragma once
 
 #include <CLI/CLI.hpp>
@@ -35,29 +36,5 @@ struct Invocation {
   GlobalOptions global;
   std::function<ExitCode(const GlobalOptions&)> command;
 };
-
-void AddValidateCommand(CLI::App& app, Invocation& invocation);
-void AddPlanCommand(CLI::App& app, Invocation& invocation);
-void AddFlyCommand(CLI::App& app, Invocation& invocation);
-void AddOptimizeCommand(CLI::App& app, Invocation& invocation);
-void AddRunCommand(CLI::App& app, Invocation& invocation);
-void AddReplayCommand(CLI::App& app, Invocation& invocation);
-void AddReportCommand(CLI::App& app, Invocation& invocation);
-void AddMarginsCommand(CLI::App& app, Invocation& invocation);
-void AddModesCommand(CLI::App& app, Invocation& invocation);
-void AddTuneCommand(CLI::App& app, Invocation& invocation);
-void AddExportCommand(CLI::App& app, Invocation& invocation);
-void AddCompareCommand(CLI::App& app, Invocation& invocation);
-void AddSearchCommand(CLI::App& app, Invocation& invocation);
-void AddPaperCommand(CLI::App& app, Invocation& invocation);
-// Commands that ask a coordinator. List, status and cancel are one function.
-void AddLaunchCommand(CLI::App& app, Invocation& invocation);
-void AddStatusCommands(CLI::App& app, Invocation& invocation);
-void AddWatchCommand(CLI::App& app, Invocation& invocation);
-void AddFetchCommand(CLI::App& app, Invocation& invocation);
-void AddKeysCommand(CLI::App& app, Invocation& invocation);
-void AddCompletionCommand(CLI::App& app, Invocation& invocation);
-void AddSchemaCommand(CLI::App& app, Invocation& invocation);
-void AddInitCommand(CLI::App& app, Invocation& invocation);
 
 }  // namespace dispersa

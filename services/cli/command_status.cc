@@ -52,7 +52,7 @@ std::string FullId(Session& session, const std::string& id) {
 
 }  // namespace
 
-void AddStatusCommands(CLI::App& app, Invocation& invocation) {
+void AddStatusCommand(CLI::App& app, Invocation& invocation) {
   BindSession(
       app.add_subcommand("list", "list the campaigns of a coordinator"), invocation,
       [](Session& session, const GlobalOptions& global) { return Show("list", "", session, global); });

@@ -10,6 +10,7 @@
 #include "core/input/input_error.h"
 #include "core/results/result_error.h"
 #include "services/cli/command.h"
+#include "services/cli/commands.h"
 #include "services/log/log.h"
 #include "services/program/command_line.h"
 #include "services/program/failure.h"
@@ -17,31 +18,6 @@
 
 namespace dispersa {
 namespace {
-
-void AddCommands(CLI::App& app, Invocation& invocation) {
-  AddValidateCommand(app, invocation);
-  AddOptimizeCommand(app, invocation);
-  AddPlanCommand(app, invocation);
-  AddFlyCommand(app, invocation);
-  AddRunCommand(app, invocation);
-  AddReplayCommand(app, invocation);
-  AddReportCommand(app, invocation);
-  AddMarginsCommand(app, invocation);
-  AddModesCommand(app, invocation);
-  AddTuneCommand(app, invocation);
-  AddExportCommand(app, invocation);
-  AddCompareCommand(app, invocation);
-  AddSearchCommand(app, invocation);
-  AddPaperCommand(app, invocation);
-  AddLaunchCommand(app, invocation);
-  AddStatusCommands(app, invocation);
-  AddWatchCommand(app, invocation);
-  AddFetchCommand(app, invocation);
-  AddKeysCommand(app, invocation);
-  AddCompletionCommand(app, invocation);
-  AddSchemaCommand(app, invocation);
-  AddInitCommand(app, invocation);
-}
 
 LogColor ColorNamed(const std::string& name) {
   return name == "always" ? LogColor::kAlways : name == "never" ? LogColor::kNever : LogColor::kAuto;

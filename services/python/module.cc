@@ -25,19 +25,6 @@ std::vector<std::string> InputNames(std::size_t stages) {
   return names;
 }
 
-const char* WorseName(Worse worse) {
-  switch (worse) {
-    case Worse::kLarger:
-      return "larger";
-    case Worse::kSmaller:
-      return "smaller";
-    case Worse::kFartherFromZero:
-      return "farther_from_zero";
-    default:
-      return "neither";
-  }
-}
-
 py::tuple MetricTuple(const std::string& name) {
   const MetricInfo info = DescribeMetric(name);
   return py::make_tuple(info.title, info.unit, info.definition, WorseName(info.worse));
