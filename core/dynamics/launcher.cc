@@ -1,6 +1,7 @@
 #include "core/dynamics/launcher.h"
 
 #include <algorithm>
+#include <optional>
 
 #include "core/dynamics/jettison.h"
 #include "core/dynamics/launcher_lanes.h"
@@ -36,7 +37,8 @@ struct OneLane {
   OneLane(const LauncherPlant& from, const lanes::LauncherPlantLanes<double>& stack, const LauncherPhase& now,
           double time_s, const double* y)
       : earth(from.environment.earth),
-        plant(InPhase(from, stack, now)),
+        lighter(Without(from, stack, now)),
+        plant(lighter ? *lighter : stack),
         phase{now.burning,          now.burnt,
               now.boosting,         now.ignition_s,
               now.expelled_mass_kg, ToLanes(now.control_torque_n_m)},
@@ -49,11 +51,11 @@ struct OneLane {
     Accelerate(now.command_rad.data(), y + kNozzleAngle, y + kNozzleRate, nozzles);
     if (plant.nozzles_listed)
       Accelerate(now.command_rad.data() + kNozzles, y + kSecondAngle, y + kSecondRate, second);
+    if (from.bending_modes() == 0) return;
     lanes::SetLane(bending, 0, from, now.stack);
     if (now.jettisoned != 0)
       lanes::SetTable(bending, 0,
                       from.stacks[static_cast<std::size_t>(now.stack)].BendingWithout(now.jettisoned));
-    if (bending.modes == 0) return;
     lanes::ShapesAt(bending, masses.propellant_kg);
     for (int plane = 0; plane < kPlanes; ++plane) {
       std::copy_n(y + kModalState + plane * kModes, kModes, bending_state.q_m[plane]);
@@ -61,11 +63,12 @@ struct OneLane {
     }
   }
 
-  static lanes::LauncherPlantLanes<double> InPhase(const LauncherPlant& from,
-                                                   lanes::LauncherPlantLanes<double> stack,
-                                                   const LauncherPhase& now) {
-    if (now.jettisoned != 0) lanes::SetLane(stack.stack, 0, MassOf(from, now.stack, now.jettisoned));
-    return stack;
+  static std::optional<lanes::LauncherPlantLanes<double>> Without(
+      const LauncherPlant& from, const lanes::LauncherPlantLanes<double>& stack, const LauncherPhase& now) {
+    if (now.jettisoned == 0) return std::nullopt;
+    lanes::LauncherPlantLanes<double> lighter = stack;
+    lanes::SetLane(lighter.stack, 0, MassOf(from, now.stack, now.jettisoned));
+    return lighter;
   }
   lanes::LoadsOf<double> Loads() const {
     return WithBody([this](const auto& turned, const auto& body) {
@@ -81,16 +84,18 @@ struct OneLane {
   }
 
   const Earth& earth;
-  lanes::LauncherPlantLanes<double> plant;
+  std::optional<lanes::LauncherPlantLanes<double>> lighter;  ///< the stack without bodies that have left
+  const lanes::LauncherPlantLanes<double>& plant;
   lanes::LauncherPhaseLanes<double> phase;
   lanes::RigidBodyStateLanes<double> motion;
   lanes::Surroundings<double> around;
   lanes::TimedMasses<double> masses;
   lanes::Nozzles<double> nozzles, second;
   lanes::GimbalLanes<double> drives{};
-  lanes::BendingTableLanes<double> bending{};
-  lanes::BendingState<double> bending_state{};
-  mutable lanes::ModalForce<double> modal{};  ///< of the last evaluation
+  // Unset in a vehicle that does not bend.
+  lanes::BendingTableLanes<double> bending;
+  lanes::BendingState<double> bending_state;
+  mutable lanes::ModalForce<double> modal;  ///< of the last evaluation
 
  private:
   void Accelerate(const double* command_rad, const double* angle_rad, const double* rate_rad_s,

@@ -240,7 +240,7 @@ ReferenceAttitude FlightRecord::ReferenceAt(double time_s) const {
   return guided && guided->steers() ? guided->ReferenceAt(time_s) : model_.definition().program.At(time_s);
 }
 
-TickSample FlightRecord::SampleOf(const LaneView& view) const {
+TickSample FlightRecord::SampleOf(const LaneView& view, unsigned parts) const {
   TickSample s;
   s.time_s = view.time_s;
   s.stack = view.phase.stack;
@@ -255,7 +255,7 @@ TickSample FlightRecord::SampleOf(const LaneView& view) const {
   std::copy(view.y + kModalState, view.y + kBentLauncherSize, s.bending.begin());
   s.command_rad = view.phase.command_rad;
   s.limit_rad = plant.stacks[static_cast<std::size_t>(s.stack)].gimbal.limit_rad;
-  s.reference = ReferenceAt(view.time_s);
+  if (parts & kProgram || !view.has_error) s.reference = ReferenceAt(view.time_s);
   if (view.has_error) {
     for (int axis = 0; axis < kAxes; ++axis) {
       s.error.angle_rad[axis] = view.error_angle_rad[axis];
@@ -275,29 +275,30 @@ TickSample FlightRecord::SampleOf(const LaneView& view) const {
   s.expelled_mass_kg = view.phase.expelled_mass_kg;
   s.jettisoned = view.phase.jettisoned;
   s.boosting = view.phase.boosting;
-  s.instant = equations_->Evaluate(view.phase, view.time_s, view.y);
+  if (parts & kInstant) s.instant = equations_->Evaluate(view.phase, view.time_s, view.y);
   return s;
 }
 
-void FlightRecord::AppendRow(const TickSample& s, std::vector<double>& rows) const {
+void FlightRecord::AppendRow(const TickSample& s, std::vector<double>& rows, unsigned parts) const {
   AppendKinematics(plant.environment.earth, s.time_s, s.state, s.instant.air, s.instant.v_AB_B,
-                   s.instant.loads.mass_kg, rows);
-  AppendLauncher(model_, s, rows);
+                   s.instant.loads.mass_kg, rows, parts);
+  AppendLauncher(model_, s, rows, parts);
 }
 
 void FlightRecord::Watch(const LaneView& view, bool row) {
   if (!row && !every_tick) return;
-  const TickSample sample = SampleOf(view);
+  const bool is_whole = row || options.observe;
+  const TickSample sample = SampleOf(view, is_whole ? kWholeRow : own_metrics_->parts());
   if (options.observe) options.observe(sample);
-  if (row) AppendRow(sample, options.history->values);
+  if (row) AppendRow(sample, options.history->values, kWholeRow);
   if (!own_metrics_) return;
   row_.clear();
-  AppendRow(sample, row_);
+  AppendRow(sample, row_, own_metrics_->parts());
   own_metrics_->Add(sample.time_s, sample.burning ? sample.stack + 1 : 0, sample.coasting, row_);
 }
 
 void FlightRecord::WatchEvent(const LaneView& view) {
-  if (options.history) AppendRow(SampleOf(view), options.history->values);
+  if (options.history) AppendRow(SampleOf(view, kWholeRow), options.history->values, kWholeRow);
 }
 
 void FlightRecord::HandOver(double time_s, const double* y) {

@@ -125,8 +125,9 @@ class FlightRecord {
   class JudgedMotion;
   void SetEquations();
   ReferenceAttitude ReferenceAt(double time_s) const;
-  TickSample SampleOf(const LaneView& view) const;
-  void AppendRow(const TickSample& sample, std::vector<double>& rows) const;
+  /// `parts`: bits of RowPart (history_columns.h).
+  TickSample SampleOf(const LaneView& view, unsigned parts) const;
+  void AppendRow(const TickSample& sample, std::vector<double>& rows, unsigned parts) const;
 
   const FlightModel& model_;
   std::unique_ptr<GuidedFlight> guided_;

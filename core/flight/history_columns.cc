@@ -3,7 +3,9 @@
 #include <bit>
 #include <cmath>
 #include <limits>
+#include <map>
 
+#include "core/flight/history.h"
 #include "core/flight/orbit.h"
 #include "core/math/constants.h"
 #include "core/math/functions.h"
@@ -66,17 +68,56 @@ const std::vector<LauncherColumn>& LauncherColumns() {
   return columns;
 }
 
+unsigned PartsOf(int column) {
+  static const std::vector<unsigned> parts = [] {
+    const std::map<std::string, unsigned> of = {{"ned_v_n_m_s", kNorthEastDown | kInstant},
+                                                {"ned_v_e_m_s", kNorthEastDown | kInstant},
+                                                {"ned_v_d_m_s", kNorthEastDown | kInstant},
+                                                {"altitude_m", kPlace},
+                                                {"latitude_deg", kPlace},
+                                                {"longitude_deg", kPlace},
+                                                {"yaw_deg", kNorthEastDown | kInstant},
+                                                {"pitch_deg", kNorthEastDown | kInstant},
+                                                {"roll_deg", kNorthEastDown | kInstant},
+                                                {"mach", kInstant},
+                                                {"qbar_pa", kInstant},
+                                                {"alpha_deg", kFlow | kInstant},
+                                                {"beta_deg", kFlow | kInstant},
+                                                {"mass_kg", kInstant},
+                                                {"thrust_n", kInstant},
+                                                {"inertial_velocity_m_s", kOrbit},
+                                                {"flight_path_angle_deg", kOrbit},
+                                                {"pitch_program_deg", kProgram},
+                                                {"pitch_launch_deg", kLaunchAttitude},
+                                                {"axial_load_g", kInstant},
+                                                {"lateral_load_g", kInstant},
+                                                {"incidence_deg", kFlow | kInstant}};
+    std::vector<unsigned> list;
+    for (const std::string& name : HistoryColumns()) {
+      const auto found = of.find(name);
+      list.push_back(found == of.end() ? 0u : found->second);
+    }
+    return list;
+  }();
+  return parts[static_cast<std::size_t>(column)];
+}
+
 void AppendKinematics(const Earth& earth, double time_s, const RigidBodyState& s, const AirData& air,
-                      const Vector3& v_AB_B, double mass_kg, std::vector<double>& row) {
-  const Geodetic place = ToGeodetic(earth, InertialToEarth(earth, time_s, s.p_EoC_I));
-  // The axes of the place in I: the longitude of `air.place` is measured there.
-  const Matrix3 R_IN = NedAxes(air.place.latitude_rad, air.place.longitude_rad);
-  const double omega = earth.rotation_rate_rad_s;
-  const Vector3 v_EC_I(s.v_IC_I.x() + omega * s.p_EoC_I.y(), s.v_IC_I.y() - omega * s.p_EoC_I.x(),
-                       s.v_IC_I.z());
-  const Vector3 v_EC_N = R_IN.transpose() * v_EC_I;
-  const YawPitchRoll attitude = ToYawPitchRoll(Inverse(QuaternionOf(R_IN)) * s.q_IB);
-  const double speed = v_AB_B.norm();
+                      const Vector3& v_AB_B, double mass_kg, std::vector<double>& row, unsigned parts) {
+  Geodetic place{};
+  if (parts & kPlace) place = ToGeodetic(earth, InertialToEarth(earth, time_s, s.p_EoC_I));
+  Vector3 v_EC_N = Vector3::Zero();
+  YawPitchRoll attitude{};
+  if (parts & kNorthEastDown) {
+    // The axes of the place in I: the longitude of `air.place` is measured there.
+    const Matrix3 R_IN = NedAxes(air.place.latitude_rad, air.place.longitude_rad);
+    const double omega = earth.rotation_rate_rad_s;
+    const Vector3 v_EC_I(s.v_IC_I.x() + omega * s.p_EoC_I.y(), s.v_IC_I.y() - omega * s.p_EoC_I.x(),
+                         s.v_IC_I.z());
+    v_EC_N = R_IN.transpose() * v_EC_I;
+    attitude = ToYawPitchRoll(Inverse(QuaternionOf(R_IN)) * s.q_IB);
+  }
+  const double speed = parts & kFlow ? v_AB_B.norm() : 0.0;
   const double alpha = speed > 0.0 ? Atan2(v_AB_B.z(), v_AB_B.x()) : 0.0;
   const double beta = speed > 0.0 ? Asin(Clamp(v_AB_B.y() / speed, -1.0, 1.0)) : 0.0;
   row.insert(row.end(), {time_s,
@@ -105,12 +146,15 @@ void AppendKinematics(const Earth& earth, double time_s, const RigidBodyState& s
                          mass_kg});
 }
 
-void AppendLauncher(const FlightModel& model, const TickSample& s, std::vector<double>& row) {
+void AppendLauncher(const FlightModel& model, const TickSample& s, std::vector<double>& row, unsigned parts) {
   const LauncherInstant& now = s.instant;
-  const OrbitElements orbit =
-      ElementsOf(model.nominal_plant().environment.earth, s.state.p_EoC_I, s.state.v_IC_I);
-  const PitchYawRoll attitude = ToPitchYawRoll(Inverse(model.frame().q_IL) * s.state.q_IB);
-  const Vector3 specific = now.loads.force_n / (now.loads.mass_kg * kStandardGravity);
+  OrbitElements orbit{};
+  if (parts & kOrbit)
+    orbit = ElementsOf(model.nominal_plant().environment.earth, s.state.p_EoC_I, s.state.v_IC_I);
+  PitchYawRoll attitude{};
+  if (parts & kLaunchAttitude) attitude = ToPitchYawRoll(Inverse(model.frame().q_IL) * s.state.q_IB);
+  Vector3 specific = Vector3::Zero();
+  if (parts & kInstant) specific = now.loads.force_n / (now.loads.mass_kg * kStandardGravity);
   const AxisTelemetry& t = s.gimbal.telemetry[kPitch];
   const auto powered = [&](double value) { return s.burning ? value : kEmpty; };
   const auto told = [&](std::size_t i) { return s.law_telemetry ? powered((*s.law_telemetry)[i]) : kEmpty; };
@@ -155,7 +199,7 @@ void AppendLauncher(const FlightModel& model, const TickSample& s, std::vector<d
                          s.expelled_mass_kg,
                          specific.x(),
                          Sqrt(specific.y() * specific.y() + specific.z() * specific.z()),
-                         TotalIncidence(now.v_AB_B) * kDegPerRad,
+                         parts & kFlow ? TotalIncidence(now.v_AB_B) * kDegPerRad : 0.0,
                          told(0),
                          told(1),
                          told(2),

@@ -5,6 +5,7 @@
 #include <limits>
 
 #include "core/flight/history.h"
+#include "core/flight/history_columns.h"
 #include "core/input/read_value.h"
 #include "core/math/stages.h"
 
@@ -58,7 +59,17 @@ FlightExpression ParseOwnMetric(const std::string& expression, int stages, const
 
 OwnMetricsMeter::OwnMetricsMeter(const std::vector<OwnMetric>& metrics, double tick_s) : tick_s_(tick_s) {
   meters_.reserve(metrics.size());
-  for (const OwnMetric& metric : metrics) meters_.emplace_back(metric.parsed);
+  const auto read = [&](const Expression& expression) {
+    for (const int position : expression.Positions())
+      if (position < FirstCondition()) parts_ |= PartsOf(position);
+  };
+  for (const OwnMetric& metric : metrics) {
+    meters_.emplace_back(metric.parsed);
+    for (const OverFlight& part : metric.parsed.parts) {
+      read(part.value);
+      if (part.while_true) read(*part.while_true);
+    }
+  }
 }
 
 void OwnMetricsMeter::Add(double time_s, int burning_stage, bool coasting, std::vector<double>& row) {

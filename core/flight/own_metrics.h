@@ -37,8 +37,10 @@ class OwnMetricsMeter {
   /// The metrics must outlive the meter.
   OwnMetricsMeter(const std::vector<OwnMetric>& metrics, double tick_s);
 
-  /// Adds one tick. `row` has the values of HistoryColumns(); further values are appended to it.
-  /// `burning_stage` counts from 1; 0: no stage burns.
+  /// Parts of a row that the expressions read: bits of RowPart (history_columns.h).
+  unsigned parts() const { return parts_; }
+  /// Adds one tick. `row` has the values of HistoryColumns(), with these parts; further values are appended to
+  /// it. `burning_stage` counts from 1; 0: no stage burns.
   void Add(double time_s, int burning_stage, bool coasting, std::vector<double>& row);
   /// NaN where a metric is undefined.
   std::vector<double> Values() const;
@@ -46,6 +48,7 @@ class OwnMetricsMeter {
  private:
   std::vector<FlightMeter> meters_;
   double tick_s_;
+  unsigned parts_ = 0;
 };
 
 }  // namespace dispersa

@@ -95,6 +95,23 @@ class PluginTest(unittest.TestCase):
         self.assertEqual(self.run_cases("pd_here", pd).read_bytes(), self.pd)
         self.assertEqual(self.run_cases("pd_workers", pd, workers=2).read_bytes(), self.pd)
 
+    def test_own_metrics_are_measured_under_it(self):
+        self.compile("measured", SOURCE / "campaigns/control_laws/c/pd.c", flags=["-std=c99"])
+        text = re.sub(r": ((?:vehicles|references|autopilots)/)", rf": {CAMPAIGNS}/\1",
+                      (CAMPAIGNS / "table3.yaml").read_text())
+        campaign = self.folder / "measured.yaml"
+        campaign.write_text(text + "metrics:\n  - {name: swing_max_deg, expression: max(abs(deflection_pitch_deg))}\n"
+                                   "  - {name: told_max, expression: max(law_telemetry_1)}\n")
+        outs = [self.folder / "out" / f"measured{workers}" for workers in (0, 2)]
+        for workers, out in zip((0, 2), outs):
+            ended = self.dispersa("run", campaign, "--autopilot", self.autopilot("measured"), "--cases", 6, "--workers", workers,
+                                  "--no-histories", "--out", out)
+            self.assertIn(ended.returncode, (0, 3, 4), ended.stderr)
+        self.assertEqual((outs[0] / "cases.csv").read_bytes(), (outs[1] / "cases.csv").read_bytes())
+        header, *rows = (outs[0] / "cases.csv").read_text().splitlines()
+        values = [float(row.split(",")[header.split(",").index("metric_swing_max_deg")]) for row in rows]
+        self.assertEqual(len([value for value in values if value > 0]), 6)
+
     def test_the_examples_fly_and_are_told_apart(self):
         sources = SOURCE / "campaigns/control_laws"
         self.compile("pid_filtered", sources / "cpp/pid_filtered.cc", flags=["-std=c++17"])

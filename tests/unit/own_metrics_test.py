@@ -68,7 +68,7 @@ class OwnMetrics(unittest.TestCase):
             return list(csv.DictReader(stream))
 
     def without_own(self, folder):
-        return [{key: value for key, value in row.items() if key.removeprefix("metric_") not in OWN} for row in self.rows(folder)]
+        return self.without_columns(self.rows(folder))
 
     def test_the_same_bytes_from_every_engine(self):
         for lanes in ("1", "4", "8"):
@@ -82,6 +82,46 @@ class OwnMetrics(unittest.TestCase):
     def content(file):
         """Without what a report says of its run: when, how long, by whom."""
         return re.sub(rb"<!-- run:begin -->.*?<!-- run:end -->", b"", file.read_bytes(), flags=re.S)
+
+    def test_beside_every_other_capability(self):
+        """Guidance, bending, restarts with jettisons, every dispersion at once, flights that a limit ends."""
+        ending = self.folder / "ending"  # limits that some of the flights break, and that end them
+        shutil.copytree(CAMPAIGNS, ending)
+        vehicle = (ending / "vehicles/slv4.yaml").read_text()
+        limits = re.search(r"^limits:.*$", vehicle, re.M).group()
+        (ending / "vehicles/slv4.yaml").write_text(vehicle.replace(limits, "limits: {axial_load_g: 3.0, terminate: true}"))
+        for campaign in (CAMPAIGNS / "orbit.yaml", CAMPAIGNS / "table3_flexible.yaml", CAMPAIGNS / "full.yaml",
+                         CAMPAIGNS / "gallery/vega/campaign.yaml", ending / "table3.yaml"):
+            plain = campaign.read_text()
+            plain = re.sub(r": ((?:vehicles|references|autopilots|winds)/|vehicle.yaml|reference.yaml|autopilot.yaml)",
+                           rf": {campaign.parent}/\1", plain)
+            plain = re.sub(r"^requirements:.*?(?=^\S|\Z)", "", plain, flags=re.M | re.S)
+            with self.subTest(campaign=campaign):
+                rows = {}
+                for name, lanes in (("plain", "8"), ("one", "1"), ("eight", "8")):
+                    text = plain if name == "plain" else plain + "metrics:\n" + "".join(
+                        f"  - {{name: {metric}, expression: '{expression}'}}\n" for metric, expression in OWN.items()
+                        if metric != "lyapunov_never")
+                    path = self.folder / "beside.yaml"
+                    path.write_text(text)
+                    out = self.folder / "beside" / f"{campaign.parent.name}-{campaign.stem}-{name}" / "out"
+                    done = dispersa("run", path, "--cases", "3", "--workers", "0", "--no-histories", "--quiet", "--out", out,
+                                    DISPERSA_LANES=lanes, DISPERSA_ISA="v3")
+                    self.assertIn(done.returncode, (0, 3, 4), done.stderr)
+                    rows[name] = self.rows(out)
+                self.assertEqual(rows["one"], rows["eight"])
+                self.assertEqual(self.without_columns(rows["eight"]), rows["plain"])
+                for row in rows["eight"]:
+                    # A lost flight keeps what it measured until its end.
+                    self.assertGreater(float(row["metric_q_burn1_max_kpa"]), 10)
+                    self.assertEqual(row["metric_deflection_burn2_rms_deg"] == "",
+                                     row["metric_deflection_rms_stage2_deg"] == "" if "metric_deflection_rms_stage2_deg" in row
+                                     else float(row["end_time_s"]) < 60, row["outcome"])
+        self.assertEqual({row["outcome"] for row in rows["eight"]}, {"structural_limit"})
+
+    @staticmethod
+    def without_columns(rows):
+        return [{key: value for key, value in row.items() if key.removeprefix("metric_") not in OWN} for row in rows]
 
     def test_they_change_nothing_of_a_flight(self):
         self.assertEqual(self.without_own(self.reference), self.rows(self.without))
