@@ -10,36 +10,32 @@ namespace dispersa {
 
 namespace {
 
-// A mode between two levels of the table: the shapes are linear between them, and held beyond.
-class ModeAt {
- public:
-  ModeAt(const StackModes& stack, std::size_t plane, int mode, double propellant_kg)
-      : stack_(stack), plane_(kBeamPlanes[plane]), mode_(static_cast<std::size_t>(mode)) {
-    const std::vector<BendingLevel>& levels = stack.levels[plane];
-    std::size_t at = 0;
-    while (at + 2 < levels.size() && propellant_kg < levels[at + 1].propellant_kg) ++at;
-    low_ = &levels[at].modes[mode_];
-    high_ = &levels[std::min(at + 1, levels.size() - 1)].modes[mode_];
-    if (low_ != high_)
-      within_ = std::clamp((levels[at].propellant_kg - propellant_kg) /
-                               (levels[at].propellant_kg - levels[at + 1].propellant_kg),
-                           0.0, 1.0);
-  }
-  StationShape operator()(const MassPoint& m, std::size_t) const {
-    const double station_m = m.fixed_at_m;
-    const StationShape a = ShapeOf(stack_, plane_, *low_, station_m),
-                       b = ShapeOf(stack_, plane_, *high_, station_m);
-    return {a.deflection + within_ * (b.deflection - a.deflection),
-            a.slope_1_m + within_ * (b.slope_1_m - a.slope_1_m)};
-  }
+// The shapes of a plane's modes at masses, by mode and mass: linear between two levels of the table, and held
+// beyond.
+std::vector<std::vector<StationShape>> ShapesAt(const StackModes& stack, std::size_t plane, int modes,
+                                                const std::vector<MassPoint>& points, double propellant_kg) {
+  const std::vector<BendingLevel>& levels = stack.levels[plane];
+  std::size_t at = 0;
+  while (at + 2 < levels.size() && propellant_kg < levels[at + 1].propellant_kg) ++at;
+  const BendingLevel &low = levels[at], &high = levels[std::min(at + 1, levels.size() - 1)];
+  double within = 0.0;
+  if (&low != &high)
+    within =
+        std::clamp((low.propellant_kg - propellant_kg) / (low.propellant_kg - high.propellant_kg), 0.0, 1.0);
+  std::vector<std::vector<StationShape>> shapes(static_cast<std::size_t>(modes));
+  for (std::size_t mode = 0; mode < shapes.size(); ++mode)
+    for (const MassPoint& m : points) {
+      const StationShape a = ShapeOf(stack, kBeamPlanes[plane], low.modes[mode], m.fixed_at_m),
+                         b = ShapeOf(stack, kBeamPlanes[plane], high.modes[mode], m.fixed_at_m);
+      shapes[mode].push_back({a.deflection + within * (b.deflection - a.deflection),
+                              a.slope_1_m + within * (b.slope_1_m - a.slope_1_m)});
+    }
+  return shapes;
+}
 
- private:
-  const StackModes& stack_;
-  BeamPlane plane_;
-  std::size_t mode_;
-  const BendingMode *low_, *high_;
-  double within_ = 0.0;
-};
+auto ByNumber(const std::vector<StationShape>& shapes) {
+  return [&shapes](const MassPoint&, std::size_t i) { return shapes[i]; };
+}
 
 }  // namespace
 
@@ -77,20 +73,29 @@ ModalPassage JettisonedBending::Passage(unsigned before, unsigned after, double 
   const FreeBody rest(BuildBeamMasses(*vehicle_, stage_, propellant_kg, after & carried_),
                       from.modes->station_m[0]);
   ModalPassage passage;
-  for (std::size_t plane = 0; plane < kPlanes; ++plane)
-    for (int old = 0; old < modes_; ++old) {
-      const std::size_t k = static_cast<std::size_t>(old);
-      const ModeAt flown(*from.modes, plane, old, propellant_kg);
-      const StationShape mean = rest.MeanOf(flown);
-      passage.shift[plane][k] = mean.deflection;
-      passage.turn_1_m[plane][k] = mean.slope_1_m;
-      for (int mode = 0; mode < modes_; ++mode) {
-        // By the orthogonality of the lighter stack's modes, also against its motions as a rigid body.
-        const ModeAt its(*to.modes, plane, mode, propellant_kg);
-        passage.onto[plane][static_cast<std::size_t>(mode)][k] =
-            rest.Product(its, flown) / rest.Product(its, its);
-      }
+  const bool is_same = from.modes->axisymmetric && to.modes->axisymmetric;
+  for (std::size_t plane = 0; plane < kPlanes; ++plane) {
+    if (plane > 0 && is_same) {
+      passage.shift[plane] = passage.shift[0];
+      passage.turn_1_m[plane] = passage.turn_1_m[0];
+      passage.onto[plane] = passage.onto[0];
+      continue;
     }
+    const auto flown = ShapesAt(*from.modes, plane, modes_, rest.points, propellant_kg);
+    const auto lighter = ShapesAt(*to.modes, plane, modes_, rest.points, propellant_kg);
+    for (std::size_t old = 0; old < flown.size(); ++old) {
+      const StationShape mean = rest.MeanOf(ByNumber(flown[old]));
+      passage.shift[plane][old] = mean.deflection;
+      passage.turn_1_m[plane][old] = mean.slope_1_m;
+    }
+    for (std::size_t mode = 0; mode < lighter.size(); ++mode) {
+      // By the orthogonality of the lighter stack's modes, also against its motions as a rigid body.
+      const auto its = ByNumber(lighter[mode]);
+      const double mass_kg = rest.Product(its, its);
+      for (std::size_t old = 0; old < flown.size(); ++old)
+        passage.onto[plane][mode][old] = rest.Product(its, ByNumber(flown[old])) / mass_kg;
+    }
+  }
   return passage;
 }
 

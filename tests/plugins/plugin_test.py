@@ -99,7 +99,7 @@ class PluginTest(unittest.TestCase):
         self.compile("measured", SOURCE / "campaigns/control_laws/c/pd.c", flags=["-std=c99"])
         text = re.sub(r": ((?:vehicles|references|autopilots)/)", rf": {CAMPAIGNS}/\1",
                       (CAMPAIGNS / "table3.yaml").read_text())
-        campaign = self.folder / "measured.yaml"
+        campaign = self.folder / "measured_campaign.yaml"
         campaign.write_text(text + "metrics:\n  - {name: swing_max_deg, expression: max(abs(deflection_pitch_deg))}\n"
                                    "  - {name: told_max, expression: max(law_telemetry_1)}\n")
         outs = [self.folder / "out" / f"measured{workers}" for workers in (0, 2)]
