@@ -39,8 +39,8 @@ class OwnMetricsMeter {
 
   /// Parts of a row that the expressions read: bits of RowPart (history_columns.h).
   unsigned parts() const { return parts_; }
-  /// Adds one tick. `row` has the values of HistoryColumns(), with these parts; further values are appended to
-  /// it. `burning_stage` counts from 1; 0: no stage burns.
+  /// Adds one tick. `row` has the values of HistoryColumns(), with these parts; further values are appended
+  /// to it. `burning_stage` counts from 1; 0: no stage burns.
   void Add(double time_s, int burning_stage, bool coasting, std::vector<double>& row);
   /// NaN where a metric is undefined.
   std::vector<double> Values() const;

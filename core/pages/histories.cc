@@ -6,9 +6,12 @@
 #include <cassert>
 #include <cmath>
 #include <filesystem>
+#include <optional>
 #include <set>
+#include <utility>
 
 #include "core/analysis/band_counter.h"
+#include "core/pages/kept_histories.h"
 #include "core/results/output_file.h"
 #include "core/results/text.h"
 
@@ -56,6 +59,33 @@ void CheckReproduced(const ResultFolder& folder, std::uint64_t case_index, const
                   case_index, stored.Hex(), flown.Hex()));
 }
 
+std::vector<std::uint64_t> WorstToWrite(const CampaignSummary& summary) {
+  std::set<std::uint64_t> indices;
+  for (const WorstCases& worst : summary.worst_cases) {
+    for (std::size_t i = 0; i < std::min(kWorstWritten, worst.cases.size()); ++i)
+      indices.insert(worst.cases[i].case_index);
+  }
+  return {indices.begin(), indices.end()};
+}
+
+/// Only cases with a result are flown: a quarantined case may kill this process. The first cases are a fair
+/// sample, so they give percentiles. The extreme cases are added, so that every peak lies within minimum and
+/// maximum.
+HistoryFlights ChooseFlights(const CampaignSummary& summary, const CaseColumns& cases,
+                             std::uint64_t history_cases) {
+  HistoryFlights flights;
+  flights.written = WorstToWrite(summary);
+  flights.sampled = static_cast<std::size_t>(
+      std::lower_bound(cases.index.begin(), cases.index.end(), history_cases) - cases.index.begin());
+  const auto sample_end = cases.index.begin() + static_cast<std::ptrdiff_t>(flights.sampled);
+  flights.indices.assign(cases.index.begin(), sample_end);
+  std::set<std::uint64_t> beyond(flights.written.begin(), flights.written.end());
+  for (const std::size_t row : ExtremeRows(cases)) beyond.insert(cases.index[row]);
+  for (const std::uint64_t index : beyond)
+    if (!std::binary_search(cases.index.begin(), sample_end, index)) flights.indices.push_back(index);
+  return flights;
+}
+
 /// The folder may hold histories of the worst cases of an earlier report.
 void EmptyDirectory(const fs::path& directory) {
   std::error_code error;
@@ -66,15 +96,6 @@ void EmptyDirectory(const fs::path& directory) {
         error == std::errc::no_space_on_device ? ResultError::Kind::kDiskFull : ResultError::Kind::kFile,
         fmt::format("{}: cannot be made anew: {}", directory.string(), error.message()));
   }
-}
-
-std::vector<std::uint64_t> WorstToWrite(const CampaignSummary& summary) {
-  std::set<std::uint64_t> indices;
-  for (const WorstCases& worst : summary.worst_cases) {
-    for (std::size_t i = 0; i < std::min(kWorstWritten, worst.cases.size()); ++i)
-      indices.insert(worst.cases[i].case_index);
-  }
-  return {indices.begin(), indices.end()};
 }
 
 }  // namespace
@@ -122,34 +143,26 @@ FlightHistories WriteHistories(const ResultFolder& folder, const Campaign& campa
     if (options.progress) options.progress(what, done, total);
   };
   const fs::path directory = folder.directory() / "histories";
-  EmptyDirectory(directory);
   const CampaignFlights flights(campaign);
-  FlightHistories histories;
+  const std::vector<int> columns = BandColumns();
+  const HistoryFlights wanted = ChooseFlights(summary, cases, options.history_cases);
+  const std::vector<std::uint64_t>& indices = wanted.indices;
+  const std::vector<std::uint64_t>& written = wanted.written;
+  const std::string key = KeyOfHistories(folder, campaign, wanted);
+  std::optional<FlightHistories> kept =
+      ReadKeptHistories(directory, key, campaign, wanted, columns, kBandStep_s);
+  if (!kept) EmptyDirectory(directory);
+  FlightHistories histories = kept ? std::move(*kept) : FlightHistories();
 
   progress("nominal flight", 0, 1);
   histories.nominal_history.step_s = kHistoryStep_s;
   histories.nominal = flights.FlyNominal(&histories.nominal_history);
+  if (kept) return histories;
   WriteFile(directory / "nominal.csv", HistoryCsv(histories.nominal_history, campaign.autopilot));
 
-  // Only cases with a result are flown: a quarantined case may kill this process. The first cases are a fair
-  // sample, so they give percentiles. The extreme cases are added, so that every peak lies within minimum and
-  // maximum.
-  histories.written_cases = WorstToWrite(summary);
-  const std::size_t sampled = static_cast<std::size_t>(
-      std::lower_bound(cases.index.begin(), cases.index.end(), options.history_cases) - cases.index.begin());
-  std::vector<std::uint64_t> indices(cases.index.begin(),
-                                     cases.index.begin() + static_cast<std::ptrdiff_t>(sampled));
-  std::set<std::uint64_t> beyond(histories.written_cases.begin(), histories.written_cases.end());
-  for (const std::size_t row : ExtremeRows(cases)) beyond.insert(cases.index[row]);
-  for (const std::uint64_t index : beyond) {
-    if (!std::binary_search(cases.index.begin(), cases.index.begin() + static_cast<std::ptrdiff_t>(sampled),
-                            index))
-      indices.push_back(index);
-  }
-  const std::vector<int> columns = BandColumns();
-  BandCounter counter(columns, kBandStep_s);
-  const std::vector<std::uint64_t>& written = histories.written_cases;
+  histories.written_cases = written;
   histories.written_flights.resize(written.size());
+  BandCounter counter(columns, kBandStep_s);
   std::size_t flown = 0;
   const auto fly = [&](std::size_t from, std::size_t to) {
     std::vector<CaseOrder> orders;
@@ -164,11 +177,10 @@ FlightHistories WriteHistories(const ResultFolder& folder, const Campaign& campa
           SampledFlight samples = SampleFlight(history, columns, kBandStep_s);
           const auto found = std::lower_bound(written.begin(), written.end(), indices[at]);
           if (found != written.end() && *found == indices[at]) {
-            WriteFile(directory / fmt::format("case_{}.csv", indices[at]),
-                      HistoryCsv(history, campaign.autopilot));
+            WriteFile(directory / CaseHistoryName(indices[at]), HistoryCsv(history, campaign.autopilot));
             histories.written_flights[static_cast<std::size_t>(found - written.begin())] = samples;
           }
-          if (at < sampled) {
+          if (at < wanted.sampled) {
             counter.Add(std::move(samples));
           } else {
             counter.AddExtreme(samples);
@@ -177,11 +189,12 @@ FlightHistories WriteHistories(const ResultFolder& folder, const Campaign& campa
         });
   };
   // The flights that the counter keeps are flown first. They may end in any order.
-  const std::size_t kept = std::min(sampled, BandCounter::kKept);
-  fly(0, kept);
-  fly(kept, indices.size());
+  const std::size_t first = std::min(wanted.sampled, BandCounter::kKept);
+  fly(0, first);
+  fly(first, indices.size());
   histories.bands = counter.Bands();
   WriteFile(directory / "bands.csv", BandsCsv(histories.bands));
+  KeepHistories(directory, key, wanted);
   return histories;
 }
 

@@ -13,7 +13,27 @@ double AsStored(double value) {
   return std::isfinite(value) ? value + 0.0 : std::numeric_limits<double>::quiet_NaN();
 }
 
+// Appends the length of a text and its bytes.
+void Append(std::string_view bytes, std::vector<double>& words) {
+  words.push_back(static_cast<double>(bytes.size()));
+  const std::size_t at = words.size();
+  words.resize(at + (bytes.size() + sizeof(double) - 1) / sizeof(double));
+  if (!bytes.empty()) std::memcpy(words.data() + at, bytes.data(), bytes.size());
+}
+
+Digest DigestOf(const std::vector<double>& words) {
+  Digester digester;
+  digester.Add(words.data(), words.size());
+  return digester.Finish();
+}
+
 }  // namespace
+
+Digest Fingerprint(std::string_view bytes) {
+  std::vector<double> words;
+  Append(bytes, words);
+  return DigestOf(words);
+}
 
 Digest Fingerprint(const CaseResult& result) {
   std::vector<double> words = {std::bit_cast<double>(result.case_index),
@@ -21,17 +41,12 @@ Digest Fingerprint(const CaseResult& result) {
                                AsStored(result.end_time_s),
                                static_cast<double>(result.end_stage),
                                std::bit_cast<double>(result.digest.high),
-                               std::bit_cast<double>(result.digest.low),
-                               static_cast<double>(result.reason.size())};
-  const std::size_t reason_at = words.size();
-  words.resize(reason_at + (result.reason.size() + sizeof(double) - 1) / sizeof(double));
-  std::memcpy(words.data() + reason_at, result.reason.data(), result.reason.size());
+                               std::bit_cast<double>(result.digest.low)};
+  Append(result.reason, words);
   words.push_back(static_cast<double>(result.inputs.size()));
   for (const double value : result.inputs) words.push_back(AsStored(value));
   for (const double value : result.metrics) words.push_back(AsStored(value));
-  Digester digester;
-  digester.Add(words.data(), words.size());
-  return digester.Finish();
+  return DigestOf(words);
 }
 
 }  // namespace dispersa

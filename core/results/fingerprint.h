@@ -1,5 +1,7 @@
-// A hash over every bit of a stored result.
+// Hashes over every bit of what is stored.
 #pragma once
+
+#include <string_view>
 
 #include "core/campaign/case_result.h"
 
@@ -8,5 +10,6 @@ namespace dispersa {
 /// Covers every field. It detects a damaged row, and a second result of the case that differs anywhere. It is
 /// taken over the stored values: any NaN or infinity is "undefined", -0 is 0.
 Digest Fingerprint(const CaseResult& result);
+Digest Fingerprint(std::string_view bytes);
 
 }  // namespace dispersa

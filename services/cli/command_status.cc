@@ -53,17 +53,23 @@ std::string FullId(Session& session, const std::string& id) {
 }  // namespace
 
 void AddStatusCommand(CLI::App& app, Invocation& invocation) {
-  BindSession(
-      app.add_subcommand("list", "list the campaigns of a coordinator"), invocation,
-      [](Session& session, const GlobalOptions& global) { return Show("list", "", session, global); });
+  CLI::App* list = app.add_subcommand("list", "list the campaigns of a coordinator");
+  list->footer("Example: dispersa list --peer coordinator-host");
+  BindSession(list, invocation, [](Session& session, const GlobalOptions& global) {
+    return Show("list", "", session, global);
+  });
 
   CLI::App* status = app.add_subcommand("status", "show the campaigns and workers of a coordinator");
+  status->footer(
+      "Example: dispersa status 5f3a --peer coordinator-host\n"
+      "Without an id: all campaigns and workers.");
   BindSession(status, invocation,
               [id = AddIdOption(status, false)](Session& session, const GlobalOptions& global) {
                 return Show("status", *id, session, global);
               });
 
   CLI::App* cancel = app.add_subcommand("cancel", "end a campaign; its stored results stay");
+  cancel->footer("Example: dispersa cancel 5f3a --peer coordinator-host");
   BindSession(cancel, invocation, [id = AddIdOption(cancel)](Session& session, const GlobalOptions& global) {
     return Do("cancel", {{"id", *id}}, "cancelled", session, global);
   });

@@ -104,6 +104,46 @@ TEST(Reports, CanBeWrittenAgain) {
   EXPECT_TRUE(Files(temporary / "out") == first);
 }
 
+// Flights are flown again only where their histories are not those of an earlier report.
+TEST(Reports, KeepHistoriesOfTheSameFlights) {
+  TemporaryFolder temporary;
+  const auto out = temporary / "out";
+  ResultFolder folder = ResultFolder::Create(out, TheCampaign());
+  folder.Append(TheResults());
+  const auto flown = [&](std::uint64_t history_cases) {
+    std::uint64_t flights = 0;
+    WriteReports(folder, TheCampaign(),
+                 {.history_cases = history_cases,
+                  .threads = 1,
+                  .progress = [&](const std::string& what, std::uint64_t done, std::uint64_t) {
+                    if (what == "time histories") flights = done;
+                  }});
+    return flights;
+  };
+  EXPECT_EQ(flown(3), kCases);
+  const std::map<std::string, std::string> reports = Files(out);
+  EXPECT_EQ(flown(3), 0u);
+  EXPECT_TRUE(Files(out) == reports);
+
+  const auto change = [&](const char* name, const std::string& text) {
+    std::ofstream(out / "histories" / name) << text;
+    EXPECT_EQ(flown(3), kCases) << name;
+    EXPECT_TRUE(Files(out) == reports) << name;
+    EXPECT_EQ(flown(3), 0u) << name;
+  };
+  std::string bands = reports.at("histories/bands.csv");
+  bands.back() = '\n';
+  bands[bands.size() - 2] = bands[bands.size() - 2] == '1' ? '2' : '1';
+  change("bands.csv", bands);
+  change("nominal.csv", "");
+  change("made_of.json", "[]");
+  change("made_of.json", "{\"key\": 1, \"files\": 2}");
+  EXPECT_EQ(flown(2), kCases) << "another sample";
+  Database(out / "results.sqlite", Database::Mode::kExisting)
+      .Execute("UPDATE cases SET reason = 'as another engine says' WHERE case_index = 1");
+  EXPECT_THROW(flown(2), ResultError) << "a damaged row";
+}
+
 // A folder whose rows got lost: the table that was made of all of them is the last that there is.
 TEST(Reports, LeaveATableOfMoreCasesAsItIs) {
   TemporaryFolder temporary;

@@ -1,0 +1,40 @@
+// Time histories of an earlier report of the same flights: they need not be flown again.
+#pragma once
+
+#include <cstdint>
+#include <filesystem>
+#include <optional>
+#include <string>
+#include <vector>
+
+#include "core/pages/histories.h"
+
+namespace dispersa {
+
+/// The flights that the histories of a report are made of.
+struct HistoryFlights {
+  std::vector<std::uint64_t> indices;  ///< the sample of the percentiles, then the extremes
+  std::size_t sampled = 0;             ///< so many of them
+  std::vector<std::uint64_t> written;  ///< cases with a file of their own, ascending
+};
+
+/// Name of a history's file in histories/.
+std::string CaseHistoryName(std::uint64_t case_index);
+
+/// A text that is the same if, and only if, the histories would have the same bytes: engine, flight id, and
+/// the flights with their digests.
+std::string KeyOfHistories(const ResultFolder& folder, const Campaign& campaign,
+                           const HistoryFlights& flights);
+
+/// Writes histories/made_of.json: the key, and a fingerprint of each file.
+void KeepHistories(const std::filesystem::path& directory, const std::string& key,
+                   const HistoryFlights& flights);
+
+/// What stands in `directory`, without the nominal flight. None: it was made of other flights, or a file has
+/// changed.
+std::optional<FlightHistories> ReadKeptHistories(const std::filesystem::path& directory,
+                                                 const std::string& key, const Campaign& campaign,
+                                                 const HistoryFlights& flights,
+                                                 const std::vector<int>& columns, double step_s);
+
+}  // namespace dispersa
