@@ -205,6 +205,7 @@ std::vector<int> DispersedInputs(const Campaign& campaign) {
   for (const Dispersion& dispersion : campaign.dispersions) {
     inputs.insert(inputs.end(), dispersion.inputs.begin(), dispersion.inputs.end());
   }
+  for (const DerivedInput& derived : campaign.derived) inputs.push_back(derived.column);
   std::sort(inputs.begin(), inputs.end());
   inputs.erase(std::unique(inputs.begin(), inputs.end()), inputs.end());
   return inputs;
@@ -236,6 +237,15 @@ std::vector<DispersionSummary> SummarizeDispersions(const Campaign& campaign, co
       }
       summaries.push_back(std::move(summary));
     }
+  }
+  for (const DerivedInput& derived : campaign.derived) {
+    DispersionSummary summary;
+    summary.dispersion = "derived";
+    summary.input = derived.input;
+    summary.key = "derived";
+    summary.declared = "= " + derived.text;
+    summary.drawn = Summarize(cases.inputs[static_cast<std::size_t>(derived.column)]);
+    summaries.push_back(std::move(summary));
   }
   return summaries;
 }

@@ -9,6 +9,7 @@
 #include <utility>
 #include <vector>
 
+#include "core/campaign/derived_input.h"
 #include "core/control/autopilot_config.h"
 #include "core/environment/wind.h"
 #include "core/environment/wind_statistics.h"
@@ -119,6 +120,7 @@ struct Campaign {
   GuidanceConfig guidance;
   Sampling sampling;
   std::vector<Dispersion> dispersions;
+  std::vector<DerivedInput> derived;              ///< set after all draws of a case
   std::optional<WindStatistics> wind_statistics;  ///< climatology whose levels the profile draws fill
   std::optional<WindTable> wind_table;            ///< a profile that every flight meets, the nominal too
   std::vector<OwnMetric> own_metrics;

@@ -80,6 +80,7 @@ std::uint64_t DesignSize(const Campaign& campaign) {
 CaseDesign::CaseDesign(const Campaign& campaign)
     : sampling_(campaign.sampling),
       dispersions_(campaign.dispersions),
+      derived_(campaign.derived),
       factors_(Factors(campaign)),
       size_(DesignSize(campaign)) {
   for (const Dispersion& dispersion : dispersions_)
@@ -158,6 +159,7 @@ FlightInputs CaseDesign::Draw(std::uint64_t case_index) const {
       input = IsFactor(column) ? input * value : value;
     }
   }
+  Derive(derived_, inputs);
   return inputs;
 }
 

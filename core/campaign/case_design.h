@@ -35,6 +35,7 @@ class CaseDesign {
 
   Sampling sampling_;
   std::vector<Dispersion> dispersions_;
+  std::vector<DerivedInput> derived_;
   std::vector<std::size_t> factors_;  ///< dispersions that move by plan
   std::uint64_t size_ = 1;
   std::vector<std::array<double, 2>> truncation_;  ///< uniform numbers of a truncated normal's limits

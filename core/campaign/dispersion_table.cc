@@ -319,6 +319,8 @@ std::string InputKey(int column) {
 }
 
 std::string InputKey(const Campaign& campaign, int column) {
+  for (const DerivedInput& derived : campaign.derived)
+    if (derived.column == column) return "derived";
   const std::vector<std::string>& keys = KeysOf(column);
   for (const Dispersion& dispersion : campaign.dispersions) {
     if (std::find(dispersion.inputs.begin(), dispersion.inputs.end(), column) == dispersion.inputs.end())

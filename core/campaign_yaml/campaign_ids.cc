@@ -77,7 +77,8 @@ std::string OwnMetricsId(const std::string& flight_id, const std::vector<OwnMetr
 
 std::string DesignId(const InputNode& campaign) {
   InputNode design = MapAt(campaign);
-  for (const char* key : {"vehicle", "reference", "autopilot", "guidance", "dispersions", "correlations"}) {
+  for (const char* key :
+       {"vehicle", "reference", "autopilot", "guidance", "dispersions", "correlations", "derived"}) {
     if (const InputNode* value = campaign.Find(key)) SetMember(design, key, *value);
   }
   const InputNode& sampling = *campaign.Find("sampling");
@@ -91,7 +92,8 @@ std::string DesignId(const InputNode& campaign) {
 
 std::string FlightId(const InputNode& campaign, SamplingMethod method) {
   InputNode deciding = MapAt(campaign);
-  for (const char* key : {"vehicle", "reference", "autopilot", "guidance", "dispersions", "correlations"}) {
+  for (const char* key :
+       {"vehicle", "reference", "autopilot", "guidance", "dispersions", "correlations", "derived"}) {
     if (const InputNode* value = campaign.Find(key)) SetMember(deciding, key, *value);
   }
   InputNode sampling = MapAt(campaign);

@@ -342,8 +342,22 @@ class CampaignDescription {
     fields.List(
         "correlations", 0, SIZE_MAX, correlations, "groups of normal dispersions that are drawn together",
         [&](Fields& map, Correlation& group) { dispersa::Describe(map, group, campaign_.dispersions); });
+    fields.OptionalList("derived", 1, InputColumns().size(), campaign_.derived,
+                        "inputs that follow from drawn ones", [&](Fields& map, DerivedInput& derived) {
+                          dispersa::Describe(map, derived, DerivedBefore(derived), campaign_.dispersions,
+                                             campaign_.vehicle.stages.size());
+                        });
     if (problems_.size() == before && has_sampling_)
       CheckDesign(fields, campaign_.sampling, campaign_.dispersions);
+  }
+
+  std::vector<DerivedInput> DerivedBefore(const DerivedInput& derived) const {
+    std::vector<DerivedInput> before;
+    for (const DerivedInput& other : campaign_.derived) {
+      if (&other == &derived) break;
+      before.push_back(other);
+    }
+    return before;
   }
 
   // Also where another autopilot flies than the file's.

@@ -1,6 +1,7 @@
 #include "core/flight/step_limits.h"
 
 #include <algorithm>
+#include <cmath>
 #include <cstdio>
 
 #include "core/dynamics/jettison.h"
@@ -84,6 +85,9 @@ double FastestPart(const LauncherPlant& plant, int stack) {
 
 std::string RefusalOf(const Vehicle& vehicle, const FlightInputs& in, const LauncherPlant& plant,
                       double tick_s) {
+  const std::vector<double> values = InputValues(in, vehicle.stages.size());
+  for (std::size_t i = 0; i < values.size(); ++i)
+    if (!std::isfinite(values[i])) return "the input " + InputColumns()[i].name + " has no value";
   for (std::size_t i = 0; i < vehicle.stages.size(); ++i) {
     const std::string stage = "stage " + std::to_string(i + 1);
     if (!(in.dry_mass_factor[i] > 0.0)) return "the dry mass of " + stage + " is not above 0";

@@ -57,6 +57,7 @@ DispersionSpace::DispersionSpace(const Campaign& campaign) : dispersions_(campai
     truncation_.push_back(TruncationOf(dispersion.distribution));
   }
   list_.sampling.method = SamplingMethod::kList;
+  list_.derived = campaign.derived;
 }
 
 double DispersionSpace::Value(std::size_t coordinate, const std::vector<double>& point) const {

@@ -1,0 +1,74 @@
+#include "core/campaign/derived_input.h"
+
+#include <algorithm>
+#include <cmath>
+
+#include "core/campaign/campaign.h"
+#include "core/input/read_value.h"
+
+namespace dispersa {
+namespace {
+
+constexpr char kNames[] = "a column of cases.csv without 'input_', such as thrust_factor_stage1";
+
+std::vector<std::string> NamesOf(std::size_t stages) {
+  std::vector<std::string> names;
+  for (std::size_t i = 0; i < InputCount(stages); ++i) names.push_back(InputColumns()[i].name);
+  return names;
+}
+
+const DerivedInput* Find(const std::vector<DerivedInput>& derived, const std::string& input) {
+  const auto found =
+      std::find_if(derived.begin(), derived.end(), [&](const DerivedInput& one) { return one.input == input; });
+  return found == derived.end() ? nullptr : &*found;
+}
+
+std::string UnknownText(const std::string& name, std::size_t stages) {
+  return "'" + name + "' is not an input of this vehicle's flights" + DidYouMean(name, NamesOf(stages));
+}
+
+bool IsKnown(const std::string& name, std::size_t stages) {
+  const int column = FindInput(name);
+  return column >= 0 && column < static_cast<int>(InputCount(stages));
+}
+
+double Value(const DerivedInput& derived, const FlightInputs& inputs) {
+  return derived.expression.Evaluate(InputValues(inputs, kMaxStages).data());
+}
+
+}  // namespace
+
+void Describe(Fields& fields, DerivedInput& derived, const std::vector<DerivedInput>& before,
+              const std::vector<Dispersion>& dispersions, std::size_t stages) {
+  fields.Text("input", derived.input, "a column of cases.csv without its prefix");
+  fields.Text("expression", derived.text, "from drawn columns, in their units");
+  if (derived.input.empty() || derived.text.empty()) return;
+  if (!IsKnown(derived.input, stages)) return fields.Refuse("input", UnknownText(derived.input, stages), kNames);
+  derived.column = FindInput(derived.input);
+  for (const Dispersion& dispersion : dispersions)
+    if (std::find(dispersion.inputs.begin(), dispersion.inputs.end(), derived.column) != dispersion.inputs.end())
+      return fields.Refuse("input", "'" + derived.input + "' is drawn by the dispersion '" + dispersion.name + "'",
+                           "an input that no dispersion draws");
+  if (Find(before, derived.input) != nullptr)
+    return fields.Refuse("input", "'" + derived.input + "' is derived twice", "each input once");
+  try {
+    derived.expression = ParseExpression(derived.text, [&](const std::string& name) {
+      if (!IsKnown(name, stages)) throw UnknownName{UnknownText(name, stages), kNames};
+      if (name == derived.input || Find(before, name) != nullptr)
+        throw UnknownName{"'" + name + "' is derived itself", "drawn inputs"};
+      return NamedValue{FindInput(name), false};
+    });
+  } catch (const ExpressionError& error) {
+    return fields.Refuse("expression", error.what(), error.allowed);
+  }
+  if (!std::isfinite(Value(derived, FlightInputs{})))
+    fields.Refuse("expression", "it has no value for the nominal flight's inputs", "an expression that is finite there");
+}
+
+void Derive(const std::vector<DerivedInput>& derived, FlightInputs& inputs) {
+  for (const DerivedInput& one : derived)
+    InputValue(inputs, one.column) =
+        Value(one, inputs) * InputColumns()[static_cast<std::size_t>(one.column)].unit;
+}
+
+}  // namespace dispersa
