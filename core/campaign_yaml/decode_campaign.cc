@@ -6,6 +6,7 @@
 
 #include "core/campaign/case_result.h"
 #include "core/campaign/dispersion_fields.h"
+#include "core/campaign/dispersion_table.h"
 #include "core/campaign/plausible_dispersions.h"
 #include "core/campaign_yaml/campaign_ids.h"
 #include "core/campaign_yaml/decode.h"
@@ -25,6 +26,14 @@ namespace {
 
 using ProblemList = std::vector<InputProblem>;
 
+// A hint for a word that is no input. A key of `dispersions` stands for the first column that it draws.
+std::string MeantInput(const std::string& word, const std::vector<std::string>& names) {
+  for (const DispersionRow& row : DispersionRows())
+    if (row.key == word && !row.columns.empty())
+      return " (did you mean its column '" + ExpandColumn(row.columns.front()).front() + "'?)";
+  return DidYouMean(word, names);
+}
+
 // The columns of a list's table, each an input by its name in cases.csv without the prefix.
 void DescribeListTable(Fields& fields, const InputNode& table, Campaign& campaign) {
   std::vector<std::string> names;
@@ -34,7 +43,7 @@ void DescribeListTable(Fields& fields, const InputNode& table, Campaign& campaig
     const char* key = member.key.c_str();
     const int input = FindInput(member.key);
     if (input < 0 || static_cast<std::size_t>(input) >= count) {
-      fields.Misplaced(key, {}, ("'{}' is not an input" + DidYouMean(member.key, names)).c_str(),
+      fields.Misplaced(key, {}, ("'{}' is not an input" + MeantInput(member.key, names)).c_str(),
                        "a column of cases.csv without its prefix 'input_'");
       continue;
     }

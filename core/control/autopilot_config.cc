@@ -50,7 +50,6 @@ void CheckSchedule(const AxisConfig& axis, int stages, double tick_s, const AddP
 
 void CheckAxis(const AxisConfig& axis, const std::string& name, int stages, double tick_s,
                std::vector<StructProblem>& problems) {
-  const std::size_t before = problems.size();
   const LawInfo& law = InfoOf(axis.law);
   const AddProblem add = [&](const std::string& path, const std::string& message,
                              const std::string& allowed) {
@@ -63,6 +62,9 @@ void CheckAxis(const AxisConfig& axis, const std::string& name, int stages, doub
     return false;
   };
   if (!is_one_a_stage("gains", axis.gains.size())) return;
+  for (const StageList& list : kStageLists)
+    if (law.*list.read_by) is_one_a_stage(list.path, list.of(axis).size());
+  const std::size_t before = problems.size();
   for (std::size_t i = 0; i < axis.filters.size(); ++i) {
     const FilterSection& section = axis.filters[i];
     const std::string path = "filters[" + std::to_string(i) + "]";
@@ -74,7 +76,6 @@ void CheckAxis(const AxisConfig& axis, const std::string& name, int stages, doub
   if (law.foreign && !axis.schedule.empty())
     add("schedule", "changes gains, but a plug-in gets its gains only at ignition",
         "no schedule with law: plugin");
-  if (law.integral) is_one_a_stage("integral.ki_1_s3", axis.integral.ki_1_s3.size());
   if (!law.adaptation) return;
   if (!(axis.adaptation.spread_1_s * tick_s <= 1.0))
     add("adaptation.spread_1_s", "overshoots the mean within a tick", "at most 1 / tick_s");
@@ -83,7 +84,6 @@ void CheckAxis(const AxisConfig& axis, const std::string& name, int stages, doub
   if (problems.size() != before) return;
 
   const Adaptation& a = axis.adaptation;
-  is_one_a_stage("adaptation.gamma", a.gamma.size());
   if (a.q(0, 1) != a.q(1, 0) || !IsPositiveDefinite(a.q))
     add("adaptation.q", "is not symmetric positive definite",
         "a symmetric matrix with positive diagonal and determinant");

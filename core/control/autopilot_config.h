@@ -160,6 +160,18 @@ struct AxisConfig {
   std::vector<ScheduleEntry> schedule;  ///< by stage and time
   std::optional<FeedForward> feed_forward;
 };
+/// A list with one entry for each stage, and the property of the laws that read it.
+struct StageList {
+  const char* path;
+  bool LawInfo::*read_by;
+  const std::vector<double>& (*of)(const AxisConfig& axis);
+};
+inline constexpr StageList kStageLists[] = {
+    {"integral.ki_1_s3", &LawInfo::integral,
+     [](const AxisConfig& axis) -> const std::vector<double>& { return axis.integral.ki_1_s3; }},
+    {"adaptation.gamma", &LawInfo::adaptation,
+     [](const AxisConfig& axis) -> const std::vector<double>& { return axis.adaptation.gamma; }},
+};
 /// The places among an axis' filters of those that act in a stage (1-based).
 std::vector<std::size_t> FiltersOfStage(const AxisConfig& axis, int stage);
 

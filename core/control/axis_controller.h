@@ -49,21 +49,27 @@ AxisLaw BuildAxisLaw(const AxisConfig& config, double tick_s);
 /// The law in a stage at a time since its ignition.
 StageLaw LawAt(const AxisLaw& law, int stage, double since_ignition_s);
 
-/// All memory of one axis, made afresh for each flight: values of 64 bits, those of AxisStateLanes (law.h).
-struct AxisState {
-  double departure_rad_s2[kFuzzyRules] = {};  ///< of the consequents from their start
-  std::uint64_t rules_fired = 0;              ///< bit i: rule i has fired
-  double previous_v = 0.0;
-  double saturation = 0.0;       ///< -1, 0, 1: the last deflection command was limited in this sense of u
-  double integral_rad_s2 = 0.0;  ///< of a PID law
-  double total_gain = 1.0;       ///< adaptive augmentation
-  double model_started = 0.0;    ///< its reference model: 0 or 1
-  double model_error_rad = 0.0;
-  double model_rate_rad_s = 0.0;  ///< rate of the model, for composite adaptation the predicted one
-  double model_integral_rad_s2 = 0.0;
-  double high_pass = 0.0;  ///< its spectral damper
-  double low_pass = 0.0;
-  double filters[kFilterSections][2] = {};  ///< memory of the sections
+/// All memory of one axis, for one flight or for W flights side by side: values of 64 bits.
+template <class T, class Bits = T>
+struct AxisMemory {
+  T departure_rad_s2[kFuzzyRules];  ///< of the consequents from their start
+  Bits rules_fired;                 ///< bit i: rule i has fired
+  T previous_v;
+  T saturation;       ///< -1, 0, 1: the last deflection command was limited in this sense of u
+  T integral_rad_s2;  ///< of a PID law
+  T total_gain;       ///< adaptive augmentation
+  T model_started;    ///< its reference model: 0 or 1
+  T model_error_rad;
+  T model_rate_rad_s;  ///< rate of the model, for composite adaptation the predicted one
+  T model_integral_rad_s2;
+  T high_pass;  ///< its spectral damper
+  T low_pass;
+  T filters[kFilterSections][2];  ///< memory of the sections
+};
+
+/// The memory of one flight, made afresh for each.
+struct AxisState : AxisMemory<double, std::uint64_t> {
+  AxisState() : AxisMemory<double, std::uint64_t>{} { total_gain = 1.0; }
 };
 
 struct AxisTelemetry {

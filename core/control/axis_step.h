@@ -37,7 +37,7 @@ DISPERSA_INLINE AxisTelemetry TelemetryOf(const AxisConfig& config, const AxisOu
   t.v = Lane(o.v, lane);
   t.v_rate_sign = Lane(o.v_rate_sign, lane);
   t.total_gain = Lane(m.total_gain, lane);
-  t.rules_fired = static_cast<std::uint32_t>(ToBits(Lane(m.fired, lane)));
+  t.rules_fired = static_cast<std::uint32_t>(ToBits(Lane(m.rules_fired, lane)));
   t.frozen = Lane(o.frozen, lane) > 0.0;
   return t;
 }

@@ -46,7 +46,8 @@ struct FuzzyLaw {
       rows = OrBits(rows, Select(by_error[i] > T(0.0), T(OfBits(std::uint64_t{0x1f} << (5 * i))), T(0.0)));
       columns = OrBits(columns, Select(by_rate[i] > T(0.0), T(OfBits(std::uint64_t{0x108421} << i)), T(0.0)));
     }
-    memory.fired = Kept<kAll>(in.acting, OrBits(memory.fired, AndBits(rows, columns)), memory.fired);
+    memory.rules_fired =
+        Kept<kAll>(in.acting, OrBits(memory.rules_fired, AndBits(rows, columns)), memory.rules_fired);
 
     const T centre(0.5 * last);
     T u = Fma(in.stage.kp_1_s2 * T(0.5 * rules.error_range_rad), at_error - centre,

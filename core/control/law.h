@@ -31,18 +31,9 @@ DISPERSA_INLINE void SetLane(StageLawLanes<T>& s, int lane, const StageLaw& law,
   Lane(s.pn_rate, lane) *= pn_rate_factor;
 }
 
-/// All memory of one axis: plain values, AxisState lane by lane.
+/// AxisState lane by lane.
 template <class T>
-struct AxisStateLanes {
-  T departure_rad_s2[kFuzzyRules];  ///< of the consequents from their start
-  T fired;                          ///< as bits: rule i has fired
-  T previous_v;
-  T saturation;  ///< -1, 0, 1: the last deflection command was limited in this sense of u
-  T integral_rad_s2;
-  T total_gain, model_started;  ///< augmentation
-  T model_error_rad, model_rate_rad_s, model_integral_rad_s2, high_pass, low_pass;
-  T filters[kFilterSections][2];
-};
+struct AxisStateLanes : AxisMemory<T> {};
 template <class T>
 DISPERSA_INLINE void SetLane(AxisStateLanes<T>& m, int lane, const AxisState& s) {
   SetLaneValues<T>(m, lane, s);

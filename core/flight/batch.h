@@ -302,7 +302,7 @@ void Batch<T>::End(int lane, Outcome outcome, const char* reason) {
   if (Bits(step_.phase().burning) >> lane & 1u) metrics_.EndStage(lane, slot.stack, record->sums);
   metrics_.Read(lane, record->sums);
   record->sums.expelled_kg = Lane(step_.phase().expelled_kg, lane);
-  record->sums.rules_fired = static_cast<std::uint32_t>(ToBits(Lane(axes_[kPitch].fired, lane)));
+  record->sums.rules_fired = static_cast<std::uint32_t>(ToBits(Lane(axes_[kPitch].rules_fired, lane)));
   record->End(outcome, reason, Lane(time_s_, lane), slot.stack, y);
   slot.record = nullptr;
   slot.switch_s = kFarFuture;
