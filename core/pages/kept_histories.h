@@ -14,7 +14,7 @@ namespace dispersa {
 /// The flights that the histories of a report are made of.
 struct HistoryFlights {
   std::vector<std::uint64_t> indices;  ///< the sample of the percentiles, then the extremes
-  std::size_t sampled = 0;             ///< so many of them
+  std::size_t sampled = 0;             ///< number of sampled ones
   std::vector<std::uint64_t> written;  ///< cases with a file of their own, ascending
 };
 
@@ -30,8 +30,8 @@ std::string KeyOfHistories(const ResultFolder& folder, const Campaign& campaign,
 void KeepHistories(const std::filesystem::path& directory, const std::string& key,
                    const HistoryFlights& flights);
 
-/// What stands in `directory`, without the nominal flight. None: it was made of other flights, or a file has
-/// changed.
+/// Reads the histories in `directory`, without the nominal flight. None if they are of other flights, or if a
+/// file has changed.
 std::optional<FlightHistories> ReadKeptHistories(const std::filesystem::path& directory,
                                                  const std::string& key, const Campaign& campaign,
                                                  const HistoryFlights& flights,
