@@ -4,30 +4,14 @@
 #include <cmath>
 #include <string_view>
 
+#include "core/input/unit_text.h"
+
 namespace dispersa {
-namespace {
-
-struct UnitSuffix {
-  std::string_view suffix;
-  std::string_view unit;
-};
-
-/// A longer suffix comes before the shorter ones that it ends in.
-constexpr UnitSuffix kUnits[] = {
-    {"_deg_s2", "°/s²"}, {"_pa_rad", "Pa rad"}, {"_deg_s", "°/s"}, {"_rad_s", "rad/s"}, {"_kg_m2", "kg m²"},
-    {"_n_m", "N m"},     {"_kg_s", "kg/s"},     {"_km_s", "km/s"}, {"_m_s", "m/s"},     {"_deg", "°"},
-    {"_rad", "rad"},     {"_kpa", "kPa"},       {"_pa", "Pa"},     {"_km", "km"},       {"_kg", "kg"},
-    {"_ms", "ms"},       {"_db", "dB"},         {"_n", "N"},       {"_m", "m"},         {"_g", "g"},
-    {"_s", "s"},
-};
-
-}  // namespace
 
 NameAndUnit SplitUnit(const std::string& name) {
-  for (const UnitSuffix& unit : kUnits) {
-    if (name.ends_with(unit.suffix))
-      return {name.substr(0, name.size() - unit.suffix.size()), std::string(unit.unit)};
-  }
+  for (std::size_t at = name.find('_'); at != std::string::npos; at = name.find('_', at + 1))
+    if (const std::string_view unit = UnitText(std::string_view(name).substr(at + 1)); !unit.empty())
+      return {name.substr(0, at), std::string(unit)};
   return {name, ""};
 }
 

@@ -6,39 +6,12 @@
 
 #include "core/input/number_text.h"
 #include "core/input/read_value.h"
+#include "core/input/unit_text.h"
 
 namespace dispersa {
 namespace {
 
 using Json = MapSchema::Json;
-
-// How people write what a key's end says.
-std::string UnitText(std::string_view unit) {
-  static const std::map<std::string_view, std::string> kTexts = {
-      {"um", "µm"},           {"m2", "m²"},
-      {"kg_s", "kg/s"},       {"kg_m2", "kg m²"},
-      {"kg_m", "kg/m"},       {"gpa", "GPa"},
-      {"mpa", "MPa"},         {"pa", "Pa"},
-      {"kpa", "kPa"},         {"n", "N"},
-      {"kn", "kN"},           {"n_m2", "N m²"},
-      {"kn_m2", "kN m²"},     {"mn_m2", "MN m²"},
-      {"n_m", "N m"},         {"kn_m", "kN m"},
-      {"pa_rad", "Pa rad"},   {"kpa_rad", "kPa rad"},
-      {"pa_deg", "Pa °"},     {"w_m2", "W/m²"},
-      {"kw_m2", "kW/m²"},     {"m_s", "m/s"},
-      {"km_s", "km/s"},       {"km_h", "km/h"},
-      {"deg", "°"},           {"deg_s", "°/s"},
-      {"rad_s", "rad/s"},     {"hz", "Hz"},
-      {"deg_s2", "°/s²"},     {"rad_s2", "rad/s²"},
-      {"1_s", "1/s"},         {"1_s2", "1/s²"},
-      {"per_km", "1/km"},     {"per_m", "1/m"},
-      {"per_m_s", "s/m"},     {"kg_m3", "kg/m³"},
-      {"percent", "%"},       {"k", "K"},
-      {"per_deg", "1/°"},     {"per_rad", "1/rad"},
-      {"ton", "t (1000 kg)"}, {"percent_per_k", "%/K"}};
-  const auto found = kTexts.find(unit);
-  return found == kTexts.end() ? std::string(unit) : found->second;
-}
 
 // An empty list counts as none.
 constexpr std::size_t kLeastOfAList = 1;
@@ -59,7 +32,8 @@ Json NumberIn(const Range& range, const Unit& unit) {
 // "km, above 0: meaning"
 std::string Description(const Range& range, const Unit& unit, const std::string& meaning) {
   const std::string number = TextIn(unit, range).substr(kAnyNumber.Text().size());
-  std::string text = unit.suffix.empty() ? "" : UnitText(unit.suffix);
+  std::string text(UnitText(unit.suffix));
+  if (text.empty()) text = unit.suffix;
   if (!number.empty()) text += text.empty() ? number.substr(1) : "," + number;
   return text.empty() || meaning.empty() ? text + meaning : text + ": " + meaning;
 }
