@@ -18,8 +18,8 @@ std::vector<std::string> NamesOf(std::size_t stages) {
 }
 
 const DerivedInput* Find(const std::vector<DerivedInput>& derived, const std::string& input) {
-  const auto found =
-      std::find_if(derived.begin(), derived.end(), [&](const DerivedInput& one) { return one.input == input; });
+  const auto found = std::find_if(derived.begin(), derived.end(),
+                                  [&](const DerivedInput& one) { return one.input == input; });
   return found == derived.end() ? nullptr : &*found;
 }
 
@@ -43,11 +43,14 @@ void Describe(Fields& fields, DerivedInput& derived, const std::vector<DerivedIn
   fields.Text("input", derived.input, "a column of cases.csv without its prefix");
   fields.Text("expression", derived.text, "from drawn columns, in their units");
   if (derived.input.empty() || derived.text.empty()) return;
-  if (!IsKnown(derived.input, stages)) return fields.Refuse("input", UnknownText(derived.input, stages), kNames);
+  if (!IsKnown(derived.input, stages))
+    return fields.Refuse("input", UnknownText(derived.input, stages), kNames);
   derived.column = FindInput(derived.input);
   for (const Dispersion& dispersion : dispersions)
-    if (std::find(dispersion.inputs.begin(), dispersion.inputs.end(), derived.column) != dispersion.inputs.end())
-      return fields.Refuse("input", "'" + derived.input + "' is drawn by the dispersion '" + dispersion.name + "'",
+    if (std::find(dispersion.inputs.begin(), dispersion.inputs.end(), derived.column) !=
+        dispersion.inputs.end())
+      return fields.Refuse("input",
+                           "'" + derived.input + "' is drawn by the dispersion '" + dispersion.name + "'",
                            "an input that no dispersion draws");
   if (Find(before, derived.input) != nullptr)
     return fields.Refuse("input", "'" + derived.input + "' is derived twice", "each input once");
@@ -62,7 +65,8 @@ void Describe(Fields& fields, DerivedInput& derived, const std::vector<DerivedIn
     return fields.Refuse("expression", error.what(), error.allowed);
   }
   if (!std::isfinite(Value(derived, FlightInputs{})))
-    fields.Refuse("expression", "it has no value for the nominal flight's inputs", "an expression that is finite there");
+    fields.Refuse("expression", "it has no value for the nominal flight's inputs",
+                  "an expression that is finite there");
 }
 
 void Derive(const std::vector<DerivedInput>& derived, FlightInputs& inputs) {

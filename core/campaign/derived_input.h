@@ -20,7 +20,8 @@ struct DerivedInput {
   Expression expression = {};  ///< of the values of all columns
 };
 
-/// The keys of one derived input. `before` are the derived ones ahead of it. `stages` counts those of the vehicle.
+/// The keys of one derived input. `before` are the derived ones ahead of it. `stages` counts those of the
+/// vehicle.
 void Describe(Fields& fields, DerivedInput& derived, const std::vector<DerivedInput>& before,
               const std::vector<Dispersion>& dispersions, std::size_t stages);
 

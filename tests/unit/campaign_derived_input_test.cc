@@ -17,13 +17,17 @@ namespace {
 
 constexpr char kDrawn[] =
     "schema: dispersa/campaign/1\nname: derived\n"
-    "vehicle: " DISPERSA_CAMPAIGNS "/vehicles/slv4.yaml\n"
-    "reference: " DISPERSA_CAMPAIGNS "/references/slv4_500km.yaml\n"
-    "autopilot: " DISPERSA_CAMPAIGNS "/autopilots/adaptive_fuzzy.yaml\n"
+    "vehicle: " DISPERSA_CAMPAIGNS
+    "/vehicles/slv4.yaml\n"
+    "reference: " DISPERSA_CAMPAIGNS
+    "/references/slv4_500km.yaml\n"
+    "autopilot: " DISPERSA_CAMPAIGNS
+    "/autopilots/adaptive_fuzzy.yaml\n"
     "sampling: {method: METHOD, cases: 8, seed: 3}\n"
     "dispersions:\n"
     "  thrust: {distribution: normal, three_sigma_percent: 2, conserve: total_impulse, per: stage}\n"
-    "  gust: {speed_m_s: 9, altitude: {distribution: uniform, low_km: 4, high_km: 14}, length_m: 600, azimuth: "
+    "  gust: {speed_m_s: 9, altitude: {distribution: uniform, low_km: 4, high_km: 14}, length_m: 600, "
+    "azimuth: "
     "uniform}\n";
 
 Campaign With(const std::string& items, const std::string& method = "monte_carlo") {
@@ -111,25 +115,33 @@ TEST(DerivedInput, WithoutAValueIsAFlightThatFails) {
 }
 
 TEST(DerivedInput, IsRefusedWithItsPlace) {
-  constexpr char kNames[] = ", allowed: a column of cases.csv without 'input_', such as thrust_factor_stage1\n";
-  EXPECT_EQ(TextsOf("  - {input: densty_factor, expression: drag_factor}\n"),
-            std::string("1:13: derived[0].input: 'densty_factor' is not an input of this vehicle's flights (did "
-                        "you mean 'density_factor'?)") + kNames);
+  constexpr char kNames[] =
+      ", allowed: a column of cases.csv without 'input_', such as thrust_factor_stage1\n";
+  EXPECT_EQ(
+      TextsOf("  - {input: densty_factor, expression: drag_factor}\n"),
+      std::string("1:13: derived[0].input: 'densty_factor' is not an input of this vehicle's flights (did "
+                  "you mean 'density_factor'?)") +
+          kNames);
   EXPECT_EQ(TextsOf("  - {input: density_factor, expression: thrust_factor_stage5}\n"),
-            std::string("1:41: derived[0].expression: at character 1: 'thrust_factor_stage5' is not an input of this "
-                        "vehicle's flights (did you mean 'thrust_factor_stage1'?)") + kNames);
-  EXPECT_EQ(TextsOf("  - {input: thrust_factor_stage2, expression: thrust_factor_stage1}\n"),
-            "1:13: derived[0].input: 'thrust_factor_stage2' is drawn by the dispersion 'thrust/stage2', allowed: "
-            "an input that no dispersion draws\n");
+            std::string(
+                "1:41: derived[0].expression: at character 1: 'thrust_factor_stage5' is not an input of this "
+                "vehicle's flights (did you mean 'thrust_factor_stage1'?)") +
+                kNames);
+  EXPECT_EQ(
+      TextsOf("  - {input: thrust_factor_stage2, expression: thrust_factor_stage1}\n"),
+      "1:13: derived[0].input: 'thrust_factor_stage2' is drawn by the dispersion 'thrust/stage2', allowed: "
+      "an input that no dispersion draws\n");
   EXPECT_EQ(TextsOf("  - {input: density_factor, expression: thrust_factor_stage1}\n"
                     "  - {input: drag_factor, expression: density_factor}\n"),
-            "2:38: derived[1].expression: at character 1: 'density_factor' is derived itself, allowed: drawn inputs\n");
+            "2:38: derived[1].expression: at character 1: 'density_factor' is derived itself, allowed: drawn "
+            "inputs\n");
   EXPECT_EQ(TextsOf("  - {input: density_factor, expression: thrust_factor_stage1}\n"
                     "  - {input: density_factor, expression: thrust_factor_stage2}\n"),
             "2:13: derived[1].input: 'density_factor' is derived twice, allowed: each input once\n");
-  EXPECT_EQ(TextsOf("  - {input: density_factor, expression: log(gust_speed_m_s)}\n"),
-            "1:41: derived[0].expression: it has no value for the nominal flight's inputs, allowed: an expression "
-            "that is finite there\n");
+  EXPECT_EQ(
+      TextsOf("  - {input: density_factor, expression: log(gust_speed_m_s)}\n"),
+      "1:41: derived[0].expression: it has no value for the nominal flight's inputs, allowed: an expression "
+      "that is finite there\n");
   EXPECT_NE(TextsOf("  - {input: density_factor, expression: max(thrust_factor_stage1)}\n"), "");
 }
 
