@@ -219,6 +219,38 @@ std::string JointRiskSentence(const CampaignSummary& summary) {
   return sentence;
 }
 
+std::string AdviceTogether(const CampaignSummary& summary) {
+  std::int64_t open = 0, extended = 0;
+  bool can_extend = true;
+  RequirementSummary::Advice most;
+  most.likely.probability = 1.0;
+  for (std::size_t i = 0; i < summary.requirements.size(); ++i) {
+    const RequirementSummary& requirement = summary.requirements[i];
+    if (summary.standing.requirements[i].verdict != "inconclusive" || !requirement.advice) continue;
+    const RequirementSummary::Advice& advice = *requirement.advice;
+    ++open;
+    most.least = std::max(most.least, advice.least);
+    most.likely.cases = std::max(most.likely.cases, advice.likely.cases);
+    most.likely.probability = std::min(most.likely.probability, advice.likely.probability);
+    can_extend = can_extend && advice.extended;
+    extended = std::max(extended, advice.extended.value_or(0));
+  }
+  if (open == 0) return "";
+  std::string text = fmt::format(
+      "To decide {}: a new campaign needs {} flights or more. By what was seen here, one of {} flights "
+      "passes "
+      "{} with a probability of {}{}.",
+      open == 1 ? "the inconclusive requirement" : fmt::format("all {} inconclusive requirements", open),
+      most.least, most.likely.cases, open == 1 ? "it" : "each of them", open == 1 ? "" : "at least ",
+      ShareText(most.likely.probability));
+  // Where earlier attempts have spent the risk, each requirement's reason says what would decide it.
+  if (can_extend && summary.standing.attempts.size() < 2)
+    text += fmt::format(
+        " This campaign, extended, needs {} flights in all with no further failure (any-time rule).",
+        extended);
+  return text;
+}
+
 void RecordLooks(const ResultFolder& folder, const Campaign& campaign, const CampaignSummary& summary) {
   if (summary.verdict == CampaignVerdict::kIncomplete || !IsIndependent(summary.sampling)) return;
   for (std::size_t i = 0; i < summary.requirements.size(); ++i) {

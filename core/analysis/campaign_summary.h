@@ -127,6 +127,9 @@ std::vector<std::string> Warnings(const CampaignSummary& summary);
 /// The sentence for each requirement's verdict taken together.
 std::string JointRiskSentence(const CampaignSummary& summary);
 
+/// How many flights could decide all that is inconclusive, said once; empty where nothing is.
+std::string AdviceTogether(const CampaignSummary& summary);
+
 /// Records in the folder that these verdicts were read, if the campaign is complete and has verdicts.
 void RecordLooks(const ResultFolder& folder, const Campaign& campaign, const CampaignSummary& summary);
 

@@ -392,7 +392,12 @@ void CompareRequirements(const ComparedCampaign& a, const ComparedCampaign& b, c
   std::vector<double> p;
   for (const RequirementComparison& requirement : comparison.requirements) p.push_back(requirement.p);
   const std::vector<double> adjusted = HolmAdjusted(p);
-  for (std::size_t i = 0; i < adjusted.size(); ++i) comparison.requirements[i].p_holm = adjusted[i];
+  for (std::size_t i = 0; i < adjusted.size(); ++i) {
+    RequirementComparison& requirement = comparison.requirements[i];
+    requirement.p_holm = adjusted[i];
+    const bool shown = adjusted[i] <= 1.0 - kComparisonConfidence && requirement.difference != 0.0;
+    requirement.finding = !shown ? "not shown" : requirement.difference > 0.0 ? "worse" : "better";
+  }
   comparison.harmed = changes.Harmed();
   comparison.rescued = changes.Rescued();
 }
@@ -415,28 +420,87 @@ Comparison::Side SideOf(const ComparedCampaign& compared) {
           !(campaign.autopilot.plugin && campaign.autopilot.plugin->in_python)};
 }
 
-std::string SentenceOf(const Comparison& comparison) {
-  std::string sentence;
-  if (comparison.independent) {
-    std::size_t better = 0, worse = 0, differs = 0;
-    for (const MetricComparison& metric : comparison.metrics) {
-      better += metric.finding == "better";
-      worse += metric.finding == "worse";
-      differs += metric.finding == "differs";
-    }
-    sentence = fmt::format(
-        "Of {} metrics, B is better in {} and worse in {}. It differs in {} that are neither good nor bad. "
-        "The others show no difference.",
-        comparison.metrics.size(), better, worse, differs);
-  } else {
+/// "injection_altitude_km" of "injection_altitude_error_km"; empty if the metric is no error.
+std::string ValueOfError(const std::string& metric) {
+  const std::size_t at = metric.find("_error_");
+  return at == std::string::npos ? "" : metric.substr(0, at) + metric.substr(at + 6);
+}
+
+/// So that one change is counted once.
+void MarkCounted(std::vector<MetricComparison>& metrics) {
+  for (MetricComparison& metric : metrics) {
+    const bool has_error = std::any_of(metrics.begin(), metrics.end(), [&](const MetricComparison& other) {
+      return ValueOfError(other.metric) == metric.metric;
+    });
+    metric.is_counted = !metric.info.is_part && !has_error;
+  }
+}
+
+struct Findings {
+  std::size_t all = 0, better = 0, worse = 0, differs = 0;
+
+  void Add(const std::string& finding) {
+    ++all;
+    better += finding == "better";
+    worse += finding == "worse";
+    differs += finding == "differs";
+  }
+  const char* Together() const {
+    return better > 0 && worse > 0 ? "mixed"
+           : better > 0            ? "better"
+           : worse > 0             ? "worse"
+                                   : "no difference shown";
+  }
+};
+
+/// " B is worse in 3 of 7 requirements, most in pitch_error_rms_deg below 0.05: broken in 601 of 1000 flights
+/// of B, in 0 of 1000 of A."; empty if there is none.
+std::string FoundWords(const std::vector<RequirementComparison>& requirements, const std::string& finding,
+                       std::size_t count) {
+  const RequirementComparison* most = nullptr;
+  for (const RequirementComparison& each : requirements)
+    if (each.finding == finding &&
+        (most == nullptr || std::fabs(each.difference) > std::fabs(most->difference)))
+      most = &each;
+  if (most == nullptr) return "";
+  return fmt::format(
+      "B is {} in {} of {} requirement{}{}{}: broken in {} of {} flights of B, in {} of {} of A.", finding,
+      count, requirements.size(), requirements.size() == 1 ? "" : "s", count == 1 ? ", " : ", most in ",
+      most->words, most->failures_b, most->n_b, most->failures_a, most->n_a);
+}
+
+void Conclude(Comparison& comparison) {
+  MarkCounted(comparison.metrics);
+  Findings requirements, metrics;
+  for (const RequirementComparison& each : comparison.requirements) requirements.Add(each.finding);
+  for (const MetricComparison& each : comparison.metrics)
+    if (each.is_counted) metrics.Add(each.finding);
+  std::string& sentence = comparison.sentence;
+  if (!comparison.independent) {
+    comparison.finding = "not judged";
     sentence =
         "The points of at least one campaign are chosen, not drawn: differences are shown without limits.";
+  } else {
+    comparison.finding = comparison.requirements.empty() ? metrics.Together() : requirements.Together();
+    if (comparison.requirements.empty()) {
+      sentence = "Neither campaign states a requirement.";
+    } else if (requirements.better + requirements.worse == 0) {
+      sentence = "No requirement shows a difference between A and B.";
+    } else {
+      sentence = FoundWords(comparison.requirements, "worse", requirements.worse);
+      const std::string better = FoundWords(comparison.requirements, "better", requirements.better);
+      sentence += (sentence.empty() || better.empty() ? "" : " ") + better;
+    }
+    sentence += fmt::format(
+        " Of {} metrics, each counted once, B is better in {} and worse in {}. It differs in {} that are "
+        "neither "
+        "good nor bad. The others show no difference.",
+        metrics.all, metrics.better, metrics.worse, metrics.differs);
   }
   if (comparison.pairing.paired) {
     sentence += fmt::format(" {} harmed by the change from A to B, {} rescued.",
                             Cases(comparison.harmed.size()), comparison.rescued.size());
   }
-  return sentence;
 }
 
 }  // namespace
@@ -471,7 +535,7 @@ Comparison Compare(const ComparedCampaign& a, const ComparedCampaign& b,
   }
   AdjustMetrics(comparison.metrics);
   CompareRequirements(a, b, rows, comparison);
-  comparison.sentence = SentenceOf(comparison);
+  Conclude(comparison);
   return comparison;
 }
 

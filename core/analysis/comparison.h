@@ -81,6 +81,9 @@ struct MetricComparison {
   double p_holm = kUndefined;  ///< over the metrics
   std::vector<PercentileComparison> tails;
   std::string finding;  ///< "better", "worse" (of b), "differs", "not shown"
+  /// Counted in the sentence: neither a part of another metric (a stage's), nor a value whose error is
+  /// compared.
+  bool is_counted = true;
   struct Pair {
     std::uint64_t case_index = 0;
     double a = kUndefined, b = kUndefined;  ///< NaN: lost flight
@@ -102,6 +105,7 @@ struct RequirementComparison {
   Interval interval{kUndefined, kUndefined};
   double p = kUndefined;       ///< paired: exact McNemar test; unpaired: Fisher's exact test
   double p_holm = kUndefined;  ///< over the requirements
+  std::string finding;         ///< "better", "worse" (of b), "not shown"
 };
 
 /// A pair in which one campaign meets a requirement, or completes the flight, and the other does not.
@@ -130,7 +134,10 @@ struct Comparison {
   std::vector<RequirementComparison> requirements;
   std::vector<ChangedCase> harmed;  ///< met in a and not in b, ascending; empty if unpaired
   std::vector<ChangedCase> rescued;
-  std::string sentence;  ///< the summary of the comparison in words
+  /// By the requirements; without any by the metrics that are counted: "better", "worse" (of b), "mixed", "no
+  /// difference shown"; "not judged" of chosen points.
+  std::string finding;
+  std::string sentence;  ///< the result in words
 };
 
 inline constexpr double kComparisonConfidence = 0.95;

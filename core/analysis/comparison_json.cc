@@ -110,6 +110,7 @@ Json RequirementJson(const RequirementComparison& requirement, bool paired) {
   json["test"] = paired ? "mcnemar_exact" : "fisher_exact";
   json["p"] = Number(requirement.p);
   json["p_holm"] = Number(requirement.p_holm);
+  json["finding"] = requirement.finding;
   return json;
 }
 
@@ -137,6 +138,7 @@ std::string ComparisonJson(const Comparison& comparison) {
   json["schema"] = "dispersa/compare/1";
   json["a"] = SideJson(comparison.a);
   json["b"] = SideJson(comparison.b);
+  json["finding"] = comparison.finding;
   json["sentence"] = comparison.sentence;
   json["confidence"] = kComparisonConfidence;
   json["independent"] = comparison.independent;

@@ -16,8 +16,8 @@ struct Finding {
 };
 
 Finding FindingOf(const RequirementSummary& requirement, const Standing::Requirement& standing) {
-  const std::string text =
-      standing.reason.empty() ? requirement.sentence : standing.reason + " " + requirement.sentence;
+  const std::string text = (standing.reason.empty() ? "" : standing.reason + " ") + requirement.sentence +
+                           AdviceSentence(requirement);
   if (standing.verdict == "pass") return {};
   if (standing.verdict == "fail") return {"failure", text};
   // What the campaign did not ask itself holds nothing up while nothing has failed it.
@@ -58,7 +58,7 @@ std::string JUnitXml(const CampaignSummary& summary) {
   else if (standing.verdict == StandingVerdict::kNothingJudged && summary.requirements.empty())
     add("requirements", {"skipped", "The campaign states no requirement: nothing is judged."});
   for (const Standing::Dropped& dropped : standing.dropped)
-    add(dropped.line,
+    add(dropped.words,
         {"error", fmt::format("Changed or left out after its flights were flown. Its last verdict: {}.",
                               dropped.verdict.empty() ? "none" : dropped.verdict)});
   const bool judged_otherwise = standing.is_post_hoc && standing.dropped.empty() &&

@@ -118,24 +118,19 @@ std::string PlanSentence(const RequirementSummary& summary) {
 }
 
 /// How many flights more could decide: of a new campaign, and of this one when it is extended.
-std::string Advice(const RequirementSummary& summary) {
-  if (summary.pass_chances.empty()) return "";
-  std::string text =
-      fmt::format(" A new campaign can pass with {} flights or more.", summary.pass_chances.front().cases);
+void SetAdvice(RequirementSummary& summary) {
+  if (summary.verdict != "inconclusive" || summary.contradicted || summary.pass_chances.empty()) return;
   // The number from which more flights hardly help.
   const double worth = 0.9 * std::min(1.0, summary.pass_chances.back().probability);
-  const auto& shown = *std::find_if(summary.pass_chances.begin(), summary.pass_chances.end(),
-                                    [&](const auto& chance) { return chance.probability >= worth; });
-  text += fmt::format(" By what was seen here, one of {} flights passes with a probability of {}.",
-                      shown.cases, PercentText(std::round(1000.0 * shown.probability) / 1000.0));
+  const auto& likely = *std::find_if(summary.pass_chances.begin(), summary.pass_chances.end(),
+                                     [&](const auto& chance) { return chance.probability >= worth; });
+  summary.advice = {summary.pass_chances.front().cases, likely, std::nullopt};
   double left = summary.consumer_risk;
   if (summary.plan.kind != PlanKind::kAnytime)
     left -= PassRisk(summary.probability,
                      Boundaries(summary.plan, summary.probability, summary.consumer_risk, summary.planned));
-  if (left < 1e-12) return text;
-  return text +
-         fmt::format(" This one, extended, needs {} flights in all with no further failure (any-time rule).",
-                     AnytimeCasesNeeded(summary.probability, left, summary.failures));
+  if (left >= 1e-12)
+    summary.advice->extended = AnytimeCasesNeeded(summary.probability, left, summary.failures);
 }
 
 std::string IndependentSentence(const RequirementSummary& summary, std::int64_t missing) {
@@ -146,14 +141,15 @@ std::string IndependentSentence(const RequirementSummary& summary, std::int64_t 
                   missing > 0 ? fmt::format(", and {} have no result", missing) : "");
   // The bounds of a plan of several looks hold at every look, and are wider than what this one decides by.
   if (summary.verdict == "pass" && *summary.success_lower >= summary.probability) {
-    sentence += fmt::format(" With {} confidence at least {} of flights meet it; {}", confidence,
-                            PercentText(*summary.success_lower), required);
+    sentence +=
+        fmt::format(" With {} confidence at least {} of flights meet it; {}", confidence,
+                    ShareText(*summary.success_lower, Rounding::kDown, summary.probability), required);
   } else if (summary.verdict == "pass") {
     sentence += fmt::format(" That is few enough by its plan ({}) at a risk of {}; {}", PlanSentence(summary),
                             PercentText(summary.consumer_risk), required);
   } else if (summary.verdict == "fail" && *summary.success_upper <= summary.probability) {
     sentence += fmt::format(" With {} confidence at most {} of flights meet it; {}", confidence,
-                            PercentText(*summary.success_upper), required);
+                            ShareText(*summary.success_upper, Rounding::kUp, summary.probability), required);
   } else if (summary.verdict == "fail") {
     sentence += fmt::format(" That is too many by its plan ({}) at a risk of {}; {}", PlanSentence(summary),
                             PercentText(summary.consumer_risk), required);
@@ -161,9 +157,8 @@ std::string IndependentSentence(const RequirementSummary& summary, std::int64_t 
     sentence += fmt::format(" One look met the requirement and another one did not; {}", required);
   } else {
     sentence += fmt::format(" Between {} and {} of flights meet it, each bound with {} confidence; {}",
-                            PercentText(*summary.success_lower), PercentText(*summary.success_upper),
-                            confidence, required);
-    sentence += Advice(summary);
+                            ShareText(*summary.success_lower, Rounding::kDown),
+                            ShareText(*summary.success_upper, Rounding::kUp), confidence, required);
   }
   if (summary.verdict != "inconclusive" && summary.looks.back().verdict != Verdict::kInconclusive) {
     const auto first = std::find_if(summary.looks.begin(), summary.looks.end(),
@@ -188,8 +183,8 @@ std::string StudySentence(const RequirementSummary& summary, const JudgingContex
            fmt::format(
                " within a design; its {} independent replicates show a probability of {} to {}, either bound "
                "with {} confidence.",
-               context.replicates, PercentText(*summary.success_lower), PercentText(*summary.success_upper),
-               PercentText(1.0 - summary.consumer_risk));
+               context.replicates, ShareText(*summary.success_lower, Rounding::kDown),
+               ShareText(*summary.success_upper, Rounding::kUp), PercentText(1.0 - summary.consumer_risk));
   }
   return sentence + ": this says nothing about the probability in flight.";
 }
@@ -230,6 +225,41 @@ std::string LimitWords(const RequirementSummary& requirement, const std::string&
   }
   return fmt::format("{} {}{}", requirement.below ? "below" : "above", ReadableText(requirement.limit),
                      suffix);
+}
+
+std::string BoundWords(const RequirementSummary& requirement, const std::string& unit) {
+  if (!requirement.bound) return "";
+  const double bound = *requirement.bound, low = requirement.low_limit.value_or(requirement.limit);
+  // Of a range the bound is on the side that is nearer.
+  const bool below = requirement.low_limit ? 2.0 * bound >= low + requirement.limit : requirement.below;
+  return fmt::format(
+      "{} {}{}", below ? "below" : "above",
+      RoundedText(bound, below ? Rounding::kUp : Rounding::kDown, below ? requirement.limit : low),
+      unit.empty() ? "" : " " + unit);
+}
+
+std::string BoundSentence(const RequirementSummary& requirement, const std::string& unit) {
+  if (!requirement.bound) return "";
+  const std::string limit =
+      requirement.low_limit ? "limits " + LimitWords(requirement, unit).substr(8)
+                            : "limit " + ReadableText(requirement.limit) + (unit.empty() ? "" : " " + unit);
+  return fmt::format("With {} confidence {} of flights stay {} ({}).",
+                     PercentText(1.0 - requirement.consumer_risk), PercentText(requirement.probability),
+                     BoundWords(requirement, unit), limit);
+}
+
+std::string AdviceSentence(const RequirementSummary& requirement) {
+  if (!requirement.advice) return "";
+  const RequirementSummary::Advice& advice = *requirement.advice;
+  std::string text = fmt::format(
+      " A new campaign can pass with {} flights or more. By what was seen here, one of {} flights passes "
+      "with a probability of {}.",
+      advice.least, advice.likely.cases, ShareText(advice.likely.probability));
+  if (advice.extended)
+    text +=
+        fmt::format(" This one, extended, needs {} flights in all with no further failure (any-time rule).",
+                    *advice.extended);
+  return text;
 }
 
 std::string RequirementWords(const RequirementSummary& requirement) {
@@ -307,6 +337,7 @@ std::vector<RequirementSummary> JudgeAll(const std::vector<Requirement>& require
     summary.attained_risk = AttainedRisk(planned[i], summary.looks, missing);
     SetPassChances(summary);
     SetConvergence(tallies[i], cases, summary);
+    SetAdvice(summary);
     summary.sentence = IndependentSentence(summary, missing);
   }
   return summaries;

@@ -61,6 +61,13 @@ struct RequirementSummary {
     double probability = 0.0;
   };
   std::vector<PassChance> pass_chances;
+  /// When inconclusive: how many flights could decide.
+  struct Advice {
+    std::int64_t least = 0;                ///< with fewer no new campaign can pass
+    PassChance likely;                     ///< more flights than these hardly help a new campaign
+    std::optional<std::int64_t> extended;  ///< of this campaign in all, with no further failure
+  };
+  std::optional<Advice> advice;
   /// Bounds of the success probability from the first n cases with a result. n grows by about equal ratios up
   /// to all cases. Each bound is one-sided and holds for its n alone (Clopper and Pearson). A design study
   /// has none.
@@ -71,11 +78,17 @@ struct RequirementSummary {
     double success_upper = 1.0;
   };
   std::vector<Convergence> convergence;
-  std::string sentence;
+  std::string sentence;  ///< what was seen, and what it shows; without the advice
 };
 
 /// "below 0.5 °", "between -1 and 1 km".
 std::string LimitWords(const RequirementSummary& requirement, const std::string& unit);
+/// "With 90 % confidence 99.73 % of flights stay below 0.225 ° (limit 0.5 °)."; empty without a bound.
+std::string BoundSentence(const RequirementSummary& requirement, const std::string& unit);
+/// "below 0.225 °": the bound, rounded so that it still holds; empty without one.
+std::string BoundWords(const RequirementSummary& requirement, const std::string& unit);
+/// " A new campaign can pass with 852 flights or more. ..."; empty unless inconclusive.
+std::string AdviceSentence(const RequirementSummary& requirement);
 /// "pitch_error_peak_deg below 0.5 for 99.73 % of flights at 10 % risk".
 std::string RequirementWords(const RequirementSummary& requirement);
 

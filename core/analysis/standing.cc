@@ -218,8 +218,10 @@ RunInfo RunOf(const ResultFolder& folder) {
 
 std::string AttemptsNote(const Standing& standing) {
   if (standing.attempts.size() < 2) return "";
-  std::string list;
-  for (std::size_t i = 0; i + 1 < standing.attempts.size(); ++i) {
+  constexpr std::size_t kNamed = 5;
+  const std::size_t earlier = standing.attempts.size() - 1;
+  std::string list = earlier > kNamed ? fmt::format("{} more", earlier - kNamed) : "";
+  for (std::size_t i = earlier > kNamed ? earlier - kNamed : 0; i < earlier; ++i) {
     const Standing::AttemptLine& one = standing.attempts[i];
     std::string verdict = one.verdict.empty() ? "not ended" : one.verdict;
     std::replace(verdict.begin(), verdict.end(), '_', ' ');
@@ -281,7 +283,7 @@ Standing StandingOf(const ResultFolder& folder, const Campaign& campaign, const 
     const bool kept = std::any_of(
         campaign.requirements.begin(), campaign.requirements.end(),
         [&, &text = line](const Requirement& requirement) { return RequirementLine(requirement) == text; });
-    if (!kept) standing.dropped.push_back({line, verdict});
+    if (!kept) standing.dropped.push_back({line, LineWords(line), verdict});
   }
   standing.is_post_hoc = !standing.dropped.empty() || registered.is_judged_otherwise;
   const std::int64_t planned_first = folder.PlannedCases();
@@ -316,9 +318,15 @@ std::vector<std::string> StandingNotes(const Standing& standing, const CampaignS
   }
   for (const Standing::Dropped& one : standing.dropped)
     notes.push_back(
-        fmt::format("Post hoc: the requirement \"{}\" was changed or left out after the first case "
-                    "was flown. Its last verdict: {}.",
-                    one.line, one.verdict.empty() ? "none" : one.verdict));
+        fmt::format("Post hoc: {} was required, and was changed or left out after the first case was flown. "
+                    "Its last verdict: {}.",
+                    one.words, one.verdict.empty() ? "none" : one.verdict));
+  for (std::string& note : CampaignNotes(standing)) notes.push_back(std::move(note));
+  return notes;
+}
+
+std::vector<std::string> CampaignNotes(const Standing& standing) {
+  std::vector<std::string> notes;
   if (standing.is_post_hoc && standing.dropped.empty() &&
       std::none_of(standing.requirements.begin(), standing.requirements.end(),
                    [](const Standing::Requirement& one) { return one.post_hoc; }))
@@ -378,7 +386,8 @@ void WriteStanding(const ResultFolder& folder, const CampaignSummary& summary) {
                                                 {"failures_of_all_attempts", one.pool_failures}});
   }
   for (const Standing::Dropped& one : standing.dropped)
-    json["standing"]["dropped"].push_back({{"requirement", one.line}, {"verdict", one.verdict}});
+    json["standing"]["dropped"].push_back(
+        {{"requirement", one.line}, {"words", one.words}, {"verdict", one.verdict}});
   WriteFile(file, json.dump(2) + "\n");
 }
 

@@ -48,6 +48,7 @@ struct Standing {
   /// A requirement from before the first case that is not in the file any more.
   struct Dropped {
     std::string line;     ///< RequirementLine()
+    std::string words;    ///< "pitch_error_peak_deg below 0.1 for 99.73 % of flights at 10 % risk"
     std::string verdict;  ///< its last verdict; empty: none yet
   };
   struct AttemptLine {
@@ -73,8 +74,10 @@ struct Standing {
 /// The standing of a folder with this summary. Reads the folder's own ledger and its record of looks.
 Standing StandingOf(const ResultFolder& folder, const Campaign& campaign, const CampaignSummary& summary);
 
-/// Sentences about the standing that a reader needs before any number.
+/// Sentences about the standing that a reader needs before any number: of the requirements and of the campaign.
 std::vector<std::string> StandingNotes(const Standing& standing, const CampaignSummary& summary);
+/// Of the campaign alone: the rules of judgement, earlier attempts, earlier designs.
+std::vector<std::string> CampaignNotes(const Standing& standing);
 
 /// The attempt in its present state, for its ledger.
 AttemptRecord AttemptOf(const Campaign& campaign, const CampaignSummary& summary, AttemptRecord begun);

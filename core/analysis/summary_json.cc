@@ -108,7 +108,7 @@ Json RequirementJson(const RequirementSummary& requirement) {
                                    {"success_lower", Number(at.success_lower)},
                                    {"success_upper", Number(at.success_upper)}});
   }
-  json["sentence"] = requirement.sentence;
+  json["sentence"] = requirement.sentence + AdviceSentence(requirement);
   return json;
 }
 

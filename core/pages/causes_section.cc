@@ -1,8 +1,10 @@
 // The causes of a report: what drives each key metric, and what failing flights have in common.
 #include <fmt/format.h>
 
+#include <algorithm>
 #include <cmath>
 
+#include "core/pages/glossary.h"
 #include "core/pages/html_parts.h"
 #include "core/pages/report_sections.h"
 #include "core/results/metric_catalogue.h"
@@ -38,54 +40,61 @@ std::string Bar(const Driver& driver) {
 
 std::string CausesSection(const CampaignSummary& summary) {
   std::string html =
-      "<h2 id=\"causes\">Causes</h2>\n<p>At most five inputs for each metric. The share is how much of the "
-      "metric’s "
-      "variance an input explains when the inputs above it are known, with its interval of 95 %. A magnitude "
-      "and its "
-      "direction count together (“along”). “by” names the function of the input that ranks the flights best. "
-      "Inputs "
-      "that rank the flights alike (“=”) cannot be told apart. What the shares leave is interaction and "
-      "noise.</p>\n";
+      "<h2 id=\"causes\">Causes</h2>\n<p>At most five inputs for each metric. The " +
+      Term("index, share", "share") +
+      " is how much of the metric’s variance an input explains when the inputs above it are known, with its "
+      "interval of 95 %. A magnitude and its direction (" +
+      Term("clock angle") +
+      ") count together (“along”). “by” names the function of the input that ranks the flights best. Inputs "
+      "that rank the flights alike (“=”) cannot be told apart. The shares leave out interaction and "
+      "noise.</p>\n<div class=\"drivers\">\n";
   bool any = false;
   for (const MetricDrivers& metric : summary.drivers) {
     if (metric.drivers.empty()) continue;
     any = true;
-    html += "<h3>" + HtmlText(DescribeMetric(metric.metric).title) + "</h3>\n";
+    html += "<div><h3>" + HtmlText(DescribeMetric(metric.metric).title) + "</h3>\n";
     html += "<ol class=\"tornado\">\n";
     for (const Driver& driver : metric.drivers) html += Bar(driver);
-    html += "</ol>\n";
+    html += "</ol></div>\n";
   }
+  html += "</div>\n";
   if (!any) html += "<p>Fewer than 30 completed flights, or nothing that varies: no cause can be told.</p>\n";
   for (const FailureDrivers& requirement : summary.failure_drivers) {
     if (requirement.drivers.empty() && requirement.pairs.empty()) continue;
     html += fmt::format("<h3>{} of {}: {} {}</h3>\n", requirement.nearest ? "Nearest to failing" : "Failing",
                         HtmlText(DescribeMetric(requirement.metric).title), requirement.flights,
                         requirement.flights == 1 ? "flight" : "flights");
-    HtmlTable table({{"Input"},
+    HtmlTable table({{"Input", false, true},
                      {"Feature"},
                      {"Among them"},
                      {"p", true},
-                     {"Expected false alarms in the list so far", true}});
-    for (const FailureDriver& driver : requirement.drivers) {
+                     {Term("expected false alarms", "Expected false alarms in the list so far"), true}});
+    constexpr std::size_t kShown = 5;
+    for (std::size_t i = 0; i < std::min(kShown, requirement.drivers.size()); ++i) {
+      const FailureDriver& driver = requirement.drivers[i];
       table.Row({InputNames(driver.key, driver.input), HtmlText(driver.feature),
-                 driver.larger ? "larger" : "smaller", ReadableText(driver.p),
+                 driver.larger ? "larger" : "smaller", HtmlText(PValueText(driver.p)),
                  Share(driver.false_discovery_rate)});
     }
     html += table.Html("causes");
+    if (requirement.drivers.size() > kShown)
+      html += fmt::format("<p class=\"soft\">The first {} of {}; <code>summary.json</code> has all.</p>\n",
+                          kShown, requirement.drivers.size());
     if (requirement.pairs.empty()) continue;
     html +=
         "<p>Combinations: two inputs that belong together among the failing flights and not among the "
         "others.</p>\n";
-    HtmlTable pairs({{"Inputs"},
+    HtmlTable pairs({{"Inputs", false, true},
                      {"Among the failing flights"},
                      {"Rank correlation", true},
                      {"p", true},
-                     {"Expected false alarms in the list so far", true}});
+                     {Term("expected false alarms", "Expected false alarms in the list so far"), true}});
     for (const FailurePair& pair : requirement.pairs) {
       pairs.Row({InputNames(pair.first_key, pair.first) + " by " + HtmlText(pair.first_feature) + " and " +
                      InputNames(pair.second_key, pair.second) + " by " + HtmlText(pair.second_feature),
                  pair.correlation > 0.0 ? "large together" : "one is large where the other is small",
-                 FixedText(pair.correlation, 2), ReadableText(pair.p), Share(pair.false_discovery_rate)});
+                 FixedText(pair.correlation, 2), HtmlText(PValueText(pair.p)),
+                 Share(pair.false_discovery_rate)});
     }
     html += pairs.Html("causes");
   }

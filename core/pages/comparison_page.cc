@@ -6,6 +6,7 @@
 
 #include "core/analysis/comparison.h"
 #include "core/pages/embedded.h"
+#include "core/pages/glossary.h"
 #include "core/pages/html_parts.h"
 #include "core/pages/svg_chart.h"
 #include "core/results/text.h"
@@ -14,24 +15,25 @@ namespace dispersa {
 namespace {
 
 constexpr char kComparisonNavigation[] =
-    "<nav><a href=\"#compared\">Compared campaigns</a><a href=\"#requirements\">Requirements</a><a "
-    "href=\"#cases\">Harmed and rescued</a><a href=\"#metrics\">Metrics</a><a "
-    "href=\"#figures\">Figures</a><a href=\"#changes\">Largest changes</a><a "
-    "href=\"#methods\">Methods</a></nav>\n";
-/// A longer table can be collapsed. compare.json has all rows.
+    "<nav><a href=\"#cases\">Harmed and rescued</a><a href=\"#metrics\">Metrics</a><a "
+    "href=\"#figures\">Figures</a><a href=\"#changes\">Largest changes</a><a href=\"#compared\">Compared "
+    "campaigns</a><a href=\"#methods\">Methods</a><a href=\"#glossary\">Glossary</a></nav>\n";
+/// Rows of a long table that are always seen. compare.json has all rows.
 constexpr std::size_t kOpenRows = 20;
 constexpr std::size_t kListedCases = 1000;
 
 std::string Definition(const std::string& html) { return "<span class=\"definition\">" + html + "</span>"; }
 
-std::string BoundText(double value) {
+/// Numbers of one row, to two digits of the difference that the row shows.
+std::string ValueText(double value, double difference) {
   if (std::isinf(value)) return value > 0.0 ? "∞" : "−∞";
-  return ReadableText(value);
+  return std::isfinite(difference) && difference != 0.0 ? ScatterText(value, std::fabs(difference))
+                                                        : RoundedText(value);
 }
 
-std::string IntervalText(const Interval& interval) {
+std::string IntervalText(const Interval& interval, double difference) {
   if (!std::isfinite(interval.lower) && !std::isfinite(interval.upper)) return "no limits";
-  return BoundText(interval.lower) + " … " + BoundText(interval.upper);
+  return ValueText(interval.lower, difference) + " … " + ValueText(interval.upper, difference);
 }
 
 /// A path in a campaign file, with line breaks allowed after its dots.
@@ -43,58 +45,141 @@ std::string PathCell(const std::string& path) {
 
 std::string DifferenceCell(double difference, const Interval& interval) {
   if (!std::isfinite(difference)) return "–";
-  return ReadableText(difference) + Definition(IntervalText(interval));
+  return RoundedText(difference) + Definition(IntervalText(interval, difference));
 }
 
-std::string PText(double p) {
-  if (!std::isfinite(p)) return "–";
-  return p < 1e-4 ? fmt::format("{:.0e}", p) : fmt::format("{:.4f}", p);
+std::string PText(double p) { return HtmlText(PValueText(p)); }
+
+/// A table of which the first rows are seen, and the rest can be opened on screen.
+class LongTable {
+ public:
+  LongTable(std::vector<HtmlTable::Column> columns, std::string rest)
+      : open_(columns), folded_(std::move(columns)), rest_(std::move(rest)) {}
+
+  void Row(const std::vector<std::string>& cells) { (++rows_ <= kOpenRows ? open_ : folded_).Row(cells); }
+  std::string Html() const {
+    if (rows_ <= kOpenRows) return open_.Html();
+    return open_.Html() + fmt::format("<details><summary>{} more rows{}</summary>\n{}</details>\n",
+                                      rows_ - kOpenRows, rest_, folded_.Html());
+  }
+
+ private:
+  HtmlTable open_;
+  HtmlTable folded_;
+  std::string rest_;
+  std::size_t rows_ = 0;
+};
+
+std::string FindingBadge(const std::string& finding) {
+  const std::string_view style = finding == "better"                          ? "pass"
+                                 : finding == "worse"                         ? "fail"
+                                 : finding == "differs" || finding == "mixed" ? "inconclusive"
+                                                                              : "";
+  if (style.empty()) return "<span class=\"soft\">" + finding + "</span>";
+  return fmt::format("<span class=\"badge {}\">{}{}</span>", style,
+                     finding == "differs" || finding == "mixed" ? "" : "B ", finding);
 }
 
-/// `table`, or the table in a part that can be collapsed if it is long.
-std::string Folded(const HtmlTable& table, std::size_t rows, const std::string& summary) {
-  if (rows <= kOpenRows) return table.Html();
-  return "<details open><summary>" + summary + "</summary>\n" + table.Html() + "</details>\n";
+/// What McNemar's or Fisher's test says, for who does not know it.
+std::string TestWords(const RequirementComparison& r, bool paired) {
+  if (r.n_a == 0 || r.n_b == 0) return "One campaign does not measure it.";
+  if (r.failures_a + r.failures_b == 0) return "No flight breaks it.";
+  const std::string probability = r.p < 1e-15 ? "below 1e-15" : "of " + PText(r.p);
+  if (!paired) {
+    if (!std::isfinite(r.p)) return "";
+    return fmt::format(
+        "If A and B were alike, chance would set the rates so far apart with a probability {} "
+        "(Fisher’s test).",
+        probability);
+  }
+  std::string words = fmt::format("Only B breaks it in {} pairs, only A in {}, both in {}.", r.only_b_fails,
+                                  r.only_a_fails, r.both_fail);
+  if (r.only_a_fails + r.only_b_fails == 0 || !std::isfinite(r.p)) return words;
+  return words + fmt::format(
+                     " If A and B were alike, chance would split the pairs so unevenly with a "
+                     "probability {} (McNemar’s test).",
+                     probability);
 }
 
-std::string FindingBadge(const MetricComparison& metric) {
-  const std::string_view style = metric.finding == "better"    ? "pass"
-                                 : metric.finding == "worse"   ? "fail"
-                                 : metric.finding == "differs" ? "inconclusive"
-                                                               : "";
-  if (style.empty()) return "<span class=\"soft\">not shown</span>";
-  return fmt::format("<span class=\"badge {}\">{}</span>", style,
-                     metric.finding == "differs" ? "differs" : "B " + metric.finding);
+std::string RequirementsTable(const Comparison& c) {
+  if (c.requirements.empty()) return "";
+  std::vector<const RequirementComparison*> order;
+  for (const RequirementComparison& each : c.requirements) order.push_back(&each);
+  const auto rank = [](const RequirementComparison& r) {
+    return r.finding == "worse" ? 0 : r.finding == "better" ? 1 : 2;
+  };
+  std::stable_sort(order.begin(), order.end(),
+                   [&](const auto* x, const auto* y) { return rank(*x) < rank(*y); });
+  HtmlTable table({{"Finding"},
+                   {"Requirement", false, true},
+                   {"A breaks it in", true},
+                   {"B breaks it in", true},
+                   {"B − A", true},
+                   {"In words"},
+                   {"p, Holm", true}});
+  for (const RequirementComparison* each : order) {
+    const RequirementComparison& r = *each;
+    const auto share = [](std::size_t failures, std::size_t n) {
+      return n == 0 ? std::string("–")
+                    : fmt::format("{} of {}", failures, n) +
+                          Definition(ShareText(static_cast<double>(failures) / static_cast<double>(n)));
+    };
+    const auto percent = [](double value) {
+      if (!std::isfinite(value)) return std::string("–");
+      return value == 0.0 ? std::string("0 %") : fmt::format("{:+.3g} %", 100.0 * value);
+    };
+    table.Row(
+        {FindingBadge(r.finding),
+         "<b>" + HtmlText(DescribeMetric(r.metric).title) + "</b> " +
+             HtmlText(r.words.substr(r.metric.size() + 1)) +
+             (r.in_a && r.in_b ? "" : Definition(fmt::format("required by {} alone", r.in_a ? "A" : "B"))),
+         share(r.failures_a, r.n_a), share(r.failures_b, r.n_b),
+         percent(r.difference) +
+             (std::isfinite(r.interval.lower)
+                  ? Definition(percent(r.interval.lower) + " … " + percent(r.interval.upper))
+                  : ""),
+         TestWords(r, c.pairing.paired), PText(r.p_holm)});
+  }
+  return table.Html("first requirements");
 }
 
 std::string Header(const Comparison& c) {
   const auto found = [&](const char* finding) {
-    return std::count_if(c.metrics.begin(), c.metrics.end(),
-                         [&](const MetricComparison& metric) { return metric.finding == finding; });
+    return std::count_if(c.metrics.begin(), c.metrics.end(), [&](const MetricComparison& metric) {
+      return metric.is_counted && metric.finding == finding;
+    });
   };
+  const auto side = [](const char* letter, const Comparison::Side& s) {
+    return fmt::format("{}: {}, autopilot {}, vehicle {}, {} of {} flights completed", letter,
+                       HtmlText(s.name), HtmlText(s.autopilot), HtmlText(s.vehicle), s.completed, s.flown);
+  };
+  const bool decided = c.finding == "better" || c.finding == "worse" || c.finding == "mixed";
   std::string html = fmt::format(
-      "<header>\n"
-      "<h1>{} against {}</h1>\n"
-      "<p class=\"soft\">B is compared with A. Differences are B minus A.</p>\n"
-      "<div class=\"headline\"><span class=\"badge design\">{}</span><p>{}</p></div>\n"
-      "<div class=\"tiles\">",
-      HtmlText(c.b.name), HtmlText(c.a.name), c.pairing.paired ? "paired" : "unpaired", HtmlText(c.sentence));
-  html += c.pairing.paired ? Tile(std::to_string(c.pairing.shared), "pairs of flights")
-                           : Tile(fmt::format("{} and {}", c.a.flown, c.b.flown), "flights");
+      "<header>\n<h1>{} against {}</h1>\n<p class=\"soft what\">{}<br>{}<br>Differences are B minus A; "
+      "{}.</p>\n"
+      "<div class=\"headline\">{}<p>{}</p></div>\n",
+      HtmlText(c.b.name), HtmlText(c.a.name), side("A", c.a), side("B", c.b),
+      c.pairing.paired
+          ? Term("paired comparison", "paired") + fmt::format(", {} pairs of flights", c.pairing.shared)
+          : "unpaired",
+      decided ? FindingBadge(c.finding) : "<span class=\"badge design\">" + c.finding + "</span>",
+      HtmlText(c.sentence));
+  html += RequirementsTable(c) + "<div class=\"tiles\">";
+  if (c.pairing.paired) {
+    html += Tile(std::to_string(c.harmed.size()), "cases " + Term("harmed")) +
+            Tile(std::to_string(c.rescued.size()), "cases " + Term("rescued"));
+  }
   if (c.independent) {
     html += Tile(std::to_string(found("better")), "metrics in which B is better") +
             Tile(std::to_string(found("worse")), "metrics in which B is worse");
   }
-  if (c.pairing.paired) {
-    html += Tile(std::to_string(c.harmed.size()), "cases harmed") +
-            Tile(std::to_string(c.rescued.size()), "cases rescued");
-  }
+  html += Tile(std::to_string(c.changes.size()), "values of the campaign files differ");
   return html + "</div>\n</header>\n";
 }
 
 std::string ComparedSection(const Comparison& c) {
   std::string html = "<h2 id=\"compared\">Compared campaigns</h2>\n";
-  HtmlTable table({{""}, {"A"}, {"B"}});
+  HtmlTable table({{"", false, true}, {"A"}, {"B"}});
   const auto row = [&](const char* title, const std::string& a, const std::string& b) {
     table.Row({title, HtmlText(a), HtmlText(b)});
   };
@@ -114,59 +199,21 @@ std::string ComparedSection(const Comparison& c) {
   row("Flights", flights(c.a), flights(c.b));
   html += table.Html("ids") + "<p>" + HtmlText(c.pairing.sentence) + "</p>\n";
   if (!c.pairing.changed.empty() && c.pairing.shared > 0) {
-    HtmlTable changed({{"Input that was changed"}, {"Shared cases in which it differs", true}});
+    LongTable changed({{"Input that was changed", false, true}, {"Shared cases in which it differs", true}},
+                      "; compare.json has all of them");
     for (const Pairing::ChangedInput& input : c.pairing.changed)
       changed.Row(
           {InputNames(input.key, input.input), fmt::format("{} of {}", input.cases, c.pairing.shared)});
-    html +=
-        Folded(changed, c.pairing.changed.size(), fmt::format("{} inputs differ", c.pairing.changed.size()));
+    html += changed.Html();
   }
-  html += "<h3>Differences of the two campaign files</h3>\n";
+  html += fmt::format("<h3>Differences of the two campaign files: {}</h3>\n", c.changes.size());
   if (c.changes.empty()) return html + "<p>None.</p>\n";
-  HtmlTable changes({{"Value"}, {"A"}, {"B"}});
+  LongTable changes({{"Value", false, true}, {"A"}, {"B"}}, "; compare.json has all of them");
   for (const CampaignChange& change : c.changes) {
     const auto text = [](const std::string& value) { return value.empty() ? "–" : HtmlText(value); };
     changes.Row({PathCell(change.path), text(change.a), text(change.b)});
   }
-  return html + "<div class=\"breaking\">" +
-         Folded(changes, c.changes.size(), fmt::format("{} values differ", c.changes.size())) + "</div>\n";
-}
-
-std::string RequirementsSection(const Comparison& c) {
-  std::string html = "<h2 id=\"requirements\">Requirements, flight by flight</h2>\n";
-  if (c.requirements.empty()) return html + "<p>Neither campaign states any.</p>\n";
-  for (const RequirementComparison& r : c.requirements) {
-    const auto share = [](std::size_t failures, std::size_t n) {
-      return n == 0 ? std::string("–")
-                    : fmt::format("{} of {} ({})", failures, n,
-                                  PercentText(static_cast<double>(failures) / static_cast<double>(n)));
-    };
-    const auto fact = [](const std::string& title, const std::string& value) {
-      return fmt::format("<div><dt>{}</dt><dd>{}</dd></div>", title, value);
-    };
-    html += fmt::format(
-        "<section class=\"requirement\"><p class=\"claim\"><b>{}</b> {}<br>{}</p>\n<dl class=\"facts\">",
-        HtmlText(DescribeMetric(r.metric).title), HtmlText(r.words.substr(r.metric.size() + 1)),
-        r.in_a && r.in_b ? Code(r.metric)
-                         : Code(r.metric) + fmt::format(" required by {} alone", r.in_a ? "A" : "B"));
-    html += fact("fails in A", share(r.failures_a, r.n_a)) + fact("fails in B", share(r.failures_b, r.n_b));
-    const auto percent = [](double value) {
-      if (!std::isfinite(value)) return BoundText(value);
-      return fmt::format("{:+.4g} %", 100.0 * value + 0.0);
-    };
-    html += fact("difference of the rates", percent(r.difference));
-    if (std::isfinite(r.interval.lower))
-      html += fact("its 95 % limits", percent(r.interval.lower) + " … " + percent(r.interval.upper));
-    if (c.pairing.paired) {
-      html += fact("only A fails", std::to_string(r.only_a_fails)) +
-              fact("only B fails", std::to_string(r.only_b_fails)) +
-              fact("both fail", std::to_string(r.both_fail)) +
-              fact("both meet it", std::to_string(r.both_meet));
-    }
-    html += fact(c.pairing.paired ? "McNemar’s test, p" : "Fisher’s test, p", PText(r.p)) +
-            fact("after Holm", PText(r.p_holm)) + "</dl></section>\n";
-  }
-  return html;
+  return html + "<div class=\"breaking\">" + changes.Html() + "</div>\n";
 }
 
 /// The commands that fly a case again in both campaigns. A campaign that cannot be replayed has none.
@@ -184,28 +231,26 @@ std::string CasesTable(const std::vector<ChangedCase>& cases, const Comparison& 
                        const char* what) {
   std::string html = fmt::format("<h3>{}: {}</h3>\n", title, cases.size());
   if (cases.empty()) return html + fmt::format("<p>{}</p>\n", what);
-  HtmlTable table({{"Case", true}, {"Requirement"}, {"A", true}, {"B", true}, {"Replay both"}});
+  LongTable table({{"Case", true, true}, {"Requirement"}, {"A", true}, {"B", true}, {"Replay both"}},
+                  cases.size() > kListedCases
+                      ? fmt::format(" of the first {} cases; compare.json has all of them", kListedCases)
+                      : std::string());
   std::size_t listed = 0;
   for (const ChangedCase& one : cases) {
     if (++listed > kListedCases) break;
     for (std::size_t i = 0; i < one.reasons.size(); ++i) {
       const ChangedCase::Reason& reason = one.reasons[i];
       const auto value = [](double number, Outcome outcome) {
-        if (std::isfinite(number)) return ReadableText(number);
+        if (std::isfinite(number)) return RoundedText(number);
         std::string words = OutcomeName(outcome);
         std::replace(words.begin(), words.end(), '_', ' ');
         return words;
       };
-      table.Row({i == 0 ? std::to_string(one.case_index) : "", HtmlText(reason.requirement),
-                 value(reason.a, one.outcome_a), value(reason.b, one.outcome_b),
-                 i > 0 ? "" : ReplayBoth(c, one.case_index)});
+      table.Row({std::to_string(one.case_index), HtmlText(reason.requirement), value(reason.a, one.outcome_a),
+                 value(reason.b, one.outcome_b), i > 0 ? "" : ReplayBoth(c, one.case_index)});
     }
   }
-  return html +
-         Folded(table, cases.size(),
-                cases.size() > kListedCases
-                    ? fmt::format("the first {}; <code>compare.json</code> has all of them", kListedCases)
-                    : "all of them");
+  return html + table.Html();
 }
 
 std::string CasesSection(const Comparison& c) {
@@ -213,14 +258,13 @@ std::string CasesSection(const Comparison& c) {
   if (!c.pairing.paired)
     return html + "<p>The campaigns are not paired: no case of one has a partner in the other.</p>\n";
   html +=
-      "<p>Harmed: the case meets a requirement in A and fails it in B, or its flight is lost in B. Rescued: "
-      "the reverse. Run the commands in the folder where the comparison was started. They check that the "
+      "<p>" + Term("harmed", "Harmed") +
+      ": the case meets a requirement in A and breaks it in B, or its flight "
+      "is lost in B. " +
+      Term("rescued", "Rescued") +
+      ": the reverse. Run the commands in the folder where the comparison was started. They check that the "
       "flight is the same to the last bit.</p>\n";
   return html + CasesTable(c.harmed, c, "Harmed", "None.") + CasesTable(c.rescued, c, "Rescued", "None.");
-}
-
-bool IsPart(const std::string& metric) {
-  return metric.find("_stage") != std::string::npos || metric.find("_coast") != std::string::npos;
 }
 
 std::string MetricsSection(const Comparison& c) {
@@ -231,7 +275,7 @@ std::string MetricsSection(const Comparison& c) {
       "above 5 %. This does not show that the campaigns are equal.</p>\n",
       c.pairing.paired ? "The difference is the median of B minus A over the pairs."
                        : "The difference is that of the medians.");
-  HtmlTable table({{"Metric"},
+  HtmlTable table({{"Metric", false, true},
                    {"Unit", true},
                    {"Median A", true},
                    {"Median B", true},
@@ -254,14 +298,15 @@ std::string MetricsSection(const Comparison& c) {
       title += Definition(fmt::format("lost: {} in A, {} in B", metric.lost_a, metric.lost_b));
     if (metric.undefined > 0) title += Definition(fmt::format("undefined in {}", metric.undefined));
     table.Row(
-        {title, HtmlText(metric.info.unit), ReadableText(metric.median_a), ReadableText(metric.median_b),
-         DifferenceCell(metric.difference, metric.interval), tail("p95", "p05"), tail("p99", "p01"),
+        {title, HtmlText(metric.info.unit), ValueText(metric.median_a, metric.difference),
+         ValueText(metric.median_b, metric.difference), DifferenceCell(metric.difference, metric.interval),
+         tail("p95", "p05"), tail("p99", "p01"),
          c.pairing.paired ? metric.info.worse == Worse::kNeither
                                 ? fmt::format("{} smaller<br>{} larger", metric.b_better, metric.a_better)
                                 : fmt::format("{} : {}", metric.b_better, metric.a_better)
                           : fmt::format("{}, {}", metric.n_a, metric.n_b),
-         PText(metric.p_holm), FindingBadge(metric)},
-        IsPart(metric.metric) ? "part" : "");
+         PText(metric.p_holm), FindingBadge(metric.finding)},
+        metric.info.is_part ? "part screen" : "");
   }
   return html + table.Html("metrics");
 }
@@ -308,8 +353,17 @@ std::string FiguresSection(const Comparison& c, const CaseColumns& a, const Case
       "<h2 id=\"figures\">Distributions side by side</h2>\n<p>All flights of each campaign, paired or not; a "
       "lost "
       "flight lies beyond any value.</p>\n<div class=\"figures\">\n";
+  std::string same;  // one value in all flights of both has no curve
   for (const MetricComparison* metric : ShownMetrics(c)) {
     const MetricInfo& info = metric->info;
+    std::vector<double> values = SortedFinite(CompletedValues(a, metric->metric));
+    const std::vector<double> of_b = SortedFinite(CompletedValues(b, metric->metric));
+    values.insert(values.end(), of_b.begin(), of_b.end());
+    if (!values.empty() && std::count(values.begin(), values.end(), values.front()) == std::ssize(values)) {
+      same += fmt::format("{}{} {}", same.empty() ? "" : "; ", HtmlText(info.title),
+                          HtmlText(WithUnit(values.front(), info.unit)));
+      continue;
+    }
     const std::string axis = info.title + (info.worse == Worse::kFartherFromZero ? ", magnitude" : "") +
                              (info.unit.empty() ? "" : ", " + info.unit);
     const bool smaller = info.worse == Worse::kSmaller;
@@ -346,7 +400,9 @@ std::string FiguresSection(const Comparison& c, const CaseColumns& a, const Case
     html += Figure(pairs.Svg("B against A, pair by pair: " + info.title),
                    title + ": pairs in which both flights were completed.");
   }
-  return html + "</div>\n";
+  html += "</div>\n";
+  if (!same.empty()) html += "<p>The same in all flights of both: " + same + ".</p>\n";
+  return html;
 }
 
 std::string ChangesSection(const Comparison& c) {
@@ -355,7 +411,7 @@ std::string ChangesSection(const Comparison& c) {
   html +=
       "<p>The pairs in which B loses most and gains most, with or without a limit between the two "
       "values.</p>\n";
-  HtmlTable table({{"Metric"}, {""}, {"Case", true}, {"A", true}, {"B", true}, {"Replay both"}});
+  HtmlTable table({{"Metric"}, {"B is"}, {"Case", true, true}, {"A", true}, {"B", true}, {"Replay both"}});
   for (const MetricComparison* metric : ShownMetrics(c)) {
     bool titled = false;
     const bool neither = metric->info.worse == Worse::kNeither;
@@ -363,9 +419,7 @@ std::string ChangesSection(const Comparison& c) {
                                       std::pair{&metric->gains, neither ? "smaller" : "better"}}) {
       for (std::size_t i = 0; i < std::min<std::size_t>(3, pairs->size()); ++i) {
         const MetricComparison::Pair& pair = (*pairs)[i];
-        const auto value = [](double number) {
-          return std::isfinite(number) ? ReadableText(number) : "lost";
-        };
+        const auto value = [](double number) { return std::isfinite(number) ? RoundedText(number) : "lost"; };
         table.Row({titled ? ""
                           : HtmlText(metric->info.title +
                                      (metric->info.unit.empty() ? "" : ", " + metric->info.unit)),
@@ -421,18 +475,20 @@ std::string MethodsSection(const Comparison& c) {
 }  // namespace
 
 std::string ComparisonPage(const Comparison& comparison, const CaseColumns& a, const CaseColumns& b) {
-  std::string page = fmt::format(
-      "<!DOCTYPE html>\n<html lang=\"en\">\n<head>\n<meta charset=\"utf-8\">\n<meta name=\"viewport\" "
-      "content=\"width=device-width, initial-scale=1\">\n<title>{} against {} – dispersa</title>\n<style>{}\n"
-      ".ids code, .breaking td, .breaking td {{ white-space: normal; overflow-wrap: anywhere; }}\n"
-      ".breaking td code {{ white-space: normal; overflow-wrap: normal; }}\n"
-      ".metrics td:first-child {{ min-width: 11em; }} .metrics td.n .definition {{ white-space: normal; }}\n"
-      "</style>\n</head>\n<body>\n",
-      HtmlText(comparison.b.name), HtmlText(comparison.a.name), StyleSheet());
-  page += Header(comparison) + kComparisonNavigation + ComparedSection(comparison) +
-          RequirementsSection(comparison) + CasesSection(comparison) + MetricsSection(comparison) +
-          FiguresSection(comparison, a, b) + ChangesSection(comparison) + MethodsSection(comparison);
-  return page + "</body>\n</html>\n";
+  constexpr char kMoreStyle[] =
+      "\n.ids code, .breaking td, .breaking th { white-space: normal; overflow-wrap: anywhere; }\n"
+      ".breaking table { table-layout: fixed; } .breaking td code, .breaking th code { white-space: normal; "
+      "overflow-wrap: normal; }\n"
+      ".metrics tbody th { min-width: 11em; } .metrics td.n .definition { white-space: normal; }\n"
+      "table.requirements tbody td:nth-child(6) { width: 38%; } table.requirements th:nth-child(2) { "
+      "min-width: 10em; }\n";
+  const std::string title = comparison.b.name + " against " + comparison.a.name;
+  std::string page = PageHead(title, title, kMoreStyle) + "<main>\n" + Header(comparison) +
+                     kComparisonNavigation + CasesSection(comparison) + MetricsSection(comparison) +
+                     FiguresSection(comparison, a, b) + ChangesSection(comparison) +
+                     ComparedSection(comparison) + MethodsSection(comparison);
+  page += GlossarySection(page);
+  return page + "</main>\n<script>" + std::string(ChartScript()) + "</script>\n</body>\n</html>\n";
 }
 
 }  // namespace dispersa

@@ -43,7 +43,7 @@ std::string UncertaintyWords(const CampaignSummary& summary) {
 }  // namespace
 
 std::string CredibilitySection(const CampaignSummary& summary) {
-  HtmlTable table({{"Factor"}, {"Shown here"}, {"Not shown here because"}});
+  HtmlTable table({{"Factor", false, true}, {"Shown here"}, {"Not shown here because"}});
   table.Row({"Data pedigree",
              "All values of vehicle, reference and autopilot stand in <code>campaign.yaml</code>.",
              "Where the values come from is known to their authors alone."});
@@ -58,15 +58,17 @@ std::string CredibilitySection(const CampaignSummary& summary) {
   table.Row({"Results robustness", CausesWords(summary),
              "Assumptions that are not dispersed are not varied; <code>dispersa compare</code> shows their "
              "effect."});
-  table.Row({"Use history", "The first page lists earlier attempts at this design in the same folder.",
+  table.Row({"M&amp;S history (use history)",
+             "The first page lists earlier attempts at this design in the same folder.",
              "Uses elsewhere leave no trace here."});
-  table.Row({"Process and product management",
+  table.Row({"M&amp;S process and product management",
              fmt::format("Campaign {}, flights {}. Every case can be flown again and compared by its bits.",
                          Code(summary.id.substr(0, 12)), Code(summary.flight_id.substr(0, 12))),
              "Reviews, qualifications and change control are kept outside."});
-  return "<h2 id=\"credibility\">Credibility</h2>\n<p>The factors of NASA-STD-7009 (names from memory of "
-         "revisions A "
-         "and B). This table is no assessment; it says what this campaign contributes to one.</p>\n" +
+  return "<h2 id=\"credibility\">Credibility</h2>\n<p>The factors that NASA-STD-7009B names, from "
+         "memory: its text was not at hand. This table is no assessment. It says what this campaign "
+         "contributes "
+         "to one.</p>\n" +
          table.Html();
 }
 

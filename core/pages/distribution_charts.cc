@@ -189,15 +189,9 @@ std::string DistributionFigures(const std::string& metric, const CampaignSummary
   const std::string without =
       missing > 0 ? fmt::format(" {} of {} cases are lost or do not define it.", missing, cases.rows()) : "";
   return Figure(bars.Svg("Histogram of " + info.title),
-                title + ": histogram of the completed flights." + without) +
+                title + ": histogram of the completed flights." + without, "screen") +
          Figure(tail.Svg("Exceedance of " + info.title),
-                title + ": share of the cases " + (above ? "at most" : "beyond") +
-                    " each value, with its exact confidence of 95 % at each value taken alone (Clopper and "
-                    "Pearson)." +
-                    (requirements.empty()
-                         ? ""
-                         : " The curve should fall below the allowed share before the limit; the bound "
-                           "is the value that decides."));
+                title + ": share of the cases " + (above ? "at most" : "beyond") + " each value." + without);
 }
 
 }  // namespace dispersa

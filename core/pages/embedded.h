@@ -8,10 +8,16 @@ namespace dispersa {
 /// page.css, for the <style> of every page.
 std::string_view StyleSheet();
 
-/// report.js, for the report's <script>, after the element of CaseData(). The page shows the same content
-/// without it. The script names the case under the pointer, marks it in every chart and table, copies its
-/// replay command at a click, and zooms. It reads the axes of charts from the attributes that SvgChart
-/// writes.
+/// chart_data.js, for the <script> of every page with charts: the keyboard reaches the data of each.
+std::string_view ChartScript();
+
+/// report.js, for the report's <script>, after ChartScript() and the element of CaseData(). The page shows
+/// the same content without it. The script names the case under the pointer, marks it in every chart and
+/// table, copies its replay command at a click, and zooms. It reads the axes of charts from the attributes
+/// that SvgChart writes.
 std::string_view ReportScript();
+
+/// glossary.md of the docs site.
+std::string_view GlossarySource();
 
 }  // namespace dispersa

@@ -3,8 +3,10 @@
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <utility>
 #include <vector>
 
+#include "core/pages/glossary.h"
 #include "core/pages/html_parts.h"
 #include "core/pages/report_sections.h"
 #include "core/results/metric_catalogue.h"
@@ -61,66 +63,144 @@ std::string HeadSentence(const CampaignSummary& summary) {
 std::string Facts(const CampaignSummary& summary) {
   const RunInfo& run = summary.standing.run;
   const std::string file = run.vehicle_file.empty() ? "" : " (" + HtmlText(run.vehicle_file) + ")";
-  const std::string line = fmt::format(
-      "{} · vehicle {}{} · reference {} · autopilot {} · {}, {} cases, seed {}", HtmlText(summary.name),
-      HtmlText(summary.vehicle), file, HtmlText(summary.reference), HtmlText(summary.autopilot),
-      SamplingMethodTitle(summary.sampling), summary.cases, summary.seed);
-  std::string second;
-  const auto add = [&](const std::string& text) { second += (second.empty() ? "" : " · ") + text; };
-  if (!run.started_utc.empty()) add("flown " + HtmlText(run.started_utc.substr(0, 16)) + " UTC");
-  if (run.flying_s > 0.0) add(fmt::format("in {} s", FixedText(run.flying_s, run.flying_s < 10.0 ? 1 : 0)));
+  std::string line =
+      fmt::format("vehicle {}{} · reference {} · autopilot {} · {}, {} cases, seed {}",
+                  HtmlText(summary.vehicle), file, HtmlText(summary.reference), HtmlText(summary.autopilot),
+                  SamplingMethodTitle(summary.sampling), summary.cases, summary.seed);
+  if (!run.started_utc.empty()) {
+    std::string date = run.started_utc.substr(0, 16);
+    std::replace(date.begin(), date.end(), 'T', ' ');
+    line += " · flown " + HtmlText(date) + " UTC";
+  }
+  if (run.flying_s >= 0.05)
+    line += fmt::format(" · in {} s", FixedText(run.flying_s, run.flying_s < 10.0 ? 1 : 0));
   if (!run.user.empty())
-    add("by " + HtmlText(run.user) + (run.host.empty() ? "" : " on " + HtmlText(run.host)));
-  add("engine " + Code(summary.engine.substr(0, 12)));
-  add("campaign id " + Code(summary.id.substr(0, 12)));
-  return "<p class=\"soft\">" + line + "<br>" + second + "</p>\n";
+    line += " · by " + HtmlText(run.user) + (run.host.empty() ? "" : " on " + HtmlText(run.host));
+  return "<p class=\"soft what\">" + line + " · engine " + Code(summary.engine.substr(0, 12)) +
+         " · campaign id " + Code(summary.id.substr(0, 12)) + "</p>\n";
 }
 
 int Rank(const std::string& verdict) {
   return verdict == "fail" ? 0 : verdict == "not_evidence" ? 1 : verdict == "inconclusive" ? 2 : 3;
 }
 
-std::string LimitCell(const RequirementSummary& requirement, const MetricInfo& info) {
+/// As a board calls it: the project's own number, or what is measured.
+std::string NameOf(const RequirementSummary& requirement) {
+  return requirement.id.empty() ? DescribeMetric(requirement.metric).title : requirement.id;
+}
+
+std::string LimitCell(const RequirementSummary& requirement, const MetricInfo& info,
+                      const std::string& before) {
   std::string cell = requirement.id.empty() ? "" : Code(requirement.id) + " ";
   cell += "<b>" + HtmlText(info.title) + "</b> " + HtmlText(LimitWords(requirement, info.unit));
-  cell += requirement.every_case ? " in every case"
-                                 : fmt::format(" for {} of flights", PercentText(requirement.probability));
+  if (requirement.every_case) cell += " in every case";
+  if (!before.empty()) cell += "<span class=\"definition\"><b>" + HtmlText(before) + "</b></span>";
   std::string words = requirement.by_default ? "required because the vehicle gives limits" : "";
-  for (const auto& [name, text] : {std::pair<const char*, const std::string&>{"why", requirement.rationale},
-                                   {"source", requirement.source}}) {
-    if (!text.empty()) words += fmt::format("{}{}: {}", words.empty() ? "" : "; ", name, HtmlText(text));
-  }
-  if (!words.empty()) cell += "<span class=\"definition\">" + words + "</span>";
+  for (const std::string& text : {requirement.source, requirement.rationale})
+    if (!text.empty()) words += (words.empty() ? "" : " · ") + HtmlText(text);
+  // One line; the section of requirements has all of it.
+  if (!words.empty()) cell += "<span class=\"definition clip\">" + words + "</span>";
   return cell;
 }
 
 std::string MarginCell(const RequirementSummary& requirement, const MetricInfo& info) {
   if (!requirement.bound) return "–";
-  return fmt::format("{}<span class=\"definition\">{} keep to {}</span>",
-                     WithUnit(*requirement.margin, info.unit), PercentText(requirement.probability),
-                     WithUnit(*requirement.bound, info.unit));
+  const std::string unit = info.unit.empty() ? "" : " " + HtmlText(info.unit);
+  return fmt::format("{}{}<span class=\"definition\">{} {}</span>",
+                     RoundedText(*requirement.margin, Rounding::kDown, 0.0), unit,
+                     PercentText(requirement.probability), BoundWords(requirement, HtmlText(info.unit)));
+}
+
+/// "required before the flights: below 0.1 for 99.73 % of flights at 10 % risk; verdict: fail".
+std::string BeforeWords(const Standing::Dropped& dropped) {
+  std::string words = dropped.words;
+  if (const std::size_t metric = words.find(' '); metric != std::string::npos) words.erase(0, metric + 1);
+  return fmt::format("required before the flights: {}; verdict: {}", words,
+                     dropped.verdict.empty() ? "none" : dropped.verdict);
+}
+
+/// The requirement that took a dropped one's place: stated after the flights, of the same metric.
+std::vector<int> Successors(const CampaignSummary& summary) {
+  std::vector<int> of_dropped(summary.standing.dropped.size(), -1);
+  for (std::size_t i = 0; i < summary.requirements.size(); ++i) {
+    if (!summary.standing.requirements[i].post_hoc) continue;
+    for (std::size_t d = 0; d < of_dropped.size(); ++d) {
+      if (of_dropped[d] >= 0 ||
+          !summary.standing.dropped[d].words.starts_with(summary.requirements[i].metric + " "))
+        continue;
+      of_dropped[d] = static_cast<int>(i);
+      break;
+    }
+  }
+  return of_dropped;
 }
 
 std::string RequirementsTable(const CampaignSummary& summary) {
-  if (summary.requirements.empty()) return "";
+  const Standing& standing = summary.standing;
+  if (summary.requirements.empty() && standing.dropped.empty()) return "";
   std::vector<std::size_t> order;
   for (std::size_t i = 0; i < summary.requirements.size(); ++i) order.push_back(i);
   std::stable_sort(order.begin(), order.end(), [&](std::size_t a, std::size_t b) {
-    return Rank(summary.standing.requirements[a].verdict) < Rank(summary.standing.requirements[b].verdict);
+    return Rank(standing.requirements[a].verdict) < Rank(standing.requirements[b].verdict);
   });
-  HtmlTable table({{"Verdict"}, {"Requirement"}, {"Result"}, {"Margin", true}, {"Attained risk", true}});
+  const std::vector<int> successors = Successors(summary);
+  HtmlTable table({{"Verdict"},
+                   {"Requirement", false, true},
+                   {"Result"},
+                   {Term("margin", "Margin"), true},
+                   {Term("attained risk", "Attained risk"), true}});
+  for (std::size_t d = 0; d < successors.size(); ++d) {
+    const Standing::Dropped& dropped = standing.dropped[d];
+    if (successors[d] >= 0) continue;
+    table.Row({VerdictBadge("post hoc"), HtmlText(dropped.words),
+               fmt::format("Left out after the first flight. Its last verdict: {}.",
+                           dropped.verdict.empty() ? "none" : dropped.verdict),
+               "–", "–"});
+  }
   for (const std::size_t i : order) {
     const RequirementSummary& requirement = summary.requirements[i];
-    const Standing::Requirement& standing = summary.standing.requirements[i];
+    const Standing::Requirement& one = standing.requirements[i];
     const MetricInfo info = DescribeMetric(requirement.metric);
-    std::string result = HtmlText(requirement.sentence);
-    if (!standing.reason.empty()) result = "<b>" + HtmlText(standing.reason) + "</b> " + result;
-    table.Row({VerdictBadge(standing.post_hoc && standing.verdict == "not_evidence" ? "post hoc"
-                                                                                    : standing.verdict),
-               LimitCell(requirement, info), result, MarginCell(requirement, info),
-               requirement.attained_risk ? PercentText(*requirement.attained_risk) : "–"});
+    std::string before = one.post_hoc ? "not required before the flights" : "";
+    for (std::size_t d = 0; d < successors.size(); ++d)
+      if (successors[d] == static_cast<int>(i)) before = BeforeWords(standing.dropped[d]);
+    table.Row({VerdictBadge(one.post_hoc && one.verdict == "not_evidence" ? "post hoc" : one.verdict),
+               LimitCell(requirement, info, before), HtmlText(requirement.sentence),
+               MarginCell(requirement, info),
+               // A probability that doubles round to 0 is small, not 0.
+               requirement.attained_risk ? HtmlText(ShareText(std::max(*requirement.attained_risk, 1e-300)))
+                                         : "–"});
   }
-  return table.Html("first");
+  return table.Html("first judged");
+}
+
+/// What must be known before any number, each thing once. The changes of requirements stand in their rows.
+std::vector<std::string> Notes(const CampaignSummary& summary) {
+  const Standing& standing = summary.standing;
+  std::vector<std::string> notes;
+  const auto changed = std::count_if(standing.requirements.begin(), standing.requirements.end(),
+                                     [](const Standing::Requirement& one) { return one.post_hoc; });
+  if (changed > 0 || !standing.dropped.empty())
+    notes.push_back(
+        "Post hoc: requirements were changed after the first flight. Their rows say how. Flights with "
+        "another "
+        "seed can show that they are met.");
+  std::vector<std::pair<std::string, std::string>> reasons;  // and of which requirements
+  for (std::size_t i = 0; i < standing.requirements.size(); ++i) {
+    const Standing::Requirement& one = standing.requirements[i];
+    if (one.reason.empty() || one.post_hoc) continue;
+    const auto same = std::find_if(reasons.begin(), reasons.end(),
+                                   [&](const auto& known) { return known.first == one.reason; });
+    const std::string name = NameOf(summary.requirements[i]);
+    if (same == reasons.end())
+      reasons.emplace_back(one.reason, name);
+    else
+      same->second += ", " + name;
+  }
+  for (const auto& [reason, names] : reasons) notes.push_back(names + ": " + reason);
+  for (std::string& note : CampaignNotes(standing)) notes.push_back(std::move(note));
+  for (std::string& warning : Warnings(summary)) notes.push_back(std::move(warning));
+  return notes;
 }
 
 std::string List(const char* list_class, const std::vector<std::string>& items) {
@@ -144,15 +224,17 @@ std::string FirstPage(const Campaign& campaign, const CampaignSummary& summary) 
       IsIndependent(summary.sampling) ? "" : "<span class=\"badge design\">design study</span>",
       summary.beyond_limits == 0 ? "" : "<span class=\"badge fail\">structural limit exceeded</span>",
       certain_fail ? VerdictBadge("fail") : "", HeadSentence(summary));
-  std::vector<std::string> notes = StandingNotes(standing, summary);
-  for (std::string& warning : Warnings(summary)) notes.push_back(std::move(warning));
-  html += List("warnings", notes);
+  html += List("warnings", Notes(summary));
   html += RequirementsTable(summary);
+  if (const std::string advice = AdviceTogether(summary); !advice.empty())
+    html += "<p class=\"advice\">" + HtmlText(advice) + "</p>\n";
   if (!campaign.assumptions.empty())
-    html += "<p class=\"assumed\"><b>Assumptions of the campaign</b></p>\n" +
-            List("assumptions", campaign.assumptions);
+    html += "<div class=\"assumed\"><b>Assumptions of the campaign</b>" +
+            List("assumptions", campaign.assumptions) + "</div>\n";
   if (IsIndependent(summary.sampling) && !summary.requirements.empty())
-    html += "<p class=\"soft\">Attempts made in other folders are not known here.</p>\n";
+    html += "<p class=\"soft small\">" + Term("attempt", "Attempts") +
+            " made in other folders are not known here.</p>\n";
+  html += "<p class=\"sign\">Reviewed by: <span></span> Date: <span></span></p>\n";
   return html + "</header>\n<!-- run:end -->\n";
 }
 

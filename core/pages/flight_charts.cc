@@ -111,9 +111,7 @@ std::string BandFigure(const BandView& view, const FlightHistories& histories, c
       chart.HorizontalLimit(-requirement.limit, "");
     }
   }
-  std::string figure = Figure(chart.Svg(caption), HtmlText(caption));
-  if (view.width > 600) figure.replace(0, 7, "<figure class=\"wide\"");
-  return figure;
+  return Figure(chart.Svg(caption), HtmlText(caption), view.width > 600 ? "wide" : "");
 }
 
 /// The last time at which dynamic pressure is above kThinAir_pa, and a little more.
@@ -271,7 +269,7 @@ std::string WorstFigures(const FlightHistories& histories, const CampaignSummary
       chart.CaseLine(time_s, values, fmt::format("line-{}", i), shown[i]);
     }
     const std::string caption = fmt::format("Worst cases over the envelope: {}.", view.label);
-    figures += "<figure class=\"wide\"" + Figure(chart.Svg(caption), HtmlText(caption)).substr(7);
+    figures += Figure(chart.Svg(caption), HtmlText(caption), figures.empty() ? "wide" : "wide screen");
   }
   return figures.empty() ? "" : "<div class=\"figures\">\n" + figures + "</div>\n";
 }

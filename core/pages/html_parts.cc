@@ -40,28 +40,35 @@ std::string WithUnit(double value, const std::string& unit) {
 void HtmlTable::Row(const std::vector<std::string>& cells, std::string_view row_class) {
   rows_ += row_class.empty() ? std::string("<tr>") : fmt::format("<tr class=\"{}\">", row_class);
   for (std::size_t i = 0; i < cells.size(); ++i) {
-    rows_ += fmt::format("<td{}>{}</td>", columns_[i].number ? " class=\"n\"" : "", cells[i]);
+    const char* style = columns_[i].number ? " class=\"n\"" : "";
+    rows_ += columns_[i].names_row ? fmt::format("<th scope=\"row\"{}>{}</th>", style, cells[i])
+                                   : fmt::format("<td{}>{}</td>", style, cells[i]);
   }
   rows_ += "</tr>\n";
 }
 
 void HtmlTable::Wide(const std::string& cell, std::string_view row_class) {
-  rows_ +=
-      fmt::format("<tr class=\"{}\"><td colspan=\"{}\">{}</td></tr>\n", row_class, columns_.size(), cell);
+  rows_ += fmt::format("<tr class=\"{}\"><th scope=\"rowgroup\" colspan=\"{}\">{}</th></tr>\n", row_class,
+                       columns_.size(), cell);
 }
 
 std::string HtmlTable::Html(std::string_view table_class) const {
   std::string head;
+  bool titled = false;
   for (const Column& column : columns_) {
-    head += fmt::format("<th scope=\"col\"{}>{}</th>", column.number ? " class=\"n\"" : "", column.title);
+    const char* style = column.number ? " class=\"n\"" : "";
+    titled = titled || !column.title.empty();
+    head += column.title.empty() ? fmt::format("<td{}></td>", style)
+                                 : fmt::format("<th scope=\"col\"{}>{}</th>", style, column.title);
   }
-  return fmt::format(
-      "<div class=\"scroll\"><table{}><thead><tr>{}</tr></thead>\n<tbody>\n{}</tbody></table></div>\n",
-      table_class.empty() ? "" : fmt::format(" class=\"{}\"", table_class), head, rows_);
+  head = titled ? "<thead><tr>" + head + "</tr></thead>\n" : "";
+  return fmt::format("<div class=\"scroll\"><table{}>{}<tbody>\n{}</tbody></table></div>\n",
+                     table_class.empty() ? "" : fmt::format(" class=\"{}\"", table_class), head, rows_);
 }
 
-std::string Figure(const std::string& svg, const std::string& caption_html) {
-  return fmt::format("<figure>{}<figcaption>{}</figcaption></figure>\n", svg, caption_html);
+std::string Figure(const std::string& svg, const std::string& caption_html, std::string_view style) {
+  return fmt::format("<figure{}>{}<figcaption>{}</figcaption></figure>\n",
+                     style.empty() ? "" : fmt::format(" class=\"{}\"", style), svg, caption_html);
 }
 
 std::string VerdictBadge(std::string_view verdict) {

@@ -7,12 +7,14 @@
 
 namespace dispersa {
 
-/// A table whose columns are text (left) or numbers (right). Cells are HTML already.
+/// A table whose columns are text (left) or numbers (right). Cells are HTML already. Without any title it has
+/// no head.
 class HtmlTable {
  public:
   struct Column {
     std::string title;
     bool number = false;
+    bool names_row = false;  ///< its cells are heads of their rows
   };
 
   explicit HtmlTable(std::vector<Column> columns) : columns_(std::move(columns)) {}
@@ -28,8 +30,8 @@ class HtmlTable {
   std::string rows_;
 };
 
-/// A chart with its caption.
-std::string Figure(const std::string& svg, const std::string& caption_html);
+/// A chart with what to see in it. `style`: "wide" over the page, "screen" not in print.
+std::string Figure(const std::string& svg, const std::string& caption_html, std::string_view style = "");
 
 /// "pass", "fail", "inconclusive", "not_evidence", "post hoc", "incomplete" as a coloured label that is also
 /// readable without colour.

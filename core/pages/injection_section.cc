@@ -15,12 +15,16 @@ std::string InjectionSection(const InjectionSummary& injection) {
       "<code>summary.json</code> has the covariance. If the scatter is normal, an ellipsoid contains the "
       "stated share. The share of these flights inside shows whether it is normal.</p>\n",
       scatter.n);
-  HtmlTable spread(
-      {{""}, {"Mean", true}, {"Std", true}, {"Correlation with altitude", true}, {"with velocity", true}});
+  HtmlTable spread({{"", false, true},
+                    {"Mean", true},
+                    {"Std", true},
+                    {"Correlation with altitude", true},
+                    {"with velocity", true}});
   for (std::size_t i = 0; i < kInjectionMetrics.size(); ++i) {
     const MetricInfo info = DescribeMetric(kInjectionMetrics[i]);
-    std::vector<std::string> row = {HtmlText(info.title + ", " + info.unit), ReadableText(scatter.mean[i]),
-                                    ReadableText(std::sqrt(scatter.covariance[i][i]))};
+    const double deviation = std::sqrt(scatter.covariance[i][i]);
+    std::vector<std::string> row = {HtmlText(info.title + ", " + info.unit),
+                                    ScatterText(scatter.mean[i], deviation), RoundedText(deviation)};
     for (std::size_t j = 0; j < 2; ++j) {
       const double variances = scatter.covariance[i][i] * scatter.covariance[j][j];
       row.push_back(
@@ -31,11 +35,11 @@ std::string InjectionSection(const InjectionSummary& injection) {
   html += spread.Html("narrow");
   if (injection.containment.empty()) return html + "<p>Too few flights, or no spread, for ellipsoids.</p>\n";
   HtmlTable contained(
-      {{"Stated", true}, {"Flights inside", true}, {"Share", true}, {"its 95 % limits", true}});
+      {{"Stated", true, true}, {"Flights inside", true}, {"Share", true}, {"its 95 % limits", true}});
   for (const Containment& one : injection.containment) {
-    contained.Row({PercentText(one.stated), fmt::format("{} of {}", one.inside, scatter.n),
-                   PercentText(one.empirical),
-                   PercentText(one.limits.lower) + " … " + PercentText(one.limits.upper)});
+    contained.Row(
+        {PercentText(one.stated), fmt::format("{} of {}", one.inside, scatter.n), ShareText(one.empirical),
+         ShareText(one.limits.lower, Rounding::kDown) + " … " + ShareText(one.limits.upper, Rounding::kUp)});
   }
   return html + contained.Html("narrow");
 }

@@ -112,7 +112,7 @@ std::string BeamText(const StructureBeam& beam) {
 std::string ModesPage(const Vehicle& vehicle, const std::vector<StackModes>& stacks) {
   const std::string title = vehicle.name + ": bending modes";
   std::string page =
-      PageHead(title, title, kMoreStyle) + "<h1>" + HtmlText(title) + "</h1>\n<p>" +
+      PageHead(title, title, kMoreStyle) + "<main>\n<h1>" + HtmlText(title) + "</h1>\n<p>" +
       HtmlText(BeamText(*vehicle.structure_beam)) +
       ". Deflections are scaled to a largest of 1; a slope is the rotation of the cross-section by the "
       "station, which grows aft. A mode is the same one at every propellant level, by the modal "
@@ -126,7 +126,7 @@ std::string ModesPage(const Vehicle& vehicle, const std::vector<StackModes>& sta
       page += ShapeFigure(vehicle, stack, plane) + FrequencyFigure(stack, plane);
     page += "</div>\n" + ModeTable(vehicle, stack);
   }
-  return page + "</body>\n</html>\n";
+  return page + "</main>\n</body>\n</html>\n";
 }
 
 }  // namespace dispersa

@@ -1,4 +1,3 @@
-"use strict";
 (() => {
   const data = JSON.parse(document.getElementById("cases").textContent);
   const rowOf = new Map(data.cases.map((index, row) => [index, row]));
@@ -11,34 +10,17 @@
   document.body.insertAdjacentHTML("beforeend", '<div id="tip" class="tip" hidden></div>');
   const tip = document.getElementById("tip");
 
-  // An axis as the chart wrote it: value to position and back.
-  function Axis(text) {
-    const [low, high, from, to, scale, percent] = text.split(" ");
-    const log = scale === "log", f = log ? Math.log10 : v => v;
-    const a = f(+low), b = f(+high), p = +from, q = +to;
-    return {log, percent: percent === "percent",
-            at: v => p + (q - p) * Math.min(1, Math.max(0, (f(v) - a) / (b - a))),
-            value: x => { const u = a + (b - a) * (x - p) / (q - p); return log ? 10 ** u : u; }};
-  }
-
-  // A path's first point, and the sums of its steps.
-  function Points(path) {
-    const numbers = path.match(/-?[\d.]+/g).map(Number), points = [];
-    for (let i = 0, x = 0, y = 0; i < numbers.length; i += 2) points.push([x += numbers[i], y += numbers[i + 1]]);
-    return points;
-  }
-
   const charts = [...document.querySelectorAll("svg.chart[data-x]")].map(svg => {
     const plot = svg.querySelector(".plot"), v = plot.viewBox.baseVal;
     plot.insertAdjacentHTML("beforeend", '<g class="marks"></g>');
     const box = {x: v.x, y: v.y, w: v.width, h: v.height};
-    const chart = {svg, plot, box, view: {...box}, x: Axis(svg.dataset.x), y: Axis(svg.dataset.y),
+    const chart = {svg, plot, box, view: {...box}, x: ChartAxis(svg.dataset.x), y: ChartAxis(svg.dataset.y),
                    marks: plot.querySelector(".marks"), mx: metricOf.get(svg.dataset.mx), my: metricOf.get(svg.dataset.my),
                    ticks: svg.querySelector(".ticks").innerHTML, labels: [...svg.querySelectorAll(".mark-label")]};
     for (const label of chart.labels) label.dataset.x0 = label.getAttribute("x");
     chart.lines = [...plot.querySelectorAll("path[data-case]")].map(path => ({
       path, index: +path.dataset.case,
-      points: Points(path.getAttribute("d"))}));
+      points: ChartPoints(path.getAttribute("d"))}));
     if (chart.mx !== undefined) {
       chart.px = data.values[chart.mx].map(value => value === null ? NaN : chart.x.at(value));
       chart.py = chart.my === undefined ? null : data.values[chart.my].map(value => value === null ? NaN : chart.y.at(value));
@@ -225,6 +207,9 @@
   for (const code of document.querySelectorAll("td code[data-case]")) {
     code.addEventListener("pointerenter", () => Mark(+code.dataset.case));
     code.addEventListener("pointerleave", () => Mark(pinned));
+    code.tabIndex = 0;
+    code.setAttribute("role", "button");
+    code.addEventListener("keydown", event => { if (event.key === "Enter") code.click(); });
     code.addEventListener("click", async () => {
       pinned = +code.dataset.case;
       Mark(pinned);
@@ -241,7 +226,8 @@
   const some = data.cases.length < data.flown ? ` Of ${data.flown} cases the ${data.cases.length} most extreme answer.` : "";
   document.querySelector("nav").insertAdjacentHTML("afterend",
     '<p class="hint soft">The pointer names the nearest case of a chart and marks it in all of them' +
-    (command ? '; a click copies the command that flies it again' : '') + '. Drag to zoom, double click to return.' + some +
+    (command ? '; a click copies the command that flies it again' : '') + '. Drag to zoom, double click to return. ' +
+    'By keyboard: Tab to a chart, arrow keys read its values, Enter copies.' + some +
     ' <label>Mark case <input id="find" type="number" min="0"></label></p>');
   document.getElementById("find").addEventListener("input", event => {
     pinned = event.target.value === "" ? null : +event.target.value;

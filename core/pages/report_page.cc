@@ -6,6 +6,7 @@
 #include "core/pages/distribution_charts.h"
 #include "core/pages/embedded.h"
 #include "core/pages/flight_charts.h"
+#include "core/pages/glossary.h"
 #include "core/pages/html_parts.h"
 #include "core/pages/report_sections.h"
 #include "core/results/text.h"
@@ -21,7 +22,12 @@ constexpr char kNavigation[] =
     "href=\"#nominal\">Nominal flight</a>"
     "<a href=\"#statistics\">Statistics</a><a href=\"#dispersions\">Dispersions</a><a href=\"#limits\">Not "
     "modelled</a><a href=\"#credibility\">Credibility</a>"
-    "<a href=\"#provenance\">Provenance</a></nav>\n";
+    "<a href=\"#provenance\">Provenance</a><a href=\"#glossary\">Glossary</a></nav>\n"
+    "<p class=\"paper soft\">In print the page leaves out: histograms, curves of the nominal flight, all but "
+    "one "
+    "chart of worst cases, and the statistics of single stages. The file itself and "
+    "<code>summary.json</code> "
+    "have them.</p>\n";
 
 }  // namespace
 
@@ -66,7 +72,11 @@ std::string ReportPage(const Campaign& campaign, const CampaignSummary& summary,
     page += EnvelopeFigures(histories, summary, campaign.reference.program.t2_s);
   }
 
-  page += "<h2 id=\"distributions\">Distribution of key metrics</h2>\n<div class=\"figures\">\n";
+  page +=
+      "<h2 id=\"distributions\">Distribution of key metrics</h2>\n<p>Each curve of shares has its exact "
+      "confidence of 95 % at each value taken alone (Clopper and Pearson). Of a requirement the curve should "
+      "fall below the allowed share before the limit; the " +
+      Term("bound") + " is the value that decides.</p>\n<div class=\"figures\">\n";
   for (const WorstCases& worst : summary.worst_cases)
     page += DistributionFigures(worst.metric, summary, cases);
   page += "</div>\n";
@@ -85,18 +95,21 @@ std::string ReportPage(const Campaign& campaign, const CampaignSummary& summary,
   page += WorstCasesSection(summary, histories);
   if (flown_again && histories.bands.flights > 0) page += WorstFigures(histories, summary);
   page +=
-      "<h2 id=\"nominal\">Nominal flight</h2>\n<p>The flight without dispersions, through the same closed "
+      "<div class=\"screen\">\n<h2 id=\"nominal\">Nominal flight</h2>\n<p>The flight without dispersions, "
+      "through the same closed "
       "loop. It is not "
       "one of the cases. Numbers: <code>histories/nominal.csv</code>.</p>\n";
   page += flown_again ? NominalFigures(histories.nominal_history)
                       : "<p>This report was made without time histories.</p>\n";
-  page += StatisticsSection(summary);
+  page += "</div>\n" + StatisticsSection(summary);
   page += DispersionsSection(summary);
   page += NotModelledSection(campaign);
   page += CredibilitySection(summary);
   page += ProvenanceSection(campaign, summary);
+  page += GlossarySection(page);
   page += "</main>\n<script type=\"application/json\" id=\"cases\">" + CaseData(summary, cases) +
           "</script>\n<script>";
+  page += ChartScript();
   page += ReportScript();
   return page + "</script>\n</body>\n</html>\n";
 }

@@ -6,6 +6,7 @@
 #include <cmath>
 
 #include "core/math/constants.h"
+#include "core/pages/glossary.h"
 #include "core/pages/html_parts.h"
 #include "core/results/metric_catalogue.h"
 #include "core/results/sampling_text.h"
@@ -28,16 +29,17 @@ std::string OutcomeWords(Outcome outcome) {
 
 /// An estimate with its limits below it, or the bound that is all the sample gives.
 std::string PercentileCell(const MetricSummary& metric, const std::string& name) {
+  const auto text = [&](double value) { return ScatterText(value, metric.statistics.std); };
   for (const Percentile& percentile : metric.percentiles) {
     if (percentile.name != name) continue;
     const Interval& limits = percentile.limits;
     const bool above = std::isfinite(limits.lower);
     const bool below = std::isfinite(limits.upper);
-    if (!std::isfinite(percentile.estimate)) return above ? "≥ " + ReadableText(limits.lower) : "–";
-    return ReadableText(percentile.estimate) + "<span class=\"definition\">" +
-           (above && below ? ReadableText(limits.lower) + " … " + ReadableText(limits.upper)
-            : above        ? "≥ " + ReadableText(limits.lower)
-            : below        ? "≤ " + ReadableText(limits.upper)
+    if (!std::isfinite(percentile.estimate)) return above ? "≥ " + text(limits.lower) : "–";
+    return text(percentile.estimate) + "<span class=\"definition\">" +
+           (above && below ? text(limits.lower) + " … " + text(limits.upper)
+            : above        ? "≥ " + text(limits.lower)
+            : below        ? "≤ " + text(limits.upper)
                            : "no limits") +
            "</span>";
   }
@@ -46,12 +48,17 @@ std::string PercentileCell(const MetricSummary& metric, const std::string& name)
 
 std::string LimitsTable(const CampaignSummary& summary) {
   if (summary.limits.empty()) return "";
-  HtmlTable table(
-      {{"Load"}, {"Limit", true}, {"Largest", true}, {"of case", true}, {"Flights beyond", true}});
+  HtmlTable table({{"Load", false, true},
+                   {"Limit", true},
+                   {"Largest", true},
+                   {"of case", true},
+                   {"Flights beyond", true}});
   for (const CampaignSummary::Limit& one : summary.limits) {
     const MetricInfo info = DescribeMetric(one.metric);
     table.Row({HtmlText(info.title), WithUnit(one.limit, info.unit),
-               one.largest ? WithUnit(*one.largest, info.unit) : "–",
+               one.largest ? RoundedText(*one.largest, Rounding::kNearest, one.limit) +
+                                 (info.unit.empty() ? "" : " " + info.unit)
+                           : "–",
                one.largest ? std::to_string(one.largest_case) : "–",
                one.exceeded == 0 ? "0" : fmt::format("<span class=\"badge fail\">{}</span>", one.exceeded)});
   }
@@ -72,7 +79,7 @@ std::string OwnDefinition(const CampaignSummary& summary, const std::string& met
 
 std::string OutcomesSection(const CampaignSummary& summary) {
   std::string html = "<h2 id=\"outcomes\">Outcomes</h2>\n";
-  HtmlTable table({{"Outcome"}, {"Cases", true}, {"Share of those flown", true}});
+  HtmlTable table({{"Outcome", false, true}, {"Cases", true}, {"Share of those flown", true}});
   for (int i = 0; i < kOutcomeCount; ++i) {
     const std::uint64_t count = summary.outcomes[static_cast<std::size_t>(i)];
     const double share =
@@ -85,7 +92,7 @@ std::string OutcomesSection(const CampaignSummary& summary) {
                                    "flew on</span>",
                                    summary.beyond_limits - count)
                      : ""),
-         std::to_string(count), PercentText(share)});
+         std::to_string(count), ShareText(share)});
   }
   if (!summary.limits.empty()) {
     const double share =
@@ -95,21 +102,24 @@ std::string OutcomesSection(const CampaignSummary& summary) {
                summary.beyond_limits == 0
                    ? "0"
                    : fmt::format("<span class=\"badge fail\">{}</span>", summary.beyond_limits),
-               PercentText(share)});
+               ShareText(share)});
   }
   if (summary.near_step_limit > 0)
-    table.Row(
-        {"near the limit of the integration's step, however it ended",
-         std::to_string(summary.near_step_limit),
-         PercentText(static_cast<double>(summary.near_step_limit) / static_cast<double>(summary.flown))});
+    table.Row({"near the limit of the integration's step, however it ended",
+               std::to_string(summary.near_step_limit),
+               ShareText(static_cast<double>(summary.near_step_limit) / static_cast<double>(summary.flown))});
   html += table.Html("narrow");
   html += LimitsTable(summary);
   if (!summary.lost_flights.empty()) {
     const std::uint64_t lost =
         summary.flown - summary.outcomes[static_cast<std::size_t>(Outcome::kCompleted)];
     html += fmt::format("<h3>Lost flights: {}</h3>\n", lost);
-    HtmlTable lost_table(
-        {{"Case", true}, {"Outcome"}, {"Time, s", true}, {"Stage", true}, {"Reason"}, {"To fly it again"}});
+    HtmlTable lost_table({{"Case", true, true},
+                          {"Outcome"},
+                          {"Time, s", true},
+                          {"Stage", true},
+                          {"Reason"},
+                          {"To fly it again"}});
     for (const LostFlight& flight : summary.lost_flights) {
       lost_table.Row({std::to_string(flight.case_index), OutcomeWords(flight.outcome),
                       ReadableText(flight.end_time_s), std::to_string(flight.end_stage),
@@ -127,7 +137,7 @@ std::string OutcomesSection(const CampaignSummary& summary) {
     html +=
         "<h3>Quarantined cases</h3>\n<p>They killed or hung their workers and are not flown any more. They "
         "have no result: verdicts count them as failed for a pass and as met for a failure.</p>\n";
-    HtmlTable quarantine({{"Case", true}, {"Reason"}});
+    HtmlTable quarantine({{"Case", true, true}, {"Reason"}});
     for (const QuarantinedCase& one : summary.quarantined) {
       quarantine.Row({std::to_string(one.case_index), HtmlText(one.reason)});
     }
@@ -140,23 +150,33 @@ std::string WorstCasesSection(const CampaignSummary& summary, const FlightHistor
   std::string html =
       "<h2 id=\"worst\">Worst cases</h2>\n<p>A lost flight first, if there is one; all are listed under "
       "Outcomes.";
-  html +=
-      summary.python_law
-          ? "</p>\n"
-          : " The commands run in the result folder and check that the case comes out the same to the last "
-            "bit; <code>--history FILE</code> adds its time history.</p>\n";
-  HtmlTable table(
-      {{"Metric"}, {"Case", true}, {"Value", true}, {"Outcome"}, {"To fly it again"}, {"Time history"}});
+  html += summary.python_law
+              ? "</p>\n"
+              : " The commands run in the result folder. They check that the case has the same " +
+                    Term("digest") +
+                    " to the last bit; <code>--history FILE</code> adds its time history.</p>\n";
+  HtmlTable table({{"Metric"},
+                   {"Case", true, true},
+                   {"Value", true},
+                   {"Outcome"},
+                   {"To fly it again"},
+                   {"Time history"}});
+  constexpr std::size_t kPrinted = 2;
   for (const WorstCases& worst : summary.worst_cases) {
     const MetricInfo info = DescribeMetric(worst.metric);
+    const auto known = std::find_if(summary.metrics.begin(), summary.metrics.end(),
+                                    [&](const MetricSummary& one) { return one.name == worst.metric; });
+    const double std = known == summary.metrics.end() ? std::nan("") : known->statistics.std;
+    const std::string unit = info.unit.empty() ? "" : " " + info.unit;
     for (std::size_t i = 0; i < worst.cases.size(); ++i) {
       const WorstCase& one = worst.cases[i];
       const bool written =
           std::binary_search(histories.written_cases.begin(), histories.written_cases.end(), one.case_index);
       table.Row({i == 0 ? HtmlText(info.title) : "", std::to_string(one.case_index),
-                 one.value ? WithUnit(*one.value, info.unit) : "–", OutcomeWords(one.outcome),
+                 one.value ? ScatterText(*one.value, std) + unit : "–", OutcomeWords(one.outcome),
                  ReplayCell(summary, one.case_index),
-                 written ? Code(fmt::format("histories/case_{}.csv", one.case_index)) : ""});
+                 written ? Code(fmt::format("histories/case_{}.csv", one.case_index)) : ""},
+                i < kPrinted ? "" : "screen");
     }
   }
   return html + table.Html();
@@ -165,12 +185,13 @@ std::string WorstCasesSection(const CampaignSummary& summary, const FlightHistor
 std::string StatisticsSection(const CampaignSummary& summary) {
   std::string html =
       "<h2 id=\"statistics\">Statistics of every metric</h2>\n<p>Over the completed flights that define "
-      "the metric; n says how many, and lost flights are listed under Outcomes. Under each percentile its "
-      "limits of "
-      "95 %, of any distribution; one that so few flights cannot reach is shown as a bound. Attitude and "
-      "deflection "
-      "metrics cover powered flight, ignition to burnout of each stage with its transients; the coast has "
-      "its own.</p>\n";
+      "the metric; n says how many, and lost flights are listed under Outcomes. Under each percentile stand "
+      "its limits of 95 %, of any distribution. One that so few flights cannot reach is shown as a bound. "
+      "Values have two digits of the standard deviation; <code>summary.json</code> has all digits. Attitude "
+      "and deflection metrics cover powered flight, ignition to burnout of each stage with its transients; "
+      "the "
+      "coast has its own. Words: " +
+      Term("max q") + ", " + Term("q·α") + ", " + Term("limit cycle") + ".</p>\n";
   HtmlTable table({{"Nominal", true},
                    {"n", true},
                    {"Mean", true},
@@ -184,6 +205,7 @@ std::string StatisticsSection(const CampaignSummary& summary) {
                    {"Max", true}});
   for (const char* group : kMetricGroupTitles) {
     bool titled = false;
+    std::string same, undefined;  // what does not vary needs no row of eleven equal numbers
     for (const MetricSummary& metric : summary.metrics) {
       const MetricInfo info = DescribeMetric(metric.name);
       if (info.group != group) continue;
@@ -193,18 +215,32 @@ std::string StatisticsSection(const CampaignSummary& summary) {
                                : info.known ? info.definition
                                             : OwnDefinition(summary, metric.name);
       const std::string definition =
-          text.empty() ? "" : " <span class=\"soft\">" + HtmlText(text) + "</span>";
+          text.empty() ? "" : " <span class=\"soft screen\">" + HtmlText(text) + "</span>";
       const Summary& s = metric.statistics;
+      const std::string unit = info.unit.empty() ? "" : " " + HtmlText(info.unit);
+      if (s.n > 1 && s.min == s.max) {
+        same +=
+            fmt::format("{}{} {}{}{}", same.empty() ? "" : "; ", HtmlText(info.title), ReadableText(s.min),
+                        unit, s.n == summary.flown ? "" : fmt::format(" (n = {})", s.n));
+        continue;
+      }
+      if (s.n == 0) {
+        undefined += (undefined.empty() ? "" : "; ") + HtmlText(info.title);
+        continue;
+      }
+      const auto value = [&](double number) { return ScatterText(number, s.std); };
       // Above its numbers: beside twelve of them no name finds room.
       table.Wide("<div><b>" + HtmlText(info.title) + (info.unit.empty() ? "" : ", " + HtmlText(info.unit)) +
                      "</b>" + definition + "</div>",
-                 "name");
-      table.Row({ReadableText(NominalValue(summary, metric.name)), std::to_string(s.n), ReadableText(s.mean),
-                 ReadableText(s.std), ReadableText(metric.skewness), ReadableText(s.min),
+                 info.is_part ? "name screen" : "name");
+      table.Row({value(NominalValue(summary, metric.name)), std::to_string(s.n), value(s.mean),
+                 RoundedText(s.std), RoundedText(metric.skewness), value(s.min),
                  PercentileCell(metric, "p50"), PercentileCell(metric, "p95"), PercentileCell(metric, "p99"),
-                 PercentileCell(metric, "p99_73"), ReadableText(s.max)},
-                "numbers");
+                 PercentileCell(metric, "p99_73"), value(s.max)},
+                info.is_part ? "numbers screen" : "numbers");
     }
+    if (!same.empty()) table.Wide("<div>The same in all flights: " + same + ".</div>", "name same");
+    if (!undefined.empty()) table.Wide("<div>In no flight: " + undefined + ".</div>", "name same");
   }
   return html + table.Html("statistics");
 }
@@ -217,7 +253,7 @@ std::string DispersionsSection(const CampaignSummary& summary) {
       "<p>What was drawn is read back from the inputs as each flight applied them. “Agrees” means that mean "
       "and "
       "standard deviation lie within five standard errors of the declared ones.</p>\n";
-  HtmlTable table({{"Input"},
+  HtmlTable table({{"Input", false, true},
                    {"Declared"},
                    {"Expected mean", true},
                    {"drawn", true},
@@ -227,10 +263,14 @@ std::string DispersionsSection(const CampaignSummary& summary) {
                    {"Max", true},
                    {"Check"}});
   for (const DispersionSummary& one : summary.dispersions) {
-    const auto text = [](const std::optional<double>& value) { return value ? ReadableText(*value) : "–"; };
+    const double std = one.drawn.std;
+    const auto text = [&](const std::optional<double>& value) {
+      return value ? ScatterText(*value, std) : "–";
+    };
+    const auto scale = [](const std::optional<double>& value) { return value ? RoundedText(*value) : "–"; };
     table.Row({InputNames(one.key, one.input), HtmlText(one.declared), text(one.expected_mean),
-               ReadableText(one.drawn.mean), text(one.expected_std), ReadableText(one.drawn.std),
-               ReadableText(one.drawn.min), ReadableText(one.drawn.max),
+               text(one.drawn.mean), scale(one.expected_std), scale(one.drawn.std), text(one.drawn.min),
+               text(one.drawn.max),
                !one.consistent   ? "–"
                : *one.consistent ? "agrees"
                                  : "<span class=\"badge fail\">differs</span>"});
@@ -288,7 +328,7 @@ hysteresis; their uncertainty is what the campaign disperses.</li>
 
 std::string ProvenanceSection(const Campaign& campaign, const CampaignSummary& summary) {
   std::string html = "<h2 id=\"provenance\">Provenance</h2>\n";
-  HtmlTable table({{""}, {""}});
+  HtmlTable table({{"", false, true}, {""}});
   table.Row({"Campaign id", Code(summary.id)});
   table.Row({"Flight id", Code(summary.flight_id) +
                               "<span class=\"definition\">of what decides a case: vehicle, reference, "

@@ -3,7 +3,10 @@
 
 #include <algorithm>
 #include <cmath>
+#include <utility>
+#include <vector>
 
+#include "core/pages/glossary.h"
 #include "core/pages/html_parts.h"
 #include "core/pages/report_sections.h"
 #include "core/pages/svg_chart.h"
@@ -27,20 +30,13 @@ std::string PlanWords(const RequirementSummary& requirement) {
     case PlanKind::kFixed:
       return fmt::format("judged once, after {} flights", requirement.planned);
     case PlanKind::kGroupSequential:
-      return fmt::format("{} looks up to {} cases, {} spending", requirement.plan.looks, requirement.planned,
+      return fmt::format("judged at {} {} up to {} flights, {} spending", requirement.plan.looks,
+                         Term("look", "looks"), requirement.planned,
                          requirement.plan.spending == Spending::kPocock ? "Pocock" : "O’Brien–Fleming");
     case PlanKind::kAnytime:
-      return "any time, by a mixture martingale";
+      return "judged at any time, by a mixture martingale";
   }
   return "";
-}
-
-/// The value that the claim is read by, or why there is none.
-std::string BoundWords(const RequirementSummary& requirement, const std::string& unit) {
-  if (!requirement.bound) return "no bound: too few cases or too many lost";
-  return fmt::format("With {} confidence {} of flights keep to {} (margin {}).",
-                     PercentText(1.0 - requirement.consumer_risk), PercentText(requirement.probability),
-                     WithUnit(*requirement.bound, unit), WithUnit(*requirement.margin, unit));
 }
 
 /// The worst of the completed flights, which is no bound of anything but says where the sample ends.
@@ -50,7 +46,8 @@ std::string WorstWords(const RequirementSummary& requirement, const CampaignSumm
     if (worst.metric != requirement.metric) continue;
     for (const WorstCase& one : worst.cases) {
       if (one.outcome == Outcome::kCompleted && one.value)
-        return fmt::format("{} (case {})", WithUnit(*one.value, unit), one.case_index);
+        return fmt::format("{}{} (case {})", RoundedText(*one.value, Rounding::kNearest, requirement.limit),
+                           unit.empty() ? "" : " " + unit, one.case_index);
     }
   }
   return "–";
@@ -58,7 +55,7 @@ std::string WorstWords(const RequirementSummary& requirement, const CampaignSumm
 
 std::string LooksTable(const RequirementSummary& requirement) {
   if (requirement.looks.size() < 2) return "";
-  HtmlTable table({{"Look at", true}, {"Failures", true}, {"Verdict"}, {"In the plan"}});
+  HtmlTable table({{"Flights at the look", true, true}, {"Failures", true}, {"Verdict"}, {"In the plan"}});
   for (const Look& look : requirement.looks) {
     table.Row({std::to_string(look.n), std::to_string(look.failures), LookName(look.verdict),
                look.planned ? "yes" : "no"});
@@ -66,28 +63,69 @@ std::string LooksTable(const RequirementSummary& requirement) {
   return table.Html("narrow");
 }
 
-std::string ChanceFigure(const RequirementSummary& requirement) {
-  if (requirement.verdict != "inconclusive" || requirement.pass_chances.size() < 2) return "";
-  SvgChart chart({.label = "cases of a new campaign", .logarithmic = true},
-                 {.label = "probability of a pass", .low = 0.0, .high = 1.0, .percent = true}, 520, 200);
+/// Requirements with the same figure.
+struct Sharing {
+  const RequirementSummary* first;
+  std::string names;
+};
+
+template <typename Wanted, typename Same>
+std::vector<Sharing> Share(const CampaignSummary& summary, const Wanted& wanted, const Same& same) {
+  std::vector<Sharing> shared;
+  for (const RequirementSummary& requirement : summary.requirements) {
+    if (!wanted(requirement)) continue;
+    const std::string name = DescribeMetric(requirement.metric).title;
+    const auto known = std::find_if(shared.begin(), shared.end(),
+                                    [&](const Sharing& one) { return same(*one.first, requirement); });
+    if (known == shared.end())
+      shared.push_back({&requirement, name});
+    else
+      known->names += "; " + name;
+  }
+  return shared;
+}
+
+constexpr int kSmallWidth = 380, kSmallHeight = 200;
+
+std::string ChanceFigure(const Sharing& sharing) {
+  SvgChart chart({.label = "flights of a new campaign", .logarithmic = true},
+                 {.label = "probability of a pass", .low = 0.0, .high = 1.0, .percent = true}, kSmallWidth,
+                 kSmallHeight);
   std::vector<double> cases;
   std::vector<double> chance;
-  for (const auto& each : requirement.pass_chances) {
+  for (const auto& each : sharing.first->pass_chances) {
     cases.push_back(static_cast<double>(each.cases));
     chance.push_back(each.probability);
   }
   chart.Line(cases, chance, "line-0", "by what was seen here");
   const std::string caption =
-      "Probability that a new campaign passes, against its number of cases, over the failure rates that "
-      "these "
-      "flights leave possible.";
-  return "<div class=\"figures\">" + Figure(chart.Svg(caption), caption) + "</div>\n";
+      sharing.names +
+      ": probability that a new campaign passes, over the failure rates that these flights "
+      "leave possible." +
+      AdviceSentence(*sharing.first);
+  return Figure(chart.Svg(caption), HtmlText(caption));
+}
+
+std::string ChanceFigures(const CampaignSummary& summary) {
+  std::string figures;
+  for (const Sharing& sharing : Share(
+           summary,
+           [](const RequirementSummary&one) {
+             return one.verdict == "inconclusive" && one.pass_chances.size() > 1;
+           },
+           [](const RequirementSummary&a, const RequirementSummary&b) {
+             return a.failures == b.failures && a.probability == b.probability &&
+                    a.consumer_risk == b.consumer_risk;
+           }))
+    figures += ChanceFigure(sharing);
+  return figures.empty() ? ""
+                         : "<h3>How many flights could decide</h3>\n<div class=\"figures small\">\n" +
+                               figures + "</div>\n";
 }
 
 /// The failure probability that the first n cases show, as n grows.
-std::string ConvergenceFigure(const RequirementSummary& requirement) {
-  if (requirement.convergence.size() < 2) return "";
-  const MetricInfo info = DescribeMetric(requirement.metric);
+std::string ConvergenceFigure(const Sharing& sharing) {
+  const RequirementSummary& requirement = *sharing.first;
   std::vector<double> n, observed, lower, upper;
   double lowest = 1.0 - requirement.probability;
   for (const auto& at : requirement.convergence) {
@@ -97,25 +135,53 @@ std::string ConvergenceFigure(const RequirementSummary& requirement) {
     upper.push_back(1.0 - at.success_lower);
     lowest = std::min(lowest, upper.back());
   }
-  SvgChart chart({.label = "first cases", .low = n.front(), .high = n.back(), .logarithmic = true},
+  SvgChart chart({.label = "first flights", .low = n.front(), .high = n.back(), .logarithmic = true},
                  {.label = "probability of a failure",
                   .low = 0.3 * lowest,
                   .high = 1.0,
                   .logarithmic = true,
                   .percent = true},
-                 520, 250);
+                 kSmallWidth, kSmallHeight);
   for (double& share : lower) share = std::max(share, 0.3 * lowest);
   chart.Band(n, lower, upper, "band-outer", "between its bounds");
-  chart.Line(n, observed, "line-0", "observed");
+  if (requirement.failures > 0) chart.Line(n, observed, "line-0", "observed");
   chart.HorizontalLimit(1.0 - requirement.probability,
                         fmt::format("{} allowed", PercentText(1.0 - requirement.probability)), "allowed");
   for (const Look& look : requirement.looks) chart.Mark(static_cast<double>(look.n), LookName(look.verdict));
-  const std::string caption = fmt::format(
-      "{}: {} in {} cases at the end. Each bound holds with {} confidence at its number of cases taken "
-      "alone; the "
-      "verdict is read where the plan looks (dotted).",
-      info.title, requirement.failures, requirement.n, PercentText(1.0 - requirement.consumer_risk));
+  const std::string caption =
+      fmt::format("{}: {} of {} flights at the end.", sharing.names, requirement.failures, requirement.n);
   return Figure(chart.Svg(caption), HtmlText(caption));
+}
+
+/// Where every flight or none broke the limit, and that decided, a curve says no more than these numbers.
+bool IsTrivial(const RequirementSummary& requirement) {
+  const bool mixed = requirement.failures > 0 && requirement.failures < requirement.n;
+  return !mixed && requirement.verdict != "inconclusive";
+}
+
+std::string ConvergenceFigures(const CampaignSummary& summary) {
+  if (!IsIndependent(summary.sampling)) return "";
+  std::string figures;
+  for (const Sharing& sharing : Share(
+           summary,
+           [](const RequirementSummary&one) { return one.convergence.size() > 1 && !IsTrivial(one); },
+           [](const RequirementSummary&a, const RequirementSummary&b) {
+             return a.probability == b.probability && a.consumer_risk == b.consumer_risk &&
+                    a.plan == b.plan &&
+                    std::equal(a.convergence.begin(), a.convergence.end(), b.convergence.begin(),
+                               b.convergence.end(), [](const auto& x, const auto& y) {
+                                 return x.n == y.n && x.failures == y.failures;
+                               });
+           }))
+    figures += ConvergenceFigure(sharing);
+  if (figures.empty()) return "";
+  return fmt::format(
+      "<h3>How the verdicts converged</h3>\n<p class=\"soft\">Each bound holds at its number of flights "
+      "taken "
+      "alone. The verdict is read where the plan looks (dotted). A requirement that no flight broke, and "
+      "that "
+      "passed, has no chart.</p>\n<div class=\"figures small\">\n{}</div>\n",
+      figures);
 }
 
 std::string Card(const RequirementSummary& requirement, const CampaignSummary& summary) {
@@ -125,27 +191,34 @@ std::string Card(const RequirementSummary& requirement, const CampaignSummary& s
                                                    static_cast<double>(requirement.n);
   const bool study = requirement.verdict == "study";
   std::string html = fmt::format(
-      "<section class=\"requirement\"><p class=\"claim\"><b>{}</b> {} {}<br><code>{}</code>{}</p>\n<p "
-      "class=\"sentence\">{}</p>\n<dl class=\"facts\">",
-      HtmlText(info.title), HtmlText(LimitWords(requirement, info.unit)),
-      requirement.every_case
-          ? std::string("in every case")
-          : fmt::format("for {} of flights, consumer risk {}", PercentText(requirement.probability),
-                        PercentText(requirement.consumer_risk)),
+      "<section class=\"requirement\"><p class=\"claim\">{}<b>{}</b> {} {}<br><code>{}</code>{}</p>\n",
+      requirement.id.empty() ? "" : Code(requirement.id) + " ", HtmlText(info.title),
+      HtmlText(LimitWords(requirement, info.unit)),
+      requirement.every_case ? std::string("in every case")
+                             : fmt::format("for {} of flights, {} {}", PercentText(requirement.probability),
+                                           Term("consumer risk"), PercentText(requirement.consumer_risk)),
       HtmlText(requirement.metric),
-      requirement.by_default ? ", required because the vehicle gives limits"
-      : study                ? ""
-                             : " <span class=\"value\">" + BoundWords(requirement, info.unit) + "</span>",
-      HtmlText(requirement.sentence));
+      requirement.by_default ? ", required because the vehicle gives limits" : "");
+  for (const auto& [name, text] : {std::pair<const char*, const std::string&>{"Why", requirement.rationale},
+                                   {"Source", requirement.source}})
+    if (!text.empty()) html += fmt::format("<p>{}: {}</p>\n", name, HtmlText(text));
+  html += "<p class=\"sentence\">" + HtmlText(requirement.sentence) + "</p>\n";
+  if (requirement.bound) {
+    html += "<p class=\"value\">" + HtmlText(BoundSentence(requirement, info.unit)) + "</p>\n";
+  } else if (!study) {
+    html += "<p class=\"sentence\">No " + Term("bound") + ": too few cases or too many lost.</p>\n";
+  }
+  html += "<dl class=\"facts\">";
   html += Fact("cases", std::to_string(requirement.n));
   html += Fact("failures", std::to_string(requirement.failures));
   html += Fact("lost flights", std::to_string(requirement.lost_flights));
-  html += Fact("observed", PercentText(observed));
-  html += Fact("worst completed flight", WorstWords(requirement, summary, info.unit));
-  html += Fact("confidence bounds", requirement.success_lower
-                                        ? fmt::format("≥ {}, ≤ {}", PercentText(*requirement.success_lower),
-                                                      PercentText(*requirement.success_upper))
-                                        : "none: design study");
+  html += Fact("observed", ShareText(observed));
+  html += Fact("worst completed flight", HtmlText(WorstWords(requirement, summary, info.unit)));
+  html += Fact("confidence bounds",
+               requirement.success_lower
+                   ? fmt::format("≥ {}, ≤ {}", ShareText(*requirement.success_lower, Rounding::kDown),
+                                 ShareText(*requirement.success_upper, Rounding::kUp))
+                   : "none: design study");
   if (!study) {
     html += Fact("plan", PlanWords(requirement));
     html += Fact(
@@ -156,7 +229,7 @@ std::string Card(const RequirementSummary& requirement, const CampaignSummary& s
                                 : "no number of failures passes",
             requirement.rejects ? fmt::format("fail with {} or more", *requirement.rejects) : "none fails"));
   }
-  return html + "</dl>\n" + LooksTable(requirement) + ChanceFigure(requirement) + "</section>\n";
+  return html + "</dl>\n" + LooksTable(requirement) + "</section>\n";
 }
 
 }  // namespace
@@ -164,38 +237,34 @@ std::string Card(const RequirementSummary& requirement, const CampaignSummary& s
 std::string RequirementsSection(const CampaignSummary& summary) {
   std::string html = "<h2 id=\"requirements\">Requirements</h2>\n";
   if (summary.requirements.empty()) return html + "<p>The campaign states none.</p>\n";
-  std::string convergence;
   const bool by_default =
       std::any_of(summary.requirements.begin(), summary.requirements.end(),
                   [](const RequirementSummary& requirement) { return requirement.by_default; });
-  for (const RequirementSummary& requirement : summary.requirements) {
-    html += Card(requirement, summary);
-    convergence += ConvergenceFigure(requirement);
-  }
+  html += "<div class=\"cards\">\n";
+  for (const RequirementSummary& requirement : summary.requirements) html += Card(requirement, summary);
+  html += "</div>\n";
   if (!IsIndependent(summary.sampling)) {
     return html +
-           "<p class=\"soft\">The points of this campaign are chosen, not drawn independently, so that no "
-           "confidence can be stated: it is a design study, which neither passes nor fails a requirement. A "
-           "point that violates one is a fact all the same. A lost flight violates every requirement, and so "
-           "does an undefined metric.</p>\n";
+           "<p class=\"soft\">The points of this campaign are chosen, not drawn independently. So no "
+           "confidence can be stated: it is a " +
+           Term("design study") +
+           ". A point that violates a requirement is a fact all the same. A lost flight violates every "
+           "requirement, and so does an undefined metric.</p>\n";
   }
-  return html + "<p>" + HtmlText(JointRiskSentence(summary)) +
+  return html + ConvergenceFigures(summary) + ChanceFigures(summary) + "<p>" +
+         HtmlText(JointRiskSentence(summary)) +
          "</p>\n<p class=\"soft\">Verdicts come from the exact binomial distribution, not from mean ± 3σ "
-         "(NASA/TP-2010-216447): a requirement passes when a design that just misses it would have shown so "
-         "few failures, at any of the plan’s looks, with no more than the consumer risk, and fails when a "
-         "design that just meets it would have shown so many with no more than the same risk. Each "
-         "confidence "
-         "bound is one-sided. The bound in the metric’s unit is the order statistic that decides: the "
-         "requirement passes exactly when it keeps to the limit. A lost flight counts as a failure of every "
-         "requirement, and so does an undefined metric" +
+         "(NASA/TP-2010-216447). A requirement passes when a design that just misses it would show so few "
+         "failures, at any of the plan’s looks, with no more than the consumer risk. It fails when a design "
+         "that just meets it would show so many with no more than the same risk. Each confidence bound is "
+         "one-sided. The bound in the metric’s unit is the order statistic that decides: the requirement "
+         "passes exactly when it is inside the limit. A lost flight counts as a failure of every "
+         "requirement, "
+         "and so does an undefined metric" +
          (by_default ? "; of the vehicle’s own limits a loss says nothing: they are held against what the "
-                       "flight bore "
-                       "until then"
+                       "flight bore until then"
                      : "") +
-         ".</p>\n" +
-         (convergence.empty()
-              ? ""
-              : "<h3>How the verdicts converged</h3>\n<div class=\"figures\">\n" + convergence + "</div>\n");
+         ".</p>\n";
 }
 
 }  // namespace dispersa

@@ -169,9 +169,10 @@ std::string Text(double x, double y, const char* style, const char* anchor, cons
                      Coordinate(y), style, anchor, HtmlText(text));
 }
 
-std::string Segment(double x1, double y1, double x2, double y2, const char* style) {
-  return fmt::format("<path class=\"{}\" d=\"M{} {}L{} {}\"/>", style, Coordinate(x1), Coordinate(y1),
-                     Coordinate(x2), Coordinate(y2));
+std::string Segment(double x1, double y1, double x2, double y2, const char* style,
+                    const std::string& attributes = "") {
+  return fmt::format("<path class=\"{}\"{} d=\"M{} {}L{} {}\"/>", style, attributes, Coordinate(x1),
+                     Coordinate(y1), Coordinate(x2), Coordinate(y2));
 }
 
 }  // namespace
@@ -349,10 +350,11 @@ std::string SvgChart::Svg(const std::string& description) const {
   for (std::size_t n = 0; n < series_.size(); ++n) {
     const Series& series = series_[n];
     if (!drawn[n]) continue;
+    const std::string named = fmt::format(" data-s=\"{}\"", HtmlText(series.legend));
     switch (series.kind) {
       case Series::Kind::kLine:
         for (const auto& run : Runs(series.x, series.low, xs, ys, y_.logarithmic)) {
-          svg += fmt::format("<path class=\"{}\"{} d=\"{}\"/>", series.style,
+          svg += fmt::format("<path class=\"{}\"{}{} d=\"{}\"/>", series.style, named,
                              series.case_index ? fmt::format(" data-case=\"{}\"", *series.case_index) : "",
                              Path(run));
         }
@@ -371,7 +373,7 @@ std::string SvgChart::Svg(const std::string& description) const {
             continue;
           dots += "M" + Coordinate(x) + " " + Coordinate(y) + "h0";
         }
-        svg += fmt::format("<path class=\"{}\" d=\"{}\"/>", series.style, dots);
+        svg += fmt::format("<path class=\"{}\"{} d=\"{}\"/>", series.style, named, dots);
         break;
       }
       case Series::Kind::kBand: {
@@ -380,7 +382,7 @@ std::string SvgChart::Svg(const std::string& description) const {
         for (std::size_t i = 0; i < std::min(lows.size(), highs.size()); ++i) {
           std::vector<Point> outline = highs[i];
           outline.insert(outline.end(), lows[i].rbegin(), lows[i].rend());
-          svg += fmt::format("<path class=\"{}\" d=\"{}Z\"/>", series.style, Path(outline));
+          svg += fmt::format("<path class=\"{}\"{} d=\"{}Z\"/>", series.style, named, Path(outline));
         }
         break;
       }
@@ -398,10 +400,10 @@ std::string SvgChart::Svg(const std::string& description) const {
         }
         break;
       case Series::Kind::kVerticalLimit:
-        svg += Segment(xs.At(series.x[0]), top, xs.At(series.x[0]), bottom, series.style.c_str());
+        svg += Segment(xs.At(series.x[0]), top, xs.At(series.x[0]), bottom, series.style.c_str(), named);
         break;
       case Series::Kind::kHorizontalLimit:
-        svg += Segment(kLeft, ys.At(series.low[0]), right, ys.At(series.low[0]), series.style.c_str());
+        svg += Segment(kLeft, ys.At(series.low[0]), right, ys.At(series.low[0]), series.style.c_str(), named);
         break;
     }
   }

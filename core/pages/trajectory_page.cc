@@ -211,8 +211,8 @@ std::string TrajectoryPage(const OptimizationResult& result, const std::optional
   const TrajectoryProblem& problem = reference.problem;
   const std::string title =
       fmt::format("{}: trajectory to {} km", reference.name, ReadableText(problem.target_altitude_m * 1e-3));
-  std::string page = PageHead(title, fmt::format("{} · engine {}", title, reference.engine)) + "<h1>" +
-                     HtmlText(title) + "</h1>\n";
+  std::string page = PageHead(title, fmt::format("{} · engine {}", title, reference.engine)) +
+                     "<main>\n<h1>" + HtmlText(title) + "</h1>\n";
   page += fmt::format(
       "<p>Genetic algorithm on the weighted miss of the target ({}) with {} individuals, selection of the "
       "least peak "
@@ -240,7 +240,7 @@ std::string TrajectoryPage(const OptimizationResult& result, const std::optional
           FlightProgramFigures(reference.program, result.history) + "</div>\n";
   page += "<h2>Trajectory</h2>\n<div class=\"figures\">\n" + ReferenceFigures(result.history) + "</div>\n";
   page += "<h2>The search</h2>\n<div class=\"figures\">\n" + SearchFigures(result) + "</div>\n";
-  return page + "</body>\n</html>\n";
+  return page + "</main>\n</body>\n</html>\n";
 }
 
 }  // namespace dispersa

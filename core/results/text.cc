@@ -30,6 +30,76 @@ std::string ReadableText(double value) {
   return text;
 }
 
+namespace {
+
+/// Of a value and a resolution; what is a multiple of it but for the last bits stays.
+double RoundTo(double value, double resolution, Rounding rounding) {
+  const double steps = value / resolution;
+  const double nearest = std::round(steps);
+  if (rounding == Rounding::kNearest || std::fabs(steps - nearest) < 1e-9 * std::max(1.0, std::fabs(steps)))
+    return nearest * resolution;
+  return (rounding == Rounding::kUp ? std::ceil(steps) : std::floor(steps)) * resolution;
+}
+
+bool Crosses(double value, double rounded, double against) {
+  return std::isfinite(against) && (value < against ? rounded >= against : rounded < against);
+}
+
+std::string WithoutZeros(std::string text) {
+  if (text.find('.') == std::string::npos) return text;
+  text.erase(text.find_last_not_of('0') + 1);
+  if (text.back() == '.') text.pop_back();
+  return text;
+}
+
+}  // namespace
+
+std::string RoundedText(double value, Rounding rounding, double against) {
+  if (!std::isfinite(value)) return "–";
+  if (value == 0.0) return "0";
+  const double magnitude = std::fabs(value);
+  const int exponent = static_cast<int>(std::floor(std::log10(magnitude)));
+  double rounded = value;
+  int digits = 3;
+  for (; digits < 17; ++digits) {
+    rounded = RoundTo(value, std::pow(10.0, exponent - digits + 1), rounding);
+    if (!Crosses(value, rounded, against)) break;
+  }
+  if (magnitude < 1e-4 || magnitude >= 1e9) return fmt::format("{:.{}e}", rounded, digits - 1);
+  return WithoutZeros(fmt::format("{:.{}f}", rounded, std::max(0, digits - 1 - exponent)));
+}
+
+std::string ScatterText(double value, double deviation) {
+  if (!std::isfinite(value)) return "–";
+  if (!(deviation > 0.0) || !std::isfinite(deviation)) return ReadableText(value);
+  const int decimals = 1 - static_cast<int>(std::floor(std::log10(deviation)));
+  if (decimals > 6 || std::fabs(value) >= 1e9) return RoundedText(value);
+  const double rounded = RoundTo(value, std::pow(10.0, -decimals), Rounding::kNearest);
+  return WithoutZeros(FixedText(rounded, std::max(0, decimals)));
+}
+
+std::string ShareText(double probability, Rounding rounding, double against) {
+  if (!std::isfinite(probability)) return "–";
+  const double percent = 100.0 * probability, missing = 100.0 - percent;
+  if (percent <= 0.0) return "0 %";
+  if (missing <= 0.0) return "100 %";
+  if (percent < 0.001 && rounding != Rounding::kDown) return "< 0.001 %";
+  int decimals = percent < 99.0 ? 2 - static_cast<int>(std::floor(std::log10(percent)))
+                                : std::max(2, static_cast<int>(-std::floor(std::log10(missing))));
+  double rounded = percent;
+  for (; decimals < 15; ++decimals) {
+    rounded = RoundTo(percent, std::pow(10.0, -decimals), rounding);
+    if (!Crosses(percent, rounded, 100.0 * against)) break;
+  }
+  return WithoutZeros(fmt::format("{:.{}f}", rounded, decimals)) + " %";
+}
+
+std::string PValueText(double p) {
+  if (!std::isfinite(p)) return "–";
+  if (p < 1e-15) return "< 1e-15";
+  return p < 1e-4 ? fmt::format("{:.1e}", p) : RoundedText(p);
+}
+
 std::string FixedText(double value, int decimals) {
   if (!std::isfinite(value)) return "–";
   const std::string text = fmt::format("{:.{}f}", value, decimals);

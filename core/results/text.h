@@ -1,6 +1,8 @@
 // Numbers and strings as written in the files of a result folder.
 #pragma once
 
+#include <cmath>
+#include <optional>
 #include <string>
 #include <string_view>
 
@@ -10,6 +12,19 @@ namespace dispersa {
 std::string ShortestText(double value);
 /// For people: five significant digits, without an exponent between 1e-4 and 1e9. "–" if not finite.
 std::string ReadableText(double value);
+enum class Rounding { kNearest, kDown, kUp };
+/// A result for people: three significant digits, "0.225". A bound is rounded to its own side, so that it
+/// still holds. Has more digits where the rounded value would lie on the other side of `against`, a limit.
+std::string RoundedText(double value, Rounding rounding = Rounding::kNearest, double against = std::nan(""));
+/// A value of a sample: two digits of the sample's standard deviation; `value` in full where nothing
+/// scatters.
+std::string ScatterText(double value, double deviation);
+/// A probability as a result in per cent: three significant digits, two decimals near 100 %, and one digit of
+/// what is missing to 100 % nearer still; "< 0.001 %" below that. 0.99954 rounded down is "99.95 %".
+std::string ShareText(double probability, Rounding rounding = Rounding::kNearest,
+                      double against = std::nan(""));
+/// "3.1e-06", "0.0123"; "< 1e-15" where doubles say no more.
+std::string PValueText(double p);
 /// `decimals` decimals, never "-0.000".
 std::string FixedText(double value, int decimals);
 /// A probability in per cent, with five digits, or with more if needed to show that it is not 1: 0.9973 is

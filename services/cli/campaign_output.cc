@@ -13,6 +13,7 @@
 #include <nlohmann/json.hpp>
 #include <string>
 
+#include "core/results/metric_catalogue.h"
 #include "core/results/text.h"
 #include "services/log/log.h"
 #include "services/program/option_values.h"
@@ -29,7 +30,7 @@ std::string NextStep(const CampaignSummary& summary) {
     case StandingVerdict::kNothingJudged:
       return "state what must hold under 'requirements:' of the campaign file";
     case StandingVerdict::kInconclusive:
-      return "fly more cases; the sentences above say how many";
+      return "fly more cases; the line above says how many";
     case StandingVerdict::kNotEvidence:
       return IsIndependent(summary.sampling)
                  ? "fly the requirements as they stand with another seed, or read the reasons above"
@@ -101,11 +102,11 @@ void PrintSummary(const CampaignSummary& summary, const std::filesystem::path& d
     const RequirementSummary& requirement = summary.requirements[i];
     std::string verdict = summary.standing.requirements[i].verdict;
     std::replace(verdict.begin(), verdict.end(), '_', ' ');
-    fmt::print(
-        "{}: {}{}: {}\n", verdict, RequirementWords(requirement),
-        requirement.bound ? fmt::format(", bound {}", ReadableText(*requirement.bound)) : std::string(),
-        requirement.sentence);
+    const std::string bound = BoundSentence(requirement, DescribeMetric(requirement.metric).unit);
+    fmt::print("{}: {}: {}{}{}\n", verdict, RequirementWords(requirement), requirement.sentence,
+               bound.empty() ? "" : " ", bound);
   }
+  if (const std::string advice = AdviceTogether(summary); !advice.empty()) fmt::print("{}\n", advice);
   fmt::print("VERDICT {}, next: {}\n", StandingBadge(summary.standing), NextStep(summary));
   fmt::print("report: {}\nresult: {}\n", (directory / "report.html").string(), directory.string());
 }

@@ -9,6 +9,7 @@
 #include <vector>
 
 #include "core/analysis/comparison.h"
+#include "core/results/text.h"
 #include "services/cli/command.h"
 #include "services/client/folder_comparison.h"
 #include "services/client/writable.h"
@@ -48,7 +49,7 @@ void PrintText(const Comparison& comparison) {
     fmt::print("{:<37} {:>10} {:>10} {:>11} {:>26} {:>11} {:>11}  {}\n", metric.metric,
                NumberText(metric.median_a), NumberText(metric.median_b), NumberText(metric.difference),
                IntervalText(metric.interval), tail == metric.tails.end() ? "–" : NumberText(tail->difference),
-               NumberText(metric.p_holm), metric.finding);
+               PValueText(metric.p_holm), metric.finding);
   }
   for (const RequirementComparison& requirement : comparison.requirements) {
     fmt::print("\n{}: fails in {} of {} in A, {} of {} in B; {} {}\n", requirement.words,
@@ -56,7 +57,7 @@ void PrintText(const Comparison& comparison) {
                comparison.pairing.paired ? fmt::format("only in A {}, only in B {}; McNemar's p",
                                                        requirement.only_a_fails, requirement.only_b_fails)
                                          : "Fisher's p",
-               NumberText(requirement.p));
+               PValueText(requirement.p));
   }
 }
 

@@ -148,6 +148,69 @@ TEST(ReportComparison, RequirementsAreCountedPairByPair) {
                           Not(HasSubstr("nan")), Not(HasSubstr("src="))));
 }
 
+/// 60 pairs of which B breaks the limit in all and A in none.
+Comparison Worse(CaseColumns& a, CaseColumns& b) {
+  std::vector<std::uint64_t> index;
+  std::vector<double> input, low, high;
+  for (std::uint64_t i = 0; i < 60; ++i) {
+    index.push_back(i);
+    input.push_back(0.1 * static_cast<double>(i));
+    low.push_back(0.5 + 0.001 * static_cast<double>(i));
+    high.push_back(2.0 + 0.002 * static_cast<double>(i));
+  }
+  a = Columns(index, input, low);
+  b = Columns(index, input, high);
+  for (const char* name :
+       {"injection_altitude_km", "injection_altitude_error_km", "pitch_error_rms_stage1_deg"}) {
+    a.metrics[MetricColumn(name)] = low;
+    b.metrics[MetricColumn(name)] = high;
+  }
+  Requirement requirement;
+  requirement.metric = kMetric;
+  requirement.below = 1.0;
+  requirement.probability = 0.9;
+  requirement.consumer_risk = 0.1;
+  return CompareColumns(a, b, {requirement});
+}
+
+TEST(ReportComparison, SaysTheResultByRequirementAndCountsEachMetricOnce) {
+  CaseColumns a, b;
+  const Comparison comparison = Worse(a, b);
+  EXPECT_EQ(comparison.finding, "worse");
+  EXPECT_EQ(comparison.requirements[0].finding, "worse");
+  // Four metrics differ: one is a stage's part of another, and one is the value of which the error is
+  // compared.
+  EXPECT_EQ(
+      comparison.sentence,
+      "B is worse in 1 of 1 requirement, pitch_error_rms_deg below 1: broken in 60 of 60 flights of B, in 0 "
+      "of 60 of A. Of 2 metrics, each counted once, B is better in 0 and worse in 2. It differs in 0 that "
+      "are neither good nor bad. The others show no difference. 60 cases harmed by the change from A to B, "
+      "0 rescued.");
+  const auto json = nlohmann::json::parse(ComparisonJson(comparison));
+  EXPECT_EQ(json["finding"], "worse");
+  EXPECT_EQ(json["requirements"][0]["finding"], "worse");
+}
+
+TEST(ReportComparison, ThePageShowsTheResultBeforeTheDetails) {
+  CaseColumns a, b;
+  const Comparison comparison = Worse(a, b);
+  const std::string page = ComparisonPage(comparison, a, b);
+  const std::size_t badge = page.find("<span class=\"badge fail\">B worse</span>");
+  const std::size_t row = page.find(
+      "Only B breaks it in 60 pairs, only A in 0, both in 0. If A and B were alike, "
+      "chance would split the pairs so unevenly with a probability below 1e-15 "
+      "(McNemar’s test).");
+  const std::size_t cases = page.find("id=\"cases\""), metrics = page.find("id=\"metrics\""),
+                    compared = page.find("id=\"compared\"");
+  ASSERT_NE(compared, std::string::npos);
+  EXPECT_LT(badge, row);
+  EXPECT_LT(row, cases);
+  EXPECT_LT(cases, metrics);
+  EXPECT_LT(metrics, compared) << "what differs between the files comes last";
+  EXPECT_THAT(page, AllOf(HasSubstr("&lt; 1e-15"), Not(HasSubstr("0e+00")), HasSubstr("<main>"),
+                          HasSubstr("<dfn>harmed</dfn>"), HasSubstr("40 more rows")));
+}
+
 TEST(ReportComparison, ChosenPointsHaveNoLimits) {
   const CaseColumns cases = Columns({0, 1, 2}, {0.1, 0.2, 0.3}, {1, 2, 3});
   const CaseColumns others = Columns({0, 1, 2}, {0.1, 0.2, 0.3}, {2, 4, 6});

@@ -67,14 +67,32 @@ TEST(Judge, SaysWhyNothingIsDecided) {
       Judge(PeakBelow(0.5, 0.9973, 0.10), SamplingMethod::kMonteCarlo, Columns(200, 0), 0);
   EXPECT_EQ(
       open.sentence,
-      "0 of 200 flights broke the limit. Between 98.855 % and 100 % of flights meet it, each bound with 90 % "
-      "confidence; 99.73 % required. A new campaign can pass with 852 flights or more. By what was seen "
-      "here, "
-      "one of 6816 flights passes with a probability of 61 %. This one, extended, needs 1104 flights in all "
-      "with no further failure (any-time rule).");
+      "0 of 200 flights broke the limit. Between 98.8 % and 100 % of flights meet it, each bound with 90 % "
+      "confidence; 99.73 % required.");
+  EXPECT_EQ(
+      AdviceSentence(open),
+      " A new campaign can pass with 852 flights or more. By what was seen here, one of 6816 flights "
+      "passes with a probability of 61 %. This one, extended, needs 1104 flights in all with no further "
+      "failure (any-time rule).");
   // One flight says next to nothing, and so does the advice.
-  EXPECT_THAT(Judge(PeakBelow(0.5, 0.9973, 0.10), SamplingMethod::kMonteCarlo, Columns(1, 0), 0).sentence,
-              testing::HasSubstr("passes with a probability of 5.5 %"));
+  EXPECT_THAT(
+      AdviceSentence(Judge(PeakBelow(0.5, 0.9973, 0.10), SamplingMethod::kMonteCarlo, Columns(1, 0), 0)),
+      testing::HasSubstr("passes with a probability of 5.51 %"));
+}
+
+TEST(Judge, SaysInOneSentenceWhatTheBoundMeans) {
+  CaseColumns cases = Columns(2000, 0);
+  for (std::size_t i = 0; i < 2000; ++i)
+    cases.metrics[MetricColumn(kPeak)][i] = 0.1 + 1e-4 * static_cast<double>(i);  // bound 0.2997
+  const auto sentence = [&](double limit) {
+    return BoundSentence(Judge(PeakBelow(limit, 0.9973, 0.10), SamplingMethod::kMonteCarlo, cases, 0), "°");
+  };
+  EXPECT_EQ(sentence(0.5), "With 90 % confidence 99.73 % of flights stay below 0.3 ° (limit 0.5 °).");
+  // Rounded up so that it holds, but never over the limit that it keeps to.
+  EXPECT_EQ(sentence(0.3), "With 90 % confidence 99.73 % of flights stay below 0.2997 ° (limit 0.3 °).");
+  EXPECT_EQ(
+      BoundSentence(Judge(PeakBelow(0.5, 0.9973, 0.10), SamplingMethod::kMonteCarlo, Columns(9, 0), 0), "°"),
+      "");
 }
 
 TEST(Judge, BoundsTheMetricByTheOrderStatisticThatDecides) {
@@ -436,10 +454,14 @@ TEST_F(Misuse, ALimitThatWasChangedAfterTheFirstCaseShows) {
       ElementsAre(
           "Post hoc: pitch_error_peak_deg below 0.5 for 90 % of flights at 10 % risk was not required "
           "before the first case was flown.",
-          "Post hoc: the requirement \"pitch_error_peak_deg above  below 0.05 probability 0.9 "
-          "consumer_risk 0.1 looks 1 obrien_fleming\" was changed or left out after the first case was "
-          "flown. Its last verdict: fail."));
+          "Post hoc: pitch_error_peak_deg below 0.05 for 90 % of flights at 10 % risk was required, and was "
+          "changed or left out after the first case was flown. Its last verdict: fail."));
   EXPECT_THAT(JUnitXml(summary_), testing::HasSubstr("errors=\"2\""));
+  EXPECT_THAT(JUnitXml(summary_),
+              testing::HasSubstr(
+                  "name=\"pitch_error_peak_deg below 0.05 for 90 % of flights at 10 % risk\">\n      "
+                  "<error message=\"Changed or left out after its flights were flown. Its last verdict: "
+                  "fail.\"/>"));
   campaign_.requirements.clear();
   Fly(40, 0);
   EXPECT_EQ(summary_.standing.verdict, StandingVerdict::kNotEvidence) << "dropped";

@@ -3,9 +3,12 @@
 
 #include <gmock/gmock.h>
 
+#include <algorithm>
 #include <cmath>
 #include <regex>
 
+#include "core/pages/glossary.h"
+#include "core/pages/report_sections.h"
 #include "core/results/metric_catalogue.h"
 #include "core/results/text.h"
 #include "tests/unit/made_up_results.h"
@@ -95,22 +98,31 @@ TEST_F(ReportPageTest, ShowsTheNumbersOfTheSummary) {
   Build(40, 40);
   for (const MetricSummary& metric : summary_.metrics) {
     const Summary& s = metric.statistics;
+    const MetricInfo info = DescribeMetric(metric.name);
+    if (s.min == s.max) {
+      EXPECT_THAT(page_, HasSubstr(HtmlText(info.title) + " " + ReadableText(s.min)));
+      continue;
+    }
     // The row in one piece, so that a number of another metric cannot stand in.
-    std::string row = ReadableText(summary_.nominal->metrics[MetricColumn(metric.name)]);
+    const auto value = [&](double number) { return ScatterText(number, s.std); };
+    std::string row = value(summary_.nominal->metrics[MetricColumn(metric.name)]);
     const auto add = [&](const std::string& text) { row += "</td><td class=\"n\">" + text; };
     add(std::to_string(s.n));
-    for (const double value : {s.mean, s.std, metric.skewness, s.min, s.p50}) add(ReadableText(value));
-    row += "<span class=\"definition\">" + ReadableText(metric.percentiles[3].limits.lower) + " … " +
-           ReadableText(metric.percentiles[3].limits.upper) + "</span>";
+    for (const std::string& text :
+         {value(s.mean), RoundedText(s.std), RoundedText(metric.skewness), value(s.min), value(s.p50)})
+      add(text);
+    row += "<span class=\"definition\">" + value(metric.percentiles[3].limits.lower) + " … " +
+           value(metric.percentiles[3].limits.upper) + "</span>";
     EXPECT_THAT(page_, HasSubstr(row)) << metric.name;
     // 39 completed flights do not reach so far: only a bound is shown.
     EXPECT_EQ(metric.percentiles[6].name, "p99_73");
-    EXPECT_THAT(page_, HasSubstr("≥ " + ReadableText(metric.percentiles[6].limits.lower)));
+    EXPECT_THAT(page_, HasSubstr("≥ " + value(metric.percentiles[6].limits.lower)));
   }
   const RequirementSummary& requirement = summary_.requirements[0];
   for (const std::string& text :
-       {PercentText(*requirement.success_lower), PercentText(*requirement.success_upper),
-        std::string("below 12.5 °"), HtmlText(requirement.sentence),
+       {ShareText(*requirement.success_lower, Rounding::kDown),
+        ShareText(*requirement.success_upper, Rounding::kUp), std::string("below 12.5 °"),
+        HtmlText(requirement.sentence),
         std::string("<dt>failures</dt><dd>" + std::to_string(requirement.failures) + "</dd>"),
         std::string("<dt>observed</dt><dd>"), HtmlText(JointRiskSentence(summary_))}) {
     EXPECT_THAT(page_, HasSubstr(text));
@@ -118,7 +130,8 @@ TEST_F(ReportPageTest, ShowsTheNumbersOfTheSummary) {
   for (const WorstCases& worst : summary_.worst_cases) {
     for (const WorstCase& one : worst.cases) EXPECT_THAT(page_, HasSubstr(ReplayCommand(one.case_index)));
   }
-  EXPECT_THAT(page_, HasSubstr(ReadableText(summary_.dispersions[0].drawn.mean)));
+  EXPECT_THAT(page_,
+              HasSubstr(ScatterText(summary_.dispersions[0].drawn.mean, summary_.dispersions[0].drawn.std)));
   EXPECT_THAT(page_, HasSubstr(summary_.id));
   EXPECT_THAT(page_, HasSubstr(summary_.flight_id));
   EXPECT_THAT(page_, HasSubstr(summary_.engine));
@@ -138,11 +151,9 @@ TEST_F(ReportPageTest, NamesMetricAndValueOfEachRequirement) {
   Build(40, 40);
   const RequirementSummary& requirement = summary_.requirements[0];
   ASSERT_TRUE(requirement.bound);
-  EXPECT_THAT(
-      page_, HasSubstr("<code>pitch_error_peak_deg</code> <span class=\"value\">With 90 % confidence 90 % of "
-                       "flights keep to " +
-                       ReadableText(*requirement.bound) + " ° (margin " + ReadableText(*requirement.margin) +
-                       " °).</span>"));
+  EXPECT_THAT(page_,
+              HasSubstr("<p class=\"value\">With 90 % confidence 90 % of flights stay below " +
+                        RoundedText(*requirement.bound, Rounding::kUp, 12.5) + " ° (limit 12.5 °).</p>"));
 }
 
 TEST_F(ReportPageTest, SaysWhichFlightsTheEnvelopeHolds) {
@@ -249,19 +260,24 @@ TEST_F(ReportPageTest, AFlightBeyondALimitIsInTheHeadAndAmongTheOutcomes) {
   EXPECT_LT(page.find("<span class=\"badge fail\">structural limit exceeded</span>", head),
             page.find("<nav>"));
   EXPECT_THAT(page, HasSubstr("<li>Structural limits of the vehicle were exceeded in 3 of 40 flights: "));
-  EXPECT_THAT(page,
-              HasSubstr("<td>a limit of the structure exceeded, however it ended</td><td class=\"n\"><span "
-                        "class=\"badge fail\">3</span></td><td class=\"n\">7.5 %</td>"));
-  EXPECT_THAT(page,
-              HasSubstr("<td>Axial load, maximum</td><td class=\"n\">9 g</td><td class=\"n\">9.5 g</td><td "
-                        "class=\"n\">17</td><td class=\"n\"><span class=\"badge fail\">3</span></td>"));
   EXPECT_THAT(
       page,
-      HasSubstr("<td>Dynamic pressure, maximum</td><td class=\"n\">100000 Pa</td><td class=\"n\">97000 Pa"));
+      HasSubstr(
+          "<th scope=\"row\">a limit of the structure exceeded, however it ended</th><td class=\"n\"><span "
+          "class=\"badge fail\">3</span></td><td class=\"n\">7.5 %</td>"));
+  EXPECT_THAT(
+      page,
+      HasSubstr(
+          "<th scope=\"row\">Axial load, maximum</th><td class=\"n\">9 g</td><td class=\"n\">9.5 g</td><td "
+          "class=\"n\">17</td><td class=\"n\"><span class=\"badge fail\">3</span></td>"));
+  EXPECT_THAT(page, HasSubstr("<th scope=\"row\">Dynamic pressure, maximum</th><td class=\"n\">100000 "
+                              "Pa</td><td class=\"n\">97000 Pa"));
   EXPECT_THAT(page, HasSubstr("required because the vehicle gives limits"));
   // Beside "structural limit 0": what did not end the flights.
-  EXPECT_THAT(page, HasSubstr("<td>structural limit<span class=\"definition\">ended by it; 3 more exceeded a "
-                              "limit and flew on</span></td><td class=\"n\">0</td>"));
+  EXPECT_THAT(
+      page,
+      HasSubstr("<th scope=\"row\">structural limit<span class=\"definition\">ended by it; 3 more exceeded a "
+                "limit and flew on</span></th><td class=\"n\">0</td>"));
 }
 
 TEST_F(ReportPageTest, GroupsMetricsAsTheyAreDeclaredAndNamesInputsAsTheFileDoes) {
@@ -269,7 +285,7 @@ TEST_F(ReportPageTest, GroupsMetricsAsTheyAreDeclaredAndNamesInputsAsTheFileDoes
   const auto in_group = [&](const char* title, const char* from, const char* to) {
     const std::size_t at = page_.find(std::string("<b>") + title);
     const auto group = [&](const char* name) {
-      return page_.find(std::string("class=\"group\"><td colspan=\"11\">") + name + "<");
+      return page_.find(std::string("class=\"group\"><th scope=\"rowgroup\" colspan=\"11\">") + name + "<");
     };
     EXPECT_LT(group(from), at) << title;
     EXPECT_LT(at, to == nullptr ? std::string::npos : group(to)) << title;
@@ -279,6 +295,103 @@ TEST_F(ReportPageTest, GroupsMetricsAsTheyAreDeclaredAndNamesInputsAsTheFileDoes
   in_group("Semi-major axis error, km", "Injection", "Guidance");
   in_group("Rules fired", "Control law", "Integration");
   EXPECT_THAT(page_, HasSubstr("<code>thrust</code> <span class=\"soft\"><code>thrust_factor_stage1</code>"));
+}
+
+TEST_F(ReportPageTest, SaysAdviceOnceForAllRequirements) {
+  Build(20, 20);  // 22 flights are the least that can show 90 %
+  campaign_.requirements[0].below = 1000.0;
+  campaign_.requirements.push_back(campaign_.requirements[0]);
+  campaign_.requirements[1].metric = "yaw_error_peak_deg";
+  campaign_.requirements[1].id = "GNC-2";
+  campaign_.requirements[1].source = "SRD 3.1";
+  campaign_.requirements[1].rationale = "the fairing's clearance";
+  cases_.outcome[3] = Outcome::kCompleted;
+  summary_ = BuildSummary(ResultFolder::Open(temporary_ / "out"), campaign_, cases_);
+  for (Standing::Requirement& one : summary_.standing.requirements) {
+    one = {};
+    one.verdict = "inconclusive";
+  }
+  const std::string page = FirstPage(campaign_, summary_);
+  const std::string advice = AdviceTogether(summary_);
+  EXPECT_THAT(advice,
+              testing::StartsWith("To decide all 2 inconclusive requirements: a new campaign needs 22 "
+                                  "flights or more."));
+  EXPECT_THAT(page, HasSubstr("<p class=\"advice\">" + advice));
+  EXPECT_THAT(page.substr(page.find(advice) + advice.size()), Not(HasSubstr("new campaign")));
+  EXPECT_THAT(page.substr(0, page.find(advice)), Not(HasSubstr("new campaign")));
+  EXPECT_THAT(page,
+              HasSubstr("<code>GNC-2</code> <b>Yaw error, peak</b> below 1000 °<span class=\"definition "
+                        "clip\">SRD 3.1 · the fairing's clearance</span>"));
+  EXPECT_THAT(RequirementsSection(summary_), HasSubstr("<p>Why: the fairing's clearance</p>"));
+}
+
+TEST_F(ReportPageTest, ARowSaysWhatWasRequiredBefore) {
+  Build(40, 40);
+  Standing& standing = summary_.standing;
+  standing.verdict = StandingVerdict::kNotEvidence;
+  standing.is_post_hoc = true;
+  standing.requirements[0].verdict = "not_evidence";
+  standing.requirements[0].post_hoc = true;
+  standing.requirements[0].reason = "It was stated after its flights were flown.";
+  standing.dropped = {{"", "pitch_error_peak_deg below 0.1 for 90 % of flights at 10 % risk", "fail"},
+                      {"", "q_max_pa below 3 in every case", ""}};
+  const std::string page = FirstPage(campaign_, summary_);
+  EXPECT_THAT(page, HasSubstr("<b>required before the flights: below 0.1 for 90 % of flights at 10 % risk; "
+                              "verdict: fail</b>"));
+  EXPECT_THAT(page,
+              HasSubstr("q_max_pa below 3 in every case</th><td>Left out after the first flight. Its last "
+                        "verdict: none.</td>"));
+  EXPECT_THAT(page, Not(HasSubstr("It was stated after"))) << "the badge and the note say so";
+}
+
+TEST_F(ReportPageTest, ConvergenceIsDrawnWhereItSaysMoreThanNumbersAndOnce) {
+  Build(40, 40);
+  RequirementSummary& one = summary_.requirements[0];
+  const auto charts = [&] {
+    const std::string section = RequirementsSection(summary_);
+    const std::regex chart("<svg class=\"chart\"");
+    return std::distance(std::sregex_iterator(section.begin(), section.end(), chart), std::sregex_iterator());
+  };
+  ASSERT_GT(one.failures, 0);
+  one.verdict = "fail";
+  EXPECT_EQ(charts(), 1);
+  one.failures = 0;
+  one.verdict = "pass";
+  EXPECT_EQ(charts(), 0);
+  one.failures = one.n;
+  one.verdict = "fail";
+  EXPECT_EQ(charts(), 0);
+  one.failures = 2;
+  summary_.requirements.push_back(one);
+  summary_.requirements[1].metric = "yaw_error_peak_deg";
+  EXPECT_EQ(charts(), 1) << "the same curve";
+  EXPECT_THAT(RequirementsSection(summary_),
+              HasSubstr("Pitch error, peak; Yaw error, peak: 2 of 40 flights"));
+}
+
+TEST_F(ReportPageTest, ExplainsItsWordsFromTheDocsSitesGlossary) {
+  Build(40, 40);
+  EXPECT_GT(Glossary().size(), 30u);
+  const std::regex link("href=\"#([^\"]+)\"");
+  for (std::sregex_iterator at(page_.begin(), page_.end(), link), end; at != end; ++at)
+    EXPECT_THAT(page_, HasSubstr("id=\"" + (*at)[1].str() + "\"")) << "a link to nowhere";
+  for (const char* word : {"consumer risk", "attained risk", "max q", "q·α", "clock angle", "digest",
+                           "attempt", "margin", "bound"}) {
+    const auto entry = std::find_if(Glossary().begin(), Glossary().end(),
+                                    [&](const GlossaryEntry& one) { return one.word == word; });
+    ASSERT_NE(entry, Glossary().end()) << word;
+    EXPECT_THAT(page_, HasSubstr("<dfn>" + std::string(word) + "</dfn></dt><dd>" + HtmlText(entry->meaning)));
+  }
+  EXPECT_THAT(page_, Not(HasSubstr("<dfn>harmed</dfn>"))) << "a word that the page does not use";
+  EXPECT_THROW(Term("no such word"), std::logic_error);
+}
+
+TEST_F(ReportPageTest, EveryTableHasHeadsForReadersWhoListen) {
+  Build(40, 40);
+  const std::regex bare("<th(?! scope=)[ >]"), empty_head("<th [^>]*></th>");
+  EXPECT_FALSE(std::regex_search(page_, bare));
+  EXPECT_FALSE(std::regex_search(page_, empty_head)) << "a head without a word";
+  EXPECT_THAT(page_, HasSubstr("<main>"));
 }
 
 TEST_F(ReportPageTest, AMetricOfOneValueIsSaidAndNotDrawn) {

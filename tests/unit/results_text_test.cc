@@ -2,7 +2,10 @@
 
 #include <gtest/gtest.h>
 
+#include <cmath>
+
 #include "core/results/metric_catalogue.h"
+#include "core/results/requirement_text.h"
 #include "tests/unit/made_up_results.h"
 
 namespace dispersa::results_text_test {
@@ -29,6 +32,87 @@ TEST(PercentText, NeverRoundsUpToCertainty) {
   EXPECT_EQ(PercentText(1.0), "100 %");
   EXPECT_EQ(PercentText(0.999999), "99.9999 %");
   EXPECT_EQ(PercentText(4996.0 / 5000.0), "99.92 %");
+}
+
+TEST(RoundedText, HasThreeDigitsAndStaysOnItsSide) {
+  EXPECT_EQ(RoundedText(0.22491), "0.225");
+  EXPECT_EQ(RoundedText(0.20004), "0.2");
+  EXPECT_EQ(RoundedText(96879.7), "96900");
+  EXPECT_EQ(RoundedText(-6979.7), "-6980");
+  EXPECT_EQ(RoundedText(999.6), "1000");
+  EXPECT_EQ(RoundedText(0.0), "0");
+  EXPECT_EQ(RoundedText(0.22401, Rounding::kUp), "0.225");
+  EXPECT_EQ(RoundedText(0.22499, Rounding::kDown), "0.224");
+  EXPECT_EQ(RoundedText(0.225, Rounding::kUp), "0.225") << "what is round already stays";
+  EXPECT_EQ(RoundedText(0.49961, Rounding::kUp, 0.5), "0.4997");
+  EXPECT_EQ(RoundedText(0.50004, Rounding::kDown, 0.5), "0.5") << "on the limit is not inside";
+  EXPECT_EQ(RoundedText(1.2345e-7), "1.23e-07");
+  EXPECT_EQ(RoundedText(report_test::kNaN), "–");
+}
+
+TEST(ScatterText, HasTwoDigitsOfTheDeviation) {
+  EXPECT_EQ(ScatterText(499.8712, 0.123), "499.87");
+  EXPECT_EQ(ScatterText(0.030145, 0.0045), "0.0301");
+  EXPECT_EQ(ScatterText(96883.3, 2345.0), "96900");
+  EXPECT_EQ(ScatterText(-0.0004, 1.0), "0");
+  EXPECT_EQ(ScatterText(60.96, 0.0), "60.96");
+}
+
+TEST(ShareText, HasThreeDigitsAndShowsWhatIsMissingTo100) {
+  EXPECT_EQ(ShareText(0.25877), "25.9 %");
+  EXPECT_EQ(ShareText(0.066961), "6.7 %");
+  EXPECT_EQ(ShareText(0.99541, Rounding::kDown), "99.54 %");
+  EXPECT_EQ(ShareText(0.99953959, Rounding::kDown), "99.95 %");
+  EXPECT_EQ(ShareText(0.9999541, Rounding::kDown), "99.995 %");
+  EXPECT_EQ(ShareText(0.557489, Rounding::kUp), "55.8 %");
+  EXPECT_EQ(ShareText(1e-9), "< 0.001 %");
+  EXPECT_EQ(ShareText(0.0), "0 %");
+  EXPECT_EQ(ShareText(1.0), "100 %");
+  EXPECT_EQ(ShareText(0.999999), "99.9999 %");
+  // 852 flights without a failure just show 99.73 %: not 99.72 %, and not less than is required.
+  EXPECT_EQ(ShareText(std::pow(0.1, 1.0 / 852), Rounding::kDown, 0.9973), "99.73 %");
+  EXPECT_EQ(ShareText(0.997352, Rounding::kDown, 0.99735), "99.735 %");
+}
+
+TEST(PValueText, IsNeverZero) {
+  EXPECT_EQ(PValueText(0.0), "< 1e-15");
+  EXPECT_EQ(PValueText(3.14e-6), "3.1e-06");
+  EXPECT_EQ(PValueText(0.0009766), "0.000977");
+  EXPECT_EQ(PValueText(1.0), "1");
+}
+
+// What was required once is known by its line alone.
+TEST(RequirementLine, CanBeReadBack) {
+  Requirement one;
+  one.metric = "pitch_error_peak_deg";
+  one.below = 0.1;
+  one.probability = 0.9973;
+  one.consumer_risk = 0.1;
+  EXPECT_EQ(LineWords(RequirementLine(one)),
+            "pitch_error_peak_deg below 0.1 for 99.73 % of flights at 10 % risk");
+  Requirement range = one;
+  range.below.reset();
+  range.within = {{-1.5, 2.0}};
+  range.plan = {PlanKind::kGroupSequential, 4, Spending::kPocock};
+  EXPECT_EQ(LineWords(RequirementLine(range)),
+            "pitch_error_peak_deg between -1.5 and 2 for 99.73 % of flights at 10 % risk, judged 4 times");
+  Requirement own = one;
+  own.metric = "tilt_deg";
+  own.own_expression = "max(pitch_deg) above 3 below 4";
+  own.below.reset();
+  own.above = 7.0;
+  own.plan.kind = PlanKind::kAnytime;
+  EXPECT_EQ(LineWords(RequirementLine(own)),
+            "tilt_deg above 7 for 99.73 % of flights at 10 % risk, judged at any time");
+  Requirement every = one;
+  every.every_case = true;
+  EXPECT_EQ(LineWords(RequirementLine(every)), "pitch_error_peak_deg below 0.1 in every case");
+  for (const Requirement& requirement : {one, range, own, every}) {
+    const std::optional<Requirement> read = RequirementOfLine(RequirementLine(requirement));
+    ASSERT_TRUE(read);
+    EXPECT_EQ(RequirementLine(*read), RequirementLine(requirement));
+  }
+  EXPECT_EQ(LineWords("no requirement"), "no requirement");
 }
 
 TEST(HtmlText, EscapesWhatWouldBeMarkup) {
