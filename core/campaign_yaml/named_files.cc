@@ -1,5 +1,7 @@
 #include "core/campaign_yaml/named_files.h"
 
+#include <cerrno>
+#include <cstring>
 #include <filesystem>
 
 #include "core/campaign_yaml/base64.h"
@@ -23,6 +25,9 @@ InputNode ParseTable(const std::string& text, const std::string& file, std::vect
   for (char& c : end) c = c >= 'A' && c <= 'Z' ? static_cast<char>(c - 'A' + 'a') : c;
   return end == ".eng" ? ParseRasp(text, file, problems) : ParseCsv(text, file, problems);
 }
+
+/// Whether a file could not be read because there is none.
+bool IsMissing(const std::string& reason) { return reason == std::strerror(ENOENT); }
 
 InputNode Bytes(const std::string& bytes, const std::string& file, const InputNode& place,
                 const std::string& path, std::vector<InputProblem>& problems) {
@@ -53,8 +58,10 @@ void NamedFiles::Read(InputNode& name, const std::string& path, Holds holds,
       (std::filesystem::path(*place.file).parent_path() / place.text).lexically_normal().string();
   std::string text, reason;
   if (!ReadFile(file, &text, &reason))
-    AddProblem(problems, place, path, "cannot read '" + file + "': " + reason,
-               "a readable file, named relative to this one");
+    AddProblem(problems, place, path,
+               IsMissing(reason) ? "file '" + file + "' not found" : "cannot read '" + file + "': " + reason,
+               IsMissing(reason) ? "a file, named relative to this one"
+                                 : "a readable file, named relative to this one");
   else if (holds == Holds::kDocument)
     name = ParseYaml(text, file, problems);
   else if (holds == Holds::kTable)
@@ -69,7 +76,8 @@ InputNode ReadYamlFile(const std::string& path, std::vector<InputProblem>& probl
   // Without a folder, so that the names in it are relative to the current one.
   const std::string file = path == kStandardInput ? kStandardInputName : path;
   if (!(path == kStandardInput ? ReadStandardInput(&text, &reason) : ReadFile(path, &text, &reason))) {
-    problems.push_back({file, 1, 1, "", "cannot be read: " + reason, "a readable file"});
+    problems.push_back({file, 1, 1, "", IsMissing(reason) ? "file not found" : "cannot be read: " + reason,
+                        IsMissing(reason) ? "a file that exists" : "a readable file"});
     return {};
   }
   return ParseYaml(text, file, problems);

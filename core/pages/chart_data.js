@@ -23,8 +23,8 @@ function ChartPoints(path) {
   const said = document.getElementById("said");
   const number = (value, axis) => axis.percent ? +(100 * value).toPrecision(3) + " %" : String(+value.toPrecision(4));
 
-  function SeriesOf(svg) {
-    const series = [], named = new Map(), plot = svg.querySelector(".plot");
+  function SeriesOf(plot, labels, xs, ys) {
+    const series = [], named = new Map();
     const add = (name, kind, points) => {
       const key = kind + name;
       if (!named.has(key)) { named.set(key, {name, kind, points: []}); series.push(named.get(key)); }
@@ -33,8 +33,9 @@ function ChartPoints(path) {
     for (const path of plot.querySelectorAll("path[data-s]")) {
       const name = path.dataset.s, d = path.getAttribute("d");
       if (path.matches(".limit, .allowed, .bound")) {
-        const [x, y] = d.match(/-?[\d.]+/g).map(Number);
-        add(name, "limit", [{x, y, say: name}]);
+        const [x, y, x1] = d.match(/-?[\d.]+/g).map(Number), upright = x === x1;
+        if (name) add(name, "limit", [{x, y, say: upright ? `${name}: ${labels[0]} ${number(xs.value(x), xs)}`
+                                                          : `${name}: ${labels[1]} ${number(ys.value(y), ys)}`}]);
       } else if (d.includes("h0")) {
         add(name, "dots", [...d.matchAll(/M(\S+) (\S+?)h0/g)].map(([, x, y]) => ({x: +x, y: +y})));
       } else if (d.endsWith("Z")) {
@@ -55,7 +56,7 @@ function ChartPoints(path) {
     });
     if (bars.length) add("bars", "bars", bars);
     for (const one of series) if (one.kind !== "line") one.points.sort((a, b) => a.x - b.x);
-    return series;
+    return series.sort((a, b) => (a.kind === "limit") - (b.kind === "limit"));
   }
 
   for (const svg of document.querySelectorAll("svg.chart[data-x]")) {
@@ -90,7 +91,7 @@ function ChartPoints(path) {
     }
 
     svg.addEventListener("keydown", event => {
-      series = series || SeriesOf(svg);
+      series = series || SeriesOf(plot, labels, xs, ys);
       const step = {ArrowRight: 1, ArrowLeft: -1, PageDown: 10, PageUp: -10, Home: -Infinity, End: Infinity}[event.key];
       const turn = {ArrowDown: 1, ArrowUp: -1}[event.key];
       if (event.key === "Escape" || !series.length) { Clear(); return; }

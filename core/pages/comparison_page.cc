@@ -479,9 +479,7 @@ std::string ComparisonPage(const Comparison& comparison, const CaseColumns& a, c
       "\n.ids code, .breaking td, .breaking th { white-space: normal; overflow-wrap: anywhere; }\n"
       ".breaking table { table-layout: fixed; } .breaking td code, .breaking th code { white-space: normal; "
       "overflow-wrap: normal; }\n"
-      ".metrics tbody th { min-width: 11em; } .metrics td.n .definition { white-space: normal; }\n"
-      "table.requirements tbody td:nth-child(6) { width: 38%; } table.requirements th:nth-child(2) { "
-      "min-width: 10em; }\n";
+      ".metrics tbody th { min-width: 11em; } .metrics td.n .definition { white-space: normal; }\n";
   const std::string title = comparison.b.name + " against " + comparison.a.name;
   std::string page = PageHead(title, title, kMoreStyle) + "<main>\n" + Header(comparison) +
                      kComparisonNavigation + CasesSection(comparison) + MetricsSection(comparison) +

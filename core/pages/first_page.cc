@@ -92,7 +92,11 @@ std::string NameOf(const RequirementSummary& requirement) {
 std::string LimitCell(const RequirementSummary& requirement, const MetricInfo& info,
                       const std::string& before) {
   std::string cell = requirement.id.empty() ? "" : Code(requirement.id) + " ";
-  cell += "<b>" + HtmlText(info.title) + "</b> " + HtmlText(LimitWords(requirement, info.unit));
+  std::string limit = HtmlText(LimitWords(requirement, info.unit));
+  // A unit alone on the next line reads as a number without one.
+  if (const std::size_t at = limit.rfind(" " + HtmlText(info.unit)); !info.unit.empty() && at < limit.size())
+    limit.replace(at, 1, "&nbsp;");
+  cell += "<b>" + HtmlText(info.title) + "</b> " + limit;
   if (requirement.every_case) cell += " in every case";
   if (!before.empty()) cell += "<span class=\"definition\"><b>" + HtmlText(before) + "</b></span>";
   std::string words = requirement.by_default ? "required because the vehicle gives limits" : "";

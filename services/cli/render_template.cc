@@ -69,6 +69,8 @@ Ended Run(const std::vector<std::string>& words) {
 
 std::string RenderTemplate(const std::filesystem::path& summary, const std::filesystem::path& template_file) {
   for (const auto& file : {template_file, summary}) {
+    if (!std::filesystem::exists(file))
+      throw InputError(file.string() + ": file not found", "a file that exists");
     if (!std::ifstream(file) || std::filesystem::is_directory(file))
       throw InputError(file.string() + ": cannot be read", "a readable file");
   }

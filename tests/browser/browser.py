@@ -1,6 +1,8 @@
 """A browser for tests: Chromium without a window, through chromedriver; nothing leaves the loopback interface."""
+import base64
 import json
 import os
+import re
 import shutil
 import socket
 import subprocess
@@ -10,6 +12,8 @@ import time
 import unittest
 import urllib.request
 
+KEYS = {"Tab": "\ue004", "Enter": "\ue007", "Escape": "\ue00c", "End": "\ue010", "Home": "\ue011", "ArrowLeft": "\ue012",
+        "ArrowUp": "\ue013", "ArrowRight": "\ue014", "ArrowDown": "\ue015"}
 DRIVER = shutil.which(sys.argv[1])
 DISPERSA, CAMPAIGN = map(os.path.abspath, sys.argv[2:4])
 
@@ -65,6 +69,16 @@ class Browser:
             else:
                 actions.append({"type": "pointerMove", "duration": 20, "x": round(step[0]), "y": round(step[1])})
         self.call("POST", "/actions", {"actions": [{"type": "pointer", "id": "mouse", "actions": actions}]})
+
+    def keys(self, *keys):
+        """Names of KEYS, one after the other."""
+        actions = [{"type": kind, "value": KEYS[key]} for key in keys for kind in ("keyDown", "keyUp")]
+        self.call("POST", "/actions", {"actions": [{"type": "key", "id": "keyboard", "actions": actions}]})
+
+    def pages_of_print(self):
+        """Of the open page on paper of the size that it asks for."""
+        pdf = base64.b64decode(self.devtools("Page.printToPDF", preferCSSPageSize=True, printBackground=False)["data"])
+        return len(re.findall(rb"/Type\s*/Page\b", pdf))
 
     def close(self):
         try:

@@ -372,8 +372,8 @@ class PluginTest(unittest.TestCase):
         self.compile("nothing", SOURCE / "core/control/control_law.h", flags=["-xc"])
         (self.folder / "text.so").write_text("no object\n")
         for name, words in (
-                ("missing", r"cannot read '\S+missing\.so': No such file or directory, "
-                            r"allowed: a readable file, named relative to this one\n$"),
+                ("missing", r"file '\S+missing\.so' not found, "
+                            r"allowed: a file, named relative to this one\n$"),
                 ("text", "the control law cannot be loaded: file too short" + allowed),
                 ("nothing", "the control law has no function 'dispersa_law_describe'" + allowed),
                 ("other_abi", "the control law speaks version 77 of the interface of control laws, this program "

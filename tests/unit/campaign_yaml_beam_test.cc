@@ -189,8 +189,8 @@ constexpr BadInput kBadInputs[] = {
      "flexible.yaml:6:10: structure_beam.modes: 11 is out of range, allowed: a whole number from 1 to "
      "10\n"},
     {"NoBase", "based_on: vehicle.yaml", "based_on: vehicles.yaml",
-     "flexible.yaml:2:11: based_on: cannot read 'vehicles.yaml': No such file or directory, allowed: "
-     "a readable file, named relative to this one\n"},
+     "flexible.yaml:2:11: based_on: file 'vehicles.yaml' not found, allowed: a file, named relative to this "
+     "one\n"},
     {"BaseOfAnotherKind", "based_on: vehicle.yaml", "based_on: autopilot.yaml",
      "autopilot.yaml:1:9: schema: 'dispersa/autopilot/1' is not the schema of this kind of file, "
      "allowed: schema: dispersa/vehicle/1\n"},

@@ -174,8 +174,8 @@ constexpr BadInput kBadInputs[] = {
      "a number above 0 and below 90\n"},
     {"UnreachableFile", "campaign.yaml", "vehicle: vehicle.yaml", "vehicle: vehicles/none.yaml",
      "campaign.yaml",
-     "campaign.yaml:3:10: vehicle: cannot read 'vehicles/none.yaml': No such file or "
-     "directory, allowed: a readable file, named relative to this one\n"},
+     "campaign.yaml:3:10: vehicle: file 'vehicles/none.yaml' not found, allowed: a file, named relative to "
+     "this one\n"},
     {"FolderForFile", "campaign.yaml", "vehicle: vehicle.yaml", "vehicle: .", "campaign.yaml",
      "campaign.yaml:3:10: vehicle: cannot read '': Is a directory, allowed: a readable file, "
      "named relative to this one\n"},
@@ -432,8 +432,8 @@ TEST(CampaignYamlErrors, AllProblemsOfAllFilesAreReportedInOrder) {
   files.Edit("campaign.yaml", "seed: 20260101", "seed: -1");
   EXPECT_EQ(
       files.Texts(CheckFile(files.Path("campaign.yaml")).errors),
-      "campaign.yaml:4:12: reference: cannot read 'nowhere.yaml': No such file or directory, allowed: a "
-      "readable file, named relative to this one\n"
+      "campaign.yaml:4:12: reference: file 'nowhere.yaml' not found, allowed: a file, named relative to this "
+      "one\n"
       "campaign.yaml:6:51: sampling.seed: '-1' is not a whole number, allowed: a whole number from 0 to "
       "18446744073709551615\n"
       "vehicle.yaml:4:14: hold_down_s: -1 is out of range, allowed: a number not below 0\n"
@@ -445,7 +445,7 @@ TEST(CampaignYamlErrors, AllProblemsOfAllFilesAreReportedInOrder) {
 TEST(CampaignYamlErrors, UnreadableFileOnTheCommandLine) {
   const InputFiles files;
   EXPECT_EQ(files.Texts(CheckFile(files.Path("nothing.yaml")).errors),
-            "nothing.yaml:1:1: cannot be read: No such file or directory, allowed: a readable file\n");
+            "nothing.yaml:1:1: file not found, allowed: a file that exists\n");
 }
 
 TEST(CampaignYamlErrors, EmptyFileAndFileWithoutMap) {
@@ -520,8 +520,8 @@ TEST(CampaignYamlErrors, ColumnThatIsGivenTwice) {
 TEST(CampaignYamlErrors, RelationsBesideAnUnreadableTable) {
   const InputFiles files;
   const std::string unreadable =
-      "vehicle.yaml:35:64: aerodynamics.tables[0].table: cannot read 'none.csv': No such file or directory, "
-      "allowed: a readable file, named relative to this one\n";
+      "vehicle.yaml:35:64: aerodynamics.tables[0].table: file 'none.csv' not found, allowed: a file, named "
+      "relative to this one\n";
   files.Edit("vehicle.yaml", "surface_roughness_um: 6",
              "aerodynamics:\n"
              "  tables:\n"

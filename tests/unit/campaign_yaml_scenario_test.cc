@@ -164,8 +164,8 @@ constexpr BadInput kBadScenarios[] = {
     {"TooManySteps", "scenario.yaml", "integration_step_s: 0.02", "integration_step_s: 1e-9",
      "scenario.yaml:53:21: integration_step_s: gives more than ten million steps, allowed: a longer step\n"},
     {"MissingTable", "scenario.yaml", "cn: scenario_cn.csv", "cn: none.csv",
-     "scenario.yaml:32:11: stages[0].aerodynamics.cn: cannot read 'none.csv': No such file or directory, "
-     "allowed: a readable file, named relative to this one\n"},
+     "scenario.yaml:32:11: stages[0].aerodynamics.cn: file 'none.csv' not found, allowed: a file, named "
+     "relative to this one\n"},
 };
 
 INSTANTIATE_TEST_SUITE_P(Scenario, BadScenarioTest, testing::ValuesIn(kBadScenarios),

@@ -121,10 +121,9 @@ INSTANTIATE_TEST_SUITE_P(
     Curves, BadCurveTest,
     testing::Values(
         // Without thrust nothing more is known of the stage.
-        BadCurve{
-            "NoFile", kCsvMotor, "", "",
-            "vehicle.yaml:11:54: stages[0].motor.thrust_curve.table: cannot read 'curve.csv': No such file "
-            "or directory, allowed: a readable file, named relative to this one\n"},
+        BadCurve{"NoFile", kCsvMotor, "", "",
+                 "vehicle.yaml:11:54: stages[0].motor.thrust_curve.table: file 'curve.csv' not found, "
+                 "allowed: a file, named relative to this one\n"},
         BadCurve{
             "BesideThrust",
             "{thrust_kn: 60, thrust_curve: {reference: vacuum, table: {time_s: [0, 20], thrust_kn: [80, "

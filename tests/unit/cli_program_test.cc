@@ -334,8 +334,8 @@ TEST(CliProgram, ValidateAsJson) {
       missing.text,
       "{\n  \"schema\": \"dispersa/validate/1\",\n  \"valid\": false,\n  \"errors\": [\n    {\n"
       "      \"file\": \"nothing.yaml\",\n      \"line\": 1,\n      \"column\": 1,\n      \"path\": \"\",\n"
-      "      \"message\": \"cannot be read: No such file or directory\",\n"
-      "      \"allowed\": \"a readable file\"\n    }\n  ],\n  \"warnings\": [],\n  \"vehicles\": []\n}\n");
+      "      \"message\": \"file not found\",\n"
+      "      \"allowed\": \"a file that exists\"\n    }\n  ],\n  \"warnings\": [],\n  \"vehicles\": []\n}\n");
 }
 
 TEST(CliProgram, BadInputToAnyCommandIsTwoWithTheSameText) {

@@ -121,7 +121,7 @@ class Templates(ExportTest):
             self.assertEqual((done.returncode, done.stdout, done.stderr), (2, "", f"{file}:{line}: {what}\n"))
         missing = self.folder / "missing.md"
         done = dispersa("report", self.results, "--template", missing)
-        self.assertEqual((done.returncode, done.stderr), (2, f"{missing}: cannot be read, allowed: a readable file\n"))
+        self.assertEqual((done.returncode, done.stderr), (2, f"{missing}: file not found, allowed: a file that exists\n"))
 
     def test_html_is_escaped(self):
         done = dispersa("report", self.results, "--template", self.template("{{ '<&>' }}", "template.html"))

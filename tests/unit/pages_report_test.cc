@@ -320,7 +320,7 @@ TEST_F(ReportPageTest, SaysAdviceOnceForAllRequirements) {
   EXPECT_THAT(page.substr(page.find(advice) + advice.size()), Not(HasSubstr("new campaign")));
   EXPECT_THAT(page.substr(0, page.find(advice)), Not(HasSubstr("new campaign")));
   EXPECT_THAT(page,
-              HasSubstr("<code>GNC-2</code> <b>Yaw error, peak</b> below 1000 °<span class=\"definition "
+              HasSubstr("<code>GNC-2</code> <b>Yaw error, peak</b> below 1000&nbsp;°<span class=\"definition "
                         "clip\">SRD 3.1 · the fairing's clearance</span>"));
   EXPECT_THAT(RequirementsSection(summary_), HasSubstr("<p>Why: the fairing's clearance</p>"));
 }

@@ -94,8 +94,8 @@ class StudyTest(unittest.TestCase):
                          (2, f"--out: {self.folder} is not an empty folder, allowed: a folder that is empty or new\n"))
         missing = dispersa("paper", "--out", self.folder / "new", "--campaigns", self.folder)
         self.assertEqual(missing.returncode, 2)
-        self.assertEqual(missing.stderr, f"{self.folder / 'nominal.yaml'}:1:1: cannot be read: No such file or directory, "
-                                         "allowed: a readable file\n")
+        self.assertEqual(missing.stderr, f"{self.folder / 'nominal.yaml'}:1:1: file not found, "
+                                         "allowed: a file that exists\n")
         self.assertFalse((self.folder / "new").exists())
 
     def fly(self, campaign, cases):
