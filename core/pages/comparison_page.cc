@@ -24,16 +24,17 @@ constexpr std::size_t kListedCases = 1000;
 
 std::string Definition(const std::string& html) { return "<span class=\"definition\">" + html + "</span>"; }
 
-/// Numbers of one row, to two digits of the difference that the row shows.
+/// Values of one row, to three digits of the difference that the row shows.
 std::string ValueText(double value, double difference) {
   if (std::isinf(value)) return value > 0.0 ? "∞" : "−∞";
-  return std::isfinite(difference) && difference != 0.0 ? ScatterText(value, std::fabs(difference))
+  return std::isfinite(difference) && difference != 0.0 ? ScatterText(value, 0.1 * std::fabs(difference))
                                                         : RoundedText(value);
 }
 
-std::string IntervalText(const Interval& interval, double difference) {
+std::string IntervalText(const Interval& interval) {
   if (!std::isfinite(interval.lower) && !std::isfinite(interval.upper)) return "no limits";
-  return ValueText(interval.lower, difference) + " … " + ValueText(interval.upper, difference);
+  const auto text = [](double value) { return ValueText(value, 0.0); };
+  return text(interval.lower) + " … " + text(interval.upper);
 }
 
 /// A path in a campaign file, with line breaks allowed after its dots.
@@ -45,7 +46,7 @@ std::string PathCell(const std::string& path) {
 
 std::string DifferenceCell(double difference, const Interval& interval) {
   if (!std::isfinite(difference)) return "–";
-  return RoundedText(difference) + Definition(IntervalText(interval, difference));
+  return RoundedText(difference) + Definition(IntervalText(interval));
 }
 
 std::string PText(double p) { return HtmlText(PValueText(p)); }

@@ -227,7 +227,10 @@ std::string FirstPage(const Campaign& campaign, const CampaignSummary& summary) 
       VerdictBadge(StandingBadge(standing)),
       IsIndependent(summary.sampling) ? "" : "<span class=\"badge design\">design study</span>",
       summary.beyond_limits == 0 ? "" : "<span class=\"badge fail\">structural limit exceeded</span>",
-      certain_fail ? VerdictBadge("fail") : "", HeadSentence(summary));
+      certain_fail ? VerdictBadge("fail") : "",
+      HeadSentence(summary) + (standing.verdict != StandingVerdict::kNotEvidence
+                                   ? ""
+                                   : " (" + Term(standing.is_post_hoc ? "post hoc" : "not evidence") + ")"));
   html += List("warnings", Notes(summary));
   html += RequirementsTable(summary);
   if (const std::string advice = AdviceTogether(summary); !advice.empty())

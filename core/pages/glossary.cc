@@ -54,11 +54,13 @@ std::string Term(std::string_view word, std::string_view shown) {
   return fmt::format("<a class=\"term\" href=\"#{}\">{}</a>", AnchorOf(word), shown.empty() ? word : shown);
 }
 
-std::string GlossarySection(std::string_view page) {
+std::string GlossarySection(std::string_view page, const std::vector<std::string>& more) {
   std::string list;
   for (const GlossaryEntry& entry : Glossary()) {
     const std::string anchor = AnchorOf(entry.word);
-    if (page.find("href=\"#" + anchor + "\"") == std::string_view::npos) continue;
+    if (page.find("href=\"#" + anchor + "\"") == std::string_view::npos &&
+        std::find(more.begin(), more.end(), entry.word) == more.end())
+      continue;
     list += fmt::format("<div id=\"{}\"><dt><dfn>{}</dfn></dt><dd>{}</dd></div>\n", anchor,
                         HtmlText(entry.word), HtmlText(entry.meaning));
   }

@@ -18,7 +18,7 @@ const std::vector<GlossaryEntry>& Glossary();
 /// in the glossary is a programmer's error.
 std::string Term(std::string_view word, std::string_view shown = "");
 
-/// A section with the words that `page` links to.
-std::string GlossarySection(std::string_view page);
+/// A section with the words that `page` links to, and with `more`.
+std::string GlossarySection(std::string_view page, const std::vector<std::string>& more = {});
 
 }  // namespace dispersa

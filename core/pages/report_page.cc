@@ -106,7 +106,10 @@ std::string ReportPage(const Campaign& campaign, const CampaignSummary& summary,
   page += NotModelledSection(campaign);
   page += CredibilitySection(summary);
   page += ProvenanceSection(campaign, summary);
-  page += GlossarySection(page);
+  // The first page differs from run to run, and so may its words: those that it can use are always explained.
+  const std::size_t after_first_page = page.find(kNavigation);
+  page += GlossarySection(std::string_view(page).substr(after_first_page),
+                          {"attained risk", "attempt", "margin", "not evidence", "post hoc"});
   page += "</main>\n<script type=\"application/json\" id=\"cases\">" + CaseData(summary, cases) +
           "</script>\n<script>";
   page += ChartScript();

@@ -200,7 +200,7 @@ class Streams(unittest.TestCase):
         # Names in it are relative to the current folder.
         with tempfile.TemporaryDirectory() as folder:
             done = dispersa("plan", "-", input=SMOKE.read_text(), cwd=folder)
-        self.assertIn("cannot read 'vehicles/slv4.yaml'", done.stderr)
+        self.assertIn("file 'vehicles/slv4.yaml' not found", done.stderr)
 
     def test_other_files_from_standard_input(self):
         vehicle = (CAMPAIGNS / "vehicles/slv4.yaml").read_text()

@@ -344,6 +344,25 @@ TEST_F(ReportPageTest, ARowSaysWhatWasRequiredBefore) {
   EXPECT_THAT(page, Not(HasSubstr("It was stated after"))) << "the badge and the note say so";
 }
 
+TEST_F(ReportPageTest, DiffersByWhatWasBeforeOnItsFirstPageAlone) {
+  Build(40, 40);
+  campaign_.requirements.clear();
+  summary_.requirements.clear();
+  summary_.standing = {};
+  const auto rest = [&] {
+    const std::string page = ReportPage(campaign_, summary_, cases_, histories_);
+    return page.substr(page.find("<!-- run:end -->"));
+  };
+  const std::string before = rest();
+  summary_.standing.verdict = StandingVerdict::kNotEvidence;
+  summary_.standing.is_post_hoc = true;
+  summary_.standing.dropped = {
+      {"", "pitch_error_peak_deg below 0.1 for 90 % of flights at 10 % risk", "fail"}};
+  EXPECT_EQ(rest(), before);
+  EXPECT_THAT(FirstPage(campaign_, summary_),
+              HasSubstr("(<a class=\"term\" href=\"#term-post-hoc\">post hoc</a>)"));
+}
+
 TEST_F(ReportPageTest, ConvergenceIsDrawnWhereItSaysMoreThanNumbersAndOnce) {
   Build(40, 40);
   RequirementSummary& one = summary_.requirements[0];
