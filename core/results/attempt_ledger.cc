@@ -1,9 +1,6 @@
 #include "core/results/attempt_ledger.h"
 
-#include <fcntl.h>
 #include <fmt/format.h>
-#include <sys/file.h>
-#include <unistd.h>
 
 #include <algorithm>
 #include <cerrno>
@@ -13,6 +10,7 @@
 #include <utility>
 
 #include "core/flight/engine_version.h"
+#include "core/results/output_file.h"
 #include "core/results/requirement_text.h"
 #include "core/results/result_error.h"
 
@@ -141,21 +139,7 @@ std::vector<AttemptRecord> AttemptLedger::Read() const {
   return records;
 }
 
-void AttemptLedger::Write(const AttemptRecord& record) const {
-  const std::string line = ToJson(record).dump() + "\n";
-  const int file = open(file_.c_str(), O_RDWR | O_APPEND | O_CREAT | O_CLOEXEC, 0666);
-  if (file < 0) FailLedger(file_, errno);
-  flock(file, LOCK_EX);
-  // After a line that was cut off a new one begins.
-  char last = '\n';
-  const off_t size = lseek(file, 0, SEEK_END);
-  if (size > 0) (void)!pread(file, &last, 1, size - 1);
-  const std::string text = last == '\n' ? line : "\n" + line;
-  const ssize_t written = write(file, text.data(), text.size());
-  const int problem = written == static_cast<ssize_t>(text.size()) ? 0 : (written < 0 ? errno : ENOSPC);
-  close(file);
-  if (problem != 0) FailLedger(file_, problem);
-}
+void AttemptLedger::Write(const AttemptRecord& record) const { AppendLine(file_, ToJson(record).dump()); }
 
 std::optional<std::string> BeginAttempt(const fs::path& root, const fs::path& results,
                                         const Campaign& campaign, const std::string& begun_utc,

@@ -2,6 +2,7 @@
 
 #include <fcntl.h>
 #include <fmt/format.h>
+#include <sys/file.h>
 #include <sys/stat.h>
 #include <unistd.h>
 
@@ -33,6 +34,14 @@ void SyncFolderOf(const fs::path& file) {
   if (directory < 0) return;
   fsync(directory);
   close(directory);
+}
+
+[[noreturn]] void FailToWrite(const std::string& name, int error) {
+  if (error == ENOSPC || error == EDQUOT) {
+    throw ResultError(ResultError::Kind::kDiskFull, name + ": no space left on the disk");
+  }
+  throw ResultError(ResultError::Kind::kFile,
+                    fmt::format("{}: cannot be written: {}", name, std::strerror(error)));
 }
 
 }  // namespace
@@ -100,18 +109,30 @@ void OutputFile::Commit() {
 }
 
 void OutputFile::Fail(int error) const {
-  const std::string name = stream_ == stdout ? "standard output" : target_.string();
-  if (error == ENOSPC || error == EDQUOT) {
-    throw ResultError(ResultError::Kind::kDiskFull, name + ": no space left on the disk");
-  }
-  throw ResultError(ResultError::Kind::kFile,
-                    fmt::format("{}: cannot be written: {}", name, std::strerror(error)));
+  FailToWrite(stream_ == stdout ? "standard output" : target_.string(), error);
 }
 
 void WriteFile(const std::filesystem::path& target, std::string_view bytes) {
   OutputFile file(target);
   file.Write(bytes);
   file.Commit();
+}
+
+void AppendLine(const fs::path& file, std::string_view line) {
+  const int descriptor = open(file.c_str(), O_RDWR | O_CREAT | O_APPEND | O_CLOEXEC, 0666);
+  if (descriptor < 0) FailToWrite(file.string(), errno);
+  flock(descriptor, LOCK_EX);
+  char last = '\n';
+  const off_t size = lseek(descriptor, 0, SEEK_END);
+  if (size > 0) (void)!pread(descriptor, &last, 1, size - 1);
+  std::string text(last == '\n' ? "" : "\n");
+  text.append(line).append("\n");
+  const ssize_t written = write(descriptor, text.data(), text.size());
+  int error = written == std::ssize(text) ? 0 : (written < 0 ? errno : ENOSPC);
+  if (error == 0 && fsync(descriptor) != 0) error = errno;
+  close(descriptor);
+  if (error != 0) FailToWrite(file.string(), error);
+  if (size <= 0) SyncFolderOf(file);
 }
 
 }  // namespace dispersa

@@ -37,4 +37,8 @@ class OutputFile {
 /// Writes a whole file at once.
 void WriteFile(const std::filesystem::path& target, std::string_view bytes);
 
+/// Adds a line to a file of lines, and makes the file if there is none. The line is on the disk when this
+/// returns. Several processes may append. After a line that a killed process cut off a new line begins.
+void AppendLine(const std::filesystem::path& file, std::string_view line);
+
 }  // namespace dispersa

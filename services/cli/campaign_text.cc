@@ -28,6 +28,8 @@ std::string CampaignStatusText(const Json& campaign) {
     text += fmt::format("  {} quarantined", quarantined);
   }
   if (!campaign.at("code").is_null()) text += fmt::format("  exit code {}", campaign.at("code").get<int>());
+  if (campaign.contains("owner") && !campaign.at("owner").is_null())
+    text += "  of " + campaign.at("owner").get<std::string>();
   if (!campaign.at("problem").is_null()) text += "  " + campaign.at("problem").get<std::string>();
   text += "\n";
   for (const Json& standing : campaign.at("requirements")) text += "  " + StandingText(standing) + "\n";

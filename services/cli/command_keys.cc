@@ -19,7 +19,7 @@ constexpr int kIssuedDays = 365;
 constexpr int kMostDays = 36500;
 
 struct KeysOptions {
-  std::string directory, role, name;
+  std::string directory, role, name, may;
   int days = 0;
 };
 
@@ -39,8 +39,11 @@ ExitCode Init(const KeysOptions& options, const GlobalOptions& global) {
 }
 
 ExitCode Issue(const KeysOptions& options, const GlobalOptions& global) {
-  const auto folder =
-      IssueKeys(options.directory, *ParseRole(options.role), options.name, ValidFor(options.days));
+  const Role role = *ParseRole(options.role);
+  if (!options.may.empty() && role != Role::kClient)
+    throw InputError("--may " + options.may + " with --role " + options.role, "--may with --role client");
+  const auto folder = IssueKeys(options.directory, role, options.name, ValidFor(options.days),
+                                ParseRight(options.may).value_or(Right::kRun));
   return TellMade("issued", folder.string(), global);
 }
 
@@ -90,6 +93,7 @@ void AddKeysCommand(CLI::App& app, Invocation& invocation) {
       "Examples: dispersa keys init authority\n"
       "          dispersa keys issue authority --role coordinator --name main\n"
       "          dispersa keys issue authority --role worker --name node1\n"
+      "          dispersa keys issue authority --role client --name ann --may administer\n"
       "          dispersa-worker --keys authority/issued/worker-node1 --peer coordinator-host\n"
       "          dispersa keys revoke authority --role worker --name node1\n"
       "The folder `authority` stays on the machine where it was made. Every other machine gets only its own "
@@ -98,6 +102,13 @@ void AddKeysCommand(CLI::App& app, Invocation& invocation) {
   const auto [issue, issued] =
       AddCommand(keys, invocation, "issue", "make the keys of one participant", kIssuedDays, Issue);
   AddRoleAndName(issue, issued, "its name: letters, digits, '-'; often that of its machine");
+  std::vector<std::string> rights;
+  for (const Right right : kRights) rights.emplace_back(Name(right));
+  issue
+      ->add_option("--may", issued->may,
+                   "what a client may do: read: list, watch, fetch; run: launch too, and change its own "
+                   "campaigns;\nadminister: change all campaigns; default: run")
+      ->check(CLI::IsMember(rights));
   const auto [revoke, revoked] =
       AddCommand(keys, invocation, "revoke", "no longer accept the keys of a worker or client", 0, Revoke);
   AddRoleAndName(revoke, revoked, "its name");

@@ -2,7 +2,9 @@
 #include <fmt/format.h>
 
 #include <memory>
+#include <optional>
 #include <string>
+#include <vector>
 
 #include "services/cli/session_options.h"
 #include "services/cli/warn.h"
@@ -17,12 +19,13 @@ using Json = nlohmann::ordered_json;
 struct LaunchOptions {
   std::string campaign;
   CampaignOverrides overrides;
-  int priority = 0;
+  std::optional<int> priority;
+  std::vector<std::string> labels;
 };
 
 ExitCode Launch(const LaunchOptions& options, Session& session, const GlobalOptions& global) {
   const Campaign campaign = LoadAndWarn(options.campaign, options.overrides);
-  const std::string state = LaunchCampaign(session, campaign, options.priority);
+  const std::string state = LaunchCampaign(session, campaign, options.priority, options.labels);
   if (global.json) {
     const Json object = {{"schema", "dispersa/launch/1"},
                          {"id", campaign.id},
@@ -44,8 +47,14 @@ void AddLaunchCommand(CLI::App& app, Invocation& invocation) {
   command->add_option("--cases", options->overrides.cases, "number of cases, instead of the file's")
       ->transform(WholeNumber(1, kMostCases));
   command->add_option("--seed", options->overrides.seed, "seed, instead of the file's");
-  command->add_option("--priority", options->priority, "campaigns of higher priority fly first; default 0")
+  command
+      ->add_option("--priority", options->priority,
+                   "campaigns of higher priority fly first; default 0; launched again: as before")
       ->transform(WholeNumber(-1000, 1000));
+  command
+      ->add_option("--label", options->labels,
+                   "KEY=VALUE to find the campaign by, as commit=1a2b3c4; may be given several times")
+      ->type_name("TEXT");
   command->footer("Example: dispersa launch campaigns/table3.yaml --cases 5000 --peer coordinator-host");
   BindSession(command, invocation, [options](Session& session, const GlobalOptions& global) {
     return Launch(*options, session, global);

@@ -80,8 +80,11 @@ bool IsFileBelow(const fs::path& path) {
 
 }  // namespace
 
-std::string LaunchCampaign(Session& session, const Campaign& campaign, int priority) {
-  const Json launch = {{"id", campaign.id}, {"flight_id", campaign.flight_id}, {"priority", priority}};
+std::string LaunchCampaign(Session& session, const Campaign& campaign, std::optional<int> priority,
+                           const std::vector<std::string>& labels) {
+  Json launch = {{"id", campaign.id}, {"flight_id", campaign.flight_id}};
+  if (priority) launch["priority"] = *priority;
+  if (!labels.empty()) launch["labels"] = labels;
   for (;;) {
     const std::string state = Json::parse(session.Ask("launch", launch).text).at("state");
     if (state == "unknown") {

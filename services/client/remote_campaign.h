@@ -2,7 +2,9 @@
 #pragma once
 
 #include <filesystem>
+#include <optional>
 #include <string>
+#include <vector>
 
 #include "core/campaign/campaign.h"
 #include "services/client/observer.h"
@@ -10,9 +12,10 @@
 
 namespace dispersa {
 
-/// Uploads the parts that the coordinator lacks. Launching again changes only the priority. Returns the
-/// campaign's state ("waiting", "flying", ...). Throws Failure.
-std::string LaunchCampaign(Session& session, const Campaign& campaign, int priority);
+/// Uploads the parts that the coordinator lacks. Launching again changes only the priority, if one is given,
+/// and adds labels ("KEY=VALUE"). Returns the campaign's state ("waiting", "flying", ...). Throws Failure.
+std::string LaunchCampaign(Session& session, const Campaign& campaign, std::optional<int> priority,
+                           const std::vector<std::string>& labels = {});
 
 /// Waits until the campaign has ended and returns its exit code. Waits for an absent coordinator. Throws
 /// Failure, and Interrupted: then the campaign goes on.

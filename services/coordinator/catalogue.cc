@@ -56,6 +56,11 @@ CatalogueEntry ParseState(const std::string& text) {
   entry.seed = json.value("seed", std::uint64_t{0});
   entry.ended_unix_s = json.value("ended_unix_s", std::int64_t{0});
   entry.distrusted = json.value("distrusted", std::vector<std::string>());
+  entry.owner = json.value("owner", "");
+  entry.launched_unix_s = json.value("launched_unix_s", std::int64_t{0});
+  entry.bytes = json.value("bytes", std::uint64_t{0});
+  entry.verdict = json.value("verdict", "");
+  entry.labels = json.value("labels", std::vector<std::string>());
   const auto state = std::find(kStates.begin(), kStates.end(), json.at("state").get<std::string>());
   if (state == kStates.end()) throw std::runtime_error("an unknown state");
   entry.state = static_cast<CampaignState>(state - kStates.begin());
@@ -69,6 +74,17 @@ CatalogueEntry ParseState(const std::string& text) {
 std::int64_t UnixTimeOf(const fs::path& file) {
   struct stat what {};
   return stat(file.c_str(), &what) == 0 ? what.st_mtime : 0;
+}
+
+std::uint64_t BytesIn(const fs::path& folder) {
+  std::uint64_t bytes = 0;
+  std::error_code error;
+  for (auto entry = fs::recursive_directory_iterator(folder, error);
+       !error && entry != fs::recursive_directory_iterator(); entry.increment(error)) {
+    std::error_code unsized;
+    if (const auto size = entry->file_size(unsized); !unsized) bytes += size;
+  }
+  return bytes;
 }
 
 }  // namespace
@@ -109,6 +125,7 @@ Catalogue::Catalogue(const fs::path& directory) : directory_(directory) {
       if (entry.id != folder.path().filename().string()) throw std::runtime_error("of another campaign");
       if (HasEnded(entry.state) && entry.ended_unix_s == 0)
         entry.ended_unix_s = UnixTimeOf(folder.path() / "state.json");
+      if (entry.bytes == 0) entry.bytes = BytesIn(folder.path());
       next_order_ = std::max(next_order_, entry.order + 1);
       entries_[entry.id] = std::move(entry);
     } catch (const std::exception& damage) {
@@ -165,7 +182,12 @@ void Catalogue::Write(const CatalogueEntry& entry) const {
                      {"problem", entry.problem},
                      {"seed", entry.seed},
                      {"ended_unix_s", entry.ended_unix_s},
-                     {"distrusted", entry.distrusted}};
+                     {"distrusted", entry.distrusted},
+                     {"owner", entry.owner},
+                     {"launched_unix_s", entry.launched_unix_s},
+                     {"bytes", entry.bytes},
+                     {"verdict", entry.verdict},
+                     {"labels", entry.labels}};
   WriteFile(directory_ / entry.id / "state.json", DumpAnyText(json, 2) + "\n");
 }
 
@@ -184,6 +206,8 @@ void Catalogue::Remove(const std::string& id) {
 std::string Catalogue::StateTextOf(const std::string& id) const {
   return ReadWhole(directory_ / id / "state.json");
 }
+
+std::uint64_t Catalogue::CountBytes(const std::string& id) const { return BytesIn(directory_ / id); }
 
 std::string Catalogue::TextOf(const std::string& id) const {
   return ReadWhole(directory_ / id / "campaign.yaml");

@@ -36,14 +36,22 @@ struct CatalogueEntry {
   std::uint64_t seed = 0;
   std::int64_t ended_unix_s = 0;        ///< when it ended (0: it has not)
   std::vector<std::string> distrusted;  ///< workers whose results are still to be removed (dispersa repair)
+  std::string owner;                    ///< name of keys, or local user; empty: of an earlier version
+  std::int64_t launched_unix_s = 0;     ///< 0: by an earlier version
+  std::uint64_t bytes = 0;              ///< on the disk, when they were last counted
+  std::string verdict;                  ///< of its report: "pass", "fail", ...
+  std::vector<std::string> labels;      ///< "KEY=VALUE", the last given last
 };
+
+/// Labels of a campaign. Older ones are dropped.
+inline constexpr std::size_t kMaxLabels = 32;
 
 /// The order of the queue: by priority, then by age.
 bool ComesBefore(const CatalogueEntry& a, const CatalogueEntry& b);
 
-/// Version of state.json. Version 2 has `seed`, `ended_unix_s` and `distrusted`. Version 1, which lacks them,
-/// can be read too.
-inline constexpr int kStateVersion = 2;
+/// Version of state.json. Version 2 has `seed`, `ended_unix_s` and `distrusted`. Version 3 has all members
+/// from `owner` on. Earlier versions, which lack them, can be read too.
+inline constexpr int kStateVersion = 3;
 
 /// Throws InputError if it cannot.
 void MakeDataFolder(const std::filesystem::path& directory);
@@ -69,6 +77,8 @@ class Catalogue {
 
   std::string TextOf(const std::string& id) const;
   std::string StateTextOf(const std::string& id) const;
+  /// Bytes of its files now.
+  std::uint64_t CountBytes(const std::string& id) const;
   std::filesystem::path ResultsOf(const std::string& id) const { return directory_ / id / "results"; }
 
  private:

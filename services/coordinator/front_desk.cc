@@ -77,6 +77,10 @@ Json ToJson(const CampaignView& view, std::size_t most) {
           {"rate_per_s", view.rate_per_s},
           {"eta_s", view.eta_s ? Json(*view.eta_s) : Json(nullptr)},
           {"priority", entry.priority},
+          {"owner", entry.owner.empty() ? Json(nullptr) : Json(entry.owner)},
+          {"labels", entry.labels},
+          {"bytes", entry.bytes},
+          {"verdict", entry.verdict.empty() ? Json(nullptr) : Json(entry.verdict)},
           {"code", HasEnded(entry.state) ? Json(entry.code) : Json(nullptr)},
           {"problem", view.problem.empty() ? Json(nullptr) : Json(view.problem)},
           {"requirements", std::move(standings)},
@@ -107,10 +111,65 @@ void RefuseAnotherEngine(const std::string& asked, const CatalogueEntry& entry) 
                                            entry.id.substr(0, 8), entry.flight_id, Printable(asked)));
 }
 
+bool MayChange(const Asker& asker, const CatalogueEntry& entry) {
+  if (asker.right != Right::kRun) return asker.right == Right::kAdminister;
+  return asker.account == entry.owner && !entry.owner.empty();
+}
+
+/// `change`: a verb.
+void RequireOwner(const Asker& asker, const CatalogueEntry& entry, const char* change) {
+  if (MayChange(asker, entry)) return;
+  const std::string owner =
+      entry.owner.empty() ? "nobody, since an earlier version launched it" : "'" + entry.owner + "'";
+  throw Refused(
+      kExitBadInput,
+      fmt::format("campaign {} belongs to {}: the keys of '{}' may {} and cannot {} it, allowed: keys of "
+                  "its owner that may run, or keys that may administer",
+                  entry.id.substr(0, 8), owner, Printable(asker.account), Name(asker.right), change));
+}
+
+/// The least right for a request, whatever campaign it is about.
+Right RightFor(const Request& request) {
+  if (request.method == "launch" || request.method == "upload") return Right::kRun;
+  // A copy of all that the coordinator has.
+  if (request.method == "ids") return Right::kAdminister;
+  if (request.method == "files" || request.method == "read") {
+    const Json json = Json::parse(request.arguments);
+    if (json.at("id") == "" || json.value("snapshot", "") != "") return Right::kAdminister;
+  }
+  return Right::kRead;
+}
+
+void RequireRight(const Asker& asker, const Request& request) {
+  const Right least = RightFor(request);
+  if (asker.right >= least) return;
+  const std::string what = least == Right::kAdminister ? "backup" : "launch";
+  throw Refused(
+      kExitBadInput,
+      fmt::format("the keys of '{0}' may {1}, and `dispersa {2}` needs the right to {3}, allowed: keys that "
+                  "`dispersa keys issue --may {3}` made",
+                  Printable(asker.account), Name(asker.right), what, Name(least)));
+}
+
+constexpr char kLabelRule[] =
+    "KEY=VALUE, KEY of 1 to 32 letters, digits, '-' and '_', VALUE of 1 to 100 characters";
+
+bool IsLabel(const std::string& text) {
+  const std::size_t equals = text.find('=');
+  if (equals == std::string::npos || equals == 0 || equals > 32) return false;
+  const std::string value = text.substr(equals + 1);
+  return std::all_of(text.begin(), text.begin() + static_cast<std::ptrdiff_t>(equals),
+                     [](char c) {
+                       return (c >= '0' && c <= '9') || (c >= 'a' && c <= 'z') || (c >= 'A' && c <= 'Z') ||
+                              c == '-' || c == '_';
+                     }) &&
+         !value.empty() && value.size() <= 100 && Printable(value) == value;
+}
+
 }  // namespace
 
-FrontDesk::FrontDesk(Service& service, const Workforce& workforce)
-    : service_(service), workforce_(workforce) {
+FrontDesk::FrontDesk(Service& service, const Workforce& workforce, std::string everybody)
+    : service_(service), workforce_(workforce), everybody_(std::move(everybody)) {
   for (const auto& [id, entry] : service.catalogue().entries())
     RemoveDatabaseCopies(service.catalogue().ResultsOf(id));
 }
@@ -122,18 +181,20 @@ Reply FrontDesk::Answer(const Request& request) {
   ForgetUploads();
   copies_.ForgetUnused(workforce_.now_s());
   try {
+    const Asker asker = AskerOf(request.client);
+    RequireRight(asker, request);
     if (request.method == "health") {
       reply.text = "{}";
     } else if (request.method == "upload") {
       reply.text = TakePart(request.client, request.arguments, request.data);
     } else if (request.method == "launch") {
-      reply.text = Launch(request.arguments);
+      reply.text = Launch(asker, request.arguments);
     } else if (request.method == "cancel") {
-      reply.text = Cancel(request.arguments);
+      reply.text = Cancel(asker, request.arguments);
     } else if (request.method == "repair") {
-      reply.text = Repair(request.arguments);
+      reply.text = Repair(asker, request.arguments);
     } else if (request.method == "delete") {
-      reply.text = Delete(request.arguments);
+      reply.text = Delete(asker, request.arguments);
     } else if (request.method == "ids") {
       reply.text = Ids(request.arguments);
     } else if (request.method == "list") {
@@ -203,24 +264,33 @@ std::string FrontDesk::TakePart(const std::string& client, const std::string& ar
   return Json{{"received", upload.text.size()}}.dump();
 }
 
+Asker FrontDesk::AskerOf(const std::string& client) const {
+  if (!everybody_.empty()) return {everybody_, Right::kAdminister};
+  return {AccountOf(client), RightOf(client)};
+}
+
 // A campaign that is not known is "unknown" until its text is here, and "checked" while it is parsed, which
 // takes seconds when it is large.
-std::string FrontDesk::Launch(const std::string& arguments) {
+std::string FrontDesk::Launch(const Asker& asker, const std::string& arguments) {
   const Json json = Json::parse(arguments);
   const std::string id = json.at("id"), flight_id = json.at("flight_id");
-  const int priority = json.at("priority");
-  if (priority < -kMostPriority || priority > kMostPriority) {
-    throw Refused(kExitBadInput, fmt::format("priority {}, allowed: from {} to {}", priority, -kMostPriority,
+  const auto priority =
+      json.contains("priority") ? std::optional(json.at("priority").get<int>()) : std::nullopt;
+  if (priority && (*priority < -kMostPriority || *priority > kMostPriority)) {
+    throw Refused(kExitBadInput, fmt::format("priority {}, allowed: from {} to {}", *priority, -kMostPriority,
                                              kMostPriority));
   }
-  const auto answer = [&](const char* state) { return Json{{"id", id}, {"state", state}}.dump(); };
+  const auto labels = json.value("labels", std::vector<std::string>());
+  for (const std::string& label : labels) {
+    if (!IsLabel(label))
+      throw Refused(kExitBadInput, "'" + Printable(label) + "' is no label, allowed: " + kLabelRule);
+  }
   if (service_.catalogue().entries().contains(id)) {
     uploads_.erase(id);
     RefuseAnotherEngine(flight_id, service_.catalogue().entries().at(id));
-    copies_.Forget(service_.catalogue().ResultsOf(id));
-    service_.Relaunch(id, priority);
-    return answer(CampaignStateName(service_.catalogue().entries().at(id).state));
+    return LaunchAgain(asker, service_.catalogue().entries().at(id), priority, labels);
   }
+  const auto answer = [&](const char* state) { return Json{{"id", id}, {"state", state}}.dump(); };
   const auto found = uploads_.find(id);
   if (found == uploads_.end() || found->second.text.size() != found->second.size) return answer("unknown");
   Upload& upload = found->second;
@@ -234,32 +304,57 @@ std::string FrontDesk::Launch(const std::string& arguments) {
   CatalogueEntry entry = complete.parsed.get();
   if (entry.id != id) throw Refused(kExitBadInput, "the text is not that of campaign " + Printable(id));
   RefuseAnotherEngine(flight_id, entry);
-  entry.priority = priority;
+  entry.priority = priority.value_or(0);
+  entry.owner = asker.account;
+  entry.labels = labels;
   service_.Launch(std::move(entry), complete.text);
   return answer("waiting");
 }
 
-std::string FrontDesk::Cancel(const std::string& arguments) {
-  const std::string id = Named(Json::parse(arguments).at("id")).id;
-  service_.Cancel(id);
-  return Json{{"id", id}}.dump();
+// Of another owner nothing changes: it is the same campaign, and its results are there for all.
+std::string FrontDesk::LaunchAgain(const Asker& asker, const CatalogueEntry& entry,
+                                   std::optional<int> priority, const std::vector<std::string>& labels) {
+  const std::string id = entry.id;
+  if (priority && *priority != entry.priority) RequireOwner(asker, entry, "change the priority of");
+  if (entry.state == CampaignState::kCancelled || entry.state == CampaignState::kFailed)
+    RequireOwner(asker, entry, "continue");
+  for (const std::string& label : labels) {
+    if (std::find(entry.labels.begin(), entry.labels.end(), label) == entry.labels.end())
+      RequireOwner(asker, entry, "label");
+  }
+  if (MayChange(asker, entry)) {
+    copies_.Forget(service_.catalogue().ResultsOf(id));
+    service_.Relaunch(id, priority.value_or(entry.priority), labels);
+  }
+  return Json{{"id", id}, {"state", CampaignStateName(service_.catalogue().entries().at(id).state)}}.dump();
 }
 
-std::string FrontDesk::Repair(const std::string& arguments) {
+std::string FrontDesk::Cancel(const Asker& asker, const std::string& arguments) {
+  const CatalogueEntry& entry = Named(Json::parse(arguments).at("id"));
+  RequireOwner(asker, entry, "cancel");
+  service_.Cancel(entry.id);
+  return Json{{"id", entry.id}}.dump();
+}
+
+std::string FrontDesk::Repair(const Asker& asker, const std::string& arguments) {
   const Json json = Json::parse(arguments);
-  const std::string id = Named(json.at("id")).id, worker = json.at("worker");
+  const CatalogueEntry& entry = Named(json.at("id"));
+  const std::string id = entry.id, worker = json.at("worker");
   if (worker.empty() || worker.size() > 64)
     throw Refused(kExitBadInput, "a worker's name has 1 to 64 characters");
+  RequireOwner(asker, entry, "repair");
   copies_.Forget(service_.catalogue().ResultsOf(id));
   service_.Repair(id, worker);
   return Json{{"id", id}}.dump();
 }
 
-std::string FrontDesk::Delete(const std::string& arguments) {
+std::string FrontDesk::Delete(const Asker& asker, const std::string& arguments) {
   const std::string wanted = Json::parse(arguments).at("id");
   if (service_.catalogue().Find(wanted) == nullptr && wanted.size() == 64 && deleted_.contains(wanted))
     return Json{{"id", wanted}}.dump();
-  const std::string id = Named(wanted).id;
+  const CatalogueEntry& entry = Named(wanted);
+  const std::string id = entry.id;
+  RequireOwner(asker, entry, "delete");
   copies_.Forget(service_.catalogue().ResultsOf(id));
   service_.Delete(id);
   deleted_.insert(id);

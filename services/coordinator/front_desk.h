@@ -5,20 +5,29 @@
 #include <filesystem>
 #include <future>
 #include <map>
+#include <optional>
 #include <set>
 #include <string>
 #include <vector>
 
 #include "services/coordinator/database_copies.h"
 #include "services/coordinator/service.h"
+#include "services/transport/permissions.h"
 
 namespace dispersa {
+
+/// Who asks: a campaign that it launches belongs to `account`.
+struct Asker {
+  std::string account;  ///< the name of its keys, or the local user
+  Right right = Right::kRun;
+};
 
 /// A request may come several times, since clients repeat it until the reply arrives: none does more the
 /// second time than the first.
 class FrontDesk {
  public:
-  FrontDesk(Service& service, const Workforce& workforce);
+  /// Without keys everybody who is heard is `everybody`, and may do all. With keys it is empty.
+  FrontDesk(Service& service, const Workforce& workforce, std::string everybody);
 
   Reply Answer(const Request& request);
 
@@ -40,10 +49,13 @@ class FrontDesk {
   };
 
   std::string TakePart(const std::string& client, const std::string& arguments, const std::string& data);
-  std::string Launch(const std::string& arguments);
-  std::string Cancel(const std::string& arguments);
-  std::string Repair(const std::string& arguments);
-  std::string Delete(const std::string& arguments);
+  Asker AskerOf(const std::string& client) const;
+  std::string Launch(const Asker& asker, const std::string& arguments);
+  std::string LaunchAgain(const Asker& asker, const CatalogueEntry& entry, std::optional<int> priority,
+                          const std::vector<std::string>& labels);
+  std::string Cancel(const Asker& asker, const std::string& arguments);
+  std::string Repair(const Asker& asker, const std::string& arguments);
+  std::string Delete(const Asker& asker, const std::string& arguments);
   std::string Ids(const std::string& arguments) const;
   std::string List(const std::string& arguments) const;
   std::vector<std::string> Listed(std::size_t most) const;
@@ -61,6 +73,7 @@ class FrontDesk {
 
   Service& service_;
   const Workforce& workforce_;
+  std::string everybody_;
   std::map<std::string, Upload> uploads_;  ///< by id
   DatabaseCopies copies_;
   std::map<std::string, CampaignSnapshot> snapshots_;  ///< by id: of the last backup

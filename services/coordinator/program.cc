@@ -39,7 +39,7 @@ int RunCoordinator(int argc, char** argv) {
   std::string& data = clients.data;
   bool health = false;
   std::optional<double> audit;
-  std::vector<std::string> keep;
+  std::vector<std::string> keep, quotas;
   app.add_option("campaign", request.campaign.name, "campaign file")->type_name(kFileType);
   app.add_option("--data", data, "folder for the launched campaigns, made if it does not exist")
       ->type_name(kFolderType);
@@ -61,6 +61,20 @@ int RunCoordinator(int argc, char** argv) {
             return ReadRetention(text, &retention)
                        ? ""
                        : "'" + text + "' is no limit, allowed: days as 90d, or a size as 200GB";
+          },
+          ""));
+  app.add_option(
+         "--quota", quotas,
+         "with --data: limits of each client's campaigns, as cases=1000000,campaigns=20,places=4,disk=200GB: "
+         "cases and\ncampaigns that have not ended, campaigns that fly at once, disk space; default: none")
+      ->type_name("TEXT")
+      ->check(CLI::Validator(
+          [](const std::string& text) {
+            Quota quota;
+            return ReadQuota(text, &quota) ? ""
+                                           : "'" + text +
+                                                 "' is no quota, allowed: cases=N, campaigns=N, places=N and "
+                                                 "disk=SIZE (as 200GB), with commas between them";
           },
           ""));
   app.add_flag(
@@ -104,6 +118,7 @@ int RunCoordinator(int argc, char** argv) {
                   json);
   }
   for (const std::string& limit : keep) ReadRetention(limit, &clients.retention);
+  for (const std::string& limits : quotas) ReadQuota(limits, &clients.quota);
   CatchStopSignals();
   try {
     if (health) {

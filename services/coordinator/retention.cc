@@ -11,24 +11,34 @@ namespace {
 constexpr std::pair<std::string_view, double> kSizes[] = {{"MB", 1e6}, {"GB", 1e9}, {"TB", 1e12}};
 constexpr double kMost = 1e6;  // days, or units of size
 
-}  // namespace
-
-bool ReadRetention(const std::string& text, Retention* retention) {
+/// A number above zero and its unit.
+std::optional<std::pair<double, std::string_view>> ReadAmount(const std::string& text) {
   double number = 0.0;
   const char* const end = text.data() + text.size();
   const auto [stopped, error] = std::from_chars(text.data(), end, number, std::chars_format::fixed);
-  if (error != std::errc() || !std::isfinite(number) || number <= 0.0 || number > kMost) return false;
-  const std::string_view unit(stopped, static_cast<std::size_t>(end - stopped));
-  if (unit == "d") {
-    retention->days = number;
+  if (error != std::errc() || !std::isfinite(number) || number <= 0.0 || number > kMost) return std::nullopt;
+  return std::pair(number, std::string_view(stopped, static_cast<std::size_t>(end - stopped)));
+}
+
+}  // namespace
+
+bool ReadRetention(const std::string& text, Retention* retention) {
+  if (const auto amount = ReadAmount(text); amount && amount->second == "d") {
+    retention->days = amount->first;
     return true;
   }
+  const auto bytes = ReadSize(text);
+  if (bytes) retention->bytes = bytes;
+  return bytes.has_value();
+}
+
+std::optional<std::uint64_t> ReadSize(const std::string& text) {
+  const auto amount = ReadAmount(text);
+  if (!amount) return std::nullopt;
   for (const auto& [name, bytes] : kSizes) {
-    if (unit != name) continue;
-    retention->bytes = static_cast<std::uint64_t>(number * bytes);
-    return true;
+    if (amount->second == name) return static_cast<std::uint64_t>(amount->first * bytes);
   }
-  return false;
+  return std::nullopt;
 }
 
 }  // namespace dispersa

@@ -15,4 +15,7 @@ struct Retention {
 /// Adds a limit as a user writes it: days ("90d") or a size ("200GB", "0.5TB"). False: it is none.
 bool ReadRetention(const std::string& text, Retention* retention);
 
+/// Bytes as a user writes them: "30MB", "200GB", "0.5TB".
+std::optional<std::uint64_t> ReadSize(const std::string& text);
+
 }  // namespace dispersa

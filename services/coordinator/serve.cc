@@ -1,6 +1,8 @@
 #include "services/coordinator/serve.h"
 
 #include <fmt/format.h>
+#include <pwd.h>
+#include <unistd.h>
 
 #include <chrono>
 #include <utility>
@@ -45,6 +47,14 @@ class Every {
   double period_s_;
   double due_s_ = 0.0;
 };
+
+/// Without keys the coordinator hears its own user alone, or everybody (--insecure). Empty: with keys.
+std::string EverybodyOn(const NetworkOptions& network) {
+  if (network.keys) return "";
+  if (!network.secret) return "anybody";
+  const passwd* user = getpwuid(geteuid());
+  return user != nullptr ? user->pw_name : std::to_string(geteuid());
+}
 
 PreparedRun PrepareUnlessStopped(const RunRequest& request) {
   try {
@@ -118,9 +128,10 @@ int ServeClients(const ServeOptions& options, const ClientOptions& clients) {
   service_options.data = clients.data;
   service_options.max_cases = clients.max_cases;
   service_options.retention = clients.retention;
+  service_options.quota = clients.quota;
   service_options.report_threads = UsableCores();
   Service service(service_options, coordinator);
-  FrontDesk front_desk(service, coordinator);
+  FrontDesk front_desk(service, coordinator, EverybodyOn(options.network));
   coordinator.Serve([&](const Request& request) { return front_desk.Answer(request); });
   LogInfo("domain {}, workers and clients can join at port {}", options.network.domain,
           CoordinatorPort(options.network.domain));

@@ -30,6 +30,7 @@ struct ClientOptions {
   std::optional<std::uint16_t> prometheus_port = {};  ///< of 127.0.0.1
   std::uint64_t max_cases = kDefaultMaxCases;
   Retention retention = {};
+  Quota quota = {};
 };
 
 /// The campaigns that clients launch, until a signal to stop.

@@ -1,13 +1,9 @@
 #include "services/coordinator/service.h"
 
-#include <fcntl.h>
 #include <fmt/format.h>
-#include <unistd.h>
 
 #include <algorithm>
-#include <cerrno>
 #include <chrono>
-#include <cstring>
 #include <fstream>
 #include <new>
 #include <nlohmann/json.hpp>
@@ -36,34 +32,10 @@ constexpr std::size_t kRemembered = 16;  // tallies of campaigns that fly no mor
 constexpr double kRetention_s = 60.0;  // what is old is looked for so often
 constexpr char kDeletedFile[] = "deleted.jsonl";
 constexpr char kExpelledFile[] = "expelled.json";
+constexpr double kCount_s = 10.0;  // the bytes of what flies are counted so often
 constexpr double kDelay_s = 10.0;  // until a full disk is tried again
 
 struct Stopped {};
-
-// The line is on the disk when this returns.
-void AppendLine(const std::filesystem::path& file, const std::string& line) {
-  const int descriptor = open(file.c_str(), O_WRONLY | O_CREAT | O_APPEND | O_CLOEXEC, 0666);
-  const std::string text = line + "\n";
-  const bool is_written = descriptor >= 0 &&
-                          write(descriptor, text.data(), text.size()) == std::ssize(text) &&
-                          fsync(descriptor) == 0;
-  const int error = errno;
-  if (descriptor >= 0) close(descriptor);
-  if (is_written) return;
-  throw ResultError(error == ENOSPC ? ResultError::Kind::kDiskFull : ResultError::Kind::kFile,
-                    fmt::format("{}: cannot be written: {}", file.string(), std::strerror(error)));
-}
-
-std::uint64_t BytesIn(const std::filesystem::path& folder) {
-  std::uint64_t bytes = 0;
-  std::error_code error;
-  for (auto entry = std::filesystem::recursive_directory_iterator(folder, error);
-       !error && entry != std::filesystem::recursive_directory_iterator(); entry.increment(error)) {
-    std::error_code unsized;
-    if (const auto size = entry->file_size(unsized); !unsized) bytes += size;
-  }
-  return bytes;
-}
 
 // Reports that are not compressed can be read too.
 void TryToPack(const std::filesystem::path& results) {
@@ -74,6 +46,10 @@ void TryToPack(const std::filesystem::path& results) {
   }
 }
 
+std::string Gigabytes(std::uint64_t bytes) {
+  return fmt::format("{:.3g} GB", static_cast<double>(bytes) / 1e9);
+}
+
 std::string Waiting(const std::string& problem) { return problem + "; it continues when the disk has space"; }
 
 template <typename T>
@@ -82,6 +58,11 @@ bool IsReady(const std::future<T>& future) {
 }
 
 }  // namespace
+
+bool IsContinuedByLaunch(const CatalogueEntry& entry) {
+  return entry.state == CampaignState::kCancelled || entry.state == CampaignState::kFailed ||
+         (entry.state == CampaignState::kDone && entry.quarantined > 0);
+}
 
 Service::Service(const ServiceOptions& options, Workforce& workforce)
     : options_(options), workforce_(workforce), catalogue_(options.data) {
@@ -199,6 +180,7 @@ void Service::FinishReport() {
   reporting_.reset();
   try {
     const StandingVerdict verdict = reported.verdict.get();
+    entry.verdict = StandingVerdictName(verdict);
     End(entry, CampaignState::kDone, CampaignExitCode(verdict, entry.conflicts));
   } catch (...) {
     Fail(entry, std::current_exception());
@@ -209,10 +191,15 @@ void Service::FinishReport() {
 // lacks its report alone, when the coordinator is started again, comes after all that is to be flown.
 const CatalogueEntry* Service::NextToOpen() const {
   std::set<std::string> busy;
+  std::map<std::string, std::uint64_t> flying;  // by owner
   for (const auto& [id, entry] : catalogue_.entries()) {
     if (entry.state == CampaignState::kFlying || entry.state == CampaignState::kReporting)
       busy.insert(entry.flight_id);
+    if (entry.state == CampaignState::kFlying) ++flying[entry.owner];
   }
+  const auto has_no_place = [&](const CatalogueEntry& entry) {
+    return options_.quota.places && flying[entry.owner] >= *options_.quota.places;
+  };
   const CatalogueEntry* next = nullptr;
   const auto comes_before = [](const CatalogueEntry& a, const CatalogueEntry& b) {
     const auto is_flown = [](const CatalogueEntry& entry) {
@@ -221,7 +208,9 @@ const CatalogueEntry* Service::NextToOpen() const {
     return is_flown(a) == is_flown(b) ? ComesBefore(a, b) : is_flown(b);
   };
   for (const auto& [id, entry] : catalogue_.entries()) {
-    if (entry.state != CampaignState::kWaiting || busy.contains(entry.flight_id) || IsDelayed(id)) continue;
+    if (entry.state != CampaignState::kWaiting || busy.contains(entry.flight_id) || IsDelayed(id) ||
+        has_no_place(entry))
+      continue;
     if (next == nullptr || comes_before(entry, *next)) next = &entry;
   }
   return next;
@@ -351,8 +340,11 @@ void Service::Measure() {
   measured_s_ = now_s;
   SaveAgain();
   NoteExpelled();
+  const bool counts = now_s - counted_s_ >= kCount_s;
+  if (counts) counted_s_ = now_s;
   for (auto& [id, flying] : flying_) {
     CatalogueEntry& entry = catalogue_.At(id);
+    if (counts) entry.bytes = catalogue_.CountBytes(id);
     flying.past.emplace_back(now_s, flying.book->ledger().Progress().done);
     if (flying.past.size() > kRateOver) flying.past.pop_front();
     NoteConflicts(entry, flying);
@@ -423,6 +415,7 @@ void Service::End(CatalogueEntry& entry, CampaignState state, int code, const st
   entry.code = code;
   entry.problem = problem.substr(0, kMaxProblem);
   entry.ended_unix_s = options_.unix_time_s();
+  entry.bytes = catalogue_.CountBytes(entry.id);
   delayed_.erase(entry.id);
   Save(entry);
   Publish(entry);
@@ -505,15 +498,55 @@ bool Service::HasWork() const {
                      [](const auto& each) { return !HasEnded(each.second.state); });
 }
 
-void Service::Relaunch(const std::string& id, int priority) {
+void Service::RequireQuota(const CatalogueEntry& entry) const {
+  const Quota& quota = options_.quota;
+  std::uint64_t campaigns = 1, cases = entry.cases, bytes = 0;
+  for (const auto& [id, other] : catalogue_.entries()) {
+    if (id == entry.id || other.owner != entry.owner) continue;
+    bytes += other.bytes;
+    if (HasEnded(other.state)) continue;
+    ++campaigns;
+    cases += other.cases;
+  }
+  const auto refuse = [&](const std::string& what, const std::string& option) {
+    throw Refused(kExitBadInput, fmt::format("'{}' would have {} (dispersa-coordinator --quota {})",
+                                             entry.owner, what, option));
+  };
+  if (quota.campaigns && campaigns > *quota.campaigns) {
+    refuse(fmt::format("{} campaigns that have not ended, allowed: at most {}; wait, or cancel one",
+                       campaigns, *quota.campaigns),
+           "campaigns");
+  }
+  if (quota.cases && cases > *quota.cases) {
+    refuse(
+        fmt::format("{} cases in campaigns that have not ended, allowed: at most {}; wait, or launch fewer",
+                    cases, *quota.cases),
+        "cases");
+  }
+  if (quota.disk && bytes >= *quota.disk) {
+    refuse(fmt::format("another campaign beside {} on the coordinator's disk, allowed: less than {}; delete "
+                       "campaigns that have ended",
+                       Gigabytes(bytes), Gigabytes(*quota.disk)),
+           "disk");
+  }
+}
+
+void Service::Relaunch(const std::string& id, int priority, const std::vector<std::string>& labels) {
   CatalogueEntry entry = catalogue_.At(id);
   entry.priority = priority;
-  if (entry.state == CampaignState::kCancelled || entry.state == CampaignState::kFailed ||
-      (entry.state == CampaignState::kDone && entry.quarantined > 0)) {
+  for (const std::string& label : labels) {
+    std::erase(entry.labels, label);
+    entry.labels.push_back(label);
+  }
+  if (entry.labels.size() > kMaxLabels)
+    entry.labels.erase(entry.labels.begin(), entry.labels.end() - std::ptrdiff_t{kMaxLabels});
+  if (IsContinuedByLaunch(entry)) {
+    RequireQuota(entry);
     entry.state = CampaignState::kWaiting;
     entry.quarantined = 0;
     entry.ended_unix_s = 0;
     entry.problem.clear();
+    entry.verdict.clear();
   }
   catalogue_.Write(entry);
   catalogue_.At(id) = entry;
@@ -522,6 +555,8 @@ void Service::Relaunch(const std::string& id, int priority) {
 }
 
 void Service::Launch(CatalogueEntry entry, const std::string& text) {
+  RequireQuota(entry);
+  entry.launched_unix_s = options_.unix_time_s();
   LogInfo("campaign {} ({}): launched, {} cases", entry.name, entry.id.substr(0, 8), entry.cases);
   catalogue_.Add(std::move(entry), text);
 }
@@ -562,6 +597,7 @@ void Service::Remember(const CatalogueEntry& entry) const {
   const nlohmann::ordered_json line = {{"id", entry.id},
                                        {"flight_id", entry.flight_id},
                                        {"name", entry.name},
+                                       {"owner", entry.owner},
                                        {"seed", entry.seed},
                                        {"cases", entry.done},
                                        {"state", CampaignStateName(entry.state)},
@@ -581,7 +617,7 @@ void Service::DeleteOld() {
   std::uint64_t total = 0;
   for (const auto& [id, entry] : catalogue_.entries()) {
     if (MayBeDeleted(id)) ended.push_back(&entry);
-    if (keep.bytes) total += sizes[id] = BytesIn(catalogue_.ResultsOf(id).parent_path());
+    if (keep.bytes) total += sizes[id] = entry.bytes;
   }
   std::sort(ended.begin(), ended.end(),
             [](const auto* a, const auto* b) { return a->ended_unix_s < b->ended_unix_s; });
@@ -612,6 +648,7 @@ void Service::Repair(const std::string& id, const std::string& worker) {
   repaired.quarantined = repaired.conflicts = 0;
   repaired.ended_unix_s = 0;
   repaired.problem.clear();
+  repaired.verdict.clear();
   catalogue_.Write(repaired);
   if (flying_.contains(id)) {
     TakeBack(id);

@@ -19,6 +19,7 @@
 #include <vector>
 
 #include "services/coordinator/catalogue.h"
+#include "services/coordinator/quota.h"
 #include "services/coordinator/retention.h"
 #include "services/coordinator/workforce.h"
 
@@ -34,6 +35,7 @@ struct ServiceOptions {
   std::uint64_t max_cases =
       kDefaultMaxCases;  ///< of a campaign: its ledger and its report take memory for each
   Retention retention = {};
+  Quota quota = {};  ///< of each owner
   std::function<std::int64_t()> unix_time_s = [] { return std::int64_t{std::time(nullptr)}; };
 };
 
@@ -42,6 +44,9 @@ struct Refused : std::runtime_error {
   Refused(int exit_code, const std::string& what) : std::runtime_error(what), code(exit_code) {}
   int code;
 };
+
+/// Whether launching it again puts it into the queue again.
+bool IsContinuedByLaunch(const CatalogueEntry& entry);
 
 /// A campaign as it is now.
 struct CampaignView {
@@ -77,7 +82,7 @@ class Service {
   CampaignView View(const std::string& id) const;
   /// The statistics of its results so far, also of one that flew lately; nullptr if unknown.
   const RunningTally* TallyOf(const std::string& id) const;
-  /// Whether no part of the service writes its results, now or soon.
+  /// Whether nobody writes its results, now or soon.
   bool IsAtRest(const std::string& id) const;
   /// Whether any campaign has not ended.
   bool HasWork() const;
@@ -87,10 +92,10 @@ class Service {
   // Changes by clients. They are on the disk before the client is told so. These throw ResultError, and have
   // then changed nothing.
 
-  /// Puts a campaign that is known into the queue again if it was cancelled, failed or quarantined cases, and
-  /// changes its priority.
-  void Relaunch(const std::string& id, int priority);
-  /// Takes a new one.
+  /// Puts a campaign that is known into the queue again if launching it again continues it, changes its
+  /// priority and adds labels. Throws Refused beyond its owner's quota.
+  void Relaunch(const std::string& id, int priority, const std::vector<std::string>& labels = {});
+  /// Takes a new one. Throws Refused beyond its owner's quota.
   void Launch(CatalogueEntry entry, const std::string& text);
   /// Ends it. Stored results stay. Called again it does nothing. Throws Refused if it has ended already.
   void Cancel(const std::string& id);
@@ -125,6 +130,8 @@ class Service {
   void StartOpening();
   void BeginToOpen(const CatalogueEntry& entry);
   const CatalogueEntry* NextToOpen() const;
+  /// Throws Refused if its owner may not have it fly besides its other campaigns.
+  void RequireQuota(const CatalogueEntry& entry) const;
   bool MakeRoomFor(const CatalogueEntry& entry);
   void Measure();
   void NoteConflicts(CatalogueEntry& entry, Flying& flying);
@@ -148,7 +155,7 @@ class Service {
   Workforce& workforce_;
   Catalogue catalogue_;
   std::map<std::string, Flying> flying_;                   ///< by id
-  std::deque<std::pair<std::string, RunningTally>> flew_;  ///< by id: the tallies of the last campaigns
+  std::deque<std::pair<std::string, RunningTally>> flew_;  ///< by id: what the last ones came to
   std::optional<Opening> opening_;
   std::deque<std::string> to_report_;  ///< ids; their folders are closed meanwhile
   std::optional<Reporting> reporting_;
@@ -163,6 +170,7 @@ class Service {
   std::size_t expelled_noted_ = 0;
   double retained_s_ = -1e9;  ///< when what is old was looked for
   double measured_s_ = -1.0;
+  double counted_s_ = -1e9;  ///< when the bytes of what flies were counted
 };
 
 }  // namespace dispersa

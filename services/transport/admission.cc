@@ -49,7 +49,9 @@ void AdmitPlugins(bool allowed) {
 }
 
 std::string NameOnNetwork(const NetworkOptions& network, const std::string& uuid) {
-  return network.keys ? OwnPrefix(network.keys->name) + uuid : uuid;
+  if (!network.keys) return uuid;
+  const KeyFolder& keys = *network.keys;
+  return (keys.right ? ClientPrefix(keys.name, *keys.right) : OwnPrefix(keys.name)) + uuid;
 }
 
 }  // namespace dispersa

@@ -136,7 +136,8 @@ void MakeAuthority(const fs::path& directory, const Validity& validity) {
                                                      permissions.key.get())}});
 }
 
-fs::path IssueKeys(const fs::path& directory, Role role, const std::string& name, const Validity& asked) {
+fs::path IssueKeys(const fs::path& directory, Role role, const std::string& name, const Validity& asked,
+                   Right right) {
   if (!IsName(name)) {
     throw InputError("'" + name + "' cannot be the name of keys",
                      "1 to 31 letters, digits and '-', the first no '-'");
@@ -164,13 +165,15 @@ fs::path IssueKeys(const fs::path& directory, Role role, const std::string& name
   // Made today for as many days as the authority of this morning, they end with it.
   const Validity validity{asked.not_before, std::min(asked.not_after, end)};
   const PrivateKey key = MakePrivateKey();
-  const Certificate identity =
-      MakeCertificate({{name, Name(role)}, false, validity.not_before, validity.not_after}, key.get(),
-                      identities.certificate.get(), identities.key.get());
+  const std::string unit =
+      role == Role::kClient ? std::string(Name(role)) + "-" + Name(right) : std::string(Name(role));
+  const Certificate identity = MakeCertificate({{name, unit}, false, validity.not_before, validity.not_after},
+                                               key.get(), identities.certificate.get(), identities.key.get());
   // The certificate's dates are what ends it: those of permissions are read in the local time of whoever
   // checks them.
-  const std::string permissions = PermissionsDocument(
-      role, name, SubjectText(identity.get()), validity.not_before - kDay_s, validity.not_after + kDay_s);
+  const std::string permissions =
+      PermissionsDocument(role, name, right, SubjectText(identity.get()), validity.not_before - kDay_s,
+                          validity.not_after + kDay_s);
   MakeFolder(folder,
              {{kIdentityAuthorityFile, ToPem(identities.certificate.get())},
               {kPermissionsAuthorityFile, ToPem(signer.certificate.get())},

@@ -31,9 +31,10 @@ Validity ValidFor(int days);
 /// InputError rather than overwrite one.
 void MakeAuthority(const std::filesystem::path& directory, const Validity& validity);
 
-/// Returns the folder. Keys end with the authority at the latest. More than a day longer is an InputError.
+/// Returns the folder. `right` is that of a client. Keys end with the authority at the latest. More than a
+/// day longer is an InputError.
 std::filesystem::path IssueKeys(const std::filesystem::path& directory, Role role, const std::string& name,
-                                const Validity& validity);
+                                const Validity& validity, Right right = Right::kRun);
 
 /// Adds issued keys to the list of revoked keys, and returns the list's file. The list takes effect where it
 /// is copied into the folder of a coordinator's keys. Throws InputError.

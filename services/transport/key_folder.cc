@@ -115,15 +115,18 @@ KeyFolder OpenKeyFolder(const fs::path& directory, std::initializer_list<Role> r
                std::string("not the permissions of the owner of ") + kIdentityFile);
   }
   const Subject subject = SubjectOf(identity.get());
-  const auto role = ParseRole(subject.unit);
+  const std::string unit = subject.unit.substr(0, subject.unit.find('-'));
+  const auto role = ParseRole(unit);
   if (!role || std::find(roles.begin(), roles.end(), *role) == roles.end()) {
-    RefuseKeys(directory, "keys of the " + subject.unit + " '" + subject.name + "'; here those of a " +
+    RefuseKeys(directory, "keys of the " + unit + " '" + subject.name + "'; here those of a " +
                               JoinRoles(roles) + " are needed");
   }
   CheckDates(directory / kIdentityAuthorityFile, identity_ca.get(), "make a new authority");
   CheckDates(directory / kPermissionsAuthorityFile, permissions_ca.get(), "make a new authority");
   CheckDates(directory / kIdentityFile, identity.get(), "issue new keys");
-  return {fs::absolute(directory), *role, subject.name};
+  const auto right =
+      unit.size() == subject.unit.size() ? std::nullopt : ParseRight(subject.unit.substr(unit.size() + 1));
+  return {fs::absolute(directory), *role, subject.name, right};
 }
 
 }  // namespace dispersa

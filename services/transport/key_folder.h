@@ -4,6 +4,7 @@
 
 #include <filesystem>
 #include <initializer_list>
+#include <optional>
 #include <string>
 
 #include "services/transport/permissions.h"
@@ -14,6 +15,7 @@ struct KeyFolder {
   std::filesystem::path directory;
   Role role = Role::kObserver;
   std::string name;
+  std::optional<Right> right = {};  ///< of a client; none in keys of an earlier version
 };
 
 // The files of a folder.

@@ -27,7 +27,7 @@ using Certificate = std::unique_ptr<X509, OpenSslFree<X509_free>>;
 /// The owner of a certificate.
 struct Subject {
   std::string name;  ///< CN
-  std::string unit;  ///< OU: a role, or empty
+  std::string unit;  ///< OU: a role, of a client ROLE-RIGHT, or empty
 };
 
 struct CertificateContents {

@@ -18,8 +18,9 @@ struct Rule {
   std::string partition;
 };
 
-std::vector<Rule> RulesOf(Role role, const std::string& name) {
+std::vector<Rule> RulesOf(Role role, const std::string& name, Right right) {
   const std::string own = PartitionOf(OwnPrefix(name)) + "*", all = "*", none;
+  const std::string client = PartitionOf(ClientPrefix(name, right)) + "*";
   switch (role) {
     case Role::kCoordinator:
       return {{"publish", {kProgressTopic, kResultTopic}, none},
@@ -34,8 +35,8 @@ std::vector<Rule> RulesOf(Role role, const std::string& name) {
       return {{"publish", {kStatusTopic, kReportTopic, kTextRequestTopic, kCampaignRefusalTopic}, own},
               {"subscribe", {kOrdersTopic, kTextTopic}, own}};
     case Role::kClient:
-      return {{"publish", {kRequestTopic}, own},
-              {"subscribe", {kReplyTopic}, own},
+      return {{"publish", {kRequestTopic}, client},
+              {"subscribe", {kReplyTopic}, client},
               {"subscribe", {kProgressTopic, kResultTopic}, none}};
     case Role::kObserver:
       return {{"subscribe", {kProgressTopic, kResultTopic}, none}};
@@ -76,11 +77,42 @@ std::optional<Role> ParseRole(const std::string& text) {
   return found == kRoles.end() ? std::nullopt : std::optional(*found);
 }
 
+const char* Name(Right right) {
+  constexpr const char* kNames[] = {"read", "run", "administer"};
+  return kNames[static_cast<int>(right)];
+}
+
+std::optional<Right> ParseRight(const std::string& text) {
+  const auto* found =
+      std::find_if(kRights.begin(), kRights.end(), [&](Right right) { return Name(right) == text; });
+  return found == kRights.end() ? std::nullopt : std::optional(*found);
+}
+
 std::string OwnPrefix(const std::string& name) { return name + "_"; }
 
+// Names of keys begin with a letter or a digit. So no permission of other keys covers such a name.
+std::string ClientPrefix(const std::string& name, Right right) {
+  return std::string("_") + Name(right) + "_" + OwnPrefix(name);
+}
+
+namespace {
+
+/// Behind the right, if there is one.
+std::size_t NameBegins(const std::string& who) {
+  const std::size_t end = who.starts_with('_') ? who.find('_', 1) : std::string::npos;
+  return end != std::string::npos && ParseRight(who.substr(1, end - 1)) ? end + 1 : 0;
+}
+
+}  // namespace
+
+Right RightOf(const std::string& client) {
+  const std::size_t begin = NameBegins(client);
+  return begin == 0 ? Right::kRun : *ParseRight(client.substr(1, begin - 2));
+}
+
 std::string KeyNameOf(const std::string& who) {
-  const std::size_t end = who.find('_');
-  return end == std::string::npos ? "" : who.substr(0, end);
+  const std::size_t begin = NameBegins(who), end = who.find('_', begin);
+  return end == std::string::npos ? "" : who.substr(begin, end - begin);
 }
 
 std::string AccountOf(const std::string& who) {
@@ -112,10 +144,10 @@ std::string GovernanceDocument() {
          "  </domain_rule>\n </domain_access_rules>\n</dds>\n";
 }
 
-std::string PermissionsDocument(Role role, const std::string& name, const std::string& subject,
+std::string PermissionsDocument(Role role, const std::string& name, Right right, const std::string& subject,
                                 std::time_t not_before, std::time_t not_after) {
   std::string rules;
-  for (const Rule& rule : RulesOf(role, name)) rules += ToXml(rule);
+  for (const Rule& rule : RulesOf(role, name, right)) rules += ToXml(rule);
   return std::string(kHead) + "omg_shared_ca_permissions.xsd\">\n <permissions>\n  <grant name=\"" +
          Name(role) + "\">\n   " + Element("subject_name", subject) + "\n   " +
          Element("validity",

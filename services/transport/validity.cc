@@ -12,6 +12,7 @@ namespace dispersa {
 namespace {
 
 constexpr std::size_t kMaxName = 256;
+constexpr std::size_t kMaxClient = 80;  // a right, the name of its keys, 32 digits
 constexpr std::size_t kMaxReason = 4096;
 constexpr std::size_t kMaxList = 65536;
 constexpr std::size_t kMaxCasesPerReport = 4096;
@@ -104,13 +105,13 @@ std::string WhyInvalid(const CampaignProgress& progress) {
 }
 
 std::string WhyInvalid(const Request& request) {
-  return FirstOf({{!IsName(request.client, 64), "the client's name is no identifier"},
+  return FirstOf({{!IsName(request.client, kMaxClient), "the client's name is no identifier"},
                   {!IsName(request.method, 64), "the method is no identifier"},
                   {request.arguments.size() > kMaxReason, "too long arguments"}});
 }
 
 std::string WhyInvalid(const Reply& reply) {
-  return FirstOf({{!IsName(reply.client, 64), "the client's name is no identifier"}});
+  return FirstOf({{!IsName(reply.client, kMaxClient), "the client's name is no identifier"}});
 }
 
 std::string Printable(const std::string& text, std::size_t limit) {

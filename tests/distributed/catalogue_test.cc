@@ -40,7 +40,7 @@ class CatalogueTest : public testing::Test {
   fs::path root_;
 };
 
-// As the release before wrote it: without a version, seed, end and distrusted workers.
+// As an early release wrote it: without a version, seed, end, distrusted workers and owner.
 TEST_F(CatalogueTest, AStateOfTheFirstVersionIsReadAndBecomesOneOfToday) {
   fs::create_directories(root_ / "data" / "a1");
   const fs::path file = root_ / "data" / "a1" / "state.json";
@@ -68,10 +68,12 @@ TEST_F(CatalogueTest, AStateOfTheFirstVersionIsReadAndBecomesOneOfToday) {
   EXPECT_EQ(entry.seed, 0u);
   EXPECT_THAT(entry.distrusted, ElementsAre());
   EXPECT_GT(entry.ended_unix_s, 1'500'000'000) << "when its file was written";
+  EXPECT_EQ(entry.owner, "");
+  EXPECT_EQ(entry.bytes, fs::file_size(file)) << "counted, because nobody has written it down";
   catalogue.Write(entry);
   std::string text;
   std::getline(std::ifstream(file), text, '\0');
-  EXPECT_THAT(text, testing::HasSubstr("\"version\": 2"));
+  EXPECT_THAT(text, testing::HasSubstr("\"version\": 3"));
 }
 
 TEST_F(CatalogueTest, EachStartHasALargerNumberAlsoWhenTheClockIsSetBack) {
@@ -90,7 +92,7 @@ TEST_F(CatalogueTest, EachStartHasALargerNumberAlsoWhenTheClockIsSetBack) {
 TEST_F(CatalogueTest, AStateOfALaterVersionIsLeftAlone) {
   fs::create_directories(root_ / "data" / "a1");
   const fs::path file = root_ / "data" / "a1" / "state.json";
-  std::ofstream(file) << "{\"version\": 3, \"id\": \"a1\"}";
+  std::ofstream(file) << "{\"version\": 4, \"id\": \"a1\"}";
   Catalogue catalogue(root_ / "data");
   EXPECT_TRUE(catalogue.entries().empty());
   EXPECT_TRUE(fs::exists(file));
@@ -121,6 +123,11 @@ TEST_F(CatalogueTest, RemembersEverythingOverARestart) {
     entry.conflicts = 2;
     entry.code = 1;
     entry.problem = "it \"broke\"\n\xff";
+    entry.owner = "ann";
+    entry.launched_unix_s = 12;
+    entry.bytes = 34;
+    entry.verdict = "pass";
+    entry.labels = {"commit=1a2b", "a=b"};
     catalogue.Write(entry);
   }
   Catalogue catalogue(root_ / "data");
@@ -133,6 +140,11 @@ TEST_F(CatalogueTest, RemembersEverythingOverARestart) {
   EXPECT_EQ(entry.quarantined, 1u);
   EXPECT_EQ(entry.conflicts, 2u);
   EXPECT_EQ(entry.state, CampaignState::kFailed);
+  EXPECT_EQ(entry.owner, "ann");
+  EXPECT_EQ(entry.launched_unix_s, 12);
+  EXPECT_EQ(entry.bytes, 34u);
+  EXPECT_EQ(entry.verdict, "pass");
+  EXPECT_THAT(entry.labels, ElementsAre("commit=1a2b", "a=b"));
   EXPECT_EQ(entry.code, 1);
   EXPECT_EQ(entry.problem, "it \"broke\"\n\xef\xbf\xbd");
   EXPECT_EQ(catalogue.TextOf("a1"), "text of a1");

@@ -439,5 +439,229 @@ TEST_F(FrontDeskTest, TheTallyCountsWhatWasFlown) {
   EXPECT_EQ(counted, 3);
 }
 
+// Two clients with keys, and an administrator.
+class OwnersTest : public FrontDeskTest {
+ protected:
+  OwnersTest() { Start({}); }
+
+  void Start(const Quota& quota) {
+    service_.reset();
+    ServiceOptions options{folder_ / "data"};
+    options.quota = quota;
+    service_ = std::make_unique<Service>(options, workforce_);
+    desk_ = std::make_unique<FrontDesk>(*service_, workforce_, "");
+  }
+  /// "code: text", or the text alone of what is granted.
+  std::string As(const std::string& client, const std::string& method, const Json& arguments,
+                 const std::string& data = "") {
+    const Reply reply = desk_->Answer({client, 5, method, arguments.dump(), data});
+    return reply.code == 0 ? reply.text : std::to_string(reply.code) + ": " + reply.text;
+  }
+  std::string LaunchAs(const std::string& client, const Campaign& campaign,
+                       const Json& more = Json::object()) {
+    Json arguments = {{"id", campaign.id}, {"flight_id", campaign.flight_id}};
+    arguments.update(more);
+    for (;;) {
+      const std::string answer = As(client, "launch", arguments);
+      if (answer.find("\"unknown\"") != std::string::npos) {
+        const std::string& text = campaign.canonical_yaml;
+        As(client, "upload", {{"id", campaign.id}, {"size", text.size()}, {"offset", 0}}, text);
+      } else if (answer.find("\"checked\"") == std::string::npos) {
+        return answer.find("\"state\"") == std::string::npos
+                   ? answer
+                   : Json::parse(answer).at("state").get<std::string>();
+      }
+    }
+  }
+  /// "2: campaign 5f3a... belongs to 'ann': ..."
+  static std::string NotTheirs(const Campaign& campaign, const std::string& owner, const std::string& whose,
+                               const std::string& may, const std::string& change) {
+    return "2: campaign " + campaign.id.substr(0, 8) + " belongs to " + owner + ": the keys of '" + whose +
+           "' may " + may + " and cannot " + change +
+           " it, allowed: keys of its owner that may run, or keys that may administer";
+  }
+
+  const std::string ann_ = "_run_ann_1", bob_ = "_run_bob_2", eve_ = "_read_eve_3",
+                    root_ = "_administer_root_4";
+};
+
+TEST_F(OwnersTest, OnlyOwnerAndAdministratorChangeACampaign) {
+  const Campaign campaign = Smoke(2);
+  const Json named = {{"id", campaign.id}};
+  EXPECT_EQ(LaunchAs(ann_, campaign), "waiting");
+  EXPECT_EQ(service_->catalogue().entries().at(campaign.id).owner, "ann");
+  for (const char* method : {"cancel", "delete"}) {
+    EXPECT_EQ(As(bob_, method, named), NotTheirs(campaign, "'ann'", "bob", "run", method));
+    EXPECT_EQ(As(eve_, method, named), NotTheirs(campaign, "'ann'", "eve", "read", method));
+  }
+  EXPECT_EQ(As(bob_, "repair", {{"id", campaign.id}, {"worker", "w"}}),
+            NotTheirs(campaign, "'ann'", "bob", "run", "repair"));
+  EXPECT_EQ(StateOf(campaign.id), CampaignState::kWaiting);
+  EXPECT_EQ(As("_run_ann_99", "cancel", named), Json({{"id", campaign.id}}).dump())
+      << "another program of ann";
+  EXPECT_EQ(LaunchAs(bob_, campaign), NotTheirs(campaign, "'ann'", "bob", "run", "continue"));
+  ASSERT_TRUE(Until([&] { return service_->IsAtRest(campaign.id); }));
+  EXPECT_EQ(As(root_, "delete", named), Json({{"id", campaign.id}}).dump());
+  EXPECT_FALSE(service_->catalogue().entries().contains(campaign.id));
+}
+
+TEST_F(OwnersTest, ACampaignOfAnotherOwnerIsFoundAndNotChanged) {
+  const Campaign campaign = Smoke(2);
+  LaunchAs(ann_, campaign, {{"priority", 3}});
+  EXPECT_EQ(LaunchAs(bob_, campaign), "waiting");
+  EXPECT_EQ(LaunchAs(bob_, campaign, {{"priority", 3}}), "waiting") << "it has this priority";
+  std::string its_priority = NotTheirs(campaign, "'ann'", "bob", "run", "change the priority of");
+  EXPECT_EQ(LaunchAs(bob_, campaign, {{"priority", 4}}), its_priority);
+  EXPECT_EQ(LaunchAs(bob_, campaign, {{"labels", {"commit=1"}}}),
+            NotTheirs(campaign, "'ann'", "bob", "run", "label"));
+  const CatalogueEntry& entry = service_->catalogue().entries().at(campaign.id);
+  EXPECT_EQ(entry.owner, "ann");
+  EXPECT_EQ(entry.priority, 3);
+  EXPECT_TRUE(entry.labels.empty());
+  EXPECT_EQ(LaunchAs(ann_, campaign), "waiting");
+  EXPECT_EQ(entry.priority, 3) << "none was given";
+  EXPECT_EQ(LaunchAs(root_, campaign, {{"priority", 4}, {"labels", {"commit=1"}}}), "waiting");
+  EXPECT_EQ(entry.priority, 4);
+  EXPECT_EQ(entry.owner, "ann");
+  const Json listed = Json::parse(As(eve_, "list", {{"id", campaign.id}})).at("campaigns").at(0);
+  EXPECT_EQ(listed.at("owner"), "ann");
+  EXPECT_EQ(listed.at("labels"), Json({"commit=1"}));
+}
+
+TEST_F(OwnersTest, KeysThatMayReadLookAndTakeAndNothingElse) {
+  const Campaign campaign = Smoke(2);
+  LaunchAs(ann_, campaign);
+  const std::string lacks =
+      "2: the keys of 'eve' may read, and `dispersa launch` needs the right to run, allowed: keys that "
+      "`dispersa "
+      "keys issue --may run` made";
+  EXPECT_EQ(LaunchAs(eve_, Smoke(3)), lacks);
+  EXPECT_EQ(LaunchAs(eve_, campaign), lacks);
+  EXPECT_EQ(As(eve_, "upload", {{"id", "x"}, {"size", 1}, {"offset", 0}}, "x"), lacks);
+  for (const char* method : {"list", "status", "tally"})
+    EXPECT_THAT(As(eve_, method, {{"id", campaign.id}}), testing::HasSubstr(campaign.id)) << method;
+  As(ann_, "cancel", {{"id", campaign.id}});
+  ASSERT_TRUE(Until([&] { return service_->IsAtRest(campaign.id); }));
+  EXPECT_THAT(As(eve_, "files", {{"id", campaign.id}}), testing::HasSubstr("\"id\""));
+  const std::string no_backup =
+      "2: the keys of 'bob' may run, and `dispersa backup` needs the right to administer, allowed: keys that "
+      "`dispersa keys issue --may administer` made";
+  EXPECT_EQ(As(bob_, "ids", Json::object()), no_backup);
+  EXPECT_EQ(As(bob_, "files", {{"id", ""}}), no_backup);
+  EXPECT_EQ(As(bob_, "read", {{"id", campaign.id}, {"path", "a"}, {"offset", 0}, {"snapshot", "s"}}),
+            no_backup);
+  EXPECT_THAT(As(root_, "ids", Json::object()), testing::HasSubstr(campaign.id));
+}
+
+// An owner whose keys were replaced by ones that read.
+TEST_F(OwnersTest, KeysThatMayReadChangeNothingUnderTheOwnersName) {
+  const Campaign campaign = Smoke(2);
+  LaunchAs(ann_, campaign);
+  EXPECT_EQ(As("_read_ann_9", "cancel", {{"id", campaign.id}}),
+            NotTheirs(campaign, "'ann'", "ann", "read", "cancel"));
+}
+
+// Nobody is its owner: a client that has a name of no letters neither.
+TEST_F(OwnersTest, ACampaignOfAnEarlierVersionBelongsToAdministrators) {
+  const Campaign campaign = Smoke(2);
+  Launch(campaign);
+  EXPECT_EQ(As(ann_, "cancel", {{"id", campaign.id}}),
+            NotTheirs(campaign, "nobody, since an earlier version launched it", "ann", "run", "cancel"));
+  EXPECT_EQ(As("_run__5", "cancel", {{"id", campaign.id}}).substr(0, 2), "2:");
+  EXPECT_EQ(As(root_, "cancel", {{"id", campaign.id}}), Json({{"id", campaign.id}}).dump());
+}
+
+TEST_F(OwnersTest, WithoutKeysTheLocalUserOwnsAllAndMayAll) {
+  StartService();  // everybody is ann
+  const Campaign campaign = Smoke(2);
+  EXPECT_EQ(LaunchAs("0123", campaign), "waiting");
+  EXPECT_EQ(service_->catalogue().entries().at(campaign.id).owner, "ann");
+  EXPECT_EQ(LaunchAs("_read_eve_1", Smoke(3)), "waiting") << "a name proves nothing here";
+  EXPECT_EQ(service_->catalogue().entries().at(Smoke(3).id).owner, "ann");
+  EXPECT_EQ(As("4567", "cancel", {{"id", campaign.id}}), Json({{"id", campaign.id}}).dump());
+}
+
+TEST_F(OwnersTest, AQuotaIsOfOneOwnerAndOfWhatHasNotEnded) {
+  Start({.cases = 10, .campaigns = 2});
+  const Campaign first = Smoke(4), second = Smoke(6, 2), third = Smoke(1, 3);
+  EXPECT_EQ(LaunchAs(ann_, first), "waiting");
+  EXPECT_EQ(
+      LaunchAs(ann_, Smoke(7, 2)),
+      "2: 'ann' would have 11 cases in campaigns that have not ended, allowed: at most 10; wait, or launch "
+      "fewer (dispersa-coordinator --quota cases)");
+  EXPECT_EQ(LaunchAs(ann_, second), "waiting");
+  const std::string too_many =
+      "2: 'ann' would have 3 campaigns that have not ended, allowed: at most 2; wait, or cancel one "
+      "(dispersa-coordinator --quota campaigns)";
+  EXPECT_EQ(LaunchAs(ann_, third), too_many);
+  EXPECT_EQ(LaunchAs(bob_, third), "waiting") << "of another owner";
+  EXPECT_EQ(LaunchAs(ann_, first), "waiting") << "nothing more";
+  As(ann_, "cancel", {{"id", first.id}});
+  EXPECT_EQ(LaunchAs(ann_, Smoke(1, 4)), "waiting") << "a campaign has ended";
+  EXPECT_EQ(LaunchAs(ann_, first), too_many) << "continued, it would be the third";
+  EXPECT_EQ(StateOf(first.id), CampaignState::kCancelled);
+}
+
+TEST_F(OwnersTest, ADiskQuotaCountsCampaignsThatHaveEnded) {
+  Start({.disk = 1});
+  const Campaign first = Smoke(2), second = Smoke(2, 2);
+  EXPECT_EQ(LaunchAs(ann_, first), "waiting") << "nothing is there";
+  As(ann_, "cancel", {{"id", first.id}});
+  ASSERT_TRUE(Until([&] { return service_->IsAtRest(first.id); }));
+  EXPECT_GT(service_->catalogue().entries().at(first.id).bytes, 1000u) << "its text";
+  EXPECT_THAT(
+      LaunchAs(ann_, second),
+      testing::MatchesRegex("2: 'ann' would have another campaign beside .* GB on the coordinator's disk, "
+                            "allowed: less than 1e-09 GB; delete campaigns that have ended "
+                            ".dispersa-coordinator --quota disk."));
+  EXPECT_EQ(LaunchAs(bob_, second), "waiting");
+  As(ann_, "delete", {{"id", first.id}});
+  EXPECT_EQ(LaunchAs(ann_, Smoke(2, 3)), "waiting");
+}
+
+TEST_F(OwnersTest, OneOwnerDoesNotTakeAllPlaces) {
+  Start({.places = 1});
+  const Campaign first = Smoke(200, 1), second = Smoke(200, 2), third = Smoke(200, 3);
+  LaunchAs(ann_, first, {{"priority", 9}});
+  LaunchAs(ann_, second, {{"priority", 9}});
+  LaunchAs(bob_, third);
+  ASSERT_TRUE(Reaches(third.id, CampaignState::kFlying));
+  EXPECT_EQ(StateOf(first.id), CampaignState::kFlying);
+  EXPECT_EQ(StateOf(second.id), CampaignState::kWaiting) << "in spite of its priority";
+  As(ann_, "cancel", {{"id", first.id}});
+  ASSERT_TRUE(Reaches(second.id, CampaignState::kFlying));
+}
+
+TEST(QuotaTest, IsReadAsAUserWritesIt) {
+  Quota quota;
+  EXPECT_TRUE(ReadQuota("cases=1000000,campaigns=20,places=4,disk=0.5TB", &quota));
+  EXPECT_EQ(quota.cases, 1000000u);
+  EXPECT_EQ(quota.campaigns, 20u);
+  EXPECT_EQ(quota.places, 4u);
+  EXPECT_EQ(quota.disk, 500000000000u);
+  EXPECT_TRUE(ReadQuota("places=5", &quota));
+  EXPECT_EQ(quota.places, 5u);
+  EXPECT_EQ(quota.cases, 1000000u);
+  for (const char* text : {"", "cases", "cases=", "cases=0", "cases=-1", "cases=1e6", "case=1", "disk=5",
+                           "disk=5d", "cases=1,,places=2", "cases=1 "})
+    EXPECT_FALSE(ReadQuota(text, &quota)) << text;
+}
+
+TEST_F(OwnersTest, LabelsAreShortTextsTheLastOnesOfMany) {
+  const Campaign campaign = Smoke(2);
+  for (const std::string label :
+       {"commit", "=1", "commit=", "com mit=1", "commit=1\n",
+        "commit=1234567890123456789012345678901234567890123456789012345678901234567890"
+        "1234567890123456789012345678901"})
+    EXPECT_THAT(LaunchAs(ann_, campaign, {{"labels", {label}}}), testing::HasSubstr("is no label, allowed: "))
+        << label;
+  for (int i = 0; i < 40; ++i) LaunchAs(ann_, campaign, {{"labels", {"commit=" + std::to_string(i)}}});
+  LaunchAs(ann_, campaign, {{"labels", {"commit=20"}}});
+  const std::vector<std::string>& labels = service_->catalogue().entries().at(campaign.id).labels;
+  EXPECT_EQ(labels.size(), kMaxLabels);
+  EXPECT_EQ(labels.front(), "commit=8");
+  EXPECT_EQ(labels.back(), "commit=20") << "given again";
+}
+
 }  // namespace
 }  // namespace dispersa::front_desk_test

@@ -244,8 +244,8 @@ class MadeUpKeys : public KeyFolderTest {
     Write(keys / kIdentityKeyFile, ToPem(key.get()));
     chmod((keys / kIdentityKeyFile).c_str(), 0600);
     Write(keys / kGovernanceFile, sign(GovernanceDocument()));
-    Write(keys / kPermissionsFile,
-          sign(PermissionsDocument(Role::kWorker, "one", SubjectText(own.get()), at(-1), at(1))));
+    Write(keys / kPermissionsFile, sign(PermissionsDocument(Role::kWorker, "one", Right::kRun,
+                                                            SubjectText(own.get()), at(-1), at(1))));
     return keys;
   }
 };
@@ -336,14 +336,14 @@ std::string RulesIn(const std::string& document) {
 // The table of services/README.md.
 TEST(Permissions, EachRoleMayWhatItNeeds) {
   const auto rules = [](Role role) {
-    return RulesIn(PermissionsDocument(role, "node1", "CN=node1", 0, kDay_s));
+    return RulesIn(PermissionsDocument(role, "node1", Right::kRead, "CN=node1", 0, kDay_s));
   };
   const std::string t = " dispersa/";
   EXPECT_EQ(rules(Role::kWorker), "publish" + t + "WorkerStatusV2" + t + "ReportV2" + t + "TextRequestV1" +
                                       t + "CampaignRefusalV1 in wnode1_*\nsubscribe" + t + "OrdersV1" + t +
                                       "TextV1 in wnode1_*\n");
-  EXPECT_EQ(rules(Role::kClient), "publish" + t + "RequestV1 in wnode1_*\nsubscribe" + t +
-                                      "ReplyV1 in wnode1_*\nsubscribe" + t + "ProgressV1" + t +
+  EXPECT_EQ(rules(Role::kClient), "publish" + t + "RequestV1 in w_read_node1_*\nsubscribe" + t +
+                                      "ReplyV1 in w_read_node1_*\nsubscribe" + t + "ProgressV1" + t +
                                       "ResultV1 in \n");
   EXPECT_EQ(rules(Role::kObserver), "subscribe" + t + "ProgressV1" + t + "ResultV1 in \n");
   EXPECT_EQ(rules(Role::kCoordinator), "publish" + t + "ProgressV1" + t + "ResultV1 in \npublish" + t +
@@ -354,12 +354,46 @@ TEST(Permissions, EachRoleMayWhatItNeeds) {
 }
 
 TEST(Permissions, AreOfTheirOwnerInTheirTimeAndNobodyElses) {
-  const std::string document = PermissionsDocument(Role::kWorker, "a", "CN=a,OU=worker", 0, 2 * kDay_s);
+  const std::string document =
+      PermissionsDocument(Role::kWorker, "a", Right::kRun, "CN=a,OU=worker", 0, 2 * kDay_s);
   for (const char* part :
        {"<subject_name>CN=a,OU=worker</subject_name>", "<not_before>1970-01-01T00:00:00</not_before>",
         "<not_after>1970-01-03T00:00:00</not_after>", "<default>DENY</default>"})
     EXPECT_THAT(document, HasSubstr(part));
   EXPECT_EQ(OwnPrefix("node1"), "node1_") << "else node1 could speak for node10";
+}
+
+TEST(Permissions, AClientsNameSaysItsKeysAndWhatTheyMay) {
+  for (const Right right : kRights) {
+    const std::string who = ClientPrefix("ann-1", right) + "0123";
+    EXPECT_EQ(RightOf(who), right);
+    EXPECT_EQ(KeyNameOf(who), "ann-1");
+    EXPECT_EQ(AccountOf(who), "ann-1");
+    EXPECT_EQ(ParseRight(Name(right)), right);
+  }
+  EXPECT_EQ(ParseRight("all"), std::nullopt);
+  // Of keys of an earlier version, of none, and names that claim a right without being such a name.
+  EXPECT_EQ(RightOf("ann_0123"), Right::kRun);
+  EXPECT_EQ(KeyNameOf("ann_0123"), "ann");
+  EXPECT_EQ(KeyNameOf("0123"), "");
+  for (const char* who : {"administer_0123", "_administer", "_all_ann_0123", "administer_ann_0123"})
+    EXPECT_EQ(RightOf(who), Right::kRun) << who;
+}
+
+TEST_F(KeyFolderTest, TheRightOfAClientIsInItsCertificateAndInItsPermissions) {
+  const auto issue = [&](const std::string& name, Right right) {
+    return OpenKeyFolder(IssueKeys(authority(), Role::kClient, name, ValidFor(1), right), {Role::kClient});
+  };
+  for (const Right right : kRights) {
+    const std::string name = std::string("of-") + Name(right);
+    const KeyFolder keys = issue(name, right);
+    EXPECT_EQ(keys.right, right);
+    EXPECT_EQ(keys.name, name);
+    NetworkOptions network;
+    network.keys = keys;
+    EXPECT_EQ(NameOnNetwork(network, "0123"), std::string("_") + Name(right) + "_" + name + "_0123");
+  }
+  EXPECT_EQ(OpenKeyFolder(Worker("node1"), {Role::kWorker}).right, std::nullopt);
 }
 
 TEST_F(KeyFolderTest, WithoutKeysOnlyThisMachineIsSpokenTo) {

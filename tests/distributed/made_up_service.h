@@ -28,7 +28,7 @@ class ServiceTest : public testing::Test {
     service_.reset();
     service_ =
         std::make_unique<Service>(ServiceOptions{folder_ / "data", 1, flying_at_once, max_cases}, workforce_);
-    desk_ = std::make_unique<FrontDesk>(*service_, workforce_);
+    desk_ = std::make_unique<FrontDesk>(*service_, workforce_, "ann");
   }
 
   /// Its id.

@@ -255,6 +255,52 @@ class SecurityTest(unittest.TestCase):
             seen = stranger.leave()
             self.assertEqual((seen["created"], seen["matched"]), (True, 0))
 
+    def as_client(self, name, *arguments, code=0):
+        """Standard output, or what it says of its refusal."""
+        done = subprocess.run([BINARIES / "dispersa", *map(str, arguments), *LOOPBACK, "--keys",
+                               self.folder("client", name)], capture_output=True, text=True, timeout=3 * PATIENCE_S)
+        self.assertEqual(done.returncode, code, f"{done.stdout}{done.stderr}\n{self.log.read_text()[-3000:]}")
+        return done.stderr if code else done.stdout
+
+    def test_a_campaign_belongs_to_the_keys_that_launched_it(self):
+        for name, may in (("ann", ["--may", "run"]), ("bob", []), ("eve", ["--may", "read"]), ("ops", ["--may", "administer"])):
+            keys("issue", self.authority, "--role", "client", "--name", name, *may)
+        self.assertIn("--may read with --role worker, allowed: --may with --role client",
+                      keys("issue", self.authority, "--role", "worker", "--name", "x", "--may", "read", code=2))
+        self.start("dispersa-coordinator", "--data", self.data, "--keys", self.folder("coordinator"), "--quota", "campaigns=1")
+        campaign = [CAMPAIGN, "--cases", "3"]
+        identity = self.as_client("ann", "launch", *campaign, "--label", "commit=1a2b").strip()
+        short = identity[:8]
+        listed = json.loads(self.as_client("eve", "list", "--json"))["campaigns"][0]
+        self.assertEqual((listed["owner"], listed["labels"]), ("ann", ["commit=1a2b"]))
+        self.assertIn("  of ann", self.as_client("eve", "list"))
+        self.assertIn("  of ann", self.as_client("bob", "status", identity))
+        for name, may, change in (("bob", "run", "cancel"), ("bob", "run", "delete"), ("eve", "read", "cancel")):
+            self.assertIn(f"campaign {short} belongs to 'ann': the keys of '{name}' may {may} and cannot {change} it, allowed: ",
+                          self.as_client(name, change, identity, code=2))
+        self.assertIn("the keys of 'eve' may read, and `dispersa launch` needs the right to run",
+                      self.as_client("eve", "launch", *campaign, code=2))
+        self.assertIn("`dispersa backup` needs the right to administer",
+                      self.as_client("bob", "backup", self.root / "no-backup", code=2))
+        self.assertIn("'ann' would have 2 campaigns that have not ended, allowed: at most 1",
+                      self.as_client("ann", "launch", CAMPAIGN, "--cases", 4, code=2))
+        self.assertIn("cannot change the priority of it", self.as_client("bob", "launch", *campaign, "--priority", 3, code=2))
+        self.assertEqual(self.as_client("bob", "launch", *campaign).strip(), identity)
+        # Its own middleware lets it speak as an administrator; the coordinator's does not.
+        copy = self.that_lies_to_itself("client", "eve")
+        self.assert_refused("Error checking create remote writer .*w_administer_eve_1 partition not found in rule",
+                            *self.publish("RequestV1", "_administer_eve_1", "--keys", copy))
+        self.as_client("ops", "cancel", identity)
+        self.as_client("ann", "launch", *campaign)
+        self.start_worker()
+        three = Run(self.root / "alone" / "three", "--workers", 0, "--cases", 3).finish()
+        self.as_client("eve", "watch", identity, "--quiet", code=three.code)
+        self.as_client("eve", "fetch", identity, "--out", self.root / "of-ann")
+        self.assertEqual(content(self.root / "of-ann", "cases.csv"), content(three.out, "cases.csv"))
+        self.assertEqual(self.as_client("ops", "backup", self.root / "backup").strip(),
+                         f"backup of 1 campaigns: {self.root / 'backup'}")
+        self.as_client("ann", "delete", identity)
+
     def test_a_worker_gives_no_orders(self):
         worker = self.start_worker("two", "--uuid", "x")
         orders = [*self.publish("OrdersV1", "two_x"), "--as-coordinator", "--keys"]  # to leave

@@ -37,13 +37,13 @@ Report SomeReport() {
 }
 
 // Names become partitions, in which * is everybody, and words of the log.
-TEST(Validity, ANameIsAnIdentifierOf64Letters) {
+TEST(Validity, ANameIsAnIdentifierOfLimitedLength) {
   for (const std::string name : {"a", "Z-9_", "0123456789abcdef0123456789abcdef"}) {
     EXPECT_EQ(After(Status(), [&](auto& status) { status.worker = name; }), "") << name;
   }
   for (const std::string& name : {std::string(), std::string("*"), std::string("a*"), std::string("a b"),
                                   std::string("a/b"), std::string("\x1b[31m"), std::string("ä"),
-                                  std::string("a."), std::string(1, '\0'), std::string(65, 'a')}) {
+                                  std::string("a."), std::string(1, '\0'), std::string(81, 'a')}) {
     const auto set = [&](auto& message) { message.worker = name; };
     EXPECT_EQ(After(Status(), set), kBadWorker) << name;
     EXPECT_EQ(After(SomeOrders(), set), kBadWorker) << name;
@@ -56,7 +56,15 @@ TEST(Validity, ANameIsAnIdentifierOf64Letters) {
     EXPECT_EQ(WhyInvalid(Reply{name, 1, 0, "{}", ""}), no_client) << name;
     EXPECT_EQ(WhyInvalid(Request{"c", 1, name, "{}", ""}), "the method is no identifier") << name;
   }
-  EXPECT_EQ(After(Status(), [](auto& status) { status.worker = std::string(64, 'a'); }), "");
+  const auto worker_of = [](std::size_t letters) {
+    return After(Status(), [&](auto& status) { status.worker = std::string(letters, 'a'); });
+  };
+  EXPECT_EQ(worker_of(64), "");
+  EXPECT_EQ(worker_of(65), kBadWorker);
+  EXPECT_EQ(WhyInvalid(Request{"c", 1, std::string(65, 'a'), "{}", ""}), "the method is no identifier");
+  // With a right before the name of its keys.
+  EXPECT_EQ(WhyInvalid(Request{std::string(80, 'a'), 1, "list", "{}", ""}), "");
+  EXPECT_EQ(WhyInvalid(Reply{std::string(80, 'a'), 1, 0, "{}", ""}), "");
 }
 
 TEST(Validity, AFlightIdIs64HexadecimalDigits) {

@@ -127,13 +127,16 @@ nlohmann::ordered_json SampleCampaign() {
 TEST(CampaignStatusText, SaysHowFarACampaignIs) {
   nlohmann::ordered_json campaign = SampleCampaign();
   EXPECT_EQ(CampaignStatusText(campaign), "0123456789ab  flying            40/100       trial\n");
+  campaign["owner"] = nullptr;
+  EXPECT_EQ(CampaignStatusText(campaign), "0123456789ab  flying            40/100       trial\n");
+  campaign["owner"] = "ann";
   campaign["rate_per_s"] = 12.34;
   campaign["eta_s"] = 65;
   campaign["quarantined"] = 2;
   campaign["requirements"].push_back(
       {{"failures", 3}, {"n", 40}, {"metric", "alpha_max_deg"}, {"so_far", "inconclusive"}});
   EXPECT_EQ(CampaignStatusText(campaign),
-            "0123456789ab  flying            40/100       trial  12.3/s  1m05s left  2 quarantined\n"
+            "0123456789ab  flying            40/100       trial  12.3/s  1m05s left  2 quarantined  of ann\n"
             "  3 of 40 fail alpha_max_deg (inconclusive so far)\n");
   campaign = SampleCampaign();
   campaign["state"] = "ended";
