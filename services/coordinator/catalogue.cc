@@ -35,6 +35,32 @@ std::string ReadWhole(const fs::path& file) {
 
 constexpr char kDeleted[] = ".deleted-";
 
+Json ToJson(const RequirementOutcome& one) {
+  const auto bound = [](const std::optional<double>& value) { return value ? Json(*value) : Json(nullptr); };
+  return {{"metric", one.metric},
+          {"words", one.words},
+          {"probability", one.probability},
+          {"n", one.n},
+          {"failures", one.failures},
+          {"success_lower", bound(one.success_lower)},
+          {"success_upper", bound(one.success_upper)},
+          {"verdict", one.verdict}};
+}
+
+RequirementOutcome ToOutcome(const Json& json) {
+  const auto bound = [](const Json& value) {
+    return value.is_null() ? std::nullopt : std::optional(value.get<double>());
+  };
+  return {json.at("metric"),
+          json.at("words"),
+          json.at("probability"),
+          json.at("n"),
+          json.at("failures"),
+          bound(json.at("success_lower")),
+          bound(json.at("success_upper")),
+          json.at("verdict")};
+}
+
 CatalogueEntry ParseState(const std::string& text) {
   const Json json = Json::parse(text);
   if (const int version = json.value("version", 1); version > kStateVersion) {
@@ -61,6 +87,11 @@ CatalogueEntry ParseState(const std::string& text) {
   entry.bytes = json.value("bytes", std::uint64_t{0});
   entry.verdict = json.value("verdict", "");
   entry.labels = json.value("labels", std::vector<std::string>());
+  entry.design_id = json.value("design_id", "");
+  entry.engine = json.value("engine", "");
+  entry.attempts = json.value("attempts", std::int64_t{0});
+  for (const Json& one : json.value("requirements", Json::array()))
+    entry.requirements.push_back(ToOutcome(one));
   const auto state = std::find(kStates.begin(), kStates.end(), json.at("state").get<std::string>());
   if (state == kStates.end()) throw std::runtime_error("an unknown state");
   entry.state = static_cast<CampaignState>(state - kStates.begin());
@@ -167,6 +198,8 @@ CatalogueEntry& Catalogue::Add(CatalogueEntry entry, const std::string& text) {
 }
 
 void Catalogue::Write(const CatalogueEntry& entry) const {
+  Json requirements = Json::array();
+  for (const RequirementOutcome& one : entry.requirements) requirements.push_back(ToJson(one));
   const Json json = {{"version", kStateVersion},
                      {"id", entry.id},
                      {"flight_id", entry.flight_id},
@@ -187,7 +220,11 @@ void Catalogue::Write(const CatalogueEntry& entry) const {
                      {"launched_unix_s", entry.launched_unix_s},
                      {"bytes", entry.bytes},
                      {"verdict", entry.verdict},
-                     {"labels", entry.labels}};
+                     {"labels", entry.labels},
+                     {"design_id", entry.design_id},
+                     {"engine", entry.engine},
+                     {"attempts", entry.attempts},
+                     {"requirements", std::move(requirements)}};
   WriteFile(directory_ / entry.id / "state.json", DumpAnyText(json, 2) + "\n");
 }
 

@@ -20,6 +20,17 @@ const char* CampaignStateName(CampaignState state);
 /// Nothing more happens to it by itself.
 bool HasEnded(CampaignState state);
 
+/// What the report says of one requirement.
+struct RequirementOutcome {
+  std::string metric;
+  std::string words;  ///< "q_max_pa below 120000 for 99 % of flights at 10 % risk"
+  double probability = 0.0;
+  std::int64_t n = 0;
+  std::int64_t failures = 0;
+  std::optional<double> success_lower, success_upper;  ///< of the probability to meet it
+  std::string verdict;                                 ///< that stands
+};
+
 struct CatalogueEntry {
   std::string id;
   std::string flight_id;
@@ -41,10 +52,17 @@ struct CatalogueEntry {
   std::uint64_t bytes = 0;              ///< on the disk, when they were last counted
   std::string verdict;                  ///< of its report: "pass", "fail", ...
   std::vector<std::string> labels;      ///< "KEY=VALUE", the last given last
+  std::string design_id;                ///< of campaigns that judge the same design
+  std::string engine;                   ///< of its report
+  std::int64_t attempts = 0;            ///< at its design, this one too, by its report; 0: no report
+  std::vector<RequirementOutcome> requirements;  ///< of its report, the first kMaxOutcomes
 };
 
 /// Labels of a campaign. Older ones are dropped.
 inline constexpr std::size_t kMaxLabels = 32;
+
+/// Requirements of a campaign that its entry keeps: it has to stay small.
+inline constexpr std::size_t kMaxOutcomes = 20;
 
 /// The order of the queue: by priority, then by age.
 bool ComesBefore(const CatalogueEntry& a, const CatalogueEntry& b);

@@ -50,6 +50,7 @@ CatalogueEntry Parse(const std::string& text, std::uint64_t max_cases) {
   CatalogueEntry entry;
   entry.id = campaign.id;
   entry.flight_id = campaign.flight_id;
+  entry.design_id = campaign.design_id;
   entry.name = campaign.name;
   entry.cases = campaign.sampling.cases;
   entry.seed = campaign.sampling.seed;

@@ -21,6 +21,23 @@
 #include "services/transport/admission.h"
 
 namespace dispersa {
+namespace {
+
+CLI::Validator IsHttpAddress() {
+  return CLI::Validator(
+      [](const std::string& text) {
+        HttpAddress address;
+        return ReadHttpAddress(text, &address)
+                   ? ""
+                   : "'" + text +
+                         "' is no address, allowed: a port from 1 to 65535, or an IPv4 "
+                         "address and a port as 0.0.0.0:9464";
+      },
+      "");
+}
+
+}  // namespace
+
 int RunCoordinator(int argc, char** argv) {
   HoldStandardStreams();
   LogForDaemon("dispersa-coordinator");
@@ -43,9 +60,13 @@ int RunCoordinator(int argc, char** argv) {
   app.add_option("campaign", request.campaign.name, "campaign file")->type_name(kFileType);
   app.add_option("--data", data, "folder for the launched campaigns, made if it does not exist")
       ->type_name(kFolderType);
-  app.add_option("--metrics", clients.prometheus_port,
-                 "with --data: port of 127.0.0.1 that serves figures in Prometheus' text format")
-      ->transform(WholeNumber(1, 65535));
+  std::string metrics;
+  app.add_option(
+         "--metrics", metrics,
+         "with --data: PORT of 127.0.0.1, or ADDRESS:PORT (0.0.0.0: all interfaces), that serves figures "
+         "in\nPrometheus' text format to everybody who reaches it")
+      ->type_name("TEXT")
+      ->check(IsHttpAddress());
   app.add_option("--max-cases", clients.max_cases,
                  "with --data: largest number of cases of a campaign, because each case takes memory; a "
                  "launch of more is refused\n(default: 5000000)")
@@ -118,6 +139,7 @@ int RunCoordinator(int argc, char** argv) {
                   json);
   }
   for (const std::string& limit : keep) ReadRetention(limit, &clients.retention);
+  if (!metrics.empty()) ReadHttpAddress(metrics, &clients.prometheus.emplace());
   for (const std::string& limits : quotas) ReadQuota(limits, &clients.quota);
   CatchStopSignals();
   try {

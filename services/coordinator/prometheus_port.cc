@@ -13,7 +13,6 @@
 namespace dispersa {
 namespace {
 
-constexpr char kHost[] = "127.0.0.1";
 // Scrapers come one at a time; one that stops reading must not keep the next one out.
 constexpr std::size_t kThreads = 2;
 constexpr int kPatience_s = 1;
@@ -26,7 +25,7 @@ struct PrometheusPort::Serving {
   std::thread thread;
 };
 
-PrometheusPort::PrometheusPort(std::uint16_t port) : serving_(std::make_unique<Serving>()) {
+PrometheusPort::PrometheusPort(const HttpAddress& address) : serving_(std::make_unique<Serving>()) {
   httplib::Server& server = serving_->server;
   server.new_task_queue = [] { return new httplib::ThreadPool(kThreads); };
   // By default httplib shares its port with whoever asks for it.
@@ -46,9 +45,9 @@ PrometheusPort::PrometheusPort(std::uint16_t port) : serving_(std::make_unique<S
   server.Get("/", answer);
   server.Get("/metrics", answer);
   errno = 0;
-  if (!server.bind_to_port(kHost, port))
-    throw NetworkError("metrics: port " + std::to_string(port) +
-                       " of 127.0.0.1: " + std::strerror(errno == 0 ? EADDRINUSE : errno));
+  if (!server.bind_to_port(address.host, address.port))
+    throw NetworkError("metrics: port " + std::to_string(address.port) + " of " + address.host + ": " +
+                       std::strerror(errno == 0 ? EADDRINUSE : errno));
   serving_->thread = std::thread([&server] { server.listen_after_bind(); });
   while (!server.is_running()) std::this_thread::yield();  // else stop() would stop nothing
 }

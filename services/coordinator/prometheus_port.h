@@ -1,19 +1,19 @@
-// An HTTP port of the loopback interface for Prometheus.
+// An HTTP port for Prometheus.
 #pragma once
 
-#include <cstdint>
 #include <memory>
 #include <string>
 
+#include "services/coordinator/http_address.h"
 #include "services/program/mutex.h"
 
 namespace dispersa {
 
-/// Answers GET of / and /metrics on 127.0.0.1 with the last text set. Throws NetworkError if the port is
-/// taken.
+/// Answers GET of / and /metrics with the last text set. Throws NetworkError if the port is taken, or the
+/// address is none of this machine.
 class PrometheusPort {
  public:
-  explicit PrometheusPort(std::uint16_t port);
+  explicit PrometheusPort(const HttpAddress& address);
   ~PrometheusPort();
   PrometheusPort(const PrometheusPort&) = delete;
   PrometheusPort& operator=(const PrometheusPort&) = delete;

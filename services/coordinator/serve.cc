@@ -4,6 +4,7 @@
 #include <pwd.h>
 #include <unistd.h>
 
+#include <algorithm>
 #include <chrono>
 #include <utility>
 
@@ -31,7 +32,21 @@ namespace {
 constexpr std::chrono::milliseconds kRound(50);
 constexpr double kProgress_s = 5.0;
 constexpr double kPrometheus_s = 1.0;
+constexpr double kLogCounts_s = 1.0;
+constexpr int kMostReports = 8;  // at once: each takes memory of its campaign
 constexpr std::chrono::seconds kHealthPatience(8);
+
+constexpr double kFade = 0.9;  // each second: a monitor that looks every 15 s still sees a long round
+
+class Stopwatch {
+ public:
+  double elapsed_s() const {
+    return std::chrono::duration<double>(std::chrono::steady_clock::now() - begun_).count();
+  }
+
+ private:
+  std::chrono::steady_clock::time_point begun_ = std::chrono::steady_clock::now();
+};
 
 /// True now and then.
 class Every {
@@ -88,6 +103,7 @@ ExitCode ServeCampaign(const ServeOptions& options, const RunRequest& request,
           fmt::format("no worker for {:.0f} s: the run ends; repeat the command with --resume to continue",
                       *patience_s)};
     }
+    LogCounts();
     if (progress_period.IsDue(coordinator.now_s())) {
       const LedgerProgress progress = book.ledger().Progress();
       LogInfo("{}/{} cases done, {} assigned, {} quarantined, {} workers", progress.done, progress.total,
@@ -129,24 +145,37 @@ int ServeClients(const ServeOptions& options, const ClientOptions& clients) {
   service_options.max_cases = clients.max_cases;
   service_options.retention = clients.retention;
   service_options.quota = clients.quota;
-  service_options.report_threads = UsableCores();
+  service_options.reports_at_once = static_cast<std::size_t>(std::clamp(UsableCores(), 2, kMostReports));
+  service_options.report_threads = std::max(1, UsableCores() / 2);
   Service service(service_options, coordinator);
   FrontDesk front_desk(service, coordinator, EverybodyOn(options.network));
-  coordinator.Serve([&](const Request& request) { return front_desk.Answer(request); });
+  ServingTimes times;
+  coordinator.Serve([&](const Request& request) {
+    const Stopwatch watch;
+    Reply reply = front_desk.Answer(request);
+    ++times.requests;
+    times.requests_s += watch.elapsed_s();
+    return reply;
+  });
   LogInfo("domain {}, workers and clients can join at port {}", options.network.domain,
           CoordinatorPort(options.network.domain));
   std::optional<PrometheusPort> prometheus;
-  if (clients.prometheus_port) prometheus.emplace(*clients.prometheus_port);
-  Every prometheus_period(kPrometheus_s);
+  if (clients.prometheus) prometheus.emplace(*clients.prometheus);
+  Every prometheus_period(kPrometheus_s), counts_period(kLogCounts_s);
   Attendance attendance(options.network.domain, std::nullopt);
   std::optional<Watchdog> watchdog(std::in_place, options.again);
   while (!StopRequested()) {
+    const Stopwatch round;
     coordinator.Step(kRound);
     service.Step();
     watchdog->Note(coordinator.ReceivesReports(), service.HasWorkToFly());
     attendance.Check(coordinator.joined() > 0 || !service.HasWork(), coordinator.now_s());
-    if (prometheus && prometheus_period.IsDue(coordinator.now_s()))
-      prometheus->Set(PrometheusText(service, coordinator));
+    if (counts_period.IsDue(coordinator.now_s())) LogCounts();
+    if (prometheus && prometheus_period.IsDue(coordinator.now_s())) {
+      prometheus->Set(PrometheusText(service, coordinator, times));
+      times.longest_round_s *= kFade;
+    }
+    times.longest_round_s = std::max(times.longest_round_s, round.elapsed_s());
   }
   watchdog.reset();
   service.Flush();

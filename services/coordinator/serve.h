@@ -7,6 +7,7 @@
 #include <string>
 #include <vector>
 
+#include "services/coordinator/http_address.h"
 #include "services/coordinator/service.h"
 #include "services/ledger/prepare_run.h"
 #include "services/transport/network.h"
@@ -26,8 +27,8 @@ ExitCode ServeCampaign(const ServeOptions& options, const RunRequest& request,
                        std::optional<double> patience_s);
 
 struct ClientOptions {
-  std::string data;                                   ///< folder
-  std::optional<std::uint16_t> prometheus_port = {};  ///< of 127.0.0.1
+  std::string data;                            ///< folder
+  std::optional<HttpAddress> prometheus = {};  ///< where its figures are served
   std::uint64_t max_cases = kDefaultMaxCases;
   Retention retention = {};
   Quota quota = {};

@@ -5,6 +5,7 @@
 #include <algorithm>
 #include <chrono>
 #include <fstream>
+#include <iterator>
 #include <new>
 #include <nlohmann/json.hpp>
 #include <set>
@@ -75,7 +76,7 @@ Service::Service(const ServiceOptions& options, Workforce& workforce)
 
 Service::~Service() {
   stop_report_ = true;
-  if (reporting_) reporting_->verdict.wait();
+  for (const Reporting& report : reporting_) report.reported.wait();
   for (auto& [id, flying] : flying_) workforce_.EndCampaign(flying.book->campaign().result_id());
 }
 
@@ -83,8 +84,8 @@ void Service::Step() {
   CloseBroken();
   CloseRefused();
   CloseComplete();
-  FinishReport();
-  StartReport();
+  FinishReports();
+  StartReports();
   FinishOpening();
   StartOpening();
   Measure();
@@ -132,7 +133,7 @@ void Service::CloseComplete() {
     }
     // Its files are closed until its report is written: hundreds may wait for that.
     const Book book = TakeBack(id);
-    to_report_.push_back(id);
+    to_report_.push_back({id, workforce_.now_s()});
     CatalogueEntry& entry = catalogue_.At(id);
     entry.cases = book->ledger().Progress().total;
     entry.state = CampaignState::kReporting;
@@ -140,18 +141,20 @@ void Service::CloseComplete() {
   }
 }
 
-void Service::StartReport() {
-  if (reporting_) return;
+void Service::StartReports() {
+  while (reporting_.size() < options_.reports_at_once && StartReport()) {
+  }
+}
+
+bool Service::StartReport() {
   const auto next = std::find_if(to_report_.begin(), to_report_.end(),
-                                 [this](const std::string& id) { return !IsDelayed(id); });
-  if (next == to_report_.end()) return;
-  const std::string id = *next;
+                                 [this](const Complete& complete) { return !IsDelayed(complete.id); });
+  if (next == to_report_.end()) return false;
+  const std::string id = next->id;
   to_report_.erase(next);
   CatalogueEntry& entry = catalogue_.At(id);
   try {
-    reporting_.emplace();
-    reporting_->id = id;
-    reporting_->verdict =
+    auto reported =
         std::async(std::launch::async, [this, text = catalogue_.TextOf(id), name = entry.name,
                                         results = catalogue_.ResultsOf(id), root = options_.data] {
           ReportOptions options;
@@ -165,26 +168,59 @@ void Service::StartReport() {
           const CampaignSummary summary = WriteReports(folder, campaign, options);
           NoteEndedIn(root, folder, campaign, summary);
           TryToPack(results);
-          return summary.standing.verdict;
+          return OutcomeOf(summary);
         });
+    reporting_.push_back({id, std::move(reported)});
   } catch (...) {
-    reporting_.reset();
     Fail(entry, std::current_exception());
+  }
+  return true;
+}
+
+Service::Reported Service::OutcomeOf(const CampaignSummary& summary) {
+  Reported reported{summary.standing.verdict,
+                    summary.engine,
+                    static_cast<std::int64_t>(summary.standing.attempts.size()),
+                    {}};
+  for (std::size_t i = 0; i < std::min(summary.requirements.size(), kMaxOutcomes); ++i) {
+    const RequirementSummary& one = summary.requirements[i];
+    const auto& standing = summary.standing.requirements;
+    reported.requirements.push_back({one.metric, RequirementWords(one), one.probability, one.n, one.failures,
+                                     one.success_lower, one.success_upper,
+                                     i < standing.size() ? standing[i].verdict : one.verdict});
+  }
+  return reported;
+}
+
+void Service::FinishReports() {
+  const auto written =
+      std::stable_partition(reporting_.begin(), reporting_.end(),
+                            [](const Reporting& report) { return !IsReady(report.reported); });
+  std::vector<Reporting> ready(std::make_move_iterator(written), std::make_move_iterator(reporting_.end()));
+  reporting_.erase(written, reporting_.end());
+  for (Reporting& reporting : ready) {
+    CatalogueEntry& entry = catalogue_.At(reporting.id);
+    try {
+      Reported reported = reporting.reported.get();
+      entry.verdict = StandingVerdictName(reported.verdict);
+      entry.engine = std::move(reported.engine);
+      entry.attempts = reported.attempts;
+      entry.requirements = std::move(reported.requirements);
+      End(entry, CampaignState::kDone, CampaignExitCode(reported.verdict, entry.conflicts));
+    } catch (...) {
+      Fail(entry, std::current_exception());
+    }
   }
 }
 
-void Service::FinishReport() {
-  if (!reporting_ || !IsReady(reporting_->verdict)) return;
-  CatalogueEntry& entry = catalogue_.At(reporting_->id);
-  Reporting reported = *std::move(reporting_);
-  reporting_.reset();
-  try {
-    const StandingVerdict verdict = reported.verdict.get();
-    entry.verdict = StandingVerdictName(verdict);
-    End(entry, CampaignState::kDone, CampaignExitCode(verdict, entry.conflicts));
-  } catch (...) {
-    Fail(entry, std::current_exception());
-  }
+double Service::report_wait_s() const {
+  return to_report_.empty() ? 0.0 : workforce_.now_s() - to_report_.front().since_s;
+}
+
+std::optional<std::uint64_t> Service::free_bytes() const {
+  std::error_code error;
+  const auto space = std::filesystem::space(options_.data, error);
+  return error ? std::nullopt : std::optional<std::uint64_t>(space.available);
 }
 
 // Of campaigns of the same flights one after the other: the later takes over what the earlier has flown. What
@@ -309,7 +345,7 @@ void Service::Delay(const CatalogueEntry& entry, const std::string& problem) {
              problem);
   }
   delayed_[entry.id] = {workforce_.now_s() + kDelay_s, problem};
-  if (entry.state == CampaignState::kReporting) to_report_.push_back(entry.id);
+  if (entry.state == CampaignState::kReporting) to_report_.push_back({entry.id, workforce_.now_s()});
 }
 
 bool Service::IsDelayed(const std::string& id) const {

@@ -30,12 +30,13 @@ inline constexpr std::uint64_t kDefaultMaxCases = 5000000;
 
 struct ServiceOptions {
   std::filesystem::path data;
-  int report_threads = 1;
+  int report_threads = 1;          ///< of each report
   std::size_t flying_at_once = 8;  ///< campaigns that fly side by side; the others wait
   std::uint64_t max_cases =
       kDefaultMaxCases;  ///< of a campaign: its ledger and its report take memory for each
   Retention retention = {};
-  Quota quota = {};  ///< of each owner
+  std::size_t reports_at_once = 2;  ///< each on a thread of its own
+  Quota quota = {};                 ///< of each owner
   std::function<std::int64_t()> unix_time_s = [] { return std::int64_t{std::time(nullptr)}; };
 };
 
@@ -59,7 +60,7 @@ struct CampaignView {
 };
 
 /// Everything that a client was told survives a restart: a campaign is on the disk before its id is answered.
-/// One thread talks, another opens campaigns, a third writes reports, since both may take minutes. An error
+/// One thread talks, another opens campaigns, others write reports, since both may take minutes. An error
 /// in one campaign ends that campaign. A full disk delays it.
 class Service {
  public:
@@ -84,6 +85,13 @@ class Service {
   const RunningTally* TallyOf(const std::string& id) const;
   /// Whether nobody writes its results, now or soon.
   bool IsAtRest(const std::string& id) const;
+  /// Campaigns whose report is being written, and those that wait for that.
+  std::size_t reports_under_way() const { return reporting_.size(); }
+  std::size_t reports_waiting() const { return to_report_.size(); }
+  /// Seconds for which the first of them has waited.
+  double report_wait_s() const;
+  /// Bytes that are free on the disk of the campaigns; none if the system does not say.
+  std::optional<std::uint64_t> free_bytes() const;
   /// Whether any campaign has not ended.
   bool HasWork() const;
   /// Whether workers are needed now.
@@ -116,16 +124,25 @@ class Service {
     std::string id;
     std::future<Book> book;
   };
+  /// What the catalogue keeps of a report.
+  struct Reported {
+    StandingVerdict verdict;
+    std::string engine;
+    std::int64_t attempts;
+    std::vector<RequirementOutcome> requirements;
+  };
   struct Reporting {
     std::string id;
-    std::future<StandingVerdict> verdict;
+    std::future<Reported> reported;
   };
+  static Reported OutcomeOf(const CampaignSummary& summary);
 
   void CloseBroken();
   void CloseRefused();
   void CloseComplete();
-  void FinishReport();
-  void StartReport();
+  void FinishReports();
+  void StartReports();
+  bool StartReport();
   void FinishOpening();
   void StartOpening();
   void BeginToOpen(const CatalogueEntry& entry);
@@ -157,8 +174,12 @@ class Service {
   std::map<std::string, Flying> flying_;                   ///< by id
   std::deque<std::pair<std::string, RunningTally>> flew_;  ///< by id: what the last ones came to
   std::optional<Opening> opening_;
-  std::deque<std::string> to_report_;  ///< ids; their folders are closed meanwhile
-  std::optional<Reporting> reporting_;
+  struct Complete {
+    std::string id;
+    double since_s;
+  };
+  std::deque<Complete> to_report_;  ///< their folders are closed meanwhile
+  std::vector<Reporting> reporting_;
   std::atomic<bool> stop_report_ = false;
   struct Delayed {
     double until_s;

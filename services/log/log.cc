@@ -4,13 +4,25 @@
 #include <spdlog/sinks/stdout_sinks.h>
 #include <spdlog/spdlog.h>
 
+#include <chrono>
 #include <cstdio>
 #include <cstdlib>
 #include <memory>
+#include <mutex>
+#include <optional>
 #include <utility>
+
+#include "services/log/log_limits.h"
 
 namespace dispersa {
 namespace {
+
+std::mutex limits_mutex;
+std::optional<LogLimits> limits;  // of a daemon
+
+double Now_s() {
+  return std::chrono::duration<double>(std::chrono::steady_clock::now().time_since_epoch()).count();
+}
 
 spdlog::color_mode ModeOf(LogColor color) {
   if (color == LogColor::kAlways) return spdlog::color_mode::always;
@@ -44,11 +56,28 @@ void LogForPeople(LogColor color, std::string_view before) {
 void LogForDaemon(const std::string& name) {
   auto sink = std::make_shared<spdlog::sinks::stderr_sink_mt>();
   spdlog::set_default_logger(std::make_shared<spdlog::logger>(name, std::move(sink)));
+  const std::lock_guard lock(limits_mutex);
+  limits.emplace();
 }
 
 void SetLogLevel(LogLevel least) { spdlog::set_level(LevelOf(least)); }
 
-void Log(LogLevel level, std::string_view text) { spdlog::log(LevelOf(level), text); }
+void Log(LogLevel level, std::string_view kind, std::string_view text) {
+  {
+    const std::lock_guard lock(limits_mutex);
+    if (limits && !limits->Take(kind, text, Now_s())) return;
+  }
+  spdlog::log(LevelOf(level), text);
+}
+
+void LogCounts() {
+  std::vector<std::string> lines;
+  {
+    const std::lock_guard lock(limits_mutex);
+    if (limits) lines = limits->TakeCounts(Now_s());
+  }
+  for (const std::string& line : lines) spdlog::info(line);
+}
 
 void TellText(std::string_view text) { std::fwrite(text.data(), 1, text.size(), stderr); }
 

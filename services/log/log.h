@@ -15,12 +15,17 @@ enum class LogColor { kAuto, kAlways, kNever };
 /// For people at a terminal: "level: text", each time after `before`. kAuto: coloured on a terminal that has
 /// colours, unless NO_COLOR is there and not empty (no-color.org).
 void LogForPeople(LogColor color, std::string_view before = {});
-/// For a daemon's journal: with time and name.
+/// For a daemon's journal: with time and name. Of one kind (one format) 60 lines a minute are written, and
+/// then how many more there were (log_limits.h).
 void LogForDaemon(const std::string& name);
 /// Messages below `least` are dropped.
 void SetLogLevel(LogLevel least);
 
-void Log(LogLevel level, std::string_view text);
+/// `kind`: the format, or empty for a line that is always written.
+void Log(LogLevel level, std::string_view kind, std::string_view text);
+/// Writes the counts of lines that were not written, of minutes that are over. A daemon calls it now and
+/// then.
+void LogCounts();
 /// Prints the text unchanged. Text that stderr does not take is lost, which is no reason to end a program.
 void TellText(std::string_view text);
 
@@ -30,15 +35,18 @@ void Tell(fmt::format_string<Values...> format, Values&&... values) {
 }
 template <class... Values>
 void LogInfo(fmt::format_string<Values...> format, Values&&... values) {
-  Log(LogLevel::kInfo, fmt::vformat(format, fmt::make_format_args(values...)));
+  const fmt::string_view text = format;
+  Log(LogLevel::kInfo, {text.data(), text.size()}, fmt::vformat(format, fmt::make_format_args(values...)));
 }
 template <class... Values>
 void LogWarning(fmt::format_string<Values...> format, Values&&... values) {
-  Log(LogLevel::kWarning, fmt::vformat(format, fmt::make_format_args(values...)));
+  const fmt::string_view text = format;
+  Log(LogLevel::kWarning, {text.data(), text.size()}, fmt::vformat(format, fmt::make_format_args(values...)));
 }
 template <class... Values>
 void LogError(fmt::format_string<Values...> format, Values&&... values) {
-  Log(LogLevel::kError, fmt::vformat(format, fmt::make_format_args(values...)));
+  const fmt::string_view text = format;
+  Log(LogLevel::kError, {text.data(), text.size()}, fmt::vformat(format, fmt::make_format_args(values...)));
 }
 
 }  // namespace dispersa

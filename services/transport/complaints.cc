@@ -1,5 +1,7 @@
 #include "services/transport/complaints.h"
 
+#include <fmt/format.h>
+
 #include <atomic>
 #include <chrono>
 #include <map>
@@ -39,8 +41,10 @@ void Complain(const std::string& kind, const std::string& sender, const std::str
     known.quiet_until = now + kPause;
     std::swap(unsaid, known.unsaid);
   }
-  LogWarning("{} from {} is refused: {}{}", kind, Printable(sender), Printable(what),
-             unsaid == 0 ? "" : " (and " + std::to_string(unsaid) + " more before)");
+  // Limited above, by kinds of its own.
+  Log(LogLevel::kWarning, "",
+      fmt::format("{} from {} is refused: {}{}", kind, Printable(sender), Printable(what),
+                  unsaid == 0 ? "" : " (and " + std::to_string(unsaid) + " more before)"));
 }
 
 std::uint64_t Complaints() { return total; }

@@ -137,6 +137,30 @@ TEST_F(CampaignServiceTest, ItsResultsAreAtRestWhenNobodyOpensThem) {
   EXPECT_EQ(StateOf(id), CampaignState::kCancelled);
 }
 
+TEST_F(CampaignServiceTest, ReportsAreWrittenSideBySideAndTheOthersWait) {
+  StartService();
+  std::vector<std::string> ids;
+  for (std::uint64_t seed = 1; seed <= 3; ++seed) ids.push_back(Launch(Smoke(1, seed)));
+  const auto all_are = [&](CampaignState state) {
+    return std::all_of(ids.begin(), ids.end(), [&](const std::string& id) { return StateOf(id) == state; });
+  };
+  ASSERT_TRUE(Until([&] { return all_are(CampaignState::kFlying); }));
+  workforce_.Join("w");
+  for (std::uint64_t seed = 1; seed <= 3; ++seed) Return(Smoke(1, seed), 0);
+  EXPECT_EQ(service_->reports_under_way(), 0u);
+  service_->Step();
+  EXPECT_TRUE(all_are(CampaignState::kReporting));
+  EXPECT_EQ(service_->reports_under_way(), 2u);
+  EXPECT_EQ(service_->reports_waiting(), 1u);
+  workforce_.time_s += 3.0;
+  EXPECT_EQ(service_->report_wait_s(), 3.0);
+  ASSERT_TRUE(Until([&] {
+    return std::all_of(ids.begin(), ids.end(), [&](const std::string& id) { return HasEnded(StateOf(id)); });
+  }));
+  EXPECT_EQ(service_->reports_under_way() + service_->reports_waiting(), 0u);
+  EXPECT_EQ(service_->report_wait_s(), 0.0);
+}
+
 TEST_F(CampaignServiceTest, ANewPriorityReachesWhatFlies) {
   StartService();
   const Campaign one = Smoke(200, 1), other = Smoke(200, 2);

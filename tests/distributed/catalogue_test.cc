@@ -128,6 +128,10 @@ TEST_F(CatalogueTest, RemembersEverythingOverARestart) {
     entry.bytes = 34;
     entry.verdict = "pass";
     entry.labels = {"commit=1a2b", "a=b"};
+    entry.design_id = "d1";
+    entry.engine = "0.1.0+e";
+    entry.attempts = 3;
+    entry.requirements = {{"q_max_pa", "q_max_pa below 5", 0.5, 20, 3, 0.25, std::nullopt, "fail"}};
     catalogue.Write(entry);
   }
   Catalogue catalogue(root_ / "data");
@@ -145,6 +149,17 @@ TEST_F(CatalogueTest, RemembersEverythingOverARestart) {
   EXPECT_EQ(entry.bytes, 34u);
   EXPECT_EQ(entry.verdict, "pass");
   EXPECT_THAT(entry.labels, ElementsAre("commit=1a2b", "a=b"));
+  EXPECT_EQ(entry.design_id, "d1");
+  EXPECT_EQ(entry.engine, "0.1.0+e");
+  EXPECT_EQ(entry.attempts, 3);
+  ASSERT_EQ(entry.requirements.size(), 1u);
+  const RequirementOutcome& one = entry.requirements[0];
+  EXPECT_EQ(one.metric + "|" + one.words + "|" + one.verdict, "q_max_pa|q_max_pa below 5|fail");
+  EXPECT_EQ(one.probability, 0.5);
+  EXPECT_EQ(one.n, 20);
+  EXPECT_EQ(one.failures, 3);
+  EXPECT_EQ(one.success_lower, 0.25);
+  EXPECT_EQ(one.success_upper, std::nullopt);
   EXPECT_EQ(entry.code, 1);
   EXPECT_EQ(entry.problem, "it \"broke\"\n\xef\xbf\xbd");
   EXPECT_EQ(catalogue.TextOf("a1"), "text of a1");

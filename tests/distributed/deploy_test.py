@@ -120,10 +120,17 @@ class DeployTest(unittest.TestCase):
             self.assertEqual(pod["securityContext"]["fsGroup"], 1000)
         self.assert_they_find_each_other(coordinator["command"], worker["command"],
                                          coordinator["readinessProbe"]["exec"]["command"])
-        metrics = urllib.request.urlopen("http://127.0.0.1:9464/metrics", timeout=PATIENCE_S).read().decode()
+        # As a monitor elsewhere in the cluster: not from the loopback address that the program would take by itself.
+        address, port = coordinator["command"][coordinator["command"].index("--metrics") + 1].split(":")
+        self.assertEqual(address, "0.0.0.0")
+        for annotation, value in (("scrape", "true"), ("port", port), ("path", "/metrics")):
+            annotations = documents["StatefulSet"]["spec"]["template"]["metadata"]["annotations"]
+            self.assertEqual(annotations[f"prometheus.io/{annotation}"], value)
+        self.assertEqual([p["containerPort"] for p in coordinator["ports"]], [int(port)])
+        metrics = urllib.request.urlopen(f"http://127.0.0.3:{port}/metrics", timeout=PATIENCE_S).read().decode()
         self.assertIn(f"\n{scaled['metrics'][0]['external']['metric']['name']} 0\n", metrics)
         for line in metrics.splitlines():
-            self.assertRegex(line, r'^(# (HELP|TYPE) dispersa_\w+ .+|dispersa_\w+(\{\w+="\w+"\})? \d+)$')
+            self.assertRegex(line, r'^(# (HELP|TYPE) dispersa_\w+ .+|dispersa_\w+(\{\w+="[^"]*"(,\w+="[^"]*")*\})? [\d.e+-]+)$')
 
     def test_systemd(self):
         coordinator, worker = unit("dispersa-coordinator.service"), unit("dispersa-worker.service")

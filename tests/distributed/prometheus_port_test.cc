@@ -61,7 +61,7 @@ std::uint16_t FreePort() {
 
 TEST(PrometheusPort, AnswersWithTheLatestText) {
   const std::uint16_t number = FreePort();
-  PrometheusPort port(number);
+  PrometheusPort port({"127.0.0.1", number});
   port.Set("dispersa_workers 1\n");
   port.Set("dispersa_workers 2\n");
   for (const char* path : {"/metrics", "/"}) {
@@ -74,7 +74,7 @@ TEST(PrometheusPort, AnswersWithTheLatestText) {
 
 TEST(PrometheusPort, AnswersNothingElse) {
   const std::uint16_t number = FreePort();
-  PrometheusPort port(number);
+  PrometheusPort port({"127.0.0.1", number});
   port.Set("dispersa_workers 1\n");
   EXPECT_THAT(Get(number, "/else"), StartsWith("HTTP/1.1 404"));
   EXPECT_THAT(Ask(number, "POST /metrics HTTP/1.1\r\nHost: 127.0.0.1\r\nContent-Length: 0\r\n\r\n"),
@@ -84,19 +84,35 @@ TEST(PrometheusPort, AnswersNothingElse) {
 
 TEST(PrometheusPort, ACallerThatSaysNothingKeepsNobodyOut) {
   const std::uint16_t number = FreePort();
-  PrometheusPort port(number);
+  PrometheusPort port({"127.0.0.1", number});
   port.Set("dispersa_workers 1\n");
   const int silent[] = {Connected(number), Connected(number), Connected(number)};
   EXPECT_THAT(Get(number, "/metrics"), StartsWith("HTTP/1.1 200"));
   for (const int connection : silent) close(connection);
 }
 
+TEST(PrometheusPort, ListensOnTheChosenAddressAlone) {
+  const std::uint16_t number = FreePort();
+  const PrometheusPort port({"127.0.0.2", number});
+  PrometheusPort other({"127.0.0.1", number});  // of another address the same port is free
+  other.Set("dispersa_workers 1\n");
+  EXPECT_THAT(Get(number, "/metrics"), HasSubstr("dispersa_workers 1"));
+  EXPECT_THAT(
+      [&] {
+        const PrometheusPort elsewhere({"192.0.2.77", FreePort()});
+      },
+      testing::ThrowsMessage<NetworkError>(HasSubstr(" of 192.0.2.77: Cannot assign requested address")));
+}
+
 TEST(PrometheusPort, APortThatIsTakenIsSaid) {
   const std::uint16_t number = FreePort();
-  const PrometheusPort port(number);
-  EXPECT_THAT([&] { const PrometheusPort second(number); },
-              testing::ThrowsMessage<NetworkError>("metrics: port " + std::to_string(number) +
-                                                   " of 127.0.0.1: Address already in use"));
+  const PrometheusPort port({"127.0.0.1", number});
+  EXPECT_THAT(
+      [&] {
+        const PrometheusPort second({"127.0.0.1", number});
+      },
+      testing::ThrowsMessage<NetworkError>("metrics: port " + std::to_string(number) +
+                                           " of 127.0.0.1: Address already in use"));
 }
 
 }  // namespace

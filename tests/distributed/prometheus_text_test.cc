@@ -2,6 +2,7 @@
 #include "services/coordinator/prometheus_text.h"
 
 #include <fmt/format.h>
+#include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
 #include "made_up_service.h"
@@ -10,11 +11,15 @@
 namespace dispersa::prometheus_text_test {
 namespace {
 
+using testing::Not;
+
 class PrometheusTextTest : public ServiceTest {
  protected:
+  ServingTimes times_ = {3, 0.75, 0.5};
+
   /// The value behind a name, which must be there once.
   std::string Value(const std::string& name) {
-    const std::string text = "\n" + PrometheusText(*service_, workforce_), wanted = "\n" + name + " ";
+    const std::string text = "\n" + PrometheusText(*service_, workforce_, times_), wanted = "\n" + name + " ";
     const std::size_t at = text.find(wanted);
     if (at == std::string::npos || text.find(wanted, at + 1) != std::string::npos) return "not there once";
     const std::size_t begin = at + wanted.size();
@@ -27,21 +32,70 @@ TEST_F(PrometheusTextTest, AnEmptyServiceIsAllZeros) {
   const auto metric = [](const char* name, const char* type, const char* help, std::uint64_t value) {
     return fmt::format("# HELP {0} {1}\n# TYPE {0} {2}\n{0} {3}\n", name, help, type, value);
   };
-  EXPECT_EQ(
-      PrometheusText(*service_, workforce_),
-      "# HELP dispersa_campaigns Campaigns by state.\n# TYPE dispersa_campaigns gauge\n" +
-          metric("dispersa_cases_done", "gauge", "Cases with a result, of all campaigns.", 0) +
-          metric("dispersa_cases_waiting", "gauge", "Cases that no worker has: the depth of the queue.", 0) +
-          metric("dispersa_cases_assigned", "gauge", "Cases that workers have.", 0) +
-          metric("dispersa_cases_quarantined", "gauge", "Cases that are quarantined.", 0) +
-          metric("dispersa_conflicts", "gauge", "Results that contradicted others.", 0) +
-          metric("dispersa_workers", "gauge", "Workers that are joined.", 0) +
-          metric("dispersa_slots", "gauge", "Threads of theirs that fly.", 0) +
-          metric("dispersa_audits_total", "counter", "Results that were flown again.", 0) +
-          metric("dispersa_expelled_total", "counter",
-                 "Keys, or workers without keys, that may not fly here any more.", 0) +
-          metric("dispersa_refused_total", "counter", "Datagrams and messages that were refused.",
-                 Complaints()));
+  const std::string text = PrometheusText(*service_, workforce_, times_);
+  for (const std::string& part :
+       {std::string("# HELP dispersa_campaigns Campaigns by state.\n# TYPE dispersa_campaigns gauge\n"),
+        metric("dispersa_cases_done", "gauge", "Cases with a result, of all campaigns.", 0),
+        metric("dispersa_cases_waiting", "gauge", "Cases that no worker has: the depth of the queue.", 0),
+        metric("dispersa_cases_assigned", "gauge", "Cases that workers have.", 0),
+        metric("dispersa_cases_quarantined", "gauge", "Cases that are quarantined.", 0),
+        metric("dispersa_results_per_second", "gauge", "New results of all campaigns, over the last 10 s.",
+               0),
+        metric("dispersa_conflicts", "gauge", "Results that contradicted others.", 0),
+        metric("dispersa_workers", "gauge", "Workers that are joined.", 0),
+        metric("dispersa_slots", "gauge", "Threads of theirs that fly.", 0),
+        metric("dispersa_reports_writing", "gauge", "Campaigns whose report is being written.", 0),
+        metric("dispersa_reports_waiting", "gauge", "Campaigns that wait for their report.", 0),
+        metric("dispersa_report_wait_seconds", "gauge", "Time for which the first of them has waited.", 0),
+        metric("dispersa_disk_bytes", "gauge", "Bytes of all campaigns' folders.", 0),
+        metric("dispersa_audits_total", "counter", "Results that were flown again.", 0),
+        metric("dispersa_expelled_total", "counter",
+               "Keys, or workers without keys, that may not fly here any more.", 0),
+        metric("dispersa_refused_total", "counter", "Datagrams and messages that were refused.",
+               Complaints())})
+    EXPECT_THAT(text, testing::HasSubstr(part));
+  EXPECT_EQ(Value("dispersa_request_seconds_sum"), "0.75");
+  EXPECT_EQ(Value("dispersa_request_seconds_count"), "3");
+  EXPECT_EQ(Value("dispersa_round_seconds_max"), "0.5");
+  EXPECT_GT(std::stod(Value("dispersa_disk_free_bytes")), 1e6);
+}
+
+TEST_F(PrometheusTextTest, ACampaignHasItsFiguresUntilItHasEnded) {
+  StartService(1);
+  const Campaign campaign = Smoke(100);
+  const std::string id = Launch(campaign);
+  ASSERT_TRUE(Reaches(id, CampaignState::kFlying));
+  workforce_.Join("w");
+  workforce_.time_s += 2.0;
+  service_->Step();  // the rate is measured from here
+  for (const std::uint64_t i : {0, 1, 2, 3})
+    workforce_.Return("w", campaign.flight_id, MadeUpWorkforce::ResultOf(i));
+  workforce_.time_s += 2.0;
+  service_->Step();
+  const std::string labels = "campaign=\"" + id.substr(0, 12) + "\",name=\"smoke\",owner=\"\"";
+  EXPECT_EQ(Value("dispersa_campaign_cases{" + labels + ",state=\"done\"}"), "4");
+  EXPECT_EQ(Value("dispersa_campaign_cases{" + labels + ",state=\"waiting\"}"), "96");
+  EXPECT_EQ(Value("dispersa_campaign_results_per_second{" + labels + "}"), "2");
+  EXPECT_EQ(Value("dispersa_results_per_second"), "2");
+  workforce_.time_s += 11.0;
+  service_->Step();
+  const std::string bytes = Value("dispersa_campaign_disk_bytes{" + labels + "}");
+  EXPECT_GT(std::stod(bytes), 10000.0);
+  EXPECT_EQ(Value("dispersa_disk_bytes"), bytes);
+  service_->Cancel(id);
+  EXPECT_THAT(PrometheusText(*service_, workforce_, times_), Not(testing::HasSubstr("campaign=")));
+  EXPECT_GT(std::stod(Value("dispersa_disk_bytes")), 10000.0) << "it is still there";
+}
+
+TEST_F(PrometheusTextTest, ANameEndsNoLabel) {
+  StartService();
+  CatalogueEntry entry;
+  entry.id = std::string(64, 'a');
+  entry.name = "a\"b\\c\nd";
+  entry.owner = "ann";
+  service_->Launch(entry, "no campaign");
+  EXPECT_THAT(PrometheusText(*service_, workforce_, times_),
+              testing::HasSubstr(R"(name="a\"b\\c\\x0ad",owner="ann",state="waiting"} 0)"));
 }
 
 TEST_F(PrometheusTextTest, ACaseIsCountedOnce) {
