@@ -9,8 +9,8 @@
 #include "core/flight/flight_inputs.h"
 #include "core/input/input_error.h"
 #include "core/results/output_file.h"
-#include "services/client/campaign_differences.h"
 #include "services/client/stored_campaign.h"
+#include "services/web/campaign_differences.h"
 
 namespace dispersa {
 namespace {

@@ -158,6 +158,7 @@ Catalogue::Catalogue(const fs::path& directory) : directory_(directory) {
         entry.ended_unix_s = UnixTimeOf(folder.path() / "state.json");
       if (entry.bytes == 0) entry.bytes = BytesIn(folder.path());
       next_order_ = std::max(next_order_, entry.order + 1);
+      if (!HasEnded(entry.state)) open_.insert(entry.id);
       entries_[entry.id] = std::move(entry);
     } catch (const std::exception& damage) {
       LogError("{}: the state is damaged, so the campaign is ignored: {}", folder.path().string(),
@@ -174,11 +175,13 @@ const CatalogueEntry* Catalogue::Find(const std::string& prefix) const {
 }
 
 std::vector<std::string> Catalogue::InOrder() const {
+  // Of ten thousand, looking each up by its id would take a third of a second.
+  std::vector<const CatalogueEntry*> ordered;
+  for (const auto& [id, entry] : entries_) ordered.push_back(&entry);
+  std::sort(ordered.begin(), ordered.end(),
+            [](const CatalogueEntry* a, const CatalogueEntry* b) { return ComesBefore(*a, *b); });
   std::vector<std::string> ids;
-  for (const auto& [id, entry] : entries_) ids.push_back(id);
-  std::sort(ids.begin(), ids.end(), [this](const std::string& a, const std::string& b) {
-    return ComesBefore(entries_.at(a), entries_.at(b));
-  });
+  for (const CatalogueEntry* entry : ordered) ids.push_back(entry->id);
   return ids;
 }
 
@@ -197,7 +200,12 @@ CatalogueEntry& Catalogue::Add(CatalogueEntry entry, const std::string& text) {
   return entries_[id] = std::move(entry);
 }
 
-void Catalogue::Write(const CatalogueEntry& entry) const {
+void Catalogue::Write(const CatalogueEntry& entry) {
+  ++changes_;
+  if (HasEnded(entry.state))
+    open_.erase(entry.id);
+  else
+    open_.insert(entry.id);
   Json requirements = Json::array();
   for (const RequirementOutcome& one : entry.requirements) requirements.push_back(ToJson(one));
   const Json json = {{"version", kStateVersion},
@@ -236,6 +244,8 @@ void Catalogue::Remove(const std::string& id) {
   if (error)
     throw ResultError(ResultError::Kind::kFile, folder.string() + ": cannot be removed: " + error.message());
   entries_.erase(id);
+  open_.erase(id);
+  ++changes_;
   fs::remove_all(deleted, error);
   if (error) LogError("{}: cannot be removed: {}", deleted.string(), error.message());
 }

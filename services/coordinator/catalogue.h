@@ -6,10 +6,12 @@
 #include <filesystem>
 #include <map>
 #include <optional>
+#include <set>
 #include <string>
 #include <vector>
 
 #include "core/results/folder_lock.h"
+#include "services/web/campaign_row.h"
 
 namespace dispersa {
 
@@ -19,17 +21,6 @@ enum class CampaignState { kWaiting, kFlying, kReporting, kDone, kCancelled, kFa
 const char* CampaignStateName(CampaignState state);
 /// Nothing more happens to it by itself.
 bool HasEnded(CampaignState state);
-
-/// What the report says of one requirement.
-struct RequirementOutcome {
-  std::string metric;
-  std::string words;  ///< "q_max_pa below 120000 for 99 % of flights at 10 % risk"
-  double probability = 0.0;
-  std::int64_t n = 0;
-  std::int64_t failures = 0;
-  std::optional<double> success_lower, success_upper;  ///< of the probability to meet it
-  std::string verdict;                                 ///< that stands
-};
 
 struct CatalogueEntry {
   std::string id;
@@ -82,6 +73,11 @@ class Catalogue {
   explicit Catalogue(const std::filesystem::path& directory);
 
   const std::map<std::string, CatalogueEntry>& entries() const { return entries_; }
+  /// Ids of campaigns that had not ended when they were written last. Thousands that have ended are not
+  /// looked at twenty times a second.
+  const std::set<std::string>& open() const { return open_; }
+  /// Grows whenever an entry is written or removed.
+  std::uint64_t changes() const { return changes_; }
   CatalogueEntry& At(const std::string& id) { return entries_.at(id); }
   /// The campaign whose id begins so, if it is exactly one.
   const CatalogueEntry* Find(const std::string& prefix) const;
@@ -89,7 +85,7 @@ class Catalogue {
   std::vector<std::string> InOrder() const;
 
   CatalogueEntry& Add(CatalogueEntry entry, const std::string& text);
-  void Write(const CatalogueEntry& entry) const;
+  void Write(const CatalogueEntry& entry);
   /// Its folder with all results.
   void Remove(const std::string& id);
 
@@ -103,7 +99,9 @@ class Catalogue {
   std::filesystem::path directory_;
   std::optional<FolderLock> lock_;
   std::map<std::string, CatalogueEntry> entries_;
+  std::set<std::string> open_;
   std::uint64_t next_order_ = 1;
+  std::uint64_t changes_ = 0;
 };
 
 }  // namespace dispersa

@@ -67,6 +67,17 @@ int RunCoordinator(int argc, char** argv) {
          "in\nPrometheus' text format to everybody who reaches it")
       ->type_name("TEXT")
       ->check(IsHttpAddress());
+  std::string web, web_token;
+  bool behind_tls = false;
+  app.add_option("--web", web,
+                 "with --data: PORT of 127.0.0.1, or ADDRESS:PORT, of web pages to read campaigns by; beyond "
+                 "127.0.0.1 they\nneed --web-token and --web-behind-tls")
+      ->type_name("TEXT")
+      ->check(IsHttpAddress());
+  app.add_option("--web-token", web_token, "with --web: file whose first line readers have to know")
+      ->type_name(kFileType);
+  app.add_flag("--web-behind-tls", behind_tls,
+               "with --web: a proxy that speaks TLS stands before it and sets X-Forwarded-Proto");
   app.add_option("--max-cases", clients.max_cases,
                  "with --data: largest number of cases of a campaign, because each case takes memory; a "
                  "launch of more is refused\n(default: 5000000)")
@@ -146,6 +157,13 @@ int RunCoordinator(int argc, char** argv) {
     if (health) {
       const std::string host = network.address.empty() ? "127.0.0.1" : network.address;
       return AskHealth(Admit(network, admission, {Role::kCoordinator, Role::kClient}, host), host);
+    }
+    if (!web.empty()) {
+      WebOptions& options = clients.web.emplace();
+      ReadHttpAddress(web, &options.address);
+      if (!web_token.empty()) options.token = ReadWebToken(web_token);
+      options.behind_tls = behind_tls;
+      if (const std::string problem = WhyTooOpen(options); !problem.empty()) throw InputError(problem);
     }
     network = Admit(network, admission, {Role::kCoordinator});
     AdmitPlugins(admission.allow_plugins);

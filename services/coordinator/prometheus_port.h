@@ -4,8 +4,8 @@
 #include <memory>
 #include <string>
 
-#include "services/coordinator/http_address.h"
 #include "services/program/mutex.h"
+#include "services/web/http_address.h"
 
 namespace dispersa {
 

@@ -14,10 +14,12 @@
 #include "services/coordinator/coordinator.h"
 #include "services/coordinator/epoch.h"
 #include "services/coordinator/front_desk.h"
+#include "services/coordinator/packed_files.h"
 #include "services/coordinator/prometheus_port.h"
 #include "services/coordinator/prometheus_text.h"
 #include "services/coordinator/service.h"
 #include "services/coordinator/watchdog.h"
+#include "services/coordinator/web_rows.h"
 #include "services/ledger/campaign_attempt.h"
 #include "services/log/log.h"
 #include "services/program/exit_code.h"
@@ -32,6 +34,8 @@ namespace {
 constexpr std::chrono::milliseconds kRound(50);
 constexpr double kProgress_s = 5.0;
 constexpr double kPrometheus_s = 1.0;
+constexpr double kWeb_s = 1.0;
+constexpr double kWebPause_s = 0.2;
 constexpr double kLogCounts_s = 1.0;
 constexpr int kMostReports = 8;  // at once: each takes memory of its campaign
 constexpr std::chrono::seconds kHealthPatience(8);
@@ -69,6 +73,18 @@ std::string EverybodyOn(const NetworkOptions& network) {
   if (!network.secret) return "anybody";
   const passwd* user = getpwuid(geteuid());
   return user != nullptr ? user->pw_name : std::to_string(geteuid());
+}
+
+/// Files of campaigns, for threads that have no service. A campaign may be deleted while they read.
+CampaignFile FilesBelow(const std::filesystem::path& data) {
+  return [data](const std::string& id, const std::string& name) -> std::optional<std::string> {
+    try {
+      const auto file = name == "campaign.yaml" ? data / id / name : data / id / "results" / name;
+      return ReadPart(file, 0, SizeOf(file));
+    } catch (const std::exception&) {
+      return std::nullopt;
+    }
+  };
 }
 
 PreparedRun PrepareUnlessStopped(const RunRequest& request) {
@@ -161,7 +177,12 @@ int ServeClients(const ServeOptions& options, const ClientOptions& clients) {
           CoordinatorPort(options.network.domain));
   std::optional<PrometheusPort> prometheus;
   if (clients.prometheus) prometheus.emplace(*clients.prometheus);
-  Every prometheus_period(kPrometheus_s), counts_period(kLogCounts_s);
+  std::optional<WebServer> web;
+  WebRows web_rows;
+  if (clients.web) web.emplace(*clients.web, FilesBelow(clients.data));
+  std::uint64_t shown_changes = 0;
+  Every web_period(kWeb_s), web_pause(kWebPause_s), prometheus_period(kPrometheus_s),
+      counts_period(kLogCounts_s);
   Attendance attendance(options.network.domain, std::nullopt);
   std::optional<Watchdog> watchdog(std::in_place, options.again);
   while (!StopRequested()) {
@@ -170,6 +191,13 @@ int ServeClients(const ServeOptions& options, const ClientOptions& clients) {
     service.Step();
     watchdog->Note(coordinator.ReceivesReports(), service.HasWorkToFly());
     attendance.Check(coordinator.joined() > 0 || !service.HasWork(), coordinator.now_s());
+    // Whoever has launched a campaign opens its page at once.
+    const bool is_new =
+        shown_changes != service.catalogue().changes() && web_pause.IsDue(coordinator.now_s());
+    if (web && (web_period.IsDue(coordinator.now_s()) || is_new)) {
+      web->Set(web_rows.Make(service));
+      shown_changes = service.catalogue().changes();
+    }
     if (counts_period.IsDue(coordinator.now_s())) LogCounts();
     if (prometheus && prometheus_period.IsDue(coordinator.now_s())) {
       prometheus->Set(PrometheusText(service, coordinator, times));

@@ -7,10 +7,10 @@
 #include <string>
 #include <vector>
 
-#include "services/coordinator/http_address.h"
 #include "services/coordinator/service.h"
 #include "services/ledger/prepare_run.h"
 #include "services/transport/network.h"
+#include "services/web/web_server.h"
 
 namespace dispersa {
 
@@ -29,6 +29,7 @@ ExitCode ServeCampaign(const ServeOptions& options, const RunRequest& request,
 struct ClientOptions {
   std::string data;                            ///< folder
   std::optional<HttpAddress> prometheus = {};  ///< where its figures are served
+  std::optional<WebOptions> web = {};
   std::uint64_t max_cases = kDefaultMaxCases;
   Retention retention = {};
   Quota quota = {};

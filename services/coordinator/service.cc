@@ -228,7 +228,8 @@ std::optional<std::uint64_t> Service::free_bytes() const {
 const CatalogueEntry* Service::NextToOpen() const {
   std::set<std::string> busy;
   std::map<std::string, std::uint64_t> flying;  // by owner
-  for (const auto& [id, entry] : catalogue_.entries()) {
+  for (const std::string& id : catalogue_.open()) {
+    const CatalogueEntry& entry = catalogue_.entries().at(id);
     if (entry.state == CampaignState::kFlying || entry.state == CampaignState::kReporting)
       busy.insert(entry.flight_id);
     if (entry.state == CampaignState::kFlying) ++flying[entry.owner];
@@ -243,7 +244,8 @@ const CatalogueEntry* Service::NextToOpen() const {
     };
     return is_flown(a) == is_flown(b) ? ComesBefore(a, b) : is_flown(b);
   };
-  for (const auto& [id, entry] : catalogue_.entries()) {
+  for (const std::string& id : catalogue_.open()) {
+    const CatalogueEntry& entry = catalogue_.entries().at(id);
     if (entry.state != CampaignState::kWaiting || busy.contains(entry.flight_id) || IsDelayed(id) ||
         has_no_place(entry))
       continue;
@@ -528,11 +530,7 @@ bool Service::IsAtRest(const std::string& id) const {
   return HasEnded(catalogue_.entries().at(id).state) && !(opening_ && opening_->id == id);
 }
 
-bool Service::HasWork() const {
-  const auto& entries = catalogue_.entries();
-  return std::any_of(entries.begin(), entries.end(),
-                     [](const auto& each) { return !HasEnded(each.second.state); });
-}
+bool Service::HasWork() const { return !catalogue_.open().empty(); }
 
 void Service::RequireQuota(const CatalogueEntry& entry) const {
   const Quota& quota = options_.quota;

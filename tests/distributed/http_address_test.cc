@@ -1,5 +1,5 @@
 // Where the HTTP servers of a coordinator listen.
-#include "services/coordinator/http_address.h"
+#include "services/web/http_address.h"
 
 #include <gtest/gtest.h>
 
@@ -16,8 +16,8 @@ TEST(HttpAddress, IsAPortOrAnAddressAndAPort) {
   EXPECT_EQ(address.host, "0.0.0.0");
   EXPECT_EQ(address.port, 65535);
   EXPECT_FALSE(IsOnLoopback(address));
-  for (const char* text : {"", "0", "65536", "-1", "94 64", "9464x", ":9464", "host:9464", "1.2.3:9464", "1.2.3.4:",
-                           "::1:9464", "127.0.0.1.example:80", "+80"})
+  for (const char* text : {"", "0", "65536", "-1", "94 64", "9464x", ":9464", "host:9464", "1.2.3:9464",
+                           "1.2.3.4:", "::1:9464", "127.0.0.1.example:80", "+80"})
     EXPECT_FALSE(ReadHttpAddress(text, &address)) << text;
 }
 

@@ -1,14 +1,13 @@
 // The port of the metrics: what a scraper gets, and what others get.
 #include "services/coordinator/prometheus_port.h"
 
-#include <arpa/inet.h>
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
-#include <sys/socket.h>
 #include <unistd.h>
 
 #include <string>
 
+#include "http_client.h"
 #include "services/transport/network.h"
 
 namespace dispersa::prometheus_port_test {
@@ -17,46 +16,8 @@ namespace {
 using testing::HasSubstr;
 using testing::StartsWith;
 
-int Connected(std::uint16_t port) {
-  const int connection = socket(AF_INET, SOCK_STREAM | SOCK_CLOEXEC, 0);
-  const timeval patience{5, 0};
-  setsockopt(connection, SOL_SOCKET, SO_RCVTIMEO, &patience, sizeof patience);
-  sockaddr_in where{};
-  where.sin_family = AF_INET;
-  where.sin_port = htons(port);
-  where.sin_addr.s_addr = htonl(INADDR_LOOPBACK);
-  EXPECT_EQ(connect(connection, reinterpret_cast<const sockaddr*>(&where), sizeof where), 0);
-  return connection;
-}
-
-// All that is answered to a request, until the connection ends.
-std::string Ask(std::uint16_t port, const std::string& request) {
-  const int connection = Connected(port);
-  EXPECT_EQ(send(connection, request.data(), request.size(), MSG_NOSIGNAL),
-            static_cast<ssize_t>(request.size()));
-  std::string answer;
-  char part[4096];
-  for (ssize_t count; (count = recv(connection, part, sizeof part, 0)) > 0;)
-    answer.append(part, static_cast<std::size_t>(count));
-  close(connection);
-  return answer;
-}
-
 std::string Get(std::uint16_t port, const std::string& path) {
-  return Ask(port, "GET " + path + " HTTP/1.1\r\nHost: 127.0.0.1\r\nConnection: close\r\n\r\n");
-}
-
-// A port that nobody has.
-std::uint16_t FreePort() {
-  const int probe = socket(AF_INET, SOCK_STREAM | SOCK_CLOEXEC, 0);
-  sockaddr_in where{};
-  where.sin_family = AF_INET;
-  where.sin_addr.s_addr = htonl(INADDR_LOOPBACK);
-  socklen_t size = sizeof where;
-  EXPECT_EQ(bind(probe, reinterpret_cast<const sockaddr*>(&where), size), 0);
-  EXPECT_EQ(getsockname(probe, reinterpret_cast<sockaddr*>(&where), &size), 0);
-  close(probe);
-  return ntohs(where.sin_port);
+  return AskHttp(port, "GET " + path + " HTTP/1.1\r\nHost: 127.0.0.1\r\nConnection: close\r\n\r\n");
 }
 
 TEST(PrometheusPort, AnswersWithTheLatestText) {
@@ -77,9 +38,9 @@ TEST(PrometheusPort, AnswersNothingElse) {
   PrometheusPort port({"127.0.0.1", number});
   port.Set("dispersa_workers 1\n");
   EXPECT_THAT(Get(number, "/else"), StartsWith("HTTP/1.1 404"));
-  EXPECT_THAT(Ask(number, "POST /metrics HTTP/1.1\r\nHost: 127.0.0.1\r\nContent-Length: 0\r\n\r\n"),
+  EXPECT_THAT(AskHttp(number, "POST /metrics HTTP/1.1\r\nHost: 127.0.0.1\r\nContent-Length: 0\r\n\r\n"),
               StartsWith("HTTP/1.1 404"));
-  EXPECT_THAT(Ask(number, "nonsense\r\n\r\n"), testing::Not(HasSubstr("dispersa_workers")));
+  EXPECT_THAT(AskHttp(number, "nonsense\r\n\r\n"), testing::Not(HasSubstr("dispersa_workers")));
 }
 
 TEST(PrometheusPort, ACallerThatSaysNothingKeepsNobodyOut) {

@@ -1,4 +1,4 @@
-#include "services/client/campaign_differences.h"
+#include "services/web/campaign_differences.h"
 
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>

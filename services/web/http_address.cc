@@ -1,4 +1,4 @@
-#include "services/coordinator/http_address.h"
+#include "services/web/http_address.h"
 
 #include <arpa/inet.h>
 

@@ -1,4 +1,4 @@
-#include "services/client/campaign_differences.h"
+#include "services/web/campaign_differences.h"
 
 #include <algorithm>
 #include <set>

@@ -1,0 +1,92 @@
+#include "services/coordinator/web_rows.h"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <utility>
+
+#include "core/results/requirement_text.h"
+#include "core/results/text.h"
+
+namespace dispersa {
+namespace {
+
+CampaignRow RowOf(const CatalogueEntry& entry) {
+  CampaignRow row;
+  row.id = entry.id;
+  row.name = entry.name;
+  row.owner = entry.owner;
+  row.state = CampaignStateName(entry.state);
+  row.has_ended = HasEnded(entry.state);
+  row.verdict = entry.verdict;
+  row.problem = entry.problem;
+  row.engine = entry.engine;
+  row.design_id = entry.design_id;
+  row.labels = entry.labels;
+  row.attempts = entry.attempts;
+  row.cases = entry.cases;
+  row.done = entry.done;
+  row.quarantined = entry.quarantined;
+  row.bytes = entry.bytes;
+  row.priority = entry.priority;
+  row.code = entry.code;
+  row.launched_unix_s = entry.launched_unix_s;
+  row.ended_unix_s = entry.ended_unix_s;
+  row.order = entry.order;
+  row.requirements = entry.requirements;
+  return row;
+}
+
+/// A campaign that has ended changes only so: it is launched again, and so gets labels or another priority.
+bool IsStill(const CampaignRow& row, const CatalogueEntry& entry) {
+  return row.ended_unix_s == entry.ended_unix_s && row.state == CampaignStateName(entry.state) &&
+         row.priority == entry.priority && row.labels == entry.labels && row.bytes == entry.bytes &&
+         row.order == entry.order;
+}
+
+std::string WordsOf(const Requirement& requirement) {
+  if (requirement.every_case) return LimitText(requirement) + " in every flight";
+  return fmt::format("{} for {} of flights at {} risk", LimitText(requirement), PercentText(requirement.probability),
+                     PercentText(requirement.consumer_risk));
+}
+
+CampaignRow RowOf(const CampaignView& view, const RunningTally* tally) {
+  CampaignRow row = RowOf(*view.entry);
+  row.problem = view.problem;
+  row.done = view.progress.done;
+  row.quarantined = view.progress.quarantined;
+  row.cases = view.progress.total;
+  row.rate_per_s = view.rate_per_s;
+  row.eta_s = view.eta_s;
+  row.requirements.clear();
+  for (std::size_t i = 0; tally != nullptr && i < std::min(view.standings.size(), kMaxOutcomes); ++i) {
+    const RequirementStanding& standing = view.standings[i];
+    row.requirements.push_back({standing.metric, WordsOf(tally->requirements()[i]),
+                                tally->requirements()[i].probability, standing.n, standing.failures, std::nullopt,
+                                std::nullopt, standing.so_far});
+  }
+  return row;
+}
+
+}  // namespace
+
+std::shared_ptr<const CampaignIndex> WebRows::Make(const Service& service) {
+  std::map<std::string, CampaignIndex::Row> ended;
+  std::vector<CampaignIndex::Row> rows;
+  for (const auto& [id, entry] : service.catalogue().entries()) {
+    if (!HasEnded(entry.state)) {
+      rows.push_back(std::make_shared<CampaignRow>(RowOf(service.View(id), service.TallyOf(id))));
+      continue;
+    }
+    CampaignIndex::Row& row = ended[id];
+    if (const auto known = ended_.find(id); known != ended_.end() && IsStill(*known->second, entry))
+      row = known->second;
+    else
+      row = std::make_shared<CampaignRow>(RowOf(entry));
+    rows.push_back(row);
+  }
+  ended_ = std::move(ended);
+  return std::make_shared<CampaignIndex>(std::move(rows));
+}
+
+}  // namespace dispersa

@@ -1,0 +1,50 @@
+#include "services/web/campaign_row.h"
+
+#include <algorithm>
+#include <cctype>
+#include <sstream>
+
+namespace dispersa {
+namespace {
+
+std::string LowerCase(std::string text) {
+  std::transform(text.begin(), text.end(), text.begin(),
+                 [](unsigned char c) { return static_cast<char>(std::tolower(c)); });
+  return text;
+}
+
+std::string SearchedText(const CampaignRow& row) {
+  std::string text = row.id + "\n" + row.name + "\n" + row.owner + "\n" + row.state + "\n" + row.verdict;
+  for (const std::string& label : row.labels) text += "\n" + label;
+  return LowerCase(std::move(text));
+}
+
+}  // namespace
+
+CampaignIndex::CampaignIndex(std::vector<Row> rows) : rows_(std::move(rows)) {
+  std::sort(rows_.begin(), rows_.end(), [](const Row& a, const Row& b) { return a->order > b->order; });
+  for (const Row& row : rows_) by_id_[row->id] = row.get();
+}
+
+const CampaignRow* CampaignIndex::Find(const std::string& prefix) const {
+  const auto first = by_id_.lower_bound(prefix);
+  if (prefix.empty() || first == by_id_.end() || !first->first.starts_with(prefix)) return nullptr;
+  const auto second = std::next(first);
+  return second != by_id_.end() && second->first.starts_with(prefix) ? nullptr : first->second;
+}
+
+std::vector<const CampaignRow*> CampaignIndex::Search(const std::string& text) const {
+  std::vector<std::string> words;
+  std::istringstream stream(LowerCase(text));
+  for (std::string word; stream >> word;) words.push_back(word);
+  std::vector<const CampaignRow*> found;
+  for (const Row& row : rows_) {
+    const std::string searched = words.empty() ? "" : SearchedText(*row);
+    if (std::all_of(words.begin(), words.end(),
+                    [&](const std::string& word) { return searched.find(word) != std::string::npos; }))
+      found.push_back(row.get());
+  }
+  return found;
+}
+
+}  // namespace dispersa
