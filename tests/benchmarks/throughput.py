@@ -1,7 +1,10 @@
-"""What one coordinator bears: results a second, its CPU and memory, with workers that make their results up at once.
+"""What one coordinator bears: results a second, its CPU, memory, disk and network, with workers that make their results up
+at once.
 
 usage: throughput.py BUILD [CASES [WORKERS]]     (200000 cases, 2 workers; 20000 cases at least)
-On loopback, in DDS domain 36. The figures are of the time between the first and the last stored result.
+On loopback, in DDS domain 36. The figures are of the time between the first and the last stored result. The bytes of the
+network are those of the whole loopback interface: use a namespace of its own,
+unshare -n sh -c "ip link set lo up; python3 tests/benchmarks/throughput.py build/release".
 """
 import os
 import pathlib
@@ -29,6 +32,15 @@ def resident_mb(process):
     return int(status.partition("VmRSS:")[2].split()[0]) / 1024
 
 
+def loopback_bytes():
+    line = next(line for line in pathlib.Path("/proc/net/dev").read_text().splitlines() if line.strip().startswith("lo:"))
+    return int(line.partition(":")[2].split()[0])
+
+
+def disk_mb(out):
+    return sum(file.stat().st_size for file in pathlib.Path(out).rglob("*") if file.is_file()) / 1e6
+
+
 def stored(out):
     try:
         with sqlite3.connect(f"file:{out}/results.sqlite?mode=ro", uri=True) as database:
@@ -51,13 +63,14 @@ def measure(build, cases, workers, out, processes):
             if time.monotonic() > deadline or coordinator.poll() is not None:
                 raise RuntimeError(f"{there} of {cases} cases")
             time.sleep(0.1)
-        return there, time.monotonic(), cpu_s([coordinator]), cpu_s(crew)
+        return there, time.monotonic(), cpu_s([coordinator]), cpu_s(crew), loopback_bytes()
 
     first, last = wait_for(1), wait_for(cases)
-    flown, took_s, coordinator_s, crew_s = (b - a for a, b in zip(first, last))
+    flown, took_s, coordinator_s, crew_s, sent = (b - a for a, b in zip(first, last))
     print(f"{cases} cases, {workers} workers: {flown / took_s:.0f} results/s; CPU of a case: coordinator "
           f"{1e6 * coordinator_s / flown:.1f} us, workers {1e6 * crew_s / flown:.1f} us; the coordinator's memory "
-          f"{resident_mb(coordinator):.0f} MB")
+          f"{resident_mb(coordinator):.0f} MB; network {sent / flown:.0f} bytes a case; disk {disk_mb(out):.0f} MB; "
+          f"a worker's memory {max(map(resident_mb, crew)):.0f} MB")
 
 
 def main(build, cases=200_000, workers=2):

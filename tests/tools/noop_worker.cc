@@ -38,7 +38,7 @@ void Work(const NetworkOptions& network, const Peer& peer, std::uint32_t slots) 
   const auto now_s = [&] {
     return std::chrono::duration<double>(std::chrono::steady_clock::now() - start).count();
   };
-  const std::string uuid = MakeUuid();
+  const std::string uuid = NameOnNetwork(network, MakeUuid());
   FlightDesk desk({.worker = uuid, .engine_version = EngineVersion(), .slots = slots}, 0.0);
   std::optional<CaseDesign> design;  // of its one campaign
   std::optional<WorkerLink> link(std::in_place, network, peer, uuid);
@@ -78,15 +78,17 @@ int main(int argc, char** argv) {
   NetworkOptions network;
   std::string peer = "127.0.0.1";
   std::uint32_t slots = 1;
+  Admission admission;
   CLI::App app("A worker that makes its results up.", "noop_worker");
   app.add_option("--domain", network.domain);
   app.add_option("--peer", peer);
   app.add_option("--address", network.address);
   app.add_option("--slots", slots);
+  app.add_option("--keys", admission.keys);
   CLI11_PARSE(app, argc, argv);
   try {
     const Peer coordinator = ParsePeer(peer, network.domain);
-    Work(Admit(network, {}, {Role::kWorker}, coordinator.host), coordinator, slots);
+    Work(Admit(network, admission, {Role::kWorker}, coordinator.host), coordinator, slots);
   } catch (const NetworkError& error) {
     LogError("{}", error.what());
     return 2;
