@@ -46,8 +46,8 @@ bool IsStill(const CampaignRow& row, const CatalogueEntry& entry) {
 
 std::string WordsOf(const Requirement& requirement) {
   if (requirement.every_case) return LimitText(requirement) + " in every flight";
-  return fmt::format("{} for {} of flights at {} risk", LimitText(requirement), PercentText(requirement.probability),
-                     PercentText(requirement.consumer_risk));
+  return fmt::format("{} for {} of flights at {} risk", LimitText(requirement),
+                     PercentText(requirement.probability), PercentText(requirement.consumer_risk));
 }
 
 CampaignRow RowOf(const CampaignView& view, const RunningTally* tally) {
@@ -62,8 +62,8 @@ CampaignRow RowOf(const CampaignView& view, const RunningTally* tally) {
   for (std::size_t i = 0; tally != nullptr && i < std::min(view.standings.size(), kMaxOutcomes); ++i) {
     const RequirementStanding& standing = view.standings[i];
     row.requirements.push_back({standing.metric, WordsOf(tally->requirements()[i]),
-                                tally->requirements()[i].probability, standing.n, standing.failures, std::nullopt,
-                                std::nullopt, standing.so_far});
+                                tally->requirements()[i].probability, standing.n, standing.failures,
+                                std::nullopt, std::nullopt, standing.so_far});
   }
   return row;
 }

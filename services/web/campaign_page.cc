@@ -23,7 +23,11 @@ std::string Bounds(const RequirementOutcome& one) {
 
 std::string RequirementTable(const CampaignRow& row) {
   if (row.requirements.empty()) return "";
-  HtmlTable table({{"Requirement"}, {row.has_ended ? "Verdict" : "So far"}, {"Failures", true}, {"Flights that meet it"}, {""}});
+  HtmlTable table({{"Requirement"},
+                   {row.has_ended ? "Verdict" : "So far"},
+                   {"Failures", true},
+                   {"Flights that meet it"},
+                   {""}});
   for (const RequirementOutcome& one : row.requirements) {
     const std::string verdict = row.has_ended ? VerdictBadge(HtmlText(one.verdict)) : HtmlText(one.verdict);
     table.Row({HtmlText(one.words), verdict, fmt::format("{} of {}", one.failures, one.n), Bounds(one),
@@ -44,21 +48,23 @@ std::string OthersOfDesign(const CampaignIndex& index, const CampaignRow& row) {
                fmt::format("<a href=\"/difference?id={}&amp;id={}\">difference</a>", other->id, row.id)});
   }
   if (found == 0) return "";
-  return fmt::format("<h2>Other campaigns of this design</h2>\n<p class=\"soft\">{} here; the report counts all "
-                     "attempts.</p>\n",
-                     found) +
+  return fmt::format(
+             "<h2>Other campaigns of this design</h2>\n<p class=\"soft\">{} here; the report counts all "
+             "attempts.</p>\n",
+             found) +
          table.Html();
 }
 
 }  // namespace
 
 std::string CampaignPart(const CampaignIndex& index, const CampaignRow& row, bool has_report) {
-  std::string html = fmt::format("<div class=\"headline\">{} <p>{}{}</p></div>\n", StandingOfRow(row),
-                                 row.owner.empty() ? "" : "of <b>" + HtmlText(row.owner) + "</b> ", LabelsOf(row));
-  if (!row.problem.empty())
-    html += "<ul class=\"warnings\"><li>" + HtmlText(row.problem) + "</li></ul>\n";
+  std::string html =
+      fmt::format("<div class=\"headline\">{} <p>{}{}</p></div>\n", StandingOfRow(row),
+                  row.owner.empty() ? "" : "of <b>" + HtmlText(row.owner) + "</b> ", LabelsOf(row));
+  if (!row.problem.empty()) html += "<ul class=\"warnings\"><li>" + HtmlText(row.problem) + "</li></ul>\n";
   if (!row.has_ended)
-    html += fmt::format("<progress class=\"wide\" max=\"{}\" value=\"{}\"></progress>\n", row.cases, row.done);
+    html +=
+        fmt::format("<progress class=\"wide\" max=\"{}\" value=\"{}\"></progress>\n", row.cases, row.done);
   html += "<div class=\"tiles\">" + Tile(fmt::format("{} of {}", row.done, row.cases), "cases with a result");
   if (!row.has_ended) {
     html += Tile(fmt::format("{:.1f}", row.rate_per_s), "results per second") +
@@ -68,19 +74,24 @@ std::string CampaignPart(const CampaignIndex& index, const CampaignRow& row, boo
   }
   if (row.quarantined > 0) html += Tile(std::to_string(row.quarantined), "cases quarantined");
   if (row.attempts > 0) html += Tile(std::to_string(row.attempts), "attempts at this design");
-  html += Tile(TimeText(row.launched_unix_s), "launched, UTC") + Tile(BytesText(row.bytes), "on the disk") + "</div>\n";
+  html += Tile(TimeText(row.launched_unix_s), "launched, UTC") + Tile(BytesText(row.bytes), "on the disk") +
+          "</div>\n";
   if (has_report)
-    html += fmt::format("<p class=\"act\"><a class=\"button\" href=\"{}/report\">Open the report</a></p>\n", LinkTo(row));
+    html += fmt::format("<p class=\"act\"><a class=\"button\" href=\"{}/report\">Open the report</a></p>\n",
+                        LinkTo(row));
   html += RequirementTable(row) + OthersOfDesign(index, row);
   html += fmt::format(
-      "<h2>Identity</h2>\n<p>Campaign {}</p>\n{}<p class=\"soft\">This address is permanent while the coordinator "
+      "<h2>Identity</h2>\n<p>Campaign {}</p>\n{}<p class=\"soft\">This address is permanent while the "
+      "coordinator "
       "keeps the campaign. <code>dispersa fetch {} --out DIR</code> copies its results.</p>\n",
-      Code(row.id), row.engine.empty() ? "" : "<p>Engine " + Code(row.engine) + "</p>\n", row.id.substr(0, 12));
+      Code(row.id), row.engine.empty() ? "" : "<p>Engine " + Code(row.engine) + "</p>\n",
+      row.id.substr(0, 12));
   return html;
 }
 
 std::string CampaignPage(const CampaignIndex& index, const CampaignRow& row, bool has_report) {
-  const std::string head = row.has_ended ? "" : "<noscript><meta http-equiv=\"refresh\" content=\"5\"></noscript>\n";
+  const std::string head =
+      row.has_ended ? "" : "<noscript><meta http-equiv=\"refresh\" content=\"5\"></noscript>\n";
   return Frame(row.name,
                fmt::format("<h1>{}</h1>\n<div id=\"part\"{}>\n{}</div>\n", HtmlText(row.name),
                            row.has_ended ? "" : " data-live", CampaignPart(index, row, has_report)),

@@ -42,7 +42,8 @@ std::string Inputs(const CampaignRow& a, const CampaignRow& b, const CampaignFil
 
 std::string OneOutcome(const RequirementOutcome* one) {
   if (one == nullptr) return "<span class=\"soft\">not required</span>";
-  std::string html = VerdictBadge(HtmlText(one->verdict)) + fmt::format(" {} of {} fail", one->failures, one->n);
+  std::string html =
+      VerdictBadge(HtmlText(one->verdict)) + fmt::format(" {} of {} fail", one->failures, one->n);
   if (one->success_lower && one->success_upper)
     html += "<br><span class=\"soft\">" + PercentText(*one->success_lower) + " to " +
             PercentText(*one->success_upper) + " meet it</span>";
@@ -113,15 +114,17 @@ std::string DifferencePage(const CampaignRow& a, const CampaignRow& b, const Cam
     return one == other ? std::string_view() : std::string_view("differs");
   };
   heads.Row({"Campaign", NameOf(a), NameOf(b)});
-  heads.Row({"Verdict", StandingOfRow(a), StandingOfRow(b)}, differ(a.verdict + a.state, b.verdict + b.state));
+  heads.Row({"Verdict", StandingOfRow(a), StandingOfRow(b)},
+            differ(a.verdict + a.state, b.verdict + b.state));
   heads.Row({"Engine", ValueText(a.engine), ValueText(b.engine)}, differ(a.engine, b.engine));
   heads.Row({"Cases", std::to_string(a.done), std::to_string(b.done)},
             differ(std::to_string(a.done), std::to_string(b.done)));
   heads.Row({"Owner", HtmlText(a.owner), HtmlText(b.owner)}, differ(a.owner, b.owner));
   heads.Row({"Labels", LabelsOf(a), LabelsOf(b)}, differ(LabelsOf(a), LabelsOf(b)));
   heads.Row({"Launched, UTC", TimeText(a.launched_unix_s), TimeText(b.launched_unix_s)});
-  return Frame("Difference", "<h1>Difference of two campaigns</h1>\n" + heads.Html("pair") + "<h2>Requirements</h2>\n" +
-                                 Requirements(a, b) + "<h2>Inputs</h2>\n" + Inputs(a, b, file) +
+  return Frame("Difference", "<h1>Difference of two campaigns</h1>\n" + heads.Html("pair") +
+                                 "<h2>Requirements</h2>\n" + Requirements(a, b) + "<h2>Inputs</h2>\n" +
+                                 Inputs(a, b, file) +
                                  "<h2>Drivers</h2>\n<p class=\"soft\">Share of a metric's variance, with its "
                                  "confidence interval.</p>\n" +
                                  Drivers(a, b, file));

@@ -43,22 +43,23 @@ std::string ListPage(const CampaignIndex& index, const std::string& search, std:
   const std::size_t first = (page - 1) * kRowsOfPage, last = std::min(found.size(), first + kRowsOfPage);
   for (std::size_t i = first; i < last; ++i) {
     const CampaignRow& row = *found[i];
-    table.Row({fmt::format("<input type=\"checkbox\" name=\"id\" value=\"{}\" aria-label=\"Compare {}\">", row.id,
-                           HtmlText(row.name)),
+    table.Row({fmt::format("<input type=\"checkbox\" name=\"id\" value=\"{}\" aria-label=\"Compare {}\">",
+                           row.id, HtmlText(row.name)),
                NameOf(row), StandingOfRow(row), HtmlText(row.owner), Progress(row),
                row.attempts == 0 ? "" : std::to_string(row.attempts), LabelsOf(row),
                TimeText(row.launched_unix_s)});
   }
-  std::string main = fmt::format(
-      "<h1>Campaigns</h1>\n<p class=\"soft\">{}</p>\n",
-      search.empty()
-          ? fmt::format("{} campaigns, the last launched first.", index.rows().size())
-          : fmt::format("{} of {} campaigns have “{}”. <a href=\"/\">Show all</a>", found.size(),
-                        index.rows().size(), HtmlText(search)));
+  std::string main =
+      fmt::format("<h1>Campaigns</h1>\n<p class=\"soft\">{}</p>\n",
+                  search.empty() ? fmt::format("{} campaigns, the last launched first.", index.rows().size())
+                                 : fmt::format("{} of {} campaigns have “{}”. <a href=\"/\">Show all</a>",
+                                               found.size(), index.rows().size(), HtmlText(search)));
   if (found.empty()) return Frame("Campaigns", main, search);
-  main += "<form class=\"campaigns\" action=\"/difference\">\n<p class=\"act\"><button>Compare two</button> <span "
-          "class=\"soft\">Mark two campaigns.</span></p>\n" +
-          table.Html("list") + "</form>\n" + PageLinks(search, page, pages);
+  main +=
+      "<form class=\"campaigns\" action=\"/difference\">\n<p class=\"act\"><button>Compare two</button> "
+      "<span "
+      "class=\"soft\">Mark two campaigns.</span></p>\n" +
+      table.Html("list") + "</form>\n" + PageLinks(search, page, pages);
   return Frame("Campaigns", main, search);
 }
 

@@ -11,7 +11,8 @@
 namespace dispersa {
 
 /// The text of a file of a campaign ("campaign.yaml", "summary.json", "report.html"); none if there is none.
-using CampaignFile = std::function<std::optional<std::string>(const std::string& id, const std::string& file)>;
+using CampaignFile =
+    std::function<std::optional<std::string>(const std::string& id, const std::string& file)>;
 
 inline constexpr std::size_t kRowsOfPage = 50;
 

@@ -17,9 +17,12 @@ struct Point {
   const CampaignRow* row;
   const RequirementOutcome* outcome;
   double met() const {
-    return outcome->n == 0 ? 0.0 : 1.0 - static_cast<double>(outcome->failures) / static_cast<double>(outcome->n);
+    return outcome->n == 0 ? 0.0
+                           : 1.0 - static_cast<double>(outcome->failures) / static_cast<double>(outcome->n);
   }
-  double low() const { return std::min({outcome->success_lower.value_or(met()), met(), outcome->probability}); }
+  double low() const {
+    return std::min({outcome->success_lower.value_or(met()), met(), outcome->probability});
+  }
 };
 
 /// The label by which a reader knows the version, or the first digits of the id.
@@ -37,31 +40,35 @@ std::string TrendChart(const std::vector<Point>& points) {
   least = std::max(0.0, least - 0.05 * (1.0 - least) - 1e-6);
   const auto y = [&](double share) { return kBottom - (share - least) / (1.0 - least) * (kBottom - kTop); };
   const double step = (kRight - kLeft) / static_cast<double>(points.size());
-  std::string svg = fmt::format("<svg class=\"chart trend\" viewBox=\"0 0 1000 {:.0f}\" role=\"img\" "
-                                "aria-label=\"Share of flights that meet the requirement, by campaign\">\n",
-                                kHeight);
+  std::string svg = fmt::format(
+      "<svg class=\"chart trend\" viewBox=\"0 0 1000 {:.0f}\" role=\"img\" "
+      "aria-label=\"Share of flights that meet the requirement, by campaign\">\n",
+      kHeight);
   for (int i = 0; i <= 4; ++i) {
     const double share = least + (1.0 - least) * i / 4.0;
-    svg += fmt::format("<path class=\"grid\" d=\"M{} {:.1f}H{}\"/><text class=\"tick\" text-anchor=\"end\" x=\"{}\" "
-                       "y=\"{:.1f}\">{:.4g} %</text>\n",
-                       kLeft, y(share), kRight, kLeft - 6.0, y(share) + 4.0, 100.0 * share);
+    svg += fmt::format(
+        "<path class=\"grid\" d=\"M{} {:.1f}H{}\"/><text class=\"tick\" text-anchor=\"end\" x=\"{}\" "
+        "y=\"{:.1f}\">{:.4g} %</text>\n",
+        kLeft, y(share), kRight, kLeft - 6.0, y(share) + 4.0, 100.0 * share);
   }
   for (std::size_t i = 0; i < points.size(); ++i) {
     const Point& point = points[i];
     const RequirementOutcome& one = *point.outcome;
     const double x = kLeft + step * (static_cast<double>(i) + 0.5), half = std::min(14.0, 0.45 * step);
-    svg += fmt::format("<path class=\"limit\" d=\"M{:.1f} {:.1f}H{:.1f}\"/>", x - half, y(one.probability), x + half);
+    svg += fmt::format("<path class=\"limit\" d=\"M{:.1f} {:.1f}H{:.1f}\"/>", x - half, y(one.probability),
+                       x + half);
     svg += fmt::format("<a href=\"{}\"><title>{}: {} of {} fail, {}</title>", LinkTo(*point.row),
                        HtmlText(VersionOf(*point.row)), one.failures, one.n, HtmlText(one.verdict));
     if (one.success_lower && one.success_upper)
       svg += fmt::format("<path class=\"range\" d=\"M{:.1f} {:.1f}V{:.1f}\"/>", x, y(*one.success_lower),
                          y(*one.success_upper));
-    svg += fmt::format("<circle class=\"{}\" cx=\"{:.1f}\" cy=\"{:.1f}\" r=\"5\"/></a>", HtmlText(one.verdict), x,
-                       y(point.met()));
+    svg += fmt::format("<circle class=\"{}\" cx=\"{:.1f}\" cy=\"{:.1f}\" r=\"5\"/></a>",
+                       HtmlText(one.verdict), x, y(point.met()));
     if (points.size() <= 30 || i % 2 == 0)
-      svg += fmt::format("<text class=\"tick\" text-anchor=\"end\" transform=\"translate({:.1f} {:.1f}) "
-                         "rotate(-50)\">{}</text>\n",
-                         x + 4.0, kBottom + 14.0, HtmlText(VersionOf(*point.row)));
+      svg += fmt::format(
+          "<text class=\"tick\" text-anchor=\"end\" transform=\"translate({:.1f} {:.1f}) "
+          "rotate(-50)\">{}</text>\n",
+          x + 4.0, kBottom + 14.0, HtmlText(VersionOf(*point.row)));
   }
   return svg + "</svg>\n";
 }
@@ -83,9 +90,10 @@ std::string Metrics(const CampaignIndex& index) {
 
 std::string TrendPage(const CampaignIndex& index, const std::string& metric, const std::string& search) {
   if (metric.empty())
-    return Frame("Trends", "<h1>Trends</h1>\n<p>Choose a metric: its requirement is shown over all campaigns that have "
-                           "judged it.</p>\n" +
-                               Metrics(index));
+    return Frame("Trends",
+                 "<h1>Trends</h1>\n<p>Choose a metric: its requirement is shown over all campaigns that have "
+                 "judged it.</p>\n" +
+                     Metrics(index));
   std::vector<Point> points;
   std::size_t all = 0;
   for (const CampaignRow* row : index.Search(search)) {
@@ -101,7 +109,13 @@ std::string TrendPage(const CampaignIndex& index, const std::string& metric, con
       "metrics</a></form>\n",
       HtmlText(metric), HtmlText(metric), HtmlText(search));
   if (points.empty()) return Frame("Trend", main + "<p>No campaign that has ended requires it.</p>\n");
-  HtmlTable table({{"Version"}, {"Campaign"}, {"Verdict"}, {"Failures", true}, {"Flights that meet it"}, {"Requirement"}, {""}});
+  HtmlTable table({{"Version"},
+                   {"Campaign"},
+                   {"Verdict"},
+                   {"Failures", true},
+                   {"Flights that meet it"},
+                   {"Requirement"},
+                   {""}});
   for (std::size_t i = 0; i < points.size(); ++i) {
     const RequirementOutcome& one = *points[i].outcome;
     table.Row({Code(VersionOf(*points[i].row)), NameOf(*points[i].row), VerdictBadge(HtmlText(one.verdict)),
@@ -110,16 +124,18 @@ std::string TrendPage(const CampaignIndex& index, const std::string& metric, con
                    ? PercentText(*one.success_lower) + " to " + PercentText(*one.success_upper)
                    : "",
                HtmlText(one.words),
-               i + 1 < points.size() ? fmt::format("<a href=\"/difference?id={}&amp;id={}\">to the one before</a>",
-                                                   points[i + 1].row->id, points[i].row->id)
-                                     : ""});
+               i + 1 < points.size()
+                   ? fmt::format("<a href=\"/difference?id={}&amp;id={}\">to the one before</a>",
+                                 points[i + 1].row->id, points[i].row->id)
+                   : ""});
   }
   std::vector<Point> by_age(points.rbegin(), points.rend());
-  main += fmt::format("<figure class=\"wide\">{}<figcaption>Share of flights that meet the requirement, with its "
-                      "confidence bounds, by campaign in the order of launching. The dashed line is the share that is "
-                      "required.{} The version is the label <code>commit</code>.</figcaption></figure>\n",
-                      TrendChart(by_age),
-                      all > points.size() ? fmt::format(" The last {} of {} campaigns.", points.size(), all) : "");
+  main += fmt::format(
+      "<figure class=\"wide\">{}<figcaption>Share of flights that meet the requirement, with its "
+      "confidence bounds, by campaign in the order of launching. The dashed line is the share that is "
+      "required.{} The version is the label <code>commit</code>.</figcaption></figure>\n",
+      TrendChart(by_age),
+      all > points.size() ? fmt::format(" The last {} of {} campaigns.", points.size(), all) : "");
   return Frame("Trend", main + table.Html());
 }
 

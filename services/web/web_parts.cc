@@ -14,12 +14,15 @@ std::string Frame(const std::string& title, const std::string& main, const std::
                   const std::string& head) {
   return fmt::format(
       "<!DOCTYPE html>\n<html lang=\"en\">\n<head>\n<meta charset=\"utf-8\">\n<meta name=\"viewport\" "
-      "content=\"width=device-width, initial-scale=1\">\n<title>{} – dispersa</title>\n<link rel=\"stylesheet\" "
-      "href=\"/style.css\">\n<link rel=\"icon\" href=\"data:,\">\n<script src=\"/script.js\" defer></script>\n{}"
+      "content=\"width=device-width, initial-scale=1\">\n<title>{} – dispersa</title>\n<link "
+      "rel=\"stylesheet\" "
+      "href=\"/style.css\">\n<link rel=\"icon\" href=\"data:,\">\n<script src=\"/script.js\" "
+      "defer></script>\n{}"
       "</head>\n<body>\n<header class=\"top\"><a class=\"home\" href=\"/\">dispersa</a><nav><a "
       "href=\"/\">Campaigns</a><a href=\"/trend\">Trends</a></nav><form class=\"search\" action=\"/\" "
       "role=\"search\"><input type=\"search\" name=\"q\" value=\"{}\" placeholder=\"name, owner, id, label, "
-      "verdict\" aria-label=\"Search campaigns\"><button>Search</button></form></header>\n<main>\n{}</main>\n</body>\n"
+      "verdict\" aria-label=\"Search "
+      "campaigns\"><button>Search</button></form></header>\n<main>\n{}</main>\n</body>\n"
       "</html>\n",
       HtmlText(title), head, HtmlText(search), main);
 }
@@ -57,8 +60,8 @@ std::string BytesText(std::uint64_t bytes) {
 std::string UrlText(const std::string& text) {
   std::string url;
   for (const char c : text) {
-    const bool is_plain =
-        (c >= '0' && c <= '9') || (c >= 'a' && c <= 'z') || (c >= 'A' && c <= 'Z') || c == '-' || c == '_' || c == '.';
+    const bool is_plain = (c >= '0' && c <= '9') || (c >= 'a' && c <= 'z') || (c >= 'A' && c <= 'Z') ||
+                          c == '-' || c == '_' || c == '.';
     if (is_plain) {
       url += c;
     } else {
@@ -69,13 +72,14 @@ std::string UrlText(const std::string& text) {
 }
 
 std::string LoginPage(const std::string& next, bool was_wrong) {
-  return Frame("Sign in",
-               fmt::format("<h1>Sign in</h1>\n{}<form class=\"login\" method=\"post\" action=\"/login\"><input "
-                           "type=\"hidden\" name=\"next\" value=\"{}\"><label>Token <input type=\"password\" "
-                           "name=\"token\" autocomplete=\"current-password\" required autofocus></label><button>Sign "
-                           "in</button></form>\n<p class=\"soft\">The token is in the file that the coordinator was "
-                           "started with (<code>--web-token</code>). Ask its operator.</p>\n",
-                           was_wrong ? "<p class=\"wrong\">This is not the token.</p>\n" : "", HtmlText(next)));
+  return Frame(
+      "Sign in",
+      fmt::format("<h1>Sign in</h1>\n{}<form class=\"login\" method=\"post\" action=\"/login\"><input "
+                  "type=\"hidden\" name=\"next\" value=\"{}\"><label>Token <input type=\"password\" "
+                  "name=\"token\" autocomplete=\"current-password\" required autofocus></label><button>Sign "
+                  "in</button></form>\n<p class=\"soft\">The token is in the file that the coordinator was "
+                  "started with (<code>--web-token</code>). Ask its operator.</p>\n",
+                  was_wrong ? "<p class=\"wrong\">This is not the token.</p>\n" : "", HtmlText(next)));
 }
 
 std::string ErrorPage(const std::string& title, const std::string& text) {

@@ -29,12 +29,14 @@ constexpr std::chrono::milliseconds kWrongToken(300);  // whoever tries tokens w
 constexpr char kCookie[] = "dispersa";
 constexpr char kHtml[] = "text/html; charset=utf-8";
 constexpr char kPolicy[] =
-    "default-src 'none'; style-src 'self'; script-src 'self'; connect-src 'self'; img-src 'self' data:; form-action "
+    "default-src 'none'; style-src 'self'; script-src 'self'; connect-src 'self'; img-src 'self' data:; "
+    "form-action "
     "'self'; frame-ancestors 'none'; base-uri 'none'";
 // A report has its style and its script in itself. It is made of texts of a client's campaign: in its sandbox
 // it reads no other page.
 constexpr char kReportPolicy[] =
-    "sandbox allow-scripts; default-src 'none'; style-src 'unsafe-inline'; script-src 'unsafe-inline'; img-src data:; "
+    "sandbox allow-scripts; default-src 'none'; style-src 'unsafe-inline'; script-src 'unsafe-inline'; "
+    "img-src data:; "
     "frame-ancestors 'none'; base-uri 'none'";
 
 bool IsSame(const std::string& a, const std::string& b) {
@@ -54,7 +56,8 @@ std::string CookieOf(const httplib::Request& request) {
     std::size_t end = all.find(';', at);
     if (end == std::string::npos) end = all.size();
     while (at < end && all[at] == ' ') ++at;
-    if (all.compare(at, wanted.size(), wanted) == 0) return all.substr(at + wanted.size(), end - at - wanted.size());
+    if (all.compare(at, wanted.size(), wanted) == 0)
+      return all.substr(at + wanted.size(), end - at - wanted.size());
     at = end + 1;
   }
   return "";
@@ -62,7 +65,8 @@ std::string CookieOf(const httplib::Request& request) {
 
 /// Where a login goes on: on this server and nowhere else.
 std::string LocalPath(const std::string& next) {
-  const bool is_local = next.starts_with('/') && !next.starts_with("//") && next.find('\\') == std::string::npos &&
+  const bool is_local = next.starts_with('/') && !next.starts_with("//") &&
+                        next.find('\\') == std::string::npos &&
                         next.find_first_of("\r\n") == std::string::npos;
   return is_local ? next : "/";
 }
@@ -86,7 +90,8 @@ std::size_t PageNumber(const std::string& text) {
 std::string WhyTooOpen(const WebOptions& options) {
   if (options.behind_tls && options.token.empty()) return "--web-behind-tls needs --web-token FILE";
   if (IsOnLoopback(options.address) || options.behind_tls) return "";
-  return "--web beyond 127.0.0.1 needs --web-token FILE and --web-behind-tls: a proxy before it that speaks TLS";
+  return "--web beyond 127.0.0.1 needs --web-token FILE and --web-behind-tls: a proxy before it that speaks "
+         "TLS";
 }
 
 std::string ReadWebToken(const std::string& file) {
@@ -97,7 +102,8 @@ std::string ReadWebToken(const std::string& file) {
     throw InputError(file + ": no token can be read", "a file whose first line is the token");
   if ((what.st_mode & 0007) != 0)
     throw InputError(file + ": other users of this machine can use it", "a file after `chmod 640`");
-  if (token.size() < kLeastToken) throw InputError(file + ": the token is too short", "16 characters or more");
+  if (token.size() < kLeastToken)
+    throw InputError(file + ": the token is too short", "16 characters or more");
   return token;
 }
 
@@ -132,8 +138,8 @@ WebServer::WebServer(const WebOptions& options, CampaignFile file)
   AddRoutes();
   errno = 0;
   if (!server.bind_to_port(options.address.host, options.address.port)) {
-    throw std::runtime_error("web: port " + std::to_string(options.address.port) + " of " + options.address.host +
-                             ": " + std::strerror(errno == 0 ? EADDRINUSE : errno));
+    throw std::runtime_error("web: port " + std::to_string(options.address.port) + " of " +
+                             options.address.host + ": " + std::strerror(errno == 0 ? EADDRINUSE : errno));
   }
   serving_->thread = std::thread([&server] { server.listen_after_bind(); });
   while (!server.is_running()) std::this_thread::yield();  // else stop() would stop nothing
@@ -155,16 +161,19 @@ std::shared_ptr<const CampaignIndex> WebServer::index() {
 }
 
 void WebServer::AddGuard() {
-  serving_->server.set_pre_routing_handler([this](const httplib::Request& request, httplib::Response& response) {
+  serving_->server.set_pre_routing_handler([this](const httplib::Request& request,
+                                                  httplib::Response& response) {
     using Handled = httplib::Server::HandlerResponse;
     response.set_header("Content-Security-Policy", kPolicy);
     if (options_.behind_tls && request.get_header_value("X-Forwarded-Proto") != "https") {
-      Answer(response, 403, ErrorPage("Over TLS alone", "This address answers only what a proxy has received over TLS."));
+      Answer(response, 403,
+             ErrorPage("Over TLS alone", "This address answers only what a proxy has received over TLS."));
       return Handled::Handled;
     }
     if (options_.token.empty()) {
       if (IsOfThisMachine(request)) return Handled::Unhandled;
-      Answer(response, 403, ErrorPage("On this machine alone", "These pages are at 127.0.0.1 and localhost."));
+      Answer(response, 403,
+             ErrorPage("On this machine alone", "These pages are at 127.0.0.1 and localhost."));
       return Handled::Handled;
     }
     if (request.path == "/login" || request.path == "/style.css") return Handled::Unhandled;
@@ -210,43 +219,50 @@ void WebServer::AddRoutes() {
     response.set_content(std::string(WebScript()), "text/javascript; charset=utf-8");
   });
   server.Get("/", [this](const httplib::Request& request, httplib::Response& response) {
-    response.set_content(ListPage(*index(), request.get_param_value("q"), PageNumber(request.get_param_value("page"))),
-                         kHtml);
+    response.set_content(
+        ListPage(*index(), request.get_param_value("q"), PageNumber(request.get_param_value("page"))), kHtml);
   });
   const auto none = [](httplib::Response& response) {
-    Answer(response, 404, ErrorPage("No such campaign", "No campaign, or more than one, has an id that begins so."));
+    Answer(response, 404,
+           ErrorPage("No such campaign", "No campaign, or more than one, has an id that begins so."));
   };
-  server.Get("/campaign/([0-9a-f]{1,64})", [this, none](const httplib::Request& request, httplib::Response& response) {
-    const auto all = index();
-    const CampaignRow* row = all->Find(request.matches[1]);
-    if (row == nullptr) return none(response);
-    if (row->id != request.matches[1].str()) return response.set_redirect(LinkTo(*row));
-    const bool has_report = row->state == "done";
-    if (row->has_ended) response.set_header("X-Campaign-Ended", "1");
-    response.set_content(request.has_param("part") ? CampaignPart(*all, *row, has_report)
-                                                   : CampaignPage(*all, *row, has_report),
-                         kHtml);
-  });
-  server.Get("/campaign/([0-9a-f]{64})/report", [this, none](const httplib::Request& request, httplib::Response& response) {
-    const auto all = index();
-    const CampaignRow* row = all->Find(request.matches[1]);
-    if (row == nullptr) return none(response);
-    auto report = row->state == "done" ? file_(row->id, "report.html") : std::nullopt;
-    if (!report) return Answer(response, 404, ErrorPage("No report", "This campaign has no report."));
-    response.headers.erase("Content-Security-Policy");
-    response.set_header("Content-Security-Policy", kReportPolicy);
-    response.set_content(*std::move(report), kHtml);
-  });
+  server.Get("/campaign/([0-9a-f]{1,64})",
+             [this, none](const httplib::Request& request, httplib::Response& response) {
+               const auto all = index();
+               const CampaignRow* row = all->Find(request.matches[1]);
+               if (row == nullptr) return none(response);
+               if (row->id != request.matches[1].str()) return response.set_redirect(LinkTo(*row));
+               const bool has_report = row->state == "done";
+               if (row->has_ended) response.set_header("X-Campaign-Ended", "1");
+               response.set_content(request.has_param("part") ? CampaignPart(*all, *row, has_report)
+                                                              : CampaignPage(*all, *row, has_report),
+                                    kHtml);
+             });
+  server.Get("/campaign/([0-9a-f]{64})/report",
+             [this, none](const httplib::Request& request, httplib::Response& response) {
+               const auto all = index();
+               const CampaignRow* row = all->Find(request.matches[1]);
+               if (row == nullptr) return none(response);
+               auto report = row->state == "done" ? file_(row->id, "report.html") : std::nullopt;
+               if (!report)
+                 return Answer(response, 404, ErrorPage("No report", "This campaign has no report."));
+               response.headers.erase("Content-Security-Policy");
+               response.set_header("Content-Security-Policy", kReportPolicy);
+               response.set_content(*std::move(report), kHtml);
+             });
   server.Get("/difference", [this](const httplib::Request& request, httplib::Response& response) {
     const auto all = index();
     const CampaignRow* a = all->Find(request.get_param_value("id", 0));
     const CampaignRow* b = all->Find(request.get_param_value("id", 1));
     if (a == nullptr || b == nullptr)
-      return Answer(response, 404, ErrorPage("Two campaigns", "Mark two campaigns in the list to see what differs."));
-    response.set_content(a->order <= b->order ? DifferencePage(*a, *b, file_) : DifferencePage(*b, *a, file_), kHtml);
+      return Answer(response, 404,
+                    ErrorPage("Two campaigns", "Mark two campaigns in the list to see what differs."));
+    response.set_content(a->order <= b->order ? DifferencePage(*a, *b, file_) : DifferencePage(*b, *a, file_),
+                         kHtml);
   });
   server.Get("/trend", [this](const httplib::Request& request, httplib::Response& response) {
-    response.set_content(TrendPage(*index(), request.get_param_value("metric"), request.get_param_value("q")), kHtml);
+    response.set_content(TrendPage(*index(), request.get_param_value("metric"), request.get_param_value("q")),
+                         kHtml);
   });
 }
 

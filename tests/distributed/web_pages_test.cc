@@ -1,5 +1,5 @@
-// The pages of the web application as texts: what they show, how they are paged and found, and that no name is taken
-// for HTML.
+// The pages of the web application as texts: what they show, how they are paged and found, and that no name
+// is taken for HTML.
 #include "services/web/pages.h"
 
 #include <gmock/gmock.h>
@@ -26,8 +26,8 @@ CampaignRow Row(std::uint64_t order, const std::string& name = "table3") {
   row.order = order;
   row.launched_unix_s = 1764000000;
   row.ended_unix_s = 1764000600;
-  row.requirements = {{"q_max_pa", "q_max_pa below 5 for 99 % of flights at 10 % risk", 0.99, 1000, 3, 0.9925, 0.999,
-                       "pass"}};
+  row.requirements = {{"q_max_pa", "q_max_pa below 5 for 99 % of flights at 10 % risk", 0.99, 1000, 3, 0.9925,
+                       0.999, "pass"}};
   return row;
 }
 
@@ -109,13 +109,14 @@ TEST(WebPages, ATextIsNoHtml) {
   other.has_ended = false;
   const CampaignIndex index = IndexOf({row, other});
   const CampaignFile file = [&](const std::string&, const std::string& name) {
-    return std::optional<std::string>(name == "campaign.yaml" ? "name: '<script>x'\n" : R"({"drivers": {"<script>": [
+    return std::optional<std::string>(name == "campaign.yaml" ? "name: '<script>x'\n"
+                                                              : R"({"drivers": {"<script>": [
       {"input": "<script>", "index": 0.5, "low": 0.4, "high": 0.6}]}})");
   };
   for (const std::string& page :
        {ListPage(index, bad, 1), CampaignPage(index, row, true), CampaignPage(index, other, false),
-        DifferencePage(row, other, file), TrendPage(index, bad, ""), TrendPage(index, "", bad), LoginPage(bad, true),
-        ErrorPage(bad, bad)}) {
+        DifferencePage(row, other, file), TrendPage(index, bad, ""), TrendPage(index, "", bad),
+        LoginPage(bad, true), ErrorPage(bad, bad)}) {
     EXPECT_THAT(page, Not(HasSubstr("<script>")));
     EXPECT_THAT(page, Not(HasSubstr("\"'&")));
   }
@@ -164,7 +165,8 @@ TEST(WebDifference, NamesInputsRequirementsEngineAndDriversThatDiffer) {
   b.verdict = b.requirements[0].verdict = "fail";
   b.requirements[0].failures = 40;
   b.requirements.push_back({"alpha", "alpha below 2", 0.5, 10, 1, std::nullopt, std::nullopt, "pass"});
-  const CampaignFile file = [&](const std::string& id, const std::string& name) -> std::optional<std::string> {
+  const CampaignFile file = [&](const std::string& id,
+                                const std::string& name) -> std::optional<std::string> {
     const bool is_a = id == a.id;
     if (name == "campaign.yaml") return is_a ? "gain: 1\nsame: 7\n" : "gain: 2\nsame: 7\n";
     return std::string(R"({"drivers": {"q_max_pa": [{"input": ")") + (is_a ? "wind" : "thrust") +
@@ -180,7 +182,9 @@ TEST(WebDifference, NamesInputsRequirementsEngineAndDriversThatDiffer) {
   EXPECT_THAT(page, HasSubstr("alpha below 2</td><td><span class=\"soft\">not required"));
   EXPECT_THAT(page, HasSubstr("wind 50 % <span class=\"soft\">(40 to 60)"));
   EXPECT_THAT(page, HasSubstr("thrust 50 %"));
-  const CampaignFile none = [](const std::string&, const std::string&) { return std::optional<std::string>(); };
+  const CampaignFile none = [](const std::string&, const std::string&) {
+    return std::optional<std::string>();
+  };
   EXPECT_THAT(DifferencePage(a, b, none), HasSubstr("text cannot be read"));
 }
 

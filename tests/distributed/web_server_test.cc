@@ -25,11 +25,10 @@ class WebServerTest : public testing::Test {
   void Start(const std::string& token = "", bool behind_tls = false) {
     server_.reset();
     port_ = FreePort();
-    server_ = std::make_unique<WebServer>(WebOptions{{"127.0.0.1", port_}, token, behind_tls},
-                                          [](const std::string&, const std::string& name) {
-                                            return name == "report.html" ? std::optional<std::string>("<p>report</p>")
-                                                                         : std::nullopt;
-                                          });
+    server_ = std::make_unique<WebServer>(
+        WebOptions{{"127.0.0.1", port_}, token, behind_tls}, [](const std::string&, const std::string& name) {
+          return name == "report.html" ? std::optional<std::string>("<p>report</p>") : std::nullopt;
+        });
     auto row = std::make_shared<CampaignRow>();
     row->id = kId;
     row->name = "table3";
@@ -39,8 +38,10 @@ class WebServerTest : public testing::Test {
     server_->Set(std::make_shared<CampaignIndex>(std::vector<CampaignIndex::Row>{row}));
   }
   /// `more`: headers, each with its end of line.
-  std::string Get(const std::string& path, const std::string& more = "", const std::string& host = "localhost") {
-    return AskHttp(port_, "GET " + path + " HTTP/1.1\r\nHost: " + host + "\r\n" + more + "Connection: close\r\n\r\n");
+  std::string Get(const std::string& path, const std::string& more = "",
+                  const std::string& host = "localhost") {
+    return AskHttp(
+        port_, "GET " + path + " HTTP/1.1\r\nHost: " + host + "\r\n" + more + "Connection: close\r\n\r\n");
   }
   std::string Post(const std::string& path, const std::string& body, const std::string& more = "") {
     return AskHttp(port_, "POST " + path + " HTTP/1.1\r\nHost: localhost\r\n" + more +
@@ -92,10 +93,12 @@ TEST_F(WebServerTest, AReportIsInASandbox) {
 TEST_F(WebServerTest, WithATokenWhoeverLacksItIsAskedForIt) {
   Start(kToken);
   EXPECT_THAT(Get("/campaign/" + kId), HasSubstr("Location: /login?next=%2Fcampaign%2F" + kId));
-  for (const char* path : {"/", "/trend", "/script.js"}) EXPECT_THAT(Get(path), Not(HasSubstr("table3"))) << path;
+  for (const char* path : {"/", "/trend", "/script.js"})
+    EXPECT_THAT(Get(path), Not(HasSubstr("table3"))) << path;
   EXPECT_THAT(Get("/campaign/" + kId + "?part=1"), StartsWith("HTTP/1.1 401"));
   EXPECT_THAT(Get("/", "Authorization: Bearer 0123456789abcdeX\r\n"), StartsWith("HTTP/1.1 302"));
-  EXPECT_THAT(Get("/", "Cookie: dispersa=0123456789abcdef\r\n"), StartsWith("HTTP/1.1 302")) << "the token is no cookie";
+  EXPECT_THAT(Get("/", "Cookie: dispersa=0123456789abcdef\r\n"), StartsWith("HTTP/1.1 302"))
+      << "the token is no cookie";
   EXPECT_THAT(Get("/", std::string("Authorization: Bearer ") + kToken + "\r\n"), HasSubstr("table3"));
   const std::string wrong = Post("/login", "next=%2F&token=wrong");
   EXPECT_THAT(wrong, StartsWith("HTTP/1.1 403"));
@@ -108,7 +111,9 @@ TEST_F(WebServerTest, WithATokenWhoeverLacksItIsAskedForIt) {
   const std::string cookie = right.substr(at, right.find(';', at) - at);
   EXPECT_THAT(Get("/", "Cookie: other=1; " + cookie + "\r\n"), HasSubstr("table3"));
   for (const char* next : {"%2F%2Fevil.example", "https%3A%2F%2Fevil.example", "%2F%5Cevil.example"})
-    EXPECT_THAT(Post("/login", std::string("next=") + next + "&token=" + kToken), HasSubstr("Location: /\r\n")) << next;
+    EXPECT_THAT(Post("/login", std::string("next=") + next + "&token=" + kToken),
+                HasSubstr("Location: /\r\n"))
+        << next;
 }
 
 TEST_F(WebServerTest, BehindAProxyOnlyWhatCameOverTls) {
