@@ -83,11 +83,6 @@ void RequireLimitsKept(const VerdictPlan& plan, SamplingMethod method,
     requirements.push_back(std::move(kept));
 }
 
-bool Restarts(const Vehicle& vehicle) {
-  return std::any_of(vehicle.stages.begin(), vehicle.stages.end(),
-                     [](const Stage& stage) { return stage.restarts; });
-}
-
 // Only stages that there are, above the first, are steered.
 template <class T>
 void CheckSteering(const Vehicle& vehicle, const std::array<T, kMaxStages>& steering, const InputNode& node,
@@ -134,15 +129,30 @@ void CheckName(Fields& fields, const std::string& name) {
 void CheckGuidance(Fields& fields, const GuidanceConfig& guidance, const Vehicle& vehicle) {
   if (!guidance.closed_loop || vehicle.stages.empty()) return;
   const std::string name = "'" + vehicle.name + "'";
-  if (vehicle.stages.size() < 2 || vehicle.stages.back().ignition != IgnitionTrigger::kTimer)
-    fields.Refuse("mode", "the vehicle " + name + " has no last stage whose ignition guidance could move",
-                  "open_loop, or a vehicle whose last of two stages or more has ignition: {trigger: timer}");
-  else if (CutsOffAtVelocity(vehicle) || Restarts(vehicle))
+  const Stage& last = vehicle.stages.back();
+  const bool is_cut_off = IsCutOffByGuidance(last), is_timed = last.ignition == IgnitionTrigger::kTimer;
+  if (vehicle.stages.size() < 2)
     fields.Refuse("mode",
-                  "guidance knows burns that end by themselves, and an engine of " + name +
-                      " is cut off at a velocity or burns again",
-                  "open_loop, or engines that end by time or depletion");
-  else if (vehicle.boosters.count > 0 && vehicle.stages.size() < 3)
+                  "the only burn of " + name +
+                      " begins in the air, where the attitude must follow the wind and not the orbit",
+                  "open_loop, or a vehicle of two burns or more");
+  else if (!is_cut_off && !is_timed)
+    fields.Refuse("mode",
+                  "the last burn of " + name +
+                      " follows the one before at once and ends by itself: guidance can change neither its "
+                      "beginning nor its end",
+                  "open_loop, or a last stage with ignition: {trigger: timer} or with a liquid engine that has "
+                  "cut_off: {at: inertial_velocity}");
+  else if (!is_cut_off && last.restarts)
+    fields.Refuse("mode",
+                  "the last burn of " + name +
+                      " uses up what the burns before leave: its energy is not known before they end",
+                  "open_loop, or cut_off: {at: inertial_velocity} of the last burn");
+  else if (is_cut_off && !is_timed && !guidance.steers_last_burn && !SteersBelow(vehicle))
+    fields.Refuse("last_burn",
+                  "no coast precedes the last burn of " + name + ", so nothing can be planned before its ignition",
+                  "steered");
+  else if (!is_cut_off && vehicle.boosters.count > 0 && vehicle.stages.size() < 3)
     fields.Refuse(
         "mode",
         "guidance would steer the stage of " + name + " that has boosters, whose thrust it does not know",

@@ -85,6 +85,8 @@ class Batch {
   void FlyThrusters();
   void LetGo();
   void CutOff();
+  void CutOffByGuidance(int lane);
+  void CutOffAt(int lane, double at_s);
   void Guide();
   void Meter(M powered);
   void WatchAndDigest();

@@ -62,6 +62,10 @@ void Batch<T>::CutOff() {
   for (int lane = 0; lane < kLanes; ++lane) {
     if (!(burning >> lane & 1u)) continue;
     Slot& slot = slot_[lane];
+    if (const GuidedFlight* const guided = slot.record->guided; guided != nullptr && guided->cuts_off()) {
+      CutOffByGuidance(lane);
+      continue;
+    }
     const double wanted_m_s = slot.record->CutOffVelocity(slot.stack);
     if (!(wanted_m_s > 0.0)) continue;
     const Vector<double> v = LaneOf(step_.motion().v, lane);
@@ -69,15 +73,33 @@ void Batch<T>::CutOff() {
     const double rate_m_s2 = Dot(v, LaneOf(step_.acceleration_m_s2(), lane)) / speed_m_s;
     const double lacking_m_s = wanted_m_s - speed_m_s;
     if (lacking_m_s > rate_m_s2 * tick_s_) continue;
-    const double at_s = Lane(time_s_, lane) + (lacking_m_s > 0.0 ? lacking_m_s / rate_m_s2 : 0.0);
-    FlightRecord& record = *slot.record;
-    // By then it has burnt out.
-    if (at_s >= Lane(step_.phase().ignition_s, lane) + record.plant.stacks.data()[slot.stack].burn.duration_s)
-      continue;
-    record.CutOff(slot.stack, at_s);
-    step_.ShortenBurn(lane, record.plant.stacks.data()[slot.stack].burn);
-    SetStop(lane);
+    CutOffAt(lane, Lane(time_s_, lane) + (lacking_m_s > 0.0 ? lacking_m_s / rate_m_s2 : 0.0));
   }
+}
+
+/// The same at a speed that guidance has planned, by measured values.
+template <class T>
+void Batch<T>::CutOffByGuidance(int lane) {
+  const auto vector_of = [lane](const Vector<T>& v) { return Vector3(Lane(v.x, lane), Lane(v.y, lane), Lane(v.z, lane)); };
+  const Instant<T>& now = step_.now();
+  const double time_s = Lane(time_s_, lane);
+  const double in_s = slot_[lane].record->guided->CutOffIn(
+      time_s, vector_of(step_.motion().v), vector_of(step_.acceleration_m_s2()),
+      vector_of(now.force_n).norm() / Lane(now.mass_kg, lane));
+  if (!(in_s <= tick_s_)) return;
+  CutOffAt(lane, time_s + (in_s > 0.0 ? in_s : 0.0));
+}
+
+template <class T>
+void Batch<T>::CutOffAt(int lane, double at_s) {
+  const Slot& slot = slot_[lane];
+  FlightRecord& record = *slot.record;
+  // By then it has burnt out.
+  if (at_s >= Lane(step_.phase().ignition_s, lane) + record.plant.stacks.data()[slot.stack].burn.duration_s)
+    return;
+  record.CutOff(slot.stack, at_s);
+  step_.ShortenBurn(lane, record.plant.stacks.data()[slot.stack].burn);
+  SetStop(lane);
 }
 
 /// Error of the lanes' attitudes against the reference at their ticks, true and as the sensors see it.

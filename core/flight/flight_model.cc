@@ -262,12 +262,28 @@ GuidanceMission BuildMission(const FlightDefinition& definition, const LauncherP
       loses_mass |= plant.jettisoned_masses[k].stage >= static_cast<int>(i) &&
                     definition.jettison_s[k] > times[i].ignition_s &&
                     definition.jettison_s[k] <= times[i].burnout_s;
-    return GuidedStage{stack.burn, fixed_kg + stack.burn.propellant_mass_kg, loses_mass};
+    GuidedStage guided{stack.burn, fixed_kg + stack.burn.propellant_mass_kg, loses_mass};
+    const Stage& of_vehicle = definition.vehicle.stages[i];
+    if (!IsCutOffByGuidance(of_vehicle)) return guided;
+    guided.levels.emplace(of_vehicle.motor.throttle);
+    guided.usable_kg = stack.burn.propellant_mass_kg - of_vehicle.motor.residual_mass_kg;
+    guided.ignition_mass_kg =
+        MassOf(plant, static_cast<int>(i), GoneAt(definition.jettison_s, times[i].ignition_s)).fixed_mass_kg +
+        stack.burn.propellant_mass_kg;
+    for (std::size_t k = 0; k < definition.jettison_s.size(); ++k)
+      if (plant.jettisoned_masses[k].stage >= static_cast<int>(i) &&
+          definition.jettison_s[k] > times[i].ignition_s && definition.jettison_s[k] < HUGE_VAL)
+        guided.drops.push_back({definition.jettison_s[k], plant.jettisoned_masses[k].mass_kg});
+    return guided;
   };
   const std::size_t last = plant.stacks.size() - 1;
   mission.below = stage(last - 1);
   mission.last = stage(last);
-  mission.last_ignition_s = definition.last_ignition_s;
+  mission.steers_below = SteersBelow(definition.vehicle);
+  mission.moves_ignition = definition.vehicle.stages.back().ignition == IgnitionTrigger::kTimer;
+  mission.is_restart = definition.vehicle.stages.back().restarts;
+  mission.below_burnout_s = times[last - 1].burnout_s;
+  mission.last_ignition_s = mission.moves_ignition ? definition.last_ignition_s : times[last].ignition_s;
   mission.velocity_reserve_m_s = definition.velocity_reserve_m_s;
   mission.program.step_s = kStep_s;
   for (double time_s = 0.0; time_s <= definition.program.knots.back().time_s + kStep_s; time_s += kStep_s) {

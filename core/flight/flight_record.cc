@@ -19,12 +19,12 @@ namespace dispersa {
 namespace {
 
 std::vector<FlightEvent> EventsOf(const FlightModel& model, const LauncherPlant& plant,
-                                  const FlightInputs& in) {
+                                  const FlightInputs& in, double last_ignition_s) {
   const FlightDefinition& definition = model.definition();
   std::vector<MotorBurn> burns;
   for (const LauncherStack& stack : plant.stacks) burns.push_back(stack.burn);
   const std::vector<StageTimes> timeline =
-      BuildTimeline(definition.vehicle, burns, definition.autopilot.tick_s, definition.last_ignition_s,
+      BuildTimeline(definition.vehicle, burns, definition.autopilot.tick_s, last_ignition_s,
                     definition.earlier_ignition_s, in);
   std::vector<FlightEvent> events;
   for (std::size_t i = 0; i < timeline.size(); ++i) {
@@ -169,7 +169,7 @@ FlightRecord::FlightRecord(const FlightModel& model, const FlightOrder& order)
       plant(model.PlantFor(order.inputs, order.options.case_index)),
       weather(PrepareWeather(plant.environment.wind, plant.environment.density,
                              plant.environment.turbulence.get())),
-      events(EventsOf(model, plant, inputs)),
+      events(EventsOf(model, plant, inputs, model.definition().last_ignition_s)),
       lift_off{},
       every_tick(options.observe != nullptr || !model.definition().own_metrics.empty()),
       watched(every_tick || options.history != nullptr),
@@ -339,7 +339,7 @@ void FlightRecord::CutOff(int stage, double time_s) {
   const auto ignition = std::find_if(events.begin(), events.end(),
                                      [&](const FlightEvent& event) { return event.stage == stage; });
   CutOffStage(model_.definition().vehicle, stage, time_s - ignition->time_s, plant);
-  events = EventsOf(model_, plant, inputs);
+  events = EventsOf(model_, plant, inputs, guided ? guided->ignition_s() : model_.definition().last_ignition_s);
   SetEquations();
 }
 

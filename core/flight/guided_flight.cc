@@ -19,13 +19,24 @@ GuidedFlight::~GuidedFlight() = default;
 
 double GuidedFlight::ignition_s() const { return guidance_->ignition_s(); }
 
+bool GuidedFlight::cuts_off() const { return guidance_->cuts_off(); }
+
+double GuidedFlight::CutOffIn(double time_s, const Vector3& v_IC_I, const Vector3& acceleration_m_s2_I,
+                              double specific_force_m_s2) const {
+  const Vector3 seen = v_IC_I + velocity_error_I_;
+  const double speed_m_s = seen.norm();
+  return guidance_->CutOffIn(time_s, speed_m_s, seen.dot(acceleration_m_s2_I) / speed_m_s,
+                             accelerometer_factor_ * specific_force_m_s2);
+}
+
 const GuidanceOutcome& GuidedFlight::outcome() const { return guidance_->outcome(); }
 
 bool GuidedFlight::See(const LaneSight& sight) {
   const double tick_s = model_.definition().autopilot.tick_s;
   const int last = static_cast<int>(model_.nominal_plant().stacks.size()) - 1;
   GuidanceSight seen;
-  const bool is_below = sight.stack == last - 1, is_last = sight.stack == last;
+  const bool is_below = sight.stack == last - 1 && model_.guidance_mission()->steers_below,
+             is_last = sight.stack == last;
   if (!(is_below && sight.burning) && !is_last) {
     next_tick_ += 1.0 / tick_s;
     return false;

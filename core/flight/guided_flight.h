@@ -40,6 +40,11 @@ class GuidedFlight {
   /// True when the last stage's ignition is to be at ignition_s() from now on.
   bool See(const LaneSight& sight);
   double ignition_s() const;
+  /// Whether guidance decides when the present burn ends.
+  bool cuts_off() const;
+  /// Then: the time from now until it is to end, s. The arguments are true values.
+  double CutOffIn(double time_s, const Vector3& v_IC_I, const Vector3& acceleration_m_s2_I,
+                  double specific_force_m_s2) const;
 
   /// Whether the lane's reference is its own.
   bool steers() const { return steers_; }

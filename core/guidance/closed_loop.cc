@@ -1,5 +1,8 @@
 #include "core/guidance/closed_loop.h"
 
+#include <algorithm>
+#include <cmath>
+
 #include "core/math/functions.h"
 
 namespace dispersa {
@@ -17,6 +20,17 @@ constexpr double kLongestPostponement_s = 60.0;
 // What is left of the last burn when altitude and plane are let go, and when the plan is.
 constexpr double kOnlyVelocity_s = 10.0;
 constexpr double kHold_s = 1.5;
+// The same where guidance cuts the burn off: speeds of a weak engine change slowly.
+constexpr double kOnlyCutOff_s = 15.0;
+// An engine's long burn is planned every `period_s` at first and at last. In between a plan holds for a part
+// of the time since ignition, and of the time left.
+constexpr double kOfSince = 0.2, kOfLeft = 0.05, kLongestPeriod_s = 10.0;
+// From this time before the planned cut-off on, its speed ends the burn. A burn as planned may differ by more.
+constexpr double kArmed_s = 3.0, kArmedOfBurn = 0.25;
+// Where the speed grows by less than this part of the specific force, time ends the burn.
+constexpr double kAlong = 0.2;
+// Between a burn's end and the ignition of the next, at least: separation and settling.
+constexpr double kApart_s = 10.0;
 // Thrust is measured over the time between two calls, and smoothed.
 constexpr double kOffsetGain = 0.3;
 constexpr double kLargestOffset_rad = 3.0 * kRadPerDeg;
@@ -32,7 +46,10 @@ ClosedLoopGuidance::ClosedLoopGuidance(const GuidanceMission& mission)
       plan_(prior_.nominal),
       at_ignition_(prior_.nominal),
       below_(mission.below),
-      last_(mission.last) {}
+      last_(mission.last) {
+  if (mission.below.is_cut_off()) below_engine_.emplace(mission.below);
+  if (mission.last.is_cut_off()) last_engine_.emplace(mission.last);
+}
 
 CorrectorTask ClosedLoopGuidance::Task(std::initializer_list<PlanUnknown> free, const Plan& prior,
                                        int iterations) const {
@@ -47,6 +64,13 @@ CorrectorTask ClosedLoopGuidance::Task(std::initializer_list<PlanUnknown> free, 
 
 bool ClosedLoopGuidance::See(const GuidanceSight& sight) {
   if (sight.phase != phase_) {
+    if (phase_ == GuidancePhase::kBelowBurns && below_engine_ && mission_.is_restart) {
+      const GuidedStage below = below_engine_->Stage(0.0);
+      const double end_s = std::min(plan_.value[kBelowCutOff], below.Depletes());
+      const GuidedStage left = AfterBurn(below, mission_.last, end_s);
+      last_engine_->Begin(left.ignition_mass_kg, left.usable_kg);
+    }
+    if (sight.phase == GuidancePhase::kCoast) cut_off_.reset();
     phase_ = sight.phase;
     has_previous_ = false;
     if (sight.phase == GuidancePhase::kLastBurns) at_ignition_ = plan_;
@@ -86,38 +110,108 @@ void ClosedLoopGuidance::MeasureThrust(const GuidanceSight& sight) {
   has_previous_ = true;
 }
 
+void ClosedLoopGuidance::TakeOver(double time_s) {
+  if (steers_) return;
+  steers_ = true;
+  command_.Start(time_s, mission_.program.At(time_s), mission_.program.RateAt(time_s));
+}
+
+void ClosedLoopGuidance::BoundCutOffs(const Knowledge& known, double time_s, CorrectorTask& task) {
+  GuidedStage last = known.last;
+  const auto bound = [&](PlanUnknown unknown, const GuidedStage& stage, double since_s) {
+    task.high[unknown] = std::max(stage.Depletes(), since_s);
+    task.low[unknown] = std::min(std::max(task.low[unknown], since_s), task.high[unknown]);
+    plan_.value[unknown] = Clamp(plan_.value[unknown], task.low[unknown], task.high[unknown]);
+  };
+  const bool below_burns = known.phase == GuidancePhase::kBelowBurns;
+  if (below_burns && known.below.is_cut_off()) {
+    bound(kBelowCutOff, known.below, time_s - known.burn_ignition_s);
+    const double end_s = plan_.value[kBelowCutOff];
+    if (mission_.is_restart) last = AfterBurn(known.below, last, end_s);
+    const double earliest_s = known.burn_ignition_s + end_s + kApart_s;
+    task.low[kIgnition] = std::max(task.low[kIgnition], earliest_s);
+    task.high[kIgnition] = std::max(task.high[kIgnition], earliest_s);
+    plan_.value[kIgnition] = Clamp(plan_.value[kIgnition], task.low[kIgnition], task.high[kIgnition]);
+  }
+  if (last.is_cut_off())
+    bound(kCutOff, last,
+          known.phase == GuidancePhase::kLastBurns ? time_s - known.burn_ignition_s : 0.0);
+}
+
+// The last burn ends with the target's energy. If that is out of reach by the estimate, it ends with the
+// propellant, of which there may be more. A prediction that is no number leaves the cut-off as it is.
+void ClosedLoopGuidance::SetCutOff(const Correction& found) {
+  const Injection& reached = found.reached;
+  double speed_m_s = reached.burn_end_speed_m_s;
+  if (phase_ != GuidancePhase::kBelowBurns) {
+    const double excess_m2_s2 = OrbitMissOf(mission_, reached).energy_m_s * mission_.target.velocity_m_s;
+    speed_m_s = Sqrt(Square(speed_m_s) - 2.0 * excess_m2_s2);
+  }
+  if (speed_m_s > 0.0 && std::isfinite(speed_m_s) && std::isfinite(reached.burn_end_s))
+    cut_off_ = {speed_m_s, reached.burn_end_s};
+}
+
+double ClosedLoopGuidance::CutOffIn(double time_s, double speed_m_s, double growth_m_s2,
+                                    double specific_force_m_s2) const {
+  const double left_s = cut_off_->time_s - time_s;
+  const double burn_s = phase_ == GuidancePhase::kBelowBurns ? plan_.value[kBelowCutOff] : plan_.value[kCutOff];
+  const bool is_steered = mission_.config.steers_last_burn || phase_ == GuidancePhase::kBelowBurns;
+  if (left_s > (is_steered ? kArmed_s : kArmedOfBurn * burn_s)) return left_s;
+  if (!(std::fabs(growth_m_s2) > kAlong * specific_force_m_s2)) return left_s;
+  return (cut_off_->speed_m_s - speed_m_s) / growth_m_s2;
+}
+
 void ClosedLoopGuidance::SeeBelowBurn(const GuidanceSight& sight) {
   const double since_s = sight.state.time_s - sight.burn_ignition_s;
-  below_.Add(since_s, sight.specific_force_m_s2);
+  if (!below_engine_) below_.Add(since_s, sight.specific_force_m_s2);
   if (since_s < kTakeOver_s) return;
   const double time_s = sight.state.time_s;
   if (!steers_) {
-    steers_ = true;
-    command_.Start(time_s, mission_.program.At(time_s), mission_.program.RateAt(time_s));
+    TakeOver(time_s);
     plan_ = prior_.nominal;
   }
+  if (below_engine_)
+    below_engine_->Add(time_s, since_s, sight.specific_force_m_s2, sight.expelled_kg);
   MeasureThrust(sight);
   Knowledge known;
   known.phase = sight.phase;
   known.burn_ignition_s = sight.burn_ignition_s;
-  known.below = below_.Stage(0.0);
-  known.last = mission_.last;
+  known.below = below_engine_ ? below_engine_->Stage(sight.expelled_kg) : below_.Stage(0.0);
+  known.last = last_engine_ ? last_engine_->Stage(sight.expelled_kg) : mission_.last;
   known.thrust_offset_rad_I = thrust_offset_rad_I_;
   known.commanded = command_.direction();
-  const double left_s = sight.burn_ignition_s + known.below.burn.duration_s - time_s;
+  double left_s = sight.burn_ignition_s + known.below.burn.duration_s - time_s;
+  if (below_engine_)
+    left_s = sight.burn_ignition_s +
+             std::min(plan_.value[kBelowCutOff], known.below.Depletes()) - time_s;
   if (left_s < kHold_s) return;
   CorrectorTask task = Task({kBelowPitch, kBelowYaw, kIgnition, kPitchMiddle, kPitchHalf, kYawMiddle, kWaste},
                             prior_.nominal, outcome_.acted ? kIterations : kFirstIterations);
-  plan_ = Correct(mission_, prior_, known, sight.state, plan_, task).plan;
+  if (below_engine_) task.free[kBelowCutOff] = true;
+  if (last_engine_) {
+    task.free[kWaste] = false;
+    task.free[kCutOff] = true;
+  }
+  task.free[kIgnition] = mission_.moves_ignition;
+  BoundCutOffs(known, time_s, task);
+  const Correction found = Correct(mission_, prior_, known, sight.state, plan_, task);
+  plan_ = found.plan;
   outcome_.acted = true;
+  if (!below_engine_) return;
+  SetCutOff(found);
+  SetEnginePeriod(since_s, found.reached.burn_end_s - time_s);
+}
+
+void ClosedLoopGuidance::SetEnginePeriod(double since_s, double left_s) {
+  const double period_s = mission_.config.period_s;
+  const double longer_s = std::min({kOfSince * since_s, kOfLeft * left_s, kLongestPeriod_s});
+  if (longer_s > period_s) next_call_s_ += longer_s - period_s;
 }
 
 bool ClosedLoopGuidance::SeeCoast(const GuidanceSight& sight) {
+  if (!mission_.moves_ignition) return false;
   const double time_s = sight.state.time_s;
-  if (!steers_) {
-    steers_ = true;
-    command_.Start(time_s, mission_.program.At(time_s), mission_.program.RateAt(time_s));
-  }
+  TakeOver(time_s);
   double earliest_s = time_s + kLastPlan_s;
   double& ignition_s = plan_.value[kIgnition];
   const double left_s = ignition_s - time_s;
@@ -137,7 +231,7 @@ bool ClosedLoopGuidance::SeeCoast(const GuidanceSight& sight) {
   }
   Knowledge known;
   known.phase = sight.phase;
-  known.last = last_.Stage(sight.expelled_kg);
+  known.last = last_engine_ ? last_engine_->Stage(sight.expelled_kg) : last_.Stage(sight.expelled_kg);
   // Near ignition the plan stays near itself: the attitude that the burn begins with takes its time.
   const bool is_near = outcome_.acted && left_s <= kCoastPeriod_s + kNearIgnition_s;
   CorrectorTask task =
@@ -146,29 +240,45 @@ bool ClosedLoopGuidance::SeeCoast(const GuidanceSight& sight) {
   if (task.low[kIgnition] < earliest_s) task.low[kIgnition] = earliest_s;
   if (task.high[kIgnition] < earliest_s) task.high[kIgnition] = earliest_s;
   ignition_s = Clamp(ignition_s, task.low[kIgnition], task.high[kIgnition]);
+  if (last_engine_) {
+    task.free[kWaste] = false;
+    task.free[kCutOff] = true;
+    BoundCutOffs(known, time_s, task);
+  }
   const Correction found = Correct(mission_, prior_, known, sight.state, plan_, task);
   plan_ = found.plan;
   outcome_.acted = true;
   outcome_.arrives = found.arrives;
   outcome_.ignition_shift_s = ignition_s - mission_.last_ignition_s;
   outcome_.excess_m_s = plan_.value[kWaste] * IdealVelocity(known.last);
+  if (last_engine_) SetCutOff(found);
   const double until_s = ignition_s - time_s;
   next_call_s_ =
       time_s + (until_s > kCoastPeriod_s + kNearIgnition_s ? kCoastPeriod_s : mission_.config.period_s);
+  if (last_engine_ && until_s > kCoastPeriod_s + kNearIgnition_s)
+    next_call_s_ = time_s + std::max(kCoastPeriod_s, kOfLeft * until_s);
   return true;
 }
 
 void ClosedLoopGuidance::SeeLastBurn(const GuidanceSight& sight) {
   if (!mission_.config.steers_last_burn) return;
-  const double time_s = sight.state.time_s;
-  last_.Add(time_s - sight.burn_ignition_s, sight.specific_force_m_s2);
+  const double time_s = sight.state.time_s, since_s = time_s - sight.burn_ignition_s;
+  if (!mission_.moves_ignition) plan_.value[kIgnition] = sight.burn_ignition_s;
+  if (last_engine_) {
+    if (since_s < kTakeOver_s) return;
+    TakeOver(time_s);
+    last_engine_->Add(time_s, since_s, sight.specific_force_m_s2, sight.expelled_kg);
+  } else {
+    last_.Add(since_s, sight.specific_force_m_s2);
+  }
   MeasureThrust(sight);
   Knowledge known;
   known.phase = sight.phase;
   known.burn_ignition_s = sight.burn_ignition_s;
-  known.last = last_.Stage(sight.expelled_kg);
+  known.last = last_engine_ ? last_engine_->Stage(sight.expelled_kg) : last_.Stage(sight.expelled_kg);
   known.thrust_offset_rad_I = thrust_offset_rad_I_;
   known.commanded = command_.direction();
+  if (last_engine_) return SteerToCutOff(known, sight.state);
   const double left_s = sight.burn_ignition_s + known.last.burn.duration_s - time_s;
   if (left_s < kHold_s) return;
   const bool all = left_s > kOnlyVelocity_s;
@@ -179,6 +289,25 @@ void ClosedLoopGuidance::SeeLastBurn(const GuidanceSight& sight) {
   plan_ = found.plan;
   if (all) met_all_ = found.arrives;
   outcome_.arrives = met_all_ && found.arrives;
+}
+
+void ClosedLoopGuidance::SteerToCutOff(const Knowledge& known, const NavigatedState& state) {
+  const double since_s = state.time_s - known.burn_ignition_s;
+  const double left_s = std::min(plan_.value[kCutOff], known.last.Depletes()) - since_s;
+  if (left_s < kHold_s) return;
+  const bool all = left_s > kOnlyCutOff_s;
+  CorrectorTask task = all ? Task({kPitchMiddle, kPitchHalf, kYawMiddle, kCutOff}, at_ignition_,
+                                  outcome_.acted ? kIterations : kFirstIterations)
+                           : Task({kPitchMiddle, kCutOff}, plan_, kIterations);
+  BoundCutOffs(known, state.time_s, task);
+  task.meets_altitude = task.meets_plane = all;
+  const Correction found = Correct(mission_, prior_, known, state, plan_, task);
+  plan_ = found.plan;
+  outcome_.acted = true;
+  if (all) met_all_ = found.arrives;
+  outcome_.arrives = met_all_ && found.arrives;
+  SetCutOff(found);
+  SetEnginePeriod(since_s, found.reached.burn_end_s - state.time_s);
 }
 
 void ClosedLoopGuidance::Command(double time_s) {
@@ -196,10 +325,12 @@ void ClosedLoopGuidance::Command(double time_s) {
       break;
   }
   const LastBurnAttitude burn(plan_, prior_);
-  wanted = burn.At(time_s - plan_.ignition_s());
-  if (time_s < plan_.ignition_s())
+  const bool waits = !mission_.moves_ignition && phase_ == GuidancePhase::kCoast;
+  const double ignition_s = waits ? time_s : plan_.ignition_s();
+  wanted = burn.At(time_s - ignition_s);
+  if (waits || time_s < ignition_s)
     return command_.Follow(time_s, wanted, {}, limits.coast_rate_rad_s, limits.coast_acceleration_rad_s2);
-  rate = burn.RateAt(time_s - plan_.ignition_s());
+  rate = burn.RateAt(time_s - ignition_s);
   command_.Follow(time_s, wanted, rate, limits.turn_rate_rad_s, limits.turn_acceleration_rad_s2);
 }
 

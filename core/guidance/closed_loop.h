@@ -4,6 +4,7 @@
 
 #include "core/guidance/attitude_command.h"
 #include "core/guidance/corrector.h"
+#include "core/guidance/engine_estimate.h"
 #include "core/guidance/motor_estimate.h"
 #include "core/guidance/outcome.h"
 
@@ -30,6 +31,12 @@ class ClosedLoopGuidance {
   bool See(const GuidanceSight& sight);
   double ignition_s() const { return plan_.ignition_s(); }
 
+  /// Whether it decides when the present burn ends. If not, the vehicle's own cut-off stands.
+  bool cuts_off() const { return cut_off_.has_value(); }
+  /// Time from now until the present burn is to end, s. `growth_m_s2` is that of the speed. All are measured.
+  /// Far off, it is only a time after the next tick.
+  double CutOffIn(double time_s, double speed_m_s, double growth_m_s2, double specific_force_m_s2) const;
+
   /// Whether the attitude is its own and no longer the reference's.
   bool steers() const { return steers_; }
   /// Moves the command on to a tick. Times do not fall.
@@ -43,6 +50,12 @@ class ClosedLoopGuidance {
   bool SeeCoast(const GuidanceSight& sight);
   void SeeLastBurn(const GuidanceSight& sight);
   void MeasureThrust(const GuidanceSight& sight);
+  void TakeOver(double time_s);
+  /// Bounds of the cut-offs, and of an ignition after one, as the estimates have them.
+  void BoundCutOffs(const Knowledge& known, double time_s, CorrectorTask& task);
+  void SteerToCutOff(const Knowledge& known, const NavigatedState& state);
+  void SetCutOff(const Correction& found);
+  void SetEnginePeriod(double since_s, double left_s);
   CorrectorTask Task(std::initializer_list<PlanUnknown> free, const Plan& prior, int iterations) const;
 
   const GuidanceMission& mission_;
@@ -55,6 +68,12 @@ class ClosedLoopGuidance {
   GuidancePhase phase_ = GuidancePhase::kBelowBurns;
   double next_call_s_ = 0.0;
   MotorEstimate below_, last_;
+  std::optional<EngineEstimate> below_engine_, last_engine_;  ///< in their place, if guidance cuts them off
+  /// The planned end of a burn: reaching this speed, about at this time.
+  struct CutOffPlan {
+    double speed_m_s = 0.0, time_s = 0.0;
+  };
+  std::optional<CutOffPlan> cut_off_;  ///< of the present burn
   Vector3 thrust_offset_rad_I_ = Vector3::Zero();
   NavigatedState previous_;  ///< of the burn's last call, and where thrust was to point then
   Vector3 previous_direction_L_ = Vector3::Zero();

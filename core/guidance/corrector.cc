@@ -40,12 +40,13 @@ Misses Scaled(const GuidanceMission& mission, const Injection& reached, const Co
 }
 
 // Thrust at an angle to the velocity loses 1 - cos of its energy: the second derivative that a miss of energy
-// has in the angles, in units of scales. Only what would be missing of the energy if no more were wasted
-// holds a step back.
+// has in the angles, in units of scales. Only what would be missing of the energy if no more were wasted, or
+// if the engine burnt on, holds a step back. `spent`: departures of waste and cut-off that could be had back.
 Unknowns CurvatureOf(const GuidanceMission& mission, const Knowledge& known, const PlanPrior& prior,
-                     const StepModel& model, double spent) {
+                     const StepModel& model, double spent, double unburnt) {
   Unknowns curvature = Unknowns::Zero();
-  const double missing = -(model.miss(0) - spent * model.jacobian(0, kWaste));
+  double missing = -(model.miss(0) - spent * model.jacobian(0, kWaste));
+  if (unburnt > 0.0) missing -= unburnt * model.jacobian(0, kCutOff);
   if (!(missing > 0.0)) return curvature;
   const double last = missing * IdealVelocity(mission.last) / kTolerance[0];
   curvature(kPitchMiddle) = curvature(kYawMiddle) = last;
@@ -75,7 +76,7 @@ Correction Correct(const GuidanceMission& mission, const PlanPrior& prior, const
   const auto keep = [&](const Plan& plan, const Injection& reached, const Misses& miss) {
     best.plan = plan;
     best.miss = Less(reached.at, mission.target);
-    best.burnout_s = reached.time_s;
+    best.reached = reached;
     best.prioritised_miss = miss.norm();
   };
   const Injection at_start = predict(start);
@@ -100,7 +101,8 @@ Correction Correct(const GuidanceMission& mission, const PlanPrior& prior, const
     }
     const Unknowns curvature = CurvatureOf(
         mission, known, prior, model,
-        task.free[kWaste] ? (best.plan.value[kWaste] - task.low[kWaste]) / prior.scale[kWaste] : 0.0);
+        task.free[kWaste] ? (best.plan.value[kWaste] - task.low[kWaste]) / prior.scale[kWaste] : 0.0,
+        task.free[kCutOff] ? (task.high[kCutOff] - best.plan.value[kCutOff]) / prior.scale[kCutOff] : 0.0);
     const double sum = model.At(Unknowns::Zero());
     const double highest = std::fmax(best.prioritised_miss, kSolvedMiss);
     best.iterations = iteration + 1;

@@ -4,6 +4,7 @@
 #include <cmath>
 
 #include "core/control/autopilot_config.h"
+#include "core/guidance/mission.h"
 #include "core/input/number_text.h"
 #include "core/math/functions.h"
 #include "core/vehicle/mass.h"
@@ -31,6 +32,7 @@ GuidedAuthority AuthorityOf(const Vehicle& vehicle, const AutopilotConfig& autop
   authority.nozzles_rad_s2 = HUGE_VAL;
   const std::size_t last = stacks.size() - 1;
   for (const std::size_t i : {last - 1, last}) {
+    if (i < last && !SteersBelow(vehicle)) continue;
     const Stage& stage = vehicle.stages[i];
     const MassProperties full = stacks[i].At(stacks[i].propellant_mass_kg);
     const double share = stage.gimbal.nozzles.empty() ? 0.5 : BuildNozzleLayout(stage.gimbal).pitch_share;

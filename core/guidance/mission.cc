@@ -44,10 +44,35 @@ Direction DirectionTable::RateAt(double time_s) const {
   return {(to.pitch_rad - from.pitch_rad) / step_s, (to.yaw_rad - from.yaw_rad) / step_s};
 }
 
+double GuidedStage::DroppedBy(double time_s) const {
+  double dropped_kg = 0.0;
+  for (const MassDrop& drop : drops)
+    if (drop.time_s <= time_s) dropped_kg += drop.mass_kg;
+  return dropped_kg;
+}
+
+GuidedStage AfterBurn(const GuidedStage& below, GuidedStage last, double duration_s) {
+  const double burnt_kg = below.Burnt(duration_s);
+  double dropped_kg = 0.0;  // also between the burns
+  for (const MassDrop& drop : below.drops) dropped_kg += drop.mass_kg;
+  for (const MassDrop& drop : last.drops) dropped_kg -= drop.mass_kg;
+  last.ignition_mass_kg = below.ignition_mass_kg - dropped_kg - burnt_kg;
+  last.usable_kg = below.usable_kg - burnt_kg;
+  return last;
+}
+
 double IdealVelocity(const GuidedStage& stage) {
   return stage.burn.ExhaustVelocity() *
          Log(stage.ignition_mass_kg /
              (stage.ignition_mass_kg - stage.burn.propellant_mass_kg + stage.burn.left_kg));
+}
+
+bool IsCutOffByGuidance(const Stage& stage) {
+  return stage.is_liquid() && stage.motor.cut_off == CutOff::kAtVelocity;
+}
+
+bool SteersBelow(const Vehicle& vehicle) {
+  return vehicle.stages.size() > 2 || !IsCutOffByGuidance(vehicle.stages.back());
 }
 
 }  // namespace dispersa

@@ -2,9 +2,11 @@
 // the last two stages, the reference's attitude, and the target.
 #pragma once
 
+#include <optional>
 #include <vector>
 
 #include "core/environment/earth.h"
+#include "core/guidance/engine_levels.h"
 #include "core/guidance/guidance_config.h"
 #include "core/guidance/guidance_limits.h"
 #include "core/math/linear.h"
@@ -39,11 +41,28 @@ struct DirectionTable {
   Direction RateAt(double time_s) const;
 };
 
+/// A body that the reference lets go of.
+struct MassDrop {
+  double time_s = 0.0;  ///< since lift-off
+  double mass_kg = 0.0;
+};
+
 /// A stack with its motor as the documents give them.
 struct GuidedStage {
   MotorBurn burn;
   double ignition_mass_kg = 0.0;  ///< with everything above
   bool loses_mass = false;        ///< the reference lets go of something while it burns
+  // Of an engine that guidance cuts off. The reference's burn ends after burn.duration_s.
+  std::optional<EngineLevels> levels = {};
+  double usable_kg = 0.0;            ///< propellant at ignition without the residual
+  std::vector<MassDrop> drops = {};  ///< after the reference's ignition
+
+  bool is_cut_off() const { return levels.has_value(); }
+  double DroppedBy(double time_s) const;
+  /// Duration of a burn that uses up the propellant. Precondition of both: is_cut_off().
+  double Depletes() const { return levels->TimeOf(usable_kg / burn.full_flow_kg_s); }
+  /// Propellant burnt by an engine that guidance cuts off, kg.
+  double Burnt(double duration_s) const { return burn.full_flow_kg_s * levels->Sum(duration_s); }
 };
 
 struct GuidanceMission {
@@ -54,12 +73,26 @@ struct GuidanceMission {
   Arrival target;
   GuidedStage below;  ///< the stage before the last
   GuidedStage last;
+  bool steers_below = true;           ///< else guidance begins with the last stage
+  bool moves_ignition = true;         ///< the last stage ignites on the timer
+  bool is_restart = false;            ///< the last burn is another one of the engine before
+  double below_burnout_s = 0.0;       ///< of the reference
   double last_ignition_s = 0.0;       ///< of the reference
   double velocity_reserve_m_s = 0.0;  ///< by which the reference arrives faster than the target
   DirectionTable program;             ///< from the ignition of the stage before the last on
 };
 
+/// The last stage, if it is another burn of the engine below after a burn of `duration_s`: what is left is its
+/// mass and its propellant.
+GuidedStage AfterBurn(const GuidedStage& below, GuidedStage last, double duration_s);
+
 /// Ideal velocity change of a burn.
 double IdealVelocity(const GuidedStage& stage);
+
+/// Whether guidance decides when the burn of a stage ends.
+bool IsCutOffByGuidance(const Stage& stage);
+/// Whether it steers the last stage but one. A stage that lifts off is steered by the reference, if the last
+/// stage's engine can be cut off.
+bool SteersBelow(const Vehicle& vehicle);
 
 }  // namespace dispersa

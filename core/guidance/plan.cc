@@ -78,6 +78,7 @@ double TurnCourse::EarlyRate(double since_ignition_s) const {
 }
 
 LastBurnAttitude::LastBurnAttitude(const Plan& plan, const PlanPrior& prior) : plan_(plan), prior_(prior) {
+  if (prior.departs_from != nullptr) return;
   const TurnCourse& course = prior.turn;
   const double waste = plan.value[kWaste], way_s = course.end_s - course.from_s;
   // The late course has slopes of 3 turns over the way, the early one of 2.
@@ -95,18 +96,53 @@ LastBurnAttitude::LastBurnAttitude(const Plan& plan, const PlanPrior& prior) : p
 Direction LastBurnAttitude::At(double since_ignition_s) const {
   const double since = since_ignition_s > 0.0 ? since_ignition_s : 0.0;
   const double s = 2.0 * since / prior_.last_duration_s - 1.0;
+  if (const GuidanceMission* mission = prior_.departs_from) {
+    const Direction at = mission->program.At(mission->last_ignition_s + since);
+    return {at.pitch_rad + plan_.value[kPitchMiddle] + s * plan_.value[kPitchHalf],
+            at.yaw_rad + plan_.value[kYawMiddle]};
+  }
   const double turned = (1.0 - early_) * prior_.turn.Late(since) + early_ * prior_.turn.Early(since) - mean_;
   return {plan_.value[kPitchMiddle] + s * plan_.value[kPitchHalf],
           plan_.value[kYawMiddle] + s * prior_.yaw_half_rad + turn_rad_ * turned};
 }
 
 Direction LastBurnAttitude::RateAt(double since_ignition_s) const {
-  const TurnCourse& course = prior_.turn;
   const double slope = 2.0 / prior_.last_duration_s;
+  if (const GuidanceMission* mission = prior_.departs_from) {
+    const Direction rate = mission->program.RateAt(mission->last_ignition_s + since_ignition_s);
+    return {rate.pitch_rad + slope * plan_.value[kPitchHalf], rate.yaw_rad};
+  }
+  const TurnCourse& course = prior_.turn;
   const double turning =
       (1.0 - early_) * course.LateRate(since_ignition_s) + early_ * course.EarlyRate(since_ignition_s);
   return {slope * plan_.value[kPitchHalf], slope * prior_.yaw_half_rad + turn_rad_ * turning};
 }
+
+namespace {
+
+// Scales, and bounds on either side. A cut-off's later bound is the propellant's end, which is known in
+// flight.
+void SetReach(const GuidanceMission& mission, PlanPrior& prior) {
+  constexpr double kDeg = kRadPerDeg;
+  constexpr double kOfBurn = 0.05, kShortestOfBurn = 0.2;
+  const auto& value = prior.nominal.value;
+  const double below_s = value[kBelowCutOff], last_s = value[kCutOff];
+  const auto scale_s = [](double burn_s) { return burn_s > 0.0 ? kOfBurn * burn_s : 1.0; };
+  prior.scale = {2.0 * kDeg, 1.0 * kDeg, 20.0, 5.0 * kDeg, 5.0 * kDeg, 3.0 * kDeg, 0.03,
+                 scale_s(below_s), scale_s(last_s)};
+  const double late_s = (1.0 - kShortestOfBurn);
+  const std::array<double, kPlanUnknowns> reach = {
+      10.0 * kDeg, 5.0 * kDeg, 120.0, 25.0 * kDeg, 25.0 * kDeg, 25.0 * kDeg, 0.0, late_s * below_s, late_s * last_s};
+  for (int i = 0; i < kPlanUnknowns; ++i) {
+    const auto k = static_cast<std::size_t>(i);
+    prior.low[k] = value[k] - reach[k];
+    prior.high[k] = value[k] + reach[k];
+  }
+  if (mission.below.is_cut_off()) prior.high[kBelowCutOff] = mission.below.Depletes();
+  if (mission.last.is_cut_off()) prior.high[kCutOff] = mission.last.Depletes();
+}
+
+}  // namespace
 
 PlanPrior BuildPrior(const GuidanceMission& mission) {
   PlanPrior prior;
@@ -115,25 +151,23 @@ PlanPrior BuildPrior(const GuidanceMission& mission) {
   const Direction from = mission.program.At(mission.last_ignition_s), to = mission.program.At(burnout_s);
   auto& value = prior.nominal.value;
   value[kIgnition] = mission.last_ignition_s;
+  if (mission.below.is_cut_off()) value[kBelowCutOff] = mission.below.burn.duration_s;
+  if (mission.last.is_cut_off()) {
+    value[kCutOff] = mission.last.burn.duration_s;
+    prior.departs_from = &mission;
+    SetReach(mission, prior);
+    return prior;
+  }
   value[kPitchMiddle] = 0.5 * (from.pitch_rad + to.pitch_rad);
   value[kPitchHalf] = 0.5 * (to.pitch_rad - from.pitch_rad);
   value[kYawMiddle] = 0.5 * (from.yaw_rad + to.yaw_rad);
   value[kWaste] = mission.velocity_reserve_m_s / IdealVelocity(mission.last);
   prior.yaw_half_rad = 0.5 * (to.yaw_rad - from.yaw_rad);
   prior.turn = CourseOf(mission);
-
-  constexpr double kDeg = kRadPerDeg;
-  prior.scale = {2.0 * kDeg, 1.0 * kDeg, 20.0, 5.0 * kDeg, 5.0 * kDeg, 3.0 * kDeg, 0.03};
-  const std::array<double, kPlanUnknowns> reach = {10.0 * kDeg, 5.0 * kDeg,  120.0, 25.0 * kDeg,
-                                                   25.0 * kDeg, 25.0 * kDeg, 0.0};
-  for (int i = 0; i < kPlanUnknowns; ++i) {
-    const auto k = static_cast<std::size_t>(i);
-    prior.low[k] = value[k] - reach[k];
-    prior.high[k] = value[k] + reach[k];
-  }
+  SetReach(mission, prior);
   // From no turn, of which nothing is left to give, to an early one of 45 degrees either way.
   prior.low[kWaste] = 0.0;
-  prior.high[kWaste] = 0.5 * Square(45.0 * kDeg) * prior.turn.early_variance;
+  prior.high[kWaste] = 0.5 * Square(45.0 * kRadPerDeg) * prior.turn.early_variance;
   return prior;
 }
 

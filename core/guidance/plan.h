@@ -1,4 +1,4 @@
-// The guidance plan: the seven numbers that guidance still decides.
+// The guidance plan: the numbers that guidance still decides.
 #pragma once
 
 #include <array>
@@ -11,10 +11,13 @@ enum PlanUnknown {
   kBelowPitch,  ///< offset to the reference's attitude while the stage before the last burns, rad
   kBelowYaw,
   kIgnition,     ///< of the last stage, s since lift-off
-  kPitchMiddle,  ///< of the last burn: pitch in L at half its nominal duration, rad
+  // Of the last burn. If guidance cuts it off, these are added to the reference's attitude.
+  kPitchMiddle,  ///< pitch in L at half its nominal duration, rad
   kPitchHalf,    ///< by how much pitch is greater at its nominal end, rad
   kYawMiddle,
-  kWaste,  ///< part of the last burn's ideal velocity that turning in yaw takes away
+  kWaste,        ///< part of the last burn's ideal velocity that turning in yaw takes away
+  kBelowCutOff,  ///< of an engine that guidance cuts off: its burn's duration, s
+  kCutOff,       ///< the same of the last stage
   kPlanUnknowns
 };
 struct Plan {
@@ -45,6 +48,8 @@ struct PlanPrior {
   double last_duration_s = 0.0;  ///< nominal, of the last burn
   double yaw_half_rad = 0.0;     ///< of the reference's last burn
   TurnCourse turn;
+  /// Of a last stage that guidance cuts off: its attitudes are the reference's and a departure. Else null.
+  const GuidanceMission* departs_from = nullptr;
   std::array<double, kPlanUnknowns> scale{};  ///< a departure that costs 1
   std::array<double, kPlanUnknowns> low{}, high{};
 };
@@ -52,7 +57,8 @@ PlanPrior BuildPrior(const GuidanceMission& mission);
 
 /// Direction of the last burn's thrust by a plan: pitch and yaw linear in time, plus the turn in yaw about
 /// its mean. The turn takes a²/2 of the course's variance from the ideal velocity; kWaste stands for it. It
-/// begins as late as the command can follow.
+/// begins as late as the command can follow. If guidance cuts the burn off: the reference's direction, plus a
+/// departure linear in time.
 class LastBurnAttitude {
  public:
   LastBurnAttitude(const Plan& plan, const PlanPrior& prior);

@@ -7,6 +7,7 @@
 
 #include "core/math/constants.h"
 #include "core/math/functions.h"
+#include "core/vehicle/prepared_burn.h"
 
 namespace dispersa {
 
@@ -47,6 +48,7 @@ void Burn(const GuidanceMission& mission, const GuidedStage& stage, double ignit
           const Vector3& offset_rad_I, std::initializer_list<double> bends, const DirectionAt& direction_at,
           NavigatedState& state) {
   const MotorBurn& burn = stage.burn;
+  const PreparedBurn prepared(burn);
   const double empty_kg = stage.ignition_mass_kg - burn.propellant_mass_kg;
   std::vector<double> ends = burn.Kinks(0.0);
   for (const double bend : bends)
@@ -60,8 +62,35 @@ void Burn(const GuidanceMission& mission, const GuidedStage& stage, double ignit
     constexpr double kInside = 1e-9;
     const auto thrust = [&](double time_s) -> Vector3 {
       const double since = std::clamp(time_s - ignition_s, begin + kInside, end - kInside);
+      const lanes::BurnState<double> now = prepared.At(since);
+      const double acceleration = burn.vacuum_thrust_n * now.fraction / (empty_kg + now.propellant_kg);
+      const Vector3 along = mission.R_IL * UnitVector(direction_at(time_s));
+      return acceleration * (along + offset_rad_I.cross(along));
+    };
+    Advance(mission.earth, ignition_s + end, longest_s, thrust, state);
+  }
+}
+
+// An engine's burn until guidance cuts it off after `duration_s`, or the propellant is used up. Steps end where
+// the level bends and where a body leaves.
+template <class DirectionAt>
+void BurnEngine(const GuidanceMission& mission, const GuidedStage& stage, double ignition_s, double duration_s,
+                double longest_s, const Vector3& offset_rad_I, const DirectionAt& direction_at,
+                NavigatedState& state) {
+  const double end_s = std::min(duration_s, stage.Depletes());
+  std::vector<double> ends = stage.levels->bends_s();
+  for (const MassDrop& drop : stage.drops) ends.push_back(drop.time_s - ignition_s);
+  ends.push_back(end_s);
+  std::sort(ends.begin(), ends.end());
+  for (const double end : ends) {
+    if (end > end_s) break;
+    const double begin = state.time_s - ignition_s;
+    if (!(end > begin)) continue;
+    const double mass_kg = stage.ignition_mass_kg - stage.DroppedBy(0.5 * (begin + end) + ignition_s);
+    const auto thrust = [&](double time_s) -> Vector3 {
+      const double since = time_s - ignition_s;
       const double acceleration =
-          burn.vacuum_thrust_n * burn.Fraction(since) / (empty_kg + burn.Propellant(since));
+          stage.burn.vacuum_thrust_n * stage.levels->At(since) / (mass_kg - stage.Burnt(since));
       const Vector3 along = mission.R_IL * UnitVector(direction_at(time_s));
       return acceleration * (along + offset_rad_I.cross(along));
     };
@@ -135,6 +164,9 @@ Arrival ArrivalOf(const Earth& earth, double time_s, const Vector3& p, const Vec
 Injection Predict(const GuidanceMission& mission, const PlanPrior& prior, const Knowledge& known,
                   const NavigatedState& from, const Plan& plan, const PredictorSteps& steps) {
   NavigatedState state = from;
+  Injection injection;
+  // Of an engine that burns again: what its burn before leaves.
+  std::optional<GuidedStage> restarted;
   if (known.phase == GuidancePhase::kBelowBurns) {
     const auto planned = [&](double time_s) {
       Direction along = mission.program.At(time_s);
@@ -145,11 +177,21 @@ Injection Predict(const GuidanceMission& mission, const PlanPrior& prior, const 
     const Lags lags =
         LagsOf(mission.limits, known, planned(from.time_s), mission.program.RateAt(from.time_s));
     const auto direction = [&](double time_s) { return lags.Of(planned(time_s), time_s - from.time_s); };
-    Burn(mission, known.below, known.burn_ignition_s, steps.burn_s, known.thrust_offset_rad_I, {}, direction,
-         state);
+    if (known.below.is_cut_off()) {
+      BurnEngine(mission, known.below, known.burn_ignition_s, plan.value[kBelowCutOff], steps.engine_s,
+                 known.thrust_offset_rad_I, direction, state);
+      if (mission.is_restart) restarted = AfterBurn(known.below, known.last, state.time_s - known.burn_ignition_s);
+    } else {
+      Burn(mission, known.below, known.burn_ignition_s, steps.burn_s, known.thrust_offset_rad_I, {},
+           direction, state);
+    }
+    injection.burn_end_speed_m_s = state.v_IC_I.norm();
+    injection.burn_end_s = state.time_s;
   }
   const bool lit = known.phase == GuidancePhase::kLastBurns;
-  const double ignition_s = lit ? known.burn_ignition_s : plan.ignition_s();
+  double ignition_s = lit ? known.burn_ignition_s : plan.ignition_s();
+  if (!lit && !mission.moves_ignition)
+    ignition_s = state.time_s + (mission.last_ignition_s - mission.below_burnout_s);
   if (!lit)
     Advance(
         mission.earth, ignition_s, steps.coast_s, [](double) { return Vector3(0.0, 0.0, 0.0); }, state);
@@ -166,12 +208,22 @@ Injection Predict(const GuidanceMission& mission, const PlanPrior& prior, const 
   };
   const TurnCourse& turn = prior.turn;
   const Vector3 offset = lit ? known.thrust_offset_rad_I : Vector3(0.0, 0.0, 0.0);
+  if (known.last.is_cut_off())
+    BurnEngine(mission, restarted ? *restarted : known.last, ignition_s, plan.value[kCutOff], steps.engine_s,
+               offset, direction, state);
+  else
   Burn(mission, known.last, ignition_s, steps.burn_s, offset,
        {turn.from_s - turn.round_s, turn.from_s + turn.round_s, turn.back_s - turn.round_s,
         turn.back_s + turn.round_s, brakes_s},
        direction, state);
-  return {ArrivalOf(mission.earth, state.time_s, state.p_EoC_I, state.v_IC_I), state.time_s,
-          state.p_EoC_I.norm()};
+  injection.at = ArrivalOf(mission.earth, state.time_s, state.p_EoC_I, state.v_IC_I);
+  injection.time_s = state.time_s;
+  injection.radius_m = state.p_EoC_I.norm();
+  if (known.phase != GuidancePhase::kBelowBurns) {
+    injection.burn_end_speed_m_s = injection.at.velocity_m_s;
+    injection.burn_end_s = state.time_s;
+  }
+  return injection;
 }
 
 }  // namespace dispersa

@@ -23,7 +23,7 @@ struct Knowledge {
   double burn_ignition_s = 0.0;  ///< of the motor that burns
   GuidedStage below;             ///< as estimated, while it burns
   GuidedStage last;  ///< nominal until it burns, then as estimated, minus the propellant expelled by the
-                     ///< reaction control
+                     ///< reaction control. While the same engine burns before: its masses do not count
   /// Small rotation from where thrust shall point to where it does, as measured.
   Vector3 thrust_offset_rad_I = Vector3::Zero();
   /// The present command of a burning motor's attitude, which approaches the plan's at a limited rate.
@@ -34,11 +34,14 @@ struct Injection {
   Arrival at;
   double time_s = 0.0;
   double radius_m = 0.0;  ///< from the Earth's centre
+  /// Of the first burn, where it ends: inertial speed and time.
+  double burn_end_speed_m_s = 0.0, burn_end_s = 0.0;
 };
 
 /// Largest steps of the classical Runge-Kutta method. Steps end at a thrust's kinks.
 struct PredictorSteps {
   double burn_s = 2.5;
+  double engine_s = 6.0;  ///< of an engine that guidance cuts off
   double coast_s = 40.0;
 };
 

@@ -2,27 +2,17 @@
 
 #include <algorithm>
 
-#include "core/vehicle/burning_stack.h"
+#include "core/vehicle/prepared_burn.h"
 #include "core/vehicle/throttled_burn.h"
 
 namespace dispersa {
 
-namespace {
-
-lanes::BurnState<double> At(const MotorBurn& motor, double since_ignition_s) {
-  lanes::MotorBurnLanes<double> burn;
-  lanes::SetLane(burn, 0, motor);
-  return lanes::BurnAt(burn, since_ignition_s);
-}
-
-}  // namespace
-
 double MotorBurn::Fraction(double since_ignition_s) const {
-  return since_ignition_s < 0.0 || since_ignition_s > duration_s ? 0.0 : At(*this, since_ignition_s).fraction;
+  return since_ignition_s < 0.0 || since_ignition_s > duration_s ? 0.0 : PreparedBurn(*this).At(since_ignition_s).fraction;
 }
 
 double MotorBurn::Propellant(double since_ignition_s) const {
-  return At(*this, since_ignition_s).propellant_kg;
+  return PreparedBurn(*this).At(since_ignition_s).propellant_kg;
 }
 
 double MotorBurn::ExhaustVelocity() const {
