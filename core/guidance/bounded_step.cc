@@ -14,30 +14,34 @@ using Which = std::array<bool, kPlanUnknowns>;
 std::size_t Index(int i) { return static_cast<std::size_t>(i); }
 
 // The least value over those unknowns that move, the others where `step` has them.
-Unknowns LeastOver(const StepModel& model, const Unknowns& weight, const Which& moves, const Unknowns& step) {
-  MissJacobian j = model.jacobian;
-  Unknowns y = model.departure.cwiseQuotient(weight);
+template <int count>
+Unknowns<count> LeastOver(const StepModel<count>& model, const Unknowns<count>& weight, const Which& moves,
+                          const Unknowns<count>& step) {
+  Eigen::Matrix<double, kMisses, count> j = model.jacobian;
+  Unknowns<count> y = model.departure.cwiseQuotient(weight);
   Misses rest = model.miss;
-  for (int i = 0; i < kPlanUnknowns; ++i) {
+  for (int i = 0; i < count; ++i) {
     if (moves[Index(i)]) continue;
     rest += model.jacobian.col(i) * step(i);
     j.col(i).setZero();
     y(i) = 0.0;
   }
-  const MissJacobian weighted = j * weight.cwiseInverse().asDiagonal();
+  const Eigen::Matrix<double, kMisses, count> weighted = j * weight.cwiseInverse().asDiagonal();
   const Eigen::Matrix<double, kMisses, kMisses> normal =
       weighted * j.transpose() + Eigen::Matrix<double, kMisses, kMisses>::Identity();
   return -y - weighted.transpose() * normal.llt().solve(rest - j * y);
 }
 
 // The held unknown that would best leave its bound; -1 where none would.
-int BestToRelease(const StepModel& model, const Unknowns& weight, const Which& moves, const Unknowns& step) {
-  const Unknowns slope = model.jacobian.transpose() * (model.miss + model.jacobian * step) + model.departure +
+template <int count>
+int BestToRelease(const StepModel<count>& model, const Unknowns<count>& weight, const Which& moves,
+                  const Unknowns<count>& step) {
+  const Unknowns<count> slope = model.jacobian.transpose() * (model.miss + model.jacobian * step) + model.departure +
                          weight.cwiseProduct(step);
   // Less than this is rounding.
-  double steepest = 1e-6 * (1.0 + (model.jacobian.transpose() * model.miss).lpNorm<Eigen::Infinity>());
+  double steepest = 1e-6 * (1.0 + (model.jacobian.transpose() * model.miss).template lpNorm<Eigen::Infinity>());
   int best = -1;
-  for (int i = 0; i < kPlanUnknowns; ++i) {
+  for (int i = 0; i < count; ++i) {
     if (!model.free[Index(i)] || moves[Index(i)]) continue;
     const double inwards = step(i) >= model.high(i) ? slope(i) : -slope(i);
     if (inwards > steepest) {
@@ -50,17 +54,18 @@ int BestToRelease(const StepModel& model, const Unknowns& weight, const Which& m
 
 }  // namespace
 
-Unknowns BoundedStep(const StepModel& model, const Unknowns& weight) {
+template <int count>
+Unknowns<count> BoundedStep(const StepModel<count>& model, const Unknowns<count>& weight) {
   // More changes than unknowns are rare; rounding must not make it go round for ever.
-  constexpr int kMostChanges = 4 * kPlanUnknowns;
+  constexpr int kMostChanges = 4 * count;
   Which moves = model.free;
-  Unknowns step = Unknowns::Zero();
+  Unknowns<count> step = Unknowns<count>::Zero();
   for (int change = 0; change < kMostChanges; ++change) {
-    const Unknowns least = LeastOver(model, weight, moves, step);
+    const Unknowns<count> least = LeastOver(model, weight, moves, step);
     // Towards it until the first bound.
     int first = -1;
     double part = 1.0;
-    for (int i = 0; i < kPlanUnknowns; ++i) {
+    for (int i = 0; i < count; ++i) {
       if (!moves[Index(i)]) continue;
       const double way = least(i) - step(i), room = (way > 0.0 ? model.high(i) : model.low(i)) - step(i);
       if (std::fabs(way) > std::fabs(room) && room / way < part) {
@@ -68,7 +73,7 @@ Unknowns BoundedStep(const StepModel& model, const Unknowns& weight) {
         first = i;
       }
     }
-    for (int i = 0; i < kPlanUnknowns; ++i)
+    for (int i = 0; i < count; ++i)
       if (moves[Index(i)])
         step(i) = Clamp(step(i) + part * (least(i) - step(i)), model.low(i), model.high(i));
     if (first >= 0) {
@@ -82,5 +87,8 @@ Unknowns BoundedStep(const StepModel& model, const Unknowns& weight) {
   }
   return step;
 }
+
+template Unknowns<kUncutUnknowns> BoundedStep(const StepModel<kUncutUnknowns>&, const Unknowns<kUncutUnknowns>&);
+template Unknowns<kPlanUnknowns> BoundedStep(const StepModel<kPlanUnknowns>&, const Unknowns<kPlanUnknowns>&);
 
 }  // namespace dispersa

@@ -11,19 +11,21 @@ namespace dispersa {
 
 inline constexpr int kMisses = 4;
 using Misses = Eigen::Matrix<double, kMisses, 1>;
-using Unknowns = Eigen::Matrix<double, kPlanUnknowns, 1>;
-using MissJacobian = Eigen::Matrix<double, kMisses, kPlanUnknowns>;
+/// Of the first `count` unknowns of a plan. The order in which sums are taken depends on it.
+template <int count>
+using Unknowns = Eigen::Matrix<double, count, 1>;
 
 /// Model of the sum of squares |miss + J s|² + |y + s|², all without units. `low` is not above 0, `high` not
 /// below.
+template <int count>
 struct StepModel {
-  MissJacobian jacobian = MissJacobian::Zero();
+  Eigen::Matrix<double, kMisses, count> jacobian = Eigen::Matrix<double, kMisses, count>::Zero();
   Misses miss = Misses::Zero();
-  Unknowns departure = Unknowns::Zero();  ///< y
-  Unknowns low = Unknowns::Zero(), high = Unknowns::Zero();
+  Unknowns<count> departure = Unknowns<count>::Zero();  ///< y
+  Unknowns<count> low = Unknowns<count>::Zero(), high = Unknowns<count>::Zero();
   std::array<bool, kPlanUnknowns> free{};
 
-  double At(const Unknowns& step) const {
+  double At(const Unknowns<count>& step) const {
     return (miss + jacobian * step).squaredNorm() + (departure + step).squaredNorm();
   }
 };
@@ -31,6 +33,11 @@ struct StepModel {
 /// The step s within the bounds with the least |miss + J s|² + |y + s|² + s' (W - 1) s. W is the diagonal
 /// `weight`, 1 or more. The sum is never larger than without a step. By an active set (J. Nocedal and S. J.
 /// Wright, Numerical Optimization, 2006, section 16.5).
-Unknowns BoundedStep(const StepModel& model, const Unknowns& weight);
+template <int count>
+Unknowns<count> BoundedStep(const StepModel<count>& model, const Unknowns<count>& weight);
+extern template Unknowns<kUncutUnknowns> BoundedStep(const StepModel<kUncutUnknowns>&,
+                                                     const Unknowns<kUncutUnknowns>&);
+extern template Unknowns<kPlanUnknowns> BoundedStep(const StepModel<kPlanUnknowns>&,
+                                                    const Unknowns<kPlanUnknowns>&);
 
 }  // namespace dispersa

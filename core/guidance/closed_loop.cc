@@ -35,6 +35,12 @@ constexpr double kApart_s = 10.0;
 constexpr double kOffsetGain = 0.3;
 constexpr double kLargestOffset_rad = 3.0 * kRadPerDeg;
 
+// What an engine that can be stopped has in place of a turn in yaw.
+void FreeCutOff(CorrectorTask& task) {
+  task.free[kWaste] = false;
+  task.free[kCutOff] = task.free[kYawHalf] = true;
+}
+
 constexpr int kFirstIterations = 8;
 constexpr int kIterations = 2;
 
@@ -188,10 +194,7 @@ void ClosedLoopGuidance::SeeBelowBurn(const GuidanceSight& sight) {
   CorrectorTask task = Task({kBelowPitch, kBelowYaw, kIgnition, kPitchMiddle, kPitchHalf, kYawMiddle, kWaste},
                             prior_.nominal, outcome_.acted ? kIterations : kFirstIterations);
   if (below_engine_) task.free[kBelowCutOff] = true;
-  if (last_engine_) {
-    task.free[kWaste] = false;
-    task.free[kCutOff] = true;
-  }
+  if (last_engine_) FreeCutOff(task);
   task.free[kIgnition] = mission_.moves_ignition;
   BoundCutOffs(known, time_s, task);
   const Correction found = Correct(mission_, prior_, known, sight.state, plan_, task);
@@ -241,8 +244,7 @@ bool ClosedLoopGuidance::SeeCoast(const GuidanceSight& sight) {
   if (task.high[kIgnition] < earliest_s) task.high[kIgnition] = earliest_s;
   ignition_s = Clamp(ignition_s, task.low[kIgnition], task.high[kIgnition]);
   if (last_engine_) {
-    task.free[kWaste] = false;
-    task.free[kCutOff] = true;
+    FreeCutOff(task);
     BoundCutOffs(known, time_s, task);
   }
   const Correction found = Correct(mission_, prior_, known, sight.state, plan_, task);
@@ -296,7 +298,7 @@ void ClosedLoopGuidance::SteerToCutOff(const Knowledge& known, const NavigatedSt
   const double left_s = std::min(plan_.value[kCutOff], known.last.Depletes()) - since_s;
   if (left_s < kHold_s) return;
   const bool all = left_s > kOnlyCutOff_s;
-  CorrectorTask task = all ? Task({kPitchMiddle, kPitchHalf, kYawMiddle, kCutOff}, at_ignition_,
+  CorrectorTask task = all ? Task({kPitchMiddle, kPitchHalf, kYawMiddle, kYawHalf, kCutOff}, at_ignition_,
                                   outcome_.acted ? kIterations : kFirstIterations)
                            : Task({kPitchMiddle, kCutOff}, plan_, kIterations);
   BoundCutOffs(known, state.time_s, task);

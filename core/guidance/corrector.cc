@@ -42,18 +42,20 @@ Misses Scaled(const GuidanceMission& mission, const Injection& reached, const Co
 // Thrust at an angle to the velocity loses 1 - cos of its energy: the second derivative that a miss of energy
 // has in the angles, in units of scales. Only what would be missing of the energy if no more were wasted, or
 // if the engine burnt on, holds a step back. `spent`: departures of waste and cut-off that could be had back.
-Unknowns CurvatureOf(const GuidanceMission& mission, const Knowledge& known, const PlanPrior& prior,
-                     const StepModel& model, double spent, double unburnt) {
-  Unknowns curvature = Unknowns::Zero();
+template <int count>
+Unknowns<count> CurvatureOf(const GuidanceMission& mission, const Knowledge& known, const PlanPrior& prior,
+                            const StepModel<count>& model, double spent, double unburnt) {
+  Unknowns<count> curvature = Unknowns<count>::Zero();
   double missing = -(model.miss(0) - spent * model.jacobian(0, kWaste));
-  if (unburnt > 0.0) missing -= unburnt * model.jacobian(0, kCutOff);
+  if constexpr (count > kCutOff) missing -= unburnt * model.jacobian(0, kCutOff);
   if (!(missing > 0.0)) return curvature;
   const double last = missing * IdealVelocity(mission.last) / kTolerance[0];
   curvature(kPitchMiddle) = curvature(kYawMiddle) = last;
   curvature(kPitchHalf) = last / 3.0;
+  if constexpr (count > kYawHalf) curvature(kYawHalf) = last / 3.0;
   if (known.phase == GuidancePhase::kBelowBurns)
     curvature(kBelowPitch) = curvature(kBelowYaw) = missing * IdealVelocity(mission.below) / kTolerance[0];
-  for (int i = 0; i < kPlanUnknowns; ++i) curvature(i) *= Square(prior.scale[static_cast<std::size_t>(i)]);
+  for (int i = 0; i < count; ++i) curvature(i) *= Square(prior.scale[static_cast<std::size_t>(i)]);
   return curvature;
 }
 
@@ -65,8 +67,11 @@ bool Arrives(const Arrival& miss, bool meets_altitude, bool meets_plane) {
          (!meets_plane || std::fabs(miss.inclination_rad) <= 0.02 * kRadPerDeg);
 }
 
-Correction Correct(const GuidanceMission& mission, const PlanPrior& prior, const Knowledge& known,
-                   const NavigatedState& from, const Plan& start, const CorrectorTask& task) {
+namespace {
+
+template <int count>
+Correction CorrectFirst(const GuidanceMission& mission, const PlanPrior& prior, const Knowledge& known,
+                        const NavigatedState& from, const Plan& start, const CorrectorTask& task) {
   Correction best;
   best.plan = start;
   const auto predict = [&](const Plan& plan) {
@@ -80,14 +85,14 @@ Correction Correct(const GuidanceMission& mission, const PlanPrior& prior, const
     best.prioritised_miss = miss.norm();
   };
   const Injection at_start = predict(start);
-  StepModel model;
+  StepModel<count> model;
   model.free = task.free;
   model.miss = Scaled(mission, at_start, task);
   keep(start, at_start, model.miss);
   best.start_prioritised_miss = best.prioritised_miss;
   double damping = 0.0;
   for (int iteration = 0; iteration < task.iterations; ++iteration) {
-    for (int i = 0; i < kPlanUnknowns; ++i) {
+    for (int i = 0; i < count; ++i) {
       const auto k = static_cast<std::size_t>(i);
       if (!task.free[k]) continue;
       const double scale = prior.scale[k], value = best.plan.value[k];
@@ -99,25 +104,25 @@ Correction Correct(const GuidanceMission& mission, const PlanPrior& prior, const
       moved.value[k] += difference * scale;
       model.jacobian.col(i) = (Scaled(mission, predict(moved), task) - model.miss) / difference;
     }
-    const Unknowns curvature = CurvatureOf(
+    const Unknowns<count> curvature = CurvatureOf(
         mission, known, prior, model,
         task.free[kWaste] ? (best.plan.value[kWaste] - task.low[kWaste]) / prior.scale[kWaste] : 0.0,
         task.free[kCutOff] ? (task.high[kCutOff] - best.plan.value[kCutOff]) / prior.scale[kCutOff] : 0.0);
-    const double sum = model.At(Unknowns::Zero());
+    const double sum = model.At(Unknowns<count>::Zero());
     const double highest = std::fmax(best.prioritised_miss, kSolvedMiss);
     best.iterations = iteration + 1;
     bool taken = false, is_still = false, is_found = false;
     for (int trial = 0; trial < kTrials && !taken && !is_still; ++trial) {
-      const Unknowns weight = Unknowns::Constant(1.0 + damping) + curvature;
+      const Unknowns<count> weight = Unknowns<count>::Constant(1.0 + damping) + curvature;
       const bool is_damped = damping > 0.0;
       // Misses are curved: the same Jacobian corrects the rest that a step leaves, before the step is
       // dropped.
-      StepModel bent = model;
+      StepModel<count> bent = model;
       double before = 1e300;
       for (int turn = 0; turn < kBends && !taken && !is_still; ++turn) {
-        const Unknowns step = BoundedStep(bent, weight);
+        const Unknowns<count> step = BoundedStep(bent, weight);
         Plan next = best.plan;
-        for (int i = 0; i < kPlanUnknowns; ++i) {
+        for (int i = 0; i < count; ++i) {
           const auto k = static_cast<std::size_t>(i);
           if (task.free[k])
             next.value[k] = Clamp(next.value[k] + step(i) * prior.scale[k], task.low[k], task.high[k]);
@@ -125,8 +130,8 @@ Correction Correct(const GuidanceMission& mission, const PlanPrior& prior, const
         const Injection reached = predict(next);
         const Misses miss = Scaled(mission, reached, task);
         const double next_sum = miss.squaredNorm() + (model.departure + step).squaredNorm();
-        is_still = (miss - model.miss).lpNorm<Eigen::Infinity>() < kStill &&
-                   step.lpNorm<Eigen::Infinity>() < kDifference;
+        is_still = (miss - model.miss).template lpNorm<Eigen::Infinity>() < kStill &&
+                   step.template lpNorm<Eigen::Infinity>() < kDifference;
         // A prediction that is no number is no decrease.
         taken = miss.norm() <= highest &&
                 (sum - next_sum >= kEnoughDecrease * std::fmax(sum - model.At(step), 0.0) ||
@@ -152,6 +157,15 @@ Correction Correct(const GuidanceMission& mission, const PlanPrior& prior, const
   if (!task.meets_altitude) judged.velocity_m_s = model.miss(0) * kTolerance[0];
   best.arrives = Arrives(judged, task.meets_altitude, task.meets_plane);
   return best;
+}
+
+}  // namespace
+
+Correction Correct(const GuidanceMission& mission, const PlanPrior& prior, const Knowledge& known,
+                   const NavigatedState& from, const Plan& start, const CorrectorTask& task) {
+  return mission.below.is_cut_off() || mission.last.is_cut_off()
+             ? CorrectFirst<kPlanUnknowns>(mission, prior, known, from, start, task)
+             : CorrectFirst<kUncutUnknowns>(mission, prior, known, from, start, task);
 }
 
 }  // namespace dispersa

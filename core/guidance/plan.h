@@ -15,9 +15,12 @@ enum PlanUnknown {
   kPitchMiddle,  ///< pitch in L at half its nominal duration, rad
   kPitchHalf,    ///< by how much pitch is greater at its nominal end, rad
   kYawMiddle,
-  kWaste,        ///< part of the last burn's ideal velocity that turning in yaw takes away
-  kBelowCutOff,  ///< of an engine that guidance cuts off: its burn's duration, s
-  kCutOff,       ///< the same of the last stage
+  kWaste,  ///< part of the last burn's ideal velocity that turning in yaw takes away
+  kUncutUnknowns,
+  // Of engines that guidance cuts off.
+  kBelowCutOff = kUncutUnknowns,  ///< duration of the burn of the stage before the last, s
+  kCutOff,   ///< the same of the last stage
+  kYawHalf,  ///< as kPitchHalf, of a last burn that guidance cuts off
   kPlanUnknowns
 };
 struct Plan {

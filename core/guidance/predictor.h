@@ -41,8 +41,8 @@ struct Injection {
 /// Largest steps of the classical Runge-Kutta method. Steps end at a thrust's kinks.
 struct PredictorSteps {
   double burn_s = 2.5;
-  double engine_s = 6.0;  ///< of an engine that guidance cuts off
   double coast_s = 40.0;
+  double engine_s = 6.0;  ///< in a burn that guidance cuts off
 };
 
 Injection Predict(const GuidanceMission& mission, const PlanPrior& prior, const Knowledge& known,

@@ -240,12 +240,13 @@ TEST(OrbitMiss, WantsTheBestShapeOfTheEnergyThereIs) {
   EXPECT_NEAR(ellipse.shape_m_s, 0.0, 0.1) << "of -20 if the shape of the target were wanted";
 }
 
-TEST(BoundedStep, IsTheLeastWithinItsBounds) {
+template <int count>
+void ExpectLeastWithinBounds() {
   for (std::uint64_t draw = 0; draw < 200; ++draw) {
     Stream random(17, draw, "models");
-    StepModel model;
-    Unknowns weight = Unknowns::Ones();
-    for (int i = 0; i < kPlanUnknowns; ++i) {
+    StepModel<count> model;
+    Unknowns<count> weight = Unknowns<count>::Ones();
+    for (int i = 0; i < count; ++i) {
       const auto k = static_cast<std::size_t>(i);
       model.free[k] = i != static_cast<int>(draw % 9);
       for (int m = 0; m < kMisses; ++m) model.jacobian(m, i) = 30.0 * random.Normal();
@@ -255,11 +256,11 @@ TEST(BoundedStep, IsTheLeastWithinItsBounds) {
       weight(i) = 1.0 + std::fabs(random.Normal());
     }
     for (int m = 0; m < kMisses; ++m) model.miss(m) = 100.0 * random.Normal();
-    const auto value = [&](const Unknowns& s) {
-      return model.At(s) + s.cwiseProduct(weight - Unknowns::Ones()).dot(s);
+    const auto value = [&](const Unknowns<count>& s) {
+      return model.At(s) + s.cwiseProduct(weight - Unknowns<count>::Ones()).dot(s);
     };
-    const Unknowns found = BoundedStep(model, weight);
-    for (int i = 0; i < kPlanUnknowns; ++i) {
+    const Unknowns<count> found = BoundedStep(model, weight);
+    for (int i = 0; i < count; ++i) {
       EXPECT_GE(found(i), model.low(i));
       EXPECT_LE(found(i), model.high(i));
       if (!model.free[static_cast<std::size_t>(i)]) {
@@ -268,12 +269,17 @@ TEST(BoundedStep, IsTheLeastWithinItsBounds) {
       }
       // Convex: where no single unknown does better, nothing does.
       for (const double by : {-1e-3, 1e-3}) {
-        Unknowns other = found;
+        Unknowns<count> other = found;
         other(i) = std::fmin(std::fmax(other(i) + by, model.low(i)), model.high(i));
-        EXPECT_GE(value(other), value(found) - 1e-9 * value(Unknowns::Zero())) << draw << ", " << i;
+        EXPECT_GE(value(other), value(found) - 1e-9 * value(Unknowns<count>::Zero())) << draw << ", " << i;
       }
     }
   }
+}
+
+TEST(BoundedStep, IsTheLeastWithinItsBounds) {
+  ExpectLeastWithinBounds<kUncutUnknowns>();
+  ExpectLeastWithinBounds<kPlanUnknowns>();
 }
 
 TEST(MotorEstimate, FindsThrustAndFlowOfAMotorByItsAcceleration) {
