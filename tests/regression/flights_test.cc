@@ -40,8 +40,10 @@ const Kind kKinds[] = {
     {"flexible_guided", MADE_UP "flexible_guided.yaml"},
     {"guided", SHIPPED "orbit.yaml", {0, 1}, true},
     {"guided_full", SHIPPED "orbit_full.yaml"},
-    {"solid_and_restart", SHIPPED "gallery/vega/campaign.yaml", {0, 1}, true},  // listed nozzles, a fairing
-    {"liquid", SHIPPED "gallery/electron/campaign.yaml", {0, 1}, true},  // throttled; listed, a fairing
+    {"solid_and_restart", MADE_UP "vega_open_loop.yaml", {0, 1}, true},  // listed nozzles, a fairing
+    {"liquid", MADE_UP "electron_open_loop.yaml", {0, 1}, true},         // throttled; listed, a fairing
+    {"guided_restart", SHIPPED "gallery/vega/campaign.yaml", {0, 1}, true},
+    {"guided_liquid", SHIPPED "gallery/electron/campaign.yaml", {0, 1}, true},
     {"jettison", SHIPPED "gallery/scout/campaign.yaml", {0, 1}, true},
     {"law_adaptive_fuzzy", SHIPPED "controllers.yaml"},
     {"law_composite_fuzzy",

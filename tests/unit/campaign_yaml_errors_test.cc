@@ -577,16 +577,16 @@ TEST(CampaignYamlErrors, TextWithoutFilesNamesNone) {
   }
 }
 
-TEST(GuidanceOfAVehicle, NeedsALastStageOnATimer) {
+TEST(GuidanceOfAVehicle, NeedsALastBurnThatItCanChange) {
   const InputFiles files;
   files.Edit("campaign.yaml", "name: trial", "name: trial\nguidance: {mode: closed_loop}");
   EXPECT_EQ(files.Texts(CheckFile(files.Path("campaign.yaml")).errors), "");
   files.Edit("vehicle.yaml", "ignition: {trigger: timer}", "ignition: {trigger: burnout_detection}");
   EXPECT_EQ(
       files.Texts(CheckFile(files.Path("campaign.yaml")).errors),
-      "campaign.yaml:3:18: guidance.mode: the vehicle 'two-stage' has no last stage whose ignition guidance "
-      "could move, allowed: open_loop, or a vehicle whose last of two stages or more has ignition: "
-      "{trigger: timer}\n");
+      "campaign.yaml:3:18: guidance.mode: the last burn of 'two-stage' follows the one before at once and ends "
+      "by itself: guidance can change neither its beginning nor its end, allowed: open_loop, or a last stage "
+      "with ignition: {trigger: timer} or with a liquid engine that has cut_off: {at: inertial_velocity}\n");
 }
 
 // A metric of one law is required of its flights alone.

@@ -1,0 +1,215 @@
+// Guidance that decides when engines are cut off, on launchers of the gallery: Electron, whose last stage burns
+// once, and Vega, whose last stage burns twice.
+#include <gtest/gtest.h>
+
+#include <cmath>
+#include <memory>
+#include <string>
+#include <vector>
+
+#include "core/campaign/flight_definition.h"
+#include "core/campaign_yaml/load.h"
+#include "core/cases/campaign_flights.h"
+#include "core/flight/tick_sample.h"
+#include "core/guidance/corrector.h"
+#include "tests/slv4_flight.h"
+
+namespace dispersa::guidance_cut_off_test {
+namespace {
+
+Campaign Shipped(const std::string& launcher) {
+  return LoadCampaign(DISPERSA_CAMPAIGNS "/gallery/" + launcher + "/campaign.yaml");
+}
+
+// A case's inputs, with navigation that does not err.
+FlightInputs Drawn(const CampaignFlights& flights, std::uint64_t index) {
+  FlightInputs inputs = flights.Draw(index);
+  inputs.navigation_position_error_m = inputs.navigation_velocity_error_m_s = {};
+  inputs.accelerometer_scale_factor = 1.0;
+  return inputs;
+}
+
+struct Orbit {
+  double axis_error_m, inclination_error_deg, altitude_error_m, perigee_km, axis_km;
+  bool converged;
+};
+Orbit OrbitOf(const FlightResult& flight) {
+  EXPECT_EQ(flight.outcome, Outcome::kCompleted) << flight.reason;
+  return {1e3 * MetricOf(flight, "semi_major_axis_error_km"),
+          MetricOf(flight, "inclination_error_deg"),
+          1e3 * MetricOf(flight, "injection_altitude_error_km"),
+          MetricOf(flight, "perigee_km"),
+          0.5 * (MetricOf(flight, "perigee_km") + MetricOf(flight, "apogee_km")),
+          MetricOf(flight, "guidance_converged") == 1.0};
+}
+
+class GuidedLauncher : public testing::TestWithParam<std::string> {
+ protected:
+  GuidedLauncher() : campaign_(Shipped(GetParam())), flights_(campaign_) {
+    FlightDefinition definition = DefinitionOf(campaign_);
+    closed_ = std::make_unique<FlightModel>(definition);
+    definition.guidance.closed_loop = false;
+    open_ = std::make_unique<FlightModel>(definition);
+  }
+  const Campaign campaign_;
+  const CampaignFlights flights_;
+  std::unique_ptr<FlightModel> open_, closed_;
+};
+
+TEST_P(GuidedLauncher, ArrivesWithinAMetreWhereOpenLoopMissesByKilometres) {
+  double farthest_m = 0.0;
+  for (std::uint64_t index = 0; index < 6; ++index) {
+    SCOPED_TRACE(index);
+    const FlightInputs inputs = Drawn(flights_, index);
+    const Orbit open = OrbitOf(Fly(*open_, inputs)), closed = OrbitOf(Fly(*closed_, inputs));
+    std::printf("%s %2d: axis %9.1f m open loop, %7.3f m closed; inclination %8.4f, %8.5f deg\n",
+                GetParam().c_str(), static_cast<int>(index), open.axis_error_m, closed.axis_error_m,
+                open.inclination_error_deg, closed.inclination_error_deg);
+    EXPECT_LT(std::fabs(closed.axis_error_m), 1.0);
+    EXPECT_LT(std::fabs(closed.altitude_error_m), 50.0);
+    EXPECT_LT(std::fabs(closed.inclination_error_deg), 0.005);
+    EXPECT_TRUE(closed.converged);
+    EXPECT_LT(std::fabs(closed.axis_error_m), std::fabs(open.axis_error_m));
+    farthest_m = std::fmax(farthest_m, std::fabs(open.axis_error_m));
+  }
+  EXPECT_GT(farthest_m, 20e3);
+}
+
+// One stage at a time lacks specific impulse or has too much of it, from what dispersions bring to what no
+// reserve makes up for.
+TEST_P(GuidedLauncher, IsNoWorseThanOpenLoopWhateverAStageLacks) {
+  for (std::size_t stage = 0; stage < campaign_.vehicle.stages.size(); ++stage) {
+    for (const double percent : {-6.0, -3.0, -1.0, 1.0, 3.0}) {
+      SCOPED_TRACE("stage " + std::to_string(stage + 1) + ", " + std::to_string(percent) + " %");
+      FlightInputs inputs;
+      inputs.specific_impulse_factor[stage] = 1.0 + 0.01 * percent;
+      const FlightResult open_flight = Fly(*open_, inputs), closed_flight = Fly(*closed_, inputs);
+      if (open_flight.outcome != Outcome::kCompleted) continue;
+      const Orbit open = OrbitOf(open_flight), closed = OrbitOf(closed_flight);
+      std::printf("%s stage %d %+4.1f %%: axis error %9.2f km, perigee %8.1f km open loop; %9.4f km, %8.1f km, "
+                  "%7.3f deg closed, converged %d\n",
+                  GetParam().c_str(), static_cast<int>(stage + 1), percent, 1e-3 * open.axis_error_m,
+                  open.perigee_km, 1e-3 * closed.axis_error_m, closed.perigee_km,
+                  closed.inclination_error_deg, closed.converged ? 1 : 0);
+      const double wanted_km = closed.axis_km - 1e-3 * closed.axis_error_m;
+      EXPECT_GE(closed.axis_km, std::fmin(open.axis_km, wanted_km) - 5.0);
+      EXPECT_LE(closed.axis_km, std::fmax(open.axis_km, wanted_km) + 5.0);
+      if (closed.converged) {
+        EXPECT_LT(std::fabs(closed.axis_error_m), 2e3);
+      }
+    }
+  }
+}
+
+// Navigation's error goes into the orbit: the engine is cut off by measured speed.
+TEST_P(GuidedLauncher, CutsOffByMeasuredSpeed) {
+  FlightInputs inputs;
+  const double right_m_s = MetricOf(Fly(*closed_, inputs), "injection_velocity_error_m_s");
+  double change2 = 0.0;
+  for (std::size_t axis = 0; axis < 3; ++axis) {
+    inputs.navigation_velocity_error_m_s = {};
+    inputs.navigation_velocity_error_m_s[axis] = 1.0;
+    const double wrong_m_s = MetricOf(Fly(*closed_, inputs), "injection_velocity_error_m_s");
+    change2 += std::pow(wrong_m_s - right_m_s, 2);
+  }
+  // The error's part along the velocity; of all three axes it is the whole.
+  EXPECT_NEAR(std::sqrt(change2), 1.0, 0.05);
+}
+
+INSTANTIATE_TEST_SUITE_P(Gallery, GuidedLauncher, testing::Values("electron", "vega"),
+                         [](const auto& launcher) { return launcher.param; });
+
+struct Seen {
+  NavigatedState state;
+  double expelled_kg = 0.0, ignition_s = 0.0;
+  bool any = false;
+};
+// Of a burn, so long after its ignition, in the nominal open-loop flight.
+FlightResult FlyAndSee(const FlightModel& model, int stack, double since_s, Seen& seen) {
+  FlightOptions options;
+  options.observe = [&](const TickSample& sample) {
+    if (seen.any || sample.stack != stack || !sample.burning || sample.since_ignition_s < since_s) return;
+    seen = {{sample.time_s, sample.state.p_EoC_I, sample.state.v_IC_I},
+            sample.expelled_mass_kg,
+            sample.time_s - sample.since_ignition_s,
+            true};
+  };
+  return Fly(model, {}, options);
+}
+
+void ExpectPredicted(const Injection& predicted, const FlightResult& flown, double metres, double m_s, double deg) {
+  std::printf("predicted less flown: %.2f m, %.5f m/s, %.6f deg, %.6f deg of inclination, %.4f s\n",
+              predicted.at.altitude_m - 1e3 * MetricOf(flown, "injection_altitude_km"),
+              predicted.at.velocity_m_s - MetricOf(flown, "injection_velocity_m_s"),
+              predicted.at.flight_path_angle_rad / kRadPerDeg - MetricOf(flown, "injection_flight_path_angle_deg"),
+              predicted.at.inclination_rad / kRadPerDeg - MetricOf(flown, "inclination_deg"),
+              predicted.time_s - flown.end_time_s);
+  EXPECT_NEAR(predicted.at.altitude_m, 1e3 * MetricOf(flown, "injection_altitude_km"), metres);
+  EXPECT_NEAR(predicted.at.velocity_m_s, MetricOf(flown, "injection_velocity_m_s"), m_s);
+  EXPECT_NEAR(predicted.at.flight_path_angle_rad / kRadPerDeg, MetricOf(flown, "injection_flight_path_angle_deg"),
+              deg);
+  EXPECT_NEAR(predicted.at.inclination_rad / kRadPerDeg, MetricOf(flown, "inclination_deg"), deg);
+}
+
+// The predictor against the engine's rigid body under the reference's program. Burns last as long as those that
+// the engine flew: cut off at a velocity. In Electron's a battery leaves and the engine throttles.
+TEST(EnginePrediction, IsTheEnginesFlightOfAThrottledBurn) {
+  FlightDefinition definition = DefinitionOf(Shipped("electron"));
+  const FlightModel closed(definition);
+  definition.guidance.closed_loop = false;
+  Seen seen;
+  const FlightResult flown = FlyAndSee(FlightModel(definition), 1, 60.0, seen);
+  const GuidanceMission& mission = *closed.guidance_mission();
+  ASSERT_FALSE(mission.steers_below);
+  ASSERT_EQ(mission.last.drops.size(), 2u);
+  const PlanPrior prior = BuildPrior(mission);
+  Knowledge known;
+  known.phase = GuidancePhase::kLastBurns;
+  known.burn_ignition_s = seen.ignition_s;
+  known.last = mission.last;
+  known.last.ignition_mass_kg -= seen.expelled_kg;
+  Plan plan = prior.nominal;
+  plan.value[kCutOff] = flown.end_time_s - seen.ignition_s;
+  // 300 s ahead, measured: 1 m, 0.03 m/s. The rest is attitude errors of hundredths of a degree, and air.
+  ExpectPredicted(Predict(mission, prior, known, seen.state, plan), flown, 10.0, 0.1, 0.001);
+  // A longer step changes the prediction by less than the corrector's tolerance.
+  const Injection fine = Predict(mission, prior, known, seen.state, plan, {.engine_s = 0.5});
+  EXPECT_NEAR(Predict(mission, prior, known, seen.state, plan).at.velocity_m_s, fine.at.velocity_m_s, 1e-3);
+}
+
+TEST(EnginePrediction, IsTheEnginesFlightThroughARestart) {
+  FlightDefinition definition = DefinitionOf(Shipped("vega"));
+  const FlightModel closed(definition);
+  definition.guidance.closed_loop = false;
+  Seen seen, second;
+  const FlightModel open(definition);
+  const FlightResult flown = FlyAndSee(open, 3, 30.0, seen);
+  FlyAndSee(open, 4, 0.0, second);
+  double first_end_s = 0.0;
+  FlightOptions options;
+  options.observe = [&](const TickSample& sample) {
+    if (sample.stack == 3 && sample.burning) first_end_s = sample.time_s;
+  };
+  Fly(open, {}, options);
+  const GuidanceMission& mission = *closed.guidance_mission();
+  ASSERT_TRUE(mission.is_restart);
+  const PlanPrior prior = BuildPrior(mission);
+  Knowledge known;
+  known.phase = GuidancePhase::kBelowBurns;
+  known.burn_ignition_s = seen.ignition_s;
+  known.below = mission.below;
+  known.below.ignition_mass_kg -= seen.expelled_kg;
+  known.last = mission.last;
+  Plan plan = prior.nominal;
+  // The reference is of a point mass, whose speeds and cut-offs differ a little.
+  EXPECT_NEAR(plan.value[kBelowCutOff], first_end_s - seen.ignition_s, 3.0);
+  EXPECT_NEAR(plan.value[kCutOff], flown.end_time_s - second.ignition_s, 3.0);
+  plan.value[kBelowCutOff] = first_end_s + 0.5 * definition.autopilot.tick_s - seen.ignition_s;
+  plan.value[kIgnition] = second.ignition_s;
+  plan.value[kCutOff] = flown.end_time_s - second.ignition_s;
+  // 2800 s ahead, measured: 2 m, 0.07 m/s. Half a tick of the first burn is 5 mm/s, and 20 m half an orbit later.
+  ExpectPredicted(Predict(mission, prior, known, seen.state, plan), flown, 50.0, 0.3, 0.001);
+}
+
+}  // namespace
+}  // namespace dispersa::guidance_cut_off_test
