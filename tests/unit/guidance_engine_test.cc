@@ -241,8 +241,9 @@ TEST(ClosedLoopGuidance, WithoutAPlanFliesTheReference) {
   EXPECT_FALSE(guidance.cuts_off());
   EXPECT_FALSE(guidance.outcome().arrives);
   const Direction reference = mission.program.At(lost.time_s - 0.05), at = guidance.command().direction();
-  EXPECT_NEAR(at.pitch_rad, reference.pitch_rad, 1e-3 * kRadPerDeg);
-  EXPECT_NEAR(at.yaw_rad, reference.yaw_rad, 1e-3 * kRadPerDeg);
+  // A tick behind a reference that turns by 0.065 deg/s.
+  EXPECT_NEAR(at.pitch_rad, reference.pitch_rad, 4e-3 * kRadPerDeg);
+  EXPECT_NEAR(at.yaw_rad, reference.yaw_rad, 4e-3 * kRadPerDeg);
   NavigatedState found = AtIgnition();
   guidance.See(SightAt(found));
   EXPECT_TRUE(guidance.cuts_off());
