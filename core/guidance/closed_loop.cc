@@ -123,6 +123,7 @@ void ClosedLoopGuidance::TakeOver(double time_s) {
 }
 
 void ClosedLoopGuidance::BoundCutOffs(const Knowledge& known, double time_s, CorrectorTask& task) {
+  task.keeps_solved = below_engine_ || last_engine_;
   GuidedStage last = known.last;
   const auto bound = [&](PlanUnknown unknown, const GuidedStage& stage, double since_s) {
     task.high[unknown] = std::max(stage.Depletes(), since_s);

@@ -91,7 +91,8 @@ Correction CorrectFirst(const GuidanceMission& mission, const PlanPrior& prior, 
   keep(start, at_start, model.miss);
   best.start_prioritised_miss = best.prioritised_miss;
   double damping = 0.0;
-  for (int iteration = 0; iteration < task.iterations; ++iteration) {
+  const bool is_kept = task.keeps_solved && best.prioritised_miss <= kSolvedMiss;
+  for (int iteration = 0; iteration < task.iterations && !is_kept; ++iteration) {
     for (int i = 0; i < count; ++i) {
       const auto k = static_cast<std::size_t>(i);
       if (!task.free[k]) continue;

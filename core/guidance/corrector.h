@@ -32,6 +32,7 @@ struct CorrectorTask {
   bool meets_altitude = true;  ///< if false, a short rest of a burn can only change
   bool meets_plane = true;     ///< speed and flight path angle
   int iterations = 3;
+  bool keeps_solved = false;  ///< a start whose prioritised miss is at most kSolvedMiss stays as it is
 };
 
 struct Correction {
