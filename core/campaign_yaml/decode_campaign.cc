@@ -137,21 +137,23 @@ void CheckGuidance(Fields& fields, const GuidanceConfig& guidance, const Vehicle
                       " begins in the air, where the attitude must follow the wind and not the orbit",
                   "open_loop, or a vehicle of two burns or more");
   else if (!is_cut_off && !is_timed)
-    fields.Refuse("mode",
-                  "the last burn of " + name +
-                      " follows the one before at once and ends by itself: guidance can change neither its "
-                      "beginning nor its end",
-                  "open_loop, or a last stage with ignition: {trigger: timer} or with a liquid engine that has "
-                  "cut_off: {at: inertial_velocity}");
+    fields.Refuse(
+        "mode",
+        "the last burn of " + name +
+            " follows the one before at once and ends by itself: guidance can change neither its "
+            "beginning nor its end",
+        "open_loop, or a last stage with ignition: {trigger: timer} or with a liquid engine that has "
+        "cut_off: {at: inertial_velocity}");
   else if (!is_cut_off && last.restarts)
     fields.Refuse("mode",
                   "the last burn of " + name +
                       " uses up what the burns before leave: its energy is not known before they end",
                   "open_loop, or cut_off: {at: inertial_velocity} of the last burn");
   else if (is_cut_off && !is_timed && !guidance.steers_last_burn && !SteersBelow(vehicle))
-    fields.Refuse("last_burn",
-                  "no coast precedes the last burn of " + name + ", so nothing can be planned before its ignition",
-                  "steered");
+    fields.Refuse(
+        "last_burn",
+        "no coast precedes the last burn of " + name + ", so nothing can be planned before its ignition",
+        "steered");
   else if (!is_cut_off && vehicle.boosters.count > 0 && vehicle.stages.size() < 3)
     fields.Refuse(
         "mode",

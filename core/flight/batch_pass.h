@@ -80,7 +80,9 @@ void Batch<T>::CutOff() {
 /// The same at a speed that guidance has planned, by measured values.
 template <class T>
 void Batch<T>::CutOffByGuidance(int lane) {
-  const auto vector_of = [lane](const Vector<T>& v) { return Vector3(Lane(v.x, lane), Lane(v.y, lane), Lane(v.z, lane)); };
+  const auto vector_of = [lane](const Vector<T>& v) {
+    return Vector3(Lane(v.x, lane), Lane(v.y, lane), Lane(v.z, lane));
+  };
   const Instant<T>& now = step_.now();
   const double time_s = Lane(time_s_, lane);
   const double in_s = slot_[lane].record->guided->CutOffIn(

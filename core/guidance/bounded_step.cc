@@ -36,10 +36,11 @@ Unknowns<count> LeastOver(const StepModel<count>& model, const Unknowns<count>& 
 template <int count>
 int BestToRelease(const StepModel<count>& model, const Unknowns<count>& weight, const Which& moves,
                   const Unknowns<count>& step) {
-  const Unknowns<count> slope = model.jacobian.transpose() * (model.miss + model.jacobian * step) + model.departure +
-                         weight.cwiseProduct(step);
+  const Unknowns<count> slope = model.jacobian.transpose() * (model.miss + model.jacobian * step) +
+                                model.departure + weight.cwiseProduct(step);
   // Less than this is rounding.
-  double steepest = 1e-6 * (1.0 + (model.jacobian.transpose() * model.miss).template lpNorm<Eigen::Infinity>());
+  double steepest =
+      1e-6 * (1.0 + (model.jacobian.transpose() * model.miss).template lpNorm<Eigen::Infinity>());
   int best = -1;
   for (int i = 0; i < count; ++i) {
     if (!model.free[Index(i)] || moves[Index(i)]) continue;
@@ -88,7 +89,8 @@ Unknowns<count> BoundedStep(const StepModel<count>& model, const Unknowns<count>
   return step;
 }
 
-template Unknowns<kUncutUnknowns> BoundedStep(const StepModel<kUncutUnknowns>&, const Unknowns<kUncutUnknowns>&);
+template Unknowns<kUncutUnknowns> BoundedStep(const StepModel<kUncutUnknowns>&,
+                                              const Unknowns<kUncutUnknowns>&);
 template Unknowns<kPlanUnknowns> BoundedStep(const StepModel<kPlanUnknowns>&, const Unknowns<kPlanUnknowns>&);
 
 }  // namespace dispersa

@@ -25,7 +25,8 @@ constexpr double kOnlyCutOff_s = 15.0;
 // An engine's long burn is planned every `period_s` at first and at last. In between a plan holds for a part
 // of the time since ignition, and of the time left.
 constexpr double kOfSince = 0.2, kOfLeft = 0.05, kLongestPeriod_s = 10.0;
-// From this time before the planned cut-off on, its speed ends the burn. A burn as planned may differ by more.
+// From this time before the planned cut-off on, its speed ends the burn. A burn as planned may differ by
+// more.
 constexpr double kArmed_s = 3.0, kArmedOfBurn = 0.25;
 // Where the speed grows by less than this part of the specific force, time ends the burn.
 constexpr double kAlong = 0.2;
@@ -141,8 +142,7 @@ void ClosedLoopGuidance::BoundCutOffs(const Knowledge& known, double time_s, Cor
     plan_.value[kIgnition] = Clamp(plan_.value[kIgnition], task.low[kIgnition], task.high[kIgnition]);
   }
   if (last.is_cut_off())
-    bound(kCutOff, last,
-          known.phase == GuidancePhase::kLastBurns ? time_s - known.burn_ignition_s : 0.0);
+    bound(kCutOff, last, known.phase == GuidancePhase::kLastBurns ? time_s - known.burn_ignition_s : 0.0);
 }
 
 // The last burn ends with the target's energy. If that is out of reach by the estimate, it ends with the
@@ -161,7 +161,8 @@ void ClosedLoopGuidance::SetCutOff(const Correction& found) {
 double ClosedLoopGuidance::CutOffIn(double time_s, double speed_m_s, double growth_m_s2,
                                     double specific_force_m_s2) const {
   const double left_s = cut_off_->time_s - time_s;
-  const double burn_s = phase_ == GuidancePhase::kBelowBurns ? plan_.value[kBelowCutOff] : plan_.value[kCutOff];
+  const double burn_s =
+      phase_ == GuidancePhase::kBelowBurns ? plan_.value[kBelowCutOff] : plan_.value[kCutOff];
   const bool is_steered = mission_.config.steers_last_burn || phase_ == GuidancePhase::kBelowBurns;
   if (left_s > (is_steered ? kArmed_s : kArmedOfBurn * burn_s)) return left_s;
   if (!(std::fabs(growth_m_s2) > kAlong * specific_force_m_s2)) return left_s;
@@ -177,8 +178,7 @@ void ClosedLoopGuidance::SeeBelowBurn(const GuidanceSight& sight) {
     TakeOver(time_s);
     plan_ = prior_.nominal;
   }
-  if (below_engine_)
-    below_engine_->Add(time_s, since_s, sight.specific_force_m_s2, sight.expelled_kg);
+  if (below_engine_) below_engine_->Add(time_s, since_s, sight.specific_force_m_s2, sight.expelled_kg);
   MeasureThrust(sight);
   Knowledge known;
   known.phase = sight.phase;
@@ -189,8 +189,7 @@ void ClosedLoopGuidance::SeeBelowBurn(const GuidanceSight& sight) {
   known.commanded = command_.direction();
   double left_s = sight.burn_ignition_s + known.below.burn.duration_s - time_s;
   if (below_engine_)
-    left_s = sight.burn_ignition_s +
-             std::min(plan_.value[kBelowCutOff], known.below.Depletes()) - time_s;
+    left_s = sight.burn_ignition_s + std::min(plan_.value[kBelowCutOff], known.below.Depletes()) - time_s;
   if (left_s < kHold_s) return;
   CorrectorTask task = Task({kBelowPitch, kBelowYaw, kIgnition, kPitchMiddle, kPitchHalf, kYawMiddle, kWaste},
                             prior_.nominal, outcome_.acted ? kIterations : kFirstIterations);

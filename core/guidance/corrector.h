@@ -40,7 +40,7 @@ struct Correction {
   Arrival miss;  ///< of the plan, predicted less target
   /// Square root of the misses' sum, of the plan. Never more than the start's, or than kSolvedMiss.
   double prioritised_miss = 0.0, start_prioritised_miss = 0.0;
-  Injection reached;  ///< of the plan
+  Injection reached;     ///< of the plan
   bool arrives = false;  ///< within Arrives()
   int iterations = 0;
   int predictions = 0;

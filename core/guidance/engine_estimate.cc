@@ -37,7 +37,8 @@ void EngineEstimate::Add(double time_s, double since_ignition_s, double specific
 GuidedStage EngineEstimate::Stage(double expelled_kg) const {
   GuidedStage stage = nominal_;
   stage.ignition_mass_kg -= expelled_kg;
-  const double aa = sum_ + Square(kReading / kThrust), ab = -sum_x_, bb = sum_xx_ + Square(kReading / kExhaust);
+  const double aa = sum_ + Square(kReading / kThrust), ab = -sum_x_,
+               bb = sum_xx_ + Square(kReading / kExhaust);
   const double determinant = aa * bb - ab * ab;
   const double alpha = 1.0 + (sum_y_ * bb + sum_xy_ * ab) / determinant;
   const double beta = 1.0 - (aa * sum_xy_ + ab * sum_y_) / determinant;

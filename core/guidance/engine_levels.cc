@@ -14,8 +14,8 @@ EngineLevels::EngineLevels(const Throttle& throttle) {
   double sum_s = 0.0;
   for (std::size_t i = 0; i + 1 < throttle.time_s.size(); ++i) {
     const double length_s = throttle.time_s[i + 1] - throttle.time_s[i];
-    pieces_.push_back(
-        {throttle.time_s[i], throttle.level[i], (throttle.level[i + 1] - throttle.level[i]) / length_s, sum_s});
+    pieces_.push_back({throttle.time_s[i], throttle.level[i],
+                       (throttle.level[i + 1] - throttle.level[i]) / length_s, sum_s});
     sum_s += 0.5 * (throttle.level[i] + throttle.level[i + 1]) * length_s;
   }
   pieces_.push_back({throttle.time_s.back(), throttle.level.back(), 0.0, sum_s});

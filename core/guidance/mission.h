@@ -82,8 +82,8 @@ struct GuidanceMission {
   DirectionTable program;             ///< from the ignition of the stage before the last on
 };
 
-/// The last stage, if it is another burn of the engine below after a burn of `duration_s`: what is left is its
-/// mass and its propellant.
+/// The last stage, if it is another burn of the engine below after a burn of `duration_s`: what is left is
+/// its mass and its propellant.
 GuidedStage AfterBurn(const GuidedStage& below, GuidedStage last, double duration_s);
 
 /// Ideal velocity change of a burn.

@@ -110,8 +110,7 @@ Direction LastBurnAttitude::RateAt(double since_ignition_s) const {
   const double slope = 2.0 / prior_.last_duration_s;
   if (const GuidanceMission* mission = prior_.departs_from) {
     const Direction rate = mission->program.RateAt(mission->last_ignition_s + since_ignition_s);
-    return {rate.pitch_rad + slope * plan_.value[kPitchHalf],
-            rate.yaw_rad + slope * plan_.value[kYawHalf]};
+    return {rate.pitch_rad + slope * plan_.value[kPitchHalf], rate.yaw_rad + slope * plan_.value[kYawHalf]};
   }
   const TurnCourse& course = prior_.turn;
   const double turning =
@@ -129,12 +128,12 @@ void SetReach(const GuidanceMission& mission, PlanPrior& prior) {
   const auto& value = prior.nominal.value;
   const double below_s = value[kBelowCutOff], last_s = value[kCutOff];
   const auto scale_s = [](double burn_s) { return burn_s > 0.0 ? kOfBurn * burn_s : 1.0; };
-  prior.scale = {2.0 * kDeg, 1.0 * kDeg, 20.0, 5.0 * kDeg, 5.0 * kDeg, 3.0 * kDeg, 0.03,
+  prior.scale = {2.0 * kDeg,       1.0 * kDeg,      20.0,      5.0 * kDeg, 5.0 * kDeg, 3.0 * kDeg, 0.03,
                  scale_s(below_s), scale_s(last_s), 3.0 * kDeg};
   const double late_s = (1.0 - kShortestOfBurn);
-  const std::array<double, kPlanUnknowns> reach = {
-      10.0 * kDeg, 5.0 * kDeg, 120.0, 25.0 * kDeg, 25.0 * kDeg, 25.0 * kDeg, 0.0, late_s * below_s, late_s * last_s,
-      25.0 * kDeg};
+  const std::array<double, kPlanUnknowns> reach = {10.0 * kDeg,     5.0 * kDeg,  120.0, 25.0 * kDeg,
+                                                   25.0 * kDeg,     25.0 * kDeg, 0.0,   late_s * below_s,
+                                                   late_s * last_s, 25.0 * kDeg};
   for (int i = 0; i < kPlanUnknowns; ++i) {
     const auto k = static_cast<std::size_t>(i);
     prior.low[k] = value[k] - reach[k];

@@ -10,7 +10,7 @@ namespace dispersa {
 enum PlanUnknown {
   kBelowPitch,  ///< offset to the reference's attitude while the stage before the last burns, rad
   kBelowYaw,
-  kIgnition,     ///< of the last stage, s since lift-off
+  kIgnition,  ///< of the last stage, s since lift-off
   // Of the last burn. If guidance cuts it off, these are added to the reference's attitude.
   kPitchMiddle,  ///< pitch in L at half its nominal duration, rad
   kPitchHalf,    ///< by how much pitch is greater at its nominal end, rad
@@ -19,8 +19,8 @@ enum PlanUnknown {
   kUncutUnknowns,
   // Of engines that guidance cuts off.
   kBelowCutOff = kUncutUnknowns,  ///< duration of the burn of the stage before the last, s
-  kCutOff,   ///< the same of the last stage
-  kYawHalf,  ///< as kPitchHalf, of a last burn that guidance cuts off
+  kCutOff,                        ///< the same of the last stage
+  kYawHalf,                       ///< as kPitchHalf, of a last burn that guidance cuts off
   kPlanUnknowns
 };
 struct Plan {

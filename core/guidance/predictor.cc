@@ -71,12 +71,12 @@ void Burn(const GuidanceMission& mission, const GuidedStage& stage, double ignit
   }
 }
 
-// An engine's burn until guidance cuts it off after `duration_s`, or the propellant is used up. Steps end where
-// the level bends and where a body leaves.
+// An engine's burn until guidance cuts it off after `duration_s`, or the propellant is used up. Steps end
+// where the level bends and where a body leaves.
 template <class DirectionAt>
-void BurnEngine(const GuidanceMission& mission, const GuidedStage& stage, double ignition_s, double duration_s,
-                double longest_s, const Vector3& offset_rad_I, const DirectionAt& direction_at,
-                NavigatedState& state) {
+void BurnEngine(const GuidanceMission& mission, const GuidedStage& stage, double ignition_s,
+                double duration_s, double longest_s, const Vector3& offset_rad_I,
+                const DirectionAt& direction_at, NavigatedState& state) {
   const double end_s = std::min(duration_s, stage.Depletes());
   std::vector<double> ends = stage.levels->bends_s();
   for (const MassDrop& drop : stage.drops) ends.push_back(drop.time_s - ignition_s);
@@ -180,7 +180,8 @@ Injection Predict(const GuidanceMission& mission, const PlanPrior& prior, const 
     if (known.below.is_cut_off()) {
       BurnEngine(mission, known.below, known.burn_ignition_s, plan.value[kBelowCutOff], steps.engine_s,
                  known.thrust_offset_rad_I, direction, state);
-      if (mission.is_restart) restarted = AfterBurn(known.below, known.last, state.time_s - known.burn_ignition_s);
+      if (mission.is_restart)
+        restarted = AfterBurn(known.below, known.last, state.time_s - known.burn_ignition_s);
     } else {
       Burn(mission, known.below, known.burn_ignition_s, steps.burn_s, known.thrust_offset_rad_I, {},
            direction, state);
@@ -212,10 +213,10 @@ Injection Predict(const GuidanceMission& mission, const PlanPrior& prior, const 
     BurnEngine(mission, restarted ? *restarted : known.last, ignition_s, plan.value[kCutOff], steps.engine_s,
                offset, direction, state);
   else
-  Burn(mission, known.last, ignition_s, steps.burn_s, offset,
-       {turn.from_s - turn.round_s, turn.from_s + turn.round_s, turn.back_s - turn.round_s,
-        turn.back_s + turn.round_s, brakes_s},
-       direction, state);
+    Burn(mission, known.last, ignition_s, steps.burn_s, offset,
+         {turn.from_s - turn.round_s, turn.from_s + turn.round_s, turn.back_s - turn.round_s,
+          turn.back_s + turn.round_s, brakes_s},
+         direction, state);
   injection.at = ArrivalOf(mission.earth, state.time_s, state.p_EoC_I, state.v_IC_I);
   injection.time_s = state.time_s;
   injection.radius_m = state.p_EoC_I.norm();

@@ -11,7 +11,9 @@ class PreparedBurn {
   explicit PreparedBurn(const MotorBurn& motor) { lanes::SetLane(burn_, 0, motor); }
 
   /// At a time within the burn: MotorBurn's Fraction() and Propellant().
-  lanes::BurnState<double> At(double since_ignition_s) const { return lanes::BurnAt(burn_, since_ignition_s); }
+  lanes::BurnState<double> At(double since_ignition_s) const {
+    return lanes::BurnAt(burn_, since_ignition_s);
+  }
 
  private:
   lanes::MotorBurnLanes<double> burn_;

@@ -8,7 +8,9 @@
 namespace dispersa {
 
 double MotorBurn::Fraction(double since_ignition_s) const {
-  return since_ignition_s < 0.0 || since_ignition_s > duration_s ? 0.0 : PreparedBurn(*this).At(since_ignition_s).fraction;
+  return since_ignition_s < 0.0 || since_ignition_s > duration_s
+             ? 0.0
+             : PreparedBurn(*this).At(since_ignition_s).fraction;
 }
 
 double MotorBurn::Propellant(double since_ignition_s) const {

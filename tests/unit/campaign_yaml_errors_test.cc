@@ -584,7 +584,8 @@ TEST(GuidanceOfAVehicle, NeedsALastBurnThatItCanChange) {
   files.Edit("vehicle.yaml", "ignition: {trigger: timer}", "ignition: {trigger: burnout_detection}");
   EXPECT_EQ(
       files.Texts(CheckFile(files.Path("campaign.yaml")).errors),
-      "campaign.yaml:3:18: guidance.mode: the last burn of 'two-stage' follows the one before at once and ends "
+      "campaign.yaml:3:18: guidance.mode: the last burn of 'two-stage' follows the one before at once and "
+      "ends "
       "by itself: guidance can change neither its beginning nor its end, allowed: open_loop, or a last stage "
       "with ignition: {trigger: timer} or with a liquid engine that has cut_off: {at: inertial_velocity}\n");
 }

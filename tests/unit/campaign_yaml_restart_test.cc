@@ -181,26 +181,29 @@ std::string GuidanceProblems(const std::string& launcher, const char* edited, co
 }
 
 TEST(GuidedRestart, NeedsALastBurnThatIsCutOff) {
-  EXPECT_EQ(GuidanceProblems("vega", "vehicle.yaml", kAgain, ""),
-            "campaign.yaml:7:18: guidance.mode: the last burn of 'vega' uses up what the burns before leave: its "
-            "energy is not known before they end, allowed: open_loop, or cut_off: {at: inertial_velocity} of "
-            "the last burn\n");
+  EXPECT_EQ(
+      GuidanceProblems("vega", "vehicle.yaml", kAgain, ""),
+      "campaign.yaml:7:18: guidance.mode: the last burn of 'vega' uses up what the burns before leave: its "
+      "energy is not known before they end, allowed: open_loop, or cut_off: {at: inertial_velocity} of "
+      "the last burn\n");
   EXPECT_EQ(GuidanceProblems("vega", "campaign.yaml", "mode: closed_loop",
                              "mode: closed_loop, last_burn: as_planned"),
             "");
 }
 
 TEST(GuidedCutOff, IsPlannedInTheBurnItselfIfNoCoastPrecedesIt) {
-  EXPECT_EQ(GuidanceProblems("electron", "campaign.yaml", "mode: closed_loop",
-                             "mode: closed_loop, last_burn: as_planned"),
-            "campaign.yaml:7:42: guidance.last_burn: no coast precedes the last burn of 'electron', so nothing "
-            "can be planned before its ignition, allowed: steered\n");
-  EXPECT_EQ(GuidanceProblems("electron", "vehicle.yaml",
-                             "        cut_off: {at: inertial_velocity, velocity_m_s: 7898.27}", "       "),
-            "campaign.yaml:7:18: guidance.mode: the last burn of 'electron' follows the one before at once and "
-            "ends by itself: guidance can change neither its beginning nor its end, allowed: open_loop, or a "
-            "last stage with ignition: {trigger: timer} or with a liquid engine that has cut_off: {at: "
-            "inertial_velocity}\n");
+  EXPECT_EQ(
+      GuidanceProblems("electron", "campaign.yaml", "mode: closed_loop",
+                       "mode: closed_loop, last_burn: as_planned"),
+      "campaign.yaml:7:42: guidance.last_burn: no coast precedes the last burn of 'electron', so nothing "
+      "can be planned before its ignition, allowed: steered\n");
+  EXPECT_EQ(
+      GuidanceProblems("electron", "vehicle.yaml",
+                       "        cut_off: {at: inertial_velocity, velocity_m_s: 7898.27}", "       "),
+      "campaign.yaml:7:18: guidance.mode: the last burn of 'electron' follows the one before at once and "
+      "ends by itself: guidance can change neither its beginning nor its end, allowed: open_loop, or a "
+      "last stage with ignition: {trigger: timer} or with a liquid engine that has cut_off: {at: "
+      "inertial_velocity}\n");
 }
 
 }  // namespace

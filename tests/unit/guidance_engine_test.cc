@@ -158,7 +158,8 @@ GuidanceSight SightAt(const NavigatedState& state) {
   return sight;
 }
 
-// Without gravitation a burn gains exhaust velocity times the logarithm of the masses, apart where a body leaves.
+// Without gravitation a burn gains exhaust velocity times the logarithm of the masses, apart where a body
+// leaves.
 TEST(Predictor, AnEnginesBurnGainsTheIdealVelocity) {
   GuidanceMission mission = EngineMission();
   mission.earth.mu_m3_s2 = 0.0;
@@ -205,7 +206,8 @@ TEST(ClosedLoopGuidance, MeetsEnergyByTheCutOff) {
   EXPECT_GT(guidance.plan().value[kCutOff], 350.0 - 3.0);
 
   const double end_s = kIgnition_s + guidance.plan().value[kCutOff], speed_m_s = mission.target.velocity_m_s;
-  EXPECT_NEAR(guidance.CutOffIn(end_s - 10.0, speed_m_s, 20.0, 20.0), 10.0, 1e-6) << "too far off for its speed";
+  EXPECT_NEAR(guidance.CutOffIn(end_s - 10.0, speed_m_s, 20.0, 20.0), 10.0, 1e-6)
+      << "too far off for its speed";
   EXPECT_NEAR(guidance.CutOffIn(end_s - 1.0, speed_m_s - 4.0, 20.0, 20.0), 0.2, 1e-3);
   EXPECT_NEAR(guidance.CutOffIn(end_s - 1.0, speed_m_s + 4.0, -20.0, 20.0), 0.2, 1e-3) << "speed falls";
   EXPECT_NEAR(guidance.CutOffIn(end_s - 1.0, speed_m_s - 4.0, 2.0, 20.0), 1.0, 1e-6) << "thrust across";

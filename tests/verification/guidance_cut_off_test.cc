@@ -1,5 +1,5 @@
-// Guidance that decides when engines are cut off, on launchers of the gallery: Electron, whose last stage burns
-// once, and Vega, whose last stage burns twice.
+// Guidance that decides when engines are cut off, on launchers of the gallery: Electron, whose last stage
+// burns once, and Vega, whose last stage burns twice.
 #include <gtest/gtest.h>
 
 #include <cmath>
@@ -12,6 +12,7 @@
 #include "core/cases/campaign_flights.h"
 #include "core/flight/tick_sample.h"
 #include "core/guidance/corrector.h"
+#include "tests/liquid_stage.h"
 #include "tests/slv4_flight.h"
 
 namespace dispersa::guidance_cut_off_test {
@@ -86,11 +87,12 @@ TEST_P(GuidedLauncher, IsNoWorseThanOpenLoopWhateverAStageLacks) {
       const FlightResult open_flight = Fly(*open_, inputs), closed_flight = Fly(*closed_, inputs);
       if (open_flight.outcome != Outcome::kCompleted) continue;
       const Orbit open = OrbitOf(open_flight), closed = OrbitOf(closed_flight);
-      std::printf("%s stage %d %+4.1f %%: axis error %9.2f km, perigee %8.1f km open loop; %9.4f km, %8.1f km, "
-                  "%7.3f deg closed, converged %d\n",
-                  GetParam().c_str(), static_cast<int>(stage + 1), percent, 1e-3 * open.axis_error_m,
-                  open.perigee_km, 1e-3 * closed.axis_error_m, closed.perigee_km,
-                  closed.inclination_error_deg, closed.converged ? 1 : 0);
+      std::printf(
+          "%s stage %d %+4.1f %%: axis error %9.2f km, perigee %8.1f km open loop; %9.4f km, %8.1f km, "
+          "%7.3f deg closed, converged %d\n",
+          GetParam().c_str(), static_cast<int>(stage + 1), percent, 1e-3 * open.axis_error_m, open.perigee_km,
+          1e-3 * closed.axis_error_m, closed.perigee_km, closed.inclination_error_deg,
+          closed.converged ? 1 : 0);
       const double wanted_km = closed.axis_km - 1e-3 * closed.axis_error_m;
       EXPECT_GE(closed.axis_km, std::fmin(open.axis_km, wanted_km) - 5.0);
       EXPECT_LE(closed.axis_km, std::fmax(open.axis_km, wanted_km) + 5.0);
@@ -119,6 +121,36 @@ TEST_P(GuidedLauncher, CutsOffByMeasuredSpeed) {
 INSTANTIATE_TEST_SUITE_P(Gallery, GuidedLauncher, testing::Values("electron", "vega"),
                          [](const auto& launcher) { return launcher.param; });
 
+// SLV-4 whose third stage has an engine, below the solid fourth: guidance decides the engine's cut-off, the
+// last ignition, and what the last motor's turn takes away.
+TEST(GuidedEngine, BelowASolidMotor) {
+  FlightDefinition definition = Slv4Definition(DISPERSA_CAMPAIGNS, "adaptive_fuzzy", "slv4_500km_reserve");
+  Stage& engine = definition.vehicle.stages[2];
+  MakeLiquid(engine);
+  // Half a second of thrust is left at the reference's end.
+  const double burn_s = engine.motor.burning_time_s - 0.5;
+  FlightOptions options;
+  options.observe = [&](const TickSample& sample) {
+    if (sample.stack == 2 && sample.burning && sample.since_ignition_s <= burn_s)
+      engine.motor.cut_off_velocity_m_s = sample.state.v_IC_I.norm();
+  };
+  Fly(FlightModel(definition), {}, options);
+  engine.motor.cut_off = CutOff::kAtVelocity;
+  definition.cut_off_s[2] = burn_s;
+  const FlightResult open = Fly(FlightModel(definition), Table3Inputs());
+  definition.guidance.closed_loop = true;
+  const FlightModel model(definition);
+  ASSERT_TRUE(model.guidance_mission()->below.is_cut_off());
+  ASSERT_FALSE(model.guidance_mission()->last.is_cut_off());
+  const Orbit closed = OrbitOf(Fly(model, Table3Inputs()));
+  EXPECT_TRUE(closed.converged);
+  EXPECT_LT(std::fabs(closed.axis_error_m), 200.0);
+  EXPECT_LT(std::fabs(closed.inclination_error_deg), 0.01);
+  EXPECT_GT(std::fabs(OrbitOf(open).axis_error_m), 10.0 * std::fabs(closed.axis_error_m));
+  std::printf("an engine below a solid motor: axis %.1f m open loop, %.3f m closed\n",
+              OrbitOf(open).axis_error_m, closed.axis_error_m);
+}
+
 struct Seen {
   NavigatedState state;
   double expelled_kg = 0.0, ignition_s = 0.0;
@@ -137,22 +169,24 @@ FlightResult FlyAndSee(const FlightModel& model, int stack, double since_s, Seen
   return Fly(model, {}, options);
 }
 
-void ExpectPredicted(const Injection& predicted, const FlightResult& flown, double metres, double m_s, double deg) {
-  std::printf("predicted less flown: %.2f m, %.5f m/s, %.6f deg, %.6f deg of inclination, %.4f s\n",
-              predicted.at.altitude_m - 1e3 * MetricOf(flown, "injection_altitude_km"),
-              predicted.at.velocity_m_s - MetricOf(flown, "injection_velocity_m_s"),
-              predicted.at.flight_path_angle_rad / kRadPerDeg - MetricOf(flown, "injection_flight_path_angle_deg"),
-              predicted.at.inclination_rad / kRadPerDeg - MetricOf(flown, "inclination_deg"),
-              predicted.time_s - flown.end_time_s);
+void ExpectPredicted(const Injection& predicted, const FlightResult& flown, double metres, double m_s,
+                     double deg) {
+  std::printf(
+      "predicted less flown: %.2f m, %.5f m/s, %.6f deg, %.6f deg of inclination, %.4f s\n",
+      predicted.at.altitude_m - 1e3 * MetricOf(flown, "injection_altitude_km"),
+      predicted.at.velocity_m_s - MetricOf(flown, "injection_velocity_m_s"),
+      predicted.at.flight_path_angle_rad / kRadPerDeg - MetricOf(flown, "injection_flight_path_angle_deg"),
+      predicted.at.inclination_rad / kRadPerDeg - MetricOf(flown, "inclination_deg"),
+      predicted.time_s - flown.end_time_s);
   EXPECT_NEAR(predicted.at.altitude_m, 1e3 * MetricOf(flown, "injection_altitude_km"), metres);
   EXPECT_NEAR(predicted.at.velocity_m_s, MetricOf(flown, "injection_velocity_m_s"), m_s);
-  EXPECT_NEAR(predicted.at.flight_path_angle_rad / kRadPerDeg, MetricOf(flown, "injection_flight_path_angle_deg"),
-              deg);
+  EXPECT_NEAR(predicted.at.flight_path_angle_rad / kRadPerDeg,
+              MetricOf(flown, "injection_flight_path_angle_deg"), deg);
   EXPECT_NEAR(predicted.at.inclination_rad / kRadPerDeg, MetricOf(flown, "inclination_deg"), deg);
 }
 
-// The predictor against the engine's rigid body under the reference's program. Burns last as long as those that
-// the engine flew: cut off at a velocity. In Electron's a battery leaves and the engine throttles.
+// The predictor against the engine's rigid body under the reference's program. Burns last as long as those
+// that the engine flew: cut off at a velocity. In Electron's a battery leaves and the engine throttles.
 TEST(EnginePrediction, IsTheEnginesFlightOfAThrottledBurn) {
   FlightDefinition definition = DefinitionOf(Shipped("electron"));
   const FlightModel closed(definition);
@@ -207,7 +241,8 @@ TEST(EnginePrediction, IsTheEnginesFlightThroughARestart) {
   plan.value[kBelowCutOff] = first_end_s + 0.5 * definition.autopilot.tick_s - seen.ignition_s;
   plan.value[kIgnition] = second.ignition_s;
   plan.value[kCutOff] = flown.end_time_s - second.ignition_s;
-  // 2800 s ahead, measured: 2 m, 0.07 m/s. Half a tick of the first burn is 5 mm/s, and 20 m half an orbit later.
+  // 2800 s ahead, measured: 2 m, 0.07 m/s. Half a tick of the first burn is 5 mm/s, and 20 m half an orbit
+  // later.
   ExpectPredicted(Predict(mission, prior, known, seen.state, plan), flown, 50.0, 0.3, 0.001);
 }
 
