@@ -10,6 +10,8 @@
 #include <numeric>
 #include <vector>
 
+#include "core/campaign/flight_definition.h"
+#include "core/campaign_yaml/load.h"
 #include "core/flight/lane_engine.h"
 #include "core/random/draws.h"
 #include "tests/flexible_guided.h"
@@ -352,6 +354,17 @@ TEST(FlexibleGuidedLanes, AreTheFlightsAlone) {
   definition.vehicle.structure_beam = flexible.vehicle.structure_beam;
   ExpectTheFlightsAlone(FlightModel(definition), 4);
 }
+
+// Engines that guidance cuts off, at times of their own, once and twice.
+TEST(GuidedCutOffLanes, AreTheFlightsAlone) {
+  for (const char* launcher : {"electron", "vega"}) {
+    SCOPED_TRACE(launcher);
+    const Campaign campaign =
+        LoadCampaign(DISPERSA_CAMPAIGNS "/gallery/" + std::string(launcher) + "/campaign.yaml");
+    ExpectTheFlightsAlone(FlightModel(DefinitionOf(campaign)), 6);
+  }
+}
+
 INSTANTIATE_TEST_SUITE_P(Laws, FlightLanes,
                          testing::Values("adaptive_fuzzy", "frozen_fuzzy", "pd", "pid", "pd_aac", "pid_aac",
                                          "flexible", "guided_adaptive_fuzzy", "guided_pid_aac",
