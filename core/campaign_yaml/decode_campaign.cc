@@ -238,6 +238,11 @@ class CampaignDescription {
 
   void WarnOfGuidance() {
     if (!flies() || !campaign_.guidance.closed_loop) return;
+    if (campaign_.vehicle.stages.size() == 2 && SteersBelow(campaign_.vehicle))
+      WarnOf({root_, ""}, "guidance.mode",
+             "guidance steers the stage of '" + campaign_.vehicle.name +
+                 "' that lifts off, and its prediction has no air: incidence is whatever the orbit asks for",
+             "open_loop, or a vehicle whose last two burns are above the air");
     const GuidedAuthority authority = AuthorityOf(campaign_.vehicle, campaign_.autopilot);
     for (const GuidanceExcess& one : ExcessesOf(campaign_.guidance, authority))
       WarnOf({root_, ""}, "guidance." + one.key, one.message, one.allowed);
