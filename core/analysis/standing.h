@@ -74,7 +74,8 @@ struct Standing {
 /// The standing of a folder with this summary. Reads the folder's own ledger and its record of looks.
 Standing StandingOf(const ResultFolder& folder, const Campaign& campaign, const CampaignSummary& summary);
 
-/// Sentences about the standing that a reader needs before any number: of the requirements and of the campaign.
+/// Sentences about the standing that a reader needs before any number: of the requirements and of the
+/// campaign.
 std::vector<std::string> StandingNotes(const Standing& standing, const CampaignSummary& summary);
 /// Of the campaign alone: the rules of judgement, earlier attempts, earlier designs.
 std::vector<std::string> CampaignNotes(const Standing& standing);

@@ -29,8 +29,8 @@ inline constexpr std::array<Right, 3> kRights = {Right::kRead, Right::kRun, Righ
 const char* Name(Right right);
 std::optional<Right> ParseRight(const std::string& text);
 
-/// Workers and clients with keys are called NAME_… after their keys. No other participant may write or read under
-/// such a name. Names of keys have no '_'.
+/// Workers and clients with keys are called NAME_… after their keys. No other participant may write or read
+/// under such a name. Names of keys have no '_'.
 std::string OwnPrefix(const std::string& name);
 /// Clients are called _RIGHT_NAME_… after their keys. Permissions for that name are signed, so nobody claims
 /// a right that its keys have not. Clients with keys of an earlier version have no right in their name.
