@@ -38,7 +38,7 @@ class Words(unittest.TestCase):
 
     def test_options_of_the_command_and_of_all(self):
         self.assertEqual(words("fly", "--c"), ["--case", "--color"])
-        self.assertEqual(words("keys", "issue", "--"), ["--help", "--days", "--role", "--name", "--json", "--quiet", "--color"])
+        self.assertEqual(words("keys", "issue", "--"), ["--help", "--days", "--role", "--name", "--may", "--json", "--quiet", "--color"])
         self.assertIn("-o", words("tune", "-"))
         self.assertEqual(words("fly", "--", "--"), [":file"])
 

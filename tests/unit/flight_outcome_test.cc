@@ -85,10 +85,15 @@ TEST(Outcome, StructuralLimitOnlyWhenTheVehicleSaysTerminate) {
 
 TEST(Outcome, NumericalFailureIsData) {
   FlightInputs inputs;
-  inputs.thrust_factor[0] = std::numeric_limits<double>::quiet_NaN();
+  inputs.thrust_factor[0] = 1e300;  // the square of an acceleration overflows
   const FlightResult result = FlyWith(inputs);
   EXPECT_EQ(result.outcome, Outcome::kNumericalFailure);
   EXPECT_EQ(result.reason, "the integrator failed or the state is not finite");
+
+  inputs.thrust_factor[0] = std::numeric_limits<double>::quiet_NaN();
+  const FlightResult refused = FlyWith(inputs);
+  EXPECT_EQ(refused.outcome, Outcome::kNumericalFailure);
+  EXPECT_EQ(refused.reason, "the input thrust_factor_stage1 has no value");
 }
 
 TEST(Outcome, TimeoutOfSimulatedTime) {
