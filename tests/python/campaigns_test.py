@@ -72,7 +72,7 @@ class Loading(unittest.TestCase):
         plain = dict(dispersa.read(SMOKE))
         with self.assertRaises(dispersa.BadInput) as caught:
             dispersa.load(plain)
-        self.assertIn("cannot read 'vehicles/slv4.yaml'", str(caught.exception))
+        self.assertIn("file 'vehicles/slv4.yaml' not found", str(caught.exception))
         for tree in (plain, collections.UserDict(plain), types.MappingProxyType(plain)):
             self.assertEqual(dispersa.load(tree, base=CAMPAIGNS), dispersa.load(SMOKE))
 

@@ -53,7 +53,7 @@ class Reference(unittest.TestCase):
                 self.assertIn(name, self.headings)
         for name in ("INCOMPLETE", "REPLAY_MISMATCH"):
             self.assertIn(f"| `{name}` | `{int(dispersa.ExitCode[name])}` |", self.page)
-        self.assertIn("| `path` | Of the value in its file", self.page)
+        self.assertIn("| `path` | The value's path in its file", self.page)
         for row in re.findall(r"^\| `.*$", self.page, re.MULTILINE):
             self.assertRegex(row, r"^\| `\w+` \| (?!`+python).{5,} \|$|^\| `[A-Z_]+` \| `\d+` \|$")
 
