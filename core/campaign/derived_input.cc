@@ -54,6 +54,11 @@ void Describe(Fields& fields, DerivedInput& derived, const std::vector<DerivedIn
                            "an input that no dispersion draws");
   if (Find(before, derived.input) != nullptr)
     return fields.Refuse("input", "'" + derived.input + "' is derived twice", "each input once");
+  for (const DerivedInput& other : before)
+    for (const int column : other.expression.Positions())
+      if (column == derived.column)
+        return fields.Refuse("input", "the expression of '" + other.input + "' takes '" + derived.input + "'",
+                             "an input that no expression takes");
   try {
     derived.expression = ParseExpression(derived.text, [&](const std::string& name) {
       if (!IsKnown(name, stages)) throw UnknownName{UnknownText(name, stages), kNames};

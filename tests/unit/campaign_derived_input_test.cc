@@ -142,6 +142,11 @@ TEST(DerivedInput, IsRefusedWithItsPlace) {
       TextsOf("  - {input: density_factor, expression: log(gust_speed_m_s)}\n"),
       "1:41: derived[0].expression: it has no value for the nominal flight's inputs, allowed: an expression "
       "that is finite there\n");
+  EXPECT_EQ(
+      TextsOf("  - {input: drag_factor, expression: density_factor}\n"
+              "  - {input: density_factor, expression: thrust_factor_stage1}\n"),
+      "2:13: derived[1].input: the expression of 'drag_factor' takes 'density_factor', allowed: an input "
+      "that no expression takes\n");
   EXPECT_NE(TextsOf("  - {input: density_factor, expression: max(thrust_factor_stage1)}\n"), "");
 }
 
