@@ -86,6 +86,13 @@ HistoryFlights ChooseFlights(const CampaignSummary& summary, const CaseColumns& 
   return flights;
 }
 
+/// What the rows and columns of the files are.
+std::string LayoutOfFiles(const std::vector<int>& band_columns) {
+  std::string layout = fmt::format("{} {}", kHistoryStep_s, kBandStep_s);
+  for (const int column : band_columns) layout += " " + HistoryColumns()[static_cast<std::size_t>(column)];
+  return layout;
+}
+
 /// The folder may hold histories of the worst cases of an earlier report.
 void EmptyDirectory(const fs::path& directory) {
   std::error_code error;
@@ -148,7 +155,7 @@ FlightHistories WriteHistories(const ResultFolder& folder, const Campaign& campa
   const HistoryFlights wanted = ChooseFlights(summary, cases, options.history_cases);
   const std::vector<std::uint64_t>& indices = wanted.indices;
   const std::vector<std::uint64_t>& written = wanted.written;
-  const std::string key = KeyOfHistories(folder, campaign, wanted);
+  const std::string key = KeyOfHistories(folder, campaign, wanted, LayoutOfFiles(columns));
   std::optional<FlightHistories> kept =
       ReadKeptHistories(directory, key, campaign, wanted, columns, kBandStep_s);
   if (!kept) EmptyDirectory(directory);

@@ -95,8 +95,8 @@ std::vector<fs::path> Others(const fs::path& directory, const std::map<std::stri
 std::string CaseHistoryName(std::uint64_t case_index) { return fmt::format("case_{}.csv", case_index); }
 
 std::string KeyOfHistories(const ResultFolder& folder, const Campaign& campaign,
-                           const HistoryFlights& flights) {
-  std::string key = fmt::format("{} {} {}", EngineVersion(), campaign.flight_id, flights.sampled);
+                           const HistoryFlights& flights, const std::string& layout) {
+  std::string key = fmt::format("{} {} {} {}", EngineVersion(), campaign.flight_id, layout, flights.sampled);
   for (const std::uint64_t index : flights.indices)
     key += fmt::format(" {}:{}", index, folder.Load(index).digest.Hex());
   for (const std::uint64_t index : flights.written) key += fmt::format(" {}", index);

@@ -22,9 +22,9 @@ struct HistoryFlights {
 std::string CaseHistoryName(std::uint64_t case_index);
 
 /// A text that is the same if, and only if, the histories would have the same bytes: engine, flight id, and
-/// the flights with their digests.
+/// the flights with their digests, and the layout of the files, which the engine version does not cover.
 std::string KeyOfHistories(const ResultFolder& folder, const Campaign& campaign,
-                           const HistoryFlights& flights);
+                           const HistoryFlights& flights, const std::string& layout);
 
 /// Writes histories/made_of.json: the key, and a fingerprint of each file.
 void KeepHistories(const std::filesystem::path& directory, const std::string& key,
