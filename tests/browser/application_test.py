@@ -3,53 +3,29 @@ without being loaded again, two campaigns are marked and compared.
 
 application_test.py CHROMEDRIVER DISPERSA CAMPAIGN
 """
-import pathlib
 import subprocess
-import tempfile
 import time
 
-from browser import CAMPAIGN, DISPERSA, BrowserCase, free_port, main
+from browser import CAMPAIGN, DISPERSA, ServiceCase, free_port, main
 
-PATIENCE_S = 60
 NETWORK = ["--domain", "30", "--address", "127.0.0.1"]
 WIDTHS = (1400, 800, 500)
 TOKEN = "a token of a test"
 
 
-class ApplicationInABrowser(BrowserCase):
+class ApplicationInABrowser(ServiceCase):
+    network = NETWORK
+
     def setUp(self):
-        self.folder = pathlib.Path(tempfile.mkdtemp(dir=self.temporary.name))
-        self.processes = []
+        super().setUp()
         self.port = free_port()
         (self.folder / "token").write_text(TOKEN + "\n")
         (self.folder / "token").chmod(0o600)
         self.start("dispersa-coordinator", "--data", self.folder / "data", "--web", self.port, "--web-token", self.folder / "token")
 
-    def tearDown(self):
-        for process in self.processes:
-            if process.poll() is None:
-                process.kill()
-            process.wait()
-
-    def start(self, program, *arguments):
-        with (self.folder / "log").open("a") as log:
-            self.processes.append(subprocess.Popen([pathlib.Path(DISPERSA).parent / program, *map(str, arguments), *NETWORK],
-                                                   stdout=log, stderr=log))
-        return self.processes[-1]
-
     def dispersa(self, *arguments):
-        return subprocess.run([DISPERSA, *map(str, arguments), *NETWORK], timeout=PATIENCE_S, capture_output=True,
+        return subprocess.run([DISPERSA, *map(str, arguments), *NETWORK], timeout=self.patience_s, capture_output=True,
                               text=True).stdout.strip()
-
-    def text(self):
-        return self.browser.run("return document.body.innerText")
-
-    def wait_for(self, condition, what):
-        deadline = time.monotonic() + PATIENCE_S
-        while not condition():
-            if time.monotonic() > deadline:
-                self.fail(f"{what}: not within {PATIENCE_S} s\n{self.text()}\n{(self.folder / 'log').read_text()[-2000:]}")
-            time.sleep(0.1)
 
     def open(self, path):
         self.browser.open(f"http://127.0.0.1:{self.port}{path}")

@@ -2,6 +2,7 @@
 import base64
 import json
 import os
+import pathlib
 import re
 import shutil
 import socket
@@ -100,6 +101,39 @@ class BrowserCase(unittest.TestCase):
     def tearDownClass(cls):
         cls.browser.close()
         cls.temporary.cleanup()
+
+
+class ServiceCase(BrowserCase):
+    """Tests of pages that programs of this build serve. `network` are these programs' options of the domain."""
+
+    network = []
+    patience_s = 60
+
+    def setUp(self):
+        self.folder = pathlib.Path(tempfile.mkdtemp(dir=self.temporary.name))
+        self.processes = []
+
+    def tearDown(self):
+        for process in self.processes:
+            if process.poll() is None:
+                process.kill()
+            process.wait()
+
+    def start(self, program, *arguments):
+        with (self.folder / "log").open("a") as log:
+            self.processes.append(subprocess.Popen([pathlib.Path(DISPERSA).parent / program, *map(str, arguments), *self.network],
+                                                   stdout=log, stderr=log))
+        return self.processes[-1]
+
+    def text(self):
+        return self.browser.run("return document.body.innerText")
+
+    def wait_for(self, condition, what):
+        deadline = time.monotonic() + self.patience_s
+        while not condition():
+            if time.monotonic() > deadline:
+                self.fail(f"{what}: not within {self.patience_s} s\n{self.text()}\n{(self.folder / 'log').read_text()[-2000:]}")
+            time.sleep(0.1)
 
 
 def main():

@@ -3,54 +3,29 @@ the connection is lost.
 
 watch_test.py CHROMEDRIVER DISPERSA CAMPAIGN
 """
-import pathlib
 import re
 import subprocess
-import tempfile
 import time
 
-from browser import CAMPAIGN, DISPERSA, BrowserCase, free_port, main
+from browser import CAMPAIGN, DISPERSA, ServiceCase, free_port, main
 
 CASES = 200
-PATIENCE_S = 60
 DOMAIN = "32"
 NETWORK = ["--domain", DOMAIN, "--address", "127.0.0.1"]
 
 
-class WatchInABrowser(BrowserCase):
-    def setUp(self):
-        self.folder = pathlib.Path(tempfile.mkdtemp(dir=self.temporary.name))
-        self.processes = []
-
-    def tearDown(self):
-        for process in self.processes:
-            if process.poll() is None:
-                process.kill()
-            process.wait()
-
-    def start(self, program, *arguments):
-        with (self.folder / "log").open("a") as log:
-            self.processes.append(subprocess.Popen([pathlib.Path(DISPERSA).parent / program, *map(str, arguments), *NETWORK],
-                                                   stdout=log, stderr=log))
-        return self.processes[-1]
+class WatchInABrowser(ServiceCase):
+    network = NETWORK
 
     def start_coordinator(self):
         return self.start("dispersa-coordinator", "--data", self.folder / "data")
 
     def launch(self):
-        return subprocess.run([DISPERSA, "launch", CAMPAIGN, "--cases", str(CASES), *NETWORK], check=True, timeout=PATIENCE_S,
+        return subprocess.run([DISPERSA, "launch", CAMPAIGN, "--cases", str(CASES), *NETWORK], check=True, timeout=self.patience_s,
                               capture_output=True, text=True).stdout.strip()
 
     def shown(self, part):
         return self.browser.run("return document.getElementById(arguments[0]).innerText", part)
-
-    def wait_for(self, condition, what):
-        deadline = time.monotonic() + PATIENCE_S
-        while not condition():
-            if time.monotonic() > deadline:
-                self.fail(f"{what}: not within {PATIENCE_S} s\n{self.browser.run('return document.body.innerText')}\n"
-                          + (self.folder / "log").read_text()[-2000:])
-            time.sleep(0.1)
 
     def open(self, port):
         # The server may still be on its way.
@@ -69,7 +44,8 @@ class WatchInABrowser(BrowserCase):
         self.wait_for(lambda: "Exit code" in self.shown("progress"), "the end of the page")
         self.assertIn(f"Exit code {watch.returncode}: ", self.shown("progress"))
         self.assertEqual(self.browser.run("return document.title"), f"smoke done {CASES}/{CASES} – dispersa")
-        self.assertRegex(self.shown("requirements"), rf"Pitch error, peak below 1 ° for 80 % of flights[^§]* of {CASES} break")
+        self.assertRegex(self.shown("requirements"), rf"Pitch error, peak below 1 ° for 80 % of flights[^§]* of {CASES} fail "
+                         r"pitch_error_peak_deg \(pass so far\)")
         figures, bars = self.browser.run("return [document.querySelectorAll('#histograms svg.chart').length, "
                                          "document.querySelectorAll('#histograms rect.bar').length]")
         self.assertGreaterEqual(figures, 4)
