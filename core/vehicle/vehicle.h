@@ -13,6 +13,7 @@
 #include "core/math/linear.h"
 #include "core/math/stages.h"
 #include "core/math/table.h"
+#include "core/vehicle/aero_table.h"
 #include "core/vehicle/bodies.h"
 #include "core/vehicle/gimbal.h"
 #include "core/vehicle/motor.h"
@@ -196,23 +197,6 @@ inline void Describe(Fields& fields, ProfileSection& section) {
   fields.Quantity("aft_diameter", kLength, kPositive, section.aft_diameter_m,
                   "aft; its fore diameter is that of the piece before, 0 at the tip");
 }
-
-/// Aerodynamic coefficients of one stack (the stages still attached) over Mach number and total incidence, in
-/// body axes: F = -q S (CA x + CN n), n the direction of the cross-flow. Outside the grid the end value
-/// holds.
-struct AeroTable {
-  double reference_area_m2 = 0.0;
-  double reference_length_m = 0.0;  ///< the diameter
-  std::vector<double> mach;
-  std::vector<double> incidence_rad;  ///< >= 0
-  std::vector<double> ca;             ///< shape (mach, incidence), row by row, power on
-  std::vector<double> cn;
-  std::vector<double> xcp_station_m;  ///< where the normal force acts
-  std::vector<double> cmq_per_rad;    ///< shape (mach): pitch and yaw damping, on q d / (2 V), about the CG
-  std::vector<double> clp_per_rad;    ///< shape (mach): roll damping on p d / (2 V)
-};
-
-void Describe(Fields& fields, AeroTable& table);
 
 /// Limits of the structure (0: not given). core/flight/structural_limits.h names the load of each limit.
 struct StructuralLimits {
