@@ -132,16 +132,21 @@ void MapSchema::AddUnits(const NumberKey& key, const std::function<Json(const Un
   if (dimension.empty()) return Add({key.name, "", key.needed}, value(kNoUnit));
   const std::string units = UnitsOf(dimension);
   std::vector<Json> any;
+  std::vector<std::string> names;
   for (const Unit& unit : dimension) {
     const std::string name = key.name + ("_" + std::string(unit.suffix));
+    names.push_back(name);
     Json number = value(unit);
-    if (&unit != &dimension.front())  // the meaning is said once: keys in other units have a schema in common
-      number["description"] = Description(key.range, unit, "");
+    if (&unit != &dimension.front()) number.erase("description");  // said once; the key's ending is the unit
     Add({name.c_str(), "", key.needed && dimension.size() == 1}, std::move(number));
     quantities_[name] = {key.name, units};
     any.push_back(Required(name));
   }
   if (dimension.size() == 1) return;
+  if (!key.needed && dimension.size() == 2) {  // shorter than three rules: either key, or none
+    keys_.rules.push_back({{"not", {{"required", names}}}});
+    return;
+  }
   if (!key.needed) {
     Json none = {{"not", Combined("anyOf", any)}};
     any.push_back(std::move(none));
