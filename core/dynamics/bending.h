@@ -30,8 +30,14 @@ struct ModeNow {
   T unit_slope_1_m, gyro_slope_1_m[kRateGyros];
   T shortening_1_m[kModes];
   T straight_lift[2];                    ///< BendingTable::kStraightLift
-  T lift[kLiftCauses][kLiftEffects];     ///< BendingTable::kLiftAt
-  T section_moment_kg_m[kLoadStations];  ///< of its inertia, by its acceleration
+  T lift[kLiftCauses][kSectionEffects];  ///< BendingTable::kLiftAt
+};
+
+/// A column of one mode between two levels of propellant: `low` at the upper one, `rise` from there to the
+/// next.
+template <class T>
+struct ModeRows {
+  T low[BendingTable::kRowSize], rise[BendingTable::kRowSize];
 };
 
 /// The bending of each lane's stack.
@@ -41,12 +47,27 @@ struct BendingTableLanes {
   int planes = 1;  ///< 1: plane z is plane y in every stack
   const BendingTable* table[kWidth<T>] = {};
   T frequency_factor[kModes], damping_ratio, slope_factor;
+  /// The levels that each lane is between, read from its table: the propellant of the upper one, by how much
+  /// the next has less, and the range in which they stay the right ones (none: nothing is read yet).
+  T level_kg, span_kg, from_kg, to_kg;
+  ModeRows<T> rows[kPlanes][kModes];
+  T within;  ///< 0 at the upper level, 1 at the next
   ModeNow<T> now[kPlanes][kModes];
 
   DISPERSA_INLINE const ModeNow<T>& At(int plane, int mode) const {
     return now[planes == 1 ? 0 : plane][mode];
   }
+  DISPERSA_INLINE T ColumnAt(int plane, int mode, int column) const {
+    const ModeRows<T>& of = rows[planes == 1 ? 0 : plane][mode];
+    return Fma(within, of.rise[column], of.low[column]);
+  }
 };
+/// The modes of another stack, or of one that has let go of a body (null: it is rigid).
+template <class T>
+DISPERSA_INLINE void SetTable(BendingTableLanes<T>& b, int lane, const BendingTable* table) {
+  b.table[lane] = table != nullptr && table->modes > 0 ? table : nullptr;
+  Lane(b.from_kg, lane) = Lane(b.to_kg, lane) = 0.0;
+}
 
 /// Modal coordinates (m) and their rates: plane y, plane z.
 template <class T>
@@ -59,23 +80,34 @@ struct ModalForce {
   T drive_m_s2[kPlanes][kModes];
 };
 
-/// Sets the values that depend on the lane's propellant.
+/// Reads the levels about each lane's propellant. A flight needs it once for each level.
 template <class T>
-DISPERSA_INLINE void ShapesAt(BendingTableLanes<T>& b, T propellant_kg) {
+DISPERSA_OUT_OF_LINE void ReadLevels(BendingTableLanes<T>& b, T propellant_kg) {
+  constexpr double kInfinity = __builtin_inf();
   alignas(128) static constexpr double kNone[BendingTable::kRowSize] = {};
-  int level[kWidth<T>];
-  T within;
+  int level[kWidth<T>], next[kWidth<T>];
   for (int lane = 0; lane < kWidth<T>; ++lane) {
-    level[lane] = 0;
-    Lane(within, lane) = 0.0;
-    if (b.table[lane] == nullptr) continue;
-    const double* levels = b.table[lane]->propellant_kg.data();
-    const int last = static_cast<int>(b.table[lane]->propellant_kg.size()) - 1;
-    const double here = Lane(propellant_kg, lane);
-    int at = 0;
-    while (at < last - 1 && here < levels[at + 1]) ++at;
-    level[lane] = at;
-    if (last > 0) Lane(within, lane) = Clamp((levels[at] - here) / (levels[at] - levels[at + 1]), 0.0, 1.0);
+    level[lane] = next[lane] = 0;
+    double level_kg = 0.0, span_kg = kInfinity, from_kg = kInfinity, to_kg = -kInfinity;
+    if (b.table[lane] != nullptr) {
+      const double* levels = b.table[lane]->propellant_kg.data();
+      const int last = static_cast<int>(b.table[lane]->propellant_kg.size()) - 1;
+      const double here = Lane(propellant_kg, lane);
+      int at = 0;
+      while (at < last - 1 && here < levels[at + 1]) ++at;
+      level[lane] = next[lane] = at;
+      level_kg = levels[at];
+      if (last > 0) {
+        next[lane] = at + 1;
+        span_kg = levels[at] - levels[at + 1];
+      }
+      if (at > 0) from_kg = levels[at];
+      if (at < last - 1) to_kg = levels[at + 1];
+    }
+    Lane(b.level_kg, lane) = level_kg;
+    Lane(b.span_kg, lane) = span_kg;
+    Lane(b.from_kg, lane) = from_kg;
+    Lane(b.to_kg, lane) = to_kg;
   }
   for (int plane = 0; plane < b.planes; ++plane) {
     for (int mode = 0; mode < b.modes; ++mode) {
@@ -85,32 +117,45 @@ DISPERSA_INLINE void ShapesAt(BendingTableLanes<T>& b, T propellant_kg) {
         low[lane] = high[lane] = kNone;
         if (table == nullptr || mode >= table->modes) continue;
         const int of = table->planes == 1 ? 0 : plane;
-        const int next = level[lane] + 1 < static_cast<int>(table->propellant_kg.size()) ? 1 : 0;
         low[lane] = table->Row(of, level[lane], mode);
-        high[lane] = table->Row(of, level[lane] + next, mode);
+        high[lane] = table->Row(of, next[lane], mode);
       }
-      T c[BendingTable::kRowSize], d[BendingTable::kRowSize];
-      LoadRow(low, BendingTable::kRowSize / 4, c);
-      LoadRow(high, BendingTable::kRowSize / 4, d);
-      for (int i = 0; i < BendingTable::kRowSize; ++i) c[i] = Fma(within, d[i] - c[i], c[i]);
+      ModeRows<T>& rows = b.rows[plane][mode];
+      LoadRow(low, BendingTable::kRowSize / 4, rows.low);
+      LoadRow(high, BendingTable::kRowSize / 4, rows.rise);
+      for (int i = 0; i < BendingTable::kRowSize; ++i) rows.rise[i] = rows.rise[i] - rows.low[i];
+    }
+  }
+}
+
+/// Sets the values that depend on the lane's propellant.
+template <class T>
+DISPERSA_INLINE void ShapesAt(BendingTableLanes<T>& b, T propellant_kg) {
+  if (Any(!((propellant_kg < b.from_kg) & (propellant_kg >= b.to_kg)))) ReadLevels(b, propellant_kg);
+  b.within = Clamp((b.level_kg - propellant_kg) / b.span_kg, T(0.0), T(1.0));
+  for (int plane = 0; plane < b.planes; ++plane) {
+    for (int mode = 0; mode < b.modes; ++mode) {
+      const auto at = [&](int column) __attribute__((always_inline)) {
+        return b.ColumnAt(plane, mode, column);
+      };
       ModeNow<T>& m = b.now[plane][mode];
-      const auto flies = c[BendingTable::kFrequency] > T(0.0);
-      const T frequency = Select(flies, c[BendingTable::kFrequency] * b.frequency_factor[mode], T(1.0));
+      const T tabulated = at(BendingTable::kFrequency);
+      const auto flies = tabulated > T(0.0);
+      const T frequency = Select(flies, tabulated * b.frequency_factor[mode], T(1.0));
       m.stiffness_1_s2 = frequency * frequency;
       m.decay_1_s = b.damping_ratio * frequency;
       m.damping_1_s = T(2.0) * m.decay_1_s;
       m.damped_frequency_rad_s = frequency * Sqrt(Fma(-b.damping_ratio, b.damping_ratio, T(1.0)));
-      m.inverse_mass_1_kg = c[BendingTable::kInverseMass];
-      m.pivot_deflection = c[BendingTable::kPivotDeflection];
-      m.pivot_slope_1_m = c[BendingTable::kPivotSlope];
-      m.unit_slope_1_m = b.slope_factor * c[BendingTable::kUnitSlope];
+      m.inverse_mass_1_kg = at(BendingTable::kInverseMass);
+      m.pivot_deflection = at(BendingTable::kPivotDeflection);
+      m.pivot_slope_1_m = at(BendingTable::kPivotSlope);
+      m.unit_slope_1_m = b.slope_factor * at(BendingTable::kUnitSlope);
       for (int i = 0; i < kRateGyros; ++i)
-        m.gyro_slope_1_m[i] = b.slope_factor * c[BendingTable::kGyroSlope + i];
-      for (int i = 0; i < kModes; ++i) m.shortening_1_m[i] = c[BendingTable::kShortening + i];
-      for (int i = 0; i < 2; ++i) m.straight_lift[i] = c[BendingTable::kStraightLift + i];
+        m.gyro_slope_1_m[i] = b.slope_factor * at(BendingTable::kGyroSlope + i);
+      for (int i = 0; i < kModes; ++i) m.shortening_1_m[i] = at(BendingTable::kShortening + i);
+      for (int i = 0; i < 2; ++i) m.straight_lift[i] = at(BendingTable::kStraightLift + i);
       for (int i = 0; i < kLiftCauses; ++i)
-        for (int k = 0; k < kLiftEffects; ++k) m.lift[i][k] = c[BendingTable::LiftColumn(i, k)];
-      for (int i = 0; i < kLoadStations; ++i) m.section_moment_kg_m[i] = c[BendingTable::kMomentAt + i];
+        for (int k = 0; k < kSectionEffects; ++k) m.lift[i][k] = at(BendingTable::LiftColumn(i, k));
     }
   }
 }
@@ -232,8 +277,12 @@ DISPERSA_INLINE SectionMoments<T> MomentsByBending(const BendingTableLanes<T>& b
                                                                  m.stiffness_1_s2 * s.q_m[plane][mode]);
       const T slope_n = air.slope_n * s.q_m[plane][mode], rate_n = by_rate_n * s.rate_m_s[plane][mode];
       for (int i = 0; i < kLoadStations; ++i) {
-        const LiftNow<T> lift = LiftOf(m, kSectionEffects + i, aft_m);
-        moment_n_m[i] = Fma(acceleration, m.section_moment_kg_m[i],
+        const auto by = [&](LiftCause cause) __attribute__((always_inline)) {
+          return b.ColumnAt(plane, mode, BendingTable::LiftColumn(cause, kSectionEffects + i));
+        };
+        const LiftNow<T> lift = {Fma(aft_m, by(kSlopeShift), by(kSlopeSlender)),
+                                 Fma(aft_m, by(kRateShift), by(kRateSlender))};
+        moment_n_m[i] = Fma(acceleration, b.ColumnAt(plane, mode, BendingTable::kMomentAt + i),
                             Fma(slope_n, lift.by_slope, Fma(rate_n, lift.by_rate, moment_n_m[i])));
       }
     }
@@ -259,7 +308,7 @@ DISPERSA_INLINE void FinishDrive(const BendingTableLanes<T>& b, const BendingSta
 template <class T>
 struct Swing {
   T time_s;
-  T stiffness_1_s2[kPlanes][kModes], damping_1_s[kPlanes][kModes];
+  T softness_s2[kPlanes][kModes], damping_1_s[kPlanes][kModes];  ///< softness: 1 / omega²
   T aa[kPlanes][kModes], ar[kPlanes][kModes], ra[kPlanes][kModes], rr[kPlanes][kModes];
 };
 template <class T>
@@ -269,7 +318,7 @@ DISPERSA_INLINE Swing<T> SwingOver(const BendingTableLanes<T>& b, T time_s) {
   for (int plane = 0; plane < b.planes; ++plane)
     for (int mode = 0; mode < b.modes; ++mode) {
       const ModeNow<T>& m = b.now[plane][mode];
-      o.stiffness_1_s2[plane][mode] = m.stiffness_1_s2;
+      o.softness_s2[plane][mode] = T(1.0) / m.stiffness_1_s2;
       o.damping_1_s[plane][mode] = m.damping_1_s;
       const T e = Exp(-(m.decay_1_s * time_s)), angle = m.damped_frequency_rad_s * time_s;
       const T cosine = e * Cos(angle), sine = e * Sin(angle) / m.damped_frequency_rad_s;
@@ -307,7 +356,7 @@ DISPERSA_INLINE BendingState<T> Swung(const BendingTableLanes<T>& b, const Swing
   for (int plane = 0; plane < kPlanes; ++plane)
     for (int mode = 0; mode < b.modes; ++mode) {
       const int of = b.planes == 1 ? 0 : plane;
-      const T softness = T(1.0) / swing.stiffness_1_s2[of][mode], damping = swing.damping_1_s[of][mode];
+      const T softness = swing.softness_s2[of][mode], damping = swing.damping_1_s[of][mode];
       const T c = d2.drive_m_s2[plane][mode] * softness;
       const T v = Fma(-(two * damping), c, d1.drive_m_s2[plane][mode]) * softness;
       const T a = Fma(-damping, v, Fma(-two, c, d0.drive_m_s2[plane][mode])) * softness;

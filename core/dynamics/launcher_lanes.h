@@ -120,11 +120,6 @@ DISPERSA_INLINE void SetLane(LauncherPlantLanes<T>& p, int lane, const LauncherP
   Lane(p.lateral_moment_z_kg_m, lane) = s.lateral_moment_z_kg_m;
 }
 
-/// Modes of another stack, or of one that has let go of a body (null: it is rigid).
-template <class T>
-DISPERSA_INLINE void SetTable(BendingTableLanes<T>& b, int lane, const BendingTable* table) {
-  b.table[lane] = table != nullptr && table->modes > 0 ? table : nullptr;
-}
 /// The bending of a lane on its stack. ShapesAt sets the values that depend on propellant.
 template <class T>
 DISPERSA_INLINE void SetLane(BendingTableLanes<T>& b, int lane, const LauncherPlant& plant, int stack) {

@@ -120,7 +120,7 @@ class StepState {
   void EndFlight(int lane) {
     plant_.weather.profile[lane] = nullptr;
     plant_.burn.curve[lane] = plant_.beside.burn.curve[lane] = nullptr;
-    bending_.table[lane] = nullptr;
+    SetTable(bending_, lane, nullptr);
     SetLane(phase_.burning, lane, false);
     SetLane(phase_.boosting, lane, false);
   }

@@ -54,16 +54,16 @@ template <typename Shape>
 void AddLift(const LoadTable& loads, const std::vector<std::vector<double>>& deflections, const Shape& at,
              double* row) {
   for (const bool by_rate : {false, true}) {
-    double* const slender = row + BendingTable::LiftColumn(by_rate ? kRateSlender : kSlopeSlender, 0);
-    double* const shift = slender + kLiftEffects;
     std::size_t piece = 0;
-    const auto add = [&](double force, double station_m, double* effects) {
+    const auto add = [&](double force, double station_m, LiftCause cause) {
+      double* const effects = row + BendingTable::LiftColumn(cause, 0);
+      double* const of_sections = row + BendingTable::LiftColumn(cause, kSectionEffects);
       effects[kForceEffect] += force;
       effects[kFirstEffect] += force * station_m;
       for (std::size_t j = 0; j < deflections.size(); ++j)
         effects[kWorkEffects + j] += force * deflections[j][piece];
       for (std::size_t i = 0; i < kLoadStations; ++i)
-        effects[kSectionEffects + i] += force * std::max(loads.station_m[i] - station_m, 0.0);
+        of_sections[i] += force * std::max(loads.station_m[i] - station_m, 0.0);
     };
     loads.lift.ForEach(
         [&](double station_m) {
@@ -71,8 +71,8 @@ void AddLift(const LoadTable& loads, const std::vector<std::vector<double>>& def
           return by_rate ? shape.deflection : shape.slope_1_m;
         },
         [&](double station_m, double by_slender, double by_shift) {
-          add(by_slender, station_m, slender);
-          add(by_shift, station_m, shift);
+          add(by_slender, station_m, by_rate ? kRateSlender : kSlopeSlender);
+          add(by_shift, station_m, by_rate ? kRateShift : kSlopeShift);
           ++piece;
         });
   }

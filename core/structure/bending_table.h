@@ -36,9 +36,10 @@ struct BendingTable {
   /// lift, by slender-body theory and by shift.
   ///
   /// From kLiftAt on: effects of the lift by a unit of the mode, by cause and effect, for a normal force of 1
-  /// per radian. From kMomentAt on: bending moment of the mode's inertia at each load station, for a unit
-  /// acceleration of the mode. If there is a stage above: mean displacement of its centre of gravity, and
-  /// mean rotation, for a unit of the mode.
+  /// per radian. These are the columns of each step. From kSectionsAt on: the same effects about each load
+  /// station, and from kMomentAt on the bending moment of the mode's inertia there, for a unit acceleration
+  /// of the mode. If there is a stage above: mean displacement of its centre of gravity, and mean rotation,
+  /// for a unit of the mode.
   enum Column : int {
     kFrequency = 0,
     kInverseMass = 1,
@@ -50,14 +51,19 @@ struct BendingTable {
     kStraightLift = 13,
     kUpperShift = 15,
     kLiftAt = 16,
+    kSectionsAt = 44,
     kMomentAt = 72,
     kUpperTurn = 79,
     kRowSize = 80
   };
   static_assert(kGyroSlope + kRateGyros == kShortening && kShortening + kModes == kStraightLift &&
-                kLiftAt + int{kLiftCauses} * int{kLiftEffects} == kMomentAt &&
+                kLiftAt + int{kLiftCauses} * int{kSectionEffects} == kSectionsAt &&
+                kSectionsAt + int{kLiftCauses} * kLoadStations == kMomentAt &&
                 kMomentAt + kLoadStations == kUpperTurn);
-  static constexpr int LiftColumn(int cause, int effect) { return kLiftAt + kLiftEffects * cause + effect; }
+  static constexpr int LiftColumn(int cause, int effect) {
+    return effect < kSectionEffects ? kLiftAt + kSectionEffects * cause + effect
+                                    : kSectionsAt + kLoadStations * cause + effect - kSectionEffects;
+  }
 
   int modes = 0;                      ///< that fly, in each plane
   int planes = 1;                     ///< 1: plane z is plane y

@@ -46,8 +46,10 @@ double Expected(const Between& at, int plane, int mode, int column) {
 }
 
 // Every number that a flight has of one mode, with the column that it comes from. Frequencies are apart.
-void ExpectColumns(const lanes::ModeNow<double>& now, const std::function<double(int)>& column) {
+void ExpectColumns(const lanes::BendingTableLanes<double>& bending, int plane, int mode,
+                   const std::function<double(int)>& column) {
   constexpr double kRounding = 1e-14;  // of numbers up to 1
+  const lanes::ModeNow<double>& now = bending.At(plane, mode);
   EXPECT_NEAR(now.inverse_mass_1_kg, column(BendingTable::kInverseMass), kRounding);
   EXPECT_NEAR(now.pivot_deflection, column(BendingTable::kPivotDeflection), kRounding);
   EXPECT_NEAR(now.pivot_slope_1_m, column(BendingTable::kPivotSlope), kRounding);
@@ -59,11 +61,11 @@ void ExpectColumns(const lanes::ModeNow<double>& now, const std::function<double
   for (int i = 0; i < 2; ++i)
     EXPECT_NEAR(now.straight_lift[i], column(BendingTable::kStraightLift + i), kRounding) << i;
   for (int cause = 0; cause < kLiftCauses; ++cause)
-    for (int effect = 0; effect < kLiftEffects; ++effect)
+    for (int effect = 0; effect < kSectionEffects; ++effect)
       EXPECT_NEAR(now.lift[cause][effect], column(BendingTable::LiftColumn(cause, effect)), kRounding)
           << cause << ", " << effect;
-  for (int i = 0; i < kLoadStations; ++i)
-    EXPECT_NEAR(now.section_moment_kg_m[i], column(BendingTable::kMomentAt + i), kRounding) << i;
+  for (int of_sections = BendingTable::kSectionsAt; of_sections < BendingTable::kUpperTurn; ++of_sections)
+    EXPECT_NEAR(bending.ColumnAt(plane, mode, of_sections), column(of_sections), kRounding) << of_sections;
 }
 
 TEST(BendingShapes, AreLinearBetweenLevelsAndHeldBeyond) {
@@ -74,7 +76,7 @@ TEST(BendingShapes, AreLinearBetweenLevelsAndHeldBeyond) {
       for (int mode = 0; mode < 2; ++mode) {
         SCOPED_TRACE(testing::Message() << at.propellant_kg << " kg, plane " << plane << ", mode " << mode);
         const lanes::ModeNow<double>& now = bending.At(plane, mode);
-        ExpectColumns(now, [&](int column) { return Expected(at, plane, mode, column); });
+        ExpectColumns(bending, plane, mode, [&](int column) { return Expected(at, plane, mode, column); });
         const double frequency = Expected(at, plane, mode, BendingTable::kFrequency);
         EXPECT_NEAR(now.stiffness_1_s2, frequency * frequency, 1e-12 * frequency * frequency);
         EXPECT_NEAR(now.decay_1_s, 0.02 * frequency, 1e-13 * frequency);
@@ -116,11 +118,12 @@ TEST(BendingShapes, OfAnAxisymmetricBodyServeBothPlanes) {
   EXPECT_EQ(&bending.At(1, 1), &bending.At(0, 1));
   // Beside a stack whose planes differ, its second plane is looked up too.
   bending.planes = 2;
+  lanes::SetTable(bending, 0, &table);
   lanes::ShapesAt(bending, 15.0);
   const Between at = kPlaces[4];
   for (int plane = 0; plane < kPlanes; ++plane)
     for (int mode = 0; mode < 2; ++mode)
-      ExpectColumns(bending.At(plane, mode), [&](int column) { return Expected(at, 0, mode, column); });
+      ExpectColumns(bending, plane, mode, [&](int column) { return Expected(at, 0, mode, column); });
 }
 
 TEST(BendingShapes, FollowTheFlightsFactors) {
@@ -137,7 +140,7 @@ TEST(BendingShapes, FollowTheFlightsFactors) {
       EXPECT_NEAR(bending.At(plane, mode).stiffness_1_s2, frequency * frequency,
                   1e-12 * frequency * frequency);
       // The factor is of what sensors feel. Forces act on the shapes as they are.
-      ExpectColumns(bending.At(plane, mode), [&](int column) {
+      ExpectColumns(bending, plane, mode, [&](int column) {
         const bool is_felt = column >= BendingTable::kUnitSlope && column < BendingTable::kShortening;
         return (is_felt ? 1.5 : 1.0) * nominal(column);
       });
@@ -150,11 +153,11 @@ TEST(BendingShapes, OfAModeThatDoesNotFlyAreNone) {
     lanes::BendingTableLanes<double> bending = BendingOf(table, 80.0, 0.01);
     bending.modes = 3;  // another stack has so many
     bending.planes = 2;
-    bending.table[0] = of_stack;
+    lanes::SetTable(bending, 0, of_stack);
     lanes::ShapesAt(bending, 80.0);
     for (int plane = 0; plane < kPlanes; ++plane)
       for (int mode = of_stack ? 1 : 0; mode < 3; ++mode) {
-        ExpectColumns(bending.At(plane, mode), [](int) { return 0.0; });
+        ExpectColumns(bending, plane, mode, [](int) { return 0.0; });
         EXPECT_EQ(bending.At(plane, mode).stiffness_1_s2, 1.0) << "swings, and nobody feels it";
         EXPECT_GT(bending.At(plane, mode).damped_frequency_rad_s, 0.0);
       }
@@ -171,7 +174,7 @@ TEST(BendingShapes, OfALaneAreThoseOfItsStackAlone) {
   together.modes = together.planes = 2;
   Four propellant(0.0);
   for (int lane = 0; lane < 4; ++lane) {
-    together.table[lane] = tables[lane];
+    lanes::SetTable(together, lane, tables[lane]);
     lanes::Lane(propellant, lane) = propellant_kg[lane];
     for (Four& factor : together.frequency_factor) lanes::Lane(factor, lane) = 1.0 + 0.1 * lane;
     lanes::Lane(together.damping_ratio, lane) = 0.01 * lane;
@@ -181,7 +184,7 @@ TEST(BendingShapes, OfALaneAreThoseOfItsStackAlone) {
   for (int lane = 0; lane < 4; ++lane) {
     lanes::BendingTableLanes<double> alone{};
     alone.modes = alone.planes = 2;
-    alone.table[0] = tables[lane];
+    lanes::SetTable(alone, 0, tables[lane]);
     for (double& factor : alone.frequency_factor) factor = 1.0 + 0.1 * lane;
     alone.damping_ratio = 0.01 * lane;
     alone.slope_factor = 1.0 - 0.1 * lane;

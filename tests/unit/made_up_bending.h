@@ -84,20 +84,20 @@ inline std::array<double, BendingTable::kRowSize> RowOf(const std::vector<MadeUp
   for (const bool by_rate : {false, true}) {
     const auto at = [&](double s) { return by_rate ? mode.Deflection(s) : mode.Slope(s); };
     const auto slender = StripForces(loads, 0.0, at), with_shift = StripForces(loads, 1.0, at);
-    double* const of_slender =
-        row.data() + BendingTable::LiftColumn(by_rate ? kRateSlender : kSlopeSlender, 0);
     for (std::size_t i = 0; i < kStrips; ++i) {
       const double place_m = loads.lift.pieces[i].Middle();
-      const auto add = [&](double force, double* effects) {
+      const auto add = [&](double force, LiftCause cause) {
+        double* const effects = row.data() + BendingTable::LiftColumn(cause, 0);
         effects[kForceEffect] += force;
         effects[kFirstEffect] += force * place_m;
         for (std::size_t j = 0; j < modes.size(); ++j)
           effects[kWorkEffects + j] += force * modes[j].Deflection(place_m);
         for (std::size_t k = i; k < kLoadStations; ++k)
-          effects[kSectionEffects + k] += force * (loads.station_m[k] - place_m);
+          row[static_cast<std::size_t>(BendingTable::LiftColumn(cause, kSectionEffects)) + k] +=
+              force * (loads.station_m[k] - place_m);
       };
-      add(slender[i], of_slender);
-      add(with_shift[i] - slender[i], of_slender + kLiftEffects);
+      add(slender[i], by_rate ? kRateSlender : kSlopeSlender);
+      add(with_shift[i] - slender[i], by_rate ? kRateShift : kSlopeShift);
     }
   }
   for (std::size_t i = 0; i < kLoadStations; ++i)
@@ -131,7 +131,7 @@ inline lanes::BendingTableLanes<double> BendingOf(const BendingTable& table, dou
   lanes::BendingTableLanes<double> bending{};
   bending.modes = table.modes;
   bending.planes = table.planes;
-  bending.table[0] = &table;
+  lanes::SetTable(bending, 0, &table);
   for (double& factor : bending.frequency_factor) factor = 1.0;
   bending.damping_ratio = damping_ratio;
   bending.slope_factor = 1.0;
