@@ -60,7 +60,7 @@ class Coordinator : public Workforce {
   const AuditOptions& audit() const override { return dispatcher_.audit(); }
   std::uint64_t audits() const override { return dispatcher_.audits(); }
   const std::map<std::string, std::string>& expelled() const override { return dispatcher_.expelled(); }
-  void Expel(const std::map<std::string, std::string>& names) override { dispatcher_.Expel(names); }
+  void Expel(const std::map<std::string, std::string>& names) override { dispatcher_.Expel(names, false); }
   /// Without the seconds for which this process or machine stood still.
   double now_s() const override { return now_s_; }
 

@@ -55,6 +55,11 @@ void Dispatcher::On(const std::string& sender, const WorkerStatus& status, doubl
     TellRefusal(status.worker, refused->second);
     return;
   }
+  if (status.coordinator_epoch > epoch_) {
+    LeaveToYounger(status.worker);
+    return;
+  }
+  led_by_younger_.erase(status.worker);
   const auto known = workers_.find(status.worker);
   if (known != workers_.end() && known->second.sender != sender) {
     // A worker that renewed its connection, or another process that uses its name while it runs.
@@ -71,6 +76,21 @@ void Dispatcher::On(const std::string& sender, const WorkerStatus& status, doubl
   }
   if (!Join(sender, status, now_s)) return;
   Compare(workers_.at(status.worker), status, now_s);
+}
+
+// Another host took our place. This worker ignores our orders while it hears the younger coordinator. Empty
+// orders let it come back when that one is silent.
+void Dispatcher::LeaveToYounger(const std::string& worker) {
+  const bool is_news = led_by_younger_.size() < kMaxRemembered && led_by_younger_.insert(worker).second;
+  if (workers_.contains(worker)) Lose(worker, WorkerEnd::kLeft, "it follows a younger coordinator");
+  if (is_news) {
+    LogWarning(
+        "worker {} follows a coordinator that was started later, and gets no cases here: if another host "
+        "took "
+        "over, stop this coordinator",
+        worker);
+  }
+  TellRefusal(worker, "");
 }
 
 bool Dispatcher::Join(const std::string& sender, const WorkerStatus& status, double now_s) {
@@ -143,10 +163,10 @@ void Dispatcher::Expel(const std::string& worker, const std::string& reason) {
   Expel({{AccountOf(worker), reason}});
 }
 
-void Dispatcher::Expel(const std::map<std::string, std::string>& names) {
+void Dispatcher::Expel(const std::map<std::string, std::string>& names, bool is_news) {
   for (const auto& [name, reason] : names) {
     if (!expelled_.emplace(name, reason).second) continue;
-    LogError("{} may not fly here any more: {}", name, reason);
+    if (is_news) LogError("{} may not fly here any more: {}", name, reason);
     refusal_ = reason;
     std::vector<std::string> workers;
     for (const auto& [id, worker] : workers_) {
@@ -491,7 +511,7 @@ void Dispatcher::Lose(const std::string& worker, WorkerEnd end, const std::strin
     std::erase_if(campaign.unstored, [&](const auto& report) { return report.first == worker; });
   }
   forgotten_.push_back(worker);
-  if (!known || supervised) return;
+  if (!known || supervised || led_by_younger_.contains(worker)) return;
   if (end == WorkerEnd::kLeft) {
     LogInfo("worker {} left", worker);
   } else {

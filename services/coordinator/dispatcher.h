@@ -98,8 +98,8 @@ class Dispatcher {
   /// Names of expelled keys, and of expelled workers without keys, each with the reason.
   const std::map<std::string, std::string>& expelled() const { return expelled_; }
   /// Expels workers from now on, if they are not expelled yet: those that an earlier coordinator expelled, or
-  /// that the issuer of keys revoked.
-  void Expel(const std::map<std::string, std::string>& names);
+  /// that the issuer of keys revoked. `is_news`: the log tells them one by one.
+  void Expel(const std::map<std::string, std::string>& names, bool is_news = true);
 
  private:
   struct FlyingCampaign {
@@ -135,6 +135,7 @@ class Dispatcher {
   };
 
   bool Join(const std::string& sender, const WorkerStatus& status, double now_s);
+  void LeaveToYounger(const std::string& worker);
   void Refuse(const std::string& worker, const std::string& reason);
   /// Whether a result that it returned is to be looked at any further.
   bool MayReturn(const std::string& sender, const Report& report, const FlownCase& flown, CampaignBook& book);
@@ -165,6 +166,7 @@ class Dispatcher {
   std::map<std::string, FlyingCampaign> campaigns_;  ///< by flight id
   std::map<std::string, Worker> workers_;
   std::set<std::string> supervised_;
+  std::set<std::string> led_by_younger_;         ///< workers that follow a coordinator of a larger epoch
   std::map<std::string, std::string> refused_;   ///< worker -> why; told again whenever it speaks
   std::map<std::string, std::string> expelled_;  ///< the name of its keys, or of a worker without keys -> why
   std::set<std::string> ended_;  ///< supervised workers that ended: later messages from them are old

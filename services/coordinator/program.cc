@@ -97,18 +97,11 @@ int RunCoordinator(int argc, char** argv) {
           ""));
   app.add_option(
          "--quota", quotas,
-         "with --data: limits of each client's campaigns, as cases=1000000,campaigns=20,places=4,disk=200GB: "
-         "cases and\ncampaigns that have not ended, campaigns that fly at once, disk space; default: none")
+         "with --data: limits of each owner's campaigns, as cases=1000000,campaigns=20,places=4,disk=200GB: "
+         "cases and\ncampaigns that have not ended, campaigns that fly at once, disk space; "
+         "ann:cases=5000000,disk=none: those\nof one owner; may be given several times; default: none")
       ->type_name("TEXT")
-      ->check(CLI::Validator(
-          [](const std::string& text) {
-            Quota quota;
-            return ReadQuota(text, &quota) ? ""
-                                           : "'" + text +
-                                                 "' is no quota, allowed: cases=N, campaigns=N, places=N and "
-                                                 "disk=SIZE (as 200GB), with commas between them";
-          },
-          ""));
+      ->check(CLI::Validator([](const std::string& text) { return Quotas().Add(text); }, ""));
   app.add_flag(
       "--health", health,
       "ask the coordinator of the domain on this machine whether it answers: exit code 0 if it does");
@@ -151,7 +144,7 @@ int RunCoordinator(int argc, char** argv) {
   }
   for (const std::string& limit : keep) ReadRetention(limit, &clients.retention);
   if (!metrics.empty()) ReadHttpAddress(metrics, &clients.prometheus.emplace());
-  for (const std::string& limits : quotas) ReadQuota(limits, &clients.quota);
+  for (const std::string& limits : quotas) clients.quotas.Add(limits);
   CatchStopSignals();
   try {
     if (health) {

@@ -160,7 +160,7 @@ int ServeClients(const ServeOptions& options, const ClientOptions& clients) {
   service_options.data = clients.data;
   service_options.max_cases = clients.max_cases;
   service_options.retention = clients.retention;
-  service_options.quota = clients.quota;
+  service_options.quotas = clients.quotas;
   service_options.reports_at_once = static_cast<std::size_t>(std::clamp(UsableCores(), 2, kMostReports));
   service_options.report_threads = std::max(1, UsableCores() / 2);
   Service service(service_options, coordinator);

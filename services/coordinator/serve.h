@@ -32,7 +32,7 @@ struct ClientOptions {
   std::optional<WebOptions> web = {};
   std::uint64_t max_cases = kDefaultMaxCases;
   Retention retention = {};
-  Quota quota = {};
+  Quotas quotas = {};
 };
 
 /// The campaigns that clients launch, until a signal to stop.

@@ -51,6 +51,8 @@ std::string Gigabytes(std::uint64_t bytes) {
   return fmt::format("{:.3g} GB", static_cast<double>(bytes) / 1e9);
 }
 
+std::string OwnerOf(const CatalogueEntry& entry) { return entry.owner.empty() ? "nobody" : entry.owner; }
+
 std::string Waiting(const std::string& problem) { return problem + "; it continues when the disk has space"; }
 
 template <typename T>
@@ -235,7 +237,8 @@ const CatalogueEntry* Service::NextToOpen() const {
     if (entry.state == CampaignState::kFlying) ++flying[entry.owner];
   }
   const auto has_no_place = [&](const CatalogueEntry& entry) {
-    return options_.quota.places && flying[entry.owner] >= *options_.quota.places;
+    const auto places = options_.quotas.Of(entry.owner).places;
+    return places && flying[entry.owner] >= *places;
   };
   const CatalogueEntry* next = nullptr;
   const auto comes_before = [](const CatalogueEntry& a, const CatalogueEntry& b) {
@@ -410,6 +413,9 @@ void Service::LoadExpelled() {
     LogError("{}: is damaged and left alone: {}", (options_.data / kExpelledFile).string(), damage.what());
   }
   expelled_noted_ = workforce_.expelled().size();
+  std::string names;
+  for (const auto& [name, reason] : workforce_.expelled()) names += (names.empty() ? "" : ", ") + name;
+  if (!names.empty()) LogInfo("expelled earlier ({}): {}", kExpelledFile, names);
 }
 
 void Service::NoteExpelled() {
@@ -458,8 +464,8 @@ void Service::End(CatalogueEntry& entry, CampaignState state, int code, const st
   Save(entry);
   Publish(entry);
   if (problem.empty()) {
-    LogInfo("campaign {} ({}) is {}, code {}", entry.name, entry.id.substr(0, 8), CampaignStateName(state),
-            code);
+    LogInfo("campaign {} ({}) of {} is {}, code {}{}", entry.name, entry.id.substr(0, 8), OwnerOf(entry),
+            CampaignStateName(state), code, entry.verdict.empty() ? "" : ", verdict " + entry.verdict);
   } else {
     LogError("campaign {} ({}) is {}: {}", entry.name, entry.id.substr(0, 8), CampaignStateName(state),
              problem);
@@ -533,7 +539,7 @@ bool Service::IsAtRest(const std::string& id) const {
 bool Service::HasWork() const { return !catalogue_.open().empty(); }
 
 void Service::RequireQuota(const CatalogueEntry& entry) const {
-  const Quota& quota = options_.quota;
+  const Quota quota = options_.quotas.Of(entry.owner);
   std::uint64_t campaigns = 1, cases = entry.cases, bytes = 0;
   for (const auto& [id, other] : catalogue_.entries()) {
     if (id == entry.id || other.owner != entry.owner) continue;
@@ -591,7 +597,8 @@ void Service::Relaunch(const std::string& id, int priority, const std::vector<st
 void Service::Launch(CatalogueEntry entry, const std::string& text) {
   RequireQuota(entry);
   entry.launched_unix_s = options_.unix_time_s();
-  LogInfo("campaign {} ({}): launched, {} cases", entry.name, entry.id.substr(0, 8), entry.cases);
+  LogInfo("campaign {} ({}): launched by {}, {} cases", entry.name, entry.id.substr(0, 8), OwnerOf(entry),
+          entry.cases);
   catalogue_.Add(std::move(entry), text);
 }
 
@@ -602,7 +609,9 @@ bool Service::MayBeDeleted(const std::string& id) const {
          catalogue_.entries().at(opening_->id).flight_id != catalogue_.entries().at(id).flight_id;
 }
 
-void Service::Delete(const std::string& id) {
+void Service::Delete(const std::string& id) { Delete(id, ""); }
+
+void Service::Delete(const std::string& id, const std::string& why) {
   const CatalogueEntry& entry = catalogue_.At(id);
   if (!MayBeDeleted(id)) {
     throw Refused(
@@ -612,7 +621,7 @@ void Service::Delete(const std::string& id) {
                     id.substr(0, 8), HasEnded(entry.state) ? "being read" : CampaignStateName(entry.state)));
   }
   Remember(entry);
-  LogInfo("campaign {} ({}) is deleted", entry.name, id.substr(0, 8));
+  LogInfo("campaign {} ({}) of {} is deleted{}", entry.name, id.substr(0, 8), OwnerOf(entry), why);
   delayed_.erase(id);
   unsaved_.erase(id);
   std::erase_if(flew_, [&](const auto& each) { return each.first == id; });
@@ -662,7 +671,7 @@ void Service::DeleteOld() {
     if (!is_old && !(keep.bytes && total > *keep.bytes)) break;
     try {
       if (keep.bytes) total -= sizes[id];
-      Delete(id);
+      Delete(id, is_old ? ": it ended long ago (--keep)" : ": the campaigns take too much space (--keep)");
     } catch (const ResultError& error) {
       LogError("campaign {} cannot be deleted: {}", id.substr(0, 8), error.what());
     }

@@ -36,7 +36,7 @@ struct ServiceOptions {
       kDefaultMaxCases;  ///< of a campaign: its ledger and its report take memory for each
   Retention retention = {};
   std::size_t reports_at_once = 2;  ///< each on a thread of its own
-  Quota quota = {};                 ///< of each owner
+  Quotas quotas = {};
   std::function<std::int64_t()> unix_time_s = [] { return std::int64_t{std::time(nullptr)}; };
 };
 
@@ -153,6 +153,8 @@ class Service {
   void Measure();
   void NoteConflicts(CatalogueEntry& entry, Flying& flying);
   void DeleteOld();
+  /// `why`: for the log.
+  void Delete(const std::string& id, const std::string& why);
   void Remember(const CatalogueEntry& entry) const;
   bool MayBeDeleted(const std::string& id) const;
   void LoadExpelled();

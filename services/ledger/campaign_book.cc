@@ -33,6 +33,8 @@ std::optional<StoppingRule> RuleOf(const Campaign& campaign, const ResultStore& 
   return rule;
 }
 
+std::string Title(const Campaign& campaign) { return campaign.name + " (" + campaign.id.substr(0, 8) + ")"; }
+
 std::string By(const std::string& worker, const std::string& title = "") {
   return worker == kInProcess ? worker : "by " + title + worker;
 }
@@ -118,7 +120,7 @@ bool CampaignBook::Try(Action action) {
   } catch (const ResultError& error) {
     if (!pauses_on_disk_errors_) throw;
     if (error.kind() == ResultError::Kind::kDiskFull) {
-      if (pause_.empty()) LogError("campaign {} is paused: {}", campaign_.name, error.what());
+      if (pause_.empty()) LogError("campaign {} is paused: {}", Title(campaign_), error.what());
       pause_ = error.what();
     } else {
       breakdown_ = error.what();
@@ -136,8 +138,8 @@ void CampaignBook::Disown(const std::string& worker) {
 void CampaignBook::RemoveResultsOf(const std::string& worker) {
   const std::vector<std::uint64_t> cases = store_->Disown(worker);
   if (cases.empty()) return;
-  LogWarning("campaign {}: {} results of worker {} are removed; their cases are flown again", campaign_.name,
-             cases.size(), worker);
+  LogWarning("campaign {}: {} results of worker {} are removed; their cases are flown again",
+             Title(campaign_), cases.size(), worker);
   ledger_.Reopen(cases);
   if (rule_) rule_ = RuleOf(campaign_, *store_);
   if (tally_) KeepTally();
@@ -273,7 +275,7 @@ bool CampaignBook::FlushIfDue(double now_s) {
 
 bool CampaignBook::TryFlush() {
   if (!breakdown_.empty() || !Try([this] { Flush(); })) return false;
-  if (!pause_.empty()) LogInfo("campaign {} continues: the disk has space again", campaign_.name);
+  if (!pause_.empty()) LogInfo("campaign {} continues: the disk has space again", Title(campaign_));
   pause_.clear();
   return true;
 }

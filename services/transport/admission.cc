@@ -2,6 +2,8 @@
 
 #include <arpa/inet.h>
 
+#include <algorithm>
+
 #include "core/containment/contained.h"
 #include "services/log/log.h"
 #include "services/transport/user_secret.h"
@@ -18,6 +20,12 @@ bool IsLoopback(const std::string& host) {
 }
 
 }  // namespace
+
+std::string FarthestHost(const std::vector<Peer>& peers) {
+  const auto far =
+      std::find_if(peers.begin(), peers.end(), [](const Peer& peer) { return !IsLoopback(peer.host); });
+  return (far == peers.end() ? peers.front() : *far).host;
+}
 
 NetworkOptions Admit(NetworkOptions network, const Admission& admission, std::initializer_list<Role> roles,
                      const std::string& peer) {

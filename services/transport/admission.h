@@ -3,6 +3,7 @@
 
 #include <initializer_list>
 #include <string>
+#include <vector>
 
 #include "services/transport/network.h"
 
@@ -19,6 +20,9 @@ inline constexpr char kKeysHelp[] = "folder with the keys of this program, made 
 inline constexpr char kInsecureHelp[] =
     "work without keys beyond this machine, and with programs of all its users; only for networks that you "
     "trust";
+
+/// A host that is not this machine, if one of them is not; else the first.
+std::string FarthestHost(const std::vector<Peer>& peers);
 
 /// `network` as one of `roles` may use it. With keys: encrypted by them. Without keys: over the loopback
 /// interface alone, with this user's secret (user_secret.h), if `peer` is there, no address was given, and

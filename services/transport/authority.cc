@@ -24,6 +24,7 @@ namespace fs = std::filesystem;
 
 constexpr char kIdentityAuthorityKeyFile[] = "identity_ca.key";
 constexpr char kPermissionsAuthorityKeyFile[] = "permissions_ca.key";
+constexpr char kMaker[] = "dispersa keys init";
 constexpr std::time_t kDay_s = 86400;
 constexpr std::size_t kMaxKeyName = 31;  // with '_' and 32 random digits an identifier of 64
 
@@ -81,8 +82,8 @@ Signer NewSigner(const std::string& name, bool is_authority, const Validity& val
 }
 
 Signer ReadSigner(const fs::path& directory, const char* certificate, const char* key) {
-  return {ReadCertificate(ReadKeyFile(directory / certificate)),
-          ReadPrivateKey(ReadKeyFile(directory / key))};
+  return {ReadCertificate(ReadKeyFile(directory / certificate, kMaker)),
+          ReadPrivateKey(ReadKeyFile(directory / key, kMaker))};
 }
 
 struct Authority {
@@ -94,7 +95,7 @@ Authority ReadAuthority(const fs::path& folder) {
   try {
     return {ReadSigner(folder, kIdentityAuthorityFile, kIdentityAuthorityKeyFile),
             ReadSigner(folder, kPermissionsAuthorityFile, kPermissionsAuthorityKeyFile),
-            ReadKeyFile(folder / kGovernanceFile)};
+            ReadKeyFile(folder / kGovernanceFile, kMaker)};
   } catch (const std::runtime_error& error) {
     Refuse(folder, std::string("the authority cannot sign: ") + error.what());
   }
@@ -106,7 +107,7 @@ Revoked ReadRevoked(const fs::path& directory) {
   if (!fs::exists(file)) return {};
   try {
     const Certificate signer =
-        ReadCertificate(ReadKeyFile(directory / "authority" / kPermissionsAuthorityFile));
+        ReadCertificate(ReadKeyFile(directory / "authority" / kPermissionsAuthorityFile, kMaker));
     return ParseRevocations(VerifiedDocument(ReadKeyFile(file), signer.get()));
   } catch (const std::runtime_error& error) {
     Refuse(file, std::string("the list of revoked keys cannot be read: ") + error.what());

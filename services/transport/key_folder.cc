@@ -77,11 +77,14 @@ bool Contains(const std::string& text, const std::string& part) {
 
 }  // namespace
 
-std::string ReadKeyFile(const fs::path& file) {
+std::string ReadKeyFile(const fs::path& file, const char* maker) {
   std::ifstream in(file, std::ios::binary);
   std::string text{std::istreambuf_iterator<char>(in), {}};
   if (!in.is_open() || in.bad()) {
-    RefuseKeys(file, std::string("cannot be read: ") + std::strerror(errno));
+    RefuseKeys(file,
+               errno == ENOENT
+                   ? fmt::format("file not found, allowed: a folder with all files that `{}` made", maker)
+                   : std::string("cannot be read: ") + std::strerror(errno) + ", allowed: a readable file");
   }
   return text;
 }

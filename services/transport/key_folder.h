@@ -32,7 +32,7 @@ inline constexpr char kRevokedFile[] = "revoked.p7s";
 /// use the key, and that the folder is for one of `roles`. Throws NetworkError with the fault and the remedy.
 KeyFolder OpenKeyFolder(const std::filesystem::path& directory, std::initializer_list<Role> roles);
 
-/// The text of a file. Throws NetworkError.
-std::string ReadKeyFile(const std::filesystem::path& file);
+/// The text of a file. `maker`: the command that makes it. Throws NetworkError.
+std::string ReadKeyFile(const std::filesystem::path& file, const char* maker = "dispersa keys issue");
 
 }  // namespace dispersa

@@ -4,6 +4,7 @@
 #include <charconv>
 #include <cstdio>
 #include <random>
+#include <sstream>
 
 namespace dispersa {
 
@@ -19,6 +20,13 @@ Peer ParsePeer(const std::string& text, int domain) {
   }
   if (peer.host.empty()) throw NetworkError("peer '" + text + "': the host is missing");
   return peer;
+}
+
+std::vector<Peer> ParsePeers(const std::string& text, int domain) {
+  std::vector<Peer> peers;
+  std::istringstream all(text + ",");
+  for (std::string one; std::getline(all, one, ',');) peers.push_back(ParsePeer(one, domain));
+  return peers;
 }
 
 std::uint16_t PortOf(int domain, int offset) {

@@ -5,6 +5,7 @@
 #include <optional>
 #include <stdexcept>
 #include <string>
+#include <vector>
 
 #include "services/transport/key_folder.h"
 #include "services/transport/seal.h"
@@ -19,6 +20,8 @@ struct Peer {
 
 /// "HOST:PORT", or "HOST" with the coordinator's port in `domain`. Throws NetworkError.
 Peer ParsePeer(const std::string& text, int domain);
+/// One or more of them, with commas between. Throws NetworkError.
+std::vector<Peer> ParsePeers(const std::string& text, int domain);
 
 struct NetworkOptions {
   int domain = 0;       ///< 0 .. 99

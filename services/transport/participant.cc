@@ -93,6 +93,19 @@ std::string Resolve(const std::string& host) {
   return text;
 }
 
+/// One that has no address yet, such as a host that is to take over, does not keep us from the others.
+void AddPeers(const std::vector<Peer>& peers, rtps::LocatorList_t& list) {
+  std::string problem;
+  for (const Peer& peer : peers) {
+    try {
+      list.push_back(MakeLocator(Resolve(peer.host), peer.port));
+    } catch (const NetworkError& error) {
+      problem = error.what();
+    }
+  }
+  if (list.empty() && !problem.empty()) throw NetworkError(problem);
+}
+
 dds::DomainParticipantQos MakeQos(const ParticipantOptions& options) {
   dds::DomainParticipantQos qos;
   qos.name(options.name);
@@ -122,9 +135,7 @@ dds::DomainParticipantQos MakeQos(const ParticipantOptions& options) {
   const std::uint16_t discovery = options.discovery_port ? *options.discovery_port : free_port(kFirstPort);
   builtin.metatrafficUnicastLocatorList.push_back(MakeLocator(own, discovery));
   qos.wire_protocol().default_unicast_locator_list.push_back(MakeLocator(own, free_port(kFirstPort + 1)));
-  for (const Peer& peer : options.peers) {
-    builtin.initialPeersList.push_back(MakeLocator(Resolve(peer.host), peer.port));
-  }
+  AddPeers(options.peers, builtin.initialPeersList);
   if (options.network.keys) AddKeys(*options.network.keys, qos.properties());
   return qos;
 }

@@ -15,8 +15,8 @@ namespace dds = eprosima::fastdds::dds;
 }  // namespace
 
 struct WorkerLink::Impl {
-  Impl(const NetworkOptions& network, const Peer& peer, const std::string& worker)
-      : participant({network, "dispersa-worker", std::nullopt, {peer}}),
+  Impl(const NetworkOptions& network, const std::vector<Peer>& peers, const std::string& worker)
+      : participant({network, "dispersa-worker", std::nullopt, peers}),
         publisher(participant.MakePublisher(PartitionOf(worker))),
         subscriber(participant.MakeSubscriber({PartitionOf(worker)})) {
     // This includes messages of the coordinator to another worker that a third party repeats here.
@@ -46,8 +46,9 @@ struct WorkerLink::Impl {
   std::optional<Reader<idl::TextV1PubSubType>> texts;
 };
 
-WorkerLink::WorkerLink(const NetworkOptions& network, const Peer& peer, const std::string& worker)
-    : impl_(std::make_unique<Impl>(network, peer, worker)) {}
+WorkerLink::WorkerLink(const NetworkOptions& network, const std::vector<Peer>& peers,
+                       const std::string& worker)
+    : impl_(std::make_unique<Impl>(network, peers, worker)) {}
 WorkerLink::~WorkerLink() = default;
 
 std::vector<WorkerEvent> WorkerLink::Wait(std::chrono::milliseconds timeout) {

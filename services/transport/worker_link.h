@@ -17,8 +17,9 @@ using WorkerEvent = std::variant<Orders, TextPart>;
 /// Sending is thread-safe. Nothing that is sent is sure to arrive. Throws NetworkError.
 class WorkerLink {
  public:
-  /// `worker` is the UUID under which it appears. `peer` is the coordinator; its name is resolved now.
-  WorkerLink(const NetworkOptions& network, const Peer& peer, const std::string& worker);
+  /// `worker` is the UUID under which it appears. `peers`: where a coordinator may be. Their names are
+  /// resolved now.
+  WorkerLink(const NetworkOptions& network, const std::vector<Peer>& peers, const std::string& worker);
   ~WorkerLink();
 
   /// All events so far, in order. Waits at most `timeout` for the first one.

@@ -41,7 +41,9 @@ int RunWorker(int argc, char** argv) {
   app.add_option("--domain", options.network.domain, "DDS domain")
       ->envname("DISPERSA_DOMAIN")
       ->transform(WholeNumber(0, 99));
-  app.add_option("--peer", peer, "HOST[:PORT] of the coordinator")->required();
+  app.add_option("--peer", peer,
+                 "HOST[:PORT] of the coordinator; several with commas between, if another host may take over")
+      ->required();
   app.add_option("--address", options.network.address, "IPv4 address of the only network interface to use")
       ->check(CLI::ValidIPV4);
   app.add_option("--keys", admission.keys, kKeysHelp)->type_name(kFolderType);
@@ -74,13 +76,13 @@ int RunWorker(int argc, char** argv) {
 
   int code = kExitInternalError;
   try {
-    options.peer = ParsePeer(peer, options.network.domain);
+    options.peers = ParsePeers(peer, options.network.domain);
     if (run_pass) {  // a worker of `dispersa run` has the secret of its run
       RunPass pass = TakeRunPass(*run_pass);
       options.network.secret = pass.secret;
       RefusePlugins("is not the shared object that the campaign of this run names", std::move(pass.plugins));
     } else {
-      options.network = Admit(options.network, admission, {Role::kWorker}, options.peer.host);
+      options.network = Admit(options.network, admission, {Role::kWorker}, FarthestHost(options.peers));
       AdmitPlugins(admission.allow_plugins);
     }
     options.uuid = NameOnNetwork(options.network, options.uuid.empty() ? MakeUuid() : options.uuid);

@@ -84,7 +84,7 @@ void Worker::Connect() {
     link_.reset();
   }
   try {
-    link = std::make_shared<WorkerLink>(options_.network, options_.peer, options_.uuid);
+    link = std::make_shared<WorkerLink>(options_.network, options_.peers, options_.uuid);
   } catch (const NetworkError& error) {
     LogWarning("{}; it is tried again", error.what());
   }
@@ -208,14 +208,13 @@ void Worker::Send(const FlightDesk::Due& due) {
 std::optional<WorkerExit> Worker::Exit(double now_s) {
   const Lock lock(mutex_);
   if (desk_.IsHeard(now_s)) {
-    if (told_s_ > 0.0)
-      LogInfo("the coordinator at {}:{} answers again", options_.peer.host, options_.peer.port);
+    if (told_s_ > 0.0) LogInfo("the coordinator at {} answers again", Where());
     heard_s_ = now_s;
     told_s_ = 0.0;
   } else if (now_s - std::max(heard_s_, told_s_) > kSayAgain_s) {
     told_s_ = now_s;
-    LogWarning("no coordinator has answered at {}:{} for {:.0f} s; it is tried again", options_.peer.host,
-               options_.peer.port, now_s - heard_s_);
+    LogWarning("no coordinator has answered at {} for {:.0f} s; it is tried again", Where(),
+               now_s - heard_s_);
   }
   if (!desk_.IsIdle()) busy_s_ = now_s;
   if (!desk_.refusal().empty()) {
@@ -234,8 +233,8 @@ std::optional<WorkerExit> Worker::Exit(double now_s) {
     if (desk_.IsFlying()) busy_since_drain_s_ = now_s;
   }
   if (options_.patience_s && now_s - heard_s_ > *options_.patience_s) {
-    problem_ = fmt::format("no coordinator has answered at {}:{} for {:.0f} s; the worker ends",
-                           options_.peer.host, options_.peer.port, now_s - heard_s_);
+    problem_ = fmt::format("no coordinator has answered at {} for {:.0f} s; the worker ends", Where(),
+                           now_s - heard_s_);
     return WorkerExit::kNoCoordinator;
   }
   if (options_.idle_exit_s && now_s - busy_s_ > *options_.idle_exit_s) return WorkerExit::kIdle;
@@ -255,6 +254,13 @@ WorkerExit Worker::Leave(WorkerExit exit) {
   const Lock lock(mutex_);
   link_.reset();
   return exit;
+}
+
+std::string Worker::Where() const {
+  std::string text;
+  for (const Peer& peer : options_.peers)
+    text += fmt::format("{}{}:{}", text.empty() ? "" : " or ", peer.host, peer.port);
+  return text;
 }
 
 double Worker::Now() const {

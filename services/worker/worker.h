@@ -7,6 +7,7 @@
 #include <memory>
 #include <optional>
 #include <string>
+#include <vector>
 
 #include "services/program/mutex.h"
 #include "services/transport/worker_link.h"
@@ -16,7 +17,7 @@ namespace dispersa {
 
 struct WorkerOptions {
   NetworkOptions network;
-  Peer peer;
+  std::vector<Peer> peers;  ///< where a coordinator may be; the youngest is followed
   std::string uuid;
   std::uint32_t slots = 1;                 ///< threads that fly
   std::optional<double> idle_exit_s = {};  ///< without a case for so long: leave
@@ -55,6 +56,8 @@ class Worker {
   std::optional<WorkerExit> Exit(double now_s);
   WorkerExit Leave(WorkerExit exit);
   double Now() const;
+  /// Where a coordinator may be, in words.
+  std::string Where() const;
 
   WorkerOptions options_;
   std::string problem_;

@@ -109,7 +109,7 @@ void BM_AssignmentRoundTrip(benchmark::State& state) {
   }
   const std::string name = NameOnNetwork(theirs, "w");
   CoordinatorLink coordinator(ours);
-  WorkerLink link(theirs, {"127.0.0.1", CoordinatorPort(domain.domain())}, name);
+  WorkerLink link(theirs, {{"127.0.0.1", CoordinatorPort(domain.domain())}}, name);
   std::atomic<bool> stop = false;
   std::jthread worker([&] { Answer(link, name, stop); });
 

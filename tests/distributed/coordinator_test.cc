@@ -52,7 +52,7 @@ class MadeUpWorker {
   MadeUpWorker(const NetworkOptions& network, const std::string& uuid,
                const std::string& engine_version = EngineVersion())
       : status_{uuid, "host", 1, engine_version, 1, 2, WorkerState::kReady, 0, 0, {}, {}},
-        link_(network, {"127.0.0.1", CoordinatorPort(network.domain)}, uuid) {}
+        link_(network, {{"127.0.0.1", CoordinatorPort(network.domain)}}, uuid) {}
 
   /// Collects new messages, with assignments as single cases. Sends a status message.
   void Listen() {

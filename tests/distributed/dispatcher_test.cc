@@ -102,9 +102,30 @@ TEST_F(DispatcherTest, RepeatsAnAssignmentUntilTheWorkerHoldsIt) {
     dispatcher_.On("s", holds, now_s);
     EXPECT_THAT(Tick(now_s).assignments, IsEmpty());
   }
-  holds.coordinator_epoch = kEpoch + 1;  // what it holds is another coordinator's
+  holds.coordinator_epoch = kEpoch - 1;  // what it holds is another coordinator's
   dispatcher_.On("s", holds, 20.0);
   EXPECT_EQ(Tick(20.0).assignments, first.assignments);
+}
+
+// Another host took over while this one was frozen: it wakes, hears the same workers and leaves them alone.
+TEST_F(DispatcherTest, LeavesWorkersToAYoungerCoordinatorWhileTheyFollowIt) {
+  Open(1);
+  dispatcher_.On("s", Status(), 0.0);
+  const Orders first = Tick(0.0);
+  ASSERT_EQ(first.assignments.size(), 1u);
+  WorkerStatus led = Status();
+  led.coordinator_epoch = kEpoch + 1;
+  dispatcher_.On("s", led, 0.5);
+  EXPECT_EQ(dispatcher_.joined(), 0u);
+  EXPECT_EQ(Progress().waiting, 1u) << "nobody is blamed for it";
+  const Orders empty = Tick(0.5);
+  EXPECT_EQ(empty.worker, "w") << "it hears that somebody is here";
+  EXPECT_THAT(empty.assignments, IsEmpty());
+  EXPECT_EQ(empty.refusal, "");
+  dispatcher_.On("s", Report{"w", kEpoch + 1, 1, kFlight, {{7, ResultOf(0)}}, {}}, 0.6);
+  EXPECT_EQ(Progress().done, 0u) << "its results are the other one's";
+  dispatcher_.On("s", Status(), 6.0);  // the younger one is silent, and it follows this one again
+  EXPECT_EQ(Tick(6.0).assignments.size(), 1u);
 }
 
 TEST_F(DispatcherTest, RevokesWhatItDidNotGiveOrHasTakenBack) {
@@ -204,7 +225,7 @@ TEST_F(DispatcherTest, ReportsOfAnotherEpochBringResultsAndBlameNobody) {
   EXPECT_EQ(Progress().done, 1u);
   EXPECT_EQ(book_->ledger().Owed("w", attempt).size(), orders.assignments[0].cases.size());
   WorkerStatus old = Status();
-  old.coordinator_epoch = kEpoch + 1;
+  old.coordinator_epoch = kEpoch - 1;
   old.started = {{0, attempt}};
   dispatcher_.On("s", old, 0.2);
   Tick(5.0);  // it fell silent

@@ -444,10 +444,10 @@ class OwnersTest : public FrontDeskTest {
  protected:
   OwnersTest() { Start({}); }
 
-  void Start(const Quota& quota) {
+  void Start(const std::vector<std::string>& quotas) {
     service_.reset();
     ServiceOptions options{folder_ / "data"};
-    options.quota = quota;
+    for (const std::string& each : quotas) ASSERT_EQ(options.quotas.Add(each), "");
     service_ = std::make_unique<Service>(options, workforce_);
     desk_ = std::make_unique<FrontDesk>(*service_, workforce_, "");
   }
@@ -582,7 +582,7 @@ TEST_F(OwnersTest, WithoutKeysTheLocalUserOwnsAllAndMayAll) {
 }
 
 TEST_F(OwnersTest, AQuotaIsOfOneOwnerAndOfWhatHasNotEnded) {
-  Start({.cases = 10, .campaigns = 2});
+  Start({"cases=10,campaigns=2"});
   const Campaign first = Smoke(4), second = Smoke(6, 2), third = Smoke(1, 3);
   EXPECT_EQ(LaunchAs(ann_, first), "waiting");
   EXPECT_EQ(
@@ -603,7 +603,7 @@ TEST_F(OwnersTest, AQuotaIsOfOneOwnerAndOfWhatHasNotEnded) {
 }
 
 TEST_F(OwnersTest, ADiskQuotaCountsCampaignsThatHaveEnded) {
-  Start({.disk = 1});
+  Start({"disk=0.001MB"});
   const Campaign first = Smoke(2), second = Smoke(2, 2);
   EXPECT_EQ(LaunchAs(ann_, first), "waiting") << "nothing is there";
   As(ann_, "cancel", {{"id", first.id}});
@@ -612,7 +612,7 @@ TEST_F(OwnersTest, ADiskQuotaCountsCampaignsThatHaveEnded) {
   EXPECT_THAT(
       LaunchAs(ann_, second),
       testing::MatchesRegex("2: 'ann' would have another campaign beside .* GB on the coordinator's disk, "
-                            "allowed: less than 1e-09 GB; delete campaigns that have ended "
+                            "allowed: less than 1e-06 GB; delete campaigns that have ended "
                             ".dispersa-coordinator --quota disk."));
   EXPECT_EQ(LaunchAs(bob_, second), "waiting");
   As(ann_, "delete", {{"id", first.id}});
@@ -620,7 +620,7 @@ TEST_F(OwnersTest, ADiskQuotaCountsCampaignsThatHaveEnded) {
 }
 
 TEST_F(OwnersTest, OneOwnerDoesNotTakeAllPlaces) {
-  Start({.places = 1});
+  Start({"places=1"});
   const Campaign first = Smoke(200, 1), second = Smoke(200, 2), third = Smoke(200, 3);
   LaunchAs(ann_, first, {{"priority", 9}});
   LaunchAs(ann_, second, {{"priority", 9}});
@@ -632,19 +632,55 @@ TEST_F(OwnersTest, OneOwnerDoesNotTakeAllPlaces) {
   ASSERT_TRUE(Reaches(second.id, CampaignState::kFlying));
 }
 
+// A team that needs more than the others, and one that gets less.
+TEST_F(OwnersTest, AnOwnerMayHaveAQuotaOfItsOwn) {
+  Start({"bob:cases=20,campaigns=none", "cases=10,campaigns=1", "carol:cases=3"});
+  const std::string carol = ClientPrefix("carol", Right::kRun) + "1";
+  EXPECT_THAT(LaunchAs(ann_, Smoke(11)), testing::HasSubstr("allowed: at most 10;"));
+  EXPECT_EQ(LaunchAs(ann_, Smoke(10)), "waiting");
+  EXPECT_THAT(LaunchAs(bob_, Smoke(21)), testing::HasSubstr("allowed: at most 20;"));
+  EXPECT_EQ(LaunchAs(bob_, Smoke(17, 2)), "waiting");
+  EXPECT_EQ(LaunchAs(bob_, Smoke(2, 3)), "waiting") << "two campaigns";
+  EXPECT_EQ(LaunchAs(bob_, Smoke(1, 4)), "waiting");
+  EXPECT_EQ(
+      LaunchAs(bob_, Smoke(1, 5)),
+      "2: 'bob' would have 21 cases in campaigns that have not ended, allowed: at most 20; wait, or launch "
+      "fewer (dispersa-coordinator --quota cases)");
+  EXPECT_THAT(LaunchAs(carol, Smoke(4, 6)), testing::HasSubstr("allowed: at most 3;"));
+  EXPECT_EQ(LaunchAs(carol, Smoke(3, 6)), "waiting");
+  EXPECT_THAT(LaunchAs(carol, Smoke(1, 7)), testing::HasSubstr("2 campaigns")) << "that of all";
+}
+
 TEST(QuotaTest, IsReadAsAUserWritesIt) {
-  Quota quota;
-  EXPECT_TRUE(ReadQuota("cases=1000000,campaigns=20,places=4,disk=0.5TB", &quota));
-  EXPECT_EQ(quota.cases, 1000000u);
-  EXPECT_EQ(quota.campaigns, 20u);
-  EXPECT_EQ(quota.places, 4u);
-  EXPECT_EQ(quota.disk, 500000000000u);
-  EXPECT_TRUE(ReadQuota("places=5", &quota));
-  EXPECT_EQ(quota.places, 5u);
-  EXPECT_EQ(quota.cases, 1000000u);
-  for (const char* text : {"", "cases", "cases=", "cases=0", "cases=-1", "cases=1e6", "case=1", "disk=5",
-                           "disk=5d", "cases=1,,places=2", "cases=1 "})
-    EXPECT_FALSE(ReadQuota(text, &quota)) << text;
+  Quotas quotas;
+  EXPECT_EQ(quotas.Add("ann:cases=none,places=2"), "");
+  EXPECT_EQ(quotas.Add("cases=1000000,campaigns=20,places=4,disk=0.5TB"), "");
+  EXPECT_EQ(quotas.Of("bob").cases, 1000000u);
+  EXPECT_EQ(quotas.Of("bob").campaigns, 20u);
+  EXPECT_EQ(quotas.Of("bob").places, 4u);
+  EXPECT_EQ(quotas.Of("bob").disk, 500000000000u);
+  EXPECT_EQ(quotas.Of("ann").cases, Quota::kNoLimit);
+  EXPECT_EQ(quotas.Of("ann").places, 2u);
+  EXPECT_EQ(quotas.Of("ann").campaigns, 20u) << "those of all, whatever was given first";
+  EXPECT_EQ(quotas.Add("places=5"), "");
+  EXPECT_EQ(quotas.Of("bob").places, 5u);
+  EXPECT_EQ(quotas.Of("bob").cases, 1000000u);
+  EXPECT_EQ(quotas.Of("ann").places, 2u);
+}
+
+TEST(QuotaTest, SaysWhatIsWrong) {
+  const auto problem = [](const std::string& text) { return Quotas().Add(text); };
+  EXPECT_EQ(
+      problem("case=1"),
+      "'case=1' is no limit, allowed: cases=N, campaigns=N, places=N and disk=SIZE, with commas between "
+      "them, for all owners, or after OWNER: for one of them");
+  EXPECT_EQ(problem("cases=0"),
+            "'0' is no value of cases, allowed: a whole number from 1; none only after OWNER:");
+  EXPECT_EQ(problem("ann:disk=5"), "'5' is no value of disk, allowed: a size as 200GB, or none");
+  EXPECT_EQ(problem(":cases=1"), "':cases=1' has no owner before ':', allowed: the name of a client's keys");
+  for (const char* text : {"", "cases", "cases=", "cases=-1", "cases=1e6", "disk=5", "disk=5d",
+                           "ann:", "cases=1,,places=2", "cases=1 ", "cases=none", "ann:cases=1:2", "none"})
+    EXPECT_NE(problem(text), "") << text;
 }
 
 TEST_F(OwnersTest, LabelsAreShortTextsTheLastOnesOfMany) {

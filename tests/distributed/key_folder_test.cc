@@ -304,13 +304,20 @@ TEST_F(KeyFolderTest, ADamagedOrForeignFileIsNamed) {
   EXPECT_EQ(with(kPermissionsFile, edited), problem(kPermissionsFile, unsigned_text));
   EXPECT_EQ(OpenError(keys), "none");
   fs::remove(keys / kGovernanceFile);
-  EXPECT_EQ(OpenError(keys), problem(kGovernanceFile, "cannot be read: No such file or directory"));
+  EXPECT_EQ(OpenError(keys), problem(kGovernanceFile,
+                                     "file not found, allowed: a folder with all files that "
+                                     "`dispersa keys issue` made"));
   EXPECT_EQ(OpenError(folder_ / "none"),
             (folder_ / "none").string() + ": no folder: give a folder that `dispersa keys issue` made");
   EXPECT_EQ(OpenError(authority()),
             authority().string() +
                 ": the folder of the authority, which signs and does not speak: give one of " +
                 (authority() / "issued").string());
+  const fs::path secret = authority() / "authority" / "identity_ca.key";
+  fs::remove(secret);
+  EXPECT_EQ(IssueError("three"),
+            (authority() / "authority").string() + ": the authority cannot sign: " + secret.string() +
+                ": file not found, allowed: a folder with all files that `dispersa keys init` made");
 }
 
 /// "publish: topic... in partition", one a line.

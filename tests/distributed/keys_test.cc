@@ -88,7 +88,7 @@ TEST_F(Keys, AWorkerIsHeardUnderItsOwnNameAlone) {
   const NetworkOptions network = NetworkOf(Role::kWorker);
   const std::string name = NameOnNetwork(network, "a");
   EXPECT_EQ(name, "one_a");
-  WorkerLink link(network, Coordinator(), name);
+  WorkerLink link(network, {Coordinator()}, name);
   ASSERT_TRUE(Hear([&] { link.Send(StatusOf(name, 1)); }, [&] { return !heard_.empty(); }));
   // Another's name, and another incarnation of the same keys: both are not this writer's partition.
   for (const char* other : {"two_a", "one_b"}) {
@@ -99,7 +99,7 @@ TEST_F(Keys, AWorkerIsHeardUnderItsOwnNameAlone) {
 }
 
 TEST_F(Keys, ATopicOfAnotherRoleCannotBeOpened) {
-  EXPECT_THROW(WorkerLink(NetworkOf(Role::kObserver), Coordinator(), "one_a"), NetworkError);
+  EXPECT_THROW(WorkerLink(NetworkOf(Role::kObserver), {Coordinator()}, "one_a"), NetworkError);
 }
 
 /// A DATA message in plain, in the name of a writer of `participant`, as whoever has seen a packet can make.
@@ -124,7 +124,7 @@ Bytes Forge(const std::string& participant, std::uint8_t writer, std::uint32_t n
 TEST_F(Keys, AMessageInPlainIsNotBelieved) {
   const NetworkOptions network = NetworkOf(Role::kWorker);
   const std::string name = NameOnNetwork(network, "a");
-  WorkerLink link(network, Coordinator(), name);
+  WorkerLink link(network, {Coordinator()}, name);
   std::uint32_t said = 0;
   const auto say = [&] { link.Send(StatusOf(name, ++said)); };
   ASSERT_TRUE(Hear(say, [&] { return !heard_.empty(); }));

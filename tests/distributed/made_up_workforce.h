@@ -32,7 +32,7 @@ class MadeUpWorkforce : public Workforce {
   const AuditOptions& audit() const override { return dispatcher.audit(); }
   std::uint64_t audits() const override { return dispatcher.audits(); }
   const std::map<std::string, std::string>& expelled() const override { return dispatcher.expelled(); }
-  void Expel(const std::map<std::string, std::string>& names) override { dispatcher.Expel(names); }
+  void Expel(const std::map<std::string, std::string>& names) override { dispatcher.Expel(names, false); }
   double now_s() const override { return time_s; }
 
   void Join(const std::string& worker, std::uint32_t slots = 1) {

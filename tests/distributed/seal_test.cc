@@ -240,27 +240,27 @@ class SecretTest : public testing::Test {
 
 TEST_F(SecretTest, TwoWhoHaveItHearEachOther) {
   CoordinatorLink coordinator(Network(secret_));
-  WorkerLink worker(Network(secret_), CoordinatorPeer(), "w");
+  WorkerLink worker(Network(secret_), {CoordinatorPeer()}, "w");
   EXPECT_EQ(HearEachOther(coordinator, worker, kPatience), std::pair(true, true));
 }
 
 TEST_F(SecretTest, NeitherSideHearsWhoHasNoneOrAnother) {
   for (const std::optional<Secret>& other : {std::optional<Secret>(), std::optional(DrawSecret())}) {
     CoordinatorLink coordinator(Network(secret_));
-    WorkerLink worker(Network(other), CoordinatorPeer(), "w");
+    WorkerLink worker(Network(other), {CoordinatorPeer()}, "w");
     const auto [up, down] = HearEachOther(coordinator, worker, kLongEnough);
     EXPECT_FALSE(up) << "a worker that is a stranger";
     EXPECT_FALSE(down && other) << "a worker with another secret";
   }
   CoordinatorLink stranger(Network(std::nullopt));
-  WorkerLink worker(Network(secret_), CoordinatorPeer(), "w");
+  WorkerLink worker(Network(secret_), {CoordinatorPeer()}, "w");
   EXPECT_FALSE(HearEachOther(stranger, worker, kLongEnough).second) << "a coordinator that is a stranger";
 }
 
 // An eavesdropper has sealed messages of others.
 TEST_F(SecretTest, WhatASiblingWasToldOrWasToldBeforeIsNotBelieved) {
   CoordinatorLink coordinator(Network(secret_));
-  WorkerLink worker(Network(secret_), CoordinatorPeer(), "w");
+  WorkerLink worker(Network(secret_), {CoordinatorPeer()}, "w");
   ASSERT_EQ(HearEachOther(coordinator, worker, kPatience), std::pair(true, true));
   // He finds the worker as somebody whom the coordinator knows: by its address.
   std::vector<Peer> everybody = {CoordinatorPeer()};
@@ -300,7 +300,7 @@ TEST_F(SecretTest, WhatASiblingWasToldOrWasToldBeforeIsNotBelieved) {
 TEST_F(SecretTest, AWorkerDoesNothingThatAnotherOneWasTold) {
   Participant parent({Network(secret_), "dispersa-coordinator", CoordinatorPort(domain_.domain()), {}});
   Writer<idl::OrdersV1PubSubType> writer(parent, parent.MakePublisher(PartitionOf("w")), kOrdersTopic);
-  WorkerLink worker(Network(secret_), CoordinatorPeer(), "w");
+  WorkerLink worker(Network(secret_), {CoordinatorPeer()}, "w");
   Orders orders;
   orders.coordinator_epoch = 3;
   bool is_heard = false;

@@ -362,7 +362,7 @@ class SecurityTest(unittest.TestCase):
             (self.folder("coordinator"), "keys of the coordinator 'one'; here those of a worker are needed"),
             (self.folder("worker", "past"), r"identity.pem: expired on \d{4}-\d\d-\d\d \d\d:\d\d UTC: issue new keys"),
             (self.folder("worker", "future"), r"identity.pem: is valid from \d{4}-.* UTC on: the clock of this machine may be wrong"),
-            (with_change("identity.key", pathlib.Path.unlink), "identity.key: cannot be read: No such file or directory"),
+            (with_change("identity.key", pathlib.Path.unlink), "identity.key: file not found, allowed: a folder with all files that `dispersa keys issue` made"),
             (with_change("identity.pem", lambda file: file.write_text("x")), "identity.pem: no certificate in PEM"),
             (with_change("identity.key", take("observer")), "identity.key: not the key of identity.pem"),
             (with_change("identity_ca.pem", take("worker", self.foreign)), "identity.pem: not signed by identity_ca.pem"),

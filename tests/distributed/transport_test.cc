@@ -58,7 +58,7 @@ class Transport : public testing::Test {
   NetworkOptions Network() const { return {domain_.domain(), "127.0.0.1"}; }
   Peer CoordinatorPeer() const { return {"127.0.0.1", CoordinatorPort(domain_.domain())}; }
   std::unique_ptr<WorkerLink> MakeWorker(const std::string& uuid) {
-    return std::make_unique<WorkerLink>(Network(), CoordinatorPeer(), uuid);
+    return std::make_unique<WorkerLink>(Network(), std::vector{CoordinatorPeer()}, uuid);
   }
 
   PrivateDomain domain_;
@@ -259,6 +259,16 @@ TEST(ParsePeerTest, TakesTheCoordinatorsPortIfThereIsNone) {
   EXPECT_EQ(ParsePeer("10.0.0.1:123", 2).port, 123);
 }
 
+TEST(ParsePeerTest, TakesSeveralWithCommasBetween) {
+  const std::vector<Peer> peers = ParsePeers("main,10.0.0.2:123", 2);
+  ASSERT_EQ(peers.size(), 2u);
+  EXPECT_EQ(peers[0].host, "main");
+  EXPECT_EQ(peers[0].port, 7905);
+  EXPECT_EQ(peers[1].port, 123);
+  EXPECT_THROW(ParsePeers("main,", 2), NetworkError);
+  EXPECT_THROW(ParsePeers("", 2), NetworkError);
+}
+
 TEST(ParsePeerTest, RefusesWhatIsNoPeer) {
   const auto message = [](const std::string& text) {
     try {
@@ -288,7 +298,7 @@ TEST(SharedMemory, IsNotUsed) {
   const PrivateDomain domain;
   const NetworkOptions network{domain.domain(), "127.0.0.1"};
   CoordinatorLink coordinator(network);
-  WorkerLink worker(network, {"127.0.0.1", CoordinatorPort(domain.domain())}, "u1");
+  WorkerLink worker(network, {{"127.0.0.1", CoordinatorPort(domain.domain())}}, "u1");
   ASSERT_TRUE(AwaitFrom<WorkerStatus>(coordinator, [&] { worker.Send(StatusOf("u1")); }));
   EXPECT_EQ(segments(), before);
 }

@@ -40,7 +40,7 @@ class WorkerTest : public testing::Test {
 
   void StartWorker(WorkerOptions options = {}) {
     options.network = network_;
-    options.peer = {"127.0.0.1", CoordinatorPort(network_.domain)};
+    options.peers = {{"127.0.0.1", CoordinatorPort(network_.domain)}};
     options.uuid = "w";
     worker_ = new Worker(options);
     thread_ = std::thread([this] { exit_ = static_cast<int>(worker_->Run()); });

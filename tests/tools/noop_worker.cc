@@ -5,6 +5,8 @@
 #include <chrono>
 #include <cstdint>
 #include <optional>
+#include <string>
+#include <vector>
 
 #include "core/campaign/case_design.h"
 #include "core/campaign_yaml/load.h"
@@ -33,7 +35,7 @@ CaseResult MadeUp(std::uint64_t case_index, const CaseDesign& design) {
 }
 
 /// Until it is told to leave.
-void Work(const NetworkOptions& network, const Peer& peer, std::uint32_t slots) {
+void Work(const NetworkOptions& network, const std::vector<Peer>& peers, std::uint32_t slots) {
   const auto start = std::chrono::steady_clock::now();
   const auto now_s = [&] {
     return std::chrono::duration<double>(std::chrono::steady_clock::now() - start).count();
@@ -41,7 +43,7 @@ void Work(const NetworkOptions& network, const Peer& peer, std::uint32_t slots) 
   const std::string uuid = NameOnNetwork(network, MakeUuid());
   FlightDesk desk({.worker = uuid, .engine_version = EngineVersion(), .slots = slots}, 0.0);
   std::optional<CaseDesign> design;  // of its one campaign
-  std::optional<WorkerLink> link(std::in_place, network, peer, uuid);
+  std::optional<WorkerLink> link(std::in_place, network, peers, uuid);
   while (!desk.left() && desk.refusal().empty()) {
     for (const WorkerEvent& event : link->Wait(std::chrono::milliseconds(20))) {
       if (const auto* orders = std::get_if<Orders>(&event)) {
@@ -66,7 +68,7 @@ void Work(const NetworkOptions& network, const Peer& peer, std::uint32_t slots) 
     }
     for (const Report& report : due.reports) link->Send(report);
     for (const TextRequest& request : due.text_requests) link->Send(request);
-    if (due.new_connection) link.emplace(network, peer, uuid);
+    if (due.new_connection) link.emplace(network, peers, uuid);
   }
 }
 
@@ -87,8 +89,8 @@ int main(int argc, char** argv) {
   app.add_option("--keys", admission.keys);
   CLI11_PARSE(app, argc, argv);
   try {
-    const Peer coordinator = ParsePeer(peer, network.domain);
-    Work(Admit(network, admission, {Role::kWorker}, coordinator.host), coordinator, slots);
+    const std::vector<Peer> peers = ParsePeers(peer, network.domain);
+    Work(Admit(network, admission, {Role::kWorker}, FarthestHost(peers)), peers, slots);
   } catch (const NetworkError& error) {
     LogError("{}", error.what());
     return 2;
