@@ -86,7 +86,7 @@ bool Varies(const std::vector<double>& values) {
 /// input is its value itself.
 std::vector<Feature> Features(const Campaign& campaign, const CaseColumns& cases,
                               const std::vector<std::size_t>& rows) {
-  static const std::vector<double> nominal = InputValues(FlightInputs{}, kMaxStages);
+  static const std::vector<double> nominal = InputValues(FlightInputs{}, kMaxStages + kFurtherNozzles);
   std::vector<Feature> features;
   const std::vector<int> inputs = DispersedInputs(campaign);
   for (const int input : inputs) {

@@ -12,11 +12,11 @@ namespace dispersa {
 MetricList MetricsOf(const Campaign& campaign) {
   std::vector<std::string> own;
   for (const OwnMetric& metric : campaign.own_metrics) own.push_back(metric.name);
-  return MetricList(campaign.vehicle.stages.size(), std::move(own));
+  return MetricList(ColumnClass(campaign.vehicle), std::move(own));
 }
 
 std::vector<std::size_t> MeasuredMetrics(const Campaign& campaign) {
-  const std::size_t stages = campaign.vehicle.stages.size();
+  const std::size_t stages = ColumnClass(campaign.vehicle);
   std::vector<std::size_t> positions = MetricsUnder(stages, campaign.autopilot.pitch.law);
   for (std::size_t i = 0; i < campaign.own_metrics.size(); ++i) positions.push_back(MetricCount(stages) + i);
   return positions;
@@ -42,7 +42,7 @@ CaseResult ResultOf(const FlightModel& model, std::uint64_t case_index, const Fl
   result.end_time_s = flight.end_time_s;
   result.end_stage = flight.end_stage;
   result.reason = std::move(flight.reason);
-  result.inputs = InputValues(inputs, model.definition().vehicle.stages.size());
+  result.inputs = InputValues(inputs, ColumnClass(model.definition().vehicle));
   result.metrics = std::move(flight.metrics);
   result.digest = flight.digest;
   return result;

@@ -33,7 +33,7 @@ bool IsKnown(const std::string& name, std::size_t stages) {
 }
 
 double Value(const DerivedInput& derived, const FlightInputs& inputs) {
-  return derived.expression.Evaluate(InputValues(inputs, kMaxStages).data());
+  return derived.expression.Evaluate(InputValues(inputs, kMaxStages + kFurtherNozzles).data());
 }
 
 }  // namespace

@@ -223,13 +223,17 @@ class DispersionFields {
   }
   // One draw a nozzle.
   void AddNozzles(const std::string& name, const Selection& of, const ScalarDistribution& distribution,
-                  const std::string& pattern, bool absolute = false) {
+                  const std::vector<std::string>& patterns, bool absolute = false) {
     for (const int stage : of.stages) {
       const std::vector<std::string> names = NozzleNames(stage);
-      for (std::size_t i = 0; i < names.size(); ++i)
-        Add(name + "/" + StageName(stage) + "_" + names[i], distribution,
-            {FillColumn(FillColumn(pattern, "stage", StageName(stage)), "nozzle", kNozzleNames[i])},
-            absolute);
+      for (std::size_t i = 0; i < names.size(); ++i) {
+        const std::string nozzle =
+            NozzleInColumns(vehicle_, static_cast<std::size_t>(stage) - 1, static_cast<int>(i));
+        std::vector<std::string> columns;
+        for (const std::string& pattern : patterns)
+          columns.push_back(FillColumn(pattern, "stage}_{nozzle", nozzle));
+        Add(name + "/" + StageName(stage) + "_" + names[i], distribution, columns, absolute);
+      }
     }
   }
   bool KnowsStage(int stage) const {
@@ -239,7 +243,7 @@ class DispersionFields {
   std::vector<std::string> NozzleNames(int stage) const {
     std::vector<std::string> names;
     if (KnowsStage(stage))
-      for (const Nozzle& nozzle : vehicle_.stages[static_cast<std::size_t>(stage) - 1].gimbal.nozzles)
+      for (const Nozzle& nozzle : NozzlesOf(vehicle_.stages[static_cast<std::size_t>(stage) - 1].gimbal))
         names.push_back(nozzle.name);
     if (names.empty()) names.assign(std::begin(kNozzleNames), std::end(kNozzleNames));
     return names;
@@ -263,7 +267,7 @@ class DispersionFields {
     const auto add = [&](const std::string& part, std::size_t column, const ScalarDistribution& drawn,
                          bool absolute) {
       if (of.per == Per::kNozzle)
-        AddNozzles(name + part, of, drawn, row.nozzle_columns[column], absolute);
+        AddNozzles(name + part, of, drawn, {row.nozzle_columns[column]}, absolute);
       else
         AddStages(name + part, of, drawn, {row.columns[column]}, absolute);
     };
@@ -277,11 +281,19 @@ class DispersionFields {
     map.Choice<bool>("conserve", {{"total_impulse", true}, {"propellant", false}}, flow_follows,
                      "the flow changes with the thrust and the burn shortens, or flow and burning time stay");
     of.per = PerWhat(map, row);
-    if (of.per == Per::kNozzle && flow_follows)
-      map.Refuse("conserve", "the flow is the whole motor's, not a nozzle's",
-                 "conserve: propellant with per: nozzle");
-    if (of.per == Per::kNozzle) return AddNozzles(name, of, distribution, row.nozzle_columns.front());
-    std::vector<std::string> columns = row.columns;
+    for (const int stage : of.stages)
+      if (of.per == Per::kNozzle && flow_follows &&
+          (!KnowsStage(stage) || !vehicle_.stages[static_cast<std::size_t>(stage) - 1].is_liquid())) {
+        map.Refuse("conserve",
+                   "the flow is the whole motor's, not a nozzle's, in stage " + std::to_string(stage),
+                   "conserve: propellant with per: nozzle, or stages with liquid engines");
+        break;
+      }
+    std::vector<std::string> columns = of.per == Per::kNozzle ? row.nozzle_columns : row.columns;
+    if (of.per == Per::kNozzle) {
+      if (!flow_follows) columns.pop_back();
+      return AddNozzles(name, of, distribution, columns);
+    }
     if (!flow_follows) columns.pop_back();
     AddStages(name, of, distribution, columns);
   }

@@ -97,7 +97,7 @@ std::vector<DispersionRow> MakeRows() {
        Draws::kThrust,
        kPositiveFactor,
        {"thrust_factor_{stage}", "mass_flow_factor_{stage}"},
-       {"nozzle_thrust_factor_{stage}_{nozzle}"}});
+       {"nozzle_thrust_factor_{stage}_{nozzle}", "nozzle_flow_factor_{stage}_{nozzle}"}});
   add(stages("burn_rate", {"thrust_factor_{stage}", "mass_flow_factor_{stage}"},
              "factor of thrust and flow together"));
   add({"propellant_temperature",
@@ -310,6 +310,10 @@ std::vector<std::string> ExpandColumn(const std::string& pattern) {
       for (const std::string& name : names) filled.push_back(FillColumn(column, what, name));
     columns = std::move(filled);
   }
+  // Those beyond four of a stage have names of their own.
+  if (pattern.find("{stage}_{nozzle}") != std::string::npos)
+    for (int i = 0; i < kFurtherNozzles; ++i)
+      columns.push_back(FillColumn(pattern, "stage}_{nozzle", "nozzle" + std::to_string(kNozzles + 1 + i)));
   return columns;
 }
 

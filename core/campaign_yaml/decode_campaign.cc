@@ -37,7 +37,7 @@ std::string MeantInput(const std::string& word, const std::vector<std::string>& 
 // The columns of a list's table, each an input by its name in cases.csv without the prefix.
 void DescribeListTable(Fields& fields, const InputNode& table, Campaign& campaign) {
   std::vector<std::string> names;
-  const std::size_t count = InputCount(campaign.vehicle.stages.size());
+  const std::size_t count = InputCount(ColumnClass(campaign.vehicle));
   for (std::size_t i = 0; i < count; ++i) names.push_back(InputColumns()[i].name);
   for (const InputMember& member : table.members) {
     const char* key = member.key.c_str();
@@ -371,7 +371,7 @@ class CampaignDescription {
     fields.OptionalList("derived", 1, InputColumns().size(), campaign_.derived,
                         "inputs that follow from drawn ones", [&](Fields& map, DerivedInput& derived) {
                           dispersa::Describe(map, derived, DerivedBefore(derived), campaign_.dispersions,
-                                             campaign_.vehicle.stages.size());
+                                             ColumnClass(campaign_.vehicle));
                         });
     if (problems_.size() == before && has_sampling_)
       CheckDesign(fields, campaign_.sampling, campaign_.dispersions);

@@ -47,10 +47,21 @@ struct OneLane {
         masses(lanes::MassesAt(plant, phase, time_s)),
         nozzles(lanes::NozzlesAt(y + kNozzleAngle)),
         second(lanes::NozzlesAt(y + kSecondAngle)) {
-    lanes::SetLane(drives, 0, from.stacks[static_cast<std::size_t>(now.stack)].gimbal, now.stuck_nozzle);
-    Accelerate(now.command_rad.data(), y + kNozzleAngle, y + kNozzleRate, nozzles);
+    const Gimbal& gimbal = from.stacks[static_cast<std::size_t>(now.stack)].gimbal;
+    lanes::SetLane(drives[0], 0, gimbal, now.stuck_nozzle);
+    Accelerate(0, now.command_rad.data(), y + kNozzleAngle, y + kNozzleRate, nozzles);
     if (plant.nozzles_listed)
-      Accelerate(now.command_rad.data() + kNozzles, y + kSecondAngle, y + kSecondRate, second);
+      Accelerate(0, now.command_rad.data() + kNozzles, y + kSecondAngle, y + kSecondRate, second);
+    for (int bank = 1; bank <= plant.further_banks; ++bank) {
+      lanes::SetLane(drives[bank], 0, gimbal, now.stuck_nozzle - bank * kNozzles);
+      const double* const command_rad = now.command_rad.data() + bank * kDrives;
+      for (const int hinge : {0, 1}) {
+        const int first = DriveOf(bank * kNozzles, hinge);
+        lanes::Nozzles<double>& of = hinge == 0 ? further[bank - 1].first : further[bank - 1].second;
+        of = lanes::NozzlesAt(y + AngleOf(first));
+        Accelerate(bank, command_rad + hinge * kNozzles, y + AngleOf(first), y + RateOf(first), of);
+      }
+    }
     if (from.bending_modes() == 0) return;
     lanes::SetLane(bending, 0, from, now.stack);
     if (now.jettisoned != 0)
@@ -91,24 +102,25 @@ struct OneLane {
   lanes::Surroundings<double> around;
   lanes::TimedMasses<double> masses;
   lanes::Nozzles<double> nozzles, second;
-  lanes::GimbalLanes<double> drives{};
+  lanes::BankNozzles<double> further[kBanks - 1];
+  lanes::GimbalLanes<double> drives[kBanks]{};
   // Unset in a vehicle that does not bend.
   lanes::BendingTableLanes<double> bending;
   lanes::BendingState<double> bending_state;
   mutable lanes::ModalForce<double> modal;  ///< of the last evaluation
 
  private:
-  void Accelerate(const double* command_rad, const double* angle_rad, const double* rate_rad_s,
+  void Accelerate(int bank, const double* command_rad, const double* angle_rad, const double* rate_rad_s,
                   lanes::Nozzles<double>& of) const {
     lanes::DriveState<double> state;
     std::copy_n(angle_rad, kNozzles, state.angle_rad);
     std::copy_n(rate_rad_s, kNozzles, state.rate_rad_s);
-    lanes::SetAccelerations(drives, command_rad, state, of);
+    lanes::SetAccelerations(drives[bank], command_rad, state, of);
   }
 
   template <class Function>
   auto WithBody(const Function& function) const -> decltype(function(nozzles, lanes::StraightBody{})) {
-    const lanes::ListedNozzles<double> listed{nozzles, second};
+    const lanes::ListedNozzles<double> listed{nozzles, second, further};
     const lanes::BentBody<double> bent{&bending, &bending_state, &modal};
     if (bending.modes > 0) return plant.nozzles_listed ? function(listed, bent) : function(nozzles, bent);
     return plant.nozzles_listed ? function(listed, lanes::StraightBody{})
@@ -169,10 +181,15 @@ void LauncherModel::Derivative(const LauncherPhase& phase, double time_s, const 
   Vector3 dp = ToEigen(s.v);
   if (prepared_->plant.flow_coriolis) dp += ToEigen(lanes::CgVelocityOf(one.masses, s.q));
   WriteState({dp, ToEigen(rates.dv), dq, ToEigen(rates.dw)}, dydt);
-  for (int i = 0; i < (one.plant.nozzles_listed ? kDrives : kNozzles); ++i) {
+  const int most_drives = prepared_->plant.nozzle_banks() * kDrives;
+  if (most_drives > kDrives) std::fill(dydt + kListedLauncherSize, dydt + prepared_->plant.state_size(), 0.0);
+  for (int i = 0; i < (one.plant.nozzles_listed ? most_drives : kNozzles); ++i) {
+    const int bank = i / kDrives;
+    if (bank > one.plant.further_banks) break;
     const std::size_t drive = static_cast<std::size_t>(i);
-    const double command = lanes::Followed(one.drives, phase.command_rad[drive]);
-    lanes::DriveRates(one.drives, i % kNozzles, command, y[AngleOf(i)], y[RateOf(i)], phase.slides[drive],
+    const lanes::GimbalLanes<double>& drives = one.drives[bank];
+    const double command = lanes::Followed(drives, phase.command_rad[drive]);
+    lanes::DriveRates(drives, i % kNozzles, command, y[AngleOf(i)], y[RateOf(i)], phase.slides[drive],
                       dydt[AngleOf(i)], dydt[RateOf(i)]);
   }
   if (prepared_->plant.state_size() == kRigidLauncherSize) return;
@@ -206,6 +223,12 @@ int LauncherPlant::bending_planes() const {
 bool LauncherPlant::nozzles_have_mass() const {
   return std::any_of(stacks.begin(), stacks.end(),
                      [](const LauncherStack& s) { return s.gimbal.nozzle_inertia_kg_m2 > 0.0; });
+}
+
+int LauncherPlant::nozzle_banks() const {
+  int most = 1;
+  for (const LauncherStack& stack : stacks) most = std::max(most, stack.layout.banks());
+  return most;
 }
 
 bool LauncherPlant::nozzles_are_listed() const {

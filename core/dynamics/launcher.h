@@ -16,7 +16,7 @@
 
 namespace dispersa {
 
-/// Names of the cross's nozzles. The nozzles of a list take the same places in their order.
+/// Names of the cross's nozzles. The first nozzles of a list take the same places in their order.
 inline constexpr const char* kNozzleNames[kNozzles] = {"right", "left", "bottom", "top"};
 /// State: rigid body, then the angle and the rate of each nozzle (right, left, bottom, top), about its first
 /// hinge.
@@ -30,12 +30,16 @@ inline constexpr int kBentLauncherSize = kModalRate + kPlanes * kModes;
 /// Then, if the vehicle has a list of nozzles, the angles and rates about the second hinges.
 inline constexpr int kSecondAngle = kBentLauncherSize;
 inline constexpr int kSecondRate = kSecondAngle + kNozzles;
-inline constexpr int kLauncherSize = kSecondRate + kNozzles;
+inline constexpr int kListedLauncherSize = kSecondRate + kNozzles;
+/// Then, bank by bank of further nozzles, the angles and then the rates of the bank's drives.
+inline constexpr int kLauncherSize = kListedLauncherSize + (kBanks - 1) * 2 * kDrives;
 /// Place of a drive in the state (nozzle_layout.h).
 constexpr int AngleOf(int drive) {
+  if (drive >= kDrives) return kListedLauncherSize + (drive / kDrives - 1) * 2 * kDrives + drive % kDrives;
   return drive < kNozzles ? kNozzleAngle + drive : kSecondAngle + drive - kNozzles;
 }
 constexpr int RateOf(int drive) {
+  if (drive >= kDrives) return AngleOf(drive) + kDrives;
   return drive < kNozzles ? kNozzleRate + drive : kSecondRate + drive - kNozzles;
 }
 
@@ -60,7 +64,7 @@ struct LauncherStack {
   Matrix3 thrust_tilt = Matrix3::Identity();  ///< turns the nozzles' thrust by the misalignment
   double thrust_offset_y_m = 0.0;
   double thrust_offset_z_m = 0.0;
-  std::array<NozzleDeparture, kNozzles> nozzles;
+  std::array<NozzleDeparture, kMostNozzles> nozzles;
   /// Mass times lateral offset of everything but the burning propellant, whose own centre is on the axis.
   double lateral_moment_y_kg_m = 0.0;
   double lateral_moment_z_kg_m = 0.0;
@@ -120,9 +124,10 @@ struct LauncherPlant {
   bool nozzles_have_mass() const;
   bool nozzles_are_listed()
       const;  ///< Whether any stage has a list of nozzles. Then a cross is treated as a list too.
+  int nozzle_banks() const;  ///< 1 unless a stage has more than four nozzles
   /// Doubles of a state that count: a rigid vehicle's state ends with its nozzles.
   int state_size() const {
-    if (nozzles_are_listed()) return kLauncherSize;
+    if (nozzles_are_listed()) return kListedLauncherSize + (nozzle_banks() - 1) * 2 * kDrives;
     return bending_modes() > 0 ? kBentLauncherSize : kRigidLauncherSize;
   }
 };
@@ -132,14 +137,15 @@ struct LauncherPhase {
   int stack = 0;
   unsigned jettisoned = 0;  ///< bit i: of the plant's jettisons
   bool burning = false;
-  bool burnt = false;                            ///< the stack's propellant is used up
-  bool boosting = false;                         ///< the boosters burn too
-  double ignition_s = 0.0;                       ///< of the stack's motor, when burning
-  double expelled_mass_kg = 0.0;                 ///< by the reaction control so far
-  Vector3 control_torque_n_m = Vector3::Zero();  ///< of the reaction control
-  std::array<double, kDrives> command_rad{};     ///< to the actuators
-  int stuck_nozzle = -1;                         ///< index of a nozzle that does not move, or -1
-  std::array<double, kDrives> slides{};  ///< sense in which friction's drives slide, 0: held (actuators.h)
+  bool burnt = false;                             ///< the stack's propellant is used up
+  bool boosting = false;                          ///< the boosters burn too
+  double ignition_s = 0.0;                        ///< of the stack's motor, when burning
+  double expelled_mass_kg = 0.0;                  ///< by the reaction control so far
+  Vector3 control_torque_n_m = Vector3::Zero();   ///< of the reaction control
+  std::array<double, kMostDrives> command_rad{};  ///< to the actuators
+  int stuck_nozzle = -1;                          ///< index of a nozzle that does not move, or -1
+  std::array<double, kMostDrives>
+      slides{};  ///< sense in which friction's drives slide, 0: held (actuators.h)
 };
 
 /// Everything of one instant that forces, metrics and histories need.

@@ -27,6 +27,14 @@ struct NozzleDepartureLanes {
   T offset_y_m, offset_z_m;
 };
 
+/// A further bank of listed nozzles (core/vehicle/nozzle_layout.h), of clusters of more than four engines.
+template <class T>
+struct NozzleBank {
+  MaskOf<T> there;  ///< lanes whose stage has nozzles in it
+  ListedNozzle<T> listed[kNozzles];
+  NozzleDepartureLanes<T> departs[kNozzles];
+};
+
 /// Each lane's current stack, its flight's factors applied (LauncherPlant, LauncherStack).
 template <class T>
 struct LauncherPlantLanes {
@@ -55,6 +63,8 @@ struct LauncherPlantLanes {
   bool any_products;  ///< some lane has products of inertia
   MaskOf<T> has_products;
   T product_xy_kg_m2, product_xz_kg_m2, product_yz_kg_m2;
+  int further_banks;  ///< that any lane's stage has
+  NozzleBank<T> further[kBanks - 1];
 };
 
 /// Values that stay constant between two events of each lane (LauncherPhase).
@@ -144,10 +154,16 @@ DISPERSA_INLINE Nozzles<T> NozzlesAt(const T* angle_rad) {
   return n;
 }
 
+/// Both drives of each nozzle of a bank.
+template <class T>
+struct BankNozzles {
+  Nozzles<T> first, second;
+};
 /// Both drives of each nozzle of a list.
 template <class T>
 struct ListedNozzles {
   const Nozzles<T>&first, &second;
+  const BankNozzles<T>* further;  ///< of the plant's further banks
 };
 
 /// Values of one instant for metrics and histories.
@@ -229,8 +245,42 @@ DISPERSA_INLINE Thrust<T> ThrustOf(const LauncherPlantLanes<T>& plant, const Tim
   return o;
 }
 
-/// The same for a list of nozzles (core/vehicle/nozzle_layout.h), with deviations of each nozzle from its
-/// nominal share.
+/// Adds force and couple of a bank of listed nozzles under a stage's thrust, with deviations of each nozzle
+/// from its nominal share.
+template <class T>
+DISPERSA_INLINE void AddBank(const LauncherPlantLanes<T>& plant, const ListedNozzle<T>* listed,
+                             const NozzleDepartureLanes<T>* departures, const Nozzles<T>& first,
+                             const Nozzles<T>& second, T thrust_n, Vector<T>& force_n,
+                             Vector<T>& couple_n_m) {
+  for (int i = 0; i < kNozzles; ++i) {
+    const ListedNozzle<T>& nozzle = listed[i];
+    const NozzleDepartureLanes<T>& departs = departures[i];
+    const T across = first.sine[i] * second.cosine[i], second_sine = second.sine[i];
+    const Vector<T> turned{first.cosine[i] * second.cosine[i],
+                           Fma(across, nozzle.first_y, second_sine * nozzle.second_y),
+                           Fma(across, nozzle.first_z, second_sine * nozzle.second_z)};
+    const Vector<T> nominal = (nozzle.share * thrust_n) * turned;
+    const Vector<T> force = plant.thrust_tilt * (nominal + departs.extra * nominal);
+    const Vector<T> place{T(0.0), nozzle.y_m + departs.offset_y_m, nozzle.z_m + departs.offset_z_m};
+    force_n = force_n + force;
+    couple_n_m = couple_n_m + Cross(place, force);
+  }
+}
+/// Adds the further banks of the lanes that have them. A function of its own: it is long, and few vehicles
+/// need it.
+template <class T>
+DISPERSA_OUT_OF_LINE void AddFurtherBanks(const LauncherPlantLanes<T>& plant, const BankNozzles<T>* nozzles,
+                                          T thrust_n, Vector<T>& force_n, Vector<T>& couple_n_m) {
+  for (int i = 0; i < plant.further_banks; ++i) {
+    const NozzleBank<T>& bank = plant.further[i];
+    Vector<T> force = force_n, couple = couple_n_m;
+    AddBank(plant, bank.listed, bank.departs, nozzles[i].first, nozzles[i].second, thrust_n, force, couple);
+    force_n = Select(bank.there, force, force_n);
+    couple_n_m = Select(bank.there, couple, couple_n_m);
+  }
+}
+
+/// The same as above for a list of nozzles (core/vehicle/nozzle_layout.h).
 template <class T>
 DISPERSA_INLINE Thrust<T> ThrustOf(const LauncherPlantLanes<T>& plant, const TimedMasses<T>& masses,
                                    const ListedNozzles<T>& nozzles, T pressure_pa) {
@@ -241,19 +291,9 @@ DISPERSA_INLINE Thrust<T> ThrustOf(const LauncherPlantLanes<T>& plant, const Tim
   o.thrust_n = Select(net_n < none, none, net_n);
   o.flow_kg_s = plant.burn.full_flow_kg_s * masses.flow_fraction;
   o.force_n = o.couple_n_m = Zero<T>();
-  for (int i = 0; i < kNozzles; ++i) {
-    const ListedNozzle<T>& nozzle = plant.listed[i];
-    const NozzleDepartureLanes<T>& departs = plant.nozzles[i];
-    const T across = nozzles.first.sine[i] * nozzles.second.cosine[i], second = nozzles.second.sine[i];
-    const Vector<T> turned{nozzles.first.cosine[i] * nozzles.second.cosine[i],
-                           Fma(across, nozzle.first_y, second * nozzle.second_y),
-                           Fma(across, nozzle.first_z, second * nozzle.second_z)};
-    const Vector<T> nominal = (nozzle.share * o.thrust_n) * turned;
-    const Vector<T> force = plant.thrust_tilt * (nominal + departs.extra * nominal);
-    const Vector<T> place{none, nozzle.y_m + departs.offset_y_m, nozzle.z_m + departs.offset_z_m};
-    o.force_n = o.force_n + force;
-    o.couple_n_m = o.couple_n_m + Cross(place, force);
-  }
+  AddBank(plant, plant.listed, plant.nozzles, nozzles.first, nozzles.second, o.thrust_n, o.force_n,
+          o.couple_n_m);
+  if (plant.further_banks > 0) AddFurtherBanks(plant, nozzles.further, o.thrust_n, o.force_n, o.couple_n_m);
   const Vector<T> arm{masses.cg_station_m - plant.pivot_station_m, plant.thrust_offset_y_m - masses.cg_y_m,
                       plant.thrust_offset_z_m - masses.cg_z_m};
   o.moment_n_m = Cross(arm, o.force_n) + o.couple_n_m;
@@ -279,19 +319,30 @@ DISPERSA_INLINE NozzleReaction<T> ReactionOf(const LauncherPlantLanes<T>& plant,
 }
 
 template <class T>
-DISPERSA_INLINE NozzleReaction<T> ReactionOf(const LauncherPlantLanes<T>& plant,
-                                             const ListedNozzles<T>& nozzles) {
+DISPERSA_INLINE void AddReactions(const LauncherPlantLanes<T>& plant, const ListedNozzle<T>* listed,
+                                  const Nozzles<T>& first, const Nozzles<T>& second, NozzleReaction<T>& o) {
   const T none(0.0);
-  NozzleReaction<T> o{Zero<T>(), Zero<T>()};
   for (int i = 0; i < kNozzles; ++i) {
-    const ListedNozzle<T>& nozzle = plant.listed[i];
-    const T a = nozzles.first.acceleration_rad_s2[i], b = nozzles.second.acceleration_rad_s2[i];
+    const ListedNozzle<T>& nozzle = listed[i];
+    const T a = first.acceleration_rad_s2[i], b = second.acceleration_rad_s2[i];
     const Vector<T> towards{none, Fma(a, nozzle.first_y, b * nozzle.second_y),
                             Fma(a, nozzle.first_z, b * nozzle.second_z)};
     const Vector<T> force = plant.nozzle_moment_kg_m * towards;
     o.force_n = o.force_n + force;
     o.couple_n_m = o.couple_n_m + Cross({none, nozzle.y_m, nozzle.z_m}, force) +
                    plant.nozzle_inertia_kg_m2 * Vector<T>{none, towards.z, -towards.y};
+  }
+}
+template <class T>
+DISPERSA_INLINE NozzleReaction<T> ReactionOf(const LauncherPlantLanes<T>& plant,
+                                             const ListedNozzles<T>& nozzles) {
+  NozzleReaction<T> o{Zero<T>(), Zero<T>()};
+  AddReactions(plant, plant.listed, nozzles.first, nozzles.second, o);
+  for (int i = 0; i < plant.further_banks; ++i) {
+    NozzleReaction<T> with = o;
+    AddReactions(plant, plant.further[i].listed, nozzles.further[i].first, nozzles.further[i].second, with);
+    o.force_n = Select(plant.further[i].there, with.force_n, o.force_n);
+    o.couple_n_m = Select(plant.further[i].there, with.couple_n_m, o.couple_n_m);
   }
   return o;
 }

@@ -52,6 +52,50 @@ DISPERSA_INLINE void SetLane(BodyAerodynamicsLanes<T>& b, int lane, const BodyAe
   }
 }
 
+/// Returns whether it departs at all.
+template <class T>
+DISPERSA_INLINE bool SetLane(NozzleDepartureLanes<T>& n, int lane, const NozzleDeparture& nozzle) {
+  bool departs = false;
+  const double* turn = nozzle.tilt.data();  // column by column
+  for (int row = 0; row < 3; ++row)
+    for (int column = 0; column < 3; ++column) {
+      const double extra = nozzle.thrust_factor * turn[3 * column + row] - (row == column ? 1.0 : 0.0);
+      Lane(n.extra.row[row][column], lane) = extra;
+      departs |= extra != 0.0;
+    }
+  Lane(n.offset_y_m, lane) = nozzle.offset_y_m;
+  Lane(n.offset_z_m, lane) = nozzle.offset_z_m;
+  return departs || nozzle.offset_y_m != 0.0 || nozzle.offset_z_m != 0.0;
+}
+
+template <class T>
+DISPERSA_INLINE void SetLane(ListedNozzle<T>& n, int lane, const NozzleLayout& layout, int nozzle) {
+  const int first = DriveOf(nozzle, 0), second = DriveOf(nozzle, 1);
+  Lane(n.share, lane) = layout.share[nozzle];
+  Lane(n.y_m, lane) = layout.y_m[nozzle];
+  Lane(n.z_m, lane) = layout.z_m[nozzle];
+  Lane(n.first_y, lane) = layout.towards_y[first];
+  Lane(n.first_z, lane) = layout.towards_z[first];
+  Lane(n.second_y, lane) = layout.towards_y[second];
+  Lane(n.second_z, lane) = layout.towards_z[second];
+}
+
+/// The banks after the first one, of which the vehicle has `most`.
+template <class T>
+DISPERSA_INLINE void SetFurtherBanks(LauncherPlantLanes<T>& p, int lane, const LauncherStack& s, int most) {
+  p.further_banks = 0;
+  for (int bank = 0; bank < most; ++bank) {
+    NozzleBank<T>& further = p.further[bank];
+    SetLane(further.there, lane, bank + 1 < s.layout.banks());
+    for (int i = 0; i < kNozzles; ++i) {
+      const int nozzle = (bank + 1) * kNozzles + i;
+      SetLane(further.listed[i], lane, s.layout, nozzle);
+      SetLane(further.departs[i], lane, s.nozzles.data()[nozzle]);
+    }
+    if (Any(further.there)) p.further_banks = bank + 1;
+  }
+}
+
 /// The plant of a lane on its stack with nothing jettisoned. Its weather is set separately, once a flight.
 template <class T>
 DISPERSA_INLINE void SetLane(LauncherPlantLanes<T>& p, int lane, const LauncherPlant& plant, int stack) {
@@ -83,30 +127,10 @@ DISPERSA_INLINE void SetLane(LauncherPlantLanes<T>& p, int lane, const LauncherP
   Lane(p.thrust_offset_y_m, lane) = s.thrust_offset_y_m;
   Lane(p.thrust_offset_z_m, lane) = s.thrust_offset_z_m;
   bool departs = false;
-  for (int i = 0; i < kNozzles; ++i) {
-    const NozzleDeparture& nozzle = s.nozzles.data()[i];
-    const double* turn = nozzle.tilt.data();  // column by column
-    for (int row = 0; row < 3; ++row)
-      for (int column = 0; column < 3; ++column) {
-        const double extra = nozzle.thrust_factor * turn[3 * column + row] - (row == column ? 1.0 : 0.0);
-        Lane(p.nozzles[i].extra.row[row][column], lane) = extra;
-        departs |= extra != 0.0;
-      }
-    Lane(p.nozzles[i].offset_y_m, lane) = nozzle.offset_y_m;
-    Lane(p.nozzles[i].offset_z_m, lane) = nozzle.offset_z_m;
-    departs |= nozzle.offset_y_m != 0.0 || nozzle.offset_z_m != 0.0;
-  }
+  for (int i = 0; i < kNozzles; ++i) departs |= SetLane(p.nozzles[i], lane, s.nozzles.data()[i]);
   p.nozzles_listed = plant.nozzles_are_listed();
-  for (int i = 0; p.nozzles_listed && i < kNozzles; ++i) {
-    ListedNozzle<T>& nozzle = p.listed[i];
-    Lane(nozzle.share, lane) = s.layout.share[i];
-    Lane(nozzle.y_m, lane) = s.layout.y_m[i];
-    Lane(nozzle.z_m, lane) = s.layout.z_m[i];
-    Lane(nozzle.first_y, lane) = s.layout.towards_y[i];
-    Lane(nozzle.first_z, lane) = s.layout.towards_z[i];
-    Lane(nozzle.second_y, lane) = s.layout.towards_y[i + kNozzles];
-    Lane(nozzle.second_z, lane) = s.layout.towards_z[i + kNozzles];
-  }
+  for (int i = 0; p.nozzles_listed && i < kNozzles; ++i) SetLane(p.listed[i], lane, s.layout, i);
+  SetFurtherBanks(p, lane, s, plant.nozzle_banks() - 1);
   SetLane(p.departs, lane, departs);
   p.any_departs = Any(p.departs);
   const BoosterSet* const boosters = plant.boosters.get();
@@ -132,8 +156,8 @@ DISPERSA_INLINE void SetLane(BendingTableLanes<T>& b, int lane, const LauncherPl
   b.planes = plant.bending_planes();
 }
 
-/// For first and second hinges. `stuck`: index of a nozzle that does not move, or -1. `longest_s`: longest
-/// time that Propagate will get.
+/// For first and second hinges. `stuck`: index in its bank of a nozzle that does not move, or another number.
+/// `longest_s`: longest time that Propagate will get.
 template <class T>
 DISPERSA_INLINE void SetLane(GimbalLanes<T>& d, int lane, const Gimbal& gimbal, int stuck,
                              double longest_s = 0.0) {

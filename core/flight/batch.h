@@ -81,6 +81,8 @@ class Batch {
   const T* PluginCommands(M powered, const T* program, T* command);
   const T* FedForward(T* program) const;
   void PassCommands(M powered);
+  void PassFurtherCommands(M powered);
+  T FeltAboutAll(int axis) const;
   void RollByThrusters(M rolling);
   void FlyThrusters();
   void LetGo();
@@ -107,6 +109,7 @@ class Batch {
   const double tick_s_;
   const double ticks_a_second_;
   const bool has_jettisons_, cuts_off_at_velocity_, has_plugin_;
+  const int most_further_;  ///< banks of nozzles after the first, of any stage
   Slot slot_[kLanes];
   int flying_ = 0;         ///< lanes
   unsigned patience_ = 0;  ///< passes until the queue is asked again
@@ -119,6 +122,11 @@ class Batch {
   StepState<T> step_;
   T next_command_rad_[kDrives];
   T delay_line_[kDelayLine][kDrives];  ///< commands by pass
+  // Of further banks of nozzles, which most vehicles do not have.
+  T next_further_rad_[kBanks - 1][kDrives];
+  T axis_line_[kDelayLine][kAxes];  ///< commands about the axes by pass, allocated as they leave the line
+  NozzleLayoutLanes<T> further_allocation_[kBanks - 1];
+  T further_previous_rad_[kBanks - 1][kDrives];  ///< by the metrics
   int line_at_ = 0;
   bool same_delay_ = true;  ///< all lanes that burn have one of whole ticks:
   int common_delay_ = 0;
@@ -158,11 +166,16 @@ Batch<T>::Batch(const FlightModel& model, FlightQueue& queue)
       ticks_a_second_(static_cast<double>(static_cast<long>(1.0 / tick_s_ + 0.5))),
       has_jettisons_(!model.nominal_plant().jettisons.empty()),
       cuts_off_at_velocity_(CutsOffAtVelocity(definition_.vehicle)),
-      has_plugin_(model.autopilot().plugin != nullptr) {
+      has_plugin_(model.autopilot().plugin != nullptr),
+      most_further_(model.nominal_plant().nozzle_banks() - 1) {
   // Lanes that never fly compute along with the others, on numbers that do no harm.
   __builtin_memset(static_cast<void*>(&delay_line_), 0, sizeof delay_line_);
   __builtin_memset(static_cast<void*>(&loop_), 0, sizeof loop_);
   __builtin_memset(static_cast<void*>(&allocation_), 0, sizeof allocation_);
+  __builtin_memset(static_cast<void*>(&next_further_rad_), 0, sizeof next_further_rad_);
+  __builtin_memset(static_cast<void*>(&axis_line_), 0, sizeof axis_line_);
+  __builtin_memset(static_cast<void*>(&further_allocation_), 0, sizeof further_allocation_);
+  __builtin_memset(static_cast<void*>(&further_previous_rad_), 0, sizeof further_previous_rad_);
   __builtin_memset(static_cast<void*>(&axes_), 0, sizeof axes_);
   __builtin_memset(static_cast<void*>(&gimbals_), 0, sizeof gimbals_);
   __builtin_memset(static_cast<void*>(&thrusters_), 0, sizeof thrusters_);
@@ -275,8 +288,11 @@ void Batch<T>::SetStack(int lane, int stack) {
   slot.switch_s = kFarFuture;
   step_.SetStack(lane, slot.record->plant, stack);
   SetMass(lane);
-  if (step_.plant().nozzles_listed)
-    SetLane(allocation_, lane, slot.record->plant.stacks.data()[stack].layout);
+  if (!step_.plant().nozzles_listed) return;
+  const NozzleLayout& layout = slot.record->plant.stacks.data()[stack].layout;
+  SetLane(allocation_, lane, layout);
+  // A stage without further banks sets them to nothing.
+  for (int bank = 0; bank < most_further_; ++bank) SetLane(further_allocation_[bank], lane, layout, bank + 1);
 }
 
 /// Sets the mass of the bodies that the lane's stack still carries.
@@ -330,6 +346,9 @@ LauncherPhase Batch<T>::PhaseOf(int lane) const {
   for (int axis = 0; axis < 3; ++axis)
     phase.control_torque_n_m.data()[axis] = Lane(step_.phase().control_torque_n_m[axis], lane);
   for (int i = 0; i < kDrives; ++i) phase.command_rad.data()[i] = Lane(step_.command_rad()[i], lane);
+  for (int bank = 0; bank < most_further_; ++bank)
+    for (int i = 0; i < kDrives; ++i)
+      phase.command_rad.data()[(bank + 1) * kDrives + i] = Lane(step_.further_command_rad(bank)[i], lane);
   phase.stuck_nozzle = slot_[lane].stuck_nozzle;
   return phase;
 }

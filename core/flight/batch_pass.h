@@ -312,7 +312,48 @@ void Batch<T>::PassCommands(M powered) {
       SetStop(lane);
     }
   }
+  if (most_further_ > 0) PassFurtherCommands(powered);
   line_at_ = (line_at_ + 1) & (kDelayLine - 1);
+}
+
+/// The same for the drives of further banks.
+template <class T>
+void Batch<T>::PassFurtherCommands(M powered) {
+  for (int axis = 0; axis < kAxes; ++axis) axis_line_[line_at_][axis] = gimbals_.deflection_rad[axis];
+  const auto allocate = [this](int bank, int delay, T* command_rad) __attribute__((always_inline)) {
+    const T* const about = axis_line_[(line_at_ - delay) & (kDelayLine - 1)];
+    Allocate(further_allocation_[bank], about[kRoll], about[kPitch], about[kYaw], command_rad);
+  };
+  for (int bank = 0; bank < step_.plant().further_banks; ++bank) {
+    T now[kDrives];
+    if (same_delay_) {
+      allocate(bank, common_delay_, now);
+      step_.CommandFurther(powered, bank, now);
+      continue;
+    }
+    for (int lane = 0; lane < kLanes; ++lane) {
+      if (!(Bits(powered) >> lane & 1u)) continue;
+      const Slot& slot = slot_[lane];
+      T next[kDrives];
+      allocate(bank, slot.whole_delay, next);
+      allocate(bank, slot.whole_delay + (slot.part_delay_s > 0.0 ? 1 : 0), now);
+      step_.CommandFurtherLane(lane, bank, now);
+      for (int i = 0; i < kDrives; ++i) Lane(next_further_rad_[bank][i], lane) = Lane(next[i], lane);
+    }
+  }
+}
+
+/// The command about an axis that the present deflections of all listed nozzles stand for.
+template <class T>
+T Batch<T>::FeltAboutAll(int axis) const {
+  T felt = FeltAbout(allocation_, axis, step_.drive_state().angle_rad, step_.second_drives().angle_rad);
+  for (int bank = 0; bank < step_.plant().further_banks; ++bank) {
+    const BankState<T>& drives = step_.further_drives(bank);
+    const T all =
+        FeltAbout(further_allocation_[bank], axis, drives.first.angle_rad, drives.second.angle_rad, felt);
+    felt = Select(step_.plant().further[bank].there, all, felt);
+  }
+  return felt;
 }
 
 /// Roll control of stages whose nozzles cannot roll: the thrusters of the coast fire in the same cycles while
@@ -415,11 +456,19 @@ void Batch<T>::Meter(M powered) {
                               loop_.axes[kPitch].p11, pitch.departure_norm2};
   metrics_.AddPowered(powered, T(tick_s_), time_s_, {-angle_rad_.x, pitch_error, -angle_rad_.z}, law);
   const bool listed = step_.plant().nozzles_listed;
-  if (listed)
-    metrics_.AddDeflections(powered, time_s_, step_.drive_state(), step_.second_drives(), step_.command_rad(),
-                            allocation_);
-  else
+  if (listed) {
+    auto travel = metrics_.StartTravel(powered, time_s_, step_.drive_state(), step_.second_drives(),
+                                       step_.command_rad(), allocation_);
+    for (int bank = 0; bank < step_.plant().further_banks; ++bank) {
+      const BankState<T>& drives = step_.further_drives(bank);
+      metrics_.AddToTravel(powered & step_.plant().further[bank].there, time_s_, drives.first, drives.second,
+                           step_.further_command_rad(bank), further_allocation_[bank],
+                           further_previous_rad_[bank], travel);
+    }
+    metrics_.EndTravel(powered, allocation_.per_drive, travel);
+  } else {
     metrics_.AddDeflections(powered, time_s_, step_.drive_state(), step_.command_rad(), loop_.limit_rad);
+  }
 
   const M is_transient =
       InTransient(time_s_, time_s_ - step_.phase().ignition_s, step_.now().altitude_m,
@@ -429,10 +478,9 @@ void Batch<T>::Meter(M powered) {
   T roll = T(0.25) * ((n[0] - n[1]) + (n[2] - n[3]));
   T pitch_angle = T(0.5) * (n[0] + n[1]), yaw = T(0.5) * (n[2] + n[3]);
   if (listed) {
-    const T* second = step_.second_drives().angle_rad;
-    roll = FeltAbout(allocation_, kRoll, n, second);
-    pitch_angle = FeltAbout(allocation_, kPitch, n, second);
-    yaw = FeltAbout(allocation_, kYaw, n, second);
+    roll = FeltAboutAll(kRoll);
+    pitch_angle = FeltAboutAll(kPitch);
+    yaw = FeltAboutAll(kYaw);
   }
   for (int lane = 0; lane < kLanes; ++lane) {
     if (!(metered >> lane & 1u)) continue;

@@ -1,5 +1,6 @@
 #include "core/flight/flight_inputs.h"
 
+#include <algorithm>
 #include <cassert>
 #include <cstring>
 
@@ -50,6 +51,17 @@ InputDeclarations& InputDeclarations::EachNozzle(PerNozzle FlightInputs::*field,
   return *this;
 }
 
+InputDeclarations& InputDeclarations::EachFurtherNozzle(PerFurtherNozzle FlightInputs::*field,
+                                                        const std::string& stem,
+                                                        const std::string& unit_suffix, double unit) {
+  Begin();
+  for (std::size_t i = 0; i < kFurtherNozzles; ++i)
+    further_[i].push_back(
+        {stem + "_nozzle" + std::to_string(kNozzles + 1 + static_cast<int>(i)) + unit_suffix, unit,
+         OffsetOf(&(nominal_.*field)[i])});
+  return *this;
+}
+
 InputDeclarations& InputDeclarations::EachMode(std::array<double, kModes> FlightInputs::*field,
                                                const std::string& stem, const Dispersal& dispersal) {
   Begin();
@@ -80,11 +92,14 @@ InputDeclarations& InputDeclarations::EachLaunchAxis(std::array<double, 3> Fligh
 void InputDeclarations::Usually(const UsualValues& usual) {
   for (std::size_t i = last_; i < columns_.size(); ++i) columns_[i].usual = usual;
   for (std::size_t i = last_rare_; i < rare_.size(); ++i) rare_[i].usual = usual;
+  for (auto& columns : further_)
+    for (std::size_t i = last_further_; i < columns.size(); ++i) columns[i].usual = usual;
 }
 
 std::vector<InputColumn> InputDeclarations::AllColumns() const {
   std::vector<InputColumn> all = columns_;
   all.insert(all.end(), rare_.begin(), rare_.end());
+  for (const auto& columns : further_) all.insert(all.end(), columns.begin(), columns.end());
   return all;
 }
 
@@ -96,6 +111,7 @@ std::size_t InputDeclarations::OffsetOf(const double* value) const {
 void InputDeclarations::Begin() {
   last_ = columns_.size();
   last_rare_ = rare_.size();
+  last_further_ = further_[0].size();
 }
 
 std::vector<InputColumn>& InputDeclarations::ColumnsWith(std::size_t stage) {
@@ -114,7 +130,35 @@ const std::vector<InputColumn>& InputColumns() {
 const std::vector<DispersedInput>& DeclaredDispersals() { return Declared().dispersed(); }
 
 std::size_t InputCount(std::size_t stages) {
-  return stages <= kUsualStages ? Declared().usual() : InputColumns().size();
+  if (stages <= kUsualStages) return Declared().usual();
+  const std::size_t further = stages > kMaxStages ? stages - kMaxStages : 0;
+  return Declared().of_stages() +
+         std::min<std::size_t>(further, kFurtherNozzles) * Declared().of_further_nozzle();
+}
+
+namespace {
+
+int FurtherNozzlesOf(const Stage& stage) {
+  return std::max(0, static_cast<int>(NozzlesOf(stage.gimbal).size()) - kNozzles);
+}
+
+}  // namespace
+
+int FurtherNozzlesBefore(const Vehicle& vehicle, std::size_t stage) {
+  int further = 0;
+  for (std::size_t i = 0; i < stage; ++i) further += FurtherNozzlesOf(vehicle.stages[i]);
+  return further;
+}
+
+std::size_t ColumnClass(const Vehicle& vehicle) {
+  const std::size_t stages = vehicle.stages.size();
+  const int further = FurtherNozzlesBefore(vehicle, stages);
+  return further == 0 ? stages : kMaxStages + static_cast<std::size_t>(further);
+}
+
+std::string NozzleInColumns(const Vehicle& vehicle, std::size_t stage, int nozzle) {
+  if (nozzle < kNozzles) return "stage" + std::to_string(stage + 1) + "_" + kNozzleNames[nozzle];
+  return "nozzle" + std::to_string(FurtherNozzlesBefore(vehicle, stage) + nozzle + 1);
 }
 
 int FindInput(const std::string& name) {

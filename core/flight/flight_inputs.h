@@ -34,6 +34,15 @@ constexpr PerNozzle AllNozzles(double value) {
   return values;
 }
 
+/// One value for each nozzle beyond four of its stage: stage by stage, in the order of the lists.
+using PerFurtherNozzle = std::array<double, kFurtherNozzles>;
+
+constexpr PerFurtherNozzle AllFurtherNozzles(double value) {
+  PerFurtherNozzle values{};
+  for (double& v : values) v = value;
+  return values;
+}
+
 /// Largest number of altitude levels of a drawn wind profile: every kilometre up to 30 km.
 inline constexpr int kWindLevels = 30;
 
@@ -85,7 +94,7 @@ struct FlightInputs {
   double gyro_bias_pitch_rad_s = 0.0;
   double gyro_bias_yaw_rad_s = 0.0;
   double gyro_noise_rad_s = 0.0;    ///< standard deviation of each sample
-  double stuck_nozzle = 0.0;        ///< 0 none, 1..4 right, left, bottom, top
+  double stuck_nozzle = 0.0;        ///< 0 none, 1..4 right, left, bottom, top; by the order of a list
   double stuck_nozzle_stage = 0.0;  ///< 1-based
   double stuck_nozzle_rad = 0.0;    ///< angle at which it stays
   double pn_error_factor = 1.0;     ///< factor of the first component of P_n, the paper's Fig. 5
@@ -131,6 +140,18 @@ struct FlightInputs {
   PerNozzle nozzle_misalignment_z_rad{};
   PerNozzle nozzle_offset_y_m{};
   PerNozzle nozzle_offset_z_m{};
+  PerNozzle nozzle_flow_factor = AllNozzles(1.0);  ///< factor of a nozzle's share of the flow
+  // The same of nozzles beyond four of a stage.
+  PerFurtherNozzle further_misalignment_rad{};
+  PerFurtherNozzle further_misalignment_clock_rad{};
+  PerFurtherNozzle further_misalignment_y_rad{};
+  PerFurtherNozzle further_misalignment_z_rad{};
+  PerFurtherNozzle further_offset_m{};
+  PerFurtherNozzle further_offset_clock_rad{};
+  PerFurtherNozzle further_offset_y_m{};
+  PerFurtherNozzle further_offset_z_m{};
+  PerFurtherNozzle further_thrust_factor = AllFurtherNozzles(1.0);
+  PerFurtherNozzle further_flow_factor = AllFurtherNozzles(1.0);
 };
 
 /// The usual range of an input, in the unit of its column. `validate --strict` warns about values outside it.
@@ -162,7 +183,7 @@ struct DispersedInput {
   std::string column;  ///< {stage} and {mode} stand for the name of each
 };
 
-/// The declared columns. Columns of stages that few vehicles have come last.
+/// The declared columns. Columns of stages that few vehicles have come last but for those of further nozzles.
 class InputDeclarations {
  public:
   InputDeclarations& One(double FlightInputs::*field, const std::string& name, double unit = 1.0,
@@ -172,6 +193,8 @@ class InputDeclarations {
                                const Dispersal& dispersal = {});
   InputDeclarations& EachNozzle(PerNozzle FlightInputs::*field, const std::string& stem,
                                 const std::string& unit_suffix = "", double unit = 1.0);
+  InputDeclarations& EachFurtherNozzle(PerFurtherNozzle FlightInputs::*field, const std::string& stem,
+                                       const std::string& unit_suffix = "", double unit = 1.0);
   InputDeclarations& EachMode(std::array<double, kModes> FlightInputs::*field, const std::string& stem,
                               const Dispersal& dispersal = {});
   InputDeclarations& EachLevel(std::array<double, kWindLevels> FlightInputs::*field, const std::string& stem);
@@ -181,6 +204,8 @@ class InputDeclarations {
   void Usually(const UsualValues& usual);
 
   std::size_t usual() const { return columns_.size(); }
+  std::size_t of_stages() const { return columns_.size() + rare_.size(); }
+  std::size_t of_further_nozzle() const { return further_[0].size(); }
   std::vector<InputColumn> AllColumns() const;
   const std::vector<DispersedInput>& dispersed() const { return dispersed_; }
 
@@ -192,7 +217,8 @@ class InputDeclarations {
 
   const FlightInputs nominal_;
   std::vector<InputColumn> columns_, rare_;
-  std::size_t last_ = 0, last_rare_ = 0;  ///< where the columns declared last begin
+  std::array<std::vector<InputColumn>, kFurtherNozzles> further_;
+  std::size_t last_ = 0, last_rare_ = 0, last_further_ = 0;  ///< where the columns declared last begin
   std::vector<DispersedInput> dispersed_;
 };
 
@@ -318,6 +344,21 @@ inline void DeclareInputs(InputDeclarations& inputs) {
       .Usually(kUsualMisalignment);
   inputs.EachNozzle(&In::nozzle_offset_y_m, "nozzle_offset_y", "_m").Usually(kUsualThrustOffset);
   inputs.EachNozzle(&In::nozzle_offset_z_m, "nozzle_offset_z", "_m").Usually(kUsualThrustOffset);
+  inputs.EachNozzle(&In::nozzle_flow_factor, "nozzle_flow_factor").Usually(kUsualMotor);
+  inputs.EachFurtherNozzle(&In::further_misalignment_rad, "nozzle_misalignment", "_deg", kRadPerDeg)
+      .Usually(kUsualMisalignment);
+  inputs.EachFurtherNozzle(&In::further_misalignment_clock_rad, "nozzle_misalignment_clock", "_deg",
+                           kRadPerDeg);
+  inputs.EachFurtherNozzle(&In::further_misalignment_y_rad, "nozzle_misalignment_y", "_deg", kRadPerDeg)
+      .Usually(kUsualMisalignment);
+  inputs.EachFurtherNozzle(&In::further_misalignment_z_rad, "nozzle_misalignment_z", "_deg", kRadPerDeg)
+      .Usually(kUsualMisalignment);
+  inputs.EachFurtherNozzle(&In::further_offset_m, "nozzle_offset", "_m").Usually(kUsualThrustOffset);
+  inputs.EachFurtherNozzle(&In::further_offset_clock_rad, "nozzle_offset_clock", "_deg", kRadPerDeg);
+  inputs.EachFurtherNozzle(&In::further_offset_y_m, "nozzle_offset_y", "_m").Usually(kUsualThrustOffset);
+  inputs.EachFurtherNozzle(&In::further_offset_z_m, "nozzle_offset_z", "_m").Usually(kUsualThrustOffset);
+  inputs.EachFurtherNozzle(&In::further_thrust_factor, "nozzle_thrust_factor").Usually(kUsualMotor);
+  inputs.EachFurtherNozzle(&In::further_flow_factor, "nozzle_flow_factor").Usually(kUsualMotor);
 }
 
 /// All columns in their fixed order, names without the prefix `input_`.
@@ -328,7 +369,15 @@ const std::vector<DispersedInput>& DeclaredDispersals();
 int FindInput(const std::string& name);
 /// The input of a column, in internal units.
 double& InputValue(FlightInputs& inputs, int column);
-/// Number of columns of a vehicle with `stages` stages. They are the first of InputColumns().
+/// Number that says which columns the results of a vehicle have: that of its stages; with stages of more than
+/// four nozzles kMaxStages, plus the number of these further nozzles.
+std::size_t ColumnClass(const Vehicle& vehicle);
+/// Further nozzles of a vehicle's stages before this one.
+int FurtherNozzlesBefore(const Vehicle& vehicle, std::size_t stage);
+/// Name of a nozzle in columns: "stage1_right", and for those beyond four of a stage "nozzle5" and so on,
+/// numbered through the vehicle.
+std::string NozzleInColumns(const Vehicle& vehicle, std::size_t stage, int nozzle);
+/// Number of columns of a class (of a vehicle with so many stages). They are the first of InputColumns().
 std::size_t InputCount(std::size_t stages);
 /// Values of a vehicle's columns, in the units of their names.
 std::vector<double> InputValues(const FlightInputs& inputs, std::size_t stages = kUsualStages);

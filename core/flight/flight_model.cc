@@ -356,6 +356,19 @@ Matrix3 ThrustTilt(const Aside& tilt) {
   return RotationMatrix(FromRotationVector(Vector3(0.0, -tilt.z, tilt.y)));
 }
 
+// Of a stage's flow, by those of its nozzles. `further`: place of its first nozzle beyond four.
+double FlowFactor(const NozzleLayout& layout, const FlightInputs& in, std::size_t stage,
+                  std::size_t further) {
+  double more = 0.0;
+  for (int nozzle = 0; nozzle < layout.nozzles; ++nozzle) {
+    const std::size_t k = static_cast<std::size_t>(nozzle);
+    const double factor =
+        nozzle < kNozzles ? in.nozzle_flow_factor[stage][k] : in.further_flow_factor[further + k - kNozzles];
+    more += layout.share[nozzle] * (factor - 1.0);
+  }
+  return 1.0 + more;
+}
+
 WindTable DrawnProfile(const WindStatistics& statistics, const FlightInputs& inputs) {
   std::vector<double> normals;
   for (std::size_t level = 0; level < statistics.altitude_m.size(); ++level) {
@@ -403,12 +416,13 @@ LauncherPlant FlightModel::PlantFor(const FlightInputs& in, std::optional<std::u
   }
   const Vehicle& vehicle = dispersed ? *dispersed : definition_.vehicle;
 
+  std::size_t further = 0;  // of the nozzles beyond four of a stage, through the vehicle
   for (std::size_t i = 0; i < plant.stacks.size(); ++i) {
     LauncherStack& stack = plant.stacks[i];
     const double thrust_factor = in.thrust_factor[i] * in.specific_impulse_factor[i];
-    stack.burn = dispersed
-                     ? BuildBurn(vehicle.stages[i], thrust_factor, in.mass_flow_factor[i])
-                     : BuildBurn(vehicle.stages[i], thrust_factor, in.mass_flow_factor[i], stack.burn.curve);
+    const double flow_factor = in.mass_flow_factor[i] * FlowFactor(stack.layout, in, i, further);
+    stack.burn = dispersed ? BuildBurn(vehicle.stages[i], thrust_factor, flow_factor)
+                           : BuildBurn(vehicle.stages[i], thrust_factor, flow_factor, stack.burn.curve);
     if (i == 0 && plant.boosters)
       plant.boosters = BuildBoosterSet(vehicle.boosters, thrust_factor, in.mass_flow_factor[i]);
     stack.gimbal.bandwidth_rad_s *= in.actuator_bandwidth_factor * in.stack_actuator_bandwidth_factor[i];
@@ -433,6 +447,15 @@ LauncherPlant FlightModel::PlantFor(const FlightInputs& in, std::optional<std::u
       const Aside moved = AsideOf(in.nozzle_offset_m[i][nozzle], in.nozzle_offset_clock_rad[i][nozzle],
                                   in.nozzle_offset_y_m[i][nozzle], in.nozzle_offset_z_m[i][nozzle]);
       stack.nozzles[nozzle] = {ThrustTilt(tilt), in.nozzle_thrust_factor[i][nozzle], moved.y, moved.z};
+    }
+    for (int nozzle = kNozzles; nozzle < stack.layout.nozzles; ++nozzle, ++further) {
+      const Aside tilt =
+          AsideOf(in.further_misalignment_rad[further], in.further_misalignment_clock_rad[further],
+                  in.further_misalignment_y_rad[further], in.further_misalignment_z_rad[further]);
+      const Aside moved = AsideOf(in.further_offset_m[further], in.further_offset_clock_rad[further],
+                                  in.further_offset_y_m[further], in.further_offset_z_m[further]);
+      stack.nozzles[static_cast<std::size_t>(nozzle)] = {ThrustTilt(tilt), in.further_thrust_factor[further],
+                                                         moved.y, moved.z};
     }
     const double fixed_kg = stack.mass.fixed_mass_kg;
     const Aside lateral = AsideOf(fixed_kg * in.cg_offset_m[i], in.cg_offset_clock_rad[i],

@@ -83,8 +83,8 @@ class FlightRecord::JudgedMotion {
     s.q_IB = Normalized(s.q_IB);
     WriteState(s, y);
     // Mechanical stops, and the drives' greatest rate, which a step may overshoot.
-    for (int i = 0; i < kDrives; ++i) {
-      if (i % kNozzles == phase.stuck_nozzle) continue;
+    for (int i = 0; i < drives_; ++i) {
+      if (NozzleOf(i) == phase.stuck_nozzle) continue;
       double& angle = y[AngleOf(i)];
       double& rate = y[RateOf(i)];
       rate = Clamp(rate, -gimbal.rate_limit_rad_s, gimbal.rate_limit_rad_s);
@@ -106,13 +106,14 @@ class FlightRecord::JudgedMotion {
   // From rest to rest of the drives, each found by bisection: in between friction is constant and all is
   // smooth.
   bool SlideTo(const Gimbal& gimbal, double from_s, double to_s, int steps, double* y) {
+    // Whether a nozzle is stuck plays no part: a drive at rest stays so.
     lanes::GimbalLanes<double> drives{};
     lanes::SetLane(drives, 0, gimbal, phase_.stuck_nozzle);
     State start;
     std::copy(y, y + kLauncherSize, start.begin());
     // A drive turns round a few times a second. More rests than these within a tick are a programming error.
     for (int rests = 0; rests < 64; ++rests) {
-      for (int i = 0; i < kDrives; ++i) {
+      for (int i = 0; i < drives_; ++i) {
         const std::size_t drive = static_cast<std::size_t>(i);
         phase_.slides[drive] = lanes::SlidesIn(drives, lanes::Followed(drives, phase_.command_rad[drive]),
                                                start[static_cast<std::size_t>(AngleOf(i))],
@@ -136,7 +137,7 @@ class FlightRecord::JudgedMotion {
           before_s = middle_s;
         }
       }
-      for (int i = 0; i < kDrives; ++i) {
+      for (int i = 0; i < drives_; ++i) {
         double& rate = end[static_cast<std::size_t>(RateOf(i))];
         if (phase_.slides[static_cast<std::size_t>(i)] * rate < 0.0) rate = 0.0;
       }
@@ -150,13 +151,14 @@ class FlightRecord::JudgedMotion {
     return false;
   }
   bool TurnsRound(const State& y) const {
-    for (int i = 0; i < kDrives; ++i)
+    for (int i = 0; i < drives_; ++i)
       if (phase_.slides[static_cast<std::size_t>(i)] * y[static_cast<std::size_t>(RateOf(i))] < 0.0)
         return true;
     return false;
   }
 
   const LauncherModel& equations_;
+  const int drives_ = equations_.plant().nozzle_banks() * kDrives;
   LauncherPhase phase_;
   const bool is_fixed_;  ///< its steps do not find their own length
   std::array<double, kLauncherSize> tolerances_;
@@ -248,7 +250,7 @@ TickSample FlightRecord::SampleOf(const LaneView& view, unsigned parts) const {
   s.coasting = view.coasting;
   s.since_ignition_s = view.time_s - view.phase.ignition_s;
   s.state = ReadState(view.y);
-  for (int i = 0; i < kDrives; ++i) {
+  for (int i = 0; i < plant.nozzle_banks() * kDrives; ++i) {
     s.nozzle_rad[static_cast<std::size_t>(i)] = view.y[AngleOf(i)];
     s.nozzle_rate_rad_s[static_cast<std::size_t>(i)] = view.y[RateOf(i)];
   }

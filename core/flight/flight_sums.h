@@ -155,20 +155,42 @@ struct LaneMetrics {
     }
     AddTravel(lanes, fastest, T(1.0 / kNozzles), travel, largest >= limit_rad);
   }
-  /// Adds the deflections of listed nozzles: every drive of the lane's stage counts.
-  DISPERSA_INLINE void AddDeflections(MaskOf<T> lanes, T time_s, const DriveState<T>& first,
-                                      const DriveState<T>& second, const T* command_rad,
-                                      const NozzleLayoutLanes<T>& list) {
-    T travel(0.0), fastest(0.0);
+  /// Deflections of listed nozzles at a tick, bank by bank: every drive of the lane's stage counts.
+  struct Travel {
+    T fastest_rad_s, moved_rad;
+    MaskOf<T> saturated;
+  };
+  DISPERSA_INLINE Travel StartTravel(MaskOf<T> lanes, T time_s, const DriveState<T>& first,
+                                     const DriveState<T>& second, const T* command_rad,
+                                     const NozzleLayoutLanes<T>& list) {
+    Travel travel{T(0.0), T(0.0), IsSaturated(list, command_rad)};
+    AddDrives(lanes, time_s, first, second, list, previous_rad, travel);
+    return travel;
+  }
+  /// Of a further bank. `lanes`: those that have it.
+  DISPERSA_INLINE void AddToTravel(MaskOf<T> lanes, T time_s, const DriveState<T>& first,
+                                   const DriveState<T>& second, const T* command_rad,
+                                   const NozzleLayoutLanes<T>& list, T* previous, Travel& travel) {
+    Travel with = travel;
+    AddDrives(lanes, time_s, first, second, list, previous, with);
+    travel.fastest_rad_s = Select(lanes, with.fastest_rad_s, travel.fastest_rad_s);
+    travel.moved_rad = Select(lanes, with.moved_rad, travel.moved_rad);
+    travel.saturated = travel.saturated | (lanes & IsSaturated(list, command_rad));
+  }
+  DISPERSA_INLINE void EndTravel(MaskOf<T> lanes, T per_drive, const Travel& travel) {
+    AddTravel(lanes, travel.fastest_rad_s, per_drive, travel.moved_rad, travel.saturated);
+  }
+  DISPERSA_INLINE void AddDrives(MaskOf<T> lanes, T time_s, const DriveState<T>& first,
+                                 const DriveState<T>& second, const NozzleLayoutLanes<T>& list, T* previous,
+                                 Travel& travel) {
     for (int i = 0; i < kDrives; ++i) {
       const DriveState<T>& drives = i < kNozzles ? first : second;
       const T angle = drives.angle_rad[i % kNozzles];
       deflection.Add(lanes & (list.there[i] > T(0.0)), angle, time_s);
-      fastest = Max(fastest, Abs(drives.rate_rad_s[i % kNozzles]));
-      travel = travel + Abs(angle - previous_rad[i]);
-      previous_rad[i] = Select(lanes, angle, previous_rad[i]);
+      travel.fastest_rad_s = Max(travel.fastest_rad_s, Abs(drives.rate_rad_s[i % kNozzles]));
+      travel.moved_rad = travel.moved_rad + Abs(angle - previous[i]);
+      previous[i] = Select(lanes, angle, previous[i]);
     }
-    AddTravel(lanes, fastest, list.per_drive, travel, IsSaturated(list, command_rad));
   }
   DISPERSA_INLINE void AddTravel(MaskOf<T> lanes, T fastest_rad_s, T per_drive, T moved_rad,
                                  MaskOf<T> saturated) {

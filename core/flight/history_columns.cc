@@ -164,7 +164,8 @@ void AppendLauncher(const FlightModel& model, const TickSample& s, std::vector<d
   const auto felt = [&](Axis axis, double of_cross_rad) {
     if (list == nullptr) return of_cross_rad * kDegPerRad;
     double rad = 0.0;
-    for (std::size_t i = 0; i < kDrives; ++i) rad += list->felt[axis][i] * n[i];
+    const std::size_t drives = static_cast<std::size_t>(list->banks()) * kDrives;
+    for (std::size_t i = 0; i < drives; ++i) rad += list->felt[axis][i] * n[i];
     return rad * kDegPerRad;
   };
   row.insert(row.end(), {s.stack + 1.0,

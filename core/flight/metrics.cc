@@ -386,7 +386,7 @@ std::size_t MetricColumn(const std::string& name) {
 }
 
 MeasuredFlight Measure(const FlightSums& sums, const FlightDefinition& definition) {
-  const std::size_t count = MetricCount(definition.vehicle.stages.size());
+  const std::size_t count = MetricCount(ColumnClass(definition.vehicle));
   const LawInfo& law = InfoOf(definition.autopilot.pitch.law);
   MeasuredFlight measured;
   measured.metrics.reserve(MetricNames().size());

@@ -9,28 +9,29 @@
 namespace dispersa::lanes {
 inline namespace DISPERSA_ISA {
 
-/// The allocation of each lane's stage.
+/// The allocation of each lane's stage to the drives of a bank.
 template <class T>
 struct NozzleLayoutLanes {
   T drive[kDrives][kSteeredAxes];
   T felt[kSteeredAxes][kDrives];
   T limit_rad[kNozzles];
   T there[kDrives];
-  T per_drive;           ///< 1 over their number
+  T per_drive;           ///< 1 over their number in all banks
   T rolls_by_thrusters;  ///< 1 of a stage whose nozzles cannot
 };
 template <class T>
-DISPERSA_INLINE void SetLane(NozzleLayoutLanes<T>& a, int lane, const NozzleLayout& layout) {
-  double drives = 0.0;
+DISPERSA_INLINE void SetLane(NozzleLayoutLanes<T>& a, int lane, const NozzleLayout& layout, int bank = 0) {
+  const int first = bank * kDrives;
   for (int i = 0; i < kDrives; ++i) {
     for (int axis = 0; axis < kSteeredAxes; ++axis) {
-      Lane(a.drive[i][axis], lane) = layout.allocation[i][axis];
-      Lane(a.felt[axis][i], lane) = layout.felt[axis][i];
+      Lane(a.drive[i][axis], lane) = layout.allocation[first + i][axis];
+      Lane(a.felt[axis][i], lane) = layout.felt[axis][first + i];
     }
-    Lane(a.there[i], lane) = layout.there[i];
-    drives += layout.there[i];
+    Lane(a.there[i], lane) = layout.there[first + i];
   }
-  for (int i = 0; i < kNozzles; ++i) Lane(a.limit_rad[i], lane) = layout.limit_rad[i];
+  double drives = 0.0;
+  for (const double there : layout.there) drives += there;
+  for (int i = 0; i < kNozzles; ++i) Lane(a.limit_rad[i], lane) = layout.limit_rad[bank * kNozzles + i];
   Lane(a.per_drive, lane) = 1.0 / drives;
   Lane(a.rolls_by_thrusters, lane) = layout.rolls ? 0.0 : 1.0;
 }
@@ -53,11 +54,11 @@ DISPERSA_INLINE void Allocate(const NozzleLayoutLanes<T>& a, T roll_rad, T pitch
   }
 }
 
-/// The command about an axis that deflections stand for.
+/// The command about an axis that deflections stand for, with that of the banks before.
 template <class T>
-DISPERSA_INLINE T FeltAbout(const NozzleLayoutLanes<T>& a, int axis, const T* first_rad,
-                            const T* second_rad) {
-  T felt(0.0);
+DISPERSA_INLINE T FeltAbout(const NozzleLayoutLanes<T>& a, int axis, const T* first_rad, const T* second_rad,
+                            T before = T(0.0)) {
+  T felt = before;
   for (int i = 0; i < kNozzles; ++i)
     felt = Fma(a.felt[axis][i], first_rad[i], Fma(a.felt[axis][i + kNozzles], second_rad[i], felt));
   return felt;

@@ -34,6 +34,12 @@ inline namespace DISPERSA_ISA {
 /// Commands of so many ticks are remembered for delays.
 inline constexpr int kDelayLine = 128;
 
+/// The drives of a further bank of nozzles, about first and second hinges.
+template <class T>
+struct BankState {
+  DriveState<T> first, second;
+};
+
 /// Values written through a setter are marked: the next evaluation reads them again.
 template <class T>
 class StepState {
@@ -49,6 +55,9 @@ class StepState {
   const LauncherPhaseLanes<T>& phase() const { return phase_; }
   const BendingTableLanes<T>& bending() const { return bending_; }
   const T* command_rad() const { return command_rad_; }  ///< at the actuators, kDrives
+  // ---- further banks of nozzles, of which the plant says the number: the first is bank 0 of these ----
+  const BankState<T>& further_drives(int bank) const { return further_[bank]; }
+  const T* further_command_rad(int bank) const { return further_command_rad_[bank]; }  ///< kDrives
 
   /// No lane flies: each computes along on numbers that do no harm.
   void Configure(const LauncherPlant& nominal, double tick_s) {
@@ -56,6 +65,7 @@ class StepState {
     earth_ = nominal.environment.earth;
     air_ = &StandardAir();
     tick_s_ = tick_s;
+    most_further_ = nominal.nozzle_banks() - 1;
     start_ = &points_[0];
     middle_ = &points_[1];
     end_ = &points_[2];
@@ -98,7 +108,8 @@ class StepState {
     MarkMoved(lane);
   }
   void StickNozzle(int lane, const Gimbal& gimbal, int nozzle, double angle_rad) {
-    Lane(drive_state_.angle_rad[nozzle], lane) = angle_rad;
+    DriveState<T>& drives = nozzle < kNozzles ? drive_state_ : further_[nozzle / kNozzles - 1].first;
+    Lane(drives.angle_rad[nozzle % kNozzles], lane) = angle_rad;
     SetDrives(lane, gimbal, nozzle);
     MarkMoved(lane);
   }
@@ -137,6 +148,9 @@ class StepState {
       y[kSecondAngle + i] = Lane(second_drives_.angle_rad[i], lane);
       y[kSecondRate + i] = Lane(second_drives_.rate_rad_s[i], lane);
     }
+    for (int bank = 0; bank < most_further_; ++bank)
+      for (unsigned i = 0; i < kValues<T, BankState<T>>; ++i)
+        y[FurtherPlace(bank, i)] = LaneAt<T>(further_[bank], i, lane);
   }
   void WriteLane(int lane, const double* y) {
     for (unsigned i = 0; i < kValues<T, RigidBodyStateLanes<T>>; ++i) SetLaneAt<T>(motion_, i, lane, y[i]);
@@ -150,6 +164,9 @@ class StepState {
       Lane(second_drives_.angle_rad[i], lane) = y[kSecondAngle + i];
       Lane(second_drives_.rate_rad_s[i], lane) = y[kSecondRate + i];
     }
+    for (int bank = 0; bank < most_further_; ++bank)
+      for (unsigned i = 0; i < kValues<T, BankState<T>>; ++i)
+        SetLaneAt<T>(further_[bank], i, lane, y[FurtherPlace(bank, i)]);
     MarkMoved(lane);
   }
 
@@ -164,6 +181,18 @@ class StepState {
   void CommandLane(int lane, const T* angle_rad) {
     for (int i = 0; i < (plant_.nozzles_listed ? kDrives : kNozzles); ++i)
       Lane(command_rad_[i], lane) = Lane(angle_rad[i], lane);
+    MaskOf<T> commanded = NoLane<T>();
+    SetLane(commanded, lane, true);
+    MarkCommanded(commanded);
+  }
+  /// Of a further bank. `angle_rad`: of kDrives.
+  void CommandFurther(MaskOf<T> lanes, int bank, const T* angle_rad) {
+    for (int i = 0; i < kDrives; ++i)
+      further_command_rad_[bank][i] = Select(lanes, angle_rad[i], further_command_rad_[bank][i]);
+    MarkCommanded(lanes);
+  }
+  void CommandFurtherLane(int lane, int bank, const T* angle_rad) {
+    for (int i = 0; i < kDrives; ++i) Lane(further_command_rad_[bank][i], lane) = Lane(angle_rad[i], lane);
     MaskOf<T> commanded = NoLane<T>();
     SetLane(commanded, lane, true);
     MarkCommanded(commanded);
@@ -210,6 +239,7 @@ class StepState {
     SetNozzles(drive_state_, command_rad_, p.nozzles);
     if (plant_.nozzles_listed) {
       SetNozzles(second_drives_, command_rad_ + kNozzles, p.second);
+      SetFurtherNozzles(further_);
       bending_.modes > 0 ? SetRates<true, true>(motion_, bending_state_, p, p.rates, &p.instant)
                          : SetRates<false, true>(motion_, bending_state_, p, p.rates, &p.instant);
     } else {
@@ -277,6 +307,7 @@ class StepState {
     if constexpr (kListed) {
       SetNozzles(second_drives_, command_rad_ + kNozzles, p.second);
       Blend<T>(stale_, p.second, start_->second);
+      if (plant_.further_banks > 0) SetFurtherNozzles(further_);
     }
     Blend<T>(stale_, CgVelocityAt(start_->masses, motion_.q), start_->cg_velocity);
     const ModalForce<T> modal = start_->modal;
@@ -318,6 +349,42 @@ class StepState {
     rates = RatesOf(earth_.rotation_rate_rad_s, plant_, phase_, Any(phase_.burning), at.around, at.masses,
                     TurnedAs<kListed>(at), s, BodyAs<kBends>(bent_by, at.modal), instant);
   }
+  // Further banks: nothing is done in a vehicle without any.
+  DISPERSA_INLINE static constexpr unsigned FurtherPlace(int bank, unsigned value) {
+    // Of a bank: angles and rates of the first hinges, then of the second. In the state: angles, then rates.
+    const unsigned part = value / kNozzles;
+    const bool is_rate = part == 1 || part == 3;
+    const unsigned second = part >= 2 ? kNozzles : 0;
+    return static_cast<unsigned>(kListedLauncherSize + bank * 2 * kDrives) + (is_rate ? kDrives : 0u) +
+           second + value % kNozzles;
+  }
+  DISPERSA_OUT_OF_LINE void SetFurtherNozzles(const BankState<T>* drives) const {
+    for (int bank = 0; bank < plant_.further_banks; ++bank) {
+      BankNozzles<T>& of = further_nozzles_[bank];
+      of.first = NozzlesAt(drives[bank].first.angle_rad);
+      of.second = NozzlesAt(drives[bank].second.angle_rad);
+      if (!plant_.nozzles_have_mass) continue;
+      const T* const commands = further_command_rad_[bank];
+      SetAccelerations(further_gimbals_[bank], commands, drives[bank].first, of.first);
+      SetAccelerations(further_gimbals_[bank], commands + kNozzles, drives[bank].second, of.second);
+    }
+  }
+  /// Over two halves of a step. Banks that a lane's stage does not have stay as they are.
+  DISPERSA_OUT_OF_LINE void DriveFurther(const Transition<T>& over, T half_s, BankState<T>* middle,
+                                         BankState<T>* end) const {
+    for (int bank = 0; bank < plant_.further_banks; ++bank) {
+      const GimbalLanes<T>& drives = further_gimbals_[bank];
+      const T* const commands = further_command_rad_[bank];
+      const BankState<T>& from = further_[bank];
+      middle[bank].first = Propagate(drives, commands, over, half_s, from.first);
+      middle[bank].second = Propagate(drives, commands + kNozzles, over, half_s, from.second);
+      end[bank].first = Propagate(drives, commands, over, half_s, middle[bank].first);
+      end[bank].second = Propagate(drives, commands + kNozzles, over, half_s, middle[bank].second);
+      const auto absent = !plant_.further[bank].there;
+      Blend<T>(absent, from, middle[bank]);
+      Blend<T>(absent, from, end[bank]);
+    }
+  }
   DISPERSA_OUT_OF_LINE void SetDriven(const DriveState<T>& from, const T* commands_rad,
                                       const Transition<T>& over, T step_s, DriveState<T>& to) const {
     to = Propagate(drives_, commands_rad, over, step_s, from);
@@ -329,9 +396,9 @@ class StepState {
   }
 
   template <bool kListed>
-  DISPERSA_INLINE static decltype(auto) TurnedAs(const Point& at) {
+  DISPERSA_INLINE decltype(auto) TurnedAs(const Point& at) const {
     if constexpr (kListed)
-      return ListedNozzles<T>{at.nozzles, at.second};
+      return ListedNozzles<T>{at.nozzles, at.second, further_nozzles_};
     else
       return (at.nozzles);
   }
@@ -382,10 +449,14 @@ class StepState {
   }
   void ClearCommands(int lane) {
     for (T& command : command_rad_) Lane(command, lane) = 0.0;
+    for (int bank = 0; bank < most_further_; ++bank)
+      for (T& command : further_command_rad_[bank]) Lane(command, lane) = 0.0;
   }
   void SetDrives(int lane, const Gimbal& gimbal, int stuck_nozzle) {
     SetLane(drives_, lane, gimbal, stuck_nozzle, 0.5 * tick_s_);
     SetTransition(tick_over_half_, lane, 0.5 * tick_s_);
+    for (int bank = 0; bank < most_further_; ++bank)
+      SetLane(further_gimbals_[bank], lane, gimbal, stuck_nozzle - (bank + 1) * kNozzles, 0.5 * tick_s_);
   }
 
   RigidBodyStateLanes<T> motion_;
@@ -408,6 +479,12 @@ class StepState {
   MaskOf<T> stale_, moved_, jumped_;
   bool any_stale_, any_moved_;
   Transition<T> tick_over_half_;  ///< over half a tick
+  // Further banks of nozzles. They take no time unless some stage has them.
+  int most_further_;  ///< of any stage
+  BankState<T> further_[kBanks - 1];
+  GimbalLanes<T> further_gimbals_[kBanks - 1];
+  T further_command_rad_[kBanks - 1][kDrives];
+  mutable BankNozzles<T> further_nozzles_[kBanks - 1];  ///< of the present evaluation
 };
 
 /// Steps within this of a tick take the tick's transition of the actuators: it moves a deflection by less
@@ -427,7 +504,12 @@ MaskOf<T> StepState<T>::StepOf(MaskOf<T> moving, bool all, T from_s, T to_s) {
 
   // In the coast angles, rates and commands are zero, and stay so.
   DriveState<T> drives_half = drive_state_, drives_end = drive_state_, second_end;
-  if constexpr (kListed) second_end = second_drives_;
+  BankState<T> further_half[kListed ? kBanks - 1 : 1], further_end[kListed ? kBanks - 1 : 1];
+  if constexpr (kListed) {
+    second_end = second_drives_;
+    for (int bank = 0; bank < plant_.further_banks; ++bank)
+      further_half[bank] = further_end[bank] = further_[bank];
+  }
   const auto driven = phase_.burning | phase_.burnt;
   if (Any(driven)) {
     const auto odd = moving & driven & (Abs(h - T(tick_s_)) > T(kSameStep_s));
@@ -446,6 +528,7 @@ MaskOf<T> StepState<T>::StepOf(MaskOf<T> moving, bool all, T from_s, T to_s) {
       SetDriven(second_half, commands, over, half, second_end);
       SetNozzles(second_half, commands, b.second);
       SetNozzles(second_end, commands, c.second);
+      if (plant_.further_banks > 0) DriveFurther(over, half, further_half, further_end);
     }
   }
   BendingState<T> bent_middle, bent_end;
@@ -467,6 +550,8 @@ MaskOf<T> StepState<T>::StepOf(MaskOf<T> moving, bool all, T from_s, T to_s) {
   b.cg_velocity = CgVelocityAt(b.masses, middle.q);
   if (plant_.flow_coriolis) middle.p = Along(middle.p, T(0.5) * half, a.cg_velocity + b.cg_velocity);
   SetAir(middle.p, b.around);
+  if constexpr (kListed)
+    if (plant_.further_banks > 0) SetFurtherNozzles(further_half);
   SetRates<kBends, kListed>(middle, kBends ? bent_middle : bending_state_, b, b.rates, nullptr);
 
   RigidBodyStateLanes<T> end;
@@ -490,6 +575,8 @@ MaskOf<T> StepState<T>::StepOf(MaskOf<T> moving, bool all, T from_s, T to_s) {
     SetSwung(over_step, a.modal, rising, no_curvature, bent_end);
     SetShapes(c.masses);
   }
+  if constexpr (kListed)
+    if (plant_.further_banks > 0) SetFurtherNozzles(further_end);
   SetRates<kBends, kListed>(end, kBends ? bent_end : bending_state_, c, c.rates, &c.instant);
   end.v = Along(motion_.v, sixth, Along(a.rates.dv + c.rates.dv, four, b.rates.dv));
   end.w = Along(motion_.w, sixth, Along(a.rates.dw + c.rates.dw, four, b.rates.dw));
@@ -516,12 +603,20 @@ MaskOf<T> StepState<T>::StepOf(MaskOf<T> moving, bool all, T from_s, T to_s) {
   take(end.p.x, end.p.y, end.p.z, end.v.x, end.v.y, end.v.z);
   take(end.q.w, end.q.x, end.q.y, end.q.z, end.w.x, end.w.y, end.w.z);
   for (const T& rate : drives_end.rate_rad_s) none = Fma(rate, T(0.0), none);
-  if constexpr (kListed)
+  if constexpr (kListed) {
     for (const T& rate : second_end.rate_rad_s) none = Fma(rate, T(0.0), none);
+    for (int bank = 0; bank < plant_.further_banks; ++bank)
+      for (int i = 0; i < kNozzles; ++i)
+        none =
+            Fma(further_end[bank].first.rate_rad_s[i] + further_end[bank].second.rate_rad_s[i], T(0.0), none);
+  }
   if constexpr (kBends)
     for (const auto& of_plane : bent_end.q_m)
       for (const T& q_m : of_plane) none = Fma(q_m, T(0.0), none);
   const auto accepted = moving & (none <= T(0.0));
+  if constexpr (kListed)
+    for (int bank = 0; bank < plant_.further_banks; ++bank)
+      Blend<T>(accepted, further_end[bank], further_[bank]);
   if (all && !Any(moving & !accepted)) {
     motion_ = end;
     drive_state_ = drives_end;

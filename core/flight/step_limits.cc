@@ -85,7 +85,7 @@ double FastestPart(const LauncherPlant& plant, int stack) {
 
 std::string RefusalOf(const Vehicle& vehicle, const FlightInputs& in, const LauncherPlant& plant,
                       double tick_s) {
-  const std::vector<double> values = InputValues(in, vehicle.stages.size());
+  const std::vector<double> values = InputValues(in, ColumnClass(vehicle));
   for (std::size_t i = 0; i < values.size(); ++i)
     if (!std::isfinite(values[i])) return "the input " + InputColumns()[i].name + " has no value";
   for (std::size_t i = 0; i < vehicle.stages.size(); ++i) {

@@ -18,10 +18,10 @@ struct TickSample {
   bool coasting = false;          ///< before an ignition by a timer (last stack: before its own)
   double since_ignition_s = 0.0;  ///< of the burning stage
   RigidBodyState state;
-  std::array<double, kDrives> nozzle_rad{};  ///< about first hinges, then about second ones
-  std::array<double, kDrives> nozzle_rate_rad_s{};
+  std::array<double, kMostDrives> nozzle_rad{};  ///< by drive (core/vehicle/nozzle_layout.h)
+  std::array<double, kMostDrives> nozzle_rate_rad_s{};
   std::array<double, 2 * kPlanes * kModes> bending{};  ///< modal coordinates (m), then their rates
-  std::array<double, kDrives> command_rad{};           ///< at the actuators
+  std::array<double, kMostDrives> command_rad{};       ///< at the actuators
   double limit_rad = 0.0;
   AttitudeError error;  ///< true, not measured
   ReferenceAttitude reference;

@@ -29,9 +29,10 @@ AxisPlant LineariseAxis(const LauncherPlant& plant, const TickSample& sample, Ax
   phase.boosting = sample.boosting;
 
   const LauncherStack& stack = plant.stacks[static_cast<std::size_t>(sample.stack)];
-  std::array<double, kDrives> pattern{};
-  for (int i = 0; i < kDrives; ++i)
-    if (i % kNozzles != sample.stuck_nozzle)
+  std::array<double, kMostDrives> pattern{};
+  const int drives = stack.layout.banks() * kDrives;
+  for (int i = 0; i < drives; ++i)
+    if (NozzleOf(i) != sample.stuck_nozzle)
       pattern[static_cast<std::size_t>(i)] = stack.layout.allocation[i][axis];
   Vector3 about = Vector3::Zero();
   about[axis] = 1.0;
@@ -57,7 +58,7 @@ AxisPlant LineariseAxis(const LauncherPlant& plant, const TickSample& sample, Ax
     std::array<double, kLauncherSize> y{}, dydt{};
     WriteState(state, y.data());
     LauncherPhase at = phase;
-    for (std::size_t i = 0; i < kDrives; ++i) {
+    for (std::size_t i = 0; i < static_cast<std::size_t>(drives); ++i) {
       const int drive = static_cast<int>(i);
       y[static_cast<std::size_t>(AngleOf(drive))] =
           sample.nozzle_rad[i] + (departed == 2 ? step * pattern[i] : 0.0);

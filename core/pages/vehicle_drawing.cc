@@ -134,7 +134,7 @@ class Drawing {
     const Gimbal& gimbal = stage.gimbal;
     std::vector<double> beside_m = {-gimbal.radius_m, 0.0, gimbal.radius_m};
     if (!gimbal.nozzles.empty()) beside_m.clear();
-    for (const Nozzle& nozzle : gimbal.nozzles) beside_m.push_back(nozzle.y_m);
+    for (const Nozzle& nozzle : NozzlesOf(gimbal)) beside_m.push_back(nozzle.y_m);
     for (const double at_m : beside_m) {
       const double y = Y(at_m);
       Line("hinge", X(gimbal.pivot_station_m), y - 4.0, X(gimbal.pivot_station_m), y + 4.0);

@@ -52,8 +52,12 @@ std::string SelectCases(const MetricList& list, const Positions& metrics, const 
          ", digest, row_digest FROM " + table;
 }
 
-/// Vehicles of few stages have fewer columns.
+/// Vehicles of few stages, and without clusters of engines, have fewer columns (ColumnClass).
 std::size_t StagesOf(Database& database) {
+  Statement further = database.Prepare(
+      "SELECT COUNT(*) FROM pragma_table_info('cases') WHERE name GLOB 'input_nozzle_flow_factor_nozzle*'");
+  if (further.Step() && further.Integer(0) > 0)
+    return kMaxStages + static_cast<std::size_t>(further.Integer(0));
   Statement rare = database.Prepare(fmt::format(
       "SELECT name FROM pragma_table_info('cases') WHERE name LIKE 'input_%_stage{}%'", kMaxStages));
   return rare.Step() ? kMaxStages : kUsualStages;

@@ -9,28 +9,53 @@
 
 namespace dispersa {
 
-/// One nozzle of a list (core/vehicle/nozzle_layout.h).
+/// Equal nozzles at equal angles on a circle about the axis.
+struct NozzleRing {
+  int count = 1;  ///< 1: a single nozzle, no ring
+  double radius_m = 0.0;
+  double first_rad = 0.0;  ///< place of the first, from body y towards body z
+  bool turned = false;     ///< hinges are named from each one's own place on, not from body y on
+};
+
+inline void Describe(Fields& fields, NozzleRing& ring) {
+  fields.Integer("count", 2, kListedNozzles, ring.count, "of equal nozzles at equal angles");
+  fields.Quantity("radius", kLength, kPositive, ring.radius_m, "from the axis to their pivots");
+  fields.Quantity("first", kAngle, Between(-2.0 * kPi, 2.0 * kPi), ring.first_rad,
+                  "place of the first, from body y towards body z", 0.0);
+  fields.Choice<bool>("hinges_from", {{"body", false}, {"place", true}}, ring.turned,
+                      "where turns_towards counts from: body y, or each one's own place (90: along the ring)",
+                      false);
+}
+
+/// An entry of a list of nozzles (core/vehicle/nozzle_layout.h): one nozzle, or a ring.
 struct Nozzle {
   std::string name;
   double y_m = 0.0, z_m = 0.0;
-  double thrust_share = 1.0;
+  double thrust_share = 0.0;  ///< of each (0: equal parts of what others leave)
   /// None: the nozzle is fixed, two: at right angles.
   std::vector<double> towards_rad = {};
   double limit_rad = 0.0;
+  NozzleRing ring = {};
+  std::string group = {};  ///< empty: it has commands of its own
 };
 
-/// One of `count` nozzles.
-inline void Describe(Fields& fields, Nozzle& nozzle, std::size_t count) {
-  fields.Text("name", nozzle.name, "used by dispersions");
-  fields.Quantity("y", kLength, kAnyNumber, nozzle.y_m, "of its pivot, off the axis to the right", 0.0);
-  fields.Quantity("z", kLength, kAnyNumber, nozzle.z_m, "of its pivot, off the axis downwards", 0.0);
-  fields.Number("thrust_share", UpTo(1.0), nozzle.thrust_share,
-                "of the stage's thrust; default: equal shares", 1.0 / static_cast<double>(count));
+inline void Describe(Fields& fields, Nozzle& nozzle) {
+  fields.Text("name", nozzle.name, "used by dispersions; nozzles of a ring get a number behind it");
+  bool is_ring = nozzle.ring.count > 1;
+  fields.OptionalMap("ring", is_ring, "several equal nozzles in place of one",
+                     [&](Fields& ring) { Describe(ring, nozzle.ring); });
+  fields.Unless(Has("ring"), [&] {
+    fields.Quantity("y", kLength, kAnyNumber, nozzle.y_m, "of its pivot, off the axis to the right", 0.0);
+    fields.Quantity("z", kLength, kAnyNumber, nozzle.z_m, "of its pivot, off the axis downwards", 0.0);
+  });
+  fields.Number("thrust_share", Between(0.0, 1.0), nozzle.thrust_share,
+                "of the stage's thrust, of each; 0: equal parts of what the others leave", 0.0);
   fields.Quantities("turns_towards", kAngle, Between(-2.0 * kPi, 2.0 * kPi), 0, 2, nozzle.towards_rad,
                     "for each hinge, the direction in which a positive angle turns the thrust, from body y "
                     "towards body z; none: fixed");
   fields.Quantity("limit", kAngle, Inside(0.0, kQuarterTurn), nozzle.limit_rad,
                   "of its total deflection; default: the gimbal's", 0.0);
+  fields.Text("group", nozzle.group, "nozzles with the same word share one command of each hinge", "");
 }
 
 /// Without a list: four nozzles at 90°, each hinged in one plane. Two serve pitch (right, left), two yaw
@@ -38,7 +63,7 @@ inline void Describe(Fields& fields, Nozzle& nozzle, std::size_t count) {
 struct Gimbal {
   double pivot_station_m = 0.0;
   double radius_m = 0.0;             ///< the paper's z_r
-  std::vector<Nozzle> nozzles = {};  ///< in place of the cross
+  std::vector<Nozzle> nozzles = {};  ///< in place of the cross, as listed (NozzlesOf)
   double limit_rad = 0.0;
   double rate_limit_rad_s = 0.0;
   double bandwidth_rad_s = 0.0;
@@ -55,8 +80,8 @@ struct Gimbal {
 
 inline void Describe(Fields& fields, Gimbal& gimbal) {
   fields.Quantity("pivot_station", kLength, kPositive, gimbal.pivot_station_m, "of the hinges");
-  fields.List("nozzles", 0, kNozzles, gimbal.nozzles, "instead of four in a cross",
-              [&](Fields& item, Nozzle& nozzle, std::size_t count) { Describe(item, nozzle, count); });
+  fields.List("nozzles", 0, kListedNozzles, gimbal.nozzles,
+              "instead of four in a cross: nozzles and rings of them, 33 in all");
   fields.Unless(Has("nozzles"), [&] {
     fields.Quantity("radius", kLength, kPositive, gimbal.radius_m,
                     "from the axis to the centres of four nozzles in a cross");

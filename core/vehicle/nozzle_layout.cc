@@ -16,12 +16,22 @@ namespace {
 constexpr double kIndependence = 1e-6;
 constexpr double kOnAxis_m = 1e-3;
 
-using Effect = Eigen::Matrix<double, kSteeredAxes, kDrives>;
+using Effect = Eigen::Matrix<double, kSteeredAxes, Eigen::Dynamic>;
+
+// A column for each drive of the banks that the nozzles need.
+// Of a drive by itself, whatever group it is in.
+Eigen::Vector3d EffectOf(const NozzleLayout& o, int drive) {
+  const int k = NozzleOf(drive);
+  const double y = o.towards_y[drive], z = o.towards_z[drive];
+  return o.share[k] * Eigen::Vector3d(o.y_m[k] * z - o.z_m[k] * y, z, -y);
+}
 
 struct Placed {
   NozzleLayout layout;
-  Effect effect = Effect::Zero();  // G: of roll in m, of pitch and yaw without unit
-  Eigen::Matrix<double, kDrives, 1> ease = Eigen::Matrix<double, kDrives, 1>::Zero();  // W^-1
+  Effect effect;         // G: of roll in m, of pitch and yaw without unit
+  Eigen::VectorXd ease;  // W^-1
+  // The command that each drive follows: its own, or that of the first of its group (-1: it is not there).
+  std::vector<int> leader;
 };
 
 // The cross as a list: the numbering of core/README.md.
@@ -33,11 +43,27 @@ std::vector<Nozzle> Cross(double radius_m) {
           {"top", 0.0, -radius_m, 0.25, {kTowardsMinusY}, 0.0}};
 }
 
+// A group's effects count as those of its first nozzle, with the least limit.
+void JoinGroups(Placed& placed) {
+  for (std::size_t drive = 0; drive < placed.leader.size(); ++drive) {
+    const int leader = placed.leader[drive], here = static_cast<int>(drive);
+    if (leader < 0 || leader == here) continue;
+    placed.effect.col(leader) += placed.effect.col(here);
+    placed.effect.col(here).setZero();
+    placed.ease[leader] = std::min(placed.ease[leader], placed.ease[here]);
+    placed.ease[here] = 0.0;
+  }
+}
+
 Placed Place(const Gimbal& gimbal) {
-  const std::vector<Nozzle> nozzles = gimbal.nozzles.empty() ? Cross(gimbal.radius_m) : gimbal.nozzles;
+  const std::vector<Nozzle> nozzles = gimbal.nozzles.empty() ? Cross(gimbal.radius_m) : NozzlesOf(gimbal);
   Placed placed;
   NozzleLayout& o = placed.layout;
   o.nozzles = static_cast<int>(nozzles.size());
+  const int drives = o.banks() * kDrives;
+  placed.effect = Effect::Zero(kSteeredAxes, drives);
+  placed.ease = Eigen::VectorXd::Zero(drives);
+  placed.leader.assign(static_cast<std::size_t>(drives), -1);
   double radius2_m2 = 0.0;
   for (int k = 0; k < o.nozzles; ++k) {
     const Nozzle& nozzle = nozzles[static_cast<std::size_t>(k)];
@@ -47,21 +73,26 @@ Placed Place(const Gimbal& gimbal) {
     o.limit_rad[k] = nozzle.limit_rad > 0.0 ? nozzle.limit_rad : gimbal.limit_rad;
     radius2_m2 += nozzle.thrust_share * (nozzle.y_m * nozzle.y_m + nozzle.z_m * nozzle.z_m);
     for (std::size_t hinge = 0; hinge < nozzle.towards_rad.size(); ++hinge) {
-      const int drive = k + static_cast<int>(hinge) * kNozzles;
+      const int drive = DriveOf(k, static_cast<int>(hinge));
       const SinCos towards = SineCosine(nozzle.towards_rad[hinge]);
       // A quarter turn's cosine is 6e-17; it is meant to be nothing.
       const auto exact = [](double x) { return std::fabs(x) < 1e-15 ? 0.0 : x; };
       o.there[drive] = 1.0;
       o.towards_y[drive] = exact(towards.cos);
       o.towards_z[drive] = exact(towards.sin);
-      const double y = o.towards_y[drive], z = o.towards_z[drive];
-      placed.effect.col(drive) =
-          nozzle.thrust_share * Eigen::Vector3d(nozzle.y_m * z - nozzle.z_m * y, z, -y);
+      placed.effect.col(drive) = EffectOf(o, drive);
       const double ease = o.limit_rad[k] / gimbal.limit_rad;
       placed.ease[drive] = ease * ease;
+      placed.leader[static_cast<std::size_t>(drive)] = drive;
+      for (int first = 0; first < k && !nozzle.group.empty(); ++first)
+        if (nozzles[static_cast<std::size_t>(first)].group == nozzle.group) {
+          placed.leader[static_cast<std::size_t>(drive)] = DriveOf(first, static_cast<int>(hinge));
+          break;
+        }
     }
   }
   o.flow_radius_m = Sqrt(radius2_m2);
+  JoinGroups(placed);
   return placed;
 }
 
@@ -81,6 +112,33 @@ bool TurnsInRoll(const Placed& placed) { return placed.effect.row(0).cwiseAbs().
 
 }  // namespace
 
+std::vector<Nozzle> NozzlesOf(const Gimbal& gimbal) {
+  std::vector<Nozzle> nozzles;
+  for (const Nozzle& entry : gimbal.nozzles) {
+    const NozzleRing& ring = entry.ring;
+    for (int k = 0; k < ring.count; ++k) {
+      Nozzle& one = nozzles.emplace_back(entry);
+      one.ring = {};
+      if (ring.count == 1) continue;
+      const double at_rad = ring.first_rad + kTwoPi * k / ring.count;
+      const SinCos place = SineCosine(at_rad);
+      one.name += std::to_string(k + 1);
+      one.y_m = ring.radius_m * place.cos;
+      one.z_m = ring.radius_m * place.sin;
+      for (double& towards_rad : one.towards_rad)
+        if (ring.turned) towards_rad += at_rad;
+    }
+  }
+  double left = 1.0, equal = 0.0;
+  for (const Nozzle& one : nozzles) {
+    left -= one.thrust_share;
+    if (one.thrust_share == 0.0) equal += 1.0;
+  }
+  for (Nozzle& one : nozzles)
+    if (one.thrust_share == 0.0) one.thrust_share = left / equal;
+  return nozzles;
+}
+
 NozzleLayout BuildNozzleLayout(const Gimbal& gimbal) {
   Placed placed = Place(gimbal);
   NozzleLayout& o = placed.layout;
@@ -94,7 +152,11 @@ NozzleLayout BuildNozzleLayout(const Gimbal& gimbal) {
   const auto reach = [&](int axis) {
     double most = 0.0;
     for (int k = 0; k < o.nozzles; ++k) {
-      const double a = inverse(k, axis - first), b = inverse(k + kNozzles, axis - first);
+      const auto commanded = [&](int hinge) {
+        const int leader = placed.leader[static_cast<std::size_t>(DriveOf(k, hinge))];
+        return leader < 0 ? 0.0 : inverse(leader, axis - first);
+      };
+      const double a = commanded(0), b = commanded(1);
       most = std::max(most, Sqrt(a * a + b * b) * gimbal.limit_rad / o.limit_rad[k]);
     }
     return most;
@@ -105,9 +167,11 @@ NozzleLayout BuildNozzleLayout(const Gimbal& gimbal) {
   // Rounds to 1e-12, the distance of doubles near 6144, so that values that should be 1 or 0 are exact.
   const auto rounded = [](double x) { return (x + 0x1.8p12) - 0x1.8p12; };
   for (int axis = first; axis < kSteeredAxes; ++axis) {
-    for (int drive = 0; drive < kDrives; ++drive) {
-      o.allocation[drive][axis] = rounded(scale[axis] * inverse(drive, axis - first));
-      o.felt[axis][drive] = placed.effect(axis, drive) / scale[axis];
+    for (int drive = 0; drive < o.banks() * kDrives; ++drive) {
+      const int leader = placed.leader[static_cast<std::size_t>(drive)];
+      if (leader < 0) continue;
+      o.allocation[drive][axis] = rounded(scale[axis] * inverse(leader, axis - first));
+      o.felt[axis][drive] = EffectOf(o, drive)[axis] / scale[axis];
     }
   }
   o.pitch_share = scale[1];
@@ -119,13 +183,25 @@ std::vector<StructProblem> NozzleProblems(const Gimbal& gimbal, const std::strin
   std::vector<StructProblem> problems;
   if (gimbal.nozzles.empty()) return problems;
   const std::string list = path + ".nozzles";
+  const std::vector<Nozzle> all = NozzlesOf(gimbal);
+  if (all.size() > kListedNozzles)
+    return {{list, "are " + std::to_string(all.size()) + " in all", "up to 33 nozzles of a stage"}};
   double shares = 0.0, y_m = 0.0, z_m = 0.0;
-  for (std::size_t k = 0; k < gimbal.nozzles.size(); ++k) {
-    const Nozzle& nozzle = gimbal.nozzles[k];
-    const std::string item = list + "[" + std::to_string(k) + "]";
+  for (const Nozzle& nozzle : all) {
     shares += nozzle.thrust_share;
     y_m += nozzle.thrust_share * nozzle.y_m;
     z_m += nozzle.thrust_share * nozzle.z_m;
+    if (!(nozzle.thrust_share > 0.0))
+      return {{list, "leave no thrust to " + nozzle.name, "thrust_share that sum to less than 1 beside it"}};
+  }
+  for (std::size_t k = 0; k < gimbal.nozzles.size(); ++k) {
+    const Nozzle& nozzle = gimbal.nozzles[k];
+    const std::string item = list + "[" + std::to_string(k) + "]";
+    for (std::size_t other = 0; other < k && !nozzle.group.empty(); ++other)
+      if (gimbal.nozzles[other].group == nozzle.group &&
+          gimbal.nozzles[other].towards_rad.size() != nozzle.towards_rad.size())
+        problems.push_back({item + ".group", "has nozzles with another number of hinges",
+                            "nozzles with as many turns_towards_deg in one group"});
     if (nozzle.limit_rad > gimbal.limit_rad)
       problems.push_back(
           {item + ".limit_deg", "is beyond the limit_deg of its drives", "up to the gimbal's limit_deg"});
@@ -141,6 +217,11 @@ std::vector<StructProblem> NozzleProblems(const Gimbal& gimbal, const std::strin
         problems.push_back(
             {item + ".name", "is that of another nozzle, " + nozzle.name, "a name of its own"});
   }
+  for (std::size_t k = 0; problems.empty() && k < all.size(); ++k)
+    for (std::size_t other = 0; other < k; ++other)
+      if (all[other].name == all[k].name)
+        problems.push_back(
+            {list, "have two of the name " + all[k].name, "names that differ with the numbers of rings"});
   // Shares and places are written with a few digits.
   if (std::fabs(shares - 1.0) > 1e-6)
     problems.push_back({list, "have shares of the thrust that sum to " + std::to_string(shares),

@@ -13,6 +13,12 @@
 // are scaled such that a command of the gimbal's limit about one axis takes a nozzle to its own limit. Pitch
 // and yaw have the scale of whichever needs more.
 //
+// Nozzles of a group share one command about each of their hinges. To the pseudo-inverse a group is one
+// nozzle with the sum of their effects and the least of their limits.
+//
+// Four nozzles with their drives are a bank. Every vehicle has one bank. Clusters of more than four engines
+// have further ones, which cost nothing where they are not.
+//
 // Valid for deflections below 40 deg, where the flight's series of sine and cosine end.
 #pragma once
 
@@ -22,29 +28,45 @@
 namespace dispersa {
 
 struct Gimbal;
+struct Nozzle;
 struct StructProblem;
 
-inline constexpr int kNozzles = 4;  ///< of a stage, at most
-/// Drives by number: the nozzles' first hinges, then their second ones.
+inline constexpr int kNozzles = 4;  ///< of a bank
+/// Drives of a bank by number: the nozzles' first hinges, then their second ones. The drives of a further
+/// bank follow those of the bank before.
 inline constexpr int kDrives = 2 * kNozzles;
-inline constexpr int kSteeredAxes = 3;  ///< roll, pitch, yaw
+inline constexpr int kSteeredAxes = 3;     ///< roll, pitch, yaw
+inline constexpr int kListedNozzles = 33;  ///< of a stage, at most
+/// Nozzles of all stages together beyond four in each, at most.
+inline constexpr int kFurtherNozzles = 64;
+inline constexpr int kBanks = (kListedNozzles + kNozzles - 1) / kNozzles;
+inline constexpr int kMostNozzles = kBanks * kNozzles, kMostDrives = kBanks * kDrives;
+/// Drive of a nozzle's first (0) or second (1) hinge, and back.
+constexpr int DriveOf(int nozzle, int hinge) {
+  return nozzle / kNozzles * kDrives + nozzle % kNozzles + hinge * kNozzles;
+}
+constexpr int NozzleOf(int drive) { return drive / kDrives * kNozzles + drive % kNozzles; }
 
 /// Plain arrays: lanes read them (core/dynamics/launcher_lanes.h). A nozzle or drive that a stage does not
 /// have has zeros.
 struct NozzleLayout {
   int nozzles = 0;
-  bool rolls = false;           ///< commands of roll turn the vehicle (else its reaction control must)
-  double share[kNozzles] = {};  ///< of the thrust
-  double y_m[kNozzles] = {}, z_m[kNozzles] = {};
-  double limit_rad[kNozzles] = {};  ///< of the whole deflection that is commanded
-  double there[kDrives] = {};       ///< 1 of a drive that the stage has
-  double towards_y[kDrives] = {}, towards_z[kDrives] = {};
-  double allocation[kDrives][kSteeredAxes] = {};  ///< rad of a drive for a radian commanded about an axis
-  double felt[kSteeredAxes][kDrives] = {};        ///< and back: what deflections stand for
-  double pitch_share = 0.0;                       ///< moment of a radian of pitch, or yaw, over T L
+  bool rolls = false;               ///< commands of roll turn the vehicle (else its reaction control must)
+  double share[kMostNozzles] = {};  ///< of the thrust
+  double y_m[kMostNozzles] = {}, z_m[kMostNozzles] = {};
+  double limit_rad[kMostNozzles] = {};  ///< of the whole deflection that is commanded
+  double there[kMostDrives] = {};       ///< 1 of a drive that the stage has
+  double towards_y[kMostDrives] = {}, towards_z[kMostDrives] = {};
+  double allocation[kMostDrives][kSteeredAxes] = {};  ///< rad of a drive for a radian commanded about an axis
+  double felt[kSteeredAxes][kMostDrives] = {};        ///< and back: what deflections stand for
+  double pitch_share = 0.0;                           ///< moment of a radian of pitch, or yaw, over T L
   double roll_arm_m = 0.0;     ///< moment of a radian of roll over T (0: nozzles do not roll)
   double flow_radius_m = 0.0;  ///< of gyration of the flow about the axis, for the damping of roll
+
+  int banks() const { return (nozzles + kNozzles - 1) / kNozzles; }
 };
+/// The nozzles of a gimbal's list, each by itself and with its share. Empty: four in a cross.
+std::vector<Nozzle> NozzlesOf(const Gimbal& gimbal);
 /// Precondition: a gimbal without problems. Without a list of nozzles it has four in a cross.
 NozzleLayout BuildNozzleLayout(const Gimbal& gimbal);
 

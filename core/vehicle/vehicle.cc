@@ -162,6 +162,15 @@ void CheckStage(const Vehicle& vehicle, std::size_t i, Checker& check) {
   CheckIgnition(stage, i == 0, path, check);
 }
 
+void CheckNozzles(const Vehicle& vehicle, Checker& check) {
+  int further = 0;
+  for (const Stage& stage : vehicle.stages)
+    further += std::max(0, static_cast<int>(NozzlesOf(stage.gimbal).size()) - kNozzles);
+  check.Require(further <= kFurtherNozzles, "stages",
+                "have " + std::to_string(further) + " nozzles beyond four in each",
+                "up to " + std::to_string(kFurtherNozzles) + " of these in all");
+}
+
 void CheckTables(const Vehicle& vehicle, Checker& check) {
   check.Require(vehicle.aerodynamics.empty() || vehicle.aerodynamics.size() == vehicle.stages.size(),
                 "aerodynamics.tables", "has " + std::to_string(vehicle.aerodynamics.size()) + " tables",
@@ -254,6 +263,7 @@ std::vector<StructProblem> Problems(const Vehicle& vehicle) {
                       std::to_string(vehicle.stages[0].bottom_station_m) + " m");
   for (const StructProblem& problem : ProfileProblems(vehicle.profile))
     check.Require(false, problem.path, problem.message, problem.allowed);
+  CheckNozzles(vehicle, check);
   CheckTables(vehicle, check);
   CheckRestarts(vehicle, check);
   CheckJettisons(vehicle, check);

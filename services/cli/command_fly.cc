@@ -45,7 +45,7 @@ void PrintJson(const CaseResult& result, const Campaign& campaign) {
 
 void PrintText(std::FILE* stream, const CaseResult& result, const Campaign& campaign) {
   fmt::print(stream, "outcome  {}\ndigest   {}\n", OutcomeText(result), result.digest.Hex());
-  const std::vector<double> nominal = InputValues(FlightInputs{}, kMaxStages);
+  const std::vector<double> nominal = InputValues(FlightInputs{}, kMaxStages + kFurtherNozzles);
   for (std::size_t i = 0; i < result.inputs.size(); ++i) {
     if (result.inputs[i] == nominal[i]) continue;
     fmt::print(stream, "{:<44} {}\n", "input_" + InputColumns()[i].name, ShortestText(result.inputs[i]));

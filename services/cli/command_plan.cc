@@ -36,7 +36,7 @@ std::size_t TerminalWidth() {
 
 void PrintCsv(const Campaign& campaign, const CaseDesign& design) {
   std::string line = "case_index";
-  const std::size_t stages = campaign.vehicle.stages.size();
+  const std::size_t stages = ColumnClass(campaign.vehicle);
   for (std::size_t i = 0; i < InputCount(stages); ++i) line += ",input_" + InputColumns()[i].name;
   fmt::print("{}\n", line);
   for (std::uint64_t index = 0; index < campaign.sampling.cases; ++index) {
@@ -67,7 +67,7 @@ void PrintJson(const Campaign& campaign, const CaseDesign& design) {
   for (std::uint64_t index = 0; index < campaign.sampling.cases; ++index) {
     const nlohmann::ordered_json one = {
         {"case_index", index},
-        {"inputs", InputsJson(InputValues(design.Draw(index), campaign.vehicle.stages.size()))}};
+        {"inputs", InputsJson(InputValues(design.Draw(index), ColumnClass(campaign.vehicle)))}};
     fmt::print("{}\n    {}", index == 0 ? "" : ",", Indented(one.dump(2)));
   }
   fmt::print("\n  {}\n", around.substr(inside));

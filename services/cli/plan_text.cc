@@ -20,7 +20,7 @@ constexpr std::size_t kIndent = 2, kUnitWidth = 6, kNumberWidth = 11;
 CaseColumns DrawnColumns(const Campaign& campaign, const std::vector<int>& inputs) {
   const CaseDesign design(campaign);
   CaseColumns cases;
-  const std::size_t stages = campaign.vehicle.stages.size();
+  const std::size_t stages = ColumnClass(campaign.vehicle);
   cases.inputs.resize(InputCount(stages));
   for (std::uint64_t index = 0; index < campaign.sampling.cases; ++index) {
     cases.index.push_back(index);

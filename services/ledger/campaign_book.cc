@@ -87,7 +87,7 @@ bool CampaignBook::HasItsMetrics(const CaseResult& result) const {
 
 bool CampaignBook::IsDrawnSo(const CaseResult& result) const {
   const std::vector<double> drawn =
-      InputValues(design_.Draw(result.case_index), campaign_.vehicle.stages.size());
+      InputValues(design_.Draw(result.case_index), ColumnClass(campaign_.vehicle));
   return result.inputs.size() == drawn.size() &&
          std::memcmp(result.inputs.data(), drawn.data(), drawn.size() * sizeof(double)) == 0;
 }

@@ -83,7 +83,7 @@ void TakeOver(const ResultFolder& from, const Campaign& campaign, const std::vec
   std::uint64_t others = 0;
   from.ForEach([&](const CaseResult& result) {
     if (result.case_index >= campaign.sampling.cases || to.Contains(result.case_index)) return;
-    if (result.inputs != InputValues(design.Draw(result.case_index), campaign.vehicle.stages.size())) {
+    if (result.inputs != InputValues(design.Draw(result.case_index), ColumnClass(campaign.vehicle))) {
       ++others;
       return;
     }

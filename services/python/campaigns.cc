@@ -44,7 +44,7 @@ class LoadedCampaign {
 
   const Campaign& campaign() const { return campaign_; }
   const std::vector<InputProblem>& warnings() const { return warnings_; }
-  std::size_t stages() const { return campaign_.vehicle.stages.size(); }
+  std::size_t stages() const { return ColumnClass(campaign_.vehicle); }
   /// Without the interpreter's lock: building takes a while.
   const CampaignFlights& flights() const {
     std::call_once(once_, [this] { flights_ = std::make_unique<const CampaignFlights>(campaign_); });

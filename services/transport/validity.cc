@@ -64,6 +64,8 @@ std::string WhyInvalid(const Report& report) {
     };
     if (flown.is_quarantined)
       return flown.result.inputs.empty() && flown.result.metrics.empty() && !flown.result.reason.empty();
+    for (std::size_t further = 1; further <= kFurtherNozzles; ++further)
+      if (are_of(kMaxStages + further)) return true;
     return are_of(kUsualStages) || are_of(kMaxStages);
   };
   const auto is_sane = [](const FlownCase& flown) {

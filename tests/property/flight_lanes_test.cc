@@ -23,7 +23,8 @@ namespace {
 
 // The shipped definition with all that a file may give it besides.
 FlightDefinition Definition(const std::string& law, bool with_winds, bool guided = false) {
-  const std::string autopilot = law.starts_with("listed_") ? law.substr(7) : law;
+  const bool clustered = law.starts_with("clustered_");
+  const std::string autopilot = clustered ? law.substr(10) : law.starts_with("listed_") ? law.substr(7) : law;
   FlightDefinition definition =
       Slv4Definition(DISPERSA_CAMPAIGNS, autopilot, guided ? "slv4_500km_reserve" : "slv4_500km");
   definition.guidance.closed_loop = guided;
@@ -84,6 +85,16 @@ FlightDefinition Definition(const std::string& law, bool with_winds, bool guided
                                           1.0 / 3.0,
                                           {at + 90.0 * kRadPerDeg},
                                           0.0});
+  }
+  if (clustered) {  // nine engines, thirteen of which some are fixed and some alike, one, and a cross
+    std::vector<Stage>& stages = definition.vehicle.stages;
+    const std::vector<double> both = {90.0 * kRadPerDeg, 180.0 * kRadPerDeg};
+    stages[0].gimbal.nozzles = {{"centre", 0.0, 0.0, 0.0, both, 0.0},
+                                {"outer", 0.0, 0.0, 0.0, both, 0.0, {8, 0.4, 0.1, false}}};
+    stages[1].gimbal.nozzles = {{"main", 0.0, 0.0, 0.05, both, 0.0, {5, 0.2, 0.0, false}, "main"},
+                                {"more", 0.0, 0.0, 0.05, both, 0.0, {5, 0.2, 0.3, false}},
+                                {"fixed", 0.0, 0.0, 0.0, {}, 0.0, {3, 0.3, 0.0, false}}};
+    stages[2].gimbal.nozzles = {{"one", 0.0, 0.0, 1.0, both, 4.0 * kRadPerDeg}};
   }
   if (autopilot == "flexible") {
     definition.vehicle = LoadVehicle(DISPERSA_CAMPAIGNS "/vehicles/slv4_flexible.yaml");
@@ -193,6 +204,16 @@ FlightInputs DrawnInputs(std::uint64_t flight) {
                            &in.stack_cg_factor[stage], &in.stack_cp_factor[stage],
                            &in.stack_inertia_factor[stage], &in.stack_actuator_bandwidth_factor[stage]})
       seldom(*factor, 1.0 + 0.02 * later.Normal());
+  }
+  Stream further(5, flight, "further nozzles");
+  for (std::size_t nozzle = 0; nozzle < 14; ++nozzle) {
+    if (further.Uniform() < 0.5) continue;
+    in.further_misalignment_y_rad[nozzle] = 0.2 * kRadPerDeg * further.Normal();
+    in.further_misalignment_rad[nozzle] = 0.1 * kRadPerDeg * further.Uniform();
+    in.further_misalignment_clock_rad[nozzle] = kTwoPi * further.Uniform();
+    in.further_offset_z_m[nozzle] = 0.002 * further.Normal();
+    in.further_thrust_factor[nozzle] = 1.0 + 0.01 * further.Normal();
+    in.further_flow_factor[nozzle] = 1.0 + 0.01 * further.Normal();
   }
   // In some flights so fast that a rate limit may act within a tick.
   seldom(in.stack_actuator_bandwidth_factor[1], 9.0);
@@ -315,7 +336,8 @@ void ExpectTheFlightsAlone(const FlightModel& model, std::uint64_t flights) {
   std::size_t completed = 0, lost = 0;
   for (const Queue::Flown& one : alone.flown)
     (one.result.outcome == Outcome::kCompleted ? completed : lost) += 1;
-  EXPECT_GT(completed, flights / 3) << "lanes are to be filled anew as flights end at different times";
+  EXPECT_GT(completed, flights / 3) << "lanes are to be filled anew as flights end at different times; "
+                                    << alone.flown[0].result.reason << ", " << alone.flown[1].result.reason;
 
   // From the last flight to the first in every other engine, so that neighbours change as well.
   for (const LaneEngine& engine : UsableEngines()) {
@@ -368,7 +390,8 @@ TEST(GuidedCutOffLanes, AreTheFlightsAlone) {
 INSTANTIATE_TEST_SUITE_P(Laws, FlightLanes,
                          testing::Values("adaptive_fuzzy", "frozen_fuzzy", "pd", "pid", "pd_aac", "pid_aac",
                                          "flexible", "guided_adaptive_fuzzy", "guided_pid_aac",
-                                         "listed_pid_aac"),
+                                         "listed_pid_aac", "clustered_pid", "clustered_pid_aac",
+                                         "clustered_flexible"),
                          [](const auto& law) { return std::string(law.param); });
 
 }  // namespace

@@ -48,7 +48,8 @@ TEST(DispersionTable, OfSeveralKeysACampaignHasItsOwn) {
 
 TEST(DispersionTable, APatternStandsForEveryName) {
   EXPECT_EQ(ExpandColumn("nozzle_thrust_factor_{stage}_{nozzle}").size(),
-            static_cast<std::size_t>(kMaxStages) * kNozzles);
+            static_cast<std::size_t>(kMaxStages) * kNozzles + kFurtherNozzles);
+  EXPECT_EQ(ExpandColumn("nozzle_thrust_factor_{stage}_{nozzle}").back(), "nozzle_thrust_factor_nozzle68");
   EXPECT_EQ(
       ExpandColumn("navigation_position_error_{axis}_m"),
       (std::vector<std::string>{"navigation_position_error_downrange_m", "navigation_position_error_right_m",

@@ -278,9 +278,9 @@ constexpr BadInput kBadInputs[] = {
      "vehicle, nozzle\n"},
     {"FlowOfANozzle", "campaign.yaml", "conserve: total_impulse, per: stage",
      "conserve: total_impulse, per: nozzle", "campaign.yaml",
-     "campaign.yaml:11:68: dispersions.thrust.conserve: the flow is the whole motor's, not a nozzle's, "
-     "allowed: "
-     "conserve: propellant with per: nozzle\n"},
+     "campaign.yaml:11:68: dispersions.thrust.conserve: the flow is the whole motor's, not a nozzle's, in "
+     "stage 1, allowed: "
+     "conserve: propellant with per: nozzle, or stages with liquid engines\n"},
     {"BareAzimuth", "campaign.yaml", "azimuth: uniform", "azimuth: 270", "campaign.yaml",
      "campaign.yaml:9:41: dispersions.wind.azimuth: '270' is not a direction, allowed: "
      "uniform, {fixed_deg: x} or a distribution\n"},

@@ -51,6 +51,19 @@ TEST(InputColumns, NameTheFieldsOfFlightInputs) {
     EXPECT_EQ(&InputValue(in, column), &field) << name;
     EXPECT_EQ(InputColumns()[static_cast<std::size_t>(column)].unit, unit) << name;
   };
+  for (std::size_t i = 0; i < kFurtherNozzles; ++i) {
+    const std::string of = "_nozzle" + std::to_string(i + 5);
+    expect("nozzle_misalignment" + of + "_deg", in.further_misalignment_rad[i], kRadPerDeg);
+    expect("nozzle_misalignment_clock" + of + "_deg", in.further_misalignment_clock_rad[i], kRadPerDeg);
+    expect("nozzle_misalignment_y" + of + "_deg", in.further_misalignment_y_rad[i], kRadPerDeg);
+    expect("nozzle_misalignment_z" + of + "_deg", in.further_misalignment_z_rad[i], kRadPerDeg);
+    expect("nozzle_offset" + of + "_m", in.further_offset_m[i], 1.0);
+    expect("nozzle_offset_clock" + of + "_deg", in.further_offset_clock_rad[i], kRadPerDeg);
+    expect("nozzle_offset_y" + of + "_m", in.further_offset_y_m[i], 1.0);
+    expect("nozzle_offset_z" + of + "_m", in.further_offset_z_m[i], 1.0);
+    expect("nozzle_thrust_factor" + of, in.further_thrust_factor[i], 1.0);
+    expect("nozzle_flow_factor" + of, in.further_flow_factor[i], 1.0);
+  }
   for (std::size_t i = 0; i < kMaxStages; ++i) {
     const std::string stage = "_stage" + std::to_string(i + 1);
     expect("thrust_misalignment" + stage + "_deg", in.thrust_misalignment_rad[i], kRadPerDeg);
@@ -65,6 +78,7 @@ TEST(InputColumns, NameTheFieldsOfFlightInputs) {
       expect("nozzle_offset" + of + "_m", in.nozzle_offset_m[i][nozzle], 1.0);
       expect("nozzle_offset_clock" + of + "_deg", in.nozzle_offset_clock_rad[i][nozzle], kRadPerDeg);
       expect("nozzle_thrust_factor" + of, in.nozzle_thrust_factor[i][nozzle], 1.0);
+      expect("nozzle_flow_factor" + of, in.nozzle_flow_factor[i][nozzle], 1.0);
       expect("nozzle_misalignment_y" + of + "_deg", in.nozzle_misalignment_y_rad[i][nozzle], kRadPerDeg);
       expect("nozzle_misalignment_z" + of + "_deg", in.nozzle_misalignment_z_rad[i][nozzle], kRadPerDeg);
       expect("nozzle_offset_y" + of + "_m", in.nozzle_offset_y_m[i][nozzle], 1.0);
