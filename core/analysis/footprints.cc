@@ -120,15 +120,18 @@ std::vector<Footprint> FootprintsOf(const ResultFolder& folder, const Campaign& 
 }
 
 std::string FootprintTitle(const Footprint& footprint) {
-  return footprint.lost ? fmt::format("stack from stage {}, lost", footprint.stage)
-                        : fmt::format("stage {}, spent", footprint.stage);
+  return footprint.lost         ? fmt::format("stack from stage {}, lost", footprint.stage)
+         : footprint.stage == 0 ? "boosters, spent"
+                                : fmt::format("stage {}, spent", footprint.stage);
 }
 
 std::string GeoJson(const Campaign& campaign, const std::vector<Footprint>& footprints) {
   Json features = Json::array();
   for (const Footprint& footprint : footprints) {
     const double near_rad = footprint.mean.longitude_rad;
-    const char* body = footprint.lost ? "lost_flight" : "spent_stage";
+    const char* body = footprint.lost         ? "lost_flight"
+                       : footprint.stage == 0 ? "spent_booster"
+                                              : "spent_stage";
     for (std::size_t i = 0; i < footprint.containment.size(); ++i) {
       const Containment& containment = footprint.containment[i];
       const ScatterEllipse& ellipse = footprint.ellipses[i];

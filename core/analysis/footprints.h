@@ -15,8 +15,8 @@ namespace dispersa {
 
 /// The impact area of the bodies of one kind.
 struct Footprint {
-  int stage = 0;                    ///< 1-based
-  bool lost = false;                ///< true: stacks of lost flights; false: spent stages
+  int stage = 0;                    ///< 1-based; 0: boosters
+  bool lost = false;                ///< true: stacks of lost flights; false: spent stages and boosters
   std::vector<ImpactPoint> points;  ///< in the order of cases, without bodies that stayed aloft
   std::size_t aloft = 0;            ///< number of bodies that did not come down
   Geodetic mean{};                  ///< of the points, on the ellipsoid
@@ -29,15 +29,15 @@ struct Footprint {
 inline constexpr std::array<double, 3> kFootprintContainment = {0.5, 0.95, 0.99};
 
 /// Flies every case that has a result again, checks that the result is the same, and gathers the impact
-/// points: spent stages by stage, then lost flights by stage. Throws InputError if another engine flew the
-/// folder, and ResultError if a case does not reproduce. `progress(done, total)` is never called by two
-/// threads at once; it may throw to stop.
+/// points: boosters, spent stages by stage, then lost flights by stage. Throws InputError if another engine
+/// flew the folder, and ResultError if a case does not reproduce. `progress(done, total)` is never called by
+/// two threads at once; it may throw to stop.
 std::vector<Footprint> FootprintsOf(const ResultFolder& folder, const Campaign& campaign, int threads,
                                     const std::function<void(std::size_t, std::size_t)>& progress = {});
 /// The footprints of the given points.
 std::vector<Footprint> GatherFootprints(const std::vector<ImpactPoint>& points);
 
-/// "stage 2, spent", "stack from stage 1, lost".
+/// "stage 2, spent", "boosters, spent", "stack from stage 1, lost".
 std::string FootprintTitle(const Footprint& footprint);
 
 /// GeoJSON (RFC 7946): a point for each impact, a polygon for each ellipse. Longitudes go on beyond 180° if a

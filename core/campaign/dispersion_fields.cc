@@ -38,6 +38,10 @@ class DispersionFields {
       case Draws::kThrust:
       case Draws::kPropellantTemperature:
         return OfStages(fields, row, name);
+      case Draws::kBoosters:
+      case Draws::kBoostersTemperature:
+      case Draws::kBoostersAside:
+        return OfBoosters(fields, row, name);
       case Draws::kFixed:
       case Draws::kFixedOrAbsent: {
         ScalarDistribution distribution;
@@ -310,6 +314,9 @@ class DispersionFields {
     for (const int stage : of.stages)
       if (is_sound_ && vehicle_.stages[static_cast<std::size_t>(stage) - 1].is_liquid())
         map.Refuse("", "stage " + std::to_string(stage) + " is liquid", "stage: those with solid motors");
+    AddStages(name, of, RateOf(rate, sensitivity_1_k), row.columns);
+  }
+  static ScalarDistribution RateOf(ScalarDistribution rate, double sensitivity_1_k) {
     const auto rate_at = [&](double warmer_k) { return Exp(sensitivity_1_k * warmer_k); };
     if (rate.kind == Distribution::kNormal) {  // of the temperature, hence lognormal of the rate
       rate.kind = Distribution::kLogNormal;
@@ -320,7 +327,40 @@ class DispersionFields {
       for (double& value : rate.values) value = rate_at(value);
     }
     rate.nominal = rate_at(rate.nominal);
-    AddStages(name, of, rate, row.columns);
+    return rate;
+  }
+
+  // One draw a booster, or one for all of them.
+  void OfBoosters(Fields& fields, const DispersionRow& row, const std::string& name) {
+    if (is_sound_ && !vehicle_.boosters.are_apart())
+      return fields.Misplaced(row.key, {}, "the vehicle has no boosters, or such that are all alike",
+                              "boosters with angles_deg in place of count");
+    bool is_there = false;
+    fields.OptionalMap(row.key, is_there, row.meaning, [&](Fields& map) {
+      ScalarDistribution distribution = ReadScalar(map, row.scalar);
+      if (row.draws == Draws::kBoostersTemperature) {
+        double sensitivity_1_k = 0.0;
+        map.Quantity("sensitivity", kPerTemperature, UpTo(0.02), sensitivity_1_k,
+                     "growth of the burn rate, pi_K");
+        distribution = RateOf(distribution, sensitivity_1_k);
+      }
+      bool each = true;
+      if (row.draws != Draws::kBoostersAside)
+        map.Choice<bool>("per", {{"booster", true}, {"vehicle", false}}, each, "one draw for each", true);
+      std::vector<std::string> all;
+      for (std::size_t k = 0; k < vehicle_.boosters.angles_rad.size(); ++k) {
+        std::vector<std::string> columns = FillColumns(row.columns, "further", BoosterInColumns(vehicle_, k));
+        const std::string booster = "/booster" + std::to_string(k + 1);
+        all.insert(all.end(), columns.begin(), columns.end());
+        if (row.draws == Draws::kBoostersAside) {
+          Add(name + "/y" + booster, distribution, {columns[0]});
+          Add(name + "/z" + booster, distribution, {columns[1]});
+        } else if (each) {
+          Add(name + booster, distribution, columns);
+        }
+      }
+      if (!each && !all.empty()) Add(name, distribution, all);
+    });
   }
 
   // ---- maps with keys of their own ----

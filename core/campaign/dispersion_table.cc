@@ -243,6 +243,20 @@ std::vector<DispersionRow> MakeRows() {
          Draws::kFixed,
          {kAngle, Inside(-kQuarterTurn, kQuarterTurn)},
          {"stuck_nozzle_deg"}}}});
+  const std::vector<std::string> of_booster = {"nozzle_thrust_factor_{further}",
+                                               "nozzle_flow_factor_{further}"};
+  add({"booster_burn_rate", "factor of a booster's thrust and flow together; its impulse stays",
+       Draws::kBoosters, kPositiveFactor, of_booster});
+  add({"booster_temperature",
+       "difference to the nominal temperature of a booster's propellant; sets its burn rate",
+       Draws::kBoostersTemperature,
+       {kTemperatureDifference, Between(-200.0, 200.0), kOfTemperature},
+       of_booster});
+  add({"booster_misalignment",
+       "of a booster's thrust off its nozzle's axis: components towards body y and z",
+       Draws::kBoostersAside,
+       Any(kAngle),
+       {"nozzle_misalignment_y_{further}_deg", "nozzle_misalignment_z_{further}_deg"}});
   // Those that their inputs declare (core/flight/flight_inputs.h).
   for (const DispersedInput& input : DeclaredDispersals()) {
     const Draws draws = input.drawn_for == DrawnFor::kEachStage  ? Draws::kStages
@@ -259,6 +273,13 @@ std::vector<DispersionRow> MakeRows() {
 std::vector<std::string> Numbered(const std::string& stem, int count) {
   std::vector<std::string> names;
   for (int i = 1; i <= count; ++i) names.push_back(stem + std::to_string(i));
+  return names;
+}
+
+// Of nozzles beyond four of a stage, and of boosters.
+std::vector<std::string> FurtherNames() {
+  std::vector<std::string> names;
+  for (int i = 0; i < kFurtherNozzles; ++i) names.push_back("nozzle" + std::to_string(kNozzles + 1 + i));
   return names;
 }
 
@@ -301,7 +322,8 @@ std::vector<std::string> ExpandColumn(const std::string& pattern) {
       {"nozzle", {std::begin(kNozzleNames), std::end(kNozzleNames)}},
       {"mode", Numbered("mode", kModes)},
       {"level", Numbered("", kWindLevels)},
-      {"axis", {"downrange", "right", "down"}}};
+      {"axis", {"downrange", "right", "down"}},
+      {"further", FurtherNames()}};
   std::vector<std::string> columns = {pattern};
   for (const auto& [what, names] : kNames) {
     if (pattern.find("{" + what + "}") == std::string::npos) continue;
@@ -312,8 +334,8 @@ std::vector<std::string> ExpandColumn(const std::string& pattern) {
   }
   // Those beyond four of a stage have names of their own.
   if (pattern.find("{stage}_{nozzle}") != std::string::npos)
-    for (int i = 0; i < kFurtherNozzles; ++i)
-      columns.push_back(FillColumn(pattern, "stage}_{nozzle", "nozzle" + std::to_string(kNozzles + 1 + i)));
+    for (const std::string& name : FurtherNames())
+      columns.push_back(FillColumn(pattern, "stage}_{nozzle", name));
   return columns;
 }
 

@@ -31,6 +31,9 @@ enum class Draws {
   kWindProfile,
   kTurbulence,
   kStuckNozzle,
+  kBoosters,             ///< `per: booster`, or `vehicle`: one value for all
+  kBoostersTemperature,  ///< the same of a temperature that sets the burn rate
+  kBoostersAside,        ///< components towards body y and z, of each booster
 };
 
 struct DispersionRow {

@@ -83,7 +83,7 @@ void RequireLimitsKept(const VerdictPlan& plan, SamplingMethod method,
     requirements.push_back(std::move(kept));
 }
 
-// Only stages that there are, above the first, are steered.
+// Only stages that there are, are steered: the first one after its boosters have left.
 template <class T>
 void CheckSteering(const Vehicle& vehicle, const std::array<T, kMaxStages>& steering, const InputNode& node,
                    const std::string& path, ProblemList& problems) {
@@ -93,6 +93,12 @@ void CheckSteering(const Vehicle& vehicle, const std::array<T, kMaxStages>& stee
                  "stage" + std::to_string(stage + 1) + "_incidence_* is given, and the vehicle has " +
                      std::to_string(vehicle.stages.size()) + " stages",
                  "incidence of stages that there are");
+  if (!steering[0].empty() && vehicle.boosters.count == 0)
+    AddProblem(
+        problems, node, path,
+        "stage1_incidence_* is given, and the first stage has no boosters: in the air it flies without "
+        "incidence",
+        "stage1_incidence_* of a vehicle with boosters, after which the stage burns on");
 }
 
 // Stages before the last that a timer ignites, and only they, have a coast of their own.

@@ -12,13 +12,25 @@ namespace {
 // From the centre of gravity of one stack to that of another, in the body: lateral moments stay with what is
 // left, whose mass has changed.
 Vector3 CgStep(const LauncherPlant& plant, const LauncherStack& from_stack, const MassProperties& from,
-               const LauncherStack& to_stack, const MassProperties& to) {
-  const auto aside = [&](double LauncherStack::*moment) {
-    return to_stack.*moment / to.mass_kg - from_stack.*moment / from.mass_kg;
+               const LauncherStack& to_stack, const MassProperties& to,
+               const Vector3& of_boosters_kg_m = Vector3::Zero()) {
+  const auto aside = [&](double LauncherStack::*moment, double boosters_kg_m) {
+    return to_stack.*moment / to.mass_kg - (from_stack.*moment + boosters_kg_m) / from.mass_kg;
   };
   const double ahead_m = from.cg_station_m * from_stack.cg_factor - to.cg_station_m * to_stack.cg_factor;
-  return Vector3(ahead_m * plant.cg_factor, aside(&LauncherStack::lateral_moment_y_kg_m),
-                 aside(&LauncherStack::lateral_moment_z_kg_m));
+  return Vector3(ahead_m * plant.cg_factor,
+                 aside(&LauncherStack::lateral_moment_y_kg_m, of_boosters_kg_m.y()),
+                 aside(&LauncherStack::lateral_moment_z_kg_m, of_boosters_kg_m.z()));
+}
+
+// Sums of mass times place across the axis of boosters that leave: their shells, which are bodies of their
+// own. All have burnt out.
+Vector3 LateralOf(const LauncherPlant& plant, int stack, unsigned leaving) {
+  Vector3 sum = Vector3::Zero();
+  if (stack > 0 || (leaving & kBoostersGone) == 0 || !plant.has_apart_boosters()) return sum;
+  const double dry_kg = plant.boosters->empty.mass_kg / static_cast<double>(plant.boosters->each.size());
+  for (const EachBooster& one : plant.boosters->each) sum += dry_kg * Vector3(0.0, one.y_m, one.z_m);
+  return sum;
 }
 
 const LauncherStack& StackOf(const LauncherPlant& plant, int stack) {
@@ -77,8 +89,9 @@ RigidBodyState AfterJettison(const LauncherPlant& plant, int stack, unsigned bef
                              double propellant_kg, double since_ignition_s, const RigidBodyState& state) {
   const LauncherStack& same = StackOf(plant, stack);
   const MassProperties whole = MassesOn(plant, stack, before, propellant_kg, since_ignition_s);
-  return AtPoint(state, CgStep(plant, same, whole, same,
-                               MassesOn(plant, stack, after, propellant_kg, since_ignition_s)));
+  return AtPoint(
+      state, CgStep(plant, same, whole, same, MassesOn(plant, stack, after, propellant_kg, since_ignition_s),
+                    LateralOf(plant, stack, after & ~before)));
 }
 
 RigidBodyState AfterSeparation(const LauncherPlant& plant, int below, unsigned jettisoned,

@@ -19,7 +19,9 @@ struct LauncherModel::Prepared {
       if (!stack.aero_grid)
         stack.aero_grid = std::make_shared<const AeroGrid>(BuildAeroGrid(stack.aerodynamics));
     stacks.resize(plant.stacks.size());
+    apart.resize(plant.has_apart_boosters() ? stacks.size() : 0);
     for (std::size_t i = 0; i < stacks.size(); ++i) {
+      if (!apart.empty()) stacks[i].apart = &apart[i];
       lanes::SetLane(stacks[i], 0, plant, static_cast<int>(i));
       lanes::SetLane(stacks[i].weather, 0, weather);
     }
@@ -28,6 +30,7 @@ struct LauncherModel::Prepared {
   LauncherPlant plant;
   FlightWeather weather;
   std::vector<lanes::LauncherPlantLanes<double>> stacks;
+  std::vector<lanes::ApartBoosters<double>> apart;
 };
 
 namespace {
@@ -37,7 +40,7 @@ struct OneLane {
   OneLane(const LauncherPlant& from, const lanes::LauncherPlantLanes<double>& stack, const LauncherPhase& now,
           double time_s, const double* y)
       : earth(from.environment.earth),
-        lighter(Without(from, stack, now)),
+        lighter(Without(from, stack, now, apart)),
         plant(lighter ? *lighter : stack),
         phase{now.burning,          now.burnt,
               now.boosting,         now.ignition_s,
@@ -53,7 +56,10 @@ struct OneLane {
     if (plant.nozzles_listed)
       Accelerate(0, now.command_rad.data() + kNozzles, y + kSecondAngle, y + kSecondRate, second);
     for (int bank = 1; bank <= plant.further_banks; ++bank) {
-      lanes::SetLane(drives[bank], 0, gimbal, now.stuck_nozzle - bank * kNozzles);
+      const bool is_boosters =
+          now.stack == 0 && from.boosters_steer() && bank >= from.stacks[0].layout.banks();
+      lanes::SetLane(drives[bank], 0, is_boosters ? from.boosters->gimbal : gimbal,
+                     now.stuck_nozzle - bank * kNozzles);
       const double* const command_rad = now.command_rad.data() + bank * kDrives;
       for (const int hinge : {0, 1}) {
         const int first = DriveOf(bank * kNozzles, hinge);
@@ -74,11 +80,20 @@ struct OneLane {
     }
   }
 
+  // Boosters that are bodies of their own have values of the instant: `apart` is theirs.
   static std::optional<lanes::LauncherPlantLanes<double>> Without(
-      const LauncherPlant& from, const lanes::LauncherPlantLanes<double>& stack, const LauncherPhase& now) {
-    if (now.jettisoned == 0) return std::nullopt;
+      const LauncherPlant& from, const lanes::LauncherPlantLanes<double>& stack, const LauncherPhase& now,
+      lanes::ApartBoosters<double>& apart) {
+    if (now.jettisoned == 0 && stack.apart == nullptr) return std::nullopt;
     lanes::LauncherPlantLanes<double> lighter = stack;
     lanes::SetLane(lighter.stack, 0, MassOf(from, now.stack, now.jettisoned));
+    if (stack.apart != nullptr) {
+      apart = *stack.apart;
+      lighter.apart = &apart;
+      if (now.jettisoned & kBoostersGone) lanes::SetLane(apart.attached, 0, false);
+      for (int k = 0; k < apart.count; ++k)
+        lanes::SetLane(apart.each[k].burning, 0, (now.boosters_burning >> k & 1u) != 0);
+    }
     return lighter;
   }
   lanes::LoadsOf<double> Loads() const {
@@ -95,6 +110,7 @@ struct OneLane {
   }
 
   const Earth& earth;
+  lanes::ApartBoosters<double> apart;                        ///< unset unless there are such boosters
   std::optional<lanes::LauncherPlantLanes<double>> lighter;  ///< the stack without bodies that have left
   const lanes::LauncherPlantLanes<double>& plant;
   lanes::LauncherPhaseLanes<double> phase;
@@ -161,6 +177,10 @@ LauncherInstant LauncherModel::Evaluate(const LauncherPhase& phase, double time_
   inertia(0, 1) = inertia(1, 0) = -one.plant.product_xy_kg_m2;
   inertia(0, 2) = inertia(2, 0) = -one.plant.product_xz_kg_m2;
   inertia(1, 2) = inertia(2, 1) = -one.plant.product_yz_kg_m2;
+  if (one.plant.apart) {
+    const lanes::Tensor<double> i = lanes::TensorWithBoosters(one.plant, masses);
+    inertia << i.xx, -i.xy, -i.xz, -i.xy, i.yy, -i.yz, -i.xz, -i.yz, i.zz;
+  }
   now.loads.inertia_rate_kg_m2_s =
       -loads.flow_kg_s *
       Matrix3(Vector3(masses.axial_per_kg_m2, masses.transverse_per_kg_m2, masses.transverse_per_kg_m2)
@@ -225,15 +245,24 @@ bool LauncherPlant::nozzles_have_mass() const {
                      [](const LauncherStack& s) { return s.gimbal.nozzle_inertia_kg_m2 > 0.0; });
 }
 
+bool LauncherPlant::has_apart_boosters() const { return boosters && !boosters->each.empty(); }
+
+bool LauncherPlant::boosters_steer() const { return boosters && boosters->gimbal.limit_rad > 0.0; }
+
+const NozzleLayout& LauncherPlant::LayoutOf(int stack, bool boosting) const {
+  if (stack == 0 && boosting && boosters_steer()) return boosters->layout;
+  return stacks[static_cast<std::size_t>(stack)].layout;
+}
+
 int LauncherPlant::nozzle_banks() const {
   int most = 1;
   for (const LauncherStack& stack : stacks) most = std::max(most, stack.layout.banks());
-  return most;
+  return boosters_steer() ? std::max(most, boosters->layout.banks()) : most;
 }
 
 bool LauncherPlant::nozzles_are_listed() const {
-  return std::any_of(stacks.begin(), stacks.end(),
-                     [](const LauncherStack& s) { return !s.gimbal.nozzles.empty(); });
+  return boosters_steer() || std::any_of(stacks.begin(), stacks.end(),
+                                         [](const LauncherStack& s) { return !s.gimbal.nozzles.empty(); });
 }
 
 }  // namespace dispersa

@@ -93,14 +93,24 @@ struct BendingFactors {
   double slope = 1.0;  ///< of the slopes that sensors feel
 };
 
-/// All boosters of the first stage together.
-struct BoosterSet {
+/// A booster that is a body of its own.
+struct EachBooster {
   MotorBurn burn;
+  double y_m = 0.0, z_m = 0.0;
+  /// Its thrust undeflected, canted and misaligned, times its factor; and where each hinge turns it.
+  Vector3 along = Vector3::UnitX(), first = Vector3::Zero(), second = Vector3::Zero();
+};
+/// The boosters of the first stage.
+struct BoosterSet {
+  MotorBurn burn;  ///< of all together
   BoosterGrains grains;
   JettisonedMass empty;
   double nozzle_station_m = 0.0;
   double radius_m = 0.0;
   double separation_delay_s = 0.0;
+  std::vector<EachBooster> each = {};  ///< empty: they are all alike
+  Gimbal gimbal = {};                  ///< of each (a limit of 0: their nozzles are fixed)
+  NozzleLayout layout = {};            ///< of the stage's nozzles and theirs, while any of them burns
 };
 /// The boosters' bit of LauncherPhase::jettisoned.
 inline constexpr unsigned kBoostersGone = 1u << kMaxJettisons;
@@ -124,7 +134,11 @@ struct LauncherPlant {
   bool nozzles_have_mass() const;
   bool nozzles_are_listed()
       const;  ///< Whether any stage has a list of nozzles. Then a cross is treated as a list too.
-  int nozzle_banks() const;  ///< 1 unless a stage has more than four nozzles
+  int nozzle_banks() const;  ///< 1 unless a stage has more than four nozzles, or boosters that turn theirs
+  bool has_apart_boosters() const;  ///< that are bodies of their own
+  bool boosters_steer() const;      ///< with nozzles that turn
+  /// Of a stack's nozzles, while its boosters burn or not.
+  const NozzleLayout& LayoutOf(int stack, bool boosting) const;
   /// Doubles of a state that count: a rigid vehicle's state ends with its nozzles.
   int state_size() const {
     if (nozzles_are_listed()) return kListedLauncherSize + (nozzle_banks() - 1) * 2 * kDrives;
@@ -139,6 +153,7 @@ struct LauncherPhase {
   bool burning = false;
   bool burnt = false;                             ///< the stack's propellant is used up
   bool boosting = false;                          ///< the boosters burn too
+  unsigned boosters_burning = 0;                  ///< bit i: of boosters that are bodies of their own
   double ignition_s = 0.0;                        ///< of the stack's motor, when burning
   double expelled_mass_kg = 0.0;                  ///< by the reaction control so far
   Vector3 control_torque_n_m = Vector3::Zero();   ///< of the reaction control

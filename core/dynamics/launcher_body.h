@@ -3,6 +3,7 @@
 // integration step evaluates each part only as often as it must.
 #pragma once
 
+#include "core/dynamics/apart_boosters.h"
 #include "core/dynamics/bending.h"
 #include "core/dynamics/body_flow.h"
 #include "core/dynamics/launcher.h"
@@ -30,7 +31,8 @@ struct NozzleDepartureLanes {
 /// A further bank of listed nozzles (core/vehicle/nozzle_layout.h), of clusters of more than four engines.
 template <class T>
 struct NozzleBank {
-  MaskOf<T> there;  ///< lanes whose stage has nozzles in it
+  MaskOf<T> there;   ///< lanes whose stage has nozzles in it
+  MaskOf<T> driven;  ///< or whose boosters have (apart_boosters.h)
   ListedNozzle<T> listed[kNozzles];
   NozzleDepartureLanes<T> departs[kNozzles];
 };
@@ -57,13 +59,14 @@ struct LauncherPlantLanes {
   bool nozzles_listed;  ///< of any stage: the same in all lanes. The cross is one of the lists then
   ListedNozzle<T> listed[kNozzles];
   T lateral_moment_y_kg_m, lateral_moment_z_kg_m;
-  bool has_boosters;  ///< of the vehicle: the same in all lanes, and stacks
+  bool has_boosters;  ///< that are all alike, of the vehicle: the same in all lanes, and stacks
   BesideStage<T> beside;
   T beside_nozzle_m, beside_radius_m;
   bool any_products;  ///< some lane has products of inertia
   MaskOf<T> has_products;
   T product_xy_kg_m2, product_xz_kg_m2, product_yz_kg_m2;
-  int further_banks;  ///< that any lane's stage has
+  ApartBoosters<T>* apart;  ///< null: the vehicle has no boosters, or has such that are all alike
+  int further_banks;        ///< that any lane's stage has
   NozzleBank<T> further[kBanks - 1];
 };
 
@@ -117,11 +120,20 @@ DISPERSA_INLINE TimedMasses<T> MassesAt(const LauncherPlantLanes<T>& plant,
               flow_kg_s, m);
     flow_kg_s = flow_kg_s + o.beside_flow_kg_s;
   }
+  if (plant.apart) {
+    AddApart(*plant.apart, time_s - phase.ignition_s, flow_kg_s, m);
+    o.beside_flow_kg_s = plant.apart->flow_kg_s;
+    flow_kg_s = flow_kg_s + o.beside_flow_kg_s;
+  }
   o.mass_kg = m.mass_kg - phase.expelled_kg;
   o.inverse_mass_1_kg = T(1.0) / o.mass_kg;
   o.cg_station_m = m.cg_station_m * plant.cg_factor;
   o.cg_y_m = plant.lateral_moment_y_kg_m * o.inverse_mass_1_kg;
   o.cg_z_m = plant.lateral_moment_z_kg_m * o.inverse_mass_1_kg;
+  if (plant.apart) {
+    o.cg_y_m = (plant.lateral_moment_y_kg_m + plant.apart->lateral_y_kg_m) * o.inverse_mass_1_kg;
+    o.cg_z_m = (plant.lateral_moment_z_kg_m + plant.apart->lateral_z_kg_m) * o.inverse_mass_1_kg;
+  }
   o.axial_kg_m2 = m.axial_kg_m2 * plant.inertia_factor;
   o.transverse_kg_m2 = m.transverse_kg_m2 * plant.inertia_factor;
   o.axial_per_kg_m2 = m.axial_per_kg_m2 * plant.inertia_factor;
@@ -411,6 +423,25 @@ DISPERSA_INLINE T AddBoosters(const LauncherPlantLanes<T>& plant, const Launcher
   return plant.pivot_station_m + share * (plant.beside_nozzle_m - plant.pivot_station_m);
 }
 
+/// The same of boosters that are bodies of their own.
+template <class T, class Turned>
+DISPERSA_INLINE T AddApartBoosters(const LauncherPlantLanes<T>& plant, const LauncherPhaseLanes<T>& phase,
+                                   const TimedMasses<T>& masses, T pressure_pa, const Turned& nozzles,
+                                   const Vector<T>& w, Thrust<T>& thrust, LoadsOf<T>& o) {
+  const BankNozzles<T>* banks = nullptr;
+  if constexpr (requires { nozzles.further; }) banks = nozzles.further;
+  const ApartLoads<T> beside = LoadsOfApart(*plant.apart, banks, pressure_pa, masses.cg_station_m,
+                                            masses.cg_y_m, masses.cg_z_m, plant.jet_damping, w);
+  const T none(0.0);
+  o.thrust_n = Select(phase.boosting, o.thrust_n + beside.thrust_n, o.thrust_n);
+  o.force_n = Select(phase.boosting, o.force_n + beside.force_n, o.force_n);
+  thrust.moment_n_m = Select(phase.boosting, thrust.moment_n_m + beside.moment_n_m, thrust.moment_n_m);
+  o.flow_kg_s = o.flow_kg_s + masses.beside_flow_kg_s;
+  const T share = Select(o.flow_kg_s > none,
+                         masses.beside_flow_kg_s / Select(o.flow_kg_s > none, o.flow_kg_s, T(1.0)), none);
+  return plant.pivot_station_m + share * (plant.apart->nozzle_station_m - plant.pivot_station_m);
+}
+
 /// Sum of all loads. `any_burns`: at least one lane has thrust. `body`: bent or straight. `nozzles`: the
 /// cross's, or ListedNozzles. With jet damping the flow leaves with the velocity of the nozzle about the CG:
 /// -m_dot r x (w x r), r on the axis; for roll r is the nozzle circle's radius. The flow runs aft by s, from
@@ -460,6 +491,8 @@ DISPERSA_INLINE LoadsOf<T> LoadsAt(double earth_rate_rad_s, const LauncherPlantL
   o.force_n = Select(phase.burning, o.force_n + thrust.force_n, o.force_n);
   T exit_station_m = plant.pivot_station_m;  // of what flows
   if (plant.has_boosters) exit_station_m = AddBoosters(plant, phase, masses, around.pressure_pa, thrust, o);
+  if (plant.apart)
+    exit_station_m = AddApartBoosters(plant, phase, masses, around.pressure_pa, nozzles, s.w, thrust, o);
   if (plant.flow_coriolis) {
     const T turned = T(2.0) * o.flow_kg_s * (exit_station_m - masses.source_station_m);
     o.force_n.y = Fma(turned, s.w.z, o.force_n.y);
@@ -470,6 +503,11 @@ DISPERSA_INLINE LoadsOf<T> LoadsAt(double earth_rate_rad_s, const LauncherPlantL
     const T lever = plant.pivot_station_m - masses.cg_station_m;
     o.jet_axial = o.flow_kg_s * plant.nozzle_radius_m * plant.nozzle_radius_m;
     o.jet_transverse = o.flow_kg_s * lever * lever;
+    if (plant.apart) {  // theirs is among their moments
+      const T own_kg_s = o.flow_kg_s - masses.beside_flow_kg_s;
+      o.jet_axial = own_kg_s * plant.nozzle_radius_m * plant.nozzle_radius_m;
+      o.jet_transverse = own_kg_s * lever * lever;
+    }
     if (plant.has_boosters) {
       // So far of the stage's own flow. A booster's nozzle is off the axis by its radius.
       const T beside = plant.beside_nozzle_m - masses.cg_station_m, r = plant.beside_radius_m;
@@ -499,6 +537,18 @@ DISPERSA_INLINE Vector<T> TurnedUnderProducts(const LauncherPlantLanes<T>& plant
   const T inverse = T(1.0) / (a * c_xx - (xy * c_xy + xz * c_xz));
   return inverse * Vector<T>{c_xx * m.x + c_xy * m.y + c_xz * m.z, c_xy * m.x + c_yy * m.y + c_yz * m.z,
                              c_xz * m.x + c_yz * m.y + c_zz * m.z};
+}
+
+/// Of a vehicle whose boosters are bodies of their own.
+template <class T>
+DISPERSA_INLINE Tensor<T> TensorWithBoosters(const LauncherPlantLanes<T>& plant,
+                                             const TimedMasses<T>& masses) {
+  Tensor<T> i = TensorOf(*plant.apart, masses.axial_kg_m2, masses.transverse_kg_m2, masses.mass_kg,
+                         masses.cg_station_m, plant.inertia_factor);
+  i.xy = i.xy + plant.product_xy_kg_m2;
+  i.xz = i.xz + plant.product_xz_kg_m2;
+  i.yz = i.yz + plant.product_yz_kg_m2;
+  return i;
 }
 
 /// dv/dt = gravitation + R_IB (F / m + u w x e_x) and I dw/dt = M - w x I w - (dI/dt) w, as rigid_body.h
@@ -536,6 +586,11 @@ DISPERSA_INLINE Rates<T> RatesOf(double earth_rate_rad_s, const LauncherPlantLan
     const Vector<T> left{Fma(-axial_loss, s.w.x, moment.x), Fma(-transverse_loss, s.w.y, moment.y),
                          Fma(-transverse_loss, s.w.z, moment.z)};
     o.dw = Select(plant.has_products, TurnedUnderProducts(plant, masses, left, s.w), o.dw);
+  }
+  if (plant.apart) {
+    const Vector<T> left{Fma(-axial_loss, s.w.x, moment.x), Fma(-transverse_loss, s.w.y, moment.y),
+                         Fma(-transverse_loss, s.w.z, moment.z)};
+    o.dw = TurnedUnder(TensorWithBoosters(plant, masses), left, s.w);
   }
   if (instant)
     *instant = {around.altitude_m, loads.flow.qbar_pa, loads.flow.mach, loads.flow.incidence_rad,

@@ -80,10 +80,21 @@ DISPERSA_INLINE void SetLane(ListedNozzle<T>& n, int lane, const NozzleLayout& l
   Lane(n.second_z, lane) = layout.towards_z[second];
 }
 
-/// The banks after the first one, of which the vehicle has `most`.
+/// Which banks after the first one have drives, of stages or of boosters. The vehicle has `most`.
+template <class T>
+DISPERSA_INLINE void MarkDriven(LauncherPlantLanes<T>& p, int most) {
+  p.further_banks = 0;
+  for (int bank = 0; bank < most; ++bank) {
+    NozzleBank<T>& further = p.further[bank];
+    further.driven = further.there;
+    if (p.apart && p.apart->turn_nozzles && bank >= p.apart->first_bank &&
+        bank < p.apart->first_bank + (p.apart->count + kNozzles - 1) / kNozzles)
+      further.driven = further.driven | p.apart->attached;
+    if (Any(further.driven)) p.further_banks = bank + 1;
+  }
+}
 template <class T>
 DISPERSA_INLINE void SetFurtherBanks(LauncherPlantLanes<T>& p, int lane, const LauncherStack& s, int most) {
-  p.further_banks = 0;
   for (int bank = 0; bank < most; ++bank) {
     NozzleBank<T>& further = p.further[bank];
     SetLane(further.there, lane, bank + 1 < s.layout.banks());
@@ -92,11 +103,12 @@ DISPERSA_INLINE void SetFurtherBanks(LauncherPlantLanes<T>& p, int lane, const L
       SetLane(further.listed[i], lane, s.layout, nozzle);
       SetLane(further.departs[i], lane, s.nozzles.data()[nozzle]);
     }
-    if (Any(further.there)) p.further_banks = bank + 1;
   }
+  MarkDriven(p, most);
 }
 
-/// The plant of a lane on its stack with nothing jettisoned. Its weather is set separately, once a flight.
+/// The plant of a lane on its stack with nothing jettisoned. `p.apart` points to values of its own where the
+/// plant's boosters are bodies of their own. Its weather is set separately, once a flight.
 template <class T>
 DISPERSA_INLINE void SetLane(LauncherPlantLanes<T>& p, int lane, const LauncherPlant& plant, int stack) {
   const LauncherStack& s = plant.stacks.data()[stack];
@@ -130,12 +142,16 @@ DISPERSA_INLINE void SetLane(LauncherPlantLanes<T>& p, int lane, const LauncherP
   for (int i = 0; i < kNozzles; ++i) departs |= SetLane(p.nozzles[i], lane, s.nozzles.data()[i]);
   p.nozzles_listed = plant.nozzles_are_listed();
   for (int i = 0; p.nozzles_listed && i < kNozzles; ++i) SetLane(p.listed[i], lane, s.layout, i);
+  const BoosterSet* const boosters = plant.boosters.get();
+  if (p.apart) {
+    p.apart->first_bank = plant.stacks.data()[0].layout.banks() - 1;
+    SetLane(*p.apart, lane, *boosters, stack == 0);
+  }
   SetFurtherBanks(p, lane, s, plant.nozzle_banks() - 1);
   SetLane(p.departs, lane, departs);
   p.any_departs = Any(p.departs);
-  const BoosterSet* const boosters = plant.boosters.get();
-  p.has_boosters = boosters != nullptr;
-  if (boosters != nullptr) {  // of stacks above, which do not boost, they do not count
+  p.has_boosters = boosters != nullptr && p.apart == nullptr;
+  if (p.has_boosters) {  // of stacks above, which do not boost, they do not count
     SetLane(p.beside, lane, boosters->burn, boosters->grains);
     Lane(p.beside_nozzle_m, lane) = boosters->nozzle_station_m;
     Lane(p.beside_radius_m, lane) = boosters->radius_m;

@@ -52,6 +52,7 @@ class Batch {
   void Start(int lane, FlightRecord* record);
   void SetStack(int lane, int stack);
   void SetMass(int lane);
+  void SetAllocation(int lane, const NozzleLayout& layout);
   void SetStop(int lane);
   /// Null: the lane's last event has happened.
   const FlightEvent* NextEvent(int lane) const {
@@ -289,7 +290,12 @@ void Batch<T>::SetStack(int lane, int stack) {
   step_.SetStack(lane, slot.record->plant, stack);
   SetMass(lane);
   if (!step_.plant().nozzles_listed) return;
-  const NozzleLayout& layout = slot.record->plant.stacks.data()[stack].layout;
+  SetAllocation(lane, slot.record->plant.LayoutOf(stack, stack == 0));
+}
+
+/// Boosters burn, or would, while the first stack is as it was at lift-off.
+template <class T>
+void Batch<T>::SetAllocation(int lane, const NozzleLayout& layout) {
   SetLane(allocation_, lane, layout);
   // A stage without further banks sets them to nothing.
   for (int bank = 0; bank < most_further_; ++bank) SetLane(further_allocation_[bank], lane, layout, bank + 1);
@@ -339,6 +345,7 @@ LauncherPhase Batch<T>::PhaseOf(int lane) const {
   phase.stack = slot_[lane].stack;
   phase.jettisoned = slot_[lane].jettisoned;
   phase.boosting = Bits(step_.phase().boosting) >> lane & 1u;
+  phase.boosters_burning = step_.BoostersBurning(lane);
   phase.burning = Bits(step_.phase().burning) >> lane & 1u;
   phase.burnt = Bits(step_.phase().burnt) >> lane & 1u;
   phase.ignition_s = Lane(step_.phase().ignition_s, lane);

@@ -134,7 +134,10 @@ void Batch<T>::Happen(int lane) {
     }
     case EventKind::kBoosterBurnout:
       metrics_.AddLoadsOfLane(lane, step_.InstantOf(lane, time_s_));  // they peak here, between ticks
-      step_.BurnOutBoosters(lane);
+      if (event.booster < 0)
+        step_.BurnOutBoosters(lane);
+      else if (step_.BurnOutBooster(lane, event.booster) && step_.plant().nozzles_listed)
+        SetAllocation(lane, record.plant.LayoutOf(0, false));
       break;
     case EventKind::kBoosterSeparation: {
       StateValues y;
@@ -146,6 +149,7 @@ void Batch<T>::Happen(int lane) {
       record.LetGoOfBoosters(slot.jettisoned, time_s, propellant_kg, y);
       slot.jettisoned |= kBoostersGone;
       step_.WriteLane(lane, y);
+      step_.DropBoosters(lane);
       SetMass(lane);
       break;
     }

@@ -351,7 +351,7 @@ T Batch<T>::FeltAboutAll(int axis) const {
     const BankState<T>& drives = step_.further_drives(bank);
     const T all =
         FeltAbout(further_allocation_[bank], axis, drives.first.angle_rad, drives.second.angle_rad, felt);
-    felt = Select(step_.plant().further[bank].there, all, felt);
+    felt = Select(step_.plant().further[bank].driven, all, felt);
   }
   return felt;
 }
@@ -461,7 +461,7 @@ void Batch<T>::Meter(M powered) {
                                        step_.command_rad(), allocation_);
     for (int bank = 0; bank < step_.plant().further_banks; ++bank) {
       const BankState<T>& drives = step_.further_drives(bank);
-      metrics_.AddToTravel(powered & step_.plant().further[bank].there, time_s_, drives.first, drives.second,
+      metrics_.AddToTravel(powered & step_.plant().further[bank].driven, time_s_, drives.first, drives.second,
                            step_.further_command_rad(bank), further_allocation_[bank],
                            further_previous_rad_[bank], travel);
     }

@@ -152,8 +152,14 @@ int FurtherNozzlesBefore(const Vehicle& vehicle, std::size_t stage) {
 
 std::size_t ColumnClass(const Vehicle& vehicle) {
   const std::size_t stages = vehicle.stages.size();
-  const int further = FurtherNozzlesBefore(vehicle, stages);
+  const int further =
+      FurtherNozzlesBefore(vehicle, stages) + static_cast<int>(vehicle.boosters.angles_rad.size());
   return further == 0 ? stages : kMaxStages + static_cast<std::size_t>(further);
+}
+
+std::string BoosterInColumns(const Vehicle& vehicle, std::size_t booster) {
+  return "nozzle" + std::to_string(kNozzles + 1 + FurtherNozzlesBefore(vehicle, vehicle.stages.size()) +
+                                   static_cast<int>(booster));
 }
 
 std::string NozzleInColumns(const Vehicle& vehicle, std::size_t stage, int nozzle) {

@@ -370,13 +370,16 @@ int FindInput(const std::string& name);
 /// The input of a column, in internal units.
 double& InputValue(FlightInputs& inputs, int column);
 /// Number that says which columns the results of a vehicle have: that of its stages; with stages of more than
-/// four nozzles kMaxStages, plus the number of these further nozzles.
+/// four nozzles, or boosters that are bodies of their own, kMaxStages plus the number of these further
+/// nozzles.
 std::size_t ColumnClass(const Vehicle& vehicle);
 /// Further nozzles of a vehicle's stages before this one.
 int FurtherNozzlesBefore(const Vehicle& vehicle, std::size_t stage);
 /// Name of a nozzle in columns: "stage1_right", and for those beyond four of a stage "nozzle5" and so on,
 /// numbered through the vehicle.
 std::string NozzleInColumns(const Vehicle& vehicle, std::size_t stage, int nozzle);
+/// The same of a booster that is a body of its own: they follow the nozzles of all stages.
+std::string BoosterInColumns(const Vehicle& vehicle, std::size_t booster);
 /// Number of columns of a class (of a vehicle with so many stages). They are the first of InputColumns().
 std::size_t InputCount(std::size_t stages);
 /// Values of a vehicle's columns, in the units of their names.

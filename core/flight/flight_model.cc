@@ -15,11 +15,51 @@ namespace dispersa {
 
 namespace {
 
-std::shared_ptr<const BoosterSet> BuildBoosterSet(const Boosters& boosters, double thrust_factor,
-                                                  double flow_factor) {
-  return std::make_shared<const BoosterSet>(BoosterSet{
-      BuildBoosterBurn(boosters, thrust_factor, flow_factor), BuildBoosterGrains(boosters),
-      BuildBoosterMass(boosters), boosters.nozzle_station_m, boosters.radius_m, boosters.separation_delay_s});
+BoosterSet BuildBoosterSet(const Boosters& boosters, double thrust_factor, double flow_factor) {
+  return {BuildBoosterBurn(boosters, thrust_factor, flow_factor),
+          BuildBoosterGrains(boosters),
+          BuildBoosterMass(boosters),
+          boosters.nozzle_station_m,
+          boosters.radius_m,
+          boosters.separation_delay_s,
+          {},
+          boosters.gimbal,
+          {}};
+}
+
+// Differences of one booster from the nominal one.
+struct BoosterDeparture {
+  double thrust_factor = 1.0, flow_factor = 1.0;
+  Matrix3 tilt = Matrix3::Identity();
+};
+EachBooster BuildEachBooster(const Boosters& boosters, std::size_t k, double thrust_factor,
+                             double flow_factor, const BoosterDeparture& departs) {
+  EachBooster one;
+  one.burn =
+      BuildOneBoosterBurn(boosters, thrust_factor * departs.thrust_factor, flow_factor * departs.flow_factor);
+  const SinCos at = SineCosine(boosters.angles_rad[k]);
+  one.y_m = boosters.radius_m * at.cos;
+  one.z_m = boosters.radius_m * at.sin;
+  const Matrix3 turn = departs.tilt * CantOf(boosters, boosters.angles_rad[k]);
+  one.along = turn * Vector3::UnitX();
+  const auto across = [&](std::size_t hinge) -> Vector3 {
+    if (hinge >= boosters.towards_rad.size()) return Vector3::Zero();
+    const SinCos towards = SineCosine(boosters.towards_rad[hinge]);
+    return turn * Vector3(0.0, towards.cos, towards.sin);
+  };
+  one.first = across(0);
+  one.second = across(1);
+  return one;
+}
+
+// The ratio of thrusts in vacuum, and levers in the middle of the boosters' burn.
+BoostGeometry GeometryOf(const LauncherPlant& plant) {
+  const BoosterSet& set = *plant.boosters;
+  const LauncherStack& stack = plant.stacks[0];
+  const double middle_s = 0.5 * set.burn.duration_s;
+  const double cg_m = MassesOn(plant, 0, 0u, stack.burn.Propellant(middle_s), middle_s).cg_station_m;
+  return {set.each[0].burn.vacuum_thrust_n / stack.burn.vacuum_thrust_n, stack.gimbal.pivot_station_m - cg_m,
+          set.nozzle_station_m - cg_m};
 }
 
 // The propellant that a burn leaves is available to the next burn of the same engine.
@@ -48,7 +88,16 @@ LauncherPlant BuildNominalPlant(const Vehicle& vehicle) {
     plant.jettisons.insert(plant.jettisons.end(), stage.jettisoned.begin(), stage.jettisoned.end());
   }
   SetMasses(vehicle, plant);
-  if (vehicle.boosters.count > 0) plant.boosters = BuildBoosterSet(vehicle.boosters, 1.0, 1.0);
+  if (const Boosters& boosters = vehicle.boosters; boosters.count > 0) {
+    BoosterSet set = BuildBoosterSet(boosters, 1.0, 1.0);
+    for (std::size_t k = 0; k < boosters.angles_rad.size(); ++k)
+      set.each.push_back(BuildEachBooster(boosters, k, 1.0, 1.0, {}));
+    plant.boosters = std::make_shared<const BoosterSet>(set);
+    if (boosters.turn_nozzles()) {
+      set.layout = BuildBoostLayout(vehicle.stages[0].gimbal, boosters, GeometryOf(plant));
+      plant.boosters = std::make_shared<const BoosterSet>(std::move(set));
+    }
+  }
   for (std::size_t i = 0; i < vehicle.stages.size(); ++i)
     if (!vehicle.stages[i].restarts) PassOnPropellant(vehicle, i, plant);
   return plant;
@@ -138,10 +187,17 @@ unsigned GoneAt(const std::vector<double>& jettison_s, double time_s) {
 }
 
 // So many even ones, and the corners of the thrust's level between them.
-std::vector<double> EffectivenessTimes(const MotorBurn& burn, double duration_s, int even) {
+// `jump_s`: a time at which the effectiveness jumps (below 0: none).
+std::vector<double> EffectivenessTimes(const MotorBurn& burn, double duration_s, int even, double jump_s) {
   std::vector<double> times;
   for (int i = 0; i < even; ++i) times.push_back(duration_s * i / (even - 1));
-  if (!burn.curve) return times;
+  constexpr double kJump_s = 1e-3;
+  if (jump_s > kJump_s && jump_s < duration_s - 2.0 * kJump_s)
+    times.insert(times.end(), {jump_s - kJump_s, jump_s + kJump_s});
+  if (!burn.curve) {
+    std::sort(times.begin(), times.end());
+    return times;
+  }
   const std::vector<double>& begin_s = burn.curve->begin_s;
   for (std::size_t i = 0; i < begin_s.size(); ++i) {
     const double from_s = begin_s[i] / burn.curve_rate,
@@ -163,6 +219,37 @@ std::vector<double> EffectivenessTimes(const MotorBurn& burn, double duration_s,
 
 }  // namespace
 
+namespace {
+
+// Moments about x and y by a radian commanded about each, while boosters with turning nozzles burn: each
+// drive by the thrust that it turns at that time. Thrust of the stage and its lever are given.
+Vector2 BoostedMoments(const LauncherPlant& plant, double thrust_n, double lever_m, double cg_station_m,
+                       double since_s) {
+  const BoosterSet& set = *plant.boosters;
+  const NozzleLayout& layout = set.layout;
+  const int first = plant.stacks[0].layout.banks() * kNozzles;
+  Vector2 moment = Vector2::Zero();
+  for (int drive = 0; drive < layout.banks() * kDrives; ++drive) {
+    const int k = NozzleOf(drive);
+    if (!(layout.there[drive] > 0.0)) continue;
+    const Vector3 towards(0.0, layout.towards_y[drive], layout.towards_z[drive]);
+    Vector3 force = layout.share[k] * thrust_n * towards, arm(-lever_m, layout.y_m[k], layout.z_m[k]);
+    if (k >= first) {
+      const EachBooster& one = set.each[static_cast<std::size_t>(k - first)];
+      const double level = one.burn.curve ? std::max(one.burn.Fraction(since_s), kLeastThrustFraction) : 1.0;
+      const bool is_second = drive % kDrives >= kNozzles;
+      force = one.burn.vacuum_thrust_n * level * (is_second ? one.second : one.first);
+      arm.x() = cg_station_m - set.nozzle_station_m;
+    }
+    const Vector3 by_radian = arm.cross(force);
+    moment +=
+        Vector2(layout.allocation[drive][0] * by_radian.x(), layout.allocation[drive][1] * by_radian.y());
+  }
+  return moment;
+}
+
+}  // namespace
+
 StageControl BuildStageControl(const LauncherPlant& plant, int index, double ignition_s,
                                const std::vector<double>& jettison_s) {
   const LauncherStack& stack = plant.stacks[static_cast<std::size_t>(index)];
@@ -175,7 +262,9 @@ StageControl BuildStageControl(const LauncherPlant& plant, int index, double ign
   const double duration_s = std::max(stack.burn.duration_s, 1e-3);
   StageControl control;
   control.limit_rad = stack.gimbal.limit_rad;
-  for (const double since : EffectivenessTimes(stack.burn, duration_s, points)) {
+  const bool boosters_steer = index == 0 && plant.boosters_steer();
+  const double boost_s = boosters_steer ? plant.boosters->burn.duration_s : -1.0;
+  for (const double since : EffectivenessTimes(stack.burn, duration_s, points, boost_s)) {
     unsigned gone = GoneAt(jettison_s, ignition_s + since);
     if (plant.boosters && since > plant.boosters->burn.duration_s + plant.boosters->separation_delay_s)
       gone |= kBoostersGone;
@@ -183,6 +272,15 @@ StageControl BuildStageControl(const LauncherPlant& plant, int index, double ign
     const double level = stack.burn.curve ? std::max(stack.burn.Fraction(since), kLeastThrustFraction) : 1.0;
     const double thrust = stack.burn.vacuum_thrust_n * level;
     const double lever = stack.gimbal.pivot_station_m - mass.cg_station_m;
+    if (since < boost_s) {
+      const Vector2 moment = BoostedMoments(plant, thrust, lever, mass.cg_station_m, since);
+      control.pitch_effectiveness_1_s2.x.push_back(since);
+      control.roll_effectiveness_1_s2.x.push_back(since);
+      control.roll_effectiveness_1_s2.y.push_back(
+          plant.boosters->layout.rolls ? moment.x() / mass.axial_inertia_kg_m2 : 1.0);
+      control.pitch_effectiveness_1_s2.y.push_back(moment.y() / mass.transverse_inertia_kg_m2);
+      continue;
+    }
     control.pitch_effectiveness_1_s2.x.push_back(since);
     control.roll_effectiveness_1_s2.x.push_back(since);
     // Of a cross two of the four nozzles turn in pitch (the paper's 2P), all four in roll.
@@ -387,6 +485,23 @@ TurbulenceField TurbulenceOf(const FlightInputs& in, const TurbulencePath& path,
       {[&] { return along.Normal(); }, [&] { return across.Normal(); }, [&] { return normal.Normal(); }});
 }
 
+// Those of one flight. Differences of each are inputs of nozzles after those of all stages.
+std::shared_ptr<const BoosterSet> BoostersFor(const Vehicle& vehicle, const FlightInputs& in,
+                                              double thrust_factor, const BoosterSet& nominal) {
+  const Boosters& boosters = vehicle.boosters;
+  BoosterSet set = BuildBoosterSet(boosters, thrust_factor, in.mass_flow_factor[0]);
+  set.layout = nominal.layout;
+  set.gimbal.bandwidth_rad_s *= in.actuator_bandwidth_factor * in.stack_actuator_bandwidth_factor[0];
+  std::size_t k = static_cast<std::size_t>(FurtherNozzlesBefore(vehicle, vehicle.stages.size()));
+  for (std::size_t i = 0; i < boosters.angles_rad.size(); ++i, ++k)
+    set.each.push_back(BuildEachBooster(
+        boosters, i, thrust_factor, in.mass_flow_factor[0],
+        {in.further_thrust_factor[k], in.further_flow_factor[k],
+         ThrustTilt(AsideOf(in.further_misalignment_rad[k], in.further_misalignment_clock_rad[k],
+                            in.further_misalignment_y_rad[k], in.further_misalignment_z_rad[k]))}));
+  return std::make_shared<const BoosterSet>(std::move(set));
+}
+
 }  // namespace
 
 LauncherPlant FlightModel::PlantFor(const FlightInputs& in, std::optional<std::uint64_t> case_index) const {
@@ -423,8 +538,7 @@ LauncherPlant FlightModel::PlantFor(const FlightInputs& in, std::optional<std::u
     const double flow_factor = in.mass_flow_factor[i] * FlowFactor(stack.layout, in, i, further);
     stack.burn = dispersed ? BuildBurn(vehicle.stages[i], thrust_factor, flow_factor)
                            : BuildBurn(vehicle.stages[i], thrust_factor, flow_factor, stack.burn.curve);
-    if (i == 0 && plant.boosters)
-      plant.boosters = BuildBoosterSet(vehicle.boosters, thrust_factor, in.mass_flow_factor[i]);
+    if (i == 0 && plant.boosters) plant.boosters = BoostersFor(vehicle, in, thrust_factor, *plant.boosters);
     stack.gimbal.bandwidth_rad_s *= in.actuator_bandwidth_factor * in.stack_actuator_bandwidth_factor[i];
     stack.aerodynamics.ca.factor = in.drag_factor * in.stack_drag_factor[i];
     stack.aerodynamics.cn.factor = in.lift_factor * in.stack_lift_factor[i];

@@ -35,11 +35,23 @@ std::vector<FlightEvent> EventsOf(const FlightModel& model, const LauncherPlant&
     for (const double kink_s : burns[i].Kinks(t.ignition_s))
       events.push_back({kink_s, EventKind::kKink, stage});
     if (i == 0 && plant.boosters) {
-      const BoosterTimes beside = BuildBoosterTimes(definition.vehicle.boosters, plant.boosters->burn, t,
-                                                    definition.autopilot.tick_s);
-      for (const double kink_s : plant.boosters->burn.Kinks(t.ignition_s))
-        events.push_back({kink_s, EventKind::kKink, stage});
-      events.push_back({beside.burnout_s, EventKind::kBoosterBurnout, stage});
+      const double tick_s = definition.autopilot.tick_s;
+      const MotorBurn* last = &plant.boosters->burn;
+      if (plant.has_apart_boosters()) last = &plant.boosters->each[0].burn;
+      for (std::size_t k = 0; k < plant.boosters->each.size(); ++k) {
+        const MotorBurn& burn = plant.boosters->each[k].burn;
+        for (const double kink_s : burn.Kinks(t.ignition_s))
+          events.push_back({kink_s, EventKind::kKink, stage});
+        events.push_back({BuildBoosterTimes(definition.vehicle.boosters, burn, t, tick_s).burnout_s,
+                          EventKind::kBoosterBurnout, stage, static_cast<int>(k)});
+        if (burn.duration_s > last->duration_s) last = &burn;
+      }
+      const BoosterTimes beside = BuildBoosterTimes(definition.vehicle.boosters, *last, t, tick_s);
+      if (!plant.has_apart_boosters()) {
+        for (const double kink_s : last->Kinks(t.ignition_s))
+          events.push_back({kink_s, EventKind::kKink, stage});
+        events.push_back({beside.burnout_s, EventKind::kBoosterBurnout, stage});
+      }
       events.push_back({beside.separation_s, EventKind::kBoosterSeparation, stage});
       std::stable_sort(events.begin() + static_cast<std::ptrdiff_t>(first), events.end(),
                        [](const FlightEvent& a, const FlightEvent& b) { return a.time_s < b.time_s; });
@@ -73,7 +85,7 @@ class FlightRecord::JudgedMotion {
     // An explicit method is unstable where its step is longer than the fastest part's own motion.
     if (is_fixed_)
       steps = lanes::StepsOver(FastestPart(equations_.plant(), phase.stack), to_s - from_s, steps);
-    const Gimbal& gimbal = equations_.plant().stacks[static_cast<std::size_t>(phase.stack)].gimbal;
+    const Gimbal& gimbal = GimbalOf(phase, 0);
     if (gimbal.friction_rad > 0.0) {
       if (!SlideTo(gimbal, from_s, to_s, steps, y)) return false;
     } else if (!integrator_.Advance(from_s, to_s, steps, y)) {
@@ -85,11 +97,12 @@ class FlightRecord::JudgedMotion {
     // Mechanical stops, and the drives' greatest rate, which a step may overshoot.
     for (int i = 0; i < drives_; ++i) {
       if (NozzleOf(i) == phase.stuck_nozzle) continue;
+      const Gimbal& its = GimbalOf(phase, i);
       double& angle = y[AngleOf(i)];
       double& rate = y[RateOf(i)];
-      rate = Clamp(rate, -gimbal.rate_limit_rad_s, gimbal.rate_limit_rad_s);
-      if (std::fabs(angle) <= gimbal.limit_rad) continue;
-      angle = std::copysign(gimbal.limit_rad, angle);
+      rate = Clamp(rate, -its.rate_limit_rad_s, its.rate_limit_rad_s);
+      if (std::fabs(angle) <= its.limit_rad) continue;
+      angle = std::copysign(its.limit_rad, angle);
       rate = 0.0;
     }
     return true;
@@ -102,6 +115,15 @@ class FlightRecord::JudgedMotion {
   }
 
   using State = std::array<double, kLauncherSize>;
+
+  // Of a drive: the stage's, or that of a booster.
+  const Gimbal& GimbalOf(const LauncherPhase& phase, int drive) const {
+    const LauncherPlant& plant = equations_.plant();
+    const LauncherStack& stack = plant.stacks[static_cast<std::size_t>(phase.stack)];
+    const bool is_boosters =
+        phase.stack == 0 && plant.boosters_steer() && drive >= stack.layout.banks() * kDrives;
+    return is_boosters ? plant.boosters->gimbal : stack.gimbal;
+  }
 
   // From rest to rest of the drives, each found by bisection: in between friction is constant and all is
   // smooth.
@@ -277,6 +299,7 @@ TickSample FlightRecord::SampleOf(const LaneView& view, unsigned parts) const {
   s.expelled_mass_kg = view.phase.expelled_mass_kg;
   s.jettisoned = view.phase.jettisoned;
   s.boosting = view.phase.boosting;
+  s.boosters_burning = view.phase.boosters_burning;
   if (parts & kInstant) s.instant = equations_->Evaluate(view.phase, view.time_s, view.y);
   return s;
 }
@@ -350,6 +373,9 @@ void FlightRecord::LetGoOfBoosters(unsigned jettisoned, double time_s, double pr
   WriteState(AfterJettison(plant, 0, jettisoned, jettisoned | kBoostersGone, propellant_kg,
                            time_s - events.front().time_s, ReadState(y)),
              y);
+  if (!plant.boosters_steer()) return;
+  for (int drive = plant.stacks[0].layout.banks() * kDrives; drive < plant.nozzle_banks() * kDrives; ++drive)
+    y[AngleOf(drive)] = y[RateOf(drive)] = 0.0;
 }
 
 void FlightRecord::MassWithout(int stack, unsigned jettisoned, StackMass& mass) const {

@@ -28,7 +28,7 @@ enum class EventKind {
   kIgnition,
   kBurnout,
   kSeparation,
-  kBoosterBurnout,
+  kBoosterBurnout,  ///< of all, or of one that is a body of its own
   kBoosterSeparation,
   kKink,  ///< the thrust's ramp ends or begins: nothing but a step that ends there
 };
@@ -36,6 +36,7 @@ struct FlightEvent {
   double time_s;
   EventKind kind;
   int stage;
+  int booster = -1;  ///< which burns out (-1: all)
 };
 
 /// The state of a flight outside its lane, as kLauncherSize doubles (launcher.h).
@@ -107,7 +108,7 @@ class FlightRecord {
   double CutOffVelocity(int stage) const;
   /// Its engine will be cut off at `time_s`, by command: events from there on are new.
   void CutOff(int stage, double time_s);
-  /// The boosters leave.
+  /// The boosters leave, and with them the state of their nozzles.
   void LetGoOfBoosters(unsigned jettisoned, double time_s, double propellant_kg, double* y);
   /// Replaces the state by that of the stack above, with its tip-off rates. `jettisoned`: as in
   /// LauncherPhase.

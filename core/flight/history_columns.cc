@@ -160,7 +160,9 @@ void AppendLauncher(const FlightModel& model, const TickSample& s, std::vector<d
   const auto told = [&](std::size_t i) { return s.law_telemetry ? powered((*s.law_telemetry)[i]) : kEmpty; };
   const auto& n = s.nozzle_rad;
   const LauncherStack& stack = model.nominal_plant().stacks[static_cast<std::size_t>(s.stack)];
-  const NozzleLayout* const list = stack.gimbal.nozzles.empty() ? nullptr : &stack.layout;
+  const NozzleLayout* const list = stack.gimbal.nozzles.empty() && !model.nominal_plant().boosters_steer()
+                                       ? nullptr
+                                       : &model.nominal_plant().LayoutOf(s.stack, s.boosting);
   const auto felt = [&](Axis axis, double of_cross_rad) {
     if (list == nullptr) return of_cross_rad * kDegPerRad;
     double rad = 0.0;

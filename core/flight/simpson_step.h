@@ -66,6 +66,7 @@ class StepState {
     air_ = &StandardAir();
     tick_s_ = tick_s;
     most_further_ = nominal.nozzle_banks() - 1;
+    if (nominal.has_apart_boosters()) plant_.apart = &apart_;
     start_ = &points_[0];
     middle_ = &points_[1];
     end_ = &points_[2];
@@ -89,6 +90,7 @@ class StepState {
     SetLane(plant_, lane, plant, stack);
     SetLane(bending_, lane, plant, stack);
     SetDrives(lane, plant.stacks.data()[stack].gimbal, -1);
+    if (stack == 0 && plant.boosters_steer()) SetBoosterDrives(lane, plant.boosters.get()->gimbal);
     SetLane(phase_.burnt, lane, false);
     ClearCommands(lane);
     MarkMoved(lane);
@@ -102,9 +104,32 @@ class StepState {
   void Ignite(int lane, double time_s, bool lights_boosters) {
     Lane(phase_.ignition_s, lane) = time_s;
     SetLane(phase_.burning, lane, true);
-    SetLane(phase_.boosting, lane, lights_boosters && plant_.has_boosters);
+    SetLane(phase_.boosting, lane, lights_boosters && (plant_.has_boosters || plant_.apart));
+    for (int k = 0; plant_.apart && k < apart_.count; ++k)
+      SetLane(apart_.each[k].burning, lane, lights_boosters);
     SetLane(phase_.control_torque_n_m, lane, Zero<double>());
     ClearCommands(lane);
+    MarkMoved(lane);
+  }
+  /// Of boosters that are bodies of their own. Returns whether no other burns on.
+  bool BurnOutBooster(int lane, int booster) {
+    SetLane(apart_.each[booster].burning, lane, false);
+    MarkMoved(lane);
+    if (BoostersBurning(lane) != 0) return false;
+    BurnOutBoosters(lane);
+    return true;
+  }
+  /// Bits of boosters that are bodies of their own.
+  unsigned BoostersBurning(int lane) const {
+    unsigned burning = 0;
+    for (int k = 0; plant_.apart && k < apart_.count; ++k)
+      burning |= (Bits(apart_.each[k].burning) >> lane & 1u) << k;
+    return burning;
+  }
+  void DropBoosters(int lane) {
+    if (!plant_.apart) return;
+    SetLane(apart_.attached, lane, false);
+    MarkDriven(plant_, most_further_);
     MarkMoved(lane);
   }
   void StickNozzle(int lane, const Gimbal& gimbal, int nozzle, double angle_rad) {
@@ -131,6 +156,7 @@ class StepState {
   void EndFlight(int lane) {
     plant_.weather.profile[lane] = nullptr;
     plant_.burn.curve[lane] = plant_.beside.burn.curve[lane] = nullptr;
+    for (ApartBooster<T>& one : apart_.each) one.burn.curve[lane] = nullptr;
     SetTable(bending_, lane, nullptr);
     SetLane(phase_.burning, lane, false);
     SetLane(phase_.boosting, lane, false);
@@ -370,17 +396,20 @@ class StepState {
     }
   }
   /// Over two halves of a step. Banks that a lane's stage does not have stay as they are.
-  DISPERSA_OUT_OF_LINE void DriveFurther(const Transition<T>& over, T half_s, BankState<T>* middle,
+  DISPERSA_OUT_OF_LINE void DriveFurther(MaskOf<T> odd, T half_s, BankState<T>* middle,
                                          BankState<T>* end) const {
     for (int bank = 0; bank < plant_.further_banks; ++bank) {
       const GimbalLanes<T>& drives = further_gimbals_[bank];
+      Transition<T> over = further_over_half_[bank];
+      for (int lane = 0; Any(odd) && lane < kWidth<T>; ++lane)
+        if (Bits(odd) >> lane & 1u) SetTransition(drives, over, lane, Lane(half_s, lane));
       const T* const commands = further_command_rad_[bank];
       const BankState<T>& from = further_[bank];
       middle[bank].first = Propagate(drives, commands, over, half_s, from.first);
       middle[bank].second = Propagate(drives, commands + kNozzles, over, half_s, from.second);
       end[bank].first = Propagate(drives, commands, over, half_s, middle[bank].first);
       end[bank].second = Propagate(drives, commands + kNozzles, over, half_s, middle[bank].second);
-      const auto absent = !plant_.further[bank].there;
+      const auto absent = !plant_.further[bank].driven;
       Blend<T>(absent, from, middle[bank]);
       Blend<T>(absent, from, end[bank]);
     }
@@ -413,9 +442,9 @@ class StepState {
   DISPERSA_INLINE Vector<T> CgVelocityAt(const TimedMasses<T>& masses, const Turn<T>& q) const {
     return plant_.flow_coriolis ? CgVelocityOf(masses, q) : Zero<T>();
   }
-  void SetTransition(Transition<T>& over, int lane, double time_s) const {
+  static void SetTransition(const GimbalLanes<T>& drives, Transition<T>& over, int lane, double time_s) {
     const Transition<double> one =
-        TransitionOver(Lane(drives_.bandwidth2_1_s2, lane), Lane(drives_.twice_damping_1_s, lane), time_s);
+        TransitionOver(Lane(drives.bandwidth2_1_s2, lane), Lane(drives.twice_damping_1_s, lane), time_s);
     Lane(over.aa, lane) = one.aa;
     Lane(over.ar, lane) = one.ar;
     Lane(over.ra, lane) = one.ra;
@@ -454,9 +483,21 @@ class StepState {
   }
   void SetDrives(int lane, const Gimbal& gimbal, int stuck_nozzle) {
     SetLane(drives_, lane, gimbal, stuck_nozzle, 0.5 * tick_s_);
-    SetTransition(tick_over_half_, lane, 0.5 * tick_s_);
-    for (int bank = 0; bank < most_further_; ++bank)
-      SetLane(further_gimbals_[bank], lane, gimbal, stuck_nozzle - (bank + 1) * kNozzles, 0.5 * tick_s_);
+    SetTransition(drives_, tick_over_half_, lane, 0.5 * tick_s_);
+    for (int bank = 0; bank < most_further_; ++bank) {
+      // Those of boosters have drives of their own.
+      if (plant_.apart && apart_.turn_nozzles && bank >= apart_.first_bank &&
+          (Bits(apart_.attached) >> lane & 1u))
+        continue;
+      SetFurtherDrives(bank, lane, gimbal, stuck_nozzle - (bank + 1) * kNozzles);
+    }
+  }
+  void SetBoosterDrives(int lane, const Gimbal& gimbal) {
+    for (int bank = apart_.first_bank; bank < most_further_; ++bank) SetFurtherDrives(bank, lane, gimbal, -1);
+  }
+  void SetFurtherDrives(int bank, int lane, const Gimbal& gimbal, int stuck_nozzle) {
+    SetLane(further_gimbals_[bank], lane, gimbal, stuck_nozzle, 0.5 * tick_s_);
+    SetTransition(further_gimbals_[bank], further_over_half_[bank], lane, 0.5 * tick_s_);
   }
 
   RigidBodyStateLanes<T> motion_;
@@ -485,6 +526,8 @@ class StepState {
   GimbalLanes<T> further_gimbals_[kBanks - 1];
   T further_command_rad_[kBanks - 1][kDrives];
   mutable BankNozzles<T> further_nozzles_[kBanks - 1];  ///< of the present evaluation
+  Transition<T> further_over_half_[kBanks - 1];
+  ApartBoosters<T> apart_;  ///< unset unless the vehicle has such boosters
 };
 
 /// Steps within this of a tick take the tick's transition of the actuators: it moves a deflection by less
@@ -516,7 +559,7 @@ MaskOf<T> StepState<T>::StepOf(MaskOf<T> moving, bool all, T from_s, T to_s) {
     Transition<T> over = tick_over_half_;
     if (Any(odd))
       for (int lane = 0; lane < kWidth<T>; ++lane)
-        if (Bits(odd) >> lane & 1u) SetTransition(over, lane, 0.5 * Lane(h, lane));
+        if (Bits(odd) >> lane & 1u) SetTransition(drives_, over, lane, 0.5 * Lane(h, lane));
     SetDriven(drive_state_, command_rad_, over, half, drives_half);
     SetDriven(drives_half, command_rad_, over, half, drives_end);
     SetNozzles(drives_half, command_rad_, b.nozzles);
@@ -528,7 +571,7 @@ MaskOf<T> StepState<T>::StepOf(MaskOf<T> moving, bool all, T from_s, T to_s) {
       SetDriven(second_half, commands, over, half, second_end);
       SetNozzles(second_half, commands, b.second);
       SetNozzles(second_end, commands, c.second);
-      if (plant_.further_banks > 0) DriveFurther(over, half, further_half, further_end);
+      if (plant_.further_banks > 0) DriveFurther(odd, half, further_half, further_end);
     }
   }
   BendingState<T> bent_middle, bent_end;

@@ -73,12 +73,17 @@ StepUse GreatestStepUse(const LauncherPlant& plant, double tick_s) {
            kModeLimit_rad, greatest);
     });
   }
+  if (plant.boosters_steer())
+    Take("the actuators of the boosters", plant.boosters->gimbal.bandwidth_rad_s, tick_s, kActuatorLimit_rad,
+         greatest);
   return greatest;
 }
 
 double FastestPart(const LauncherPlant& plant, int stack) {
   const auto i = static_cast<std::size_t>(stack);
   double fastest_rad_s = plant.stacks[i].gimbal.bandwidth_rad_s;
+  if (stack == 0 && plant.boosters_steer())
+    fastest_rad_s = std::max(fastest_rad_s, plant.boosters->gimbal.bandwidth_rad_s);
   EachMode(plant, i, [&](int, double rad_s) { fastest_rad_s = std::max(fastest_rad_s, rad_s); });
   return fastest_rad_s;
 }
@@ -106,6 +111,9 @@ std::string RefusalOf(const Vehicle& vehicle, const FlightInputs& in, const Laun
   }
   if (plant.boosters && plant.boosters->burn.duration_s >= plant.stacks[0].burn.duration_s)
     return "the boosters burn as long as their stage, or longer";
+  for (std::size_t k = 0; plant.boosters && k < plant.boosters->each.size(); ++k)
+    if (plant.boosters->each[k].burn.duration_s >= plant.stacks[0].burn.duration_s)
+      return "booster " + std::to_string(k + 1) + " burns as long as its stage, or longer";
   const StepUse use = GreatestStepUse(plant, tick_s);
   if (use.fraction <= 1.0) return "";
   return use.part + ": too fast for ticks of " + Text(1e3 * tick_s) + " ms, at most " + Text(use.limit_hz) +

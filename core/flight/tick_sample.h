@@ -34,6 +34,7 @@ struct TickSample {
   double expelled_mass_kg = 0.0;
   unsigned jettisoned = 0;  ///< as in LauncherPhase, as is
   bool boosting = false;
+  unsigned boosters_burning = 0;
   LauncherInstant instant;
 };
 

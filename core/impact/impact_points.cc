@@ -3,8 +3,10 @@
 #include <algorithm>
 #include <cmath>
 
+#include "core/dynamics/jettison.h"
 #include "core/flight/dispersed_vehicle.h"
 #include "core/flight/flight.h"
+#include "core/flight/sequence.h"
 #include "core/math/constants.h"
 #include "core/optimization/parallel_for.h"
 #include "core/vehicle/mass.h"
@@ -54,6 +56,19 @@ double TopStation(const Vehicle& vehicle, int stage) {
   return above < vehicle.stages.size() ? vehicle.stages[above].bottom_station_m : 0.0;
 }
 
+/// Since lift-off, if the vehicle has boosters.
+std::optional<double> BoosterSeparation(const Vehicle& vehicle, const LauncherPlant& plant,
+                                        const CampaignFlights& flights) {
+  if (!plant.boosters) return std::nullopt;
+  const double ignition_s = -vehicle.hold_down_s;
+  const StageTimes core = {ignition_s, ignition_s + plant.stacks[0].burn.duration_s, 0.0};
+  const MotorBurn* last = plant.boosters->each.empty() ? &plant.boosters->burn : nullptr;
+  for (const EachBooster& one : plant.boosters->each)
+    if (last == nullptr || one.burn.duration_s > last->duration_s) last = &one.burn;
+  return BuildBoosterTimes(vehicle.boosters, *last, core, flights.model().definition().autopilot.tick_s)
+      .separation_s;
+}
+
 }  // namespace
 
 std::vector<ImpactPoint> ImpactPoints(const CampaignFlights& flights, const CaseResult& result,
@@ -71,6 +86,32 @@ std::vector<ImpactPoint> ImpactPoints(const CampaignFlights& flights, const Case
     point.impact = Fall(environment, body, start, steps);
     points.push_back(std::move(point));
   };
+
+  const std::optional<double> boosters_left_s = BoosterSeparation(vehicle, plant, flights);
+  for (std::size_t row = 0; boosters_left_s && row < history.rows(); ++row) {
+    // The row of the event shows the state without them.
+    if (std::fabs(rows.At(row, "time_s") - *boosters_left_s) > kSameInstant_s || rows.Stack(row) != 0)
+      continue;
+    if (row + 1 < history.rows() && rows.At(row + 1, "time_s") - *boosters_left_s < kSameInstant_s) continue;
+    const RigidBodyState left = rows.State(environment.earth, row);
+    const Boosters& boosters = vehicle.boosters;
+    const double since_s = *boosters_left_s + vehicle.hold_down_s;
+    const LauncherStack& stack = plant.stacks[0];
+    const MassProperties mass = MassesOn(plant, 0, kBoostersGone, stack.burn.Propellant(since_s), since_s);
+    const double ahead_m = mass.cg_station_m - 0.5 * (boosters.top_station_m + boosters.bottom_station_m);
+    const FallingBody body = {
+        boosters.dry_mass_kg,
+        TumblingCylinderDragArea(boosters.bottom_station_m - boosters.top_station_m, boosters.diameter_m)};
+    std::vector<EachBooster> each = plant.boosters->each;
+    if (each.empty()) each.resize(1);
+    for (const EachBooster& one : each) {
+      const RigidBodyState spent =
+          AtPoint(left, Vector3(ahead_m, one.y_m - stack.lateral_moment_y_kg_m / mass.mass_kg,
+                                one.z_m - stack.lateral_moment_z_kg_m / mass.mass_kg));
+      fall({.stage = 0, .lost = false}, body, {*boosters_left_s, spent.p_EoC_I, spent.v_IC_I});
+    }
+    break;
+  }
 
   for (std::size_t row = 1; row < history.rows(); ++row) {
     const int below = rows.Stack(row - 1);

@@ -1,4 +1,4 @@
-// Impact points of the spent stages and of the lost flights of a campaign.
+// Impact points of the spent stages, boosters and lost flights of a campaign.
 #pragma once
 
 #include <cstdint>
@@ -14,8 +14,8 @@ namespace dispersa {
 
 struct ImpactPoint {
   std::uint64_t case_index = 0;
-  int stage = 0;             ///< 1-based: the spent stage, or the lowest stage of the lost stack
-  bool lost = false;         ///< true: the whole stack of a lost flight; false: a spent stage
+  int stage = 0;      ///< 1-based: the spent stage, or the lowest stage of the lost stack; 0: a booster
+  bool lost = false;  ///< true: the whole stack of a lost flight; false: a spent stage or booster
   double from_time_s = 0.0;  ///< at separation, or at the loss
   double from_altitude_m = 0.0;
   std::optional<Impact> impact = {};  ///< none: the body stays up
@@ -25,6 +25,9 @@ struct ImpactPoint {
 /// from its separation, empty, starting at its own centre of gravity. The stack of a lost flight falls in one
 /// piece, without thrust, with the propellant that is left. All fall as tumbling cylinders of the stage's
 /// length and diameter, in the air and wind of the case.
+///
+/// Boosters fall in the same way from their separation. Those that are bodies of their own each start at
+/// their place; of those that are all alike one falls, from the vehicle's axis.
 ///
 /// The last stage of a completed flight is in orbit and has no point. Neither has a stack whose state is not
 /// finite.

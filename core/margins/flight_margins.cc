@@ -86,7 +86,7 @@ namespace {
 
 // Roll that thrusters hold has no linear loop.
 bool HasLoop(const LauncherPlant& plant, const TickSample& sample, Axis axis) {
-  return axis != kRoll || plant.stacks[static_cast<std::size_t>(sample.stack)].layout.rolls;
+  return axis != kRoll || plant.LayoutOf(sample.stack, sample.boosting).rolls;
 }
 
 // Whether learning changes the slopes of the control law.

@@ -27,13 +27,14 @@ AxisPlant LineariseAxis(const LauncherPlant& plant, const TickSample& sample, Ax
   phase.expelled_mass_kg = sample.expelled_mass_kg;
   phase.jettisoned = sample.jettisoned;
   phase.boosting = sample.boosting;
+  phase.boosters_burning = sample.boosters_burning;
 
   const LauncherStack& stack = plant.stacks[static_cast<std::size_t>(sample.stack)];
   std::array<double, kMostDrives> pattern{};
-  const int drives = stack.layout.banks() * kDrives;
+  const NozzleLayout& layout = plant.LayoutOf(sample.stack, sample.boosting);
+  const int drives = layout.banks() * kDrives;
   for (int i = 0; i < drives; ++i)
-    if (NozzleOf(i) != sample.stuck_nozzle)
-      pattern[static_cast<std::size_t>(i)] = stack.layout.allocation[i][axis];
+    if (NozzleOf(i) != sample.stuck_nozzle) pattern[static_cast<std::size_t>(i)] = layout.allocation[i][axis];
   Vector3 about = Vector3::Zero();
   about[axis] = 1.0;
 

@@ -66,7 +66,7 @@ std::string VariableTable(const Reference& reference) {
     if (reference.earlier_ignition_s[i] > 0.0)
       row(("Coast before stage " + std::to_string(i + 1) + ", s").c_str(), program.earlier_coast_s[i],
           problem.earlier_coast_s[i], 1.0);
-  for (std::size_t i = 1; i < program.steering.size(); ++i) {
+  for (std::size_t i = 0; i < program.steering.size(); ++i) {
     if (problem.steering[i].empty()) continue;
     const std::string of_stage = ", incidence of stage " + std::to_string(i + 1) + ", °";
     row(("Begin" + of_stage).c_str(), program.steering[i].begin_rad, problem.steering[i].begin_rad,

@@ -6,6 +6,7 @@
 #include <cmath>
 #include <vector>
 
+#include "core/math/functions.h"
 #include "core/results/text.h"
 #include "core/vehicle/mass.h"
 #include "core/vehicle/mould_line.h"
@@ -99,12 +100,15 @@ class Drawing {
     Line("axis", X(0.0) - 18.0, axis_px_, X(length_m_) + 18.0, axis_px_);
   }
 
-  // A side view shows two of them.
+  // A side view shows two of those that are alike, and each of the others at its place to the right.
   void DrawBoosters() {
     const Boosters& b = vehicle_.boosters;
     if (b.count == 0) return;
     const double middle_px = axis_px_;
-    for (const double side : {-1.0, 1.0}) {
+    std::vector<double> sides = {-1.0, 1.0};
+    if (b.are_apart()) sides.clear();
+    for (const double angle_rad : b.angles_rad) sides.push_back(Cos(angle_rad));
+    for (const double side : sides) {
       axis_px_ = middle_px + side * b.radius_m * scale_;
       Tube("part", b.top_station_m, b.bottom_station_m, b.diameter_m);
       Tube("grain", b.grain.top_station_m, b.grain.bottom_station_m, b.grain.outer_diameter_m);

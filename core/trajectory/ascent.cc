@@ -483,11 +483,12 @@ void Fleet<T>::Steer(int lane, int stage) {
   Flight& flight = flights_[lane];
   const std::size_t i = static_cast<std::size_t>(stage);
   const Steering& steering = flight.program->steering[i];
-  flight.steer_from_s = flight.ignition_s;
+  // The first stage's begins as its boosters leave.
+  flight.steer_from_s = stage == 0 ? Lane(time_s_, lane) : flight.ignition_s;
   flight.steer_rad = steering.begin_rad;
   // The rate is over a burn to depletion of the propellant left by the burn before, even if the engine is cut
   // off earlier. With no propellant left there is no burn.
-  const double whole_s = flight.burns[i].duration_s;
+  const double whole_s = flight.burns[i].duration_s - (flight.steer_from_s - flight.ignition_s);
   flight.steer_rad_s =
       steering.empty() || whole_s == 0.0 ? 0.0 : (steering.end_rad - steering.begin_rad) / whole_s;
 }
@@ -510,7 +511,7 @@ void Fleet<T>::Happen(int lane, const AscentEvent& event) {
       flight.burning = true;
       flight.boosting = event.stage == 0 && model_.plant.boosters != nullptr;
       flight.ignition_s = event.time_s;
-      Steer(lane, event.stage);
+      if (event.stage > 0) Steer(lane, event.stage);
       break;
     case AscentEvent::kBoosterBurnout:
       ObserveHere(lane);
@@ -518,6 +519,7 @@ void Fleet<T>::Happen(int lane, const AscentEvent& event) {
       break;
     case AscentEvent::kBoosterSeparation:
       Drop(lane, kBoostersGone);
+      Steer(lane, 0);
       break;
     case AscentEvent::kBurnout: {
       ObserveHere(lane);

@@ -108,7 +108,7 @@ std::vector<std::size_t> EarlierCoasts(const Vehicle& vehicle) {
 std::vector<ProgramVariable> SteeringVariables(const Vehicle& vehicle, const TrajectoryProblem& problem) {
   using Kind = ProgramVariable::Kind;
   std::vector<ProgramVariable> variables;
-  for (std::size_t i = 1; i < vehicle.stages.size(); ++i) {
+  for (std::size_t i = 0; i < vehicle.stages.size(); ++i) {
     if (problem.steering[i].empty()) continue;
     variables.push_back({Kind::kSteeringBegin, i});
     variables.push_back({Kind::kSteeringEnd, i});

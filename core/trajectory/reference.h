@@ -14,9 +14,11 @@
 
 namespace dispersa {
 
-/// Incidence of a burning upper stage, added to the zero incidence of a gravity turn. It lies in the plane of
-/// ascent, nose up, and is linear in the time since ignition. A long burn needs it: a gravity turn loses too
-/// much altitude. It fades in within kSteeringRise_s, and fades out within kSteeringFade_s after the burn.
+/// Incidence of a burning upper stage, or of a first stage from the time when its boosters leave (then that
+/// time stands for the ignition). It is added to the zero incidence of a gravity turn. It lies in the plane
+/// of ascent, nose up, and is linear in the time since ignition. A long burn needs it: a gravity turn loses
+/// too much altitude. It fades in within kSteeringRise_s, and fades out within kSteeringFade_s after the
+/// burn.
 struct Steering {
   double begin_rad = 0.0;  ///< at ignition
   double end_rad = 0.0;    ///< when the propellant would be used up

@@ -115,11 +115,12 @@ void DescribeDecisionBounds(Fields& fields, TrajectoryProblem& problem) {
   for (std::size_t stage = 1; stage < kMaxStages; ++stage)
     DescribeBounds(fields, StageKey(stage, "coast"), kTime, kNonNegative, problem.earlier_coast_s[stage],
                    "[low, high] of the coast before this stage, ignited by a timer", false);
-  for (std::size_t stage = 1; stage < kMaxStages; ++stage) {
+  for (std::size_t stage = 0; stage < kMaxStages; ++stage) {
     auto& steering = problem.steering[stage];
     DescribeSteering(fields, stage, !steering.empty(), [&](const std::string& begin, const std::string& end) {
       DescribeBounds(fields, begin, kAngle, kSteered, steering.begin_rad,
-                     "[low, high] of this stage's incidence in the plane of ascent at ignition");
+                     stage == 0 ? "[low, high] of the incidence when the boosters leave"
+                                : "[low, high] of this stage's incidence in the plane of ascent at ignition");
       DescribeBounds(fields, end, kAngle, kSteered, steering.end_rad,
                      "[low, high] of it when the propellant would be used up");
     });
@@ -177,11 +178,12 @@ void DescribeProgram(Fields& fields, Reference& reference) {
     };
     fields.Either({{Has(coast, kTime), timer, ignition_s > 0.0}, {Has(ignition, kTime), timer}});
   }
-  for (std::size_t stage = 1; stage < kMaxStages; ++stage) {
+  for (std::size_t stage = 0; stage < kMaxStages; ++stage) {
     auto& steering = program.steering[stage];
     DescribeSteering(fields, stage, !steering.empty(), [&](const std::string& begin, const std::string& end) {
       fields.Quantity(begin.c_str(), kAngle, kSteered, steering.begin_rad,
-                      "this stage's incidence in the plane of ascent at ignition");
+                      stage == 0 ? "incidence in the plane of ascent when the boosters leave"
+                                 : "this stage's incidence in the plane of ascent at ignition");
       fields.Quantity(end.c_str(), kAngle, kSteered, steering.end_rad,
                       "its incidence when the propellant would be used up");
     });

@@ -6,6 +6,7 @@
 #include "core/math/constants.h"
 #include "core/math/functions.h"
 #include "core/math/matrices.h"
+#include "core/math/rotation.h"
 #include "core/vehicle/vehicle.h"
 
 namespace dispersa {
@@ -139,8 +140,11 @@ std::vector<Nozzle> NozzlesOf(const Gimbal& gimbal) {
   return nozzles;
 }
 
-NozzleLayout BuildNozzleLayout(const Gimbal& gimbal) {
-  Placed placed = Place(gimbal);
+namespace {
+
+// `effect_of`: of a drive by itself.
+template <class EffectOfDrive>
+NozzleLayout Allocated(Placed placed, double command_limit_rad, const EffectOfDrive& effect_of) {
   NozzleLayout& o = placed.layout;
   o.rolls = TurnsInRoll(placed);
   const int first = o.rolls ? 0 : 1;  // without authority in roll, of pitch and yaw alone
@@ -157,7 +161,8 @@ NozzleLayout BuildNozzleLayout(const Gimbal& gimbal) {
         return leader < 0 ? 0.0 : inverse(leader, axis - first);
       };
       const double a = commanded(0), b = commanded(1);
-      most = std::max(most, Sqrt(a * a + b * b) * gimbal.limit_rad / o.limit_rad[k]);
+      const double size = Sqrt(a * a + b * b);
+      if (size > 0.0) most = std::max(most, size * command_limit_rad / o.limit_rad[k]);
     }
     return most;
   };
@@ -171,12 +176,72 @@ NozzleLayout BuildNozzleLayout(const Gimbal& gimbal) {
       const int leader = placed.leader[static_cast<std::size_t>(drive)];
       if (leader < 0) continue;
       o.allocation[drive][axis] = rounded(scale[axis] * inverse(leader, axis - first));
-      o.felt[axis][drive] = EffectOf(o, drive)[axis] / scale[axis];
+      o.felt[axis][drive] = effect_of(o, drive)[axis] / scale[axis];
     }
   }
   o.pitch_share = scale[1];
   o.roll_arm_m = scale[0];
   return o;
+}
+
+}  // namespace
+
+NozzleLayout BuildNozzleLayout(const Gimbal& gimbal) {
+  return Allocated(Place(gimbal), gimbal.limit_rad, EffectOf);
+}
+
+Matrix3 CantOf(const Boosters& boosters, double angle_rad) {
+  const SinCos at = SineCosine(angle_rad);
+  return RotationMatrix(FromRotationVector(boosters.cant_rad * Vector3(0.0, at.sin, -at.cos)));
+}
+
+NozzleLayout BuildBoostLayout(const Gimbal& stage, const Boosters& boosters, const BoostGeometry& geometry) {
+  Placed placed = Place(stage);
+  NozzleLayout& o = placed.layout;
+  const int first = o.banks() * kNozzles;
+  o.nozzles = first + boosters.count;
+  const int drives = o.banks() * kDrives, before = static_cast<int>(placed.leader.size());
+  placed.effect.conservativeResize(Eigen::NoChange, drives);
+  placed.effect.rightCols(drives - before).setZero();
+  placed.ease.conservativeResize(drives);
+  placed.ease.tail(drives - before).setZero();
+  placed.leader.resize(static_cast<std::size_t>(drives), -1);
+  if (boosters.steer_alone) {
+    placed.effect.leftCols(before).setZero();
+    placed.ease.head(before).setZero();
+    for (int drive = 0; drive < before; ++drive) placed.leader[static_cast<std::size_t>(drive)] = -1;
+  }
+  // The moment by a radian, over the stage's thrust, and across the axis also over its lever.
+  const auto effect_of = [&](const NozzleLayout& layout, int drive) -> Eigen::Vector3d {
+    const int k = NozzleOf(drive);
+    if (k < first) return EffectOf(layout, drive);
+    const Vector3 towards(0.0, layout.towards_y[drive], layout.towards_z[drive]);
+    const Vector3 arm(-geometry.booster_lever_m, layout.y_m[k], layout.z_m[k]);
+    const double angle_rad = boosters.angles_rad[static_cast<std::size_t>(k - first)];
+    Vector3 moment = geometry.thrust_ratio * arm.cross(CantOf(boosters, angle_rad) * towards);
+    moment.tail<2>() /= geometry.stage_lever_m;
+    return moment;
+  };
+  for (int i = 0; i < boosters.count; ++i) {
+    const int k = first + i;
+    const SinCos at = SineCosine(boosters.angles_rad[static_cast<std::size_t>(i)]);
+    o.share[k] = geometry.thrust_ratio;
+    o.y_m[k] = boosters.radius_m * at.cos;
+    o.z_m[k] = boosters.radius_m * at.sin;
+    o.limit_rad[k] = boosters.gimbal.limit_rad;
+    for (std::size_t hinge = 0; hinge < boosters.towards_rad.size() && boosters.turn_nozzles(); ++hinge) {
+      const int drive = DriveOf(k, static_cast<int>(hinge));
+      const SinCos towards = SineCosine(boosters.towards_rad[hinge]);
+      o.there[drive] = 1.0;
+      o.towards_y[drive] = towards.cos;
+      o.towards_z[drive] = towards.sin;
+      placed.effect.col(drive) = effect_of(o, drive);
+      const double ease = o.limit_rad[k] / stage.limit_rad;
+      placed.ease[drive] = ease * ease;
+      placed.leader[static_cast<std::size_t>(drive)] = drive;
+    }
+  }
+  return Allocated(std::move(placed), stage.limit_rad, effect_of);
 }
 
 std::vector<StructProblem> NozzleProblems(const Gimbal& gimbal, const std::string& path) {

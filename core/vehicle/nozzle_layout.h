@@ -25,8 +25,11 @@
 #include <string>
 #include <vector>
 
+#include "core/math/linear.h"
+
 namespace dispersa {
 
+struct Boosters;
 struct Gimbal;
 struct Nozzle;
 struct StructProblem;
@@ -69,6 +72,17 @@ struct NozzleLayout {
 std::vector<Nozzle> NozzlesOf(const Gimbal& gimbal);
 /// Precondition: a gimbal without problems. Without a list of nozzles it has four in a cross.
 NozzleLayout BuildNozzleLayout(const Gimbal& gimbal);
+
+/// How boosters with nozzles that turn compare with their stage: the ratio of one's thrust to the stage's,
+/// and how far the centre of gravity is ahead of each.
+struct BoostGeometry {
+  double thrust_ratio = 0.0, stage_lever_m = 0.0, booster_lever_m = 0.0;
+};
+/// Turns the thrust of the booster at an angle by its cant.
+Matrix3 CantOf(const Boosters& boosters, double angle_rad);
+/// Commands while boosters burn, for the stage's nozzles and theirs together, which have banks of their own
+/// behind the stage's. Their share is the ratio of thrusts. It is one matrix for all of the boosters' burn.
+NozzleLayout BuildBoostLayout(const Gimbal& stage, const Boosters& boosters, const BoostGeometry& geometry);
 
 /// Contradictions in a list of nozzles. Paths begin with `path`, that of the gimbal.
 std::vector<StructProblem> NozzleProblems(const Gimbal& gimbal, const std::string& path);

@@ -2,6 +2,7 @@
 
 #include <algorithm>
 
+#include "core/math/functions.h"
 #include "core/vehicle/prepared_burn.h"
 #include "core/vehicle/throttled_burn.h"
 
@@ -44,11 +45,19 @@ MotorBurn BuildBurn(const Stage& stage, double thrust_factor, double flow_factor
                    curve.empty() ? nullptr : std::make_shared<const BurnCurve>(Prepare(curve)));
 }
 
-MotorBurn BuildBoosterBurn(const Boosters& boosters, double thrust_factor, double flow_factor) {
+MotorBurn BuildOneBoosterBurn(const Boosters& boosters, double thrust_factor, double flow_factor) {
   Stage one;
   one.propellant_mass_kg = boosters.propellant_mass_kg;
   one.motor = boosters.motor;
-  MotorBurn all = BuildBurn(one, thrust_factor, flow_factor);
+  return BuildBurn(one, thrust_factor, flow_factor);
+}
+
+MotorBurn BuildBoosterBurn(const Boosters& boosters, double thrust_factor, double flow_factor) {
+  MotorBurn all = BuildOneBoosterBurn(boosters, thrust_factor, flow_factor);
+  if (boosters.cant_rad > 0.0) {
+    all.vacuum_thrust_n *= Cos(boosters.cant_rad);
+    all.exit_area_m2 *= Cos(boosters.cant_rad);
+  }
   all.vacuum_thrust_n *= boosters.count;
   all.full_flow_kg_s *= boosters.count;
   all.propellant_mass_kg *= boosters.count;

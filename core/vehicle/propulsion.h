@@ -50,7 +50,9 @@ void SetPropellant(const Motor& engine, double propellant_kg, MotorBurn& burn);
 /// Ends a throttled burn by command.
 void CutOffAt(double since_ignition_s, MotorBurn& burn);
 
-/// The burn of all boosters together, with the first stage's factors.
+/// The burn of one booster, with the factors of its thrust and flow.
+MotorBurn BuildOneBoosterBurn(const Boosters& boosters, double thrust_factor, double flow_factor);
+/// The burn of all boosters together, with the first stage's factors. Thrust is that along the axis.
 MotorBurn BuildBoosterBurn(const Boosters& boosters, double thrust_factor, double flow_factor);
 
 }  // namespace dispersa

@@ -163,7 +163,7 @@ void CheckStage(const Vehicle& vehicle, std::size_t i, Checker& check) {
 }
 
 void CheckNozzles(const Vehicle& vehicle, Checker& check) {
-  int further = 0;
+  int further = static_cast<int>(vehicle.boosters.angles_rad.size());
   for (const Stage& stage : vehicle.stages)
     further += std::max(0, static_cast<int>(NozzlesOf(stage.gimbal).size()) - kNozzles);
   check.Require(further <= kFurtherNozzles, "stages",
@@ -175,6 +175,28 @@ void CheckTables(const Vehicle& vehicle, Checker& check) {
   check.Require(vehicle.aerodynamics.empty() || vehicle.aerodynamics.size() == vehicle.stages.size(),
                 "aerodynamics.tables", "has " + std::to_string(vehicle.aerodynamics.size()) + " tables",
                 "one table for each of the " + std::to_string(vehicle.stages.size()) + " stacks");
+}
+
+// Boosters that are bodies of their own.
+void CheckApart(const Vehicle& vehicle, Checker& check) {
+  const Boosters& b = vehicle.boosters;
+  const double least_rad = 2.0 * Asin(std::min(1.0, 0.5 * b.diameter_m / b.radius_m));
+  for (std::size_t k = 0; k < b.angles_rad.size(); ++k)
+    for (std::size_t other = 0; other < k; ++other) {
+      const double apart_rad = std::fabs(std::remainder(b.angles_rad[k] - b.angles_rad[other], kTwoPi));
+      check.Require(
+          apart_rad > least_rad - 1e-9, "boosters.angles_deg[" + std::to_string(k) + "]",
+          "puts the booster into another one, " + std::to_string(apart_rad * kDegPerRad) + " deg beside it",
+          "angles at least " + std::to_string(least_rad * kDegPerRad) + " deg apart");
+    }
+  if (!b.turn_nozzles()) return;
+  if (b.towards_rad.size() > 1)
+    check.Require(std::fabs(Cos(b.towards_rad[1] - b.towards_rad[0])) < 1e-9,
+                  "boosters.gimbal.turns_towards_deg", "has hinges that are not at right angles",
+                  "one direction, or two that are 90 deg apart");
+  const int banks = BuildNozzleLayout(vehicle.stages[0].gimbal).banks() + (b.count + kNozzles - 1) / kNozzles;
+  check.Require(banks <= kBanks, "boosters.gimbal", "turns more nozzles than a stage may have beside its own",
+                "boosters with fixed nozzles, or fewer engines in the stage");
 }
 
 void CheckBoosters(const Vehicle& vehicle, Checker& check) {
@@ -193,6 +215,7 @@ void CheckBoosters(const Vehicle& vehicle, Checker& check) {
                 "ramps that are together shorter than twice burning_time_s");
   check.Require(b.grain.outer_diameter_m <= b.diameter_m, "boosters.grain.outer_diameter_m",
                 "is larger than the booster", "at most diameter_m");
+  if (b.are_apart()) CheckApart(vehicle, check);
   check.Require(!vehicle.structure_beam, "boosters",
                 "change the modes of a vehicle that bends, which is not modelled",
                 "none beside structure_beam");

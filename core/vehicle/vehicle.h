@@ -15,6 +15,7 @@
 #include "core/math/table.h"
 #include "core/vehicle/aero_table.h"
 #include "core/vehicle/bodies.h"
+#include "core/vehicle/boosters.h"
 #include "core/vehicle/gimbal.h"
 #include "core/vehicle/motor.h"
 #include "core/vehicle/sensors.h"
@@ -131,52 +132,6 @@ inline void Describe(Fields& fields, ReactionControl& control) {
                   "shortest firing of a thruster");
 }
 
-/// Boosters at most.
-inline constexpr int kMaxBoosters = 8;
-
-/// Equal solid motors beside the first stage, at equal angles round it, ignited with it. Their nozzles are
-/// fixed along the axis. They leave together after their burnout and before the stage's, at rest against the
-/// body. The aerodynamics of the first stack include them and stay after they have left.
-struct Boosters {
-  int count = 0;                    ///< 0 (none) or 2 to 8
-  double dry_mass_kg = 0.0;         ///< of one, a thin tube from top to bottom station
-  double propellant_mass_kg = 0.0;  ///< of one
-  double radius_m = 0.0;            ///< of their axes from the vehicle's
-  double diameter_m = 0.0;          ///< of one
-  double top_station_m = 0.0;
-  double bottom_station_m = 0.0;
-  double nozzle_station_m = 0.0;    ///< where the thrust acts
-  Motor motor;                      ///< of one
-  Grain grain;                      ///< of one, about its own axis
-  double separation_delay_s = 0.0;  ///< after burnout is detected
-
-  /// Mass of all boosters with their propellant.
-  double LiftOffMass() const { return count * (dry_mass_kg + propellant_mass_kg); }
-};
-
-inline void Describe(Fields& fields, Boosters& boosters) {
-  fields.Integer("count", 2, kMaxBoosters, boosters.count, "number of equal boosters");
-  fields.Quantity("dry_mass", kMass, kPositive, boosters.dry_mass_kg,
-                  "of one: a thin tube from top to bottom station");
-  fields.Quantity("propellant_mass", kMass, kPositive, boosters.propellant_mass_kg, "of one");
-  fields.Quantity("radius", kLength, kPositive, boosters.radius_m, "from the vehicle's axis to theirs");
-  fields.Quantity("diameter", kLength, kPositive, boosters.diameter_m, "of one");
-  fields.Quantity("top_station", kLength, kNonNegative, boosters.top_station_m, "upper end");
-  fields.Quantity("bottom_station", kLength, kPositive, boosters.bottom_station_m, "lower end");
-  fields.Quantity("nozzle_station", kLength, kPositive, boosters.nozzle_station_m, "where the thrust acts");
-  fields.Map("motor", "of one; solid", [&](Fields& motor) {
-    motor.Either({{Has("liquid"),
-                   [&] {
-                     motor.Misplaced("liquid", {}, "boosters are solid",
-                                     "thrust_* with burning_time_*, or thrust_curve");
-                     DescribeExit(motor, boosters.motor);
-                   }},
-                  {Else(), [&] { DescribeSolid(motor, boosters.motor); }}});
-  });
-  fields.Map("grain", "of one, about its own axis", [&](Fields& grain) { Describe(grain, boosters.grain); });
-  fields.Quantity("separation_delay", kTime, kNonNegative, boosters.separation_delay_s,
-                  "from detected burnout; before the stage separates", 0.0);
-}
 enum class ProfileShape { kTangentOgive, kCone, kCylinder, kFrustum };
 
 /// A piece of the outer mould line. The pieces follow one another from the nose tip aft.

@@ -57,7 +57,7 @@ void PrintText(const OptimizationResult& result, const std::optional<OrbitErrors
     if (reference.earlier_ignition_s[i] > 0.0)
       fmt::print("coast before stage {}: {:.4f} s, its ignition at {:.4f} s\n", i + 1,
                  program.earlier_coast_s[i], reference.earlier_ignition_s[i]);
-  for (std::size_t i = 1; i < program.steering.size(); ++i)
+  for (std::size_t i = 0; i < program.steering.size(); ++i)
     if (!program.steering[i].empty())
       fmt::print("incidence of stage {}: {:+.4f} deg at ignition, {:+.4f} deg at depletion\n", i + 1,
                  program.steering[i].begin_rad * kDegPerRad, program.steering[i].end_rad * kDegPerRad);

@@ -23,8 +23,11 @@ namespace {
 
 // The shipped definition with all that a file may give it besides.
 FlightDefinition Definition(const std::string& law, bool with_winds, bool guided = false) {
-  const bool clustered = law.starts_with("clustered_");
-  const std::string autopilot = clustered ? law.substr(10) : law.starts_with("listed_") ? law.substr(7) : law;
+  const bool clustered = law.starts_with("clustered_"), boosted = law.starts_with("boosted_");
+  const std::string autopilot = clustered                    ? law.substr(10)
+                                : boosted                    ? law.substr(8)
+                                : law.starts_with("listed_") ? law.substr(7)
+                                                             : law;
   FlightDefinition definition =
       Slv4Definition(DISPERSA_CAMPAIGNS, autopilot, guided ? "slv4_500km_reserve" : "slv4_500km");
   definition.guidance.closed_loop = guided;
@@ -85,6 +88,22 @@ FlightDefinition Definition(const std::string& law, bool with_winds, bool guided
                                           1.0 / 3.0,
                                           {at + 90.0 * kRadPerDeg},
                                           0.0});
+  }
+  if (boosted) {  // three boosters as bodies of their own, which leave at times of their own
+    Boosters& b = definition.vehicle.boosters;
+    b = {3, 150.0, 900.0, 0.97, 0.62, 21.0, 26.5, 26.4, {}, {22.0, 24.05, 0.6, 0.2}, 0.5};
+    b.motor.thrust_n = 60e3;
+    b.motor.burning_time_s = 30.0;
+    b.motor.tail_off_s = 1.0;
+    b.angles_rad = {0.2, 2.3, 4.4};
+    b.cant_rad = 0.08;
+    b.gimbal.limit_rad = 0.08;
+    b.gimbal.rate_limit_rad_s = 0.4;
+    b.gimbal.bandwidth_rad_s = 35.0;
+    b.towards_rad = {90.0 * kRadPerDeg, 180.0 * kRadPerDeg};
+    definition.vehicle.stages[0].liftoff_mass_kg += b.LiftOffMass();
+    definition.vehicle.stages[1].gimbal.nozzles = {
+        {"ring", 0.0, 0.0, 0.0, {90.0 * kRadPerDeg, 180.0 * kRadPerDeg}, 0.0, {6, 0.2, 0.0, false}}};
   }
   if (clustered) {  // nine engines, thirteen of which some are fixed and some alike, one, and a cross
     std::vector<Stage>& stages = definition.vehicle.stages;
@@ -391,7 +410,7 @@ INSTANTIATE_TEST_SUITE_P(Laws, FlightLanes,
                          testing::Values("adaptive_fuzzy", "frozen_fuzzy", "pd", "pid", "pd_aac", "pid_aac",
                                          "flexible", "guided_adaptive_fuzzy", "guided_pid_aac",
                                          "listed_pid_aac", "clustered_pid", "clustered_pid_aac",
-                                         "clustered_flexible"),
+                                         "clustered_flexible", "boosted_pid", "boosted_pid_aac"),
                          [](const auto& law) { return std::string(law.param); });
 
 }  // namespace

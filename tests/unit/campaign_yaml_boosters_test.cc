@@ -3,7 +3,10 @@
 
 #include <string>
 
+#include "core/campaign/campaign.h"
 #include "core/campaign_yaml/load.h"
+#include "core/flight/flight_inputs.h"
+#include "core/math/constants.h"
 #include "core/vehicle/mass.h"
 #include "tests/unit/bad_input.h"
 
@@ -75,6 +78,53 @@ TEST(BoostersFile, ReadThrustCurvesAndStandInTheId) {
   EXPECT_NE(LoadCampaign(files.Path("campaign.yaml")).flight_id, campaign.flight_id);
 }
 
+// Each with its place, its nozzle's drives, and dispersions of its own.
+TEST(BoostersFile, ReadBodiesOfTheirOwn) {
+  const InputFiles files;
+  files.Edit("vehicle.yaml", kAfter, kBoosters);
+  files.Edit("vehicle.yaml", "count: 2,",
+             "angles_deg: [0, 120, 240], cant_deg: 5, gimbal: {turns_towards_deg: [90, 180], limit_deg: 6, "
+             "rate_limit_deg_s: 10, bandwidth_rad_s: 20, damping_ratio: 0.7},");
+  files.Edit("campaign.yaml", "  thrust: ",
+             "  booster_burn_rate: {distribution: normal, sigma_percent: 1}\n"
+             "  booster_misalignment: {distribution: normal, sigma_deg: 0.1}\n  thrust: ");
+  const Campaign campaign = LoadCampaign(files.Path("campaign.yaml"));
+  const Boosters& b = campaign.vehicle.boosters;
+  EXPECT_EQ(b.count, 3);
+  ASSERT_EQ(b.angles_rad.size(), 3u);
+  EXPECT_NEAR(b.angles_rad[2], 240.0 * kRadPerDeg, 1e-15);
+  EXPECT_NEAR(b.cant_rad, 5.0 * kRadPerDeg, 1e-15);
+  EXPECT_NEAR(b.gimbal.limit_rad, 6.0 * kRadPerDeg, 1e-15);
+  std::string fed;
+  for (const Dispersion& d : campaign.dispersions) {
+    if (!d.name.starts_with("booster_")) continue;
+    fed += d.name + ":";
+    for (const int input : d.inputs) fed += " " + InputColumns()[static_cast<std::size_t>(input)].name;
+    fed += "\n";
+  }
+  EXPECT_EQ(fed,
+            "booster_burn_rate/booster1: nozzle_thrust_factor_nozzle5 nozzle_flow_factor_nozzle5\n"
+            "booster_burn_rate/booster2: nozzle_thrust_factor_nozzle6 nozzle_flow_factor_nozzle6\n"
+            "booster_burn_rate/booster3: nozzle_thrust_factor_nozzle7 nozzle_flow_factor_nozzle7\n"
+            "booster_misalignment/y/booster1: nozzle_misalignment_y_nozzle5_deg\n"
+            "booster_misalignment/z/booster1: nozzle_misalignment_z_nozzle5_deg\n"
+            "booster_misalignment/y/booster2: nozzle_misalignment_y_nozzle6_deg\n"
+            "booster_misalignment/z/booster2: nozzle_misalignment_z_nozzle6_deg\n"
+            "booster_misalignment/y/booster3: nozzle_misalignment_y_nozzle7_deg\n"
+            "booster_misalignment/z/booster3: nozzle_misalignment_z_nozzle7_deg\n");
+}
+
+TEST(BoostersFile, HaveDifferencesOnlyWhereTheyHavePlaces) {
+  const InputFiles files;
+  files.Edit("vehicle.yaml", kAfter, kBoosters);
+  files.Edit("campaign.yaml",
+             "  thrust: ", "  booster_burn_rate: {distribution: normal, sigma_percent: 1}\n  thrust: ");
+  const std::string texts = files.Texts(CheckFile(files.Path("campaign.yaml")).errors);
+  EXPECT_NE(texts.find("the vehicle has no boosters, or such that are all alike"), std::string::npos)
+      << texts;
+  EXPECT_NE(texts.find("boosters with angles_deg in place of count"), std::string::npos) << texts;
+}
+
 class BadBoostersTest : public testing::TestWithParam<BadInput> {};
 
 TEST_P(BadBoostersTest, AreReportedInFull) {
@@ -87,6 +137,13 @@ TEST_P(BadBoostersTest, AreReportedInFull) {
 constexpr BadInput kBadBoosters[] = {
     {"One", "", "count: 2", "count: 1",
      "vehicle.yaml:34:19: boosters.count: 1 is out of range, allowed: a whole number from 2 to 8\n"},
+    {"IntoEachOther", "", "count: 2", "angles_deg: [0, 10]",
+     "vehicle.yaml:34:28: boosters.angles_deg[1]: puts the booster into another one, 10.000000 deg beside "
+     "it, "
+     "allowed: angles at least 24.747250 deg apart\n"},
+    {"CantOfSomeAlike", "", "count: 2", "count: 2, cant_deg: 5",
+     "vehicle.yaml:34:32: boosters.cant_deg: boosters without angles are all alike, with fixed nozzles, "
+     "allowed: angles_deg in place of count\n"},
     {"Inside", "", "radius_m: 0.7", "radius_m: 0.4",
      "vehicle.yaml:34:73: boosters.radius_m: puts their axes inside the stage that they stand beside, "
      "allowed: at least "

@@ -35,33 +35,24 @@ TEST(ClustersFile, ARingIsItsNozzles) {
   EXPECT_NEAR(nozzles[3].thrust_share, 1.0 / 9.0, 1e-15);
 }
 
-// What is said and what is left out make the same vehicle only where they mean the same.
-TEST(ClustersFile, DefaultsStandNotInTheId) {
-  const Edited plain(kOctaweb),
-      said(
-          "nozzles: [{name: centre, y_m: 0, thrust_share: 0, turns_towards_deg: [90, 180]}, {name: outer, "
-          "ring: "
-          "{count: 8, radius_m: 0.3, first_deg: 0, hinges_from: body}, turns_towards_deg: [90, 180]}], "),
-      other(
-          "nozzles: [{name: centre, turns_towards_deg: [90, 180]}, {name: outer, ring: {count: 8, radius_m: "
-          "0.3, first_deg: 1}, turns_towards_deg: [90, 180]}], ");
-  const auto id = [](const Edited& edited) {
-    return LoadCampaign(edited.files.Path("campaign.yaml")).flight_id;
-  };
-  EXPECT_EQ(id(plain), id(said));
-  EXPECT_NE(id(plain), id(other));
+TEST(ClustersFile, TheirPlacesStandInTheId) {
+  const Edited plain(kOctaweb), turned(
+                                    "nozzles: [{name: centre, turns_towards_deg: [90, 180]}, {name: outer, "
+                                    "ring: {count: 8, radius_m: 0.3, "
+                                    "first_deg: 1}, turns_towards_deg: [90, 180]}], ");
+  EXPECT_NE(LoadCampaign(plain.files.Path("campaign.yaml")).flight_id,
+            LoadCampaign(turned.files.Path("campaign.yaml")).flight_id);
 }
 
 TEST(ClustersFile, DispersionsNameEveryEngine) {
   const Edited edited(kOctaweb);
-  edited.files.Edit(
-      "campaign.yaml", "  thrust: ",
-      "  stuck_nozzle: {stage: 1, nozzle: outer7, angle_deg: 1}\n  thrust_misalignment: "
-      "{distribution: normal, sigma_deg: 0.1, draw: per_axis, per: nozzle, stage: 1}\n  thrust: ");
+  edited.files.Edit("campaign.yaml", "  thrust: ",
+                    "  stuck_nozzle: {stage: 1, nozzle: outer7, angle_deg: 1}\n  thrust_offset: "
+                    "{distribution: normal, sigma_mm: 3, draw: per_axis, per: nozzle, stage: 1}\n  thrust: ");
   const Campaign campaign = LoadCampaign(edited.files.Path("campaign.yaml"));
   std::vector<std::string> names, columns;
   for (const Dispersion& d : campaign.dispersions) {
-    if (d.name.starts_with("thrust_misalignment/y")) {
+    if (d.name.starts_with("thrust_offset/y")) {
       names.push_back(d.name);
       columns.push_back(InputColumns()[static_cast<std::size_t>(d.inputs.at(0))].name);
     }
@@ -70,10 +61,10 @@ TEST(ClustersFile, DispersionsNameEveryEngine) {
     }
   }
   ASSERT_EQ(names.size(), 9u);
-  EXPECT_EQ(names[8], "thrust_misalignment/y/stage1_outer8");
-  EXPECT_EQ(columns[3], "nozzle_misalignment_y_stage1_top_deg");
-  EXPECT_EQ(columns[4], "nozzle_misalignment_y_nozzle5_deg");
-  EXPECT_EQ(columns[8], "nozzle_misalignment_y_nozzle9_deg");
+  EXPECT_EQ(names[8], "thrust_offset/y/stage1_outer8");
+  EXPECT_EQ(columns[3], "nozzle_offset_y_stage1_top_m");
+  EXPECT_EQ(columns[4], "nozzle_offset_y_nozzle5_m");
+  EXPECT_EQ(columns[8], "nozzle_offset_y_nozzle9_m");
   // Results have columns for the five, and for no more of them.
   const std::size_t count = InputCount(ColumnClass(campaign.vehicle));
   EXPECT_LT(static_cast<std::size_t>(FindInput("nozzle_flow_factor_nozzle9")), count);

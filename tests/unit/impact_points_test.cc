@@ -8,6 +8,7 @@
 #include "core/campaign_yaml/load.h"
 #include "core/flight/flight.h"
 #include "core/flight/tick_sample.h"
+#include "core/math/constants.h"
 #include "core/vehicle/mass.h"
 
 namespace dispersa::impact_points_test {
@@ -70,6 +71,53 @@ TEST(ImpactPoints, ASpentStageFallsFromWhereTheFlightLeftIt) {
       // The drawn factor of the centre of gravity shifts the stack above by decimetres: times the turning
       // rate, over minutes of fall, metres.
       EXPECT_LT(Distance(point.impact->place, expected->place), 5.0) << index << " " << stage;
+    }
+  }
+}
+
+// The last tick with them shows where each is: four at their places, and the same four all alike as one on
+// the axis.
+TEST(ImpactPoints, BoostersFallFromTheirPlaces) {
+  Campaign campaign = LoadCampaign(DISPERSA_CAMPAIGNS "/smoke.yaml");
+  Boosters& b = campaign.vehicle.boosters;
+  b = {4, 150.0, 900.0, 0.97, 0.62, 21.0, 26.5, 26.4, {}, {22.0, 24.05, 0.6, 0.2}, 0.503};
+  b.motor.thrust_n = 80e3;
+  b.motor.burning_time_s = 30.0;
+  campaign.vehicle.stages[0].liftoff_mass_kg += b.LiftOffMass();
+  for (const bool apart : {false, true}) {
+    if (apart) b.angles_rad = {0.5, 0.5 + 0.5 * kPi, 0.5 + kPi, 0.5 + 1.5 * kPi};
+    const CampaignFlights flights(campaign);
+    TickSample last;
+    FlightOptions options;
+    options.case_index = 0;
+    options.observe = [&](const TickSample& s) {
+      if (s.stack == 0 && (s.jettisoned & kBoostersGone) == 0) last = s;
+    };
+    dispersa::Fly(flights.model(), flights.Draw(0), options);
+    std::vector<ImpactPoint> fallen;
+    for (const ImpactPoint& point : Points(flights, 0))
+      if (point.stage == 0) fallen.push_back(point);
+    ASSERT_EQ(fallen.size(), apart ? 4u : 1u);
+    const LauncherPlant plant = flights.model().PlantFor(flights.Draw(0));
+    for (std::size_t k = 0; k < fallen.size(); ++k) {
+      const double left_s = fallen[k].from_time_s - last.time_s;
+      EXPECT_GE(left_s, -1e-9);
+      EXPECT_LT(left_s, 0.01 + 1e-9);
+      RigidBodyState stack = last.state;
+      const Vector3 acceleration =
+          Gravitation(plant.environment.earth, stack.p_EoC_I) +
+          Rotate(stack.q_IB, last.instant.loads.force_n / last.instant.loads.mass_kg);
+      stack.p_EoC_I += left_s * stack.v_IC_I + 0.5 * left_s * left_s * acceleration;
+      stack.v_IC_I += left_s * acceleration;
+      const double y = apart ? 0.97 * std::cos(b.angles_rad[k]) : 0.0,
+                   z = apart ? 0.97 * std::sin(b.angles_rad[k]) : 0.0;
+      const RigidBodyState spent = AtPoint(stack, Vector3(last.instant.cg_station_m - 23.75, y, z));
+      const auto expected = Fall(plant.environment, {150.0, TumblingCylinderDragArea(5.5, 0.62)},
+                                 {fallen[k].from_time_s, spent.p_EoC_I, spent.v_IC_I});
+      ASSERT_TRUE(expected && fallen[k].impact);
+      // The state's roundings and the case's own offsets of the centre of gravity, times the fall.
+      EXPECT_LT(Distance(fallen[k].impact->place, expected->place), 0.3) << k;
+      EXPECT_NEAR(fallen[k].impact->time_s, expected->time_s, 0.01);
     }
   }
 }

@@ -247,5 +247,33 @@ TEST(Boosters, FlyInThreeAndSixDegreesOfFreedom) {
   EXPECT_NEAR(MetricOf(flown, "injection_altitude_km"), 1e-3 * ascent.orbit.altitude_m, 2.0);
 }
 
+// The core goes on alone above the air: its incidence is a phase of its own, from the boosters' separation to
+// the stage's depletion.
+TEST(Boosters, LeaveACoreThatIsSteered) {
+  const Vehicle vehicle = Boosted();
+  FlightProgram program = LoadReference(DISPERSA_CAMPAIGNS "/references/slv4_500km.yaml").program;
+  AscentOptions options;
+  options.record = true;
+  const AscentModel model = BuildAscentModel(vehicle, 0.01);
+  const AscentResult straight = FlyAscent(model, program, options);
+  const double begin_rad = 0.06, end_rad = 0.02;
+  program.steering[0] = {begin_rad, end_rad};
+  const AscentResult steered = FlyAscent(model, program, options);
+  ASSERT_TRUE(straight.completed && steered.completed);
+  EXPECT_GT(steered.orbit.altitude_m, straight.orbit.altitude_m + 1e3);
+  // Burnout after 30 s is detected on a tick; the boosters leave 0.5 s later.
+  const double left_s = 30.5, whole_s = vehicle.stages[0].motor.burning_time_s - left_s;
+  int seen = 0;
+  for (const AscentSample& s : steered.samples) {
+    if (s.stage != 1 || s.time_s < program.t2_s || s.time_s > left_s + whole_s) continue;
+    const double since_s = s.time_s - left_s, x = std::clamp(since_s / kSteeringRise_s, 0.0, 1.0);
+    const double risen = x * x * x * (10.0 - 15.0 * x + 6.0 * x * x);
+    EXPECT_NEAR(s.alpha_rad, risen * (begin_rad + since_s / whole_s * (end_rad - begin_rad)), 1e-6)
+        << since_s;
+    seen += since_s > 0.0;
+  }
+  EXPECT_GT(seen, 20);
+}
+
 }  // namespace
 }  // namespace dispersa::boosters_flight_test

@@ -1,0 +1,206 @@
+// Boosters that are bodies of their own, of W vehicles side by side (core/math/lanes.h): each has its place,
+// its burn and its nozzle, so the centre of gravity is off the axis and the moments of inertia differ.
+//
+// Frames and signs as in launcher_body.h: B at the vehicle's axis, x forward, stations aft. A booster k
+// stands at (y_k, z_k). Its shell is a thin tube. Its grain burns from its bore outwards. Each counts by
+// Huygens and Steiner: moments about x, y, z and products of inertia are exact for the boosters. The rest of
+// the vehicle is axisymmetric. Motions of the centre of gravity across the body (millimetres a second) are
+// left out, as for a dispersed offset.
+// The flow of the stage itself counts as if C were on the axis.
+//
+// Flow m_dot_k leaves the grain and goes out of the nozzle at r_k from C. The angular momentum that it takes
+// from a turning body, less the inertia that the body loses: m_dot_k (J_k w - r_k x (w x r_k)), with J_k the
+// inertia about C of a kilogram at the grain's surface.
+#pragma once
+
+#include "core/dynamics/launcher.h"
+#include "core/math/lane_vector.h"
+#include "core/vehicle/burning_stack.h"
+
+namespace dispersa::lanes {
+inline namespace DISPERSA_ISA {
+
+template <class T>
+struct ApartBooster {
+  MotorBurnLanes<T> burn;
+  T y_m, z_m;
+  Vector<T> along;          ///< its thrust undeflected: canted and misaligned, times its factor
+  Vector<T> first, second;  ///< across it, where a positive angle turns the thrust about each hinge
+  MaskOf<T> burning;
+  T fraction, flow_kg_s, kg;  ///< now: of full thrust; propellant
+};
+template <class T>
+struct ApartBoosters {
+  int count, first_bank;  ///< of further banks, those of their nozzles
+  bool turn_nozzles;
+  MaskOf<T> attached;  ///< lanes that carry them
+  T nozzle_station_m, dry_kg, dry_station_m;
+  T grain_station_m, outer2_m2, inner_per_kg_m2, length2_m2, radius2_m2;
+  ApartBooster<T> each[kMaxBoosters];
+  // Now, of all that are attached.
+  T flow_kg_s;
+  T lateral_y_kg_m, lateral_z_kg_m;              ///< sums of mass times place
+  T mean_station_y_kg_m2, mean_station_z_kg_m2;  ///< sums of mass times station times place
+  T about_y_kg_m2, yz_kg_m2;  ///< what I_y has more than the mean of I_y and I_z; sum of m y z
+};
+
+template <class T>
+DISPERSA_INLINE void SetLane(ApartBoosters<T>& a, int lane, const BoosterSet& set, bool are_attached) {
+  a.count = static_cast<int>(set.each.size());
+  a.turn_nozzles = set.gimbal.limit_rad > 0.0;
+  SetLane(a.attached, lane, are_attached);
+  Lane(a.nozzle_station_m, lane) = set.nozzle_station_m;
+  Lane(a.dry_kg, lane) = set.empty.mass_kg / a.count;
+  Lane(a.dry_station_m, lane) = set.empty.first_moment_kg_m / set.empty.mass_kg;
+  const BoosterGrains& g = set.grains;
+  Lane(a.grain_station_m, lane) = g.station_m;
+  Lane(a.outer2_m2, lane) = g.outer_radius_m * g.outer_radius_m;
+  Lane(a.inner_per_kg_m2, lane) = a.count / g.kilograms_per_area_m2;
+  Lane(a.length2_m2, lane) = g.length_m * g.length_m / 12.0;
+  Lane(a.radius2_m2, lane) = set.radius_m * set.radius_m;
+  for (int k = 0; k < a.count; ++k) {
+    ApartBooster<T>& one = a.each[k];
+    const EachBooster& from = set.each.data()[k];
+    SetLane(one.burn, lane, from.burn);
+    Lane(one.y_m, lane) = from.y_m;
+    Lane(one.z_m, lane) = from.z_m;
+    const auto direction = [lane](Vector<T> & to, const Vector3& v) __attribute__((always_inline)) {
+      const double* const values = v.data();
+      Lane(to.x, lane) = values[0];
+      Lane(to.y, lane) = values[1];
+      Lane(to.z, lane) = values[2];
+    };
+    direction(one.along, from.along);
+    direction(one.first, from.first);
+    direction(one.second, from.second);
+    SetLane(one.burning, lane, false);
+  }
+}
+
+/// Adds the boosters' propellant, and says how their masses lie. Rates by mass and the place that mass comes
+/// from become such that the whole flow times them is what the stage's own flow does; the boosters' part is
+/// TurningOf.
+template <class T>
+DISPERSA_OUT_OF_LINE void AddApart(ApartBoosters<T>& a, T since_ignition_s, T flow_kg_s,
+                                   MassPropertiesLanes<T>& m) {
+  const T none(0.0), half(0.5), one(1.0);
+  T beside_kg(0.0), own_axial(0.0);
+  a.flow_kg_s = a.lateral_y_kg_m = a.lateral_z_kg_m = none;
+  a.mean_station_y_kg_m2 = a.mean_station_z_kg_m2 = a.about_y_kg_m2 = a.yz_kg_m2 = none;
+  for (int k = 0; k < a.count; ++k) {
+    ApartBooster<T>& b = a.each[k];
+    const BurnState<T> burn = BurnAt(b.burn, since_ignition_s);
+    b.fraction = Select(b.burning, burn.fraction, none);
+    b.flow_kg_s = Select(b.burning, b.burn.full_flow_kg_s * burn.flow_fraction, none);
+    b.kg = Select(b.burning, burn.propellant_kg, none);
+    a.flow_kg_s = a.flow_kg_s + b.flow_kg_s;
+    beside_kg = beside_kg + b.kg;
+    own_axial = own_axial + half * b.kg * Fma(-b.kg, a.inner_per_kg_m2, T(2.0) * a.outer2_m2);
+    const T all_kg = a.dry_kg + b.kg;
+    const T stations = Fma(b.kg, a.grain_station_m, a.dry_kg * a.dry_station_m);
+    a.lateral_y_kg_m = Fma(all_kg, b.y_m, a.lateral_y_kg_m);
+    a.lateral_z_kg_m = Fma(all_kg, b.z_m, a.lateral_z_kg_m);
+    a.mean_station_y_kg_m2 = Fma(stations, b.y_m, a.mean_station_y_kg_m2);
+    a.mean_station_z_kg_m2 = Fma(stations, b.z_m, a.mean_station_z_kg_m2);
+    a.about_y_kg_m2 = Fma(half * all_kg, b.z_m * b.z_m - b.y_m * b.y_m, a.about_y_kg_m2);
+    a.yz_kg_m2 = Fma(all_kg, b.y_m * b.z_m, a.yz_kg_m2);
+  }
+  for (T* sum : {&a.lateral_y_kg_m, &a.lateral_z_kg_m, &a.mean_station_y_kg_m2, &a.mean_station_z_kg_m2,
+                 &a.about_y_kg_m2, &a.yz_kg_m2})
+    *sum = Select(a.attached, *sum, none);
+  const T apart = beside_kg * a.radius2_m2;
+  const T old_cg = m.cg_station_m, old_kg = m.mass_kg;
+  m.mass_kg = old_kg + beside_kg;
+  m.cg_station_m = Fma(beside_kg, a.grain_station_m, old_kg * old_cg) / m.mass_kg;
+  m.axial_kg_m2 = m.axial_kg_m2 + own_axial + apart;
+  m.transverse_kg_m2 =
+      m.transverse_kg_m2 + old_kg * Square(m.cg_station_m - old_cg) +
+      Fma(half, own_axial + apart, beside_kg * (a.length2_m2 + Square(a.grain_station_m - m.cg_station_m)));
+  const T total_kg_s = a.flow_kg_s + flow_kg_s;
+  const T own = Select(total_kg_s > none, flow_kg_s / Select(total_kg_s > none, total_kg_s, one), one);
+  const T moved = Square(m.source_station_m - m.cg_station_m) - Square(m.source_station_m - old_cg);
+  m.axial_per_kg_m2 = own * m.axial_per_kg_m2;
+  m.transverse_per_kg_m2 = own * (m.transverse_per_kg_m2 + moved);
+  m.source_station_m = a.grain_station_m + own * (m.source_station_m - a.grain_station_m);
+}
+
+/// Forces of the boosters, with their moments about C at (cg_station, cg_y, cg_z), and the moment by which
+/// their flows turn the body. `angles`: sines and cosines of the deflections of their nozzles.
+template <class T>
+struct ApartLoads {
+  Vector<T> force_n, moment_n_m;
+  T thrust_n;
+};
+template <class T, class Bank>
+DISPERSA_OUT_OF_LINE ApartLoads<T> LoadsOfApart(const ApartBoosters<T>& a, const Bank* banks, T pressure_pa,
+                                                T cg_station_m, T cg_y_m, T cg_z_m, bool damps,
+                                                const Vector<T>& w) {
+  const T none(0.0), half(0.5);
+  ApartLoads<T> o{Zero<T>(), Zero<T>(), none};
+  for (int k = 0; k < a.count; ++k) {
+    const ApartBooster<T>& b = a.each[k];
+    const T net_n = Fma(b.burn.vacuum_thrust_n, b.fraction, -(pressure_pa * b.burn.exit_area_m2));
+    const T push_n = Select(b.burning & (net_n > none), net_n, none);
+    Vector<T> along = b.along;
+    if (a.turn_nozzles) {
+      const Bank& bank = banks[a.first_bank + k / kNozzles];
+      const int i = k % kNozzles;
+      const T cosine = bank.second.cosine[i];
+      along = (bank.first.cosine[i] * cosine) * b.along + (bank.first.sine[i] * cosine) * b.first +
+              bank.second.sine[i] * b.second;
+    }
+    const Vector<T> force = push_n * along;
+    const Vector<T> place{cg_station_m - a.nozzle_station_m, b.y_m - cg_y_m, b.z_m - cg_z_m};
+    o.thrust_n = o.thrust_n + push_n;
+    o.force_n = o.force_n + force;
+    o.moment_n_m = o.moment_n_m + Cross(place, force);
+    // J w of a kilogram at the bore about C, and what the flow takes out of the nozzle.
+    const T inner2 = Fma(-b.kg, a.inner_per_kg_m2, a.outer2_m2);
+    const Vector<T> grain{cg_station_m - a.grain_station_m, place.y, place.z};
+    const T across = Fma(half, inner2, a.length2_m2);
+    const Vector<T> spin =
+        Vector<T>{inner2 * w.x, across * w.y, across * w.z} + Cross(grain, Cross(w, grain));
+    const Vector<T> taken = damps ? Cross(place, Cross(w, place)) : Zero<T>();
+    o.moment_n_m = o.moment_n_m + b.flow_kg_s * (spin - taken);
+  }
+  return o;
+}
+
+/// The tensor of inertia about C.
+template <class T>
+struct Tensor {
+  T xx, yy, zz;
+  T xy, xz, yz;  ///< integrals of the products: the off-diagonal elements are their negatives
+};
+/// Of axial and transverse moments of a body whose boosters count as spread about the axis. `factor`: by
+/// which the flight's moments of inertia differ.
+template <class T>
+DISPERSA_INLINE Tensor<T> TensorOf(const ApartBoosters<T>& a, T axial_kg_m2, T transverse_kg_m2, T mass_kg,
+                                   T cg_station_m, T factor) {
+  const T y = a.lateral_y_kg_m / mass_kg, z = a.lateral_z_kg_m / mass_kg;
+  const T yy = a.lateral_y_kg_m * y, zz = a.lateral_z_kg_m * z;
+  return {axial_kg_m2 - factor * (yy + zz),
+          transverse_kg_m2 + factor * (a.about_y_kg_m2 - zz),
+          transverse_kg_m2 - factor * (a.about_y_kg_m2 + yy),
+          factor * Fma(cg_station_m, a.lateral_y_kg_m, -a.mean_station_y_kg_m2),
+          factor * Fma(cg_station_m, a.lateral_z_kg_m, -a.mean_station_z_kg_m2),
+          factor * Fma(-a.lateral_y_kg_m, z, a.yz_kg_m2)};
+}
+
+/// dw/dt of I dw/dt = `moment` - w x I w, by cofactors of I.
+template <class T>
+DISPERSA_INLINE Vector<T> TurnedUnder(const Tensor<T>& i, const Vector<T>& moment, const Vector<T>& w) {
+  const Vector<T> spin{i.xx * w.x - (i.xy * w.y + i.xz * w.z), i.yy * w.y - (i.xy * w.x + i.yz * w.z),
+                       i.zz * w.z - (i.xz * w.x + i.yz * w.y)};
+  const Vector<T> m = moment - Cross(w, spin);
+  const T c_xx = i.yy * i.zz - i.yz * i.yz, c_yy = i.xx * i.zz - i.xz * i.xz,
+          c_zz = i.xx * i.yy - i.xy * i.xy;
+  const T c_xy = i.xy * i.zz + i.xz * i.yz, c_xz = i.xz * i.yy + i.xy * i.yz,
+          c_yz = i.xx * i.yz + i.xy * i.xz;
+  const T inverse = T(1.0) / (i.xx * c_xx - (i.xy * c_xy + i.xz * c_xz));
+  return inverse * Vector<T>{c_xx * m.x + c_xy * m.y + c_xz * m.z, c_xy * m.x + c_yy * m.y + c_yz * m.z,
+                             c_xz * m.x + c_yz * m.y + c_zz * m.z};
+}
+
+}  // namespace DISPERSA_ISA
+}  // namespace dispersa::lanes

@@ -1,0 +1,106 @@
+// Boosters beside the first stage, as the vehicle file describes them.
+#pragma once
+
+#include <vector>
+
+#include "core/input/fields.h"
+#include "core/vehicle/bodies.h"
+#include "core/vehicle/gimbal.h"
+#include "core/vehicle/motor.h"
+
+namespace dispersa {
+
+/// Boosters at most.
+inline constexpr int kMaxBoosters = 8;
+
+/// Solid motors of one type beside the first stage, ignited with it. They leave together, after the last has
+/// burnt out and before the stage does, at rest against the body. The aerodynamics of the first stack include
+/// them and stay after they have left.
+///
+/// Without a list of angles they stand at equal angles and are all alike: one motor and one grain stand for
+/// them, and their nozzles are fixed along the axis. With it each is a body of its own: it has its place, its
+/// burn, its nozzle, and a centre of gravity off the vehicle's axis.
+struct Boosters {
+  int count = 0;                    ///< 0: none
+  double dry_mass_kg = 0.0;         ///< of one, a thin tube from top to bottom station
+  double propellant_mass_kg = 0.0;  ///< of one
+  double radius_m = 0.0;            ///< of their axes from the vehicle's
+  double diameter_m = 0.0;          ///< of one
+  double top_station_m = 0.0;
+  double bottom_station_m = 0.0;
+  double nozzle_station_m = 0.0;         ///< where the thrust acts
+  Motor motor;                           ///< of one
+  Grain grain;                           ///< of one, about its own axis
+  double separation_delay_s = 0.0;       ///< after burnout is detected
+  std::vector<double> angles_rad = {};   ///< of each, from body y towards body z (empty: all alike)
+  double cant_rad = 0.0;                 ///< by which the thrust is turned towards the vehicle's axis
+  Gimbal gimbal = {};                    ///< its drives (a limit of 0: the nozzles are fixed)
+  std::vector<double> towards_rad = {};  ///< their hinges, as of a Nozzle
+  bool steer_alone = false;              ///< the stage's own nozzles stay centred while they burn
+
+  /// Each is a body of its own.
+  bool are_apart() const { return !angles_rad.empty(); }
+  bool turn_nozzles() const { return gimbal.limit_rad > 0.0; }
+  /// Mass of all boosters with their propellant.
+  double LiftOffMass() const { return count * (dry_mass_kg + propellant_mass_kg); }
+};
+
+/// The drives of nozzles without pivots and delay of their own: a booster's.
+inline void DescribeDrives(Fields& fields, Boosters& boosters) {
+  Gimbal& gimbal = boosters.gimbal;
+  fields.Quantities("turns_towards", kAngle, Between(-2.0 * kPi, 2.0 * kPi), 1, 2, boosters.towards_rad,
+                    "for each hinge, the direction in which a positive angle turns the thrust, from body y "
+                    "towards body z");
+  fields.Quantity("limit", kAngle, Inside(0.0, kQuarterTurn), gimbal.limit_rad,
+                  "of each drive, and of the total deflection");
+  fields.Quantity("rate_limit", kAngularRate, kPositive, gimbal.rate_limit_rad_s, "of each drive");
+  fields.Quantity("bandwidth", kFrequency, kPositive, gimbal.bandwidth_rad_s,
+                  "natural frequency of the second-order actuator");
+  fields.Number("damping_ratio", kPositive, gimbal.damping_ratio, "of the actuator");
+  fields.Flag("steer_alone", boosters.steer_alone, false,
+              "the stage's own nozzles stay centred while any booster burns");
+}
+
+inline void Describe(Fields& fields, Boosters& boosters) {
+  const auto each = [&] {
+    fields.Quantities("angles", kAngle, Between(-2.0 * kPi, 2.0 * kPi), 1, kMaxBoosters, boosters.angles_rad,
+                      "place of each, from body y towards body z, in place of count; each flies as a body of "
+                      "its own");
+    if (!boosters.angles_rad.empty()) boosters.count = static_cast<int>(boosters.angles_rad.size());
+    fields.Quantity("cant", kAngle, {0.0, 0.25 * kPi, false, true}, boosters.cant_rad,
+                    "by which each thrust is turned towards the vehicle's axis", 0.0);
+    bool turn = boosters.turn_nozzles();
+    fields.OptionalMap("gimbal", turn, "drives of their nozzles, at nozzle_station; default: fixed",
+                       [&](Fields& gimbal) { DescribeDrives(gimbal, boosters); });
+  };
+  fields.Either({{Has("angles", kAngle), each, boosters.are_apart()},
+                 {Else(), [&] {
+                    constexpr const char* kAlike =
+                        "boosters without angles are all alike, with fixed nozzles";
+                    fields.Misplaced("cant", kAngle, kAlike, "angles_deg in place of count");
+                    fields.Misplaced("gimbal", {}, kAlike, "angles_deg in place of count");
+                    fields.Integer("count", 2, kMaxBoosters, boosters.count, "number of equal boosters");
+                  }}});
+  fields.Quantity("dry_mass", kMass, kPositive, boosters.dry_mass_kg,
+                  "of one: a thin tube from top to bottom station");
+  fields.Quantity("propellant_mass", kMass, kPositive, boosters.propellant_mass_kg, "of one");
+  fields.Quantity("radius", kLength, kPositive, boosters.radius_m, "from the vehicle's axis to theirs");
+  fields.Quantity("diameter", kLength, kPositive, boosters.diameter_m, "of one");
+  fields.Quantity("top_station", kLength, kNonNegative, boosters.top_station_m, "upper end");
+  fields.Quantity("bottom_station", kLength, kPositive, boosters.bottom_station_m, "lower end");
+  fields.Quantity("nozzle_station", kLength, kPositive, boosters.nozzle_station_m, "where the thrust acts");
+  fields.Map("motor", "of one; solid", [&](Fields& motor) {
+    motor.Either({{Has("liquid"),
+                   [&] {
+                     motor.Misplaced("liquid", {}, "boosters are solid",
+                                     "thrust_* with burning_time_*, or thrust_curve");
+                     DescribeExit(motor, boosters.motor);
+                   }},
+                  {Else(), [&] { DescribeSolid(motor, boosters.motor); }}});
+  });
+  fields.Map("grain", "of one, about its own axis", [&](Fields& grain) { Describe(grain, boosters.grain); });
+  fields.Quantity("separation_delay", kTime, kNonNegative, boosters.separation_delay_s,
+                  "from detected burnout of the last; before the stage separates", 0.0);
+}
+
+}  // namespace dispersa

@@ -1,0 +1,391 @@
+// Boosters that are bodies of their own: masses, forces and moments by hand, the equation of rotation with
+// all of it, sets that are not symmetric, burns that differ, nozzles that turn, and momentum at separation.
+#include <gtest/gtest.h>
+
+#include <algorithm>
+#include <array>
+#include <cmath>
+#include <vector>
+
+#include "core/dynamics/jettison.h"
+#include "core/flight/flight.h"
+#include "core/flight/tick_sample.h"
+#include "core/margins/linear_axis.h"
+#include "core/math/constants.h"
+#include "core/trajectory/ascent.h"
+#include "core/vehicle/mass.h"
+#include "tests/slv4_flight.h"
+#include "tests/unit/sample_vehicle.h"
+
+namespace dispersa::apart_boosters_test {
+namespace {
+
+constexpr double kDeg = kRadPerDeg;
+constexpr double kThrust_n = 20e3, kBurn_s = 20.0, kDry_kg = 100.0, kPropellant_kg = 500.0, kRadius_m = 0.9,
+                 kNozzle_m = 19.2, kCore_n = 200e3, kPivot_m = 19.5;
+
+// The sample vehicle, which flies in almost no air, with boosters at these angles.
+FlightDefinition Boosted(const std::vector<double>& angles_deg) {
+  FlightDefinition definition = HighDefinition();
+  Boosters& b = definition.vehicle.boosters;
+  b = {static_cast<int>(angles_deg.size()),
+       kDry_kg,
+       kPropellant_kg,
+       kRadius_m,
+       0.5,
+       14.0,
+       19.0,
+       kNozzle_m,
+       {},
+       {15.0, 18.0, 0.48, 0.2},
+       0.5};
+  b.motor.thrust_n = kThrust_n;
+  b.motor.burning_time_s = kBurn_s;
+  for (const double angle_deg : angles_deg) b.angles_rad.push_back(angle_deg * kDeg);
+  definition.vehicle.stages[0].liftoff_mass_kg += b.LiftOffMass();
+  definition.vehicle.jet_damping = true;
+  EXPECT_TRUE(Problems(definition.vehicle).empty());
+  return definition;
+}
+FlightDefinition Gimballed(const std::vector<double>& angles_deg, bool alone = false) {
+  FlightDefinition definition = Boosted(angles_deg);
+  Boosters& b = definition.vehicle.boosters;
+  b.gimbal.limit_rad = 5.0 * kDeg;
+  b.gimbal.rate_limit_rad_s = 20.0 * kDeg;
+  b.gimbal.bandwidth_rad_s = 30.0;
+  b.towards_rad = {90.0 * kDeg, 180.0 * kDeg};
+  b.steer_alone = alone;
+  EXPECT_TRUE(Problems(definition.vehicle).empty());
+  return definition;
+}
+
+std::vector<TickSample> Ticks(const FlightDefinition& definition, const FlightInputs& inputs,
+                              FlightResult* result = nullptr, Scheme scheme = Scheme::kSimpson) {
+  std::vector<TickSample> ticks;
+  FlightOptions options;
+  options.scheme = scheme;
+  options.observe = [&](const TickSample& s) { ticks.push_back(s); };
+  const FlightResult flown = Fly(FlightModel(definition), inputs, options);
+  if (result) *result = flown;
+  return ticks;
+}
+
+LauncherPhase Boosting(std::size_t count) {
+  LauncherPhase phase;
+  phase.burning = phase.boosting = true;
+  phase.boosters_burning = (1u << count) - 1u;
+  return phase;
+}
+
+struct Bodies {
+  double mass_kg;
+  Vector3 cg;  // station, y, z
+  Matrix3 inertia;
+};
+// The bare vehicle and its boosters as tubes at their places, by Huygens and Steiner, at a time of the burn.
+Bodies ByHand(const FlightDefinition& definition, const LauncherPlant& plant, double since_s) {
+  Vehicle core = definition.vehicle;
+  core.stages[0].liftoff_mass_kg -= core.boosters.LiftOffMass();
+  core.boosters = {};
+  const MassProperties own = BuildStackMasses(core)[0].At(plant.stacks[0].burn.Propellant(since_s));
+  struct Part {
+    double kg, axial, across;
+    Vector3 place;
+  };
+  std::vector<Part> parts = {{own.mass_kg, own.axial_inertia_kg_m2, own.transverse_inertia_kg_m2,
+                              Vector3(own.cg_station_m, 0.0, 0.0)}};
+  for (const EachBooster& one : plant.boosters->each) {
+    const double kg = one.burn.Propellant(since_s), outer2 = 0.24 * 0.24,
+                 inner2 = outer2 - kg / kPropellant_kg * (outer2 - 0.01), shell2 = 0.25 * 0.25;
+    parts.push_back(
+        {kDry_kg, kDry_kg * shell2, kDry_kg * (0.5 * shell2 + 25.0 / 12.0), Vector3(16.5, one.y_m, one.z_m)});
+    parts.push_back({kg, 0.5 * kg * (outer2 + inner2), kg * (0.25 * (outer2 + inner2) + 9.0 / 12.0),
+                     Vector3(16.5, one.y_m, one.z_m)});
+  }
+  Bodies all{0.0, Vector3::Zero(), Matrix3::Zero()};
+  for (const Part& part : parts) {
+    all.mass_kg += part.kg;
+    all.cg += part.kg * part.place;
+  }
+  all.cg /= all.mass_kg;
+  for (const Part& part : parts) {
+    Vector3 r = part.place - all.cg;
+    r.x() = -r.x();  // stations count aft
+    all.inertia += Matrix3(Vector3(part.axial, part.across, part.across).asDiagonal()) +
+                   part.kg * (r.squaredNorm() * Matrix3::Identity() - r * r.transpose());
+  }
+  return all;
+}
+
+TEST(ApartBoosters, MassesAreThoseOfTubesAtTheirPlaces) {
+  for (const auto& angles : {std::vector<double>{30.0}, {0.0, 70.0, 200.0}, {10.0, 190.0}}) {
+    const FlightDefinition definition = Boosted(angles);
+    FlightInputs inputs;
+    inputs.further_flow_factor[0] = inputs.further_thrust_factor[0] = 1.2;
+    const LauncherPlant plant = FlightModel(definition).PlantFor(inputs);
+    std::array<double, kLauncherSize> y{};
+    RigidBodyState s;
+    s.p_EoC_I = {Wgs84().equatorial_radius_m + 2e6, 0.0, 0.0};
+    WriteState(s, y.data());
+    for (const double since_s : {0.0, 7.0, 15.0}) {
+      const Bodies all = ByHand(definition, plant, since_s);
+      const LauncherInstant now = LauncherModel(plant).Evaluate(Boosting(angles.size()), since_s, y.data());
+      EXPECT_NEAR(now.loads.mass_kg, all.mass_kg, 1e-9 * all.mass_kg);
+      EXPECT_NEAR(now.cg_station_m, all.cg.x(), 1e-10 * all.cg.x());
+      EXPECT_NEAR((now.loads.inertia_kg_m2 - all.inertia).norm(), 0.0, 1e-9 * all.inertia.norm()) << since_s;
+    }
+    EXPECT_GT(std::fabs(ByHand(definition, plant, 0.0).inertia(1, 2)), 1.0);
+  }
+}
+
+// Forces about C by vector algebra; and I dw/dt + w x I w + dI/dt w + what the flows carry off = M, where
+// dI/dt is the difference of two tensors.
+TEST(ApartBoosters, ForcesAndTheEquationOfRotation) {
+  const std::vector<double> angles = {20.0, 130.0, 250.0};
+  FlightDefinition definition = Gimballed(angles);
+  definition.vehicle.boosters.cant_rad = 8.0 * kDeg;
+  FlightInputs inputs;
+  inputs.further_thrust_factor[1] = inputs.further_flow_factor[1] = 1.1;
+  inputs.further_misalignment_y_rad[2] = 0.01;
+  const FlightModel model(definition);
+  const LauncherPlant plant = model.PlantFor(inputs);
+  const LauncherModel equations(plant);
+  std::array<double, kLauncherSize> y{}, dydt{};
+  RigidBodyState s;
+  s.p_EoC_I = {Wgs84().equatorial_radius_m + 2e6, 0.0, 0.0};
+  const Vector3 w(0.03, -0.05, 0.04);
+  s.w_IB_B = w;
+  WriteState(s, y.data());
+  const double a[3] = {0.03, -0.02, 0.05}, b[3] = {0.01, 0.04, -0.03};
+  for (int k = 0; k < 3; ++k)
+    for (const int hinge : {0, 1})
+      y[static_cast<std::size_t>(AngleOf(DriveOf(kNozzles + k, hinge)))] = hinge == 0 ? a[k] : b[k];
+  const double since_s = 6.0, h_s = 1e-3;
+  const LauncherPhase phase = Boosting(3);
+  const Bodies all = ByHand(definition, plant, since_s);
+  Vector3 force(kCore_n, 0.0, 0.0);
+  Vector3 moment = Vector3(all.cg.x() - kPivot_m, -all.cg.y(), -all.cg.z()).cross(force);
+  const double core_kg_s = plant.stacks[0].burn.full_flow_kg_s, lever = all.cg.x() - kPivot_m;
+  Vector3 carried = core_kg_s * Vector3(0.16 * w.x(), lever * lever * w.y(), lever * lever * w.z());
+  for (int k = 0; k < 3; ++k) {
+    const double at = angles[static_cast<std::size_t>(k)] * kDeg, factor = k == 1 ? 1.1 : 1.0;
+    const Vector3 out(0.0, std::cos(at), std::sin(at));
+    // About the axis that turns x towards the vehicle's axis.
+    Matrix3 turn = Eigen::AngleAxisd(8.0 * kDeg, Vector3::UnitX().cross(-out)).toRotationMatrix();
+    if (k == 2) turn = Eigen::AngleAxisd(0.01, Vector3::UnitZ()) * turn;
+    const Vector3 push =
+        factor * kThrust_n * turn *
+        Vector3(std::cos(a[k]) * std::cos(b[k]), -std::sin(b[k]), std::sin(a[k]) * std::cos(b[k]));
+    const Vector3 arm(all.cg.x() - kNozzle_m, kRadius_m * out.y() - all.cg.y(),
+                      kRadius_m * out.z() - all.cg.z());
+    force += push;
+    moment += arm.cross(push);
+    carried += factor * kPropellant_kg / kBurn_s * arm.cross(w.cross(arm));
+  }
+  const LauncherInstant now = equations.Evaluate(phase, since_s, y.data());
+  Vector3 felt = now.loads.force_n;
+  // Coriolis's force on the flow across the axis.
+  felt.y() = force.y();
+  felt.z() = force.z();
+  EXPECT_NEAR((felt - force).norm(), 0.0, 1e-6);
+  const Matrix3 rate =
+      (ByHand(definition, plant, since_s + h_s).inertia - ByHand(definition, plant, since_s - h_s).inertia) /
+      (2.0 * h_s);
+  equations.Derivative(phase, since_s, y.data(), dydt.data());
+  const Vector3 expected = all.inertia.inverse() * (moment - w.cross(all.inertia * w) - rate * w - carried);
+  const Vector3 is = ReadState(dydt.data()).w_IB_B;
+  // The stage's own flow counts as if C, which is 6 mm beside it, were on the axis.
+  EXPECT_NEAR((is - expected).norm(), 0.0, 1e-4 * expected.norm());
+  EXPECT_GT((all.inertia.inverse() * carried).norm(), 1e-3 * expected.norm()) << "the flows count";
+}
+
+// Four at equal angles with nothing to tell them apart: what the model of boosters all alike says.
+TEST(ApartBoosters, AllAlikeFlyAsOneMotorDoes) {
+  FlightInputs inputs;
+  inputs.thrust_misalignment_rad = AllStages(0.2 * kDeg);
+  inputs.cg_offset_m[0] = 0.01;
+  const FlightDefinition apart = Boosted({0.0, 90.0, 180.0, 270.0});
+  FlightDefinition together = apart;
+  together.vehicle.boosters.angles_rad = {};
+  FlightResult one, many;
+  const auto a = Ticks(together, inputs, &one), b = Ticks(apart, inputs, &many);
+  ASSERT_EQ(one.outcome, Outcome::kCompleted) << one.reason;
+  ASSERT_EQ(a.size(), b.size());
+  double rates = 0.0, speeds = 0.0;
+  for (std::size_t i = 0; i < a.size(); ++i) {
+    rates = std::max(rates, (a[i].state.w_IB_B - b[i].state.w_IB_B).norm());
+    speeds = std::max(speeds, (a[i].state.v_IC_I - b[i].state.v_IC_I).norm());
+  }
+  EXPECT_LT(rates, 1e-7);
+  EXPECT_LT(speeds, 1e-5);
+}
+
+// A burn rate of f: thrust and flow times f, time over f, the same impulse. Which one burns a history says;
+// they leave together, after the last.
+TEST(ApartBoosters, BurnRatesMoveThrustAndBurnoutAtConstantImpulse) {
+  const FlightDefinition definition = Boosted({0.0, 180.0});
+  FlightInputs inputs;
+  inputs.further_thrust_factor[0] = inputs.further_flow_factor[0] = 1.05;
+  const LauncherPlant plant = FlightModel(definition).PlantFor(inputs);
+  const MotorBurn &fast = plant.boosters->each[0].burn, &slow = plant.boosters->each[1].burn;
+  EXPECT_NEAR(fast.vacuum_thrust_n, 1.05 * kThrust_n, 1e-9);
+  EXPECT_NEAR(fast.duration_s, kBurn_s / 1.05, 1e-12);
+  EXPECT_NEAR(fast.vacuum_thrust_n * fast.duration_s, slow.vacuum_thrust_n * slow.duration_s, 1e-6);
+  FlightResult result;
+  const auto ticks = Ticks(definition, inputs, &result);
+  ASSERT_EQ(result.outcome, Outcome::kCompleted) << result.reason;
+  int trimmed = 0;
+  double alone_moment = 0.0;
+  for (const TickSample& s : ticks) {
+    if (s.stack != 0 || !s.burning) continue;
+    const unsigned expected = (s.time_s < kBurn_s / 1.05 ? 1u : 0u) | (s.time_s < kBurn_s ? 2u : 0u);
+    if (std::fabs(s.time_s - kBurn_s) > 0.005) {
+      EXPECT_EQ(s.boosters_burning, expected) << s.time_s;
+    }
+    EXPECT_EQ((s.jettisoned & kBoostersGone) != 0, s.time_s > kBurn_s + 0.495) << s.time_s;
+    const Bodies all = ByHand(definition, plant, s.since_ignition_s);
+    if (s.time_s > 10.0 && s.time_s < 18.0) {
+      // Trimmed: of the cross's nozzles bottom and top turn in yaw, half of the thrust.
+      const double boost = kRadius_m * 0.05 * kThrust_n - all.cg.y() * (2.05 * kThrust_n);
+      const double lever_m = kPivot_m - all.cg.x();
+      double core = -all.cg.y() * kCore_n;
+      for (const std::size_t k : {2u, 3u}) core -= lever_m * 0.25 * kCore_n * std::sin(s.nozzle_rad[k]);
+      EXPECT_NEAR(boost + core, 0.0, 0.04 * std::fabs(boost)) << s.time_s;
+      ++trimmed;
+    }
+    if (s.time_s > kBurn_s / 1.05 + 0.1 && s.time_s < kBurn_s - 0.1)
+      alone_moment = std::max(alone_moment, std::fabs(s.error.angle_rad.z()));
+  }
+  EXPECT_GT(trimmed, 500);
+  EXPECT_GT(alone_moment, 0.01 * kDeg) << "the moment of the one that burns on shows";
+}
+
+// One booster alone: its thrust beside the axis, and a centre of gravity that it pulls over, are trimmed.
+TEST(ApartBoosters, AnOddOneIsTrimmed) {
+  const FlightDefinition definition = Boosted({90.0});
+  FlightResult result;
+  const auto ticks = Ticks(definition, {}, &result);
+  ASSERT_EQ(result.outcome, Outcome::kCompleted) << result.reason;
+  const LauncherPlant plant = FlightModel(definition).PlantFor({});
+  int seen = 0;
+  for (const TickSample& s : ticks) {
+    if (s.stack != 0 || s.time_s < 8.0 || s.time_s > 18.0) continue;
+    const Bodies all = ByHand(definition, plant, s.since_ignition_s);
+    const double lever_m = kPivot_m - all.cg.x();
+    // About y: z F.
+    double moment = (kRadius_m - all.cg.z()) * kThrust_n - all.cg.z() * kCore_n;
+    const double boost = moment;
+    for (const std::size_t k : {0u, 1u}) moment += lever_m * 0.25 * kCore_n * std::sin(s.nozzle_rad[k]);
+    EXPECT_NEAR(moment, 0.0, 0.04 * boost);
+    EXPECT_GT(std::fabs(s.nozzle_rad[0]), 0.5 * kDeg);
+    ++seen;
+  }
+  EXPECT_GT(seen, 500);
+}
+
+// What the autopilot takes for the effectiveness is the derivative of the equations of motion: with all
+// drives, and where the stage's own nozzles stay centred. After the burnout it is the stage's.
+TEST(ApartBoosters, EffectivenessIsTheDerivativeOfTheMotion) {
+  for (const bool alone : {false, true}) {
+    const FlightModel model(Gimballed({0.0, 90.0, 180.0, 270.0}, alone));
+    FlightResult result;
+    const auto ticks = Ticks(model.definition(), {}, &result);
+    ASSERT_EQ(result.outcome, Outcome::kCompleted) << result.reason;
+    int seen = 0;
+    for (const TickSample& s : ticks) {
+      if (s.stack != 0 || !s.burning || std::fabs(std::remainder(s.time_s - 5.0, 10.0)) > 0.001) continue;
+      const StageControl& control = model.autopilot().stages[0];
+      for (const Axis axis : {kRoll, kPitch, kYaw}) {
+        const AxisPlant linear = LineariseAxis(model.nominal_plant(), s, axis, model.sensors());
+        const double table = (axis == kRoll ? control.roll_effectiveness_1_s2
+                                            : control.pitch_effectiveness_1_s2)(s.since_ignition_s);
+        EXPECT_NEAR(linear.a(1, 2), table, 5e-3 * table) << alone << " " << axis << " " << s.time_s;
+      }
+      ++seen;
+    }
+    EXPECT_GE(seen, 4);
+    bool core_turns = false, boosters_turn = false;
+    for (const TickSample& s : ticks) {
+      if (s.stack != 0 || !s.boosting) continue;
+      core_turns |= s.nozzle_rad[0] != 0.0;
+      boosters_turn |= s.nozzle_rad[kDrives] != 0.0;
+    }
+    EXPECT_EQ(core_turns, !alone);
+    EXPECT_TRUE(boosters_turn);
+  }
+}
+
+// The judges integrate the same equations by other means.
+TEST(ApartBoosters, JudgesFlyTheSameFlight) {
+  FlightDefinition definition = Gimballed({15.0, 195.0});
+  definition.vehicle.boosters.cant_rad = 6.0 * kDeg;
+  FlightInputs inputs;
+  inputs.further_thrust_factor[1] = inputs.further_flow_factor[1] = 1.03;
+  inputs.further_misalignment_z_rad[0] = 0.004;
+  const auto engine = Ticks(definition, inputs),
+             judge = Ticks(definition, inputs, nullptr, Scheme::kRungeKutta4);
+  ASSERT_EQ(engine.size(), judge.size());
+  double apart = 0.0;
+  for (std::size_t i = 0; i < engine.size() && engine[i].time_s < 40.0; ++i)
+    apart = std::max(apart, (engine[i].state.w_IB_B - judge[i].state.w_IB_B).norm());
+  EXPECT_LT(apart, 2e-6);
+  EXPECT_GT(engine.size(), 4000u);
+}
+
+// At rest against the body: mass, momentum and centre of all parts are kept, of a set beside the axis too.
+TEST(ApartBoosters, SeparationKeepsMomentum) {
+  const FlightDefinition definition = Boosted({30.0, 100.0});
+  const LauncherPlant plant = FlightModel(definition).PlantFor({});
+  RigidBodyState s;
+  s.p_EoC_I = {7e6, 1e5, -2e5};
+  s.v_IC_I = {100.0, 7000.0, 50.0};
+  s.w_IB_B = {0.01, -0.02, 0.03};
+  s.q_IB = FromRotationVector(Vector3(0.3, -0.7, 0.2));
+  const double since_s = 21.0, propellant_kg = plant.stacks[0].burn.Propellant(since_s);
+  const RigidBodyState left = AfterJettison(plant, 0, 0u, kBoostersGone, propellant_kg, since_s, s);
+  const Bodies all = ByHand(definition, plant, since_s);
+  const double left_kg = all.mass_kg - 2.0 * kDry_kg;
+  Vector3 momentum = left_kg * left.v_IC_I, place = left_kg * (left.p_EoC_I - s.p_EoC_I);
+  for (const EachBooster& one : plant.boosters->each) {
+    const RigidBodyState shell =
+        AtPoint(s, Vector3(all.cg.x() - 16.5, one.y_m - all.cg.y(), one.z_m - all.cg.z()));
+    momentum += kDry_kg * shell.v_IC_I;
+    place += kDry_kg * (shell.p_EoC_I - s.p_EoC_I);
+  }
+  EXPECT_NEAR((momentum - all.mass_kg * s.v_IC_I).norm(), 0.0, 1e-7 * momentum.norm() * 1e-3);
+  EXPECT_NEAR(place.norm() / all.mass_kg, 0.0, 1e-8);
+  EXPECT_GT((left.p_EoC_I - s.p_EoC_I).norm(), 1e-2);
+}
+
+// The optimiser's point mass takes the thrust along the axis.
+TEST(ApartBoosters, CantedFlyInThreeAndSixDegreesOfFreedom) {
+  FlightDefinition definition = Slv4Definition(DISPERSA_CAMPAIGNS);
+  definition.vehicle = LoadVehicle(DISPERSA_CAMPAIGNS "/vehicles/slv4.yaml");
+  Boosters& b = definition.vehicle.boosters;
+  b = {2, 150.0, 900.0, 0.97, 0.62, 21.0, 26.5, 26.4, {}, {22.0, 24.05, 0.6, 0.2}, 0.5};
+  b.motor.thrust_n = 80e3;
+  b.motor.burning_time_s = 30.0;
+  b.angles_rad = {90.0 * kDeg, 270.0 * kDeg};
+  b.cant_rad = 12.0 * kDeg;
+  definition.vehicle.stages[0].liftoff_mass_kg += b.LiftOffMass();
+  AscentOptions options;
+  options.record = true;
+  const FlightProgram program = LoadReference(DISPERSA_CAMPAIGNS "/references/slv4_500km.yaml").program;
+  const AscentResult ascent = FlyAscent(BuildAscentModel(definition.vehicle, 0.01), program, options);
+  ASSERT_TRUE(ascent.completed);
+  definition.program = ascent.attitude;
+  definition.last_ignition_s = ascent.last_ignition_s;
+  double thrust_n = 0.0;
+  FlightOptions watching;
+  watching.observe = [&](const TickSample& s) {
+    if (s.time_s == 0.0) thrust_n = s.instant.loads.force_n.x();
+  };
+  const FlightResult flown = Fly(FlightModel(definition), {}, watching);
+  ASSERT_EQ(flown.outcome, Outcome::kCompleted) << flown.reason;
+  EXPECT_NEAR(thrust_n, 593e3 + 2.0 * 80e3 * std::cos(12.0 * kDeg), 1.0);
+  EXPECT_NEAR(MetricOf(flown, "injection_velocity_m_s"), ascent.orbit.velocity_m_s, 2.0);
+  EXPECT_NEAR(MetricOf(flown, "injection_altitude_km"), 1e-3 * ascent.orbit.altitude_m, 2.0);
+}
+
+}  // namespace
+}  // namespace dispersa::apart_boosters_test
