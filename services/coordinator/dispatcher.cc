@@ -56,7 +56,7 @@ void Dispatcher::On(const std::string& sender, const WorkerStatus& status, doubl
     return;
   }
   if (status.coordinator_epoch > epoch_) {
-    LeaveToYounger(status.worker);
+    LeaveToYounger(status.worker, now_s);
     return;
   }
   led_by_younger_.erase(status.worker);
@@ -80,7 +80,8 @@ void Dispatcher::On(const std::string& sender, const WorkerStatus& status, doubl
 
 // Another host took our place. This worker ignores our orders while it hears the younger coordinator. Empty
 // orders let it come back when that one is silent.
-void Dispatcher::LeaveToYounger(const std::string& worker) {
+void Dispatcher::LeaveToYounger(const std::string& worker, double now_s) {
+  led_s_ = now_s;
   const bool is_news = led_by_younger_.size() < kMaxRemembered && led_by_younger_.insert(worker).second;
   if (workers_.contains(worker)) Lose(worker, WorkerEnd::kLeft, "it follows a younger coordinator");
   if (is_news) {
@@ -347,6 +348,7 @@ std::optional<TextPart> Dispatcher::On(const TextRequest& request, std::size_t l
 }
 
 bool Dispatcher::ReceivesReports(double now_s) const {
+  if (led_s_ && now_s - *led_s_ <= options_.silence_s) return true;  // they fly for another coordinator
   return std::any_of(workers_.begin(), workers_.end(), [now_s](const auto& each) {
     return now_s - each.second.last_report_s <= each.second.report_due_s;
   });

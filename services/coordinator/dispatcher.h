@@ -135,7 +135,7 @@ class Dispatcher {
   };
 
   bool Join(const std::string& sender, const WorkerStatus& status, double now_s);
-  void LeaveToYounger(const std::string& worker);
+  void LeaveToYounger(const std::string& worker, double now_s);
   void Refuse(const std::string& worker, const std::string& reason);
   /// Whether a result that it returned is to be looked at any further.
   bool MayReturn(const std::string& sender, const Report& report, const FlownCase& flown, CampaignBook& book);
@@ -167,6 +167,7 @@ class Dispatcher {
   std::map<std::string, Worker> workers_;
   std::set<std::string> supervised_;
   std::set<std::string> led_by_younger_;         ///< workers that follow a coordinator of a larger epoch
+  std::optional<double> led_s_;                  ///< when one of them was heard last
   std::map<std::string, std::string> refused_;   ///< worker -> why; told again whenever it speaks
   std::map<std::string, std::string> expelled_;  ///< the name of its keys, or of a worker without keys -> why
   std::set<std::string> ended_;  ///< supervised workers that ended: later messages from them are old

@@ -14,6 +14,8 @@ std::uint64_t NextEpoch();
 
 /// The same, but more than that of the last start on this data directory. The number is stored there, so it
 /// also holds for a copy on another host. A failure to store it is logged.
-std::uint64_t NextEpoch(const std::filesystem::path& data);
+/// `by_itself`: the watchdog started this coordinator again. Then it is younger than before, and older than
+/// another host that somebody started in its place meanwhile.
+std::uint64_t NextEpoch(const std::filesystem::path& data, bool by_itself = false);
 
 }  // namespace dispersa

@@ -155,7 +155,7 @@ ExitCode ServeCampaign(const ServeOptions& options, const RunRequest& request,
 // Workers stay when it ends: another coordinator on the same data takes them over.
 int ServeClients(const ServeOptions& options, const ClientOptions& clients) {
   MakeDataFolder(clients.data);
-  Coordinator coordinator(options.network, options.audit, NextEpoch(clients.data));
+  Coordinator coordinator(options.network, options.audit, NextEpoch(clients.data, IsStartedByItself()));
   ServiceOptions service_options;
   service_options.data = clients.data;
   service_options.max_cases = clients.max_cases;

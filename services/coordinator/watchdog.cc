@@ -5,6 +5,7 @@
 #include <unistd.h>
 
 #include <chrono>
+#include <cstdlib>
 #include <cstring>
 #include <utility>
 
@@ -12,6 +13,7 @@ namespace dispersa {
 namespace {
 
 constexpr std::chrono::milliseconds kPeriod(250);
+constexpr char kByItself[] = "DISPERSA_STARTED_BY_ITSELF";
 
 /// Returns only if it fails.
 void StartAgain(std::vector<std::string>& arguments) {
@@ -20,11 +22,18 @@ void StartAgain(std::vector<std::string>& arguments) {
   words.push_back(nullptr);
   // Sockets, whose ports the new program needs, and locks.
   close_range(3, ~0U, CLOSE_RANGE_CLOEXEC);
+  setenv(kByItself, "1", 1);
   execv("/proc/self/exe", words.data());
   LogError("the program cannot be started again: {}", std::strerror(errno));
 }
 
 }  // namespace
+
+bool IsStartedByItself() {
+  const bool is = std::getenv(kByItself) != nullptr;
+  unsetenv(kByItself);
+  return is;
+}
 
 bool RestartRule::Check(double now_s, bool receives, bool has_work, long rounds) {
   if (rounds != rounds_) {

@@ -25,6 +25,9 @@ class RestartRule {
   long rounds_ = -1;
 };
 
+/// Whether a watchdog started this program; asked once, before any thread starts.
+bool IsStartedByItself();
+
 /// A coordinator may be restarted at any moment: its state is on its disk, or its workers repeat it until it
 /// is. A restart also ends locks and stale connections inside the middleware. The watchdog has a thread of
 /// its own, because the message thread may hang.

@@ -2,6 +2,7 @@
 
 #include <fmt/format.h>
 
+#include <algorithm>
 #include <atomic>
 #include <chrono>
 #include <map>
@@ -15,6 +16,7 @@ namespace {
 
 using Clock = std::chrono::steady_clock;
 constexpr std::chrono::seconds kPause(1);
+constexpr std::size_t kMaxRemembered = 1000;
 
 struct Kind {
   Clock::time_point quiet_until;
@@ -23,9 +25,23 @@ struct Kind {
 
 Mutex mutex;
 std::map<std::string, Kind> kinds DISPERSA_GUARDED_BY(mutex);  // few: those that this program names
+RepeatedComplaints repeated DISPERSA_GUARDED_BY(mutex);
 std::atomic<std::uint64_t> total = 0;
 
+double Now_s() { return std::chrono::duration<double>(Clock::now().time_since_epoch()).count(); }
+
 }  // namespace
+
+bool RepeatedComplaints::IsDue(const std::string& complaint, double now_s) {
+  if (said_.size() >= kMaxRemembered && !said_.contains(complaint)) said_.clear();
+  const auto [found, is_new] = said_.try_emplace(complaint, Said{now_s, 1.0});
+  Said& said = found->second;
+  if (is_new) return true;
+  if (now_s - said.at_s < said.pause_s) return false;
+  const bool goes_on = now_s - said.at_s < 2.0 * said.pause_s + kLongest_s;
+  said = {now_s, goes_on ? std::min(2.0 * said.pause_s, kLongest_s) : 1.0};
+  return true;
+}
 
 void Complain(const std::string& kind, const std::string& sender, const std::string& what) {
   ++total;
@@ -34,7 +50,7 @@ void Complain(const std::string& kind, const std::string& sender, const std::str
     const Lock lock(mutex);
     Kind& known = kinds[kind];
     const auto now = Clock::now();
-    if (now < known.quiet_until) {
+    if (now < known.quiet_until || !repeated.IsDue(kind + sender + what, Now_s())) {
       ++known.unsaid;
       return;
     }

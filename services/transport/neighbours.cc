@@ -19,7 +19,8 @@ namespace rtps = eprosima::fastrtps::rtps;
 
 constexpr std::chrono::seconds kHandshakePatience(5);
 constexpr std::size_t kMostHandshakes = 1024;  // strangers may make up participants without end
-constexpr char kBadKeys[] = "its keys are of another authority, expired or damaged";
+constexpr char kBadKeys[] =
+    "its keys are of another authority, expired or damaged, or the first contact with it was interrupted";
 
 std::string WhoIs(const rtps::ParticipantProxyData& participant) {
   const auto& addresses = participant.metatraffic_locators.unicast;

@@ -103,7 +103,7 @@ std::string Drivers(const CampaignRow& a, const CampaignRow& b, const CampaignFi
   };
   HtmlTable table({{"Metric"}, {"A"}, {"B"}});
   for (const std::string& metric : metrics) table.Row({Code(metric), list(of_a, metric), list(of_b, metric)});
-  return table.Html("drivers");
+  return table.Html("causes");
 }
 
 }  // namespace

@@ -17,6 +17,8 @@ namespace dispersa {
 namespace {
 
 constexpr std::chrono::milliseconds kRound(50);
+// Hundreds of workers wait on one machine. Messages of the coordinator wake them.
+constexpr std::chrono::milliseconds kIdleRound(200);
 constexpr std::chrono::milliseconds kFarewell(500);
 constexpr double kSayAgain_s = 10.0;
 /// A drained worker waits so long for its last results to be stored.
@@ -39,10 +41,10 @@ Worker::Worker(const WorkerOptions& options)
 WorkerExit Worker::Run() {
   // Detached: a flight cannot be interrupted, so waiting for these threads could take too long.
   for (std::uint32_t i = 0; i < options_.slots; ++i) std::thread([this] { FlyForEver(); }).detach();
-  for (;;) {
+  for (bool is_idle = false;;) {
     std::vector<WorkerEvent> events;
     if (link_) {
-      events = link_->Wait(kRound);
+      events = link_->Wait(is_idle ? kIdleRound : kRound);
     } else {
       std::this_thread::sleep_for(kRound);
     }
@@ -60,8 +62,9 @@ WorkerExit Worker::Run() {
       }
       due = desk_.Tick(now_s);
       text = desk_.TakeText();
+      is_idle = desk_.IsIdle() && !desk_.draining();
     }
-    work_.notify_all();
+    if (!events.empty()) work_.notify_all();
     // Apart from this thread, which must go on saying that it lives.
     if (text) std::thread([this, text = *std::move(text)] { Load(text); }).detach();
     Send(due);

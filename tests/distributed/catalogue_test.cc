@@ -81,6 +81,8 @@ TEST_F(CatalogueTest, EachStartHasALargerNumberAlsoWhenTheClockIsSetBack) {
   const std::uint64_t first = NextEpoch(root_), second = NextEpoch(root_);
   EXPECT_GT(first, 1'700'000'000'000'000u) << "microseconds since 1970";
   EXPECT_GT(second, first);
+  EXPECT_EQ(NextEpoch(root_, true), second + 1)
+      << "younger than itself, older than who was started meanwhile";
   std::ofstream(root_ / kEpochFile) << "9000000000000000\n";  // a clock that was far ahead
   EXPECT_EQ(NextEpoch(root_), 9000000000000001u);
   EXPECT_EQ(NextEpoch(root_), 9000000000000002u);

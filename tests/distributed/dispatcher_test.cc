@@ -124,6 +124,9 @@ TEST_F(DispatcherTest, LeavesWorkersToAYoungerCoordinatorWhileTheyFollowIt) {
   EXPECT_EQ(empty.refusal, "");
   dispatcher_.On("s", Report{"w", kEpoch + 1, 1, kFlight, {{7, ResultOf(0)}}, {}}, 0.6);
   EXPECT_EQ(Progress().done, 0u) << "its results are the other one's";
+  EXPECT_TRUE(dispatcher_.ReceivesReports(3.0))
+      << "no reason to start again, which would make it the youngest";
+  EXPECT_FALSE(dispatcher_.ReceivesReports(4.0)) << "now it hears nobody";
   dispatcher_.On("s", Status(), 6.0);  // the younger one is silent, and it follows this one again
   EXPECT_EQ(Tick(6.0).assignments.size(), 1u);
 }

@@ -4,6 +4,10 @@
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
+#include <string>
+
+#include "services/transport/complaints.h"
+
 namespace dispersa::log_limits_test {
 namespace {
 
@@ -22,6 +26,24 @@ TEST(LogLimits, OfOneKindSixtyLinesAMinuteAndThenTheirCount) {
               ElementsAre("… and 312 more like it in the last minute: worker w371 joined"));
   EXPECT_THAT(limits.TakeCounts(200.0), IsEmpty()) << "said once";
   EXPECT_TRUE(limits.Take("worker {} joined", "worker w1 joined", 201.0));
+}
+
+// A worker of another user beside a coordinator for a day: some lines, and no thousands.
+TEST(RepeatedComplaintsTest, TheSameIsSaidEverLessOften) {
+  RepeatedComplaints complaints;
+  int said = 0;
+  for (int second = 0; second < 86400; ++second) said += complaints.IsDue("a", second);
+  EXPECT_LE(said, 1450) << "once a minute";
+  EXPECT_GE(said, 1430);
+  EXPECT_TRUE(complaints.IsDue("b", 86400.0)) << "another one is said at once";
+  EXPECT_FALSE(complaints.IsDue("b", 86400.5));
+  EXPECT_TRUE(complaints.IsDue("b", 86401.0));
+  EXPECT_FALSE(complaints.IsDue("b", 86402.5));
+  EXPECT_TRUE(complaints.IsDue("b", 86403.0));
+  EXPECT_TRUE(complaints.IsDue("b", 90000.0)) << "it had ended";
+  EXPECT_TRUE(complaints.IsDue("b", 90001.0)) << "and begins again";
+  for (int i = 0; i < 100'000; ++i) complaints.IsDue(std::to_string(i), 1e6);
+  EXPECT_LE(complaints.remembered(), 1000u) << "of many senders";
 }
 
 TEST(LogLimits, ALineWithoutAKindIsAlwaysWritten) {

@@ -35,7 +35,8 @@ CaseResult MadeUp(std::uint64_t case_index, const CaseDesign& design) {
 }
 
 /// Until it is told to leave.
-void Work(const NetworkOptions& network, const std::vector<Peer>& peers, std::uint32_t slots) {
+void Work(const NetworkOptions& network, const std::vector<Peer>& peers, std::uint32_t slots,
+          double flight_s) {
   const auto start = std::chrono::steady_clock::now();
   const auto now_s = [&] {
     return std::chrono::duration<double>(std::chrono::steady_clock::now() - start).count();
@@ -43,9 +44,11 @@ void Work(const NetworkOptions& network, const std::vector<Peer>& peers, std::ui
   const std::string uuid = NameOnNetwork(network, MakeUuid());
   FlightDesk desk({.worker = uuid, .engine_version = EngineVersion(), .slots = slots}, 0.0);
   std::optional<CaseDesign> design;  // of its one campaign
+  std::optional<Job> flying;
+  const std::chrono::milliseconds pause(flight_s > 0.0 ? 1 : 20);
   std::optional<WorkerLink> link(std::in_place, network, peers, uuid);
   while (!desk.left() && desk.refusal().empty()) {
-    for (const WorkerEvent& event : link->Wait(std::chrono::milliseconds(20))) {
+    for (const WorkerEvent& event : link->Wait(pause)) {
       if (const auto* orders = std::get_if<Orders>(&event)) {
         desk.On(*orders, now_s());
       } else {
@@ -56,9 +59,11 @@ void Work(const NetworkOptions& network, const std::vector<Peer>& peers, std::ui
       design.emplace(ParseCampaign(text->text, text->name));
       desk.Loaded(text->flight_id, nullptr, "");
     }
-    while (const auto job = desk.Next(now_s())) {
+    while (flying || (flying = desk.Next(now_s()))) {
       for (const Report& report : desk.TakeReports(now_s())) link->Send(report);
-      desk.Done(*job, MadeUp(job->case_index, *design), now_s());
+      if (now_s() < flying->started_s + flight_s) break;
+      desk.Done(*flying, MadeUp(flying->case_index, *design), now_s());
+      flying.reset();
     }
     const FlightDesk::Due due = desk.Tick(now_s());
     if (due.status) {
@@ -87,10 +92,12 @@ int main(int argc, char** argv) {
   app.add_option("--address", network.address);
   app.add_option("--slots", slots);
   app.add_option("--keys", admission.keys);
+  double flight_ms = 0.0;
+  app.add_option("--flight-ms", flight_ms, "pretends that a flight takes so long; default: none");
   CLI11_PARSE(app, argc, argv);
   try {
     const std::vector<Peer> peers = ParsePeers(peer, network.domain);
-    Work(Admit(network, admission, {Role::kWorker}, FarthestHost(peers)), peers, slots);
+    Work(Admit(network, admission, {Role::kWorker}, FarthestHost(peers)), peers, slots, 1e-3 * flight_ms);
   } catch (const NetworkError& error) {
     LogError("{}", error.what());
     return 2;
