@@ -268,8 +268,8 @@ std::vector<std::string> KeyMetrics(const Campaign& campaign) {
   for (const Requirement& requirement : campaign.requirements)
     if (!requirement.by_default) add(requirement.metric);
   for (const OwnMetric& metric : campaign.own_metrics) add(metric.name);
-  for (const Metric& metric : Metrics())
-    if (metric.is_usual) add(metric.name);
+  for (const std::size_t i : MeasuredMetrics(campaign))
+    if (i < Metrics().size() && Metrics()[i].is_usual) add(Metrics()[i].name);
   return metrics;
 }
 

@@ -13,6 +13,7 @@
 #include "core/control/autopilot_config.h"
 #include "core/environment/wind.h"
 #include "core/environment/wind_statistics.h"
+#include "core/flight/flight_course.h"
 #include "core/flight/flight_inputs.h"
 #include "core/flight/own_metrics.h"
 #include "core/guidance/guidance_config.h"
@@ -118,6 +119,7 @@ struct Campaign {
   AutopilotConfig autopilot;
   Reference reference;
   GuidanceConfig guidance;
+  FlightCourse course;
   Sampling sampling;
   std::vector<Dispersion> dispersions;
   std::vector<DerivedInput> derived;              ///< set after all draws of a case

@@ -9,6 +9,14 @@
 
 namespace dispersa {
 
+namespace {
+
+FlightKind KindOf(const Campaign& campaign) {
+  return dispersa::KindOf(campaign.vehicle, campaign.autopilot, campaign.course);
+}
+
+}  // namespace
+
 MetricList MetricsOf(const Campaign& campaign) {
   std::vector<std::string> own;
   for (const OwnMetric& metric : campaign.own_metrics) own.push_back(metric.name);
@@ -17,7 +25,7 @@ MetricList MetricsOf(const Campaign& campaign) {
 
 std::vector<std::size_t> MeasuredMetrics(const Campaign& campaign) {
   const std::size_t stages = ColumnClass(campaign.vehicle);
-  std::vector<std::size_t> positions = MetricsUnder(stages, campaign.autopilot.pitch.law);
+  std::vector<std::size_t> positions = MetricsUnder(stages, KindOf(campaign));
   for (std::size_t i = 0; i < campaign.own_metrics.size(); ++i) positions.push_back(MetricCount(stages) + i);
   return positions;
 }
@@ -28,8 +36,11 @@ std::string WhyNotMeasured(const Campaign& campaign, const std::string& metric) 
   if (!position && known != MetricNames().end()) return "is of a stage that the vehicle has not";
   if (!position) return "is not a metric" + DidYouMean(metric, NamesOf(MetricsOf(campaign)));
   if (known == MetricNames().end()) return "";
+  const Metric& measured = Metrics()[*position];
+  if (HasMetric(measured, KindOf(campaign))) return "";
   const ControlLaw law = campaign.autopilot.pitch.law;
-  if (HasMetric(Metrics()[*position], law)) return "";
+  if (measured.of_law == nullptr || InfoOf(law).*measured.of_law)
+    return "is of flights with " + NeedsOf(measured);
   return "is of flights whose law of pitch is " + LawsWith(Metrics()[*position]) + "; here it is " +
          InfoOf(law).name;
 }

@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <memory>
 
+#include "core/flight/flight.h"
 #include "core/math/functions.h"
 #include "core/trajectory/ascent.h"
 
@@ -44,6 +45,35 @@ ClimbPath ClimbOf(const Campaign& campaign) {
   return path;
 }
 
+// The same of flights that nothing controls: the nominal one's.
+ClimbPath FreeClimbOf(const Campaign& campaign, const FlightDefinition& definition) {
+  History history;
+  history.step_s = 0.1;
+  FlightOptions options;
+  options.history = &history;
+  Fly(FlightModel(definition), {}, options);
+  const int altitude = FindHistoryColumn("altitude_m"), down = FindHistoryColumn("ned_v_d_m_s");
+  const int north = FindHistoryColumn("ned_v_n_m_s"), east = FindHistoryColumn("ned_v_e_m_s");
+  const double ground_m = campaign.vehicle.site.altitude_m;
+  ClimbPath path;
+  path.azimuth_rad = campaign.reference.program.launch_azimuth_rad;
+  path.altitude_m = {ground_m};
+  path.sine_angle = {Sin(campaign.vehicle.rail->elevation_rad)};
+  for (std::size_t row = 0; row < history.rows(); ++row) {
+    const double altitude_m = history.at(row, altitude);
+    if (altitude_m < ground_m + 1.0) continue;
+    if (altitude_m <= path.altitude_m.back()) break;
+    const Vector3 v(history.at(row, north), history.at(row, east), history.at(row, down));
+    path.altitude_m.push_back(altitude_m);
+    path.sine_angle.push_back(-v.z() / v.norm());
+  }
+  if (path.altitude_m.size() < 2) {
+    path.altitude_m.push_back(ground_m + 1.0);
+    path.sine_angle.push_back(path.sine_angle.back());
+  }
+  return path;
+}
+
 bool MeetsTurbulence(const Campaign& campaign) {
   const int exceedance = FindInput("turbulence_exceedance");
   return std::any_of(campaign.dispersions.begin(), campaign.dispersions.end(), [&](const Dispersion& d) {
@@ -76,13 +106,15 @@ FlightDefinition DefinitionOf(const Campaign& campaign) {
   definition.wind_statistics = campaign.wind_statistics;
   definition.noise_seed = campaign.sampling.seed;
   definition.own_metrics = campaign.own_metrics;
-  if (Jettisons(campaign.vehicle) || CutsOffAtVelocity(campaign.vehicle)) {
+  definition.course = campaign.course;
+  if (campaign.course.is_controlled && (Jettisons(campaign.vehicle) || CutsOffAtVelocity(campaign.vehicle))) {
     const AscentResult ascent = FlyReference(campaign);
     definition.jettison_s = ascent.jettison_s;
     definition.cut_off_s = ascent.cut_off_s;
   }
   if (MeetsTurbulence(campaign))
-    definition.turbulence_path = std::make_shared<const TurbulencePath>(ClimbOf(campaign));
+    definition.turbulence_path = std::make_shared<const TurbulencePath>(
+        campaign.course.is_controlled ? ClimbOf(campaign) : FreeClimbOf(campaign, definition));
   return definition;
 }
 

@@ -36,7 +36,7 @@ std::string VehicleSha256(const InputNode& vehicle) {
   InputNode rigid = vehicle;
   std::erase_if(rigid.members, [](const InputMember& member) {
     return member.key == "structure_beam" || member.key == "sensors" || member.key == "nozzles" ||
-           member.key == "limits";
+           member.key == "limits" || member.key == "loss_of_control" || member.key == "descent";
   });
   // Nor does a point mass know what its actuators lack, or what its structure bears.
   if (InputNode* stages = rigid.Find("stages"))
@@ -77,8 +77,8 @@ std::string OwnMetricsId(const std::string& flight_id, const std::vector<OwnMetr
 
 std::string DesignId(const InputNode& campaign) {
   InputNode design = MapAt(campaign);
-  for (const char* key :
-       {"vehicle", "reference", "autopilot", "guidance", "dispersions", "correlations", "derived"}) {
+  for (const char* key : {"vehicle", "reference", "autopilot", "guidance", "flight", "dispersions",
+                          "correlations", "derived"}) {
     if (const InputNode* value = campaign.Find(key)) SetMember(design, key, *value);
   }
   const InputNode& sampling = *campaign.Find("sampling");
@@ -92,8 +92,8 @@ std::string DesignId(const InputNode& campaign) {
 
 std::string FlightId(const InputNode& campaign, SamplingMethod method) {
   InputNode deciding = MapAt(campaign);
-  for (const char* key :
-       {"vehicle", "reference", "autopilot", "guidance", "dispersions", "correlations", "derived"}) {
+  for (const char* key : {"vehicle", "reference", "autopilot", "guidance", "flight", "dispersions",
+                          "correlations", "derived"}) {
     if (const InputNode* value = campaign.Find(key)) SetMember(deciding, key, *value);
   }
   InputNode sampling = MapAt(campaign);

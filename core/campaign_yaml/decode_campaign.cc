@@ -7,6 +7,7 @@
 #include "core/campaign/case_result.h"
 #include "core/campaign/dispersion_fields.h"
 #include "core/campaign/dispersion_table.h"
+#include "core/campaign/free_flight.h"
 #include "core/campaign/plausible_dispersions.h"
 #include "core/campaign_yaml/campaign_ids.h"
 #include "core/campaign_yaml/decode.h"
@@ -155,6 +156,9 @@ void CheckGuidance(Fields& fields, const GuidanceConfig& guidance, const Vehicle
                   "the last burn of " + name +
                       " uses up what the burns before leave: its energy is not known before they end",
                   "open_loop, or cut_off: {at: inertial_velocity} of the last burn");
+  else if (!last.is_controlled() && guidance.steers_last_burn)
+    fields.Refuse("last_burn", "the last stage of " + name + " has no gimbal by which it could be steered",
+                  "as_planned: it is pointed before its ignition");
   else if (is_cut_off && !is_timed && !guidance.steers_last_burn && !SteersBelow(vehicle))
     fields.Refuse(
         "last_burn",
@@ -198,9 +202,14 @@ class CampaignDescription {
                       vehicle_ = {&node, path};
                       campaign_.vehicle = DecodeVehicle(node, path, problems_, files_, warnings_);
                     });
-    DescribeTrajectory(fields);
-    fields.Either({{Has("optimize"), [&] { DescribeFlights(fields, false); }},
-                   {Else(), [&] { DescribeFlights(fields, use_ != CampaignUse::kOptimize); }}});
+    DescribeCourse(fields);
+    fields.Either({{Is("flight.control", {"none"}), [&] { DescribeFreeFlights(fields); }},
+                   {Else(), [&] {
+                      DescribeTrajectory(fields);
+                      fields.Either(
+                          {{Has("optimize"), [&] { DescribeFlights(fields, false); }},
+                           {Else(), [&] { DescribeFlights(fields, use_ != CampaignUse::kOptimize); }}});
+                    }}});
     DescribeDispersions(fields);
     DescribeJudgement(fields);
   }
@@ -319,6 +328,32 @@ class CampaignDescription {
                     problems_);
   }
 
+  void DescribeCourse(Fields& fields) {
+    bool has_course = true;
+    fields.OptionalMap(
+        "flight", has_course, "where flights end, and whether they are controlled", [&](Fields& course) {
+          dispersa::Describe(course, campaign_.course);
+          if (!problems_.empty()) return;
+          for (const StructProblem& problem : ControlProblems(campaign_.vehicle, campaign_.course))
+            course.Refuse(problem.path, problem.message, problem.allowed);
+        });
+    if (has_course || root_ == nullptr || !problems_.empty()) return;
+    for (const StructProblem& problem : ControlProblems(campaign_.vehicle, campaign_.course))
+      AddProblem(problems_, *vehicle_.node, vehicle_.path, problem.message, problem.allowed);
+  }
+
+  // Flights that nothing controls: neither reference nor autopilot, which the vehicle's rail replaces.
+  void DescribeFreeFlights(Fields& fields) {
+    for (const char* key : {"reference", "optimize", "autopilot", "guidance"})
+      fields.Misplaced(key, {}, "'{}' is given, and nothing controls the flights (flight.control)",
+                       "flight: {control: autopilot}, or a campaign without it");
+    if (root_ != nullptr && problems_.empty()) {
+      SetFreeFlight(campaign_);
+      has_autopilot_ = true;
+    }
+    DescribeSampling(fields, true);
+  }
+
   // A trajectory that is yet to be found needs nothing that flies it.
   void DescribeFlights(Fields& fields, bool needed) {
     fields.Document("autopilot", kAutopilotSchema, needed, "an autopilot file",
@@ -331,6 +366,9 @@ class CampaignDescription {
                          dispersa::Describe(guidance, campaign_.guidance);
                          CheckGuidance(guidance, campaign_.guidance, campaign_.vehicle);
                        });
+    DescribeSampling(fields, needed);
+  }
+  void DescribeSampling(Fields& fields, bool needed) {
     const auto sampling = [&](Fields& map) {
       dispersa::Describe(map, campaign_.sampling);
       map.Either({{Is("method", {"list"}),

@@ -6,6 +6,7 @@
 #include <tuple>
 #include <utility>
 
+#include "core/campaign/free_flight.h"
 #include "core/campaign_yaml/campaign_ids.h"
 #include "core/campaign_yaml/canonical.h"
 #include "core/campaign_yaml/decode.h"
@@ -141,6 +142,7 @@ OptimizationInput LoadOptimization(const InputSource& source, std::optional<std:
   NamedFiles files;
   DecodedCampaign decoded = DecodeCampaign(root, CampaignUse::kOptimize, problems, &files, warnings);
   ThrowIfAny(std::move(problems), root);
+  RequireControl(decoded.campaign, "a trajectory");
   OptimizationInput input;
   input.name = decoded.campaign.name;
   input.vehicle = std::move(decoded.campaign.vehicle);

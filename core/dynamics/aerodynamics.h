@@ -34,7 +34,9 @@ struct BodyAerodynamics {
   Coefficient xcp_station_m;                ///< with cn
   double moment_reference_station_m = 0.0;  ///< with cm, cd, cl
   Coefficient clp, cmq, cnr;                ///< over Mach, one incidence
-  double minimum_airspeed_m_s = 0.0;        ///< floor of V in the damping terms
+  double twist_rad_m = 0.0;           ///< by which canted fins turn the body on each metre of its way: clp
+                                      ///< damps the roll rate less this times V
+  double minimum_airspeed_m_s = 0.0;  ///< floor of V in the damping terms
 };
 
 struct ForceAndMoment {

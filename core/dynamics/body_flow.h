@@ -15,7 +15,8 @@ struct BodyAerodynamicsLanes {
   T mach_top, mach_scale, incidence_top, incidence_scale;  ///< AeroGrid::Axis
   bool has_wind_axes;                                      ///< any lane's grid has coefficients in wind axes
   bool has_airspeed_floor;                                 ///< minimum_airspeed_m_s counts
-  T area_m2, length_m, span_m;
+  bool has_twist;                                          ///< twist_rad_m counts
+  T area_m2, length_m, span_m, twist_rad_m;
   T ca_factor, cn_factor, xcp_factor;
   T moment_reference_station_m;
   T minimum_airspeed_m_s;
@@ -142,7 +143,8 @@ DISPERSA_INLINE FlowForce<T> ForceOfFlow(const BodyAerodynamicsLanes<T>& body, V
   const T about_x = damping * body.span_m * body.span_m * c.clp;
   const T about_y = damping * body.length_m * body.length_m * c.cmq;
   const T about_z = damping * body.span_m * body.span_m * c.cnr;
-  o.moment_n_m = {about_x * w.x, Fma(about_y, w.y, turning * nz), Fma(about_z, w.z, -(turning * ny))};
+  const T roll_rate = body.has_twist ? Fma(-body.twist_rad_m, airspeed, w.x) : w.x;
+  o.moment_n_m = {about_x * roll_rate, Fma(about_y, w.y, turning * nz), Fma(about_z, w.z, -(turning * ny))};
   if (body.has_wind_axes) {
     const T inverse_airspeed = T(1.0) / Max(airspeed, T(1e-30));
     const T cosine = v.x * inverse_airspeed, sine = across * inverse_airspeed;

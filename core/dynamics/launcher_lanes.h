@@ -45,10 +45,12 @@ DISPERSA_INLINE void SetLane(BodyAerodynamicsLanes<T>& b, int lane, const BodyAe
   Lane(b.xcp_factor, lane) = body.xcp_station_m.factor;
   Lane(b.moment_reference_station_m, lane) = body.moment_reference_station_m;
   Lane(b.minimum_airspeed_m_s, lane) = body.minimum_airspeed_m_s;
-  b.has_wind_axes = b.has_airspeed_floor = false;
+  Lane(b.twist_rad_m, lane) = body.twist_rad_m;
+  b.has_wind_axes = b.has_airspeed_floor = b.has_twist = false;
   for (int i = 0; i < kWidth<T>; ++i) {
     b.has_wind_axes |= b.grid[i] && b.grid[i]->wind_axes.data() != nullptr;
     b.has_airspeed_floor |= Lane(b.minimum_airspeed_m_s, i) > 0.0;
+    b.has_twist |= Lane(b.twist_rad_m, i) != 0.0;
   }
 }
 

@@ -11,6 +11,7 @@
 #pragma once
 
 #include "core/control/autopilot_step.h"
+#include "core/dynamics/fall.h"
 #include "core/dynamics/launcher_lanes.h"
 #include "core/flight/flight_queue.h"
 #include "core/flight/flight_sums.h"
@@ -18,6 +19,7 @@
 #include "core/flight/nozzle_allocation.h"
 #include "core/flight/sequence.h"
 #include "core/flight/simpson_step.h"
+#include "core/flight/step_limits.h"
 #include "core/flight/structural_limits.h"
 
 namespace dispersa::lanes {
@@ -42,6 +44,7 @@ class Batch {
     int stack = 0;
     unsigned jettisoned = 0;  ///< LauncherPhase's
     int stuck_nozzle = -1;
+    bool past_last_burn = false;
     int whole_delay = 0;        ///< ticks between command and actuator, and
     double part_delay_s = 0.0;  ///< a part of one
     double switch_s = 0.0;      ///< when, within a tick, the next command gets through
@@ -54,6 +57,7 @@ class Batch {
   void SetMass(int lane);
   void SetAllocation(int lane, const NozzleLayout& layout);
   void SetStop(int lane);
+  void SetUnsteered(int lane);
   /// Null: the lane's last event has happened.
   const FlightEvent* NextEvent(int lane) const {
     const Slot& slot = slot_[lane];
@@ -93,6 +97,8 @@ class Batch {
   void Guide();
   void Meter(M powered);
   void WatchAndDigest();
+  void MeterFree();
+  void FlyOn();
   void CheckEnds();
 
   // ---- to the next tick ----
@@ -103,6 +109,8 @@ class Batch {
   void Happen(int lane);
   void Ignite(int lane, int stage);
   void BurnOut(int lane, int stage);
+  void EndPowered(int lane);
+  void FallFrom(int lane, double mass_kg);
 
   const FlightModel& model_;
   const FlightDefinition& definition_;
@@ -111,11 +119,13 @@ class Batch {
   const double ticks_a_second_;
   const bool has_jettisons_, cuts_off_at_velocity_, has_plugin_;
   const int most_further_;  ///< banks of nozzles after the first, of any stage
+  const bool has_free_stage_, flies_on_;  ///< flies_on_: after the last burn
   Slot slot_[kLanes];
   int flying_ = 0;         ///< lanes
   unsigned patience_ = 0;  ///< passes until the queue is asked again
 
   M live_, coasting_;
+  M unsteered_;  ///< nothing controls their attitude
   T time_s_, tick_, next_tick_;
   T stop_s_;  ///< when the next event or switch of commands is due
   T next_digest_tick_, next_row_tick_;
@@ -152,6 +162,7 @@ class Batch {
   ThrusterStateLanes<T> thrusters_[kAxes];
   LaneMetrics<T> metrics_;
   T gust_bottom_m_, gust_top_m_;
+  T roll_rate_peak_rad_s_, least_static_margin_;  ///< of stages without gimbal
 };
 
 /// Passes between two questions to an empty queue while other lanes fly.
@@ -168,7 +179,9 @@ Batch<T>::Batch(const FlightModel& model, FlightQueue& queue)
       has_jettisons_(!model.nominal_plant().jettisons.empty()),
       cuts_off_at_velocity_(CutsOffAtVelocity(definition_.vehicle)),
       has_plugin_(model.autopilot().plugin != nullptr),
-      most_further_(model.nominal_plant().nozzle_banks() - 1) {
+      most_further_(model.nominal_plant().nozzle_banks() - 1),
+      has_free_stage_(model.has_free_stage()),
+      flies_on_(definition_.course.ends != FlightEnd::kInjection) {
   // Lanes that never fly compute along with the others, on numbers that do no harm.
   __builtin_memset(static_cast<void*>(&delay_line_), 0, sizeof delay_line_);
   __builtin_memset(static_cast<void*>(&loop_), 0, sizeof loop_);
@@ -188,6 +201,7 @@ Batch<T>::Batch(const FlightModel& model, FlightQueue& queue)
   for (int lane = 0; lane < kLanes; ++lane) {
     SetLane(live_, lane, false);
     SetLane(coasting_, lane, false);
+    SetLane(unsteered_, lane, false);
     SetLane(loop_, lane, model.autopilot(), 0, 1.0, 1.0, 1.0);
     SetLane(drifts_, lane, false);
     SetLane(gyros_fresh_, lane, false);
@@ -200,6 +214,8 @@ Batch<T>::Batch(const FlightModel& model, FlightQueue& queue)
   for (T& weight : gyro_weight_) weight = T(0.0);
   unit_weight_ = unit_.truth.w = unit_.measured.w = T(1.0);
   gust_bottom_m_ = gust_top_m_ = T(0.0);
+  roll_rate_peak_rad_s_ = T(0.0);
+  least_static_margin_ = T(kFarFuture);
 }
 
 template <class T>
@@ -260,12 +276,14 @@ void Batch<T>::Start(int lane, FlightRecord* record) {
               in.gyro_bias_pitch_rad_s != 0.0 || in.gyro_bias_yaw_rad_s != 0.0);
   Lane(unit_weight_, lane) = 1.0;
   for (T& weight : gyro_weight_) Lane(weight, lane) = 0.0;
+  Lane(roll_rate_peak_rad_s_, lane) = 0.0;
+  Lane(least_static_margin_, lane) = kFarFuture;
   any_drift_ = Any(drifts_ & live_);
   any_judged_ = false;
   most_steps_ = 1;
   for (const Slot& each : slot_) {
     if (each.record == nullptr) continue;
-    any_judged_ |= each.record->is_judged();
+    any_judged_ |= each.record->replaces_steps();
     if (each.record->options.steps_per_tick > most_steps_) most_steps_ = each.record->options.steps_per_tick;
   }
   step_.StartFlight(lane, record->weather, record->lift_off);
@@ -288,6 +306,7 @@ void Batch<T>::SetStack(int lane, int stack) {
   slot.stuck_nozzle = -1;
   slot.switch_s = kFarFuture;
   step_.SetStack(lane, slot.record->plant, stack);
+  SetUnsteered(lane);
   SetMass(lane);
   if (!step_.plant().nozzles_listed) return;
   SetAllocation(lane, slot.record->plant.LayoutOf(stack, stack == 0));
@@ -299,6 +318,14 @@ void Batch<T>::SetAllocation(int lane, const NozzleLayout& layout) {
   SetLane(allocation_, lane, layout);
   // A stage without further banks sets them to nothing.
   for (int bank = 0; bank < most_further_; ++bank) SetLane(further_allocation_[bank], lane, layout, bank + 1);
+}
+
+/// Thrusters hold a stage without gimbal while it coasts.
+template <class T>
+void Batch<T>::SetUnsteered(int lane) {
+  const Slot& slot = slot_[lane];
+  const bool is_fixed = slot.record->plant.stacks.data()[slot.stack].gimbal.fixed;
+  SetLane(unsteered_, lane, slot.past_last_burn || (is_fixed && !(Bits(coasting_) >> lane & 1u)));
 }
 
 /// Sets the mass of the bodies that the lane's stack still carries.
@@ -326,6 +353,9 @@ void Batch<T>::End(int lane, Outcome outcome, const char* reason) {
   if (Bits(step_.phase().burning) >> lane & 1u) metrics_.EndStage(lane, slot.stack, record->sums);
   metrics_.Read(lane, record->sums);
   record->sums.expelled_kg = Lane(step_.phase().expelled_kg, lane);
+  record->sums.free.roll_rate_peak_rad_s = Lane(roll_rate_peak_rad_s_, lane);
+  if (const double least = Lane(least_static_margin_, lane); least < kFarFuture)
+    record->sums.free.least_static_margin = least;
   record->sums.rules_fired = static_cast<std::uint32_t>(ToBits(Lane(axes_[kPitch].rules_fired, lane)));
   record->End(outcome, reason, Lane(time_s_, lane), slot.stack, y);
   slot.record = nullptr;
@@ -367,12 +397,13 @@ LaneView Batch<T>::ViewOf(int lane) const {
   step_.ReadLane(lane, view.y);
   view.phase = PhaseOf(lane);
   view.coasting = Bits(coasting_) >> lane & 1u;
+  view.unsteered = Bits(unsteered_) >> lane & 1u;
   for (int axis = 0; axis < kAxes; ++axis) {
     view.error_angle_rad[axis] = Lane(angle_rad_[axis], lane);
     view.error_rate_rad_s[axis] = Lane(rate_rad_s_[axis], lane);
     view.thrusters[axis] = static_cast<int>(Lane(thrusters_[axis].direction, lane));
     // Without thrust the lane's autopilot does not act. The values in its place come from neighbouring lanes.
-    if (!view.phase.burning) continue;
+    if (!view.phase.burning || (Bits(unsteered_) >> lane & 1u)) continue;
     view.gimbal_rad[axis] = Lane(gimbals_.deflection_rad[axis], lane);
     view.axes[axis] =
         TelemetryOf(model_.autopilot().laws.data()[axis].config, gimbals_.axes[axis], axes_[axis], lane);

@@ -98,7 +98,7 @@ void Batch<T>::Step(M moving, T to) {
 template <class T>
 void Batch<T>::Judge(M moving, T from, T to, StateValues* states, M& failed) {
   for (int lane = 0; lane < kLanes; ++lane) {
-    if (!(Bits(moving) >> lane & 1u) || !slot_[lane].record->is_judged()) continue;
+    if (!(Bits(moving) >> lane & 1u) || !slot_[lane].record->replaces_steps()) continue;
     const bool holds =
         slot_[lane].record->Judge(PhaseOf(lane), Lane(from, lane), Lane(to, lane), states[lane]);
     SetLane(failed, lane, !holds);
@@ -117,7 +117,23 @@ void Batch<T>::Happen(int lane) {
     case EventKind::kIgnition:
       step_.Ignite(lane, event.time_s, event.stage == 0);
       Ignite(lane, event.stage);
+      SetUnsteered(lane);
+      if (const double torque_n_m = record.SpinTorque(event.stage); torque_n_m != 0.0)
+        step_.SetRollTorque(lane, torque_n_m);
       break;
+    case EventKind::kSpinEnd:
+      step_.SetRollTorque(lane, 0.0);
+      break;
+    case EventKind::kRailExit: {
+      StateValues y;
+      step_.ReadLane(lane, y);
+      record.LeaveRail(y);
+      any_judged_ = false;
+      for (const Slot& each : slot_)
+        if (each.record != nullptr) any_judged_ |= each.record->replaces_steps();
+      step_.WriteLane(lane, y);
+      break;
+    }
     case EventKind::kBurnout:
       BurnOut(lane, event.stage);
       break;
@@ -126,10 +142,11 @@ void Batch<T>::Happen(int lane) {
       step_.ReadLane(lane, y);
       record.Separate(event.stage, slot.jettisoned, y);
       step_.WriteLane(lane, y);
-      SetStack(lane, event.stage + 1);
       SetLane(coasting_, lane,
-              event.stage + 2 == static_cast<int>(record.plant.stacks.size()) ||
-                  definition_.vehicle.stages.data()[event.stage + 1].ignition == IgnitionTrigger::kTimer);
+              definition_.course.is_controlled &&
+                  (event.stage + 2 == static_cast<int>(record.plant.stacks.size()) ||
+                   definition_.vehicle.stages.data()[event.stage + 1].ignition == IgnitionTrigger::kTimer));
+      SetStack(lane, event.stage + 1);
       break;
     }
     case EventKind::kBoosterBurnout:
@@ -162,7 +179,31 @@ void Batch<T>::Happen(int lane) {
   record.AddToDigest(Lane(time_s_, lane), y);
   if (record.watched) record.WatchEvent(ViewOf(lane));
   // The last event is the last stage's burnout.
-  if (NextEvent(lane) == nullptr) End(lane, Outcome::kCompleted, "");
+  if (NextEvent(lane) == nullptr) EndPowered(lane);
+}
+
+/// After its last burn a flight is completed, or goes on until its apogee: as a rigid body in the air, as a
+/// point above it.
+template <class T>
+void Batch<T>::EndPowered(int lane) {
+  if (!flies_on_) {
+    End(lane, Outcome::kCompleted, "");
+    return;
+  }
+  slot_[lane].past_last_burn = true;
+  SetUnsteered(lane);
+  const Instant<double> now = step_.InstantOf(lane, time_s_);
+  if (now.altitude_m > kFallAir_m) FallFrom(lane, now.mass_kg);
+}
+
+/// The rest of the flight, as a point mass.
+template <class T>
+void Batch<T>::FallFrom(int lane, double mass_kg) {
+  StateValues y;
+  step_.ReadLane(lane, y);
+  const char* reason = "";
+  const Outcome outcome = slot_[lane].record->Fall(Lane(time_s_, lane), mass_kg, y, &reason);
+  End(lane, outcome, reason);
 }
 
 template <class T>

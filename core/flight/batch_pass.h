@@ -6,12 +6,6 @@
 namespace dispersa::lanes {
 inline namespace DISPERSA_ISA {
 
-// Loss of control, as the metrics define it.
-inline constexpr double kLostAngle_rad = 15.0 * kRadPerDeg;
-inline constexpr double kLostFor_s = 0.5;
-inline constexpr double kLostRate_rad_s = 60.0 * kRadPerDeg;
-/// Simulated time that no flight needs.
-inline constexpr double kTimeLimit_s = 21600.0;
 /// A vehicle this far below its site has hit the ground.
 inline constexpr double kImpactDepth_m = 10.0;
 
@@ -27,8 +21,14 @@ void Batch<T>::Pass() {
   if (definition_.guidance.closed_loop) Guide();
   metrics_.AddLoads(live_ & !coasting_, step_.now());
   metrics_.AddMoment(live_ & !coasting_, step_.LargestMomentNow());
-  Meter(live_ & step_.phase().burning);
+  M metered = live_ & step_.phase().burning;
+  if (has_free_stage_) {
+    metered = metered & !unsteered_;
+    MeterFree();
+  }
+  Meter(metered);
   WatchAndDigest();
+  if (flies_on_) FlyOn();
   CheckEnds();
   if (flying_ > 0) Advance();
 }
@@ -207,7 +207,8 @@ void Batch<T>::AverageNoise() {
 
 template <class T>
 void Batch<T>::FlyGimbals() {
-  const M powered = live_ & step_.phase().burning;
+  M powered = live_ & step_.phase().burning;
+  if (has_free_stage_) powered = powered & !unsteered_;
   if (!Any(powered)) return;
   const bool listed = step_.plant().nozzles_listed;
   AxisStateLanes<T> of_roll;
@@ -522,14 +523,49 @@ void Batch<T>::WatchAndDigest() {
   }
 }
 
+/// Metrics of stages that nothing controls.
+template <class T>
+void Batch<T>::MeterFree() {
+  const M free = live_ & unsteered_;
+  if (!Any(free)) return;
+  roll_rate_peak_rad_s_ =
+      Select(free, Max(roll_rate_peak_rad_s_, Abs(step_.motion().w.x)), roll_rate_peak_rad_s_);
+  const Instant<T>& now = step_.now();
+  const M felt = free & (now.qbar_pa >= T(kIncidenceFloor_pa));
+  const T margin = (now.normal.xcp_station_m - step_.cg_station_m()) / step_.plant().aero.span_m;
+  least_static_margin_ = Select(felt & (margin < least_static_margin_), margin, least_static_margin_);
+}
+
+/// Ends the flights that have passed their apogee, or lets them fall on from there.
+template <class T>
+void Batch<T>::FlyOn() {
+  for (int lane = 0; lane < kLanes; ++lane) {
+    Slot& slot = slot_[lane];
+    if (slot.record == nullptr || !slot.past_last_burn) continue;
+    // Near the apogee only: altitude grows along the vertical, which is within 0.2 deg of the radius.
+    const Vector<double> p = LaneOf(step_.motion().p, lane), v = LaneOf(step_.motion().v, lane);
+    if (Dot(p, v) > 0.01 * Sqrt(Dot(p, p) * Dot(v, v))) continue;
+    StateValues y;
+    step_.ReadLane(lane, y);
+    if (slot.record->Climbs(y)) continue;
+    FallFrom(lane, Lane(step_.now().mass_kg, lane));
+  }
+}
+
 template <class T>
 void Batch<T>::CheckEnds() {
-  const T lost_angle2(kLostAngle_rad * kLostAngle_rad);
+  const LossOfControl& loss = definition_.vehicle.loss_of_control;
+  const T lost_angle2(loss.attitude_error_rad * loss.attitude_error_rad);
   const T angle2 = Dot(angle_rad_, angle_rad_);
   const T rate2 = Dot(step_.motion().w, step_.motion().w);
   const T lowest(definition_.vehicle.site.altitude_m - kImpactDepth_m);
-  const M is_lost = angle2 > lost_angle2;
-  const M is_fast = rate2 > T(kLostRate_rad_s * kLostRate_rad_s);
+  M is_lost = angle2 > lost_angle2;
+  M is_fast = rate2 > T(loss.rate_rad_s * loss.rate_rad_s);
+  if (has_free_stage_ || flies_on_) {
+    const double turn_rad_s = kTurnLimit_rad / tick_s_;
+    is_lost = is_lost & !unsteered_;
+    is_fast = (is_fast & !unsteered_) | (unsteered_ & (rate2 > T(turn_rad_s * turn_rad_s)));
+  }
   const M is_low = step_.now().altitude_m < lowest;
   const M is_late = time_s_ > T(kTimeLimit_s);
   M suspects = live_ & (is_lost | is_fast | is_low | is_late | (lost_ticks_ > T(0.0)));
@@ -558,16 +594,18 @@ void Batch<T>::CheckEnds() {
     Lane(lost_ticks_, lane) = lost_ticks;
     FlightSums loads;
     metrics_.Read(lane, loads);
-    if (lost_ticks * tick_s_ >= kLostFor_s)
-      End(lane, Outcome::kLostControl, "attitude error above 15 deg for 0.5 s");
+    if (lost_ticks > 0.0 && lost_ticks * tick_s_ >= loss.for_s)
+      End(lane, Outcome::kLostControl, slot_[lane].record->lost_attitude);
+    else if ((Bits(is_fast) & Bits(unsteered_)) >> lane & 1u)
+      End(lane, Outcome::kNumericalFailure, "turns faster than the integration's steps follow");
     else if (Bits(is_fast) >> lane & 1u)
-      End(lane, Outcome::kLostControl, "angular rate above 60 deg/s");
+      End(lane, Outcome::kLostControl, slot_[lane].record->lost_rate);
     else if (Bits(is_low) >> lane & 1u)
       End(lane, Outcome::kImpact, "fell below the launch site");
     else if (limits.terminate && ExceedsStructure(limits, loads))
       End(lane, Outcome::kStructuralLimit, "a structural limit of the vehicle was exceeded");
     else if (Bits(is_late) >> lane & 1u)
-      End(lane, Outcome::kTimeout, "21600 s of simulated time passed");
+      End(lane, Outcome::kTimeout, "86400 s of simulated time passed");
   }
 }
 

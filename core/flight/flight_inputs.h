@@ -152,6 +152,7 @@ struct FlightInputs {
   PerFurtherNozzle further_offset_z_m{};
   PerFurtherNozzle further_thrust_factor = AllFurtherNozzles(1.0);
   PerFurtherNozzle further_flow_factor = AllFurtherNozzles(1.0);
+  PerStage fin_cant_rad{};  ///< added to the cant of all fins of a stage
 };
 
 /// The usual range of an input, in the unit of its column. `validate --strict` warns about values outside it.
@@ -359,6 +360,10 @@ inline void DeclareInputs(InputDeclarations& inputs) {
   inputs.EachFurtherNozzle(&In::further_offset_z_m, "nozzle_offset_z", "_m").Usually(kUsualThrustOffset);
   inputs.EachFurtherNozzle(&In::further_thrust_factor, "nozzle_thrust_factor").Usually(kUsualMotor);
   inputs.EachFurtherNozzle(&In::further_flow_factor, "nozzle_flow_factor").Usually(kUsualMotor);
+  inputs
+      .EachStage(&In::fin_cant_rad, "fin_cant", "_deg", kRadPerDeg,
+                 {"fin_cant", "added to the cant of a stage's fins, mean of all of them", kAngle, kAnyNumber})
+      .Usually({-1.0, 1.0, "0.01 to 0.1 deg of a set's mean"});
 }
 
 /// All columns in their fixed order, names without the prefix `input_`.

@@ -397,6 +397,10 @@ FlightModel::FlightModel(FlightDefinition definition)
     : definition_(std::move(definition)), nominal_(BuildNominalPlant(definition_.vehicle)) {
   frame_ = BuildLaunchFrame(nominal_.environment.earth, definition_.vehicle.site,
                             definition_.program.launch_azimuth_rad);
+  for (const Stage& stage : definition_.vehicle.stages) {
+    has_free_stage_ |= !stage.is_controlled();
+    has_fins_ |= !stage.fins.empty();
+  }
   AddBending(definition_.vehicle, definition_.autopilot.tick_s, nominal_);
   if (definition_.wind_table) nominal_.environment.wind.tables.push_back(*definition_.wind_table);
   LauncherPlant planned = nominal_;
@@ -447,6 +451,18 @@ Aside AsideOf(double magnitude, double clock, double y, double z) {
   if (y != 0.0) aside.y += y;
   if (z != 0.0) aside.z += z;
   return aside;
+}
+
+// The spin for each metre of way that a stack's fins ask for: of all strips together no roll moment.
+double TwistOf(const Vehicle& vehicle, std::size_t stack, const PerStage& cant_rad) {
+  double wanted_m3 = 0.0, damped_m4 = 0.0;
+  for (std::size_t i = stack; i < vehicle.stages.size(); ++i)
+    for (const FinSet& fins : vehicle.stages[i].fins) {
+      const FinStrips strips = StripsOf(fins, 0.5 * vehicle.stages[i].diameter_m);
+      wanted_m3 += fins.count * (fins.cant_rad + cant_rad[i]) * strips.first_m3;
+      damped_m4 += fins.count * strips.second_m4;
+    }
+  return damped_m4 > 0.0 ? wanted_m3 / damped_m4 : 0.0;
 }
 
 // Turns the thrust by the angles of `tilt`.
@@ -543,6 +559,7 @@ LauncherPlant FlightModel::PlantFor(const FlightInputs& in, std::optional<std::u
     stack.aerodynamics.ca.factor = in.drag_factor * in.stack_drag_factor[i];
     stack.aerodynamics.cn.factor = in.lift_factor * in.stack_lift_factor[i];
     stack.aerodynamics.xcp_station_m.factor = in.cp_factor * in.stack_cp_factor[i];
+    if (has_fins_) stack.aerodynamics.twist_rad_m = TwistOf(vehicle, i, in.fin_cant_rad);
     stack.cg_factor = in.stack_cg_factor[i];
     stack.inertia_factor = in.stack_inertia_factor[i];
     stack.product_xy_kg_m2 = in.product_of_inertia_xy_kg_m2[i];

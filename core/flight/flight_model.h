@@ -12,6 +12,7 @@
 #include "core/environment/turbulence.h"
 #include "core/environment/wind_statistics.h"
 #include "core/flight/attitude_program.h"
+#include "core/flight/flight_course.h"
 #include "core/flight/flight_inputs.h"
 #include "core/flight/launch_frame.h"
 #include "core/flight/own_metrics.h"
@@ -54,6 +55,7 @@ struct FlightDefinition {
   /// before lift-off too. Infinite: to depletion.
   std::array<double, kMaxStages> cut_off_s = AllStages(HUGE_VAL);
   std::vector<OwnMetric> own_metrics = {};  ///< they do not change a flight
+  FlightCourse course = {};
 };
 
 /// Ends a stage's burn by command. The remaining propellant belongs to the next stage if that stage restarts
@@ -89,6 +91,8 @@ class FlightModel {
   const AutopilotModel& autopilot() const { return autopilot_; }
   const LauncherPlant& nominal_plant() const { return nominal_; }
   const SensorModel& sensors() const { return sensors_; }
+  /// Whether a stage has no gimbal.
+  bool has_free_stage() const { return has_free_stage_; }
   const ReferenceRows& reference_rows() const { return reference_rows_; }
   const FeedForwardRows& feed_forward_rows() const { return feed_forward_rows_; }
   /// The knowledge of closed-loop guidance before lift-off; empty for open-loop flights.
@@ -104,6 +108,7 @@ class FlightModel {
   LauncherPlant nominal_;
   AutopilotModel autopilot_;
   SensorModel sensors_;
+  bool has_free_stage_ = false, has_fins_ = false;
   ReferenceRows reference_rows_;
   FeedForwardRows feed_forward_rows_;
   std::optional<GuidanceMission> guidance_mission_;

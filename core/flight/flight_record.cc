@@ -4,11 +4,14 @@
 #include <array>
 #include <cmath>
 
+#include "core/dynamics/fall.h"
 #include "core/dynamics/integrator.h"
 #include "core/dynamics/jettison.h"
 #include "core/dynamics/launcher_lanes.h"
+#include "core/environment/ground_track.h"
 #include "core/flight/history_columns.h"
 #include "core/flight/own_metrics.h"
+#include "core/flight/rail_slide.h"
 #include "core/flight/sequence.h"
 #include "core/flight/step_limits.h"
 #include "core/flight/tick_sample.h"
@@ -19,7 +22,7 @@ namespace dispersa {
 namespace {
 
 std::vector<FlightEvent> EventsOf(const FlightModel& model, const LauncherPlant& plant,
-                                  const FlightInputs& in, double last_ignition_s) {
+                                  const FlightInputs& in, double last_ignition_s, double rail_exit_s) {
   const FlightDefinition& definition = model.definition();
   std::vector<MotorBurn> burns;
   for (const LauncherStack& stack : plant.stacks) burns.push_back(stack.burn);
@@ -53,9 +56,13 @@ std::vector<FlightEvent> EventsOf(const FlightModel& model, const LauncherPlant&
         events.push_back({beside.burnout_s, EventKind::kBoosterBurnout, stage});
       }
       events.push_back({beside.separation_s, EventKind::kBoosterSeparation, stage});
-      std::stable_sort(events.begin() + static_cast<std::ptrdiff_t>(first), events.end(),
-                       [](const FlightEvent& a, const FlightEvent& b) { return a.time_s < b.time_s; });
     }
+    if (i == 0 && rail_exit_s >= 0.0) events.push_back({rail_exit_s, EventKind::kRailExit, stage});
+    if (const auto& spin = definition.vehicle.stages[i].spin_motors;
+        spin && t.ignition_s + spin->duration_s < t.burnout_s)
+      events.push_back({t.ignition_s + spin->duration_s, EventKind::kSpinEnd, stage});
+    std::stable_sort(events.begin() + static_cast<std::ptrdiff_t>(first), events.end(),
+                     [](const FlightEvent& a, const FlightEvent& b) { return a.time_s < b.time_s; });
     events.push_back({t.burnout_s, EventKind::kBurnout, stage});
     if (i + 1 < timeline.size()) events.push_back({t.separation_s, EventKind::kSeparation, stage});
   }
@@ -193,7 +200,7 @@ FlightRecord::FlightRecord(const FlightModel& model, const FlightOrder& order)
       plant(model.PlantFor(order.inputs, order.options.case_index)),
       weather(PrepareWeather(plant.environment.wind, plant.environment.density,
                              plant.environment.turbulence.get())),
-      events(EventsOf(model, plant, inputs, model.definition().last_ignition_s)),
+      events(EventsOf(model, plant, inputs, model.definition().last_ignition_s, -1.0)),
       lift_off{},
       every_tick(options.observe != nullptr || !model.definition().own_metrics.empty()),
       watched(every_tick || options.history != nullptr),
@@ -225,12 +232,101 @@ FlightRecord::FlightRecord(const FlightModel& model, const FlightOrder& order)
   if (options.history) options.history->values.clear();
   if (!model.definition().own_metrics.empty())
     own_metrics_ = std::make_unique<OwnMetricsMeter>(model.definition().own_metrics, tick_s);
+  const bool is_usual = model.definition().vehicle.loss_of_control == LossOfControl{};
+  lost_attitude = is_usual ? "attitude error above 15 deg for 0.5 s"
+                           : "attitude error above the vehicle's limit, for longer than it allows";
+  lost_rate = is_usual ? "angular rate above 60 deg/s" : "angular rate above the vehicle's limit";
   SetEquations();
+  if (refusal == nullptr) StandOnRail();
+}
+
+void FlightRecord::StandOnRail() {
+  const std::optional<Rail>& rail = model_.definition().vehicle.rail;
+  if (!rail || !(rail->length_m > 0.0)) return;
+  if (!equations_) equations_ = std::make_unique<const LauncherModel>(plant);
+  rail_ = std::make_unique<RailSlide>(*equations_, *rail, ReadState(lift_off));
+  LauncherPhase phase;
+  phase.burning = true;
+  phase.boosting = plant.boosters != nullptr;
+  phase.ignition_s = events.front().time_s;
+  const auto end = std::find_if(events.begin(), events.end(), [](const FlightEvent& event) {
+    return event.kind == EventKind::kBurnout || event.kind == EventKind::kBoosterBurnout;
+  });
+  const std::optional<double> exit_s =
+      rail_->ExitTime(phase, model_.definition().autopilot.tick_s, end->time_s);
+  if (!exit_s) {
+    refusal_ = "the vehicle does not leave its rail before a burnout";
+    refusal = refusal_.c_str();
+    return;
+  }
+  rail_exit_s_ = *exit_s;
+  events = EventsOf(model_, plant, inputs, model_.definition().last_ignition_s, rail_exit_s_);
+}
+
+void FlightRecord::LeaveRail(const double*) {
+  sums.free.left_rail = true;
+  sums.free.rail_exit_time_s = rail_exit_s_;
+  sums.free.rail_exit_speed_m_s = rail_->speed_m_s();
+  rail_.reset();
+}
+
+double FlightRecord::SpinTorque(int stage) const {
+  const auto& spin = model_.definition().vehicle.stages[static_cast<std::size_t>(stage)].spin_motors;
+  return spin ? spin->moment_n_m : 0.0;
+}
+
+bool FlightRecord::Climbs(const double* y) const {
+  const RigidBodyState s = ReadState(y);
+  const Geodetic place = ToGeodetic(plant.environment.earth, s.p_EoC_I);
+  return s.v_IC_I.dot(NedAxes(place.latitude_rad, place.longitude_rad).col(2)) < 0.0;
+}
+
+Outcome FlightRecord::Fall(double time_s, double mass_kg, const double* y, const char** reason) {
+  const FlightDefinition& definition = model_.definition();
+  const Descent& descent = definition.vehicle.descent;
+  const Stage& last = definition.vehicle.stages.back();
+  const bool at_apogee = definition.course.ends == FlightEnd::kApogee;
+  const FallingBody body{
+      mass_kg,
+      descent.drag_area_m2 > 0.0 ? descent.drag_area_m2
+                                 : TumblingCylinderDragArea(last.bottom_station_m, last.diameter_m),
+      descent.parachute_area_m2 * descent.parachute_drag_coefficient, descent.parachute_altitude_m};
+  const RigidBodyState s = ReadState(y);
+  const Earth& earth = plant.environment.earth;
+  const FallPath path = FollowFall(plant.environment, body, {time_s, s.p_EoC_I, s.v_IC_I},
+                                   {at_apogee, descent.ground_altitude_m, kTimeLimit_s - time_s});
+  FreeFlightSums& free = sums.free;
+  free.has_apogee = path.apogee.has_value() || path.impact.has_value();
+  // A body that only descends has its apogee where it begins to.
+  free.apogee_time_s = path.apogee ? path.apogee->time_s : time_s;
+  free.apogee_altitude_m = path.apogee ? path.apogee->altitude_m : ToGeodetic(earth, s.p_EoC_I).altitude_m;
+  if (path.impact && !at_apogee) {
+    const Impact& impact = *path.impact;
+    free.has_impact = true;
+    free.impact_time_s = impact.time_s;
+    free.impact_latitude_rad = impact.place.latitude_rad;
+    free.impact_longitude_rad = impact.place.longitude_rad;
+    free.impact_speed_m_s = impact.speed_m_s;
+    const LaunchSite& site = definition.vehicle.site;
+    const GroundTrack track = TrackOf({site.latitude_rad, site.longitude_rad, 0.0},
+                                      definition.program.launch_azimuth_rad, impact.place);
+    free.impact_downrange_m = track.along_m;
+    free.impact_crossrange_m = track.across_m;
+  }
+  const bool arrives = at_apogee ? free.has_apogee : free.has_impact;
+  fall_end_s_ = !arrives ? kTimeLimit_s : at_apogee ? free.apogee_time_s : free.impact_time_s;
+  const double fallen[] = {free.apogee_time_s, free.apogee_altitude_m, free.impact_latitude_rad,
+                           free.impact_longitude_rad, free.impact_speed_m_s};
+  digester_.Add(fallen, std::size(fallen));
+  if (arrives) return Outcome::kCompleted;
+  *reason = at_apogee ? "no apogee within 86400 s of simulated time"
+                      : "not on the ground within 86400 s of simulated time";
+  return Outcome::kTimeout;
 }
 
 void FlightRecord::SetEquations() {
   judged_.reset();
-  if (watched || is_judged()) equations_ = std::make_unique<const LauncherModel>(plant);
+  if (watched || is_judged() || rail_) equations_ = std::make_unique<const LauncherModel>(plant);
   if (is_judged()) judged_ = std::make_unique<JudgedMotion>(*equations_, options.scheme);
 }
 
@@ -269,6 +365,7 @@ TickSample FlightRecord::SampleOf(const LaneView& view, unsigned parts) const {
   s.time_s = view.time_s;
   s.stack = view.phase.stack;
   s.burning = view.phase.burning;
+  s.unsteered = view.unsteered;
   s.coasting = view.coasting;
   s.since_ignition_s = view.time_s - view.phase.ignition_s;
   s.state = ReadState(view.y);
@@ -364,8 +461,8 @@ void FlightRecord::CutOff(int stage, double time_s) {
   const auto ignition = std::find_if(events.begin(), events.end(),
                                      [&](const FlightEvent& event) { return event.stage == stage; });
   CutOffStage(model_.definition().vehicle, stage, time_s - ignition->time_s, plant);
-  events =
-      EventsOf(model_, plant, inputs, guided ? guided->ignition_s() : model_.definition().last_ignition_s);
+  events = EventsOf(model_, plant, inputs,
+                    guided ? guided->ignition_s() : model_.definition().last_ignition_s, rail_exit_s_);
   SetEquations();
 }
 
@@ -403,13 +500,15 @@ void FlightRecord::Separate(int stage, unsigned jettisoned, double* y) {
 }
 
 bool FlightRecord::Judge(const LauncherPhase& phase, double from_s, double to_s, double* y) {
-  return judged_->Advance(phase, from_s, to_s, options.steps_per_tick, y);
+  if (!rail_) return judged_->Advance(phase, from_s, to_s, options.steps_per_tick, y);
+  rail_->Advance(phase, from_s, to_s, y);
+  return true;
 }
 
 void FlightRecord::End(Outcome outcome, const char* reason, double time_s, int stack, const double* y) {
   result_.outcome = outcome;
   result_.reason = reason;
-  result_.end_time_s = time_s;
+  result_.end_time_s = fall_end_s_.value_or(time_s);
   result_.end_stage = stack + 1;
   result_.end_state = ReadState(y);
   AddToDigest(time_s, y);

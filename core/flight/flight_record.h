@@ -5,6 +5,7 @@
 #pragma once
 
 #include <memory>
+#include <optional>
 #include <string>
 #include <vector>
 
@@ -22,6 +23,7 @@
 namespace dispersa {
 
 class OwnMetricsMeter;
+class RailSlide;
 
 /// Events of the plant at their own times, in the order in which they happen.
 enum class EventKind {
@@ -30,7 +32,9 @@ enum class EventKind {
   kSeparation,
   kBoosterBurnout,  ///< of all, or of one that is a body of its own
   kBoosterSeparation,
-  kKink,  ///< the thrust's ramp ends or begins: nothing but a step that ends there
+  kSpinEnd,   ///< the spin motors burn out
+  kRailExit,  ///< the vehicle leaves its rail
+  kKink,      ///< the thrust's ramp ends or begins: nothing but a step that ends there
 };
 struct FlightEvent {
   double time_s;
@@ -48,6 +52,7 @@ struct LaneView {
   StateValues y = {};
   LauncherPhase phase;
   bool coasting = false;
+  bool unsteered = false;  ///< nothing controls the attitude
   bool has_error = false;  ///< at ticks the engine's error, at events computed anew
   double error_angle_rad[kAxes] = {};
   double error_rate_rad_s[kAxes] = {};
@@ -71,6 +76,8 @@ class FlightRecord {
   const FlightWeather weather;
   std::vector<FlightEvent> events;  ///< those that have happened stay in their places
   StateValues lift_off;
+  const char* lost_attitude;  ///< reasons of a loss of control
+  const char* lost_rate;
   const char* refusal = nullptr;  ///< reason why its inputs cannot be flown (null: they can)
   double believed_attitude[4];    ///< q_IB (w, x, y, z) that the inertial unit is aligned to at lift-off
   bool every_tick;     ///< has an observer, or metrics of its campaign's own: is watched at each tick
@@ -117,6 +124,17 @@ class FlightRecord {
   /// when it fails.
   bool Judge(const LauncherPhase& phase, double from_s, double to_s, double* y);
   bool is_judged() const { return options.scheme != Scheme::kSimpson; }
+  /// Whether Judge moves the flight now: it has a judge, or is on its rail.
+  bool replaces_steps() const { return is_judged() || rail_ != nullptr; }
+  /// Roll moment of a stage's spin motors, N m; 0 without any.
+  double SpinTorque(int stage) const;
+  /// The vehicle leaves its rail, in this state.
+  void LeaveRail(const double* y);
+  /// Whether altitude grows.
+  bool Climbs(const double* y) const;
+  /// The way from here to the flight's stated end, without thrust, as a point mass. `reason`: of an outcome
+  /// other than completed.
+  Outcome Fall(double time_s, double mass_kg, const double* y, const char** reason);
 
   /// Ends the flight. `reason` must be a string literal: the pointer is kept.
   void End(Outcome outcome, const char* reason, double time_s, int stack, const double* y);
@@ -125,6 +143,7 @@ class FlightRecord {
  private:
   class JudgedMotion;
   void SetEquations();
+  void StandOnRail();
   ReferenceAttitude ReferenceAt(double time_s) const;
   /// `parts`: bits of RowPart (history_columns.h).
   TickSample SampleOf(const LaneView& view, unsigned parts) const;
@@ -137,6 +156,9 @@ class FlightRecord {
   Digester digester_;
   std::unique_ptr<const LauncherModel> equations_;  ///< of a flight that is watched or judged
   std::unique_ptr<JudgedMotion> judged_;
+  double rail_exit_s_ = -1.0;                     ///< negative: no rail
+  std::unique_ptr<RailSlide> rail_;               ///< until it is left
+  std::optional<double> fall_end_s_;              ///< of a flight that ends in a fall
   std::unique_ptr<OwnMetricsMeter> own_metrics_;  ///< of a campaign that has any
   std::vector<double> row_;
   FlightResult result_;

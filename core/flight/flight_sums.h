@@ -7,6 +7,7 @@
 
 #include "core/dynamics/actuators.h"
 #include "core/dynamics/launcher_body.h"
+#include "core/flight/free_flight_sums.h"
 #include "core/flight/nozzle_allocation.h"
 #include "core/flight/orbit.h"
 #include "core/guidance/outcome.h"
@@ -48,6 +49,7 @@ struct FlightSums : TickSums<double> {
   double injection_altitude_m = 0.0;
   OrbitElements orbit;
   GuidanceOutcome guidance;  ///< of a flight that is guided
+  FreeFlightSums free;
   std::uint32_t rules_fired = 0;
   double step_limit_fraction = 0.0;  ///< known before the flight (step_limits.h)
 };

@@ -156,7 +156,8 @@ void AppendLauncher(const FlightModel& model, const TickSample& s, std::vector<d
   Vector3 specific = Vector3::Zero();
   if (parts & kInstant) specific = now.loads.force_n / (now.loads.mass_kg * kStandardGravity);
   const AxisTelemetry& t = s.gimbal.telemetry[kPitch];
-  const auto powered = [&](double value) { return s.burning ? value : kEmpty; };
+  const auto steered = [&](double value) { return s.unsteered ? kEmpty : value; };
+  const auto powered = [&](double value) { return s.burning ? steered(value) : kEmpty; };
   const auto told = [&](std::size_t i) { return s.law_telemetry ? powered((*s.law_telemetry)[i]) : kEmpty; };
   const auto& n = s.nozzle_rad;
   const LauncherStack& stack = model.nominal_plant().stacks[static_cast<std::size_t>(s.stack)];
@@ -174,19 +175,19 @@ void AppendLauncher(const FlightModel& model, const TickSample& s, std::vector<d
                          now.thrust_n,
                          orbit.speed_m_s,
                          orbit.flight_path_angle_rad * kDegPerRad,
-                         s.reference.angles.pitch * kDegPerRad,
+                         steered(s.reference.angles.pitch * kDegPerRad),
                          attitude.pitch * kDegPerRad,
-                         -s.error.angle_rad.y() * kDegPerRad,
-                         -s.error.angle_rad.z() * kDegPerRad,
-                         -s.error.angle_rad.x() * kDegPerRad,
-                         -s.error.rate_rad_s.y() * kDegPerRad,
-                         felt(kPitch, 0.5 * (n[0] + n[1])),
-                         felt(kYaw, 0.5 * (n[2] + n[3])),
-                         felt(kRoll, 0.25 * (n[0] - n[1] + n[2] - n[3])),
-                         n[0] * kDegPerRad,
-                         n[1] * kDegPerRad,
-                         n[2] * kDegPerRad,
-                         n[3] * kDegPerRad,
+                         steered(-s.error.angle_rad.y() * kDegPerRad),
+                         steered(-s.error.angle_rad.z() * kDegPerRad),
+                         steered(-s.error.angle_rad.x() * kDegPerRad),
+                         steered(-s.error.rate_rad_s.y() * kDegPerRad),
+                         steered(felt(kPitch, 0.5 * (n[0] + n[1]))),
+                         steered(felt(kYaw, 0.5 * (n[2] + n[3]))),
+                         steered(felt(kRoll, 0.25 * (n[0] - n[1] + n[2] - n[3]))),
+                         steered(n[0] * kDegPerRad),
+                         steered(n[1] * kDegPerRad),
+                         steered(n[2] * kDegPerRad),
+                         steered(n[3] * kDegPerRad),
                          powered(s.gimbal.pitch_rad * kDegPerRad),
                          powered(t.command_rad_s2 * kDegPerRad),
                          powered(t.adaptation_norm * kDegPerRad),

@@ -35,6 +35,9 @@ struct Measured {
   double AtInjection(double value) const {
     return sums.injected && std::isfinite(value) ? value : kUndefined;
   }
+  double AtApogee(double value) const { return sums.free.has_apogee ? value : kUndefined; }
+  double AtImpact(double value) const { return sums.free.has_impact ? value : kUndefined; }
+  double OffTheRail(double value) const { return sums.free.left_rail ? value : kUndefined; }
 };
 
 // The end of a metric's name, and how people write the unit.
@@ -54,12 +57,21 @@ struct Traits {
   bool is_usual = false;
   bool is_digested = true;
   bool LawInfo::*of_law = nullptr;
+  MetricNeeds needs = MetricNeeds::kNothing;
 };
 constexpr Traits kByPhase{.by_phase = true}, kUsualByPhase{.by_phase = true, .is_usual = true},
     kUsual{.is_usual = true}, kOfRules{.of_law = &LawInfo::rules},
     kOfAdaptation{.of_law = &LawInfo::adaptation};
 // Follows from the flight's states, which are digested, or from its inputs.
 constexpr Traits kNotDigested{.is_digested = false};
+// What is not said of flights without a target: the orbit, and how far it is from the target's.
+constexpr Traits kOfOrbit{.needs = MetricNeeds::kControl},
+    kOfOrbitNotDigested{.is_digested = false, .needs = MetricNeeds::kControl};
+constexpr Traits kOfFreeStage{.is_digested = false, .needs = MetricNeeds::kFreeStage},
+    kOfRail{.is_digested = false, .needs = MetricNeeds::kRail},
+    kOfApogee{.is_usual = true, .is_digested = false, .needs = MetricNeeds::kApogee},
+    kOfImpact{.is_digested = false, .needs = MetricNeeds::kImpact},
+    kUsualOfImpact{.is_usual = true, .is_digested = false, .needs = MetricNeeds::kImpact};
 
 struct Row {
   const char* stem;
@@ -77,8 +89,8 @@ constexpr auto kLarger = Worse::kLarger, kSmaller = Worse::kSmaller, kAnyway = W
                kFarther = Worse::kFartherFromZero;
 constexpr auto kAttitude = MetricGroup::kAttitude, kControlEffort = MetricGroup::kControlEffort,
                kLoads = MetricGroup::kLoads, kInjection = MetricGroup::kInjection,
-               kGuidance = MetricGroup::kGuidance, kControlLaw = MetricGroup::kControlLaw,
-               kIntegration = MetricGroup::kIntegration;
+               kFreeFlight = MetricGroup::kFreeFlight, kGuidance = MetricGroup::kGuidance,
+               kControlLaw = MetricGroup::kControlLaw, kIntegration = MetricGroup::kIntegration;
 
 double SemiMajorAxis(const Earth& earth, double radius_m, double speed_m_s) {
   return 1.0 / (2.0 / radius_m - speed_m_s * speed_m_s / earth.mu_m3_s2);
@@ -192,28 +204,31 @@ constexpr Row kRows[] = {
      [](const Measured& m) { return m.AtInjection(m.sums.orbit.flight_path_angle_rad * kDegPerRad); }},
     {"apogee", kKilometres, "h_a", kInjection, "Apogee",
      "altitude above the equatorial radius, of the osculating two-body orbit at injection", kAnyway,
-     [](const Measured& m) { return m.AtInjection(m.sums.orbit.apogee_altitude_m * 1e-3); }},
+     [](const Measured& m) { return m.AtInjection(m.sums.orbit.apogee_altitude_m * 1e-3); }, kOfOrbit},
     {"perigee", kKilometres, "h_p", kInjection, "Perigee",
      "altitude above the equatorial radius, of the osculating two-body orbit at injection", kSmaller,
-     [](const Measured& m) { return m.AtInjection(m.sums.orbit.perigee_altitude_m * 1e-3); }},
+     [](const Measured& m) { return m.AtInjection(m.sums.orbit.perigee_altitude_m * 1e-3); }, kOfOrbit},
     {"inclination", kDegrees, "i", kInjection, "Inclination", "of the osculating orbit at injection", kAnyway,
-     [](const Measured& m) { return m.AtInjection(m.sums.orbit.inclination_rad * kDegPerRad); }},
+     [](const Measured& m) { return m.AtInjection(m.sums.orbit.inclination_rad * kDegPerRad); }, kOfOrbit},
     {"injection_altitude_error", kKilometres, "Δh", kInjection, "Injection altitude error",
      "altitude at injection minus the target's", kFarther,
      [](const Measured& m) {
        return m.AtInjection((m.sums.injection_altitude_m - m.definition.target.altitude_m) * 1e-3);
-     }},
+     },
+     kOfOrbit},
     {"injection_velocity_error", kMetresPerSecond, "ΔV", kInjection, "Injection velocity error",
      "velocity at injection minus the target's", kFarther,
      [](const Measured& m) {
        return m.AtInjection(m.sums.orbit.speed_m_s - m.definition.target.velocity_m_s);
-     }},
+     },
+     kOfOrbit},
     {"injection_flight_path_angle_error", kDegrees, "Δγ", kInjection, "Injection flight path angle error",
      "flight path angle at injection minus the target's", kFarther,
      [](const Measured& m) {
        return m.AtInjection((m.sums.orbit.flight_path_angle_rad - m.definition.target.flight_path_angle_rad) *
                             kDegPerRad);
-     }},
+     },
+     kOfOrbit},
 
     {"lyapunov_outside_fraction", kPure, "t(V > V_0)/t", kControlLaw, "Outside the residual set",
      "fraction of powered flight with the pitch law's V = ½ eᵀPe above its value for an error of 0.05° at "
@@ -242,14 +257,14 @@ constexpr Row kRows[] = {
                              SemiMajorAxis(earth, target_radius_m, m.definition.target.velocity_m_s)) *
                             1e-3);
      },
-     kNotDigested},
+     kOfOrbitNotDigested},
     {"inclination_error", kDegrees, "Δi", kInjection, "Inclination error",
      "inclination at injection minus the target's, or the reference's if the target names none", kFarther,
      [](const Measured& m) {
        return m.AtInjection((m.sums.orbit.inclination_rad - m.definition.target.inclination_rad) *
                             kDegPerRad);
      },
-     kNotDigested},
+     kOfOrbitNotDigested},
     {"guidance_converged", kPure, "–", kGuidance, "Guidance converged",
      "1 if the last guidance plan reaches the target, and also the last plan that controlled altitude; else "
      "0",
@@ -267,6 +282,41 @@ constexpr Row kRows[] = {
      "largest ratio of the frequency of an actuator or bending mode, as dispersed, to the limit that the "
      "integration step resolves",
      kLarger, [](const Measured& m) { return m.sums.step_limit_fraction; }, kNotDigested},
+
+    {"apogee_altitude", kKilometres, "h_max", kFreeFlight, "Apogee altitude",
+     "geodetic, where altitude stops growing after the last burn", kAnyway,
+     [](const Measured& m) { return m.AtApogee(m.sums.free.apogee_altitude_m * 1e-3); }, kOfApogee},
+    {"apogee_time", kSeconds, "t(h_max)", kFreeFlight, "Time of the apogee", "since lift-off", kAnyway,
+     [](const Measured& m) { return m.AtApogee(m.sums.free.apogee_time_s); }, kOfApogee},
+    {"impact_time", kSeconds, "t_imp", kFreeFlight, "Time of the impact", "since lift-off", kAnyway,
+     [](const Measured& m) { return m.AtImpact(m.sums.free.impact_time_s); }, kOfImpact},
+    {"impact_latitude", kDegrees, "φ_imp", kFreeFlight, "Latitude of the impact", "geodetic", kAnyway,
+     [](const Measured& m) { return m.AtImpact(m.sums.free.impact_latitude_rad * kDegPerRad); }, kOfImpact},
+    {"impact_longitude", kDegrees, "λ_imp", kFreeFlight, "Longitude of the impact", "east", kAnyway,
+     [](const Measured& m) { return m.AtImpact(m.sums.free.impact_longitude_rad * kDegPerRad); }, kOfImpact},
+    {"impact_downrange", kKilometres, "x_imp", kFreeFlight, "Impact, down-range",
+     "along the great circle of the launch azimuth, from the site", kAnyway,
+     [](const Measured& m) { return m.AtImpact(m.sums.free.impact_downrange_m * 1e-3); }, kUsualOfImpact},
+    {"impact_crossrange", kKilometres, "y_imp", kFreeFlight, "Impact, cross-range",
+     "to the right of the great circle of the launch azimuth", kFarther,
+     [](const Measured& m) { return m.AtImpact(m.sums.free.impact_crossrange_m * 1e-3); }, kUsualOfImpact},
+    {"impact_speed", kMetresPerSecond, "V_imp", kFreeFlight, "Speed of the impact", "over the ground",
+     kLarger, [](const Measured& m) { return m.AtImpact(m.sums.free.impact_speed_m_s); }, kOfImpact},
+    {"rail_exit_time", kSeconds, "t_rail", kFreeFlight, "Time off the rail", "since lift-off", kAnyway,
+     [](const Measured& m) { return m.OffTheRail(m.sums.free.rail_exit_time_s); }, kOfRail},
+    {"rail_exit_speed", kMetresPerSecond, "V_rail", kFreeFlight, "Speed off the rail", "along the rail",
+     kSmaller, [](const Measured& m) { return m.OffTheRail(m.sums.free.rail_exit_speed_m_s); }, kOfRail},
+    {"roll_rate_peak", kDegreesPerSecond, "max |p|", kFreeFlight, "Roll rate, peak",
+     "largest magnitude about the body axis while a stage without gimbal flies", kLarger,
+     [](const Measured& m) { return m.sums.free.roll_rate_peak_rad_s * kDegPerRad; }, kOfFreeStage},
+    {"static_margin_min", kPure, "min (x_CP − x_CG)/d", kFreeFlight, "Static margin, least",
+     "centre of pressure aft of the centre of gravity, in diameters, while a stage without gimbal flies and "
+     "the dynamic pressure is at least 1 kPa",
+     kSmaller,
+     [](const Measured& m) {
+       return std::isfinite(m.sums.free.least_static_margin) ? m.sums.free.least_static_margin : kUndefined;
+     },
+     kOfFreeStage},
 };
 
 // Sums of all stages together. If several stages share a peak, the first stage has it.
@@ -315,6 +365,31 @@ void ForEach(F f) {
   by_phase(true);
 }
 
+// Errors against a reference and what is done about them are of controlled flights.
+MetricNeeds NeedsOf(const Row& row) {
+  const bool is_of_control = row.group == kAttitude || row.group == kControlEffort ||
+                             row.group == kGuidance || row.group == kControlLaw;
+  return is_of_control ? MetricNeeds::kControl : row.traits.needs;
+}
+
+bool Meets(const FlightKind& kind, MetricNeeds needs) {
+  switch (needs) {
+    case MetricNeeds::kNothing:
+      return true;
+    case MetricNeeds::kControl:
+      return kind.is_controlled;
+    case MetricNeeds::kFreeStage:
+      return kind.has_free_stage;
+    case MetricNeeds::kRail:
+      return kind.has_rail;
+    case MetricNeeds::kApogee:
+      return kind.ends != FlightEnd::kInjection;
+    case MetricNeeds::kImpact:
+      return kind.ends == FlightEnd::kImpact;
+  }
+  return false;
+}
+
 // The metrics of all stages.
 std::vector<Metric> AllMetrics() {
   std::vector<Metric> list;
@@ -330,7 +405,8 @@ std::vector<Metric> AllMetrics() {
                     .is_usual = row.traits.is_usual && phase == 0,
                     .is_digested = row.traits.is_digested && !IsRare(phase),
                     .is_part = phase != 0,
-                    .of_law = row.traits.of_law});
+                    .of_law = row.traits.of_law,
+                    .needs = NeedsOf(row)});
   });
   return list;
 }
@@ -360,21 +436,50 @@ std::size_t MetricCount(std::size_t stages) {
   return MetricNames().size() - (stages <= kUsualStages ? kRareMetrics : 0);
 }
 
-bool HasMetric(const Metric& metric, ControlLaw pitch_law) {
-  return metric.of_law == nullptr || InfoOf(pitch_law).*metric.of_law;
+FlightKind KindOf(const Vehicle& vehicle, const AutopilotConfig& autopilot, const FlightCourse& course) {
+  FlightKind kind(autopilot.pitch.law);
+  kind.is_controlled = course.is_controlled;
+  kind.has_free_stage = std::any_of(vehicle.stages.begin(), vehicle.stages.end(),
+                                    [](const Stage& stage) { return !stage.is_controlled(); });
+  kind.has_rail = vehicle.rail && vehicle.rail->length_m > 0.0;
+  kind.ends = course.ends;
+  return kind;
 }
 
-std::vector<std::size_t> MetricsUnder(std::size_t stages, ControlLaw pitch_law) {
+bool HasMetric(const Metric& metric, const FlightKind& kind) {
+  return (metric.of_law == nullptr || InfoOf(kind.pitch_law).*metric.of_law) && Meets(kind, metric.needs);
+}
+
+std::string NeedsOf(const Metric& metric) {
+  switch (metric.needs) {
+    case MetricNeeds::kNothing:
+      return "";
+    case MetricNeeds::kControl:
+      return "a stage that an autopilot controls";
+    case MetricNeeds::kFreeStage:
+      return "a stage without gimbal";
+    case MetricNeeds::kRail:
+      return "a rail";
+    case MetricNeeds::kApogee:
+      return "flight: {ends: apogee} or {ends: impact}";
+    case MetricNeeds::kImpact:
+      return "flight: {ends: impact}";
+  }
+  return "";
+}
+
+std::vector<std::size_t> MetricsUnder(std::size_t stages, const FlightKind& kind) {
   std::vector<std::size_t> positions;
   for (std::size_t i = 0; i < MetricCount(stages); ++i)
-    if (HasMetric(Metrics()[i], pitch_law)) positions.push_back(i);
+    if (HasMetric(Metrics()[i], kind)) positions.push_back(i);
   return positions;
 }
 
 std::string LawsWith(const Metric& metric) {
   std::string names;
   for (const LawInfo& law : kLaws)
-    if (HasMetric(metric, law.law)) names += (names.empty() ? "" : " or ") + std::string(law.name);
+    if (metric.of_law == nullptr || law.*metric.of_law)
+      names += (names.empty() ? "" : " or ") + std::string(law.name);
   return names;
 }
 
@@ -388,13 +493,14 @@ std::size_t MetricColumn(const std::string& name) {
 MeasuredFlight Measure(const FlightSums& sums, const FlightDefinition& definition) {
   const std::size_t count = MetricCount(ColumnClass(definition.vehicle));
   const LawInfo& law = InfoOf(definition.autopilot.pitch.law);
+  const FlightKind kind = KindOf(definition.vehicle, definition.autopilot, definition.course);
   MeasuredFlight measured;
   measured.metrics.reserve(MetricNames().size());
   measured.digested.reserve(MetricNames().size());
   ForEach([&](const Row& row, int phase) {
     const ErrorSums pitch = PitchOf(phase, sums);
     const double value = row.value({sums, definition, pitch});
-    const bool has = row.traits.of_law == nullptr || law.*row.traits.of_law;
+    const bool has = (row.traits.of_law == nullptr || law.*row.traits.of_law) && Meets(kind, NeedsOf(row));
     measured.metrics.push_back(has ? value : kUndefined);
     if (row.traits.is_digested && !IsRare(phase)) measured.digested.push_back(value);
   });

@@ -7,12 +7,14 @@
 #include <vector>
 
 #include "core/control/autopilot_config.h"
+#include "core/flight/flight_course.h"
 #include "core/flight/outcome.h"
 
 namespace dispersa {
 
 struct FlightDefinition;
 struct FlightSums;
+struct Vehicle;
 
 /// Which values of a metric are worse ones.
 enum class Worse {
@@ -28,15 +30,37 @@ enum class MetricGroup {
   kControlEffort,
   kLoads,
   kInjection,
+  kFreeFlight,
   kGuidance,
   kControlLaw,
   kIntegration,
   kOwn,  ///< of the campaign (own_metrics.h)
 };
-inline constexpr const char* kMetricGroupTitles[] = {"Attitude",    "Control effort",    "Loads",
-                                                     "Injection",   "Guidance",          "Control law",
-                                                     "Integration", "The campaign's own"};
+inline constexpr const char* kMetricGroupTitles[] = {"Attitude",    "Control effort", "Loads",
+                                                     "Injection",   "Free flight",    "Guidance",
+                                                     "Control law", "Integration",    "The campaign's own"};
 constexpr const char* TitleOf(MetricGroup group) { return kMetricGroupTitles[static_cast<int>(group)]; }
+
+/// What flights must have, besides their law, to have a metric.
+enum class MetricNeeds {
+  kNothing,
+  kControl,    ///< a stage that an autopilot controls
+  kFreeStage,  ///< a stage that nothing controls
+  kRail,
+  kApogee,  ///< they end there, or later
+  kImpact,
+};
+/// What decides which metrics the flights of a campaign have.
+struct FlightKind {
+  FlightKind(ControlLaw law) : pitch_law(law) {}
+
+  ControlLaw pitch_law;
+  bool is_controlled = true;
+  bool has_free_stage = false;
+  bool has_rail = false;
+  FlightEnd ends = FlightEnd::kInjection;
+};
+FlightKind KindOf(const Vehicle& vehicle, const AutopilotConfig& autopilot, const FlightCourse& course);
 
 /// A metric that a flight does not define (a stage that it never reached) is NaN inside and NULL, empty or
 /// null outside.
@@ -54,6 +78,7 @@ struct Metric {
       false;  ///< of one stage or of the coast: the metric without this suffix has the same definition
   /// property that a law needs for its flights to have the metric (null: none)
   bool LawInfo::*of_law = nullptr;
+  MetricNeeds needs = MetricNeeds::kNothing;
 };
 
 /// In the order of their columns.
@@ -62,11 +87,12 @@ const std::vector<std::string>& MetricNames();
 /// Number of metrics of a vehicle with this number of stages: they are the first of Metrics(). A flight's
 /// value is undefined if its control law does not have the metric.
 std::size_t MetricCount(std::size_t stages);
-/// Whether flights under a law of the pitch axis have it.
-bool HasMetric(const Metric& metric, ControlLaw pitch_law);
-/// Positions in Metrics() of the metrics that flights have, for a number of stages and the law of the pitch
-/// axis.
-std::vector<std::size_t> MetricsUnder(std::size_t stages, ControlLaw pitch_law);
+/// Whether flights of a kind have it.
+bool HasMetric(const Metric& metric, const FlightKind& kind);
+/// Positions in Metrics() of the metrics that flights of a kind have, for a number of stages.
+std::vector<std::size_t> MetricsUnder(std::size_t stages, const FlightKind& kind);
+/// "a stage that an autopilot controls": what flights of a metric need, besides a law; empty: nothing.
+std::string NeedsOf(const Metric& metric);
 /// "adaptive_fuzzy or frozen_fuzzy": the laws that have it.
 std::string LawsWith(const Metric& metric);
 /// The column of a metric that exists.

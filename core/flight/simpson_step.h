@@ -231,6 +231,11 @@ class StepState {
               (differs(torque_n_m.x, now.x) | differs(torque_n_m.y, now.y) | differs(torque_n_m.z, now.z)));
     now = Select(lanes, torque_n_m, now);
   }
+  /// Of spin motors, until it is set again.
+  void SetRollTorque(int lane, double torque_n_m) {
+    SetLane(phase_.control_torque_n_m, lane, {torque_n_m, 0.0, 0.0});
+    MarkMoved(lane);
+  }
   /// So many times so much leaves through thrusters.
   void Expel(MaskOf<T> lanes, T kg_each, T times) {
     phase_.expelled_kg = Select(lanes, Fma(kg_each, times, phase_.expelled_kg), phase_.expelled_kg);
@@ -241,6 +246,7 @@ class StepState {
   const Instant<T>& now() const { return start_->instant; }
   const Vector<T>& acceleration_m_s2() const { return start_->rates.dv; }
   const T& density_kg_m3() const { return start_->around.density_kg_m3; }
+  const T& cg_station_m() const { return start_->masses.cg_station_m; }
   /// Of the lanes' lowest stages.
   const T& propellant_kg() const { return start_->masses.propellant_kg; }
   /// The largest bending moment of the lanes' bodies now.

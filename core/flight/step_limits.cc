@@ -66,8 +66,9 @@ StepUse GreatestStepUse(const LauncherPlant& plant, double tick_s) {
   StepUse greatest;
   for (std::size_t i = 0; i < plant.stacks.size(); ++i) {
     const Gimbal& gimbal = plant.stacks[i].gimbal;
-    Take("the actuators of stage " + std::to_string(i + 1), gimbal.bandwidth_rad_s, tick_s,
-         ActuatorLimit(gimbal.nozzle_inertia_kg_m2), greatest);
+    if (!gimbal.fixed)
+      Take("the actuators of stage " + std::to_string(i + 1), gimbal.bandwidth_rad_s, tick_s,
+           ActuatorLimit(gimbal.nozzle_inertia_kg_m2), greatest);
     EachMode(plant, i, [&](int mode, double rad_s) {
       Take("bending mode " + std::to_string(mode + 1) + " of stage " + std::to_string(i + 1), rad_s, tick_s,
            kModeLimit_rad, greatest);
@@ -125,7 +126,7 @@ std::vector<StructProblem> StepProblems(const Vehicle& vehicle, double tick_s) {
   for (std::size_t i = 0; i < vehicle.stages.size(); ++i) {
     const Gimbal& gimbal = vehicle.stages[i].gimbal;
     const double most_rad_s = ActuatorLimit(gimbal.nozzle_inertia_kg_m2) / tick_s;
-    if (gimbal.bandwidth_rad_s <= most_rad_s) continue;
+    if (gimbal.fixed || gimbal.bandwidth_rad_s <= most_rad_s) continue;
     problems.push_back(
         {"stages[" + std::to_string(i) + "].gimbal.bandwidth_rad_s",
          "is too fast for the autopilot's ticks of " + Text(1e3 * tick_s) +

@@ -15,6 +15,7 @@ struct TickSample {
   double time_s = 0.0;
   int stack = 0;  ///< 0-based
   bool burning = false;
+  bool unsteered = false;         ///< nothing controls the attitude
   bool coasting = false;          ///< before an ignition by a timer (last stack: before its own)
   double since_ignition_s = 0.0;  ///< of the burning stage
   RigidBodyState state;

@@ -34,6 +34,7 @@ GuidedAuthority AuthorityOf(const Vehicle& vehicle, const AutopilotConfig& autop
   for (const std::size_t i : {last - 1, last}) {
     if (i < last && !SteersBelow(vehicle)) continue;
     const Stage& stage = vehicle.stages[i];
+    if (!stage.is_controlled()) continue;  // it is pointed before its ignition
     const MassProperties full = stacks[i].At(stacks[i].propellant_mass_kg);
     const double share = stage.gimbal.nozzles.empty() ? 0.5 : BuildNozzleLayout(stage.gimbal).pitch_share;
     const double effectiveness_1_s2 = share * BuildBurn(stage, 1.0, 1.0).vacuum_thrust_n *

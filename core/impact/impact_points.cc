@@ -135,6 +135,23 @@ std::vector<ImpactPoint> ImpactPoints(const CampaignFlights& flights, const Case
          {rows.At(row, "time_s"), spent.p_EoC_I, spent.v_IC_I});
   }
 
+  // The flight itself has followed its last stage to the ground.
+  if (flights.model().definition().course.ends == FlightEnd::kImpact &&
+      result.outcome == Outcome::kCompleted) {
+    const auto metric = [&](const char* name) { return result.metrics[MetricColumn(name)]; };
+    ImpactPoint point{.case_index = result.case_index,
+                      .stage = static_cast<int>(vehicle.stages.size()),
+                      .from_time_s = metric("apogee_time_s"),
+                      .from_altitude_m = metric("apogee_altitude_km") * 1e3};
+    point.impact =
+        Impact{.time_s = metric("impact_time_s"),
+               .place = {metric("impact_latitude_deg") * kRadPerDeg,
+                         metric("impact_longitude_deg") * kRadPerDeg, vehicle.descent.ground_altitude_m},
+               .speed_m_s = metric("impact_speed_m_s"),
+               .peak_altitude_m = point.from_altitude_m};
+    points.push_back(point);
+  }
+
   if (result.outcome != Outcome::kCompleted) {
     History last;
     FlightOptions options;

@@ -8,7 +8,7 @@
 
 #include "core/campaign/case_result.h"
 #include "core/cases/campaign_flights.h"
-#include "core/impact/fall.h"
+#include "core/dynamics/fall.h"
 
 namespace dispersa {
 
@@ -29,8 +29,8 @@ struct ImpactPoint {
 /// Boosters fall in the same way from their separation. Those that are bodies of their own each start at
 /// their place; of those that are all alike one falls, from the vehicle's axis.
 ///
-/// The last stage of a completed flight is in orbit and has no point. Neither has a stack whose state is not
-/// finite.
+/// The last stage of a completed flight that ends at injection or apogee has no point; one that ends at
+/// impact has that of its metrics. Neither has a stack whose state is not finite.
 std::vector<ImpactPoint> ImpactPoints(const CampaignFlights& flights, const CaseResult& result,
                                       const History& history, const FallSteps& steps = {});
 

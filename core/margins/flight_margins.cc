@@ -132,7 +132,7 @@ FlownInstants InstantsOf(const FlightModel& model, const FlightOrder& order, dou
   };
   FlightOptions options = order.options;
   options.observe = [&](const TickSample& s) {
-    if (!s.burning) return;
+    if (!s.burning || s.unsteered) return;
     const std::string name = "stage " + std::to_string(s.stack + 1);
     if (s.stack != stage) {
       if (stage >= 0) end_stage();

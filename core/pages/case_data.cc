@@ -15,9 +15,14 @@ namespace {
 std::vector<std::string> ShownMetrics(const CampaignSummary& summary) {
   std::vector<std::string> names;
   for (const WorstCases& worst : summary.worst_cases) names.push_back(worst.metric);
-  for (const char* name :
-       {"injection_velocity_error_m_s", "injection_altitude_error_km", "perigee_km", "apogee_km"}) {
-    if (std::find(names.begin(), names.end(), name) == names.end()) names.push_back(name);
+  const auto is_measured = [&](const char* name) {
+    return std::any_of(summary.metrics.begin(), summary.metrics.end(),
+                       [&](const MetricSummary& metric) { return metric.name == name; });
+  };
+  for (const char* name : {"injection_velocity_error_m_s", "injection_altitude_error_km", "perigee_km",
+                           "apogee_km", "impact_crossrange_km", "impact_downrange_km"}) {
+    if (is_measured(name) && std::find(names.begin(), names.end(), name) == names.end())
+      names.push_back(name);
   }
   return names;
 }

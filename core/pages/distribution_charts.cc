@@ -87,11 +87,14 @@ PointScatter PairsOf(const std::vector<double>& x, const std::vector<double>& y)
 
 }  // namespace
 
-std::string InjectionFigures(const CampaignSummary& summary, const CaseColumns& cases) {
-  const std::string x = "injection_velocity_error_m_s", y = "injection_altitude_error_km";
-  SvgChart injection({.label = AxisLabel(x)}, {.label = AxisLabel(y)}, 520, 300);
-  AddCases(x, y, summary, cases, &injection);
-  std::string caption = "Injection of each completed case against the target.";
+namespace {
+
+// A scatter of the completed cases with the ellipses of its covariance.
+std::string ScatterFigure(const std::string& x, const std::string& y, const std::string& what,
+                          const CampaignSummary& summary, const CaseColumns& cases) {
+  SvgChart chart({.label = AxisLabel(x)}, {.label = AxisLabel(y)}, 520, 300);
+  AddCases(x, y, summary, cases, &chart);
+  std::string caption = what;
   const PointScatter scatter = PairsOf(CompletedValues(cases, x), CompletedValues(cases, y));
   if (scatter.n >= kFewestForEllipses) {
     std::string drawn;
@@ -103,18 +106,34 @@ std::string InjectionFigures(const CampaignSummary& summary, const CaseColumns& 
         outline_x.push_back(point[0]);
         outline_y.push_back(point[1]);
       }
-      injection.Line(outline_x, outline_y, "ellipse", drawn.empty() ? "covariance ellipses" : "");
+      chart.Line(outline_x, outline_y, "ellipse", drawn.empty() ? "covariance ellipses" : "");
       drawn += (drawn.empty() ? "" : ", ") + PercentText(containment);
     }
     caption +=
         " The ellipses hold " + drawn + " of a normal law with the mean and covariance of these flights.";
   }
+  return Figure(chart.Svg(caption), HtmlText(caption));
+}
+
+}  // namespace
+
+std::string ImpactFigures(const CampaignSummary& summary, const CaseColumns& cases) {
+  return ScatterFigure("impact_crossrange_km", "impact_downrange_km",
+                       "Impact of each completed case, from the launch site along and across its azimuth.",
+                       summary, cases) +
+         ScatterFigure("impact_downrange_km", "apogee_altitude_km",
+                       "Apogee and range of each completed case.", summary, cases);
+}
+
+std::string InjectionFigures(const CampaignSummary& summary, const CaseColumns& cases) {
+  const std::string injection =
+      ScatterFigure("injection_velocity_error_m_s", "injection_altitude_error_km",
+                    "Injection of each completed case against the target.", summary, cases);
   SvgChart orbits({.label = AxisLabel("perigee_km")}, {.label = AxisLabel("apogee_km")}, 520, 300);
   AddCases("perigee_km", "apogee_km", summary, cases, &orbits);
   const std::string orbit_caption =
       "The orbits that follow from it; far from a normal law, so no ellipse is drawn.";
-  return Figure(injection.Svg(caption), HtmlText(caption)) +
-         Figure(orbits.Svg(orbit_caption), HtmlText(orbit_caption));
+  return injection + Figure(orbits.Svg(orbit_caption), HtmlText(orbit_caption));
 }
 
 namespace {

@@ -14,6 +14,9 @@ namespace dispersa {
 std::string DistributionFigures(const std::string& metric, const CampaignSummary& summary,
                                 const CaseColumns& cases);
 
+/// Where the completed cases come down: down-range against cross-range.
+std::string ImpactFigures(const CampaignSummary& summary, const CaseColumns& cases);
+
 /// The injection of the completed cases: altitude error against velocity error, and apogee against perigee.
 std::string InjectionFigures(const CampaignSummary& summary, const CaseColumns& cases);
 

@@ -58,6 +58,10 @@ struct Burns {
   }
 };
 
+bool IsDefined(const std::vector<double>& values) {
+  return std::any_of(values.begin(), values.end(), [](double value) { return std::isfinite(value); });
+}
+
 struct BandView {
   const char* column;
   const char* label;
@@ -88,6 +92,7 @@ std::string BandFigure(const BandView& view, const FlightHistories& histories, c
   const auto band = std::find_if(bands.bands.begin(), bands.bands.end(),
                                  [&](const Band& candidate) { return candidate.column == view.column; });
   assert(band != bands.bands.end());
+  if (!IsDefined(band->p50)) return "";  // nothing commands it
   SvgChart chart({.label = kTimeAxis, .low = view.from_s, .high = view.to_s}, {.label = view.label},
                  view.width, 280);
   burns.AddTo(&chart);
@@ -135,15 +140,23 @@ std::string NominalFigures(const History& nominal) {
     burns.AddTo(&chart);
     figures += Figure(chart.Svg(caption), HtmlText(caption));
   };
+  const bool is_controlled = IsDefined(Column(nominal, "pitch_error_deg"));
 
   SvgChart pitch({.label = kTimeAxis}, {.label = "pitch from the launch horizon, °"});
-  pitch.Line(time_s, Column(nominal, "pitch_launch_deg"), "line-0", "flown");
-  pitch.Line(time_s, Column(nominal, "pitch_program_deg"), "program", "program");
-  add(pitch, "Pitch program and pitch in the launch-inertial frame.");
+  pitch.Line(time_s, Column(nominal, "pitch_launch_deg"), "line-0", is_controlled ? "flown" : "");
+  if (is_controlled) pitch.Line(time_s, Column(nominal, "pitch_program_deg"), "program", "program");
+  add(pitch, is_controlled ? "Pitch program and pitch in the launch-inertial frame."
+                           : "Pitch in the launch-inertial frame.");
 
-  SvgChart error({.label = kTimeAxis}, {.label = "pitch error, °"});
-  error.Line(time_s, Column(nominal, "pitch_error_deg"), "line-0", "");
-  add(error, "Pitch error: true minus reference attitude about body y, the coast included.");
+  if (is_controlled) {
+    SvgChart error({.label = kTimeAxis}, {.label = "pitch error, °"});
+    error.Line(time_s, Column(nominal, "pitch_error_deg"), "line-0", "");
+    add(error, "Pitch error: true minus reference attitude about body y, the coast included.");
+  } else {
+    SvgChart spin({.label = kTimeAxis}, {.label = "roll rate, °/s"});
+    spin.Line(time_s, Column(nominal, "p_deg_s"), "line-0", "");
+    add(spin, "Roll rate about the body axis.");
+  }
 
   SvgChart altitude({.label = kTimeAxis}, {.label = "altitude, km"});
   altitude.Line(time_s, Column(nominal, "altitude_m", 1e-3), "line-0", "");
@@ -157,11 +170,13 @@ std::string NominalFigures(const History& nominal) {
   angle.Line(time_s, Column(nominal, "flight_path_angle_deg"), "line-0", "");
   add(angle, "Inertial flight path angle.");
 
-  SvgChart deflection({.label = kTimeAxis}, {.label = "deflection, °"});
-  deflection.Line(time_s, Column(nominal, "deflection_pitch_deg"), "line-0", "pitch");
-  deflection.Line(time_s, Column(nominal, "deflection_yaw_deg"), "line-1", "yaw");
-  deflection.Line(time_s, Column(nominal, "deflection_roll_deg"), "line-2", "roll");
-  add(deflection, "Gimbal deflection of each channel.");
+  if (is_controlled) {
+    SvgChart deflection({.label = kTimeAxis}, {.label = "deflection, °"});
+    deflection.Line(time_s, Column(nominal, "deflection_pitch_deg"), "line-0", "pitch");
+    deflection.Line(time_s, Column(nominal, "deflection_yaw_deg"), "line-1", "yaw");
+    deflection.Line(time_s, Column(nominal, "deflection_roll_deg"), "line-2", "roll");
+    add(deflection, "Gimbal deflection of each channel.");
+  }
 
   SvgChart pressure({.label = kTimeAxis, .low = 0.0, .high = air_end_s}, {.label = "dynamic pressure, kPa"});
   pressure.Line(time_s, Scaled(qbar_pa, 1e-3), "line-0", "");

@@ -80,7 +80,10 @@ std::string ReportPage(const Campaign& campaign, const CampaignSummary& summary,
   for (const WorstCases& worst : summary.worst_cases)
     page += DistributionFigures(worst.metric, summary, cases);
   page += "</div>\n";
-  if (summary.flown > 0) {
+  if (summary.flown > 0 && campaign.course.ends == FlightEnd::kImpact)
+    page +=
+        "<h3>Impact dispersion</h3>\n<div class=\"figures\">\n" + ImpactFigures(summary, cases) + "</div>\n";
+  if (summary.flown > 0 && campaign.course.is_controlled) {
     page += "<h3>Spread of the orbit</h3>\n<p>";
     page +=
         campaign.guidance.closed_loop
@@ -94,11 +97,15 @@ std::string ReportPage(const Campaign& campaign, const CampaignSummary& summary,
   page += CausesSection(summary);
   page += WorstCasesSection(summary, histories);
   if (flown_again && histories.bands.flights > 0) page += WorstFigures(histories, summary);
-  page +=
-      "<div class=\"screen\">\n<h2 id=\"nominal\">Nominal flight</h2>\n<p>The flight without dispersions, "
-      "through the same closed "
-      "loop. It is not "
-      "one of the cases. Numbers: <code>histories/nominal.csv</code>.</p>\n";
+  page += "<div class=\"screen\">\n<h2 id=\"nominal\">Nominal flight</h2>\n<p>The flight without dispersions";
+  page += campaign.course.is_controlled ? ", through the same closed loop." : ".";
+  page += " It is not one of the cases. Numbers: <code>histories/nominal.csv</code>.";
+  if (campaign.course.ends != FlightEnd::kInjection)
+    page +=
+        " The curves end where the flight goes on as a point mass: at the end of the last burn above the "
+        "air, or at "
+        "the apogee.";
+  page += "</p>\n";
   page += flown_again ? NominalFigures(histories.nominal_history)
                       : "<p>This report was made without time histories.</p>\n";
   page += "</div>\n" + StatisticsSection(summary);

@@ -292,12 +292,18 @@ no slosh, no torsion, no local mode, and the body's acceleration does not move t
           : R"html(<li>The vehicle is rigid: no bending modes, no slosh. Gain and phase margins against
 flexible modes cannot be read from this report.</li>
 )html";
-  html +=
-      campaign.guidance.closed_loop
-          ? R"html(<li>Guidance knows each motor's shape of thrust exactly, and is told its state with the constant errors that
+  if (!campaign.course.is_controlled)
+    html +=
+        R"html(<li>Nothing controls the flight. The vehicle leaves its rail at once, without tip-off; fins follow linear theory
+or the file's tables, and do not bend. After the apogee the vehicle falls as a point mass that tumbles.</li>
+)html";
+  else
+    html +=
+        campaign.guidance.closed_loop
+            ? R"html(<li>Guidance knows each motor's shape of thrust exactly, and is told its state with the constant errors that
 the campaign declares: no navigation filter, no error that grows.</li>
 )html"
-          : R"html(<li>Guidance is open loop: the pitch program is flown over time, and nothing steers out errors of speed or
+            : R"html(<li>Guidance is open loop: the pitch program is flown over time, and nothing steers out errors of speed or
 altitude. Thrust, mass flow and drag therefore spread the orbit by tens of kilometres whatever the autopilot
 does; injection metrics are reported for that spread and are no measure of the autopilot.</li>
 )html";
@@ -306,10 +312,13 @@ does; injection metrics are reported for that spread and are no measure of the a
         R"html(<li>Engines are cut off at the true inertial velocity: that speeds at injection hardly differ is the
 cut-off's doing, and no measure of guidance or autopilot.</li>
 )html";
-  html +=
-      R"html(<li>The attitude is measured without other errors than the gyro bias and noise that a campaign declares: no
+  if (campaign.course.is_controlled)
+    html +=
+        R"html(<li>The attitude is measured without other errors than the gyro bias and noise that a campaign declares: no
 filter, no alignment error.</li>
-<li>Separation is instantaneous: no contact forces and no re-contact analysis; what disturbs it is the
+)html";
+  html +=
+      R"html(<li>Separation is instantaneous: no contact forces and no re-contact analysis; what disturbs it is the
 declared tip-off rate.</li>
 <li>Motors burn with constant thrust between two ramps, along a thrust curve, or as their throttle commands, shared out
 among the nozzles, without thrust oscillation. The reaction control gives ideal couples.</li>
@@ -339,14 +348,18 @@ std::string ProvenanceSection(const Campaign& campaign, const CampaignSummary& s
   table.Row(
       {"Vehicle", fmt::format("{}, {} stages", HtmlText(summary.vehicle), campaign.vehicle.stages.size())});
   const Orbit& orbit = summary.reference_orbit;
-  table.Row(
-      {"Reference",
-       fmt::format("{}: {} km, {} m/s, {}° flight path angle, {}° inclination; found by engine {}",
-                   HtmlText(summary.reference), ReadableText(orbit.altitude_m * 1e-3),
-                   ReadableText(orbit.velocity_m_s), ReadableText(orbit.flight_path_angle_rad * kDegPerRad),
-                   ReadableText(orbit.inclination_rad * kDegPerRad), HtmlText(campaign.reference.engine))});
-  table.Row({"Autopilot", fmt::format("{}, tick {} s", HtmlText(summary.autopilot),
-                                      ReadableText(campaign.autopilot.tick_s))});
+  if (!campaign.course.is_controlled)
+    table.Row({"Control", fmt::format("none; steps of {} s", ReadableText(campaign.course.step_s))});
+  else
+    table.Row(
+        {"Reference",
+         fmt::format("{}: {} km, {} m/s, {}° flight path angle, {}° inclination; found by engine {}",
+                     HtmlText(summary.reference), ReadableText(orbit.altitude_m * 1e-3),
+                     ReadableText(orbit.velocity_m_s), ReadableText(orbit.flight_path_angle_rad * kDegPerRad),
+                     ReadableText(orbit.inclination_rad * kDegPerRad), HtmlText(campaign.reference.engine))});
+  if (campaign.course.is_controlled)
+    table.Row({"Autopilot", fmt::format("{}, tick {} s", HtmlText(summary.autopilot),
+                                        ReadableText(campaign.autopilot.tick_s))});
   if (summary.python_law)
     table.Row({"Control law", fmt::format("written in Python: {}, SHA-256 {} of what it does",
                                           Code(summary.python_law->name), Code(summary.python_law->sha256))});

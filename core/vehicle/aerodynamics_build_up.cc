@@ -3,6 +3,7 @@
 #include "core/math/constants.h"
 #include "core/math/functions.h"
 #include "core/vehicle/drag.h"
+#include "core/vehicle/fins.h"
 #include "core/vehicle/mould_line.h"
 #include "core/vehicle/normal_force.h"
 #include "core/vehicle/shock_expansion.h"
@@ -39,6 +40,11 @@ double SmoothStep(double low, double high, double x) {
 /// One stack's body with what its coefficients are made from.
 class Stack {
  public:
+  Stack(const Vehicle& vehicle, std::size_t index) : Stack(vehicle, vehicle.stages[index]) {
+    for (std::size_t i = index; i < vehicle.stages.size(); ++i)
+      for (const FinSet& fins : vehicle.stages[i].fins)
+        fins_.push_back({fins, 0.5 * vehicle.stages[i].diameter_m});
+  }
   Stack(const Vehicle& vehicle, const Stage& lowest)
       : body_(CutMouldLine(vehicle.profile, lowest.bottom_station_m)),
         integrals_(Integrate(body_)),
@@ -65,20 +71,21 @@ class Stack {
 
  private:
   void AddRow(double mach, AeroTable& table) const {
-    const double friction = Friction(mach);
-    const double forward = friction + ForebodyDrag(mach) + PoweredBaseDrag(mach);
+    const double friction = Friction(mach) + FinFriction(mach);
+    const double forward = friction + ForebodyDrag(mach) + PoweredBaseDrag(mach) + FinWaveDrag(mach);
     const double backward = friction + FlatFaceDrag(mach) * base_area_m2_ / area_m2_;
-    const NormalForceSlope slope = PotentialSlope(mach);
+    const NormalForceSlope slope = WithFins(mach, PotentialSlope(mach));
+    const NormalForceSlope backward_slope = WithFins(mach, slender_);
     for (const double incidence_deg : kIncidence_deg) {
       const bool nose_first = incidence_deg <= 90.0;
       const double folded_rad = (nose_first ? incidence_deg : 180.0 - incidence_deg) * kRadPerDeg;
       const double cosine = incidence_deg == 90.0 ? 0.0 : Cos(folded_rad);
       table.ca.push_back((nose_first ? forward : -backward) * Square(cosine));
-      const NormalForceSlope& potential = nose_first ? slope : slender_;
+      const NormalForceSlope& potential = nose_first ? slope : backward_slope;
       AddNormalForce(mach, folded_rad, potential, table);
     }
-    table.cmq_per_rad.push_back(PitchDamping());
-    table.clp_per_rad.push_back(RollDamping(mach));
+    table.cmq_per_rad.push_back(PitchDamping() + FinPitchDamping(mach));
+    table.clp_per_rad.push_back(RollDamping(mach) + FinRollDampingOf(mach));
   }
 
   double SkinFriction(double mach) const {
@@ -137,6 +144,50 @@ class Stack {
     return -2.0 * SkinFriction(mach) * integrals_.roll_moment_m4 / (area_m2_ * Square(diameter_m_));
   }
 
+  struct Mounted {
+    FinSet fins;
+    double radius_m;
+  };
+
+  NormalForceSlope WithFins(double mach, NormalForceSlope slope) const {
+    for (const Mounted& m : fins_) {
+      const FinForce force = ForceOfFins(m.fins, m.radius_m, mach);
+      slope.area_m2 += force.area_m2;
+      slope.moment_m3 += force.area_m2 * force.station_m;
+    }
+    return slope;
+  }
+  /// On both sides of flat plates, thickened: Hoerner, Fluid-Dynamic Drag, 6-6.
+  double FinFriction(double mach) const {
+    double area_m2 = 0.0;
+    for (const Mounted& m : fins_) {
+      const double chord_m = 0.5 * (m.fins.root_chord_m + m.fins.tip_chord_m);
+      area_m2 += 2.0 * m.fins.count * FinArea(m.fins) * (1.0 + 2.0 * m.fins.thickness_m / chord_m) *
+                 SkinFrictionCoefficient(mach, chord_m, roughness_m_);
+    }
+    return area_m2 / area_m2_;
+  }
+  double FinWaveDrag(double mach) const {
+    double area_m2 = 0.0;
+    for (const Mounted& m : fins_) area_m2 += FinWaveDragArea(m.fins, mach);
+    return area_m2 / area_m2_;
+  }
+  /// The incidence that a pitch rate adds where the fins are, about the middle as the body's.
+  double FinPitchDamping(double mach) const {
+    double sum_m4 = 0.0;
+    for (const Mounted& m : fins_) {
+      const FinForce force = ForceOfFins(m.fins, m.radius_m, mach);
+      sum_m4 += force.area_m2 * Square(force.station_m - 0.5 * integrals_.length_m);
+    }
+    return -2.0 * sum_m4 / (area_m2_ * Square(diameter_m_));
+  }
+  double FinRollDampingOf(double mach) const {
+    double sum_m4 = 0.0;
+    for (const Mounted& m : fins_) sum_m4 += FinRollDamping(m.fins, m.radius_m, mach);
+    return -2.0 * sum_m4 / (area_m2_ * Square(diameter_m_));
+  }
+
+  std::vector<Mounted> fins_;
   std::vector<MouldSection> body_;
   BodyIntegrals integrals_;
   NormalForceSlope slender_;
@@ -151,7 +202,7 @@ class Stack {
 
 std::vector<AeroTable> BuildAerodynamics(const Vehicle& vehicle) {
   std::vector<AeroTable> tables;
-  for (const Stage& stage : vehicle.stages) tables.push_back(Stack(vehicle, stage).Table());
+  for (std::size_t i = 0; i < vehicle.stages.size(); ++i) tables.push_back(Stack(vehicle, i).Table());
   return tables;
 }
 

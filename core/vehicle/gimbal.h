@@ -69,6 +69,8 @@ struct Gimbal {
   double bandwidth_rad_s = 0.0;
   double damping_ratio = 0.7;
   int delay_ticks = 1;
+  /// No gimbal: the thrust acts along the axis at the pivot station. Drives stay at rest.
+  bool fixed = false;
   double nozzle_mass_kg = 0.0;  ///< 0: turning a nozzle takes no momentum
   double nozzle_cg_m = 0.0;
   double nozzle_inertia_kg_m2 = 0.0;
@@ -99,6 +101,16 @@ inline void Describe(Fields& fields, Gimbal& gimbal) {
                   "error at which a drive at rest starts to move", 0.0);
   fields.Quantity("resolution", kAngle, kNonNegative, gimbal.resolution_rad,
                   "step of the command at the servo", 0.0);
+}
+
+/// In place of a gimbal. Its drives stay at rest; their numbers do no harm.
+inline Gimbal FixedNozzle(double station_m) {
+  Gimbal gimbal;
+  gimbal.fixed = true;
+  gimbal.pivot_station_m = station_m;
+  gimbal.rate_limit_rad_s = gimbal.bandwidth_rad_s = 1.0;
+  gimbal.delay_ticks = 0;
+  return gimbal;
 }
 
 /// The turning mass of one nozzle. In a list each stage has its own entry.

@@ -187,6 +187,13 @@ NozzleLayout Allocated(Placed placed, double command_limit_rad, const EffectOfDr
 }  // namespace
 
 NozzleLayout BuildNozzleLayout(const Gimbal& gimbal) {
+  if (gimbal.fixed) {  // in parts, as those of a cross on the axis
+    NozzleLayout fixed;
+    fixed.nozzles = kNozzles;
+    fixed.rolls = true;  // nobody asks its thrusters to
+    for (int k = 0; k < kNozzles; ++k) fixed.share[k] = 1.0 / kNozzles;
+    return fixed;
+  }
   return Allocated(Place(gimbal), gimbal.limit_rad, EffectOf);
 }
 

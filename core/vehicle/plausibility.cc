@@ -40,6 +40,10 @@ struct Subject {
   std::size_t last_burn() const {
     return static_cast<std::size_t>(LastBurn(vehicle, static_cast<int>(index)));
   }
+  bool has_coast_control() const {
+    return vehicle.stages.size() > 1 && std::any_of(vehicle.stages.begin(), vehicle.stages.end(),
+                                                    [](const Stage& one) { return one.is_controlled(); });
+  }
   bool is_last() const { return last_burn() + 1 == vehicle.stages.size(); }
   double length_m() const { return vehicle.stages[0].bottom_station_m; }
 };
@@ -115,28 +119,59 @@ constexpr Check kStageChecks[] = {
      {1.0, kAny},
      {1.15, 12.0},
      "Saturn V 1.2, solid launchers 1.6 to 2.5, sounding rockets to 12; below 1 it never leaves the pad",
-     [](const Subject& s) { return s.index == 0 ? s.figure().thrust_to_weight : kNothing; }},
+     [](const Subject& s) {
+       return s.index == 0 && s.stage().is_controlled() ? s.figure().thrust_to_weight : kNothing;
+     }},
+    {"motor.thrust_n",
+     "implies, without a gimbal, a thrust to weight at lift-off of",
+     "",
+     {1.0, kAny},
+     {3.0, 60.0},
+     "fins hold a vehicle that leaves its rail with 20 m/s or more",
+     [](const Subject& s) {
+       return s.index == 0 && !s.stage().is_controlled() ? s.figure().thrust_to_weight : kNothing;
+     }},
     {"motor.thrust_n",
      "implies a thrust to weight at ignition of",
      "",
      kAnything,
      {0.05, 12.0},
      "small liquid upper stages from 0.08, solid ones to 8",
-     [](const Subject& s) { return s.index > 0 ? s.figure().thrust_to_weight : kNothing; }},
+     [](const Subject& s) {
+       return s.index > 0 && s.stage().is_controlled() ? s.figure().thrust_to_weight : kNothing;
+     }},
     {"motor.thrust_n",
      "implies towards burnout a load of",
      "g",
      kAnything,
      {0.05, 20.0},
      "user's manuals of solid launchers state up to 13 g",
-     [](const Subject& s) { return s.figure().burnout_load_g; }},
+     [](const Subject& s) { return s.stage().is_controlled() ? s.figure().burnout_load_g : kNothing; }},
+    {"motor.thrust_n",
+     "implies towards burnout, without a gimbal, a load of",
+     "g",
+     kAnything,
+     {0.5, 100.0},
+     "sounding rockets 10 to 60 g",
+     [](const Subject& s) { return s.stage().is_controlled() ? kNothing : s.figure().burnout_load_g; }},
     {"liftoff_mass_kg",
      "implies a dry mass of the stage, as part of its own, of",
      "",
      kAnything,
      {0.03, 0.35},
      "0.05 of large liquid stages, 0.07 to 0.15 of solid ones, more only of the smallest",
-     [](const Subject& s) { return s.is_last() ? kNothing : s.figure().structural_fraction; }},
+     [](const Subject& s) {
+       return s.is_last() || !s.stage().is_controlled() ? kNothing : s.figure().structural_fraction;
+     }},
+    {"liftoff_mass_kg",
+     "implies a dry mass of the stage without gimbal, as part of its own, of",
+     "",
+     kAnything,
+     {0.03, 0.6},
+     "boosters of sounding rockets have heavy cases and fins: 0.3 to 0.5",
+     [](const Subject& s) {
+       return s.is_last() || s.stage().is_controlled() ? kNothing : s.figure().structural_fraction;
+     }},
     {"liftoff_mass_kg",
      "implies a dry mass of the last stage with payload, as part of its own, of",
      "",
@@ -197,21 +232,27 @@ constexpr Check kStageChecks[] = {
      {0.0, 89.0},
      {1.0, 15.0},
      "the Space Shuttle's boosters 8 deg, its main engines 10.5 deg",
-     [](const Subject& s) { return s.stage().gimbal.limit_rad * kDegPerRad; }},
+     [](const Subject& s) {
+       return s.stage().is_controlled() ? s.stage().gimbal.limit_rad * kDegPerRad : kNothing;
+     }},
     {"gimbal.bandwidth_rad_s",
      "is",
      "rad/s",
      {1.0, 2000.0},
      {6.0, 250.0},
      "actuators of nozzles have 2 to 20 Hz; slower ones hold no launcher that the air turns over",
-     [](const Subject& s) { return s.stage().gimbal.bandwidth_rad_s; }},
+     [](const Subject& s) {
+       return s.stage().is_controlled() ? s.stage().gimbal.bandwidth_rad_s : kNothing;
+     }},
     {"gimbal.rate_limit_rad_s",
      "lets a nozzle turn at",
      "deg/s",
      {0.1, 1000.0},
      {2.0, 120.0},
      "the Space Shuttle's main engines 10 deg/s, small electric actuators to 60 deg/s",
-     [](const Subject& s) { return s.stage().gimbal.rate_limit_rad_s * kDegPerRad; }},
+     [](const Subject& s) {
+       return s.stage().is_controlled() ? s.stage().gimbal.rate_limit_rad_s * kDegPerRad : kNothing;
+     }},
     {"motor.liquid.cut_off.velocity_m_s",
      "is, as an inertial speed,",
      "m/s",
@@ -229,7 +270,7 @@ constexpr Check kStageChecks[] = {
      {0.0, 1.0},
      "the hinges are inside the base",
      [](const Subject& s) {
-       if (!s.stage().gimbal.nozzles.empty()) return kNothing;
+       if (!s.stage().gimbal.nozzles.empty() || !s.stage().is_controlled()) return kNothing;
        return s.stage().gimbal.radius_m / (0.5 * s.stage().diameter_m);
      }},
 };
@@ -570,7 +611,7 @@ constexpr Check kVehicleChecks[] = {
      {30.0, 340.0},
      "cold gas 40 to 75 s, hydrazine 220 to 240 s, two propellants to 330 s",
      [](const Subject& s) {
-       return s.vehicle.stages.size() > 1 ? s.vehicle.reaction_control.specific_impulse_s : kNothing;
+       return s.has_coast_control() ? s.vehicle.reaction_control.specific_impulse_s : kNothing;
      }},
     {"reaction_control.thrust_n",
      "turns the last stage in pitch and yaw by",
@@ -579,7 +620,7 @@ constexpr Check kVehicleChecks[] = {
      {0.01, 60.0},
      "a rate of 1 deg/s should take neither minutes nor less than a cycle to stop",
      [](const Subject& s) {
-       if (s.vehicle.stages.size() < 2) return kNothing;
+       if (!s.has_coast_control()) return kNothing;
        const StackMass stack = BuildStackMasses(s.vehicle).back();
        const ReactionControl& control = s.vehicle.reaction_control;
        return 2.0 * control.thrust_n * control.pitch_yaw_arm_m /

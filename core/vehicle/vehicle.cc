@@ -141,8 +141,8 @@ void CheckStage(const Vehicle& vehicle, std::size_t i, Checker& check) {
   for (const StructProblem& problem : NozzleProblems(gimbal, path + ".gimbal"))
     check.Require(false, problem.path, problem.message, problem.allowed);
   const auto below_limit = [&](double angle_rad, const char* key) {
-    check.Require(angle_rad < gimbal.limit_rad, path + ".gimbal." + key, "leaves the nozzle no travel",
-                  "0 to below the gimbal's limit");
+    check.Require(gimbal.fixed || angle_rad < gimbal.limit_rad, path + ".gimbal." + key,
+                  "leaves the nozzle no travel", "0 to below the gimbal's limit");
   };
   below_limit(gimbal.dead_zone_rad, "dead_zone_deg");
   below_limit(gimbal.friction_rad, "friction_deg");
@@ -155,7 +155,8 @@ void CheckStage(const Vehicle& vehicle, std::size_t i, Checker& check) {
     for (int part = 0; part <= kParts; ++part)
       aftmost = std::max(aftmost, stack.At(stack.propellant_mass_kg * part / kParts).cg_station_m);
     check.Require(
-        aftmost < gimbal.pivot_station_m, path + ".gimbal.pivot_station_m",
+        aftmost < gimbal.pivot_station_m,
+        path + (gimbal.fixed ? ".nozzle_station_m" : ".gimbal.pivot_station_m"),
         "is not aft of the centre of gravity, which reaches station " + std::to_string(aftmost) + " m",
         "a station aft of the centre of gravity");
   }

@@ -16,9 +16,14 @@
 #include "core/vehicle/aero_table.h"
 #include "core/vehicle/bodies.h"
 #include "core/vehicle/boosters.h"
+#include "core/vehicle/descent.h"
+#include "core/vehicle/fins.h"
 #include "core/vehicle/gimbal.h"
+#include "core/vehicle/loss_of_control.h"
 #include "core/vehicle/motor.h"
+#include "core/vehicle/rail.h"
 #include "core/vehicle/sensors.h"
+#include "core/vehicle/spin_motors.h"
 #include "core/vehicle/structure_beam.h"
 
 namespace dispersa {
@@ -44,7 +49,9 @@ struct Stage {
   std::vector<Tank> tanks;             ///< of a liquid stage, else empty (their propellant is the stage's)
   std::vector<MassElement> structure;  ///< the dry mass, in fractions that sum to 1
   std::vector<Jettison> jettisoned;
+  std::vector<FinSet> fins;  ///< they leave with the stage
   Gimbal gimbal;
+  std::optional<SpinMotors> spin_motors;  ///< of a stage without gimbal
   IgnitionTrigger ignition = IgnitionTrigger::kLiftOff;
   double ignition_delay_s = 0.0;    ///< after separation of the stage below (kBurnoutDetection)
   double separation_delay_s = 0.0;  ///< after burnout detection, without effect for the last stage
@@ -53,6 +60,7 @@ struct Stage {
   bool restarts = false;
 
   bool is_liquid() const { return !tanks.empty(); }
+  bool is_controlled() const { return !gimbal.fixed; }
   /// Station of the propellant's top, for all tanks together.
   double PropellantTop() const;
   double PropellantBottom() const;
@@ -105,8 +113,27 @@ inline void Describe(Fields& fields, Stage& stage) {
                       "elements of its dry mass; the fractions add up to 1");
           fields.List("jettisoned", 0, kMaxJettisons, stage.jettisoned,
                       "masses on the axis, jettisoned while the stage is attached: fairing, tower, skirt");
-          fields.Map("gimbal", "actuators of the nozzle",
-                     [&](Fields& gimbal) { Describe(gimbal, stage.gimbal); });
+          fields.List("fins", 0, 4, stage.fins,
+                      "sets of fins; computed aerodynamics have their forces, tables have their own");
+          const auto gimbal = [&] {
+            fields.Map("gimbal", "actuators of the nozzle",
+                       [&](Fields& map) { Describe(map, stage.gimbal); });
+          };
+          fields.Either(
+              {{Has("gimbal"), gimbal},
+               {Has("nozzle_station", kLength),
+                [&] {
+                  stage.gimbal = FixedNozzle(stage.gimbal.pivot_station_m);
+                  fields.Quantity("nozzle_station", kLength, kPositive, stage.gimbal.pivot_station_m,
+                                  "in place of a gimbal: where the thrust acts, along the axis; "
+                                  "nothing controls the stage");
+                  bool spins = stage.spin_motors.has_value();
+                  fields.OptionalMap("spin_motors", spins, "a roll moment from ignition on",
+                                     [&](Fields& spin) { Describe(spin, stage.spin_motors.emplace()); });
+                  if (!spins) stage.spin_motors.reset();
+                },
+                stage.gimbal.fixed},
+               {Else(), gimbal}});
         }}});
   DescribeIgnition(fields, stage);
   fields.Quantity("separation_delay", kTime, kNonNegative, stage.separation_delay_s,
@@ -203,6 +230,9 @@ struct Vehicle {
   std::vector<AeroTable> aerodynamics;  ///< one a stack (empty: built up from the profile)
   ReactionControl reaction_control;
   StructuralLimits limits;
+  LossOfControl loss_of_control;
+  std::optional<Rail> rail;  ///< none: it stands free
+  Descent descent;
   Sensors sensors;
   std::optional<StructureBeam> structure_beam;  ///< none: the vehicle is rigid
 };

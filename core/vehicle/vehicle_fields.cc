@@ -56,16 +56,28 @@ void Describe(Fields& fields, Vehicle& vehicle) {
                      [&](Fields& aerodynamics) {
                        aerodynamics.List("tables", 1, kMaxStages, vehicle.aerodynamics, "one per stack");
                      });
-  // A single stage has no coast.
+  // A single stage has no coast, and where nothing is controlled no coast is.
+  const bool is_controlled = std::any_of(vehicle.stages.begin(), vehicle.stages.end(),
+                                         [](const Stage& stage) { return stage.is_controlled(); });
   bool has_thrusters = vehicle.reaction_control.thrust_n > 0.0;
   fields.OptionalMap("reaction_control", has_thrusters,
                      "cold-gas thrusters of the last stage; a single stage with nozzles for roll needs none",
                      [&](Fields& control) { Describe(control, vehicle.reaction_control); });
-  if (!has_thrusters && vehicle.stages.size() > 1)
+  if (!has_thrusters && is_controlled && vehicle.stages.size() > 1)
     fields.Refuse("", "missing key 'reaction_control'", "a map");
   bool has_limits = true;
   fields.OptionalMap("limits", has_limits, "of the structure; if any is given, they become a requirement",
                      [&](Fields& limits) { Describe(limits, vehicle.limits); });
+  bool has_loss = true;
+  fields.OptionalMap("loss_of_control", has_loss, "of a controlled stage",
+                     [&](Fields& loss) { Describe(loss, vehicle.loss_of_control); });
+  bool has_rail = vehicle.rail.has_value();
+  fields.OptionalMap("rail", has_rail, "launcher rail",
+                     [&](Fields& rail) { Describe(rail, vehicle.rail.emplace()); });
+  if (!has_rail) vehicle.rail.reset();
+  bool has_descent = true;
+  fields.OptionalMap("descent", has_descent, "of the last stage, where a flight ends at impact",
+                     [&](Fields& descent) { Describe(descent, vehicle.descent); });
   DescribeTurningNozzles(fields, vehicle.stages);
   bool has_sensors = true;
   fields.OptionalMap("sensors", has_sensors, "of attitude and rates; a flexible vehicle needs them",

@@ -6,6 +6,7 @@
 #include <sstream>
 #include <string>
 
+#include "core/campaign/free_flight.h"
 #include "core/campaign_yaml/load.h"
 #include "core/results/json_number.h"
 #include "core/results/output_file.h"
@@ -248,6 +249,7 @@ ExitCode RunTuning(const TuneOptions& given, const GlobalOptions& global) {
   std::FILE* const stream = StreamBeside("--out", options.out, global);
   RequireWritableFile("--out", options.out);
   const Campaign campaign = LoadAndWarn(options.campaign);
+  RequireControl(campaign, "gains");
   const AutopilotConfig autopilot =
       options.autopilot.empty() ? campaign.autopilot : LoadAutopilot(options.autopilot);
 

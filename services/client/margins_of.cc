@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <utility>
 
+#include "core/campaign/free_flight.h"
 #include "core/cases/campaign_flights.h"
 #include "core/results/json_number.h"
 #include "services/program/threads.h"
@@ -107,6 +108,7 @@ nlohmann::ordered_json MarginsJson(const MarginsResult& result) {
 }
 
 MarginsResult MarginsOf(const Campaign& campaign, const MarginsOptions& options) {
+  RequireControl(campaign, "margins");
   const CampaignFlights flights(campaign);
   MarginsResult result;
   result.autopilot = campaign.autopilot.name;

@@ -387,6 +387,32 @@ TEST_P(FlightLanes, AreTheFlightsAlone) {
   ExpectTheFlightsAlone(FlightModel(Definition(law, law != "pd", guided)), 12);
 }
 
+// A stage that nothing controls above three that an autopilot does, fins, a rail, spin motors; and the way on
+// to the apogee or the ground, of flights whose last burns end at different times.
+TEST(FreeStageLanes, AreTheFlightsAlone) {
+  for (const FlightEnd ends : {FlightEnd::kApogee, FlightEnd::kImpact}) {
+    FlightDefinition definition = Definition("pd", true);
+    Vehicle& vehicle = definition.vehicle;
+    vehicle.stages[3].gimbal = FixedNozzle(vehicle.stages[3].gimbal.pivot_station_m);
+    vehicle.stages[3].spin_motors = SpinMotors{40.0, 1.234};
+    vehicle.stages[3].motor.thrust_n *= 0.5;  // it comes down
+    vehicle.stages[0].fins = {{4, 14.0, 0.8, 0.4, 0.5, 0.4, 0.02, 0.001}};
+    vehicle.rail = Rail{3.0, 0.1, 0.0, 0.0};
+    vehicle.loss_of_control.attitude_error_rad = 30.0 * kRadPerDeg;
+    vehicle.descent.parachute_area_m2 = 20.0;
+    vehicle.descent.parachute_drag_coefficient = 0.8;
+    vehicle.descent.parachute_altitude_m = 5000.0;
+    definition.course.ends = ends;
+    ExpectTheFlightsAlone(FlightModel(definition), 8);
+  }
+}
+
+// The sounding rocket, whose flights tell rails, spin and fall.
+TEST(FreeLanes, AreTheFlightsAlone) {
+  const Campaign campaign = LoadCampaign(DISPERSA_CAMPAIGNS "/gallery/nike_apache/campaign.yaml");
+  ExpectTheFlightsAlone(FlightModel(DefinitionOf(campaign)), 8);
+}
+
 // Two planes, gyros that round, guidance, wind and turbulence at once. Fewer flights: their modes take
 // longest.
 TEST(FlexibleGuidedLanes, AreTheFlightsAlone) {

@@ -1,6 +1,6 @@
 // The fall of a spent stage, against Kepler's ellipse without air, against a terminal velocity with air, and
 // with halved steps.
-#include "core/impact/fall.h"
+#include "core/dynamics/fall.h"
 
 #include <array>
 #include <cmath>

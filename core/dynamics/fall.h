@@ -12,6 +12,9 @@ namespace dispersa {
 struct FallingBody {
   double mass_kg = 0.0;
   double drag_area_m2 = 0.0;  ///< drag coefficient times area; 0: no drag
+  /// Of a parachute, in addition: it opens at once, in descent, at or below its altitude.
+  double parachute_drag_area_m2 = 0.0;
+  double parachute_altitude_m = 0.0;
 };
 
 /// Drag area (m²) of a randomly tumbling cylinder: coefficient 0.7198 + 0.3260 d / l on the area l d. Source:
@@ -30,7 +33,7 @@ struct FallState {
 
 struct Impact {
   double time_s = 0.0;
-  Geodetic place;          ///< on the ellipsoid; Earth-fixed longitude
+  Geodetic place;          ///< on the ground; Earth-fixed longitude
   double speed_m_s = 0.0;  ///< over the ground
   double peak_altitude_m = 0.0;
 };
@@ -41,6 +44,9 @@ struct FallSteps {
 };
 inline constexpr double kFallAir_m = 130000.0;
 inline constexpr double kFallLimit_s = 14400.0;
+/// A step under an open parachute is at most this over the rate at which its drag brakes: well within the
+/// stability of the method (2.78), and short enough for a fall speed that is right to 1e-4.
+inline constexpr double kParachuteStep = 0.25;
 
 /// The point at which a body meets the ellipsoid. Forces: gravitation with J2, drag in the environment's air
 /// and wind. Method: classical Runge-Kutta of fourth order; the last step ends on the ground. None if the
@@ -48,5 +54,25 @@ inline constexpr double kFallLimit_s = 14400.0;
 /// where it is.
 std::optional<Impact> Fall(const Environment& environment, const FallingBody& body, const FallState& start,
                            const FallSteps& steps = {});
+
+/// Where altitude stops growing.
+struct Apogee {
+  double time_s = 0.0;
+  double altitude_m = 0.0;  ///< geodetic
+  Vector3 p_EoP_I = Vector3::Zero();
+  Vector3 v_IP_I = Vector3::Zero();
+};
+/// The way of a body from a point, under the forces of Fall.
+struct FallPath {
+  std::optional<Apogee> apogee;  ///< the first one; none if the body only descends
+  std::optional<Impact> impact;  ///< none if the path ends before
+};
+struct FallEnd {
+  bool at_apogee = false;          ///< the path ends at the first apogee, else on the ground
+  double ground_altitude_m = 0.0;  ///< geodetic
+  double limit_s = kFallLimit_s;   ///< since the start
+};
+FallPath FollowFall(const Environment& environment, const FallingBody& body, const FallState& start,
+                    const FallEnd& end, const FallSteps& steps = {});
 
 }  // namespace dispersa

@@ -1,0 +1,294 @@
+// Flights that nothing controls: against closed forms of spin, oscillation, rail and ballistic flight, and
+// against CVODE.
+#include <gtest/gtest.h>
+
+#include <cmath>
+#include <vector>
+
+#include "core/dynamics/fall.h"
+#include "core/flight/flight.h"
+#include "core/flight/tick_sample.h"
+#include "core/math/constants.h"
+#include "core/vehicle/fins.h"
+#include "tests/unit/sample_vehicle.h"
+
+namespace dispersa::free_flight_test {
+namespace {
+
+// The sample without gimbals, on a rail. Its second stage lights `delay_s` after the first has left.
+FlightDefinition FreeDefinition(double elevation_rad, double delay_s, double step_s = kFreeStep_s) {
+  FlightDefinition definition = SampleDefinition();
+  Vehicle& vehicle = definition.vehicle;
+  for (Stage& stage : vehicle.stages) stage.gimbal = FixedNozzle(stage.gimbal.pivot_station_m);
+  vehicle.stages[1].ignition = IgnitionTrigger::kBurnoutDetection;
+  vehicle.stages[1].ignition_delay_s = delay_s;
+  vehicle.reaction_control = {};
+  vehicle.rail = Rail{0.0, 0.0, 0.5 * kPi, elevation_rad};
+  definition.program.knots = {{.time_s = 0.0, .pitch = elevation_rad},
+                              {.time_s = 1.0, .pitch = elevation_rad}};
+  definition.last_ignition_s = 0.0;
+  definition.course = {FlightEnd::kApogee, false, step_s};
+  definition.autopilot = {};
+  definition.autopilot.tick_s = step_s;
+  for (AxisConfig* axis :
+       {&definition.autopilot.pitch, &definition.autopilot.yaw, &definition.autopilot.roll})
+    axis->gains.assign(2, {});
+  return definition;
+}
+
+FlightInputs Airless() {
+  FlightInputs inputs;
+  inputs.density_factor = 1e-12;
+  return inputs;
+}
+
+std::vector<TickSample> Samples(const FlightDefinition& definition, const FlightInputs& inputs,
+                                FlightResult* result = nullptr) {
+  std::vector<TickSample> samples;
+  FlightOptions options;
+  options.observe = [&](const TickSample& sample) { samples.push_back(sample); };
+  const FlightResult flown = Fly(FlightModel(definition), inputs, options);
+  if (result != nullptr) *result = flown;
+  return samples;
+}
+
+double MetricOf(const FlightResult& result, const char* name) { return result.metrics[MetricColumn(name)]; }
+
+// Between separation and ignition nothing acts on the upper stage but gravitation. Its axis goes round the
+// angular momentum at |H| / I_t (Goldstein, Classical Mechanics, section 5-6).
+double WorstConeError(double step_s) {
+  constexpr double kSpin_rad_s = 5.0 * kTwoPi, kAcross_rad_s = 1.5;
+  FlightDefinition definition = FreeDefinition(80.0 * kRadPerDeg, 20.5, step_s);
+  FlightInputs inputs = Airless();
+  inputs.tip_off_roll_rad_s[0] = kSpin_rad_s;
+  inputs.tip_off_pitch_rad_s[0] = kAcross_rad_s;
+  double worst_rad = 0.0, start_s = 0.0;
+  Vector3 axis_I, momentum_I, across_I;
+  double rate_rad_s = 0.0, cone_rad = 0.0;
+  for (const TickSample& s : Samples(definition, inputs)) {
+    if (s.stack != 1 || s.burning) continue;
+    const Matrix3& inertia = s.instant.loads.inertia_kg_m2;
+    const Vector3 axis = Rotate(s.state.q_IB, Vector3(1.0, 0.0, 0.0));
+    if (start_s == 0.0) {
+      start_s = s.time_s;
+      const Vector3 momentum = Rotate(s.state.q_IB, Vector3(inertia * s.state.w_IB_B));
+      momentum_I = momentum.normalized();
+      rate_rad_s = momentum.norm() / inertia(1, 1);
+      cone_rad = std::acos(axis.dot(momentum_I));
+      axis_I = axis;
+      across_I = momentum_I.cross(axis).normalized();
+    }
+    const double angle = rate_rad_s * (s.time_s - start_s);
+    const Vector3 aside = (axis_I - axis_I.dot(momentum_I) * momentum_I).normalized();
+    const Vector3 expected = std::cos(cone_rad) * momentum_I +
+                             std::sin(cone_rad) * (std::cos(angle) * aside + std::sin(angle) * across_I);
+    worst_rad = std::max(worst_rad, std::acos(std::min(1.0, axis.dot(expected))));
+  }
+  EXPECT_GT(cone_rad, 0.1);
+  return worst_rad / cone_rad;
+}
+
+TEST(FreeFlight, TorqueFreeBodyConesAboutItsAngularMomentum) {
+  // A hundred turns at 5 Hz, a sixth of a radian a step.
+  const double error = WorstConeError(0.005);
+  EXPECT_LT(error, 1e-3);
+  // Half the steps: the method is of third order, and better where the spin alone turns the body.
+  EXPECT_LT(WorstConeError(0.0025), error / 6.0);
+}
+
+// Fixed coefficients: theory of small oscillations, omega² = q S CN_alpha (x_cp - x_cg) / I.
+TEST(FreeFlight, OscillatesAtThePitchFrequencyOfLinearTheory) {
+  FlightDefinition definition = FreeDefinition(60.0 * kRadPerDeg, 40.0);
+  definition.vehicle.flow_coriolis = false;
+  definition.vehicle.aerodynamics[0].xcp_station_m = {18.0, 18.0, 18.0, 18.0};
+  definition.vehicle.aerodynamics[1].xcp_station_m = {9.0, 9.0, 9.0, 9.0};
+  definition.vehicle.stages[0].motor.burning_time_s = 8.0;
+  FlightInputs inputs;
+  inputs.tip_off_pitch_rad_s[0] = 0.05;
+  double phase = 0.0, before = 0.0, before_s = 0.0, last_phase = 0.0;
+  int crossings = 0;
+  double worst = 0.0;
+  for (const TickSample& s : Samples(definition, inputs)) {
+    if (s.stack != 1 || s.burning) continue;
+    const double omega = std::sqrt(s.instant.air.qbar_pa * 1.0 * 3.0 * (9.0 - s.instant.cg_station_m) /
+                                   s.instant.loads.inertia_kg_m2(1, 1));
+    const double alpha = std::atan2(s.instant.v_AB_B.z(), s.instant.v_AB_B.x());
+    if (before_s > 0.0) {
+      const double dphase = omega * (s.time_s - before_s);
+      if (before * alpha < 0.0) {
+        const double at = phase + dphase * before / (before - alpha);
+        if (crossings > 0) worst = std::max(worst, std::fabs((at - last_phase) / kPi - 1.0));
+        last_phase = at;
+        ++crossings;
+      }
+      phase += dphase;
+    }
+    before = alpha;
+    before_s = s.time_s;
+    if (crossings == 12) break;
+  }
+  ASSERT_EQ(crossings, 12);
+  // The speed along the path turns with gravitation, and density falls within a swing: second-order effects.
+  EXPECT_LT(worst, 0.05);
+}
+
+TEST(FreeFlight, CantedFinsSpinItAsTheirHelix) {
+  FlightDefinition definition = FreeDefinition(80.0 * kRadPerDeg, 1.0);
+  FinSet fins;
+  fins.leading_edge_station_m = 18.5;
+  fins.root_chord_m = 1.2;
+  fins.tip_chord_m = 0.6;
+  fins.span_m = 0.8;
+  fins.cant_rad = 0.3 * kRadPerDeg;
+  definition.vehicle.stages[0].fins = {fins};
+  definition.vehicle.aerodynamics[0].xcp_station_m = {18.0, 18.0, 18.0, 18.0};
+  definition.vehicle.aerodynamics[0].clp_per_rad = {-60.0, -60.0};
+  const double radius_m = 0.6;
+  // In the steady state the moment of cant is that of damping, strip by strip: integrals over the span by
+  // sums.
+  double cant_m3 = 0.0, damping_m4 = 0.0;
+  constexpr int kStrips = 20000;
+  for (int i = 0; i < kStrips; ++i) {
+    const double part = (i + 0.5) / kStrips, y_m = radius_m + part * fins.span_m;
+    const double chord_m = fins.root_chord_m + part * (fins.tip_chord_m - fins.root_chord_m);
+    cant_m3 += chord_m * y_m * fins.span_m / kStrips;
+    damping_m4 += chord_m * y_m * y_m * fins.span_m / kStrips;
+  }
+  const double per_m = fins.cant_rad * cant_m3 / damping_m4;
+  double worst = 0.0;
+  int seen = 0;
+  for (const TickSample& s : Samples(definition, {})) {
+    if (s.stack != 0 || s.time_s < 20.0 || s.time_s > 38.0) continue;
+    const double wanted = per_m * s.instant.air.airspeed_m_s;
+    worst = std::max(worst, std::fabs(s.state.w_IB_B.x() / wanted - 1.0));
+    ++seen;
+  }
+  EXPECT_GT(seen, 1000);
+  // It lags behind a speed that grows by some per cent within the time constant of the spin.
+  EXPECT_LT(worst, 0.05);
+}
+
+TEST(FreeFlight, SpinMotorsGiveTheirAngularMomentum) {
+  FlightDefinition definition = FreeDefinition(80.0 * kRadPerDeg, 1.0);
+  definition.vehicle.stages[1].spin_motors = SpinMotors{900.0, 1.5};
+  double spin = 0.0, axial = 0.0, flow = 0.0;
+  for (const TickSample& s : Samples(definition, Airless()))
+    if (s.stack == 1 && s.burning && s.since_ignition_s <= 1.5) {
+      spin = s.state.w_IB_B.x();
+      axial = s.instant.loads.inertia_kg_m2(0, 0);
+      flow = s.instant.flow_kg_s;
+    }
+  ASSERT_GT(axial, 0.0);
+  // Moment times time over the moment of inertia, which shrinks by a few per cent as the grain burns.
+  EXPECT_GT(flow, 0.0);
+  EXPECT_NEAR(spin * axial, 900.0 * 1.5, 0.06 * 900.0 * 1.5);
+}
+
+// Without air: v = c ln(m0 / m) - g' t along the rail, in closed form.
+TEST(FreeFlight, LeavesTheRailAsInClosedForm) {
+  FlightDefinition definition = FreeDefinition(70.0 * kRadPerDeg, 1.0);
+  definition.vehicle.rail->length_m = 6.0;
+  definition.vehicle.rail->friction = 0.2;
+  FlightResult result;
+  const auto samples = Samples(definition, Airless(), &result);
+  const double t = MetricOf(result, "rail_exit_time_s"), v = MetricOf(result, "rail_exit_speed_m_s");
+  const Stage& first = definition.vehicle.stages[0];
+  const double flow = first.propellant_mass_kg / first.motor.burning_time_s, m0 = first.liftoff_mass_kg;
+  const double c = first.motor.thrust_n / flow;
+  const double r = 6378137.0, rate = 7.292115e-5;
+  const double g = Gravitation(Wgs84(), Vector3(r, 0.0, 0.0)).norm() - rate * rate * r;  // on the equator
+  const double against = g * (std::sin(70.0 * kRadPerDeg) + 0.2 * std::cos(70.0 * kRadPerDeg));
+  const double m = m0 - flow * t;
+  EXPECT_NEAR(v, c * std::log(m0 / m) - against * t, 1e-4);
+  EXPECT_NEAR(c * t - c * m / flow * std::log(m0 / m) - 0.5 * against * t * t, 6.0, 1e-4);
+  // Until it leaves, it points where the rail does, and the rail turns with the Earth.
+  for (const TickSample& s : samples)
+    if (s.time_s < t) {
+      const Vector3 axis = Rotate(s.state.q_IB, Vector3(1.0, 0.0, 0.0));
+      const double up = axis.dot(s.state.p_EoC_I.normalized());
+      EXPECT_NEAR(std::asin(up) * kDegPerRad, 70.0, 1e-3);
+    }
+}
+
+TEST(FreeFlight, StandsOnTheRailUntilThrustExceedsWeight) {
+  FlightDefinition definition = FreeDefinition(90.0 * kRadPerDeg, 1.0);
+  definition.vehicle.rail->length_m = 2.0;
+  definition.vehicle.stages[0].motor.ignition_rise_s = 2.0;
+  FlightResult result;
+  for (const TickSample& s : Samples(definition, Airless(), &result))
+    if (s.time_s > 0.0 && s.instant.thrust_n < 0.95 * 9.78 * 13000.0) {
+      EXPECT_LT((s.state.v_IC_I - Vector3(0.0, 0.0, 7.292115e-5).cross(s.state.p_EoC_I)).norm(), 1e-9);
+      if (s.time_s > 1.0) break;
+    }
+  EXPECT_GT(MetricOf(result, "rail_exit_time_s"), 2.0 * 0.6);
+}
+
+// A rigid body without air, and a point mass: from the last burnout to the apogee.
+TEST(FreeFlight, ReachesTheApogeeOfAPointMass) {
+  FlightDefinition definition = FreeDefinition(85.0 * kRadPerDeg, 1.0);
+  definition.vehicle.stages[1].motor.thrust_n = 20e3;
+  FlightResult apogee, burnout;
+  Samples(definition, Airless(), &apogee);
+  definition.course.ends = FlightEnd::kInjection;
+  Samples(definition, Airless(), &burnout);
+  ASSERT_EQ(apogee.outcome, Outcome::kCompleted) << apogee.reason;
+  Environment none;
+  none.density.scale = 0.0;
+  const FallPath path =
+      FollowFall(none, {1.0, 0.0}, {burnout.end_time_s, burnout.end_state.p_EoC_I, burnout.end_state.v_IC_I},
+                 {.at_apogee = true});
+  ASSERT_TRUE(path.apogee);
+  // The engine looks at ticks: half a tick of a fall from rest is some 1e-4 m.
+  EXPECT_NEAR(MetricOf(apogee, "apogee_altitude_km") * 1e3, path.apogee->altitude_m, 0.01);
+  EXPECT_NEAR(MetricOf(apogee, "apogee_time_s"), path.apogee->time_s, 0.0051);
+}
+
+TEST(FreeFlight, FallsToTheGroundUnderAParachute) {
+  FlightDefinition definition = FreeDefinition(85.0 * kRadPerDeg, 1.0);
+  definition.course.ends = FlightEnd::kImpact;
+  FlightResult bare, slow;
+  Samples(definition, {}, &bare);
+  definition.vehicle.descent = {0.0, 80.0, 0.8, 4000.0, 0.0};
+  Samples(definition, {}, &slow);
+  ASSERT_EQ(slow.outcome, Outcome::kCompleted) << slow.reason;
+  EXPECT_EQ(MetricOf(bare, "apogee_altitude_km"), MetricOf(slow, "apogee_altitude_km"));
+  // m g = rho/2 v² CD A at the ground; the tumbling stage's own drag adds a little.
+  const double m = 2000.0, area = 80.0 * 0.8 + TumblingCylinderDragArea(11.0, 1.0);
+  EXPECT_NEAR(MetricOf(slow, "impact_speed_m_s"), std::sqrt(2.0 * m * 9.78 / (1.225 * area)), 0.1);
+  EXPECT_GT(MetricOf(bare, "impact_speed_m_s"), 60.0);
+  EXPECT_EQ(slow.end_time_s, MetricOf(slow, "impact_time_s"));
+}
+
+// CVODE solves the same equations with steps of its own.
+TEST(FreeFlight, AgreesWithCvode) {
+  FlightDefinition definition = FreeDefinition(80.0 * kRadPerDeg, 2.0);
+  definition.vehicle.rail->length_m = 6.0;
+  definition.vehicle.stages[1].spin_motors = SpinMotors{900.0, 1.5};
+  definition.vehicle.aerodynamics[0].xcp_station_m = {18.0, 18.0, 18.0, 18.0};
+  definition.vehicle.aerodynamics[1].xcp_station_m = {9.0, 9.0, 9.0, 9.0};
+  FlightInputs inputs;
+  inputs.thrust_misalignment_rad = AllStages(0.1 * kRadPerDeg);
+  inputs.wind_max_speed_m_s = 20.0;
+  const FlightModel model(definition);
+  FlightOptions options;
+  const FlightResult engine = Fly(model, inputs, options);
+  options.scheme = Scheme::kCvode;
+  const FlightResult judge = Fly(model, inputs, options);
+  ASSERT_EQ(engine.outcome, Outcome::kCompleted) << engine.reason;
+  ASSERT_EQ(judge.outcome, Outcome::kCompleted) << judge.reason;
+  EXPECT_NEAR(MetricOf(engine, "apogee_altitude_km"), MetricOf(judge, "apogee_altitude_km"), 1e-3);
+  EXPECT_LT((engine.end_state.p_EoC_I - judge.end_state.p_EoC_I).norm(), 5.0);
+}
+
+TEST(FreeFlight, TurnsFasterThanStepsFollowIsNoResult) {
+  FlightDefinition definition = FreeDefinition(85.0 * kRadPerDeg, 1.0);
+  FlightInputs inputs = Airless();
+  inputs.tip_off_roll_rad_s[0] = 101.0;  // the limit is 0.5 rad in 5 ms
+  FlightResult result;
+  Samples(definition, inputs, &result);
+  EXPECT_EQ(result.outcome, Outcome::kNumericalFailure);
+  EXPECT_EQ(result.reason, "turns faster than the integration's steps follow");
+}
+
+}  // namespace
+}  // namespace dispersa::free_flight_test
