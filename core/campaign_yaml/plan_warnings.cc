@@ -8,14 +8,13 @@
 #include "core/flight/metrics.h"
 #include "core/input/number_text.h"
 #include "core/input/read_value.h"
+#include "core/math/constants.h"
 #include "core/statistics/anytime.h"
 #include "core/statistics/order_statistics.h"
 
 namespace dispersa {
 namespace {
 
-/// A flight whose attitude error is larger for half a second has lost control, and ends.
-constexpr double kLostAttitude_deg = 15.0;
 /// With more, one of a few vehicles that just miss passes.
 constexpr double kUsualRisk = 0.2;
 /// Open-loop flights scatter by more.
@@ -90,12 +89,14 @@ class PlanReader {
     const bool is_attitude = metric.starts_with("pitch_error_peak_") ||
                              metric.starts_with("pitch_error_rms_") || metric.starts_with("yaw_error_") ||
                              metric.starts_with("roll_error_");
+    const LossOfControl& loss = campaign_.vehicle.loss_of_control;
+    const double lost_deg = loss.attitude_error_rad * kDegPerRad;
     if (is_attitude && metric.find("_time_") == std::string::npos && requirement.below &&
-        *requirement.below > kLostAttitude_deg)
+        *requirement.below > lost_deg)
       Warn(item, path, "below",
-           "a flight whose error passes " + FormatRounded(kLostAttitude_deg) +
-               " deg for 0.5 s has lost control",
-           "a limit below " + FormatRounded(kLostAttitude_deg));
+           "a flight whose error passes " + FormatRounded(lost_deg) + " deg for " +
+               FormatRounded(loss.for_s) + " s has lost control",
+           "a limit below " + FormatRounded(lost_deg));
     const bool is_orbit = metric == "injection_altitude_error_km" || metric == "injection_altitude_km" ||
                           metric == "apogee_km" || metric == "perigee_km";
     if (is_orbit && requirement.within && !campaign_.guidance.closed_loop && !campaign_.dispersions.empty() &&

@@ -33,13 +33,14 @@ TEST_P(BadInputTest, IsReportedInFull) {
 constexpr BadInput kBadInputs[] = {
     {"UnknownKey", "campaign.yaml", "dispersions:\n", "dispersion:\n", "campaign.yaml",
      "campaign.yaml:7:1: dispersion: unknown key 'dispersion' (did you mean 'dispersions'?), "
-     "allowed: autopilot, correlations, derived, description, dispersions, guidance, metrics, name, "
+     "allowed: autopilot, correlations, derived, description, dispersions, flight, guidance, metrics, name, "
      "optimize, "
      "reference, "
      "requirements, sampling, schema, vehicle, verdicts\n"},
     {"UnknownKeyLikeNoOther", "campaign.yaml", "name: trial", "name: trial\nzebra: 1", "campaign.yaml",
      "campaign.yaml:3:1: zebra: unknown key 'zebra', allowed: autopilot, correlations, derived, "
-     "description, dispersions, guidance, metrics, name, optimize, reference, requirements, sampling, "
+     "description, dispersions, flight, guidance, metrics, name, optimize, reference, requirements, "
+     "sampling, "
      "schema, "
      "vehicle, verdicts\n"},
     {"JettisonWithoutTrigger", "vehicle.yaml", "    gimbal:",

@@ -98,14 +98,14 @@ TEST(Outcome, NumericalFailureIsData) {
 
 TEST(Outcome, TimeoutOfSimulatedTime) {
   FlightDefinition definition = HighDefinition();
-  // So high that six hours do not bring it back.
-  definition.vehicle.site.altitude_m = 1e9;
-  definition.last_ignition_s = 25000.0;
+  // So high that a day does not bring it back.
+  definition.vehicle.site.altitude_m = 1e10;
+  definition.last_ignition_s = 90000.0;
   definition.autopilot.reaction_control.cycle_ticks = 50;
   const FlightResult result = FlyWith({}, definition);
   EXPECT_EQ(result.outcome, Outcome::kTimeout);
-  EXPECT_EQ(result.reason, "21600 s of simulated time passed");
-  EXPECT_NEAR(result.end_time_s, 21600.0, 0.51);
+  EXPECT_EQ(result.reason, "86400 s of simulated time passed");
+  EXPECT_NEAR(result.end_time_s, 86400.0, 0.51);
 }
 
 TEST(Fly, RecordingAHistoryChangesNothing) {

@@ -70,6 +70,8 @@ std::string NotesOf(const Metric& metric) {
                   [&](const Metric& other) { return other.title == metric.title + ", coast"; }))
     add("also by stage and of the coast");
   if (metric.of_law != nullptr) add("law of pitch: " + LawsWith(metric));
+  if (metric.needs != MetricNeeds::kNothing && metric.needs != MetricNeeds::kControl)
+    add("with " + NeedsOf(metric));
   if (!metric.is_digested) add("not in the digest");
   return notes;
 }

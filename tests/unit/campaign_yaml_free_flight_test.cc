@@ -1,0 +1,152 @@
+// Campaigns that end at apogee or impact, and those that nothing controls: what they need, and full texts of
+// what is wrong with others.
+#include <gtest/gtest.h>
+
+#include "core/campaign/case_result.h"
+#include "core/campaign/free_flight.h"
+#include "core/campaign_yaml/load.h"
+#include "tests/unit/input_files.h"
+
+namespace dispersa::campaign_yaml_free_flight_test {
+namespace {
+
+constexpr const char* kGimbals[] = {
+    "gimbal: {pivot_station_m: 9.8, radius_m: 0.3, limit_deg: 6, rate_limit_deg_s: 30, bandwidth_rad_s: 25, "
+    "damping_ratio: 0.7, delay_ticks: 1}",
+    "gimbal: {pivot_station_m: 3.9, radius_m: 0.3, limit_deg: 6, rate_limit_deg_s: 30, bandwidth_rad_s: 40, "
+    "damping_ratio: 0.7, delay_ticks: 1}"};
+
+// The sample without gimbals, reference and autopilot.
+void SetFree(const InputFiles& files) {
+  files.Edit("vehicle.yaml", kGimbals[0], "nozzle_station_m: 9.8");
+  files.Edit("vehicle.yaml", kGimbals[1],
+             "nozzle_station_m: 3.9\n    spin_motors: {moment_n_m: 300, duration_s: 2}");
+  files.Edit("vehicle.yaml", "{trigger: timer}", "{trigger: burnout_detection, delay_s: 3}");
+  files.Edit("vehicle.yaml",
+             "reaction_control: {thrust_n: 20, pitch_yaw_arm_m: 1, roll_arm_m: 0.5, "
+             "specific_impulse_s: 65, minimum_on_time_ms: 20}",
+             "rail: {length_m: 5, azimuth_deg: 120, elevation_deg: 80}");
+  files.Edit("campaign.yaml", "reference: reference.yaml\nautopilot: autopilot.yaml\n",
+             "flight: {ends: impact, control: none, step_ms: 4}\n");
+  files.Edit("campaign.yaml", "pitch_error_peak_deg, below: 0.5", "apogee_altitude_km, above: 50");
+}
+
+std::string Texts(const InputFiles& files) {
+  return files.Texts(CheckFile(files.Path("campaign.yaml")).errors);
+}
+
+TEST(FreeFlightCampaign, NeedsNeitherReferenceNorAutopilot) {
+  const InputFiles files;
+  SetFree(files);
+  ASSERT_EQ(Texts(files), "");
+  const Campaign campaign = LoadCampaign(files.Path("campaign.yaml"));
+  EXPECT_FALSE(campaign.course.is_controlled);
+  EXPECT_EQ(campaign.course.ends, FlightEnd::kImpact);
+  EXPECT_DOUBLE_EQ(campaign.autopilot.tick_s, 0.004);
+  EXPECT_DOUBLE_EQ(campaign.vehicle.stages[1].spin_motors->moment_n_m, 300.0);
+  EXPECT_DOUBLE_EQ(campaign.vehicle.stages[0].gimbal.pivot_station_m, 9.8);
+  // What was flown reads as the same campaign.
+  EXPECT_EQ(ParseCampaign(campaign.canonical_yaml, "again").id, campaign.id);
+}
+
+TEST(FreeFlightCampaign, MeasuresNothingOfControl) {
+  const InputFiles files;
+  SetFree(files);
+  const Campaign campaign = LoadCampaign(files.Path("campaign.yaml"));
+  for (const std::size_t position : MeasuredMetrics(campaign)) {
+    const MetricGroup group = Metrics()[position].group;
+    EXPECT_NE(group, MetricGroup::kAttitude) << Metrics()[position].name;
+    EXPECT_NE(group, MetricGroup::kControlEffort) << Metrics()[position].name;
+  }
+  EXPECT_EQ(WhyNotMeasured(campaign, "pitch_error_rms_deg"),
+            "is of flights with a stage that an autopilot controls");
+  EXPECT_EQ(WhyNotMeasured(campaign, "impact_speed_m_s"), "");
+  EXPECT_EQ(WhyNotMeasured(campaign, "rail_exit_speed_m_s"), "");
+}
+
+TEST(FreeFlightCampaign, ControlledFlightsMayEndLater) {
+  const InputFiles files;
+  const Campaign before = LoadCampaign(files.Path("campaign.yaml"));
+  files.Edit("campaign.yaml", "autopilot: autopilot.yaml\n",
+             "autopilot: autopilot.yaml\nflight: {ends: apogee}\n");
+  const Campaign campaign = LoadCampaign(files.Path("campaign.yaml"));
+  EXPECT_TRUE(campaign.course.is_controlled);
+  EXPECT_NE(campaign.flight_id, before.flight_id);
+  EXPECT_EQ(WhyNotMeasured(campaign, "apogee_time_s"), "");
+  EXPECT_EQ(WhyNotMeasured(before, "apogee_time_s"),
+            "is of flights with flight: {ends: apogee} or {ends: impact}");
+  EXPECT_EQ(WhyNotMeasured(campaign, "impact_time_s"), "is of flights with flight: {ends: impact}");
+}
+
+TEST(FreeFlightCampaign, RefusesAVehicleThatCouldBeControlled) {
+  const InputFiles files;
+  SetFree(files);
+  files.Edit("vehicle.yaml", "nozzle_station_m: 9.8", kGimbals[0]);
+  files.Edit("vehicle.yaml", "rail:",
+             "reaction_control: {thrust_n: 20, pitch_yaw_arm_m: 1, roll_arm_m: 0.5, specific_impulse_s: 65, "
+             "minimum_on_time_ms: 20}\nrail:");
+  EXPECT_EQ(Texts(files),
+            "campaign.yaml:4:29: flight.control: stage 1 of 'two-stage' has a gimbal, which nothing would "
+            "command, allowed: autopilot, or stages with nozzle_station_m in place of gimbal\n");
+}
+
+TEST(FreeFlightCampaign, RefusesAutopilotsOfVehiclesWithoutGimbals) {
+  const InputFiles files;
+  SetFree(files);
+  files.Edit("campaign.yaml", "flight: {ends: impact, control: none, step_ms: 4}",
+             "reference: reference.yaml\nautopilot: autopilot.yaml");
+  files.Edit("campaign.yaml", "apogee_altitude_km, above: 50", "q_max_pa, below: 1e6");
+  EXPECT_EQ(Texts(files),
+            "vehicle.yaml:1:1: no stage of 'two-stage' has a gimbal, so nothing can be controlled, allowed: "
+            "flight: {control: none}, without reference and autopilot\n");
+}
+
+TEST(FreeFlightCampaign, RefusesWhatControlsBesideNone) {
+  const InputFiles files;
+  SetFree(files);
+  files.Edit("campaign.yaml", "sampling:", "autopilot: autopilot.yaml\nsampling:");
+  EXPECT_EQ(Texts(files),
+            "campaign.yaml:5:12: autopilot: 'autopilot' is given, and nothing controls the flights "
+            "(flight.control), allowed: flight: {control: autopilot}, or a campaign without it\n");
+}
+
+TEST(FreeFlightCampaign, NeedsARailAndNoTimer) {
+  const InputFiles files;
+  SetFree(files);
+  files.Edit("vehicle.yaml", "rail: {length_m: 5, azimuth_deg: 120, elevation_deg: 80}\n", "");
+  files.Edit("vehicle.yaml", "{trigger: burnout_detection, delay_s: 3}", "{trigger: timer}");
+  EXPECT_EQ(
+      Texts(files),
+      "campaign.yaml:4:29: flight.control: 'two-stage' has no rail, so its direction is not known, allowed: "
+      "a "
+      "vehicle with rail: {length_m, azimuth_deg, elevation_deg}\n"
+      "campaign.yaml:4:29: flight.control: stage 2 of 'two-stage' ignites by the timer of a reference, and "
+      "there is none, allowed: ignition: {trigger: burnout_detection, delay_s: x}\n");
+}
+
+TEST(FreeFlightCampaign, RefusesMetricsOfControl) {
+  const InputFiles files;
+  SetFree(files);
+  files.Edit("campaign.yaml", "apogee_altitude_km, above: 50", "pitch_error_peak_deg, below: 0.5");
+  EXPECT_EQ(Texts(files),
+            "campaign.yaml:11:14: requirements[0].metric: 'pitch_error_peak_deg' is of flights with a stage "
+            "that an "
+            "autopilot controls, allowed: a metric of this law, or a law that has it\n");
+}
+
+TEST(FreeFlightCampaign, HasNoTrajectoryToOptimise) {
+  const InputFiles files;
+  SetFree(files);
+  try {
+    LoadOptimization(files.Path("campaign.yaml"));
+    FAIL();
+  } catch (const InputError& error) {
+    EXPECT_STREQ(
+        error.what(),
+        "'trial' has no autopilot, so there is nothing of which to compute a trajectory, allowed: a campaign "
+        "without flight: {control: none}");
+  }
+}
+
+}  // namespace
+}  // namespace dispersa::campaign_yaml_free_flight_test
