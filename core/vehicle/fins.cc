@@ -12,7 +12,7 @@ namespace {
 constexpr double kSubsonicMach = 0.9;
 constexpr double kHalfChordMach = 2.0;
 // The slope holds above it, as a body's (aerodynamics_build_up.cc).
-constexpr double kHypersonicMach = 8.0;
+constexpr double kFinHypersonicMach = 8.0;
 constexpr double kWaveMach = 1.2;  ///< wave drag rises straight to here from kSubsonicMach
 
 double AspectRatio(const FinSet& fins) { return 2.0 * Square(fins.span_m) / FinArea(fins); }
@@ -43,7 +43,7 @@ double FinLiftArea(const FinSet& fins, double mach) {
   if (mach <= kSubsonicMach) return Subsonic(fins, mach);
   // Where the tips' Mach cones meet at the trailing edge, but well above the speed of sound.
   const double from = std::max(1.2, Sqrt(1.0 + 1.0 / Square(AspectRatio(fins))));
-  const double m = std::min(mach, kHypersonicMach);
+  const double m = std::min(mach, kFinHypersonicMach);
   if (m >= from) return Supersonic(fins, m);
   return Straight(kSubsonicMach, Subsonic(fins, kSubsonicMach), from, Supersonic(fins, from), m);
 }

@@ -17,12 +17,13 @@ import tempfile
 import yaml
 
 WITHIN = 0.02
-LAUNCHERS = ("vega", "electron", "scout")
+LAUNCHERS = ("vega", "electron", "scout", "nike_apache")
 TITLES = {
     "lift_off": "lift-off",
     "mach_1": "Mach 1",
     "max_dynamic_pressure": "highest dynamic pressure",
     "injection": "injection",
+    "apogee": "apogee",
 }
 
 
@@ -45,7 +46,7 @@ def speed(row, frame):
 
 def events_of(rows, vehicle):
     """Row of each event, by name."""
-    events = {"lift_off": rows[0], "injection": rows[-1]}
+    events = {"lift_off": rows[0], "injection": rows[-1], "apogee": max(rows, key=lambda row: row["altitude_m"])}
     events["ignition"] = rows[0] | {"time_s": -vehicle.get("hold_down_s", 0)}
     events["mach_1"] = next(row for row in rows if row["mach"] >= 1)
     events["max_dynamic_pressure"] = max(rows, key=lambda row: row["qbar_pa"])

@@ -4,6 +4,7 @@
 #include <cmath>
 #include <limits>
 
+#include "core/dynamics/fall.h"
 #include "core/flight/flight.h"
 #include "core/math/constants.h"
 #include "tests/unit/sample_vehicle.h"
@@ -94,6 +95,52 @@ TEST(Outcome, NumericalFailureIsData) {
   const FlightResult refused = FlyWith(inputs);
   EXPECT_EQ(refused.outcome, Outcome::kNumericalFailure);
   EXPECT_EQ(refused.reason, "the input thrust_factor_stage1 has no value");
+}
+
+TEST(Outcome, LossOfControlIsAsTheVehicleSays) {
+  FlightInputs inputs;
+  inputs.tip_off_yaw_rad_s[0] = 31.0 * kRadPerDeg;
+  FlightDefinition definition = HighDefinition();
+  definition.vehicle.loss_of_control.rate_rad_s = 30.0 * kRadPerDeg;
+  const FlightResult fast = FlyWith(inputs, definition);
+  EXPECT_EQ(fast.outcome, Outcome::kLostControl);
+  EXPECT_EQ(fast.reason, "angular rate above the vehicle's limit");
+  definition.vehicle.loss_of_control = {5.0 * kRadPerDeg, 0.2, 90.0 * kRadPerDeg};
+  const FlightResult aside = FlyWith(inputs, definition);
+  EXPECT_EQ(aside.outcome, Outcome::kLostControl);
+  EXPECT_EQ(aside.reason, "attitude error above the vehicle's limit, for longer than it allows");
+  // 5 deg at 31 deg/s, and 0.2 s.
+  EXPECT_NEAR(aside.end_time_s, 40.5 + 5.0 / 31.0 + 0.2, 0.05);
+}
+
+// Above the air the way from the last burnout is a point mass'.
+TEST(Outcome, CompletedAtTheApogeeIfTheCampaignSaysSo) {
+  FlightDefinition definition = HighDefinition();
+  const FlightResult injected = FlyWith({}, definition);
+  definition.course.ends = FlightEnd::kApogee;
+  const FlightResult high = FlyWith({}, definition);
+  EXPECT_EQ(high.outcome, Outcome::kCompleted);
+  const FallPath path = FollowFall(
+      {}, {2000.0, TumblingCylinderDragArea(11.0, 1.0)},
+      {injected.end_time_s, injected.end_state.p_EoC_I, injected.end_state.v_IC_I}, {.at_apogee = true});
+  ASSERT_TRUE(path.apogee);
+  EXPECT_EQ(high.end_time_s, path.apogee->time_s);
+  EXPECT_EQ(high.metrics[MetricColumn("apogee_altitude_km")], path.apogee->altitude_m * 1e-3);
+  EXPECT_EQ(high.metrics[MetricColumn("pitch_error_rms_deg")],
+            injected.metrics[MetricColumn("pitch_error_rms_deg")]);
+  EXPECT_TRUE(std::isnan(injected.metrics[MetricColumn("apogee_altitude_km")]));
+}
+
+TEST(Outcome, CompletedAtTheImpactOnTheSitesGround) {
+  FlightDefinition definition = HighDefinition();
+  definition.course.ends = FlightEnd::kImpact;
+  const FlightResult fallen = FlyWith({}, definition);
+  EXPECT_EQ(fallen.outcome, Outcome::kCompleted) << fallen.reason;
+  // Straight up from the equator it comes down to the west of its site: the Earth turns on under it.
+  EXPECT_LT(fallen.metrics[MetricColumn("impact_downrange_km")], 0.0);
+  EXPECT_NEAR(fallen.metrics[MetricColumn("impact_crossrange_km")], 0.0, 1e-6);
+  EXPECT_NEAR(fallen.metrics[MetricColumn("impact_latitude_deg")], 0.0, 1e-9);
+  EXPECT_GT(fallen.metrics[MetricColumn("impact_time_s")], fallen.metrics[MetricColumn("apogee_time_s")]);
 }
 
 TEST(Outcome, TimeoutOfSimulatedTime) {

@@ -10,7 +10,8 @@ import unittest
 BINARY = pathlib.Path(os.environ["DISPERSA_BINARIES"]) / "dispersa"
 GALLERY = pathlib.Path(os.environ["DISPERSA_CAMPAIGNS"]) / "gallery"
 TABLE = pathlib.Path(__file__).parent.parent / "tools" / "gallery_table.py"
-LAUNCHERS = ("vega", "electron", "scout")
+CONTROLLED = ("vega", "electron", "scout")
+LAUNCHERS = (*CONTROLLED, "nike_apache")
 CASES = 8
 
 
@@ -41,9 +42,15 @@ class Gallery(unittest.TestCase):
                 self.assertEqual(b"_stage5_" in tables[0], launcher == "vega", launcher)
 
     def test_autopilots_meet_the_gates(self):
-        for launcher in LAUNCHERS:
+        for launcher in CONTROLLED:
             done = run(BINARY, "margins", GALLERY / launcher / "campaign.yaml")
             self.assertEqual(done.returncode, 0, done.stdout[-400:])
+
+    def test_the_sounding_rocket_has_no_autopilot(self):
+        for command in ("margins", "tune", "optimize"):
+            done = run(BINARY, command, GALLERY / "nike_apache" / "campaign.yaml")
+            self.assertEqual(done.returncode, 2, command)
+            self.assertIn("'nike_apache' has no autopilot", done.stderr, command)
 
     def test_events_are_those_of_the_table_and_as_published(self):
         done = run(sys.executable, "-B", TABLE, BINARY, GALLERY, "--check")
