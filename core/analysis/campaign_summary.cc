@@ -310,6 +310,7 @@ CampaignSummary BuildSummary(const ResultFolder& folder, const Campaign& campaig
   summary.sampling = campaign.sampling.method;
   summary.engine = folder.Provenance("engine");
   summary.vehicle = campaign.vehicle.name;
+  summary.is_controlled = campaign.course.is_controlled;
   summary.reference = campaign.reference.name;
   summary.reference_orbit = campaign.reference.orbit;
   summary.autopilot = campaign.autopilot.name;

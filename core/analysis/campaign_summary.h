@@ -105,6 +105,7 @@ struct CampaignSummary {
   std::vector<QuarantinedCase> quarantined;
   std::vector<WorstCases> worst_cases;
   std::vector<DispersionSummary> dispersions;
+  bool is_controlled = true;                    ///< by an autopilot
   std::optional<InjectionSummary> injection;    ///< none with fewer than two injections
   std::vector<MetricDrivers> drivers;           ///< of KeyMetrics()
   std::vector<FailureDrivers> failure_drivers;  ///< of the requirements

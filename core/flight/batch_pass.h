@@ -420,7 +420,8 @@ template <class T>
 void Batch<T>::Guide() {
   for (int lane = 0; lane < kLanes; ++lane) {
     FlightRecord* const record = slot_[lane].record;
-    if (record == nullptr || Lane(tick_, lane) < record->guided->next_tick()) continue;
+    if (record == nullptr || slot_[lane].past_last_burn) continue;
+    if (Lane(tick_, lane) < record->guided->next_tick()) continue;
     StateValues y;
     step_.ReadLane(lane, y);
     const LauncherPhase phase = PhaseOf(lane);

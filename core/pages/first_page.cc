@@ -63,10 +63,11 @@ std::string HeadSentence(const CampaignSummary& summary) {
 std::string Facts(const CampaignSummary& summary) {
   const RunInfo& run = summary.standing.run;
   const std::string file = run.vehicle_file.empty() ? "" : " (" + HtmlText(run.vehicle_file) + ")";
-  std::string line =
-      fmt::format("vehicle {}{} · reference {} · autopilot {} · {}, {} cases, seed {}",
-                  HtmlText(summary.vehicle), file, HtmlText(summary.reference), HtmlText(summary.autopilot),
-                  SamplingMethodTitle(summary.sampling), summary.cases, summary.seed);
+  std::string line = fmt::format("vehicle {}{} · {} · {}, {} cases, seed {}", HtmlText(summary.vehicle), file,
+                                 summary.is_controlled ? "reference " + HtmlText(summary.reference) +
+                                                             " · autopilot " + HtmlText(summary.autopilot)
+                                                       : "without control",
+                                 SamplingMethodTitle(summary.sampling), summary.cases, summary.seed);
   if (!run.started_utc.empty()) {
     std::string date = run.started_utc.substr(0, 16);
     std::replace(date.begin(), date.end(), 'T', ' ');

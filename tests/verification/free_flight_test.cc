@@ -20,6 +20,9 @@ FlightDefinition FreeDefinition(double elevation_rad, double delay_s, double ste
   FlightDefinition definition = SampleDefinition();
   Vehicle& vehicle = definition.vehicle;
   for (Stage& stage : vehicle.stages) stage.gimbal = FixedNozzle(stage.gimbal.pivot_station_m);
+  // Stable: pressure acts aft of the centre of gravity.
+  vehicle.aerodynamics[0].xcp_station_m = {18.0, 18.0, 18.0, 18.0};
+  vehicle.aerodynamics[1].xcp_station_m = {9.0, 9.0, 9.0, 9.0};
   vehicle.stages[1].ignition = IgnitionTrigger::kBurnoutDetection;
   vehicle.stages[1].ignition_delay_s = delay_s;
   vehicle.reaction_control = {};
@@ -66,7 +69,8 @@ double WorstConeError(double step_s) {
   Vector3 axis_I, momentum_I, across_I;
   double rate_rad_s = 0.0, cone_rad = 0.0;
   for (const TickSample& s : Samples(definition, inputs)) {
-    if (s.stack != 1 || s.burning) continue;
+    if (s.stack == 1 && s.burning) break;
+    if (s.stack != 1) continue;
     const Matrix3& inertia = s.instant.loads.inertia_kg_m2;
     const Vector3 axis = Rotate(s.state.q_IB, Vector3(1.0, 0.0, 0.0));
     if (start_s == 0.0) {
@@ -89,19 +93,18 @@ double WorstConeError(double step_s) {
 }
 
 TEST(FreeFlight, TorqueFreeBodyConesAboutItsAngularMomentum) {
-  // A hundred turns at 5 Hz, a sixth of a radian a step.
-  const double error = WorstConeError(0.005);
-  EXPECT_LT(error, 1e-3);
-  // Half the steps: the method is of third order, and better where the spin alone turns the body.
-  EXPECT_LT(WorstConeError(0.0025), error / 6.0);
+  // A hundred turns at 5 Hz, at 0.06 rad a step. The limit is 0.16, where the error is 0.7.
+  const double error = WorstConeError(0.002);
+  EXPECT_LT(error, 0.06);
+  // Half the step: the method is of third order.
+  EXPECT_LT(WorstConeError(0.001), error / 6.0);
 }
 
 // Fixed coefficients: theory of small oscillations, omega² = q S CN_alpha (x_cp - x_cg) / I.
 TEST(FreeFlight, OscillatesAtThePitchFrequencyOfLinearTheory) {
   FlightDefinition definition = FreeDefinition(60.0 * kRadPerDeg, 40.0);
   definition.vehicle.flow_coriolis = false;
-  definition.vehicle.aerodynamics[0].xcp_station_m = {18.0, 18.0, 18.0, 18.0};
-  definition.vehicle.aerodynamics[1].xcp_station_m = {9.0, 9.0, 9.0, 9.0};
+  definition.vehicle.stages[0].motor.thrust_n = 1.5e6;
   definition.vehicle.stages[0].motor.burning_time_s = 8.0;
   FlightInputs inputs;
   inputs.tip_off_pitch_rad_s[0] = 0.05;
@@ -141,7 +144,6 @@ TEST(FreeFlight, CantedFinsSpinItAsTheirHelix) {
   fins.span_m = 0.8;
   fins.cant_rad = 0.3 * kRadPerDeg;
   definition.vehicle.stages[0].fins = {fins};
-  definition.vehicle.aerodynamics[0].xcp_station_m = {18.0, 18.0, 18.0, 18.0};
   definition.vehicle.aerodynamics[0].clp_per_rad = {-60.0, -60.0};
   const double radius_m = 0.6;
   // In the steady state the moment of cant is that of damping, strip by strip: integrals over the span by
@@ -158,7 +160,7 @@ TEST(FreeFlight, CantedFinsSpinItAsTheirHelix) {
   double worst = 0.0;
   int seen = 0;
   for (const TickSample& s : Samples(definition, {})) {
-    if (s.stack != 0 || s.time_s < 20.0 || s.time_s > 38.0) continue;
+    if (s.stack != 0 || s.time_s < 28.0 || s.time_s > 38.0) continue;
     const double wanted = per_m * s.instant.air.airspeed_m_s;
     worst = std::max(worst, std::fabs(s.state.w_IB_B.x() / wanted - 1.0));
     ++seen;
@@ -179,9 +181,10 @@ TEST(FreeFlight, SpinMotorsGiveTheirAngularMomentum) {
       flow = s.instant.flow_kg_s;
     }
   ASSERT_GT(axial, 0.0);
-  // Moment times time over the moment of inertia, which shrinks by a few per cent as the grain burns.
   EXPECT_GT(flow, 0.0);
-  EXPECT_NEAR(spin * axial, 900.0 * 1.5, 0.06 * 900.0 * 1.5);
+  // Without jet damping the flow takes no angular momentum along. The last sample is up to a step before the
+  // end.
+  EXPECT_NEAR(spin * axial, 900.0 * 1.5, 0.005 * 900.0 * 1.5);
 }
 
 // Without air: v = c ln(m0 / m) - g' t along the rail, in closed form.
@@ -263,9 +266,9 @@ TEST(FreeFlight, FallsToTheGroundUnderAParachute) {
 TEST(FreeFlight, AgreesWithCvode) {
   FlightDefinition definition = FreeDefinition(80.0 * kRadPerDeg, 2.0);
   definition.vehicle.rail->length_m = 6.0;
+  definition.vehicle.stages[0].motor.thrust_n = 600e3;
+  definition.vehicle.stages[0].motor.burning_time_s = 20.0;
   definition.vehicle.stages[1].spin_motors = SpinMotors{900.0, 1.5};
-  definition.vehicle.aerodynamics[0].xcp_station_m = {18.0, 18.0, 18.0, 18.0};
-  definition.vehicle.aerodynamics[1].xcp_station_m = {9.0, 9.0, 9.0, 9.0};
   FlightInputs inputs;
   inputs.thrust_misalignment_rad = AllStages(0.1 * kRadPerDeg);
   inputs.wind_max_speed_m_s = 20.0;
@@ -277,13 +280,13 @@ TEST(FreeFlight, AgreesWithCvode) {
   ASSERT_EQ(engine.outcome, Outcome::kCompleted) << engine.reason;
   ASSERT_EQ(judge.outcome, Outcome::kCompleted) << judge.reason;
   EXPECT_NEAR(MetricOf(engine, "apogee_altitude_km"), MetricOf(judge, "apogee_altitude_km"), 1e-3);
-  EXPECT_LT((engine.end_state.p_EoC_I - judge.end_state.p_EoC_I).norm(), 5.0);
+  EXPECT_LT((engine.end_state.p_EoC_I - judge.end_state.p_EoC_I).norm(), 10.0);
 }
 
 TEST(FreeFlight, TurnsFasterThanStepsFollowIsNoResult) {
   FlightDefinition definition = FreeDefinition(85.0 * kRadPerDeg, 1.0);
   FlightInputs inputs = Airless();
-  inputs.tip_off_roll_rad_s[0] = 101.0;  // the limit is 0.5 rad in 5 ms
+  inputs.tip_off_roll_rad_s[0] = 32.5;  // the limit is 0.16 rad in 5 ms
   FlightResult result;
   Samples(definition, inputs, &result);
   EXPECT_EQ(result.outcome, Outcome::kNumericalFailure);
