@@ -4,6 +4,7 @@
 #include <optional>
 #include <utility>
 
+#include "core/campaign/free_flight.h"
 #include "core/flight/flight_model.h"
 #include "core/input/read_value.h"
 
@@ -25,8 +26,21 @@ MetricList MetricsOf(const Campaign& campaign) {
 
 std::vector<std::size_t> MeasuredMetrics(const Campaign& campaign) {
   const std::size_t stages = ColumnClass(campaign.vehicle);
-  std::vector<std::size_t> positions = MetricsUnder(stages, KindOf(campaign));
+  // Columns of all that a law's flights may have: those of other needs are empty.
+  FlightKind any(campaign.autopilot.pitch.law);
+  any.has_free_stage = any.has_rail = true;
+  any.ends = FlightEnd::kImpact;
+  std::vector<std::size_t> positions = MetricsUnder(stages, any);
   for (std::size_t i = 0; i < campaign.own_metrics.size(); ++i) positions.push_back(MetricCount(stages) + i);
+  return positions;
+}
+
+std::vector<std::size_t> ShownMetrics(const Campaign& campaign) {
+  std::vector<std::size_t> positions = MeasuredMetrics(campaign);
+  const FlightKind kind = KindOf(campaign);
+  std::erase_if(positions, [&](std::size_t i) {
+    return i < MetricCount(ColumnClass(campaign.vehicle)) && !HasMetric(Metrics()[i], kind);
+  });
   return positions;
 }
 

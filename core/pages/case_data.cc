@@ -19,10 +19,14 @@ std::vector<std::string> ShownMetrics(const CampaignSummary& summary) {
     return std::any_of(summary.metrics.begin(), summary.metrics.end(),
                        [&](const MetricSummary& metric) { return metric.name == name; });
   };
-  for (const char* name : {"injection_velocity_error_m_s", "injection_altitude_error_km", "perigee_km",
-                           "apogee_km", "impact_crossrange_km", "impact_downrange_km"}) {
-    if (is_measured(name) && std::find(names.begin(), names.end(), name) == names.end())
-      names.push_back(name);
+  const std::initializer_list<const char*> of_orbit = {
+      "injection_velocity_error_m_s", "injection_altitude_error_km", "perigee_km", "apogee_km"};
+  std::vector<const char*> more(of_orbit);
+  if (!summary.is_controlled) more.clear();
+  for (const char* name : {"impact_crossrange_km", "impact_downrange_km"})
+    if (is_measured(name)) more.push_back(name);
+  for (const char* name : more) {
+    if (std::find(names.begin(), names.end(), name) == names.end()) names.push_back(name);
   }
   return names;
 }

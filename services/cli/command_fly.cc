@@ -6,6 +6,7 @@
 #include <optional>
 #include <string>
 
+#include "core/campaign/free_flight.h"
 #include "core/campaign_yaml/load.h"
 #include "core/cases/campaign_flights.h"
 #include "core/pages/histories.h"
@@ -38,7 +39,7 @@ void PrintJson(const CaseResult& result, const Campaign& campaign) {
       {"end_stage", result.end_stage},
       {"reason", result.reason},
       {"inputs", InputsJson(result.inputs)},
-      {"metrics", MetricsJson(result.metrics, MetricsOf(campaign), MeasuredMetrics(campaign))},
+      {"metrics", MetricsJson(result.metrics, MetricsOf(campaign), ShownMetrics(campaign))},
       {"digest", result.digest.Hex()}};
   fmt::print("{}\n", json.dump(2));
 }
@@ -51,7 +52,7 @@ void PrintText(std::FILE* stream, const CaseResult& result, const Campaign& camp
     fmt::print(stream, "{:<44} {}\n", "input_" + InputColumns()[i].name, ShortestText(result.inputs[i]));
   }
   const MetricList metrics = MetricsOf(campaign);
-  for (const std::size_t i : MeasuredMetrics(campaign)) {
+  for (const std::size_t i : ShownMetrics(campaign)) {
     const std::string value = ShortestText(result.metrics[i]);
     fmt::print(stream, "{:<44} {}\n", "metric_" + metrics.NameAt(i), value.empty() ? "-" : value);
   }

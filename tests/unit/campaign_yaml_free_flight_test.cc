@@ -53,7 +53,7 @@ TEST(FreeFlightCampaign, MeasuresNothingOfControl) {
   const InputFiles files;
   SetFree(files);
   const Campaign campaign = LoadCampaign(files.Path("campaign.yaml"));
-  for (const std::size_t position : MeasuredMetrics(campaign)) {
+  for (const std::size_t position : ShownMetrics(campaign)) {
     const MetricGroup group = Metrics()[position].group;
     EXPECT_NE(group, MetricGroup::kAttitude) << Metrics()[position].name;
     EXPECT_NE(group, MetricGroup::kControlEffort) << Metrics()[position].name;

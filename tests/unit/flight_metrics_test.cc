@@ -323,7 +323,20 @@ TEST(MetricsRecorder, EveryMetricOfAMadeUpFlight) {
       {"guidance_ignition_shift_s", nan},
       {"guidance_postponement_s", nan},
       {"guidance_excess_velocity_m_s", nan},
-      {"step_limit_fraction", 0.0}};
+      {"step_limit_fraction", 0.0},
+      // Of flights that go on after injection, of rails and of stages without gimbal.
+      {"apogee_altitude_km", nan},
+      {"apogee_time_s", nan},
+      {"impact_time_s", nan},
+      {"impact_latitude_deg", nan},
+      {"impact_longitude_deg", nan},
+      {"impact_downrange_km", nan},
+      {"impact_crossrange_km", nan},
+      {"impact_speed_m_s", nan},
+      {"rail_exit_time_s", nan},
+      {"rail_exit_speed_m_s", nan},
+      {"roll_rate_peak_deg_s", nan},
+      {"static_margin_min", nan}};
 
   const std::vector<double> values = flight.recorder.Finish();
   ASSERT_EQ(values.size(), MetricCount(kUsualStages));
