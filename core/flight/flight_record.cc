@@ -248,6 +248,7 @@ void FlightRecord::StandOnRail() {
   LauncherPhase phase;
   phase.burning = true;
   phase.boosting = plant.boosters != nullptr;
+  if (plant.has_apart_boosters()) phase.boosters_burning = (1u << plant.boosters->each.size()) - 1u;
   phase.ignition_s = events.front().time_s;
   const auto end = std::find_if(events.begin(), events.end(), [](const FlightEvent& event) {
     return event.kind == EventKind::kBurnout || event.kind == EventKind::kBoosterBurnout;
