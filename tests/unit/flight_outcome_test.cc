@@ -136,8 +136,8 @@ TEST(Outcome, CompletedAtTheImpactOnTheSitesGround) {
   definition.course.ends = FlightEnd::kImpact;
   const FlightResult fallen = FlyWith({}, definition);
   EXPECT_EQ(fallen.outcome, Outcome::kCompleted) << fallen.reason;
-  // Straight up from the equator it comes down to the west of its site: the Earth turns on under it.
-  EXPECT_LT(fallen.metrics[MetricColumn("impact_downrange_km")], 0.0);
+  // Straight up from above the equator it stays in the equator's plane, and comes down near its site.
+  EXPECT_NEAR(fallen.metrics[MetricColumn("impact_downrange_km")], 0.0, 50.0);
   EXPECT_NEAR(fallen.metrics[MetricColumn("impact_crossrange_km")], 0.0, 1e-6);
   EXPECT_NEAR(fallen.metrics[MetricColumn("impact_latitude_deg")], 0.0, 1e-9);
   EXPECT_GT(fallen.metrics[MetricColumn("impact_time_s")], fallen.metrics[MetricColumn("apogee_time_s")]);
