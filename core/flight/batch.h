@@ -118,7 +118,7 @@ class Batch {
   const double tick_s_;
   const double ticks_a_second_;
   const bool has_jettisons_, cuts_off_at_velocity_, has_plugin_;
-  const int most_further_;  ///< banks of nozzles after the first, of any stage
+  const int most_further_;                ///< banks of nozzles after the first, of any stage
   const bool has_free_stage_, flies_on_;  ///< flies_on_: after the last burn
   Slot slot_[kLanes];
   int flying_ = 0;         ///< lanes

@@ -86,7 +86,7 @@ TEST(FreeFlightCampaign, RefusesAVehicleThatCouldBeControlled) {
              "reaction_control: {thrust_n: 20, pitch_yaw_arm_m: 1, roll_arm_m: 0.5, specific_impulse_s: 65, "
              "minimum_on_time_ms: 20}\nrail:");
   EXPECT_EQ(Texts(files),
-            "campaign.yaml:4:29: flight.control: stage 1 of 'two-stage' has a gimbal, which nothing would "
+            "campaign.yaml:4:33: flight.control: stage 1 of 'two-stage' has a gimbal, which nothing would "
             "command, allowed: autopilot, or stages with nozzle_station_m in place of gimbal\n");
 }
 
@@ -117,10 +117,10 @@ TEST(FreeFlightCampaign, NeedsARailAndNoTimer) {
   files.Edit("vehicle.yaml", "{trigger: burnout_detection, delay_s: 3}", "{trigger: timer}");
   EXPECT_EQ(
       Texts(files),
-      "campaign.yaml:4:29: flight.control: 'two-stage' has no rail, so its direction is not known, allowed: "
+      "campaign.yaml:4:33: flight.control: 'two-stage' has no rail, so its direction is not known, allowed: "
       "a "
       "vehicle with rail: {length_m, azimuth_deg, elevation_deg}\n"
-      "campaign.yaml:4:29: flight.control: stage 2 of 'two-stage' ignites by the timer of a reference, and "
+      "campaign.yaml:4:33: flight.control: stage 2 of 'two-stage' ignites by the timer of a reference, and "
       "there is none, allowed: ignition: {trigger: burnout_detection, delay_s: x}\n");
 }
 
@@ -129,7 +129,7 @@ TEST(FreeFlightCampaign, RefusesMetricsOfControl) {
   SetFree(files);
   files.Edit("campaign.yaml", "apogee_altitude_km, above: 50", "pitch_error_peak_deg, below: 0.5");
   EXPECT_EQ(Texts(files),
-            "campaign.yaml:11:14: requirements[0].metric: 'pitch_error_peak_deg' is of flights with a stage "
+            "campaign.yaml:12:14: requirements[0].metric: 'pitch_error_peak_deg' is of flights with a stage "
             "that an "
             "autopilot controls, allowed: a metric of this law, or a law that has it\n");
 }
