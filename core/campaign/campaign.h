@@ -11,6 +11,7 @@
 
 #include "core/campaign/derived_input.h"
 #include "core/control/autopilot_config.h"
+#include "core/environment/weather_table.h"
 #include "core/environment/wind.h"
 #include "core/environment/wind_statistics.h"
 #include "core/flight/flight_course.h"
@@ -124,7 +125,7 @@ struct Campaign {
   std::vector<Dispersion> dispersions;
   std::vector<DerivedInput> derived;              ///< set after all draws of a case
   std::optional<WindStatistics> wind_statistics;  ///< climatology whose levels the profile draws fill
-  std::optional<WindTable> wind_table;            ///< a profile that every flight meets, the nominal too
+  std::optional<WeatherTable> wind_table;         ///< a profile that every flight meets, the nominal too
   std::vector<OwnMetric> own_metrics;
   std::vector<Requirement> requirements;
   Verdicts verdicts;

@@ -62,6 +62,7 @@ class DispersionFields {
       case Draws::kWindProfile:
       case Draws::kTurbulence:
       case Draws::kStuckNozzle:
+      case Draws::kAeroUncertainty:
         break;
     }
     bool is_there = false;
@@ -71,6 +72,7 @@ class DispersionFields {
       if (row.draws == Draws::kWindProfile) WindProfile(map, row);
       if (row.draws == Draws::kTurbulence) Turbulence(map, row);
       if (row.draws == Draws::kStuckNozzle) StuckNozzle(map, row);
+      if (row.draws == Draws::kAeroUncertainty) AeroUncertainties(map, row);
       const int before = maps_;
       for (const DispersionRow& part : row.parts) Describe(map, part, name + "/" + part.key);
       if (row.draws == Draws::kParts) OneOrMoreParts(map, row, maps_ > before);
@@ -424,9 +426,8 @@ class DispersionFields {
   // The tables are kept from the start: their checks come when the whole map is read.
   void WindProfile(Fields& map, const DispersionRow& row) {
     bool has_table = false, has_statistics = false;
-    map.OptionalTable("table", has_table, "a CSV file of the profile of all flights", [&](Fields& columns) {
-      dispersa::Describe(columns, campaign_.wind_table.emplace(), "one value an altitude in each column");
-    });
+    map.OptionalTable("table", has_table, "a CSV file of the wind of all flights, and of their air",
+                      [&](Fields& columns) { dispersa::Describe(columns, campaign_.wind_table.emplace()); });
     map.When(Has("statistics"), [&] {
       WindStatistics& statistics = campaign_.wind_statistics.emplace();
       dispersa::Describe(map, statistics);
@@ -446,6 +447,23 @@ class DispersionFields {
     if (has_table == has_statistics)
       map.Refuse("", has_table ? "'table' and 'statistics' are both given" : "no profile is given",
                  "either table: FILE.csv or statistics: FILE.csv");
+  }
+
+  // Normal draws in standard deviations: one of each coefficient, for all tables.
+  void AeroUncertainties(Fields& map, const DispersionRow& row) {
+    const std::vector<std::string> names = {"ca", "cn", "xcp", "damping"};
+    std::vector<std::size_t> drawn;
+    map.Words("of", names, drawn, "coefficients, each drawn once a flight");
+    ScalarDistribution standard_normal;
+    standard_normal.kind = Distribution::kNormal;
+    standard_normal.sigma = 1.0;
+    for (std::size_t i = 0; i < names.size(); ++i)
+      if (std::find(drawn.begin(), drawn.end(), i) != drawn.end())
+        Add("aerodynamic_uncertainty/" + names[i], standard_normal, {row.columns[i]});
+    if (is_sound_ && std::none_of(vehicle_.aerodynamics.begin(), vehicle_.aerodynamics.end(), IsUncertain))
+      map.Refuse("", "the vehicle has no aerodynamic table that states an uncertainty",
+                 "tables with ca_uncertainty_percent, cn_uncertainty_percent, xcp_uncertainty_m or "
+                 "damping_uncertainty_percent");
   }
 
   void StuckNozzle(Fields& map, const DispersionRow& row) {

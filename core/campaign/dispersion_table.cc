@@ -257,6 +257,11 @@ std::vector<DispersionRow> MakeRows() {
        Draws::kBoostersAside,
        Any(kAngle),
        {"nozzle_misalignment_y_{further}_deg", "nozzle_misalignment_z_{further}_deg"}});
+  add({"aerodynamic_uncertainty",
+       "of the vehicle's aerodynamic tables, as they state it",
+       Draws::kAeroUncertainty,
+       Any({}),
+       {"table_ca_sigmas", "table_cn_sigmas", "table_xcp_sigmas", "table_damping_sigmas"}});
   // Those that their inputs declare (core/flight/flight_inputs.h).
   for (const DispersedInput& input : DeclaredDispersals()) {
     const Draws draws = input.drawn_for == DrawnFor::kEachStage  ? Draws::kStages

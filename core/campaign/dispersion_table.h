@@ -34,6 +34,7 @@ enum class Draws {
   kBoosters,             ///< `per: booster`, or `vehicle`: one value for all
   kBoostersTemperature,  ///< the same of a temperature that sets the burn rate
   kBoostersAside,        ///< components towards body y and z, of each booster
+  kAeroUncertainty,
 };
 
 struct DispersionRow {

@@ -5,6 +5,7 @@
 
 #include "core/flight/flight.h"
 #include "core/math/functions.h"
+#include "core/trajectory/aim.h"
 #include "core/trajectory/ascent.h"
 
 namespace dispersa {
@@ -13,8 +14,9 @@ namespace {
 AscentResult FlyReference(const Campaign& campaign) {
   AscentOptions options;
   options.record = true;
-  return FlyAscent(BuildAscentModel(campaign.vehicle, campaign.autopilot.tick_s), campaign.reference.program,
-                   options);
+  AscentModel model = BuildAscentModel(campaign.vehicle, campaign.autopilot.tick_s);
+  AimAt(campaign.reference.problem, model.vehicle);
+  return FlyAscent(model, campaign.reference.program, options);
 }
 
 bool Jettisons(const Vehicle& vehicle) {
@@ -92,14 +94,22 @@ FlightDefinition DefinitionOf(const Campaign& campaign) {
   definition.kick_start_s = campaign.reference.program.t1_s;
   definition.kick_end_s = campaign.reference.program.t2_s;
   const TrajectoryProblem& problem = campaign.reference.problem;
+  AimAt(problem, definition.vehicle);
   definition.earlier_ignition_s = campaign.reference.earlier_ignition_s;
   // The reference gives the values that the target leaves open, or measures from another origin.
   const Orbit& reached = campaign.reference.orbit;
-  definition.target = {problem.target_apogee_m ? reached.altitude_m : problem.target_altitude_m,
-                       problem.velocity_is_free ? reached.velocity_m_s - problem.velocity_reserve_m_s
-                                                : problem.target_velocity_m_s,
-                       problem.target_flight_path_angle_rad,
-                       problem.target_inclination_rad.value_or(reached.inclination_rad)};
+  definition.target = {
+      problem.target_apogee_m ? reached.altitude_m : problem.target_altitude_m,
+      problem.velocity_is_free || problem.is_entered_anywhere
+          ? reached.velocity_m_s - problem.velocity_reserve_m_s
+          : problem.target_velocity_m_s,
+      problem.is_entered_anywhere ? reached.flight_path_angle_rad : problem.target_flight_path_angle_rad,
+      problem.target_inclination_rad.value_or(reached.inclination_rad)};
+  if (problem.is_entered_anywhere) {
+    const AimedEllipse ellipse = EllipseOf(problem);
+    definition.target.orbit = {ellipse.semi_major_axis_m, ellipse.eccentricity,
+                               problem.target_argument_of_perigee_rad};
+  }
   definition.guidance = campaign.guidance;
   definition.velocity_reserve_m_s = problem.velocity_reserve_m_s;
   definition.wind_table = campaign.wind_table;

@@ -7,7 +7,9 @@
 
 #include "core/campaign/dispersion_table.h"
 #include "core/campaign/drawn_value.h"
+#include "core/environment/atmosphere.h"
 #include "core/flight/flight_inputs.h"
+#include "core/math/functions.h"
 
 namespace dispersa {
 namespace {
@@ -43,6 +45,37 @@ void CheckWind(const char* key, double speed_m_s, double top_m, const Add& add) 
          fmt::format("{:g} m or more (altitudes may be in kilometres)", kLowestTop_m)});
 }
 
+constexpr double kGasLawPart = 0.02;
+constexpr double kAirPart = 0.35;
+constexpr double kOfThin_m = 60000.0;
+
+// Of a measured air: whether its columns agree, and with any air of the Earth.
+template <typename Add>
+void CheckAir(const WeatherTable& table, const Add& add) {
+  if (!table.has_air()) return;
+  const GasLawMiss miss = MissOfGasLaw(table);
+  if (std::fabs(miss.part) > kGasLawPart)
+    add({"wind_profile",
+         fmt::format("has at {:.6g} m a pressure {:.3g} times that of its density and temperature",
+                     table.altitude_m[miss.level], 1.0 + miss.part),
+         fmt::format("within {:g} % (the gas law of dry air; vapour makes up to 1.5 %)",
+                     100.0 * kGasLawPart)});
+  double worst = 0.0;
+  std::size_t level = 0;
+  for (std::size_t i = 0; i < table.altitude_m.size() && table.altitude_m[i] <= kOfThin_m; ++i) {
+    const double standard = StandardAtmosphere1976(table.altitude_m[i]).density_kg_m3;
+    const double part = std::fabs(Log(AirOfLevel(table, i).density_kg_m3 / standard));
+    if (part > worst) worst = part, level = i;
+  }
+  if (worst > kAirPart)
+    add({"wind_profile",
+         fmt::format("has at {:.6g} m a density of {:.4g} kg/m3", table.altitude_m[level],
+                     AirOfLevel(table, level).density_kg_m3),
+         fmt::format("within a factor of {:.2g} of the standard's, {:.4g} kg/m3 (to 60 km seasons and "
+                     "latitudes change it by up to 40 %)",
+                     std::exp(kAirPart), StandardAtmosphere1976(table.altitude_m[level]).density_kg_m3)});
+}
+
 }  // namespace
 
 std::vector<UnusualDispersion> UnusualDispersions(const Campaign& campaign) {
@@ -72,12 +105,21 @@ std::vector<UnusualDispersion> UnusualDispersions(const Campaign& campaign) {
            fmt::format("{:g} to {:g} ({})", usual.low, usual.high, usual.source)});
     }
   }
+  const auto draws_tables = [](const Dispersion& dispersion) {
+    return dispersion.name.starts_with("aerodynamic_uncertainty/");
+  };
+  const std::vector<AeroTable>& tables = campaign.vehicle.aerodynamics;
+  if (!campaign.dispersions.empty() && std::any_of(tables.begin(), tables.end(), IsUncertain) &&
+      std::none_of(campaign.dispersions.begin(), campaign.dispersions.end(), draws_tables))
+    add({"", "do not draw the uncertainty that the vehicle's aerodynamic tables state",
+         "aerodynamic_uncertainty: {of: [ca, cn, xcp, damping]}"});
   if (const auto& table = campaign.wind_table) {
     double fastest_m_s = 0.0;
     for (std::size_t i = 0; i < table->altitude_m.size(); ++i)
       fastest_m_s = std::max(fastest_m_s, std::sqrt(table->north_m_s[i] * table->north_m_s[i] +
                                                     table->east_m_s[i] * table->east_m_s[i]));
     CheckWind("wind_profile", fastest_m_s, table->altitude_m.back(), add);
+    CheckAir(*table, add);
   }
   if (const auto& statistics = campaign.wind_statistics) {
     double fastest_m_s = 0.0;

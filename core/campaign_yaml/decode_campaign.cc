@@ -337,7 +337,7 @@ class CampaignDescription {
           for (const StructProblem& problem : ControlProblems(campaign_.vehicle, campaign_.course))
             course.Refuse(problem.path, problem.message, problem.allowed);
         });
-    if (has_course || root_ == nullptr || !problems_.empty()) return;
+    if (has_course || root_ == nullptr || vehicle_.node == nullptr || !problems_.empty()) return;
     for (const StructProblem& problem : ControlProblems(campaign_.vehicle, campaign_.course))
       AddProblem(problems_, *vehicle_.node, vehicle_.path, problem.message, problem.allowed);
   }

@@ -3,6 +3,8 @@
 #include "core/campaign_yaml/decode.h"
 #include "core/campaign_yaml/describe_file.h"
 #include "core/input/struct_problems.h"
+#include "core/vehicle/cut_off.h"
+#include "core/vehicle/mass.h"
 #include "core/vehicle/plausibility.h"
 #include "core/vehicle/propulsion.h"
 
@@ -35,8 +37,7 @@ Stage BurnAgain(const Stage& commands, Stage& before) {
   stage.separation_delay_s = commands.separation_delay_s;
   // What the burn before leaves; of a cut-off by velocity a flight tells, and until then all stands for it.
   const Motor& first = before.motor;
-  if (first.cut_off == CutOff::kAtVelocity || !(first.thrust_n > 0.0 && first.burning_time_s > 0.0))
-    return stage;
+  if (EndsAtSpeed(first) || !(first.thrust_n > 0.0 && first.burning_time_s > 0.0)) return stage;
   const double left = BuildBurn(before, 1.0, 1.0).left_kg / before.propellant_mass_kg;
   stage.liftoff_mass_kg -= (1.0 - left) * before.propellant_mass_kg;
   stage.propellant_mass_kg *= left;
@@ -50,6 +51,23 @@ void CompleteBeam(const std::vector<Stage>& stages, std::vector<BeamStage>& beam
   if (beam.empty()) return;  // a table of modes
   for (std::size_t i = 1; i < stages.size(); ++i)
     if (stages[i].restarts) beam.insert(beam.begin() + static_cast<std::ptrdiff_t>(i), beam[i - 1]);
+}
+
+// Tables of masses over propellant, and their sums. A restart has those of its stage.
+void CompleteMassTables(Vehicle& vehicle) {
+  for (std::size_t i = 0; i < vehicle.stages.size(); ++i) {
+    Stage& stage = vehicle.stages[i];
+    if (stage.restarts) {
+      if (i > 0) stage.flown_mass = vehicle.stages[i - 1].flown_mass;
+      continue;
+    }
+    if (stage.mass_table.empty() || !(stage.motor.thrust_n > 0.0 && stage.motor.burning_time_s > 0.0))
+      continue;
+    PutOverPropellant(BuildBurn(stage, 1.0, 1.0), stage.mass_table);
+    const double dry_kg = DryMass(vehicle, static_cast<int>(i));
+    if (stage.mass_table.propellant_kg.size() < 2 || !(dry_kg > 0.0)) continue;  // a problem of the vehicle
+    stage.flown_mass.rows = std::make_shared<const MassRows>(BuildMassRows(stage.mass_table, dry_kg));
+  }
 }
 
 // What follows from the fields of a file, once all are read.
@@ -66,6 +84,7 @@ void Complete(Vehicle& vehicle) {
   // They have left before the first stage burns again.
   for (std::size_t i = 1; i < vehicle.stages.size() && vehicle.stages[i].restarts; ++i)
     vehicle.stages[i].liftoff_mass_kg -= vehicle.boosters.LiftOffMass();
+  CompleteMassTables(vehicle);
 }
 
 void CheckPlausibility(const Vehicle& vehicle, const InputNode& node, const std::string& path,

@@ -1,8 +1,19 @@
 #include "core/dynamics/air_data.h"
 
+#include "core/environment/surroundings.h"
 #include "core/math/functions.h"
 
 namespace dispersa {
+namespace {
+
+AirState StateAt(const AirTable& table, double altitude_m) {
+  const lanes::AirStateLanes<double> air = lanes::AirAt(table, altitude_m);
+  constexpr double kGasConstant_j_kg_k = 8314.32 / 28.9644;
+  return {air.energy_j_kg / kGasConstant_j_kg_k, air.pressure_pa, air.pressure_pa / air.energy_j_kg,
+          Sqrt(1.4 * air.energy_j_kg)};
+}
+
+}  // namespace
 
 AirData ComputeAirData(const Environment& environment, const Vector3& p, const Vector3& v) {
   AirData data;
@@ -20,8 +31,9 @@ AirData ComputeAirData(const Environment& environment, const Vector3& p, const V
     data.v_AP_I -= R_IN * Vector3(gusts.north_m_s, gusts.east_m_s, -gusts.up_m_s);
   }
   data.airspeed_m_s = data.v_AP_I.norm();
-  const AirState air =
-      Scaled(StandardAtmosphere1976(data.place.altitude_m), environment.density(data.place.altitude_m));
+  const AirState still = environment.air ? StateAt(*environment.air, data.place.altitude_m)
+                                         : StandardAtmosphere1976(data.place.altitude_m);
+  const AirState air = Scaled(still, environment.density(data.place.altitude_m));
   data.density_kg_m3 = air.density_kg_m3;
   data.pressure_pa = air.pressure_pa;
   data.speed_of_sound_m_s = air.speed_of_sound_m_s;

@@ -3,6 +3,7 @@
 
 #include <memory>
 
+#include "core/environment/air_table.h"
 #include "core/environment/atmosphere.h"
 #include "core/environment/density_factor.h"
 #include "core/environment/earth.h"
@@ -18,6 +19,9 @@ struct Environment {
   Wind wind;
   DensityFactor density;
   std::shared_ptr<const TurbulenceField> turbulence = {};  ///< added to the wind (null: none)
+  std::shared_ptr<const AirTable> air = {};                ///< measured (null: the standard's)
+
+  const AirTable& Air() const { return air ? *air : StandardAir(); }
 };
 
 struct AirData {

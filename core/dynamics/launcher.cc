@@ -1,6 +1,7 @@
 #include "core/dynamics/launcher.h"
 
 #include <algorithm>
+#include <bit>
 #include <optional>
 
 #include "core/dynamics/jettison.h"
@@ -33,6 +34,19 @@ struct LauncherModel::Prepared {
   std::vector<lanes::ApartBoosters<double>> apart;
 };
 
+const AeroVariant* LauncherStack::AeroAfter(unsigned jettisoned, bool burning) const {
+  if (!aero_variants) return nullptr;
+  const AeroVariant* best = nullptr;
+  const auto rank = [](const AeroVariant* variant) {
+    return variant == nullptr ? 0 : 2 * std::popcount(variant->without) + (variant->power_off ? 1 : 0);
+  };
+  for (const AeroVariant& variant : *aero_variants)
+    if ((variant.without & ~jettisoned) == 0 && !(variant.power_off && burning) &&
+        rank(&variant) > rank(best))
+      best = &variant;
+  return best;
+}
+
 namespace {
 
 // An instant of one lane.
@@ -46,7 +60,7 @@ struct OneLane {
               now.boosting,         now.ignition_s,
               now.expelled_mass_kg, ToLanes(now.control_torque_n_m)},
         motion{{y[0], y[1], y[2]}, {y[3], y[4], y[5]}, {y[6], y[7], y[8], y[9]}, {y[10], y[11], y[12]}},
-        around(lanes::SurroundingsAt(earth, StandardAir(), plant.weather, motion.p)),
+        around(lanes::SurroundingsAt(earth, from.environment.Air(), plant.weather, motion.p)),
         masses(lanes::MassesAt(plant, phase, time_s)),
         nozzles(lanes::NozzlesAt(y + kNozzleAngle)),
         second(lanes::NozzlesAt(y + kSecondAngle)) {
@@ -84,9 +98,11 @@ struct OneLane {
   static std::optional<lanes::LauncherPlantLanes<double>> Without(
       const LauncherPlant& from, const lanes::LauncherPlantLanes<double>& stack, const LauncherPhase& now,
       lanes::ApartBoosters<double>& apart) {
-    if (now.jettisoned == 0 && stack.apart == nullptr) return std::nullopt;
+    const LauncherStack& of = from.stacks[static_cast<std::size_t>(now.stack)];
+    if (now.jettisoned == 0 && stack.apart == nullptr && !of.aero_variants) return std::nullopt;
     lanes::LauncherPlantLanes<double> lighter = stack;
-    lanes::SetLane(lighter.stack, 0, MassOf(from, now.stack, now.jettisoned));
+    if (now.jettisoned != 0) lanes::SetLane(lighter.stack, 0, MassOf(from, now.stack, now.jettisoned));
+    lanes::SetShape(lighter.aero, 0, of, of.AeroAfter(now.jettisoned, now.burning));
     if (stack.apart != nullptr) {
       apart = *stack.apart;
       lighter.apart = &apart;

@@ -52,12 +52,22 @@ struct NozzleDeparture {
   double offset_y_m = 0.0, offset_z_m = 0.0;
 };
 
+/// The aerodynamics of a stack in another state: without bodies that have left, or with the motor out.
+struct AeroVariant {
+  unsigned without = 0;  ///< bits of LauncherPhase::jettisoned
+  bool power_off = false;
+  BodyAerodynamics body;  ///< its factors do not count: those of the stack hold
+  std::shared_ptr<const AeroGrid> grid;
+};
+
 /// One stack as one flight flies it: nominal data with the flight's factors applied.
 struct LauncherStack {
   StackMass mass;
+  std::shared_ptr<const MassRows> mass_rows;  ///< to which `mass` points (null: to none)
   BodyAerodynamics aerodynamics;
   std::shared_ptr<const AeroGrid>
       aero_grid;  ///< grid of the aerodynamics without factors, made if it is missing
+  std::shared_ptr<const std::vector<AeroVariant>> aero_variants;  ///< null: it has none
   MotorBurn burn;
   Gimbal gimbal;
   NozzleLayout layout;
@@ -79,6 +89,9 @@ struct LauncherStack {
   std::shared_ptr<const BendingTable> bending;  ///< with all it carries at lift-off (null: it is rigid)
   std::shared_ptr<const JettisonedBending> lighter_bending;  ///< null: it is rigid, or jettisons nothing
 
+  /// The variant that fits best after these bodies have left (bits of LauncherPhase::jettisoned): the one
+  /// without the most of them and with none that is still there. Null: that of `aerodynamics`.
+  const AeroVariant* AeroAfter(unsigned jettisoned, bool burning) const;
   /// Without what has been jettisoned (bits of LauncherPhase::jettisoned). Null: it is rigid.
   const BendingTable* BendingWithout(unsigned jettisoned) const {
     if (jettisoned == 0 || !lighter_bending) return bending.get();

@@ -54,6 +54,17 @@ DISPERSA_INLINE void SetLane(BodyAerodynamicsLanes<T>& b, int lane, const BodyAe
   }
 }
 
+/// The aerodynamics of a lane's stack in another state (null: those of the whole stack, motor burning).
+template <class T>
+DISPERSA_INLINE void SetShape(BodyAerodynamicsLanes<T>& b, int lane, const LauncherStack& stack,
+                              const AeroVariant* variant) {
+  SetLane(b, lane, stack.aerodynamics, variant != nullptr ? *variant->grid.get() : *stack.aero_grid.get());
+  if (variant == nullptr) return;
+  Lane(b.area_m2, lane) = variant->body.area_m2;
+  Lane(b.length_m, lane) = variant->body.length_m;
+  Lane(b.span_m, lane) = variant->body.span_m;
+}
+
 /// Returns whether it departs at all.
 template <class T>
 DISPERSA_INLINE bool SetLane(NozzleDepartureLanes<T>& n, int lane, const NozzleDeparture& nozzle) {

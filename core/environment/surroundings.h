@@ -61,7 +61,7 @@ template <class T>
 struct AirStateLanes {
   T pressure_pa, energy_j_kg;  ///< energy: pressure / density
 };
-/// The standard's air: within kAirTableTolerance of StandardAtmosphere1976.
+/// The standard's air is within kAirTableTolerance of StandardAtmosphere1976.
 template <class T>
 DISPERSA_INLINE AirStateLanes<T> AirAt(const AirTable& table, T altitude_m) {
   const T z = Clamp(altitude_m, T(kAtmosphereBottom_m), T(kAtmosphereTop_m));
@@ -70,7 +70,7 @@ DISPERSA_INLINE AirStateLanes<T> AirAt(const AirTable& table, T altitude_m) {
   const std::uint16_t* bucket = table.bucket.data();
   const double* row[kWidth<T>];
   int at[kWidth<T>];
-  Truncate((z - T(kAtmosphereBottom_m)) * T(1.0 / AirTable::kBucket_m), at);
+  Truncate((z - T(kAtmosphereBottom_m)) * T(table.buckets_per_m), at);
   for (int lane = 0; lane < kWidth<T>; ++lane) {
     unsigned cell = bucket[at[lane]];
     cell += Lane(z, lane) >= edges[cell + 1];
@@ -140,7 +140,7 @@ struct Surroundings {
 
 /// At p_EoP_I. ComputeAirData explains the frames.
 template <class T>
-DISPERSA_INLINE Surroundings<T> SurroundingsAt(const Earth& earth, const AirTable& standard,
+DISPERSA_INLINE Surroundings<T> SurroundingsAt(const Earth& earth, const AirTable& air_table,
                                                const FlightWeatherLanes<T>& weather, Vector<T> p) {
   alignas(32) static constexpr double kCalm[WeatherProfile::kRowSize] = {0.0, 0.0, 0.0, 0.0,
                                                                          1.0, 0.0, 0.0, 0.0};
@@ -148,7 +148,7 @@ DISPERSA_INLINE Surroundings<T> SurroundingsAt(const Earth& earth, const AirTabl
   Surroundings<T> o;
   o.altitude_m = at.altitude_m;
   o.gravitation_m_s2 = GravitationAt(earth, p, at);
-  const AirStateLanes<T> air = AirAt(standard, at.altitude_m);
+  const AirStateLanes<T> air = AirAt(air_table, at.altitude_m);
   const T inverse_energy = T(1.0) / air.energy_j_kg;
   T factor = weather.density_factor;
   T north(0.0), east(0.0), up(0.0);
@@ -165,7 +165,7 @@ DISPERSA_INLINE Surroundings<T> SurroundingsAt(const Earth& earth, const AirTabl
   }
   o.pressure_pa = air.pressure_pa * factor;
   o.density_kg_m3 = o.pressure_pa * inverse_energy;
-  // The standard's ratio of specific heats is 1.4.
+  // The standard's ratio of specific heats is 1.4, that of a measured air too.
   o.inverse_sound_s_m = Sqrt(inverse_energy * T(1.0 / 1.4));
 
   const auto in_jet = (Abs((at.altitude_m - weather.jet_altitude_m) * weather.jet_inverse_width) < T(1.0)) &

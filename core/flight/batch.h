@@ -56,6 +56,7 @@ class Batch {
   void SetStack(int lane, int stack);
   void SetMass(int lane);
   void SetAllocation(int lane, const NozzleLayout& layout);
+  void SetShape(int lane);
   void SetStop(int lane);
   void SetUnsteered(int lane);
   /// Null: the lane's last event has happened.
@@ -308,6 +309,7 @@ void Batch<T>::SetStack(int lane, int stack) {
   step_.SetStack(lane, slot.record->plant, stack);
   SetUnsteered(lane);
   SetMass(lane);
+  SetShape(lane);
   if (!step_.plant().nozzles_listed) return;
   SetAllocation(lane, slot.record->plant.LayoutOf(stack, stack == 0));
 }
@@ -336,6 +338,16 @@ void Batch<T>::SetMass(int lane) {
   StackMass mass;
   slot.record->MassWithout(slot.stack, slot.jettisoned, mass);
   step_.SetMass(lane, mass, slot.record->BendingWithout(slot.stack, slot.jettisoned));
+}
+
+/// Sets the aerodynamics of the lane's stack: those after its jettisons, with the motor burning or out.
+template <class T>
+void Batch<T>::SetShape(int lane) {
+  const Slot& slot = slot_[lane];
+  const LauncherStack& stack = slot.record->plant.stacks.data()[slot.stack];
+  if (stack.aero_variants.get() == nullptr) return;
+  const bool burning = Bits(step_.phase().burning) >> lane & 1u;
+  step_.SetShape(lane, stack, stack.AeroAfter(slot.jettisoned, burning));
 }
 
 template <class T>

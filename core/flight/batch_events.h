@@ -116,6 +116,7 @@ void Batch<T>::Happen(int lane) {
   switch (event.kind) {
     case EventKind::kIgnition:
       step_.Ignite(lane, event.time_s, event.stage == 0);
+      SetShape(lane);
       Ignite(lane, event.stage);
       SetUnsteered(lane);
       if (const double torque_n_m = record.SpinTorque(event.stage); torque_n_m != 0.0)
@@ -168,6 +169,7 @@ void Batch<T>::Happen(int lane) {
       step_.WriteLane(lane, y);
       step_.DropBoosters(lane);
       SetMass(lane);
+      SetShape(lane);
       break;
     }
     case EventKind::kKink:
@@ -294,6 +296,7 @@ void Batch<T>::BurnOut(int lane, int stage) {
   for (T& weight : gyro_weight_) Lane(weight, lane) = 0.0;
   Lane(unit_weight_, lane) = 1.0;
   step_.BurnOut(lane);
+  SetShape(lane);
   // Thrusters held the roll before: their state ends.
   Lane(thrusters_[kRoll].direction, lane) = Lane(thrusters_[kRoll].cycles_on, lane) = 0.0;
   if (stage + 1 == static_cast<int>(record.plant.stacks.size())) record.Inject(now.altitude_m, y);

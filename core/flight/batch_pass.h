@@ -2,6 +2,7 @@
 #pragma once
 
 #include "core/flight/batch.h"
+#include "core/vehicle/cut_off.h"
 
 namespace dispersa::lanes {
 inline namespace DISPERSA_ISA {
@@ -48,6 +49,7 @@ void Batch<T>::LetGo() {
     slot.jettisoned |= due;
     step_.WriteLane(lane, y);
     SetMass(lane);
+    SetShape(lane);
     slot.record->AddToDigest(Lane(time_s_, lane), y);
     if (slot.record->watched) slot.record->WatchEvent(ViewOf(lane));
   }
@@ -66,11 +68,18 @@ void Batch<T>::CutOff() {
       CutOffByGuidance(lane);
       continue;
     }
-    const double wanted_m_s = slot.record->CutOffVelocity(slot.stack);
-    if (!(wanted_m_s > 0.0)) continue;
+    const Motor* const engine = slot.record->CutOffEngine(slot.stack);
+    if (engine == nullptr) continue;
     const Vector<double> v = LaneOf(step_.motion().v, lane);
     const double speed_m_s = Sqrt(Dot(v, v));
-    const double rate_m_s2 = Dot(v, LaneOf(step_.acceleration_m_s2(), lane)) / speed_m_s;
+    double rate_m_s2 = Dot(v, LaneOf(step_.acceleration_m_s2(), lane)) / speed_m_s;
+    double wanted_m_s = engine->cut_off_velocity_m_s;
+    if (engine->cut_off == CutOff::kAtTarget) {
+      const Vector<double> p = LaneOf(step_.motion().p, lane);
+      const double radius_m = Sqrt(Dot(p, p)), altitude_m = Lane(step_.now().altitude_m, lane);
+      wanted_m_s = CutOffSpeed(*engine, radius_m, altitude_m);
+      rate_m_s2 -= CutOffSpeedRate(*engine, radius_m, altitude_m, Dot(p, v) / radius_m);
+    }
     const double lacking_m_s = wanted_m_s - speed_m_s;
     if (lacking_m_s > rate_m_s2 * tick_s_) continue;
     CutOffAt(lane, Lane(time_s_, lane) + (lacking_m_s > 0.0 ? lacking_m_s / rate_m_s2 : 0.0));

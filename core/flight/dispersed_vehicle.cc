@@ -34,12 +34,18 @@ Vehicle WithDispersedMasses(const Vehicle& vehicle, const FlightInputs& in) {
     Stage& stage = dispersed.stages[i];
     std::size_t first = i;  // burn of the stage, whose factors are the stage's
     while (vehicle.stages[first].restarts) --first;
-    double dry_kg = DryMass(vehicle, static_cast<int>(i)) * in.dry_mass_factor[first];
+    const double nominal_dry_kg = DryMass(vehicle, static_cast<int>(i));
+    double dry_kg = nominal_dry_kg * in.dry_mass_factor[first];
     const int element = static_cast<int>(in.payload_element + 0.5) - 1;
     const bool is_last =
         LastBurn(vehicle, static_cast<int>(i)) + 1 == static_cast<int>(vehicle.stages.size());
     if (is_last && element >= 0 && element < static_cast<int>(stage.structure.size()))
       AddToElement(static_cast<std::size_t>(element), in.payload_mass_kg, dry_kg, stage);
+    if (stage.flown_mass.rows) {
+      stage.flown_mass.dry_factor = in.dry_mass_factor[first];
+      stage.flown_mass.added_kg = dry_kg - nominal_dry_kg * in.dry_mass_factor[first];
+      stage.flown_mass.element = static_cast<std::size_t>(std::max(element, 0));
+    }
     stage.propellant_mass_kg *= in.propellant_factor[first];
     stage.motor.burning_time_s *= in.propellant_factor[first];
     for (Tank& tank : stage.tanks) tank.propellant_mass_kg *= in.propellant_factor[first];

@@ -153,6 +153,11 @@ struct FlightInputs {
   PerFurtherNozzle further_thrust_factor = AllFurtherNozzles(1.0);
   PerFurtherNozzle further_flow_factor = AllFurtherNozzles(1.0);
   PerStage fin_cant_rad{};  ///< added to the cant of all fins of a stage
+  // Standard deviations of the uncertainties that aerodynamic tables state (AeroSigmas).
+  double table_ca_sigmas = 0.0;
+  double table_cn_sigmas = 0.0;
+  double table_xcp_sigmas = 0.0;
+  double table_damping_sigmas = 0.0;
 };
 
 /// The usual range of an input, in the unit of its column. `validate --strict` warns about values outside it.
@@ -364,6 +369,10 @@ inline void DeclareInputs(InputDeclarations& inputs) {
       .EachStage(&In::fin_cant_rad, "fin_cant", "_deg", kRadPerDeg,
                  {"fin_cant", "added to the cant of a stage's fins, mean of all of them", kAngle, kAnyNumber})
       .Usually({-1.0, 1.0, "0.01 to 0.1 deg of a set's mean"});
+  inputs.One(&In::table_ca_sigmas, "table_ca_sigmas");
+  inputs.One(&In::table_cn_sigmas, "table_cn_sigmas");
+  inputs.One(&In::table_xcp_sigmas, "table_xcp_sigmas");
+  inputs.One(&In::table_damping_sigmas, "table_damping_sigmas");
 }
 
 /// All columns in their fixed order, names without the prefix `input_`.

@@ -10,6 +10,7 @@
 #include "core/math/functions.h"
 #include "core/random/draws.h"
 #include "core/vehicle/aerodynamics_build_up.h"
+#include "core/vehicle/cut_off.h"
 
 namespace dispersa {
 
@@ -68,19 +69,54 @@ void PassOnPropellant(const Vehicle& vehicle, std::size_t from, LauncherPlant& p
     SetPropellant(vehicle.stages[i].motor, plant.stacks[i - 1].burn.left_kg, plant.stacks[i].burn);
 }
 
+// The bodies of a configuration, as bits of LauncherPhase::jettisoned.
+unsigned BitsOf(const Vehicle& vehicle, const AeroConfiguration& configuration) {
+  unsigned bits = 0, bit = 1;
+  const auto is_named = [&](const std::string& name) {
+    const std::vector<std::string>& names = configuration.without;
+    return std::find(names.begin(), names.end(), name) != names.end();
+  };
+  for (const Stage& stage : vehicle.stages)
+    for (const Jettison& jettison : stage.jettisoned) {
+      if (is_named(jettison.name)) bits |= bit;
+      bit <<= 1;
+    }
+  return is_named(kBoostersName) ? bits | kBoostersGone : bits;
+}
+
+AeroVariant VariantOf(const AeroTable& table, unsigned without, bool power_off) {
+  AeroVariant variant{without, power_off, FromTable(table), nullptr};
+  if (power_off) variant.body.ca.table.z = table.ca_power_off;
+  variant.grid = std::make_shared<const AeroGrid>(BuildAeroGrid(variant.body));
+  return variant;
+}
+
+void SetAerodynamics(const Vehicle& vehicle, const AeroTable& table, LauncherStack& stack) {
+  AeroVariant whole = VariantOf(table, 0, false);
+  stack.aerodynamics = std::move(whole.body);
+  stack.aero_grid = std::move(whole.grid);
+  std::vector<AeroVariant> variants;
+  if (!table.ca_power_off.empty()) variants.push_back(VariantOf(table, 0, true));
+  for (const AeroConfiguration& lighter : table.lighter) {
+    const unsigned without = BitsOf(vehicle, lighter);
+    variants.push_back(VariantOf(lighter.table, without, false));
+    if (!lighter.table.ca_power_off.empty()) variants.push_back(VariantOf(lighter.table, without, true));
+  }
+  stack.aero_variants =
+      variants.empty() ? nullptr : std::make_shared<const std::vector<AeroVariant>>(std::move(variants));
+}
+
 }  // namespace
 
 LauncherPlant BuildNominalPlant(const Vehicle& vehicle) {
   LauncherPlant plant;
   plant.jet_damping = vehicle.jet_damping;
   plant.flow_coriolis = vehicle.flow_coriolis;
-  const std::vector<AeroTable> tables =
-      vehicle.aerodynamics.empty() ? BuildAerodynamics(vehicle) : vehicle.aerodynamics;
+  const std::vector<AeroTable> tables = AerodynamicsOf(vehicle);
   for (std::size_t i = 0; i < vehicle.stages.size(); ++i) {
     const Stage& stage = vehicle.stages[i];
     LauncherStack stack;
-    stack.aerodynamics = FromTable(tables[i]);
-    stack.aero_grid = std::make_shared<const AeroGrid>(BuildAeroGrid(stack.aerodynamics));
+    SetAerodynamics(vehicle, tables[i], stack);
     stack.burn = BuildBurn(stage, 1.0, 1.0);
     stack.gimbal = stage.gimbal;
     stack.layout = BuildNozzleLayout(stage.gimbal);
@@ -143,6 +179,7 @@ void SetMasses(const Vehicle& vehicle, LauncherPlant& plant) {
   for (std::size_t i = 0; i < masses.size(); ++i) {
     LauncherStack& stack = plant.stacks[i];
     stack.mass = masses[i];
+    stack.mass_rows = vehicle.stages[i].flown_mass.rows;
     // The loads of boosters on the core's sections are not modelled.
     if (vehicle.stages[i].restarts)
       stack.loads = plant.stacks[i - 1].loads;
@@ -350,6 +387,7 @@ GuidanceMission BuildMission(const FlightDefinition& definition, const LauncherP
   const InjectionTarget& target = definition.target;
   mission.target = {target.altitude_m, target.velocity_m_s, target.flight_path_angle_rad,
                     target.inclination_rad};
+  mission.orbit = target.orbit;
   const auto stage = [&](std::size_t i) {
     const LauncherStack& stack = plant.stacks[i];
     // One mass for all of the burn: what leaves during it is gone, or not, by its middle.
@@ -395,6 +433,9 @@ GuidanceMission BuildMission(const FlightDefinition& definition, const LauncherP
 
 FlightModel::FlightModel(FlightDefinition definition)
     : definition_(std::move(definition)), nominal_(BuildNominalPlant(definition_.vehicle)) {
+  // Completed once: cases may draw them.
+  if (!definition_.vehicle.aerodynamics.empty())
+    definition_.vehicle.aerodynamics = AerodynamicsOf(definition_.vehicle);
   frame_ = BuildLaunchFrame(nominal_.environment.earth, definition_.vehicle.site,
                             definition_.program.launch_azimuth_rad);
   for (const Stage& stage : definition_.vehicle.stages) {
@@ -402,10 +443,14 @@ FlightModel::FlightModel(FlightDefinition definition)
     has_fins_ |= !stage.fins.empty();
   }
   AddBending(definition_.vehicle, definition_.autopilot.tick_s, nominal_);
-  if (definition_.wind_table) nominal_.environment.wind.tables.push_back(*definition_.wind_table);
+  if (definition_.wind_table) {
+    nominal_.environment.wind.tables.push_back(*definition_.wind_table);
+    if (definition_.wind_table->has_air())
+      nominal_.environment.air = std::make_shared<const AirTable>(MeasuredAir(*definition_.wind_table));
+  }
   LauncherPlant planned = nominal_;
   for (std::size_t i = 0; i < planned.stacks.size(); ++i)
-    if (definition_.vehicle.stages[i].motor.cut_off == CutOff::kAtVelocity)
+    if (EndsAtSpeed(definition_.vehicle.stages[i].motor))
       CutOffStage(definition_.vehicle, static_cast<int>(i), definition_.cut_off_s[i], planned);
   std::vector<MotorBurn> burns;
   for (const LauncherStack& stack : planned.stacks) burns.push_back(stack.burn);
@@ -548,8 +593,12 @@ LauncherPlant FlightModel::PlantFor(const FlightInputs& in, std::optional<std::u
   const Vehicle& vehicle = dispersed ? *dispersed : definition_.vehicle;
 
   std::size_t further = 0;  // of the nozzles beyond four of a stage, through the vehicle
+  const AeroSigmas sigmas{in.table_ca_sigmas, in.table_cn_sigmas, in.table_xcp_sigmas,
+                          in.table_damping_sigmas};
   for (std::size_t i = 0; i < plant.stacks.size(); ++i) {
     LauncherStack& stack = plant.stacks[i];
+    if (!sigmas.is_nominal() && i < vehicle.aerodynamics.size() && IsUncertain(vehicle.aerodynamics[i]))
+      SetAerodynamics(vehicle, Drawn(vehicle.aerodynamics[i], sigmas), stack);
     const double thrust_factor = in.thrust_factor[i] * in.specific_impulse_factor[i];
     const double flow_factor = in.mass_flow_factor[i] * FlowFactor(stack.layout, in, i, further);
     stack.burn = dispersed ? BuildBurn(vehicle.stages[i], thrust_factor, flow_factor)

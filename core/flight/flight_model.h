@@ -29,6 +29,8 @@ struct InjectionTarget {
   double velocity_m_s = 0.0;
   double flight_path_angle_rad = 0.0;
   double inclination_rad = 0.0;  ///< of the reference's orbit
+  /// An ellipse that may be entered anywhere. The values above then are those of the reference.
+  std::optional<TargetOrbit> orbit = {};
 };
 
 /// Everything that decides a flight, except its inputs.
@@ -41,7 +43,7 @@ struct FlightDefinition {
   double kick_start_s = 0.0;                            ///< t1 and t2 of the flight program: the pitch-over
   double kick_end_s = 0.0;
   InjectionTarget target;
-  std::optional<WindTable> wind_table;
+  std::optional<WeatherTable> wind_table;
   std::optional<WindStatistics> wind_statistics;
   std::uint64_t noise_seed = 0;  ///< of the sensors and of turbulence
   /// Along which turbulence is laid. Null: no flight meets any, whatever its inputs ask.

@@ -16,6 +16,7 @@
 #include "core/flight/step_limits.h"
 #include "core/flight/tick_sample.h"
 #include "core/math/functions.h"
+#include "core/vehicle/cut_off.h"
 
 namespace dispersa {
 
@@ -453,9 +454,9 @@ unsigned FlightRecord::LetGo(int stack, unsigned jettisoned, double time_s, doub
   return due;
 }
 
-double FlightRecord::CutOffVelocity(int stage) const {
+const Motor* FlightRecord::CutOffEngine(int stage) const {
   const Motor& engine = model_.definition().vehicle.stages[static_cast<std::size_t>(stage)].motor;
-  return engine.cut_off == CutOff::kAtVelocity ? engine.cut_off_velocity_m_s : 0.0;
+  return EndsAtSpeed(engine) ? &engine : nullptr;
 }
 
 void FlightRecord::CutOff(int stage, double time_s) {

@@ -111,8 +111,8 @@ class FlightRecord {
                  double propellant_kg, double* y);
   void MassWithout(int stack, unsigned jettisoned, StackMass& mass) const;
   const BendingTable* BendingWithout(int stack, unsigned jettisoned) const;
-  /// Inertial speed at which a stage's engine is cut off, m/s; 0 for an engine without such a cut-off.
-  double CutOffVelocity(int stage) const;
+  /// A stage's engine, if a speed ends its burn; else null.
+  const Motor* CutOffEngine(int stage) const;
   /// Its engine will be cut off at `time_s`, by command: events from there on are new.
   void CutOff(int stage, double time_s);
   /// The boosters leave, and with them the state of their nozzles.

@@ -63,7 +63,7 @@ class StepState {
   void Configure(const LauncherPlant& nominal, double tick_s) {
     __builtin_memset(static_cast<void*>(this), 0, sizeof *this);
     earth_ = nominal.environment.earth;
-    air_ = &StandardAir();
+    air_ = &nominal.environment.Air();
     tick_s_ = tick_s;
     most_further_ = nominal.nozzle_banks() - 1;
     if (nominal.has_apart_boosters()) plant_.apart = &apart_;
@@ -99,6 +99,10 @@ class StepState {
   void SetMass(int lane, const StackMass& mass, const BendingTable* bending) {
     SetLane(plant_.stack, lane, mass);
     SetTable(bending_, lane, bending);
+    MarkMoved(lane);
+  }
+  void SetShape(int lane, const LauncherStack& stack, const AeroVariant* variant) {
+    lanes::SetShape(plant_.aero, lane, stack, variant);
     MarkMoved(lane);
   }
   void Ignite(int lane, double time_s, bool lights_boosters) {

@@ -59,6 +59,14 @@ Unknowns<count> CurvatureOf(const GuidanceMission& mission, const Knowledge& kno
   return curvature;
 }
 
+// The same of an orbit that may be entered anywhere.
+bool ArrivesInOrbit(const OrbitMiss& miss, double speed_m_s, bool meets_shape, bool meets_plane) {
+  const double angle_m_s = 0.01 * kRadPerDeg * speed_m_s;
+  return std::fabs(miss.energy_m_s) <= 0.5 && std::fabs(miss.radial_m_s) <= angle_m_s &&
+         (!meets_shape || std::fabs(miss.shape_m_s) <= angle_m_s) &&
+         (!meets_plane || std::fabs(miss.plane_m_s) <= 2.0 * angle_m_s);
+}
+
 }  // namespace
 
 bool Arrives(const Arrival& miss, bool meets_altitude, bool meets_plane) {
@@ -152,6 +160,11 @@ Correction CorrectFirst(const GuidanceMission& mission, const PlanPrior& prior, 
         damping = std::fmax(kMoreDamping * damping, kFirstDamping);
     }
     if (!taken || is_found) break;
+  }
+  if (mission.orbit) {
+    best.arrives = ArrivesInOrbit(OrbitMissOf(mission, best.reached), mission.target.velocity_m_s,
+                                  task.meets_altitude, task.meets_plane);
+    return best;
   }
   // An altitude that is not met any more is made up for by the speed.
   Arrival judged = best.miss;

@@ -3,6 +3,7 @@
 #include <cstddef>
 
 #include "core/math/functions.h"
+#include "core/vehicle/cut_off.h"
 
 namespace dispersa {
 
@@ -67,9 +68,7 @@ double IdealVelocity(const GuidedStage& stage) {
              (stage.ignition_mass_kg - stage.burn.propellant_mass_kg + stage.burn.left_kg));
 }
 
-bool IsCutOffByGuidance(const Stage& stage) {
-  return stage.is_liquid() && stage.motor.cut_off == CutOff::kAtVelocity;
-}
+bool IsCutOffByGuidance(const Stage& stage) { return stage.is_liquid() && EndsAtSpeed(stage.motor); }
 
 bool SteersBelow(const Vehicle& vehicle) {
   return vehicle.stages.size() > 2 || !IsCutOffByGuidance(vehicle.stages.back());

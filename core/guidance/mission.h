@@ -27,6 +27,12 @@ struct Direction {
   double pitch_rad = 0.0;
   double yaw_rad = 0.0;
 };
+/// An orbit that may be entered at any place, about a point mass.
+struct TargetOrbit {
+  double semi_major_axis_m = 0.0;
+  double eccentricity = 0.0;
+  std::optional<double> argument_of_perigee_rad = {};  ///< none: any
+};
 /// Body x in L.
 Vector3 UnitVector(const Direction& direction);
 
@@ -71,7 +77,8 @@ struct GuidanceMission {
   Earth earth = Wgs84();
   Matrix3 R_IL = Matrix3::Identity();
   Arrival target;
-  GuidedStage below;  ///< the stage before the last
+  std::optional<TargetOrbit> orbit = {};  ///< then only its inclination and speed count of `target`
+  GuidedStage below;                      ///< the stage before the last
   GuidedStage last;
   bool steers_below = true;           ///< else guidance begins with the last stage
   bool moves_ignition = true;         ///< the last stage ignites on the timer

@@ -22,9 +22,44 @@ Shape ShapeOf(double mu_m3_s2, double radius_m, double velocity_m_s, double flig
           ratio * angle.sin * angle.cos};
 }
 
+// The angle from the ascending node along the orbit to the place.
+double ArgumentOfLatitude(const Vector3& p, const Vector3& v) {
+  const Vector3 h = p.cross(v);
+  const Vector3 towards_node(-h.y(), h.x(), 0.0);
+  return Atan2(p.dot(h.cross(towards_node)), h.norm() * p.dot(towards_node));
+}
+
+// Part by which an eccentricity grows so that the perigee stays, if energy is missing.
+double KeepsPerigee(double eccentricity, double missing_of_energy) {
+  return 1.0 + (1.0 - eccentricity) / std::fmax(eccentricity, kElliptic) * missing_of_energy;
+}
+
+OrbitMiss MissOfOrbit(const GuidanceMission& mission, const Injection& reached) {
+  const TargetOrbit& orbit = *mission.orbit;
+  const double mu = mission.earth.mu_m3_s2, speed = mission.target.velocity_m_s;
+  const Shape is = ShapeOf(mu, reached.radius_m, reached.at.velocity_m_s, reached.at.flight_path_angle_rad);
+  const double energy_m2_s2 = -0.5 * mu / orbit.semi_major_axis_m;
+  const double missing = is.energy_m2_s2 - energy_m2_s2;
+  const double eccentricity =
+      orbit.eccentricity * KeepsPerigee(orbit.eccentricity, missing / std::fabs(energy_m2_s2));
+  double along = eccentricity, across = 0.0;
+  if (orbit.argument_of_perigee_rad) {
+    const SinCos anomaly =
+        SineCosine(ArgumentOfLatitude(reached.p_EoC_I, reached.v_IC_I) - *orbit.argument_of_perigee_rad);
+    along = eccentricity * anomaly.cos;
+    across = eccentricity * anomaly.sin;
+  } else if (const double size = Sqrt(Square(is.along) + Square(is.across)); size > 0.0) {
+    along = eccentricity * is.along / size;
+    across = eccentricity * is.across / size;
+  }
+  return {missing / speed, speed * (is.across - across), speed * (is.along - along),
+          speed * (reached.at.inclination_rad - mission.target.inclination_rad)};
+}
+
 }  // namespace
 
 OrbitMiss OrbitMissOf(const GuidanceMission& mission, const Injection& reached) {
+  if (mission.orbit) return MissOfOrbit(mission, reached);
   const Arrival &at = reached.at, &target = mission.target;
   const double mu = mission.earth.mu_m3_s2, speed = target.velocity_m_s;
   const Shape is = ShapeOf(mu, reached.radius_m, at.velocity_m_s, at.flight_path_angle_rad);

@@ -220,6 +220,8 @@ Injection Predict(const GuidanceMission& mission, const PlanPrior& prior, const 
   injection.at = ArrivalOf(mission.earth, state.time_s, state.p_EoC_I, state.v_IC_I);
   injection.time_s = state.time_s;
   injection.radius_m = state.p_EoC_I.norm();
+  injection.p_EoC_I = state.p_EoC_I;
+  injection.v_IC_I = state.v_IC_I;
   if (known.phase != GuidancePhase::kBelowBurns) {
     injection.burn_end_speed_m_s = injection.at.velocity_m_s;
     injection.burn_end_s = state.time_s;

@@ -34,6 +34,7 @@ struct Injection {
   Arrival at;
   double time_s = 0.0;
   double radius_m = 0.0;  ///< from the Earth's centre
+  Vector3 p_EoC_I = Vector3::Zero(), v_IC_I = Vector3::Zero();
   /// Of the first burn, where it ends: inertial speed and time.
   double burn_end_speed_m_s = 0.0, burn_end_s = 0.0;
 };

@@ -9,6 +9,7 @@
 #include "core/flight/sequence.h"
 #include "core/math/constants.h"
 #include "core/optimization/parallel_for.h"
+#include "core/vehicle/cut_off.h"
 #include "core/vehicle/mass.h"
 
 namespace dispersa {
@@ -126,7 +127,7 @@ std::vector<ImpactPoint> ImpactPoints(const CampaignFlights& flights, const Case
     const double aft_m = DryStation(vehicle.stages[stage]) - mass.At(mass.propellant_mass_kg).cg_station_m;
     const RigidBodyState spent = AtPoint(above, Vector3(-aft_m, 0.0, 0.0));
     // If the engine is cut off at a velocity, only the flight knows the propellant left.
-    const double spent_kg = vehicle.stages[stage].motor.cut_off == CutOff::kAtVelocity
+    const double spent_kg = EndsAtSpeed(vehicle.stages[stage].motor)
                                 ? rows.At(row - 1, "mass_kg") - rows.At(row, "mass_kg")
                                 : DryMass(vehicle, below) + plant.stacks[stage].burn.left_kg;
     const double length_m = vehicle.stages[stage].bottom_station_m - TopStation(vehicle, below);

@@ -207,6 +207,19 @@ class FieldReader : public Fields {
     const InputNode& at = FindField(*node_, key, &path);
     AddProblem(problems_, at, path.empty() ? path_ : PathOf(path), message, allowed);
   }
+  void Replace(const char* stem, Dimension dimension, std::vector<double>& values) override {
+    const auto is_named = [&](const Unit& unit) {
+      return node_->Find(stem + ("_" + std::string(unit.suffix))) != nullptr;
+    };
+    const auto unit = std::find_if(dimension.begin(), dimension.end(), is_named);
+    InputNode& list = *node_->Find(stem + ("_" + std::string(unit->suffix)));
+    const InputNode place = list.items.front();
+    list.items.clear();
+    for (double& value : values) {
+      list.items.push_back(ScalarAt(place, FormatScaled(value, unit->scale)));
+      value = ReadNumber(list.items.back(), "", problems_, kAnyNumber, *unit);
+    }
+  }
   void Hint(const char* key, const Range& mistaken, const char* what, double (*meant)(double)) override {
     const InputNode* node = node_->Find(key);
     if (node == nullptr || problems_.empty() || problems_.back().path != PathOf(key)) return;

@@ -381,6 +381,9 @@ class Fields {
   /// Refuses the value of a key, such as "time[3]" or "at.delay". A quantity's key may lack its unit.
   virtual void Refuse(const std::string& /*key*/, const std::string& /*message*/,
                       const std::string& /*allowed*/) {}
+  /// In a Check(): replaces a quantity's list of numbers, in the file's tree too. `values` receives what the
+  /// tree's text gives.
+  virtual void Replace(const char* /*stem*/, Dimension /*dimension*/, std::vector<double>& /*values*/) {}
   /// After a number: a refused number inside `mistaken` is probably its counterpart, `what`: "in percent".
   /// meant() gives it.
   virtual void Hint(const char* /*key*/, const Range& /*mistaken*/, const char* /*what*/,

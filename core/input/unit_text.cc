@@ -32,6 +32,8 @@ constexpr WrittenUnit kWritten[] = {
     {"pa", "Pa"},
     {"kpa", "kPa"},
     {"mpa", "MPa"},
+    {"hpa", "hPa"},
+    {"bar", "bar"},
     {"gpa", "GPa"},
     {"pa_rad", "Pa rad"},
     {"pa_deg", "Pa °"},

@@ -30,6 +30,7 @@ inline constexpr Unit kBendingStiffness[] = {{"n_m2", 1.0}, {"kn_m2", 1e3}, {"mn
 inline constexpr Unit kForce[] = {{"n", 1.0}, {"kn", 1e3}};
 inline constexpr Unit kMoment[] = {{"n_m", 1.0}, {"kn_m", 1e3}};
 inline constexpr Unit kPressure[] = {{"pa", 1.0}, {"kpa", 1e3}};
+inline constexpr Unit kGasPressure[] = {{"pa", 1.0}, {"kpa", 1e3}, {"hpa", 1e2}, {"mpa", 1e6}, {"bar", 1e5}};
 inline constexpr Unit kPressureAngle[] = {{"pa_rad", 1.0}, {"kpa_rad", 1e3}, {"pa_deg", kRadPerDeg}};
 inline constexpr Unit kHeatFlux[] = {{"w_m2", 1.0}, {"kw_m2", 1e3}};
 inline constexpr Unit kSpeed[] = {{"m_s", 1.0}, {"km_s", 1e3}, {"km_h", 1.0 / 3.6}};
@@ -46,6 +47,7 @@ inline constexpr Unit kDensity[] = {{"kg_m3", 1.0}};
 inline constexpr Unit kShare[] = {{"percent", 1e-2}};
 inline constexpr Unit kFactor[] = {{"percent", 1e-2, 1.0},
                                    {"factor", 1.0}};  ///< in percent: by how much it is not 1
+inline constexpr Unit kTemperature[] = {{"k", 1.0}};
 inline constexpr Unit kTemperatureDifference[] = {{"k", 1.0}};
 inline constexpr Unit kPerTemperature[] = {{"percent_per_k", 1e-2}};
 inline constexpr Unit kPerAngle[] = {{"per_deg", kDegPerRad}, {"per_rad", 1.0}};

@@ -16,6 +16,19 @@ constexpr double kDeflectionStep_m = 1e-3;
 // A thousandth of the speed at which air begins to matter.
 constexpr double kDriftStep_m_s = 0.1;
 
+// The drives that stand for all of an axis: of a stage and boosters that steer together the slower ones,
+// which lag most; of boosters that steer alone theirs.
+const Gimbal& DrivesOf(const LauncherPlant& plant, const TickSample& sample,
+                       const std::array<double, kMostDrives>& pattern) {
+  const LauncherStack& stack = plant.stacks[static_cast<std::size_t>(sample.stack)];
+  if (sample.stack > 0 || !sample.boosting || !plant.boosters_steer()) return stack.gimbal;
+  const Gimbal& of_boosters = plant.boosters->gimbal;
+  const auto end = pattern.begin() + stack.layout.banks() * kDrives;
+  const bool stage_turns = std::any_of(pattern.begin(), end, [](double share) { return share != 0.0; });
+  return stage_turns && stack.gimbal.bandwidth_rad_s < of_boosters.bandwidth_rad_s ? stack.gimbal
+                                                                                   : of_boosters;
+}
+
 }  // namespace
 
 AxisPlant LineariseAxis(const LauncherPlant& plant, const TickSample& sample, Axis axis,
@@ -81,7 +94,7 @@ AxisPlant LineariseAxis(const LauncherPlant& plant, const TickSample& sample, Ax
     return found;
   };
 
-  const Gimbal& gimbal = stack.gimbal;
+  const Gimbal& gimbal = DrivesOf(plant, sample, pattern);
   const double w = gimbal.bandwidth_rad_s;
   AxisPlant linear;
   linear.drifts = drifts;
@@ -98,7 +111,7 @@ AxisPlant LineariseAxis(const LauncherPlant& plant, const TickSample& sample, Ax
   put(0, kAngleStep_rad);
   put(1, kRateStep_rad_s);
   put(2, kAngleStep_rad);
-  if (gimbal.nozzle_inertia_kg_m2 > 0.0) {
+  if (stack.gimbal.nozzle_inertia_kg_m2 > 0.0) {
     put(3, kRateStep_rad_s);
     put(-1, kAngleStep_rad);
   }

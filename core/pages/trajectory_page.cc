@@ -159,21 +159,27 @@ std::vector<InjectionRow> InjectionRows(const OptimizationResult& result,
                   (problem.target_altitude_m + error.altitude_m) * 1e-3, error.altitude_m * 1e-3,
                   halved.altitude_m * 1e-3,
                   ellipse ? std::nullopt : arrived(&OrbitErrors::altitude_m, 1e-3)});
-  if (!problem.velocity_is_free)
+  if (problem.is_entered_anywhere)
+    rows.push_back({"velocity there, m/s", 6, orbit.velocity_m_s - error.velocity_m_s, orbit.velocity_m_s,
+                    error.velocity_m_s, halved.velocity_m_s, std::nullopt});
+  else if (!problem.velocity_is_free)
     rows.push_back({"velocity, m/s", 6, AimedVelocity(problem), orbit.velocity_m_s, error.velocity_m_s,
                     halved.velocity_m_s, arrived(&OrbitErrors::velocity_m_s, 1.0)});
-  rows.push_back({"flight path angle, deg", 9, Deg(problem.target_flight_path_angle_rad),
-                  Deg(orbit.flight_path_angle_rad), Deg(error.flight_path_angle_rad),
-                  Deg(halved.flight_path_angle_rad),
-                  arrived(&OrbitErrors::flight_path_angle_rad, kDegPerRad)});
+  if (!problem.is_entered_anywhere)
+    rows.push_back({"flight path angle, deg", 9, Deg(problem.target_flight_path_angle_rad),
+                    Deg(orbit.flight_path_angle_rad), Deg(error.flight_path_angle_rad),
+                    Deg(halved.flight_path_angle_rad),
+                    arrived(&OrbitErrors::flight_path_angle_rad, kDegPerRad)});
   if (problem.target_inclination_rad)
     rows.push_back({"inclination, deg", 6, Deg(*problem.target_inclination_rad), Deg(orbit.inclination_rad),
                     Deg(error.inclination_rad), Deg(halved.inclination_rad),
                     arrived(&OrbitErrors::inclination_rad, kDegPerRad)});
   if (problem.target_argument_of_perigee_rad)
     rows.push_back({"argument of perigee, deg", 4, Deg(*problem.target_argument_of_perigee_rad),
-                    Deg(orbit.argument_of_latitude_rad), Deg(error.argument_of_perigee_rad),
-                    Deg(halved.argument_of_perigee_rad), std::nullopt});
+                    problem.is_entered_anywhere
+                        ? Deg(*problem.target_argument_of_perigee_rad + error.argument_of_perigee_rad)
+                        : Deg(orbit.argument_of_latitude_rad),
+                    Deg(error.argument_of_perigee_rad), Deg(halved.argument_of_perigee_rad), std::nullopt});
   return rows;
 }
 

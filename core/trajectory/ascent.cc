@@ -15,6 +15,7 @@
 #include "core/trajectory/ascent_events.h"
 #include "core/trajectory/ascent_record.h"
 #include "core/trajectory/point_mass.h"
+#include "core/vehicle/cut_off.h"
 
 namespace dispersa {
 
@@ -35,7 +36,8 @@ using LaneVector = lanes::Vector<double>;
 
 lanes::Ground GroundOf(const AscentModel& model) {
   const Earth& earth = model.plant.environment.earth;
-  return {earth, &StandardAir(), ToLanes(-BuildLaunchFrame(earth, model.vehicle.site, 0.0).R_IL.col(2))};
+  return {earth, &model.plant.environment.Air(),
+          ToLanes(-BuildLaunchFrame(earth, model.vehicle.site, 0.0).R_IL.col(2))};
 }
 
 // The events and steps of one flight. Its motion is a lane of the fleet.
@@ -77,7 +79,8 @@ void SetLane(lanes::Leg<T>& leg, int lane, const AscentModel& model, const Fligh
   SetLane(leg.program, lane, *flight.program);
   SetLane(leg.stack, lane, MassOf(model.plant, flight.stack, flight.jettisoned));
   SetLane(leg.burn, lane, flight.burns[stack]);
-  SetLane(leg.aero, lane, model.plant.stacks[stack].aerodynamics, *model.plant.stacks[stack].aero_grid);
+  const LauncherStack& shape = model.plant.stacks[stack];
+  SetShape(leg.aero, lane, shape, shape.AeroAfter(flight.jettisoned, flight.burning));
   SetLane(leg.weather, lane, model.weather);
   leg.has_boosters = model.plant.boosters != nullptr;
   if (leg.has_boosters) SetLane(leg.beside, lane, model.plant.boosters->burn, model.plant.boosters->grains);
@@ -380,20 +383,25 @@ void Fleet<T>::CutOff(int lane, double from_s, const LaneVector& p, const LaneVe
   Flight& flight = flights_[lane];
   const std::size_t stack = static_cast<std::size_t>(flight.stack);
   const Motor& engine = model_.vehicle.stages[stack].motor;
-  if (engine.cut_off != CutOff::kAtVelocity) return;
-  const auto beyond_m_s = [&](const LaneVector& then) {
-    return std::sqrt(lanes::Dot(then, then)) - engine.cut_off_velocity_m_s;
+  if (!EndsAtSpeed(engine)) return;
+  const auto beyond_m_s = [&](double time_s, const LaneVector& place, const LaneVector& then) {
+    const double speed_m_s = std::sqrt(lanes::Dot(then, then));
+    if (engine.cut_off == CutOff::kAtVelocity) return speed_m_s - engine.cut_off_velocity_m_s;
+    const Vector3 p_EoC_I = ToEigen(place);
+    const double altitude_m =
+        ToGeodetic(ground_.earth, InertialToEarth(ground_.earth, time_s, p_EoC_I)).altitude_m;
+    return speed_m_s - CutOffSpeed(engine, p_EoC_I.norm(), altitude_m);
   };
-  double after_m_s = beyond_m_s(LaneOf(v_, lane));
+  double after_m_s = beyond_m_s(Lane(time_s_, lane), LaneOf(p_, lane), LaneOf(v_, lane));
   if (after_m_s < 0.0) return;
   const AscentStep again = StepAgain(lane, from_s, p, v);
   const auto move_to = [&](double time_s) {
     MoveTo(lane, again, time_s);
-    return beyond_m_s(LaneOf(v_, lane));
+    return beyond_m_s(time_s, LaneOf(p_, lane), LaneOf(v_, lane));
   };
   // Regula falsi (Illinois): within a step the speed is almost linear in time.
   constexpr double kNear_m_s = 1e-9;
-  double before_s = from_s, after_s = Lane(time_s_, lane), before_m_s = beyond_m_s(v);
+  double before_s = from_s, after_s = Lane(time_s_, lane), before_m_s = beyond_m_s(from_s, p, v);
   if (before_m_s >= 0.0) move_to(from_s);  // it was too fast when it ignited
   for (int i = 0; i < 60 && before_m_s < 0.0 && after_m_s > kNear_m_s; ++i) {
     const double time_s = before_s + (after_s - before_s) * before_m_s / (before_m_s - after_m_s);

@@ -10,6 +10,7 @@
 #include "core/flight/engine_version.h"
 #include "core/math/constants.h"
 #include "core/optimization/feasibility_rules.h"
+#include "core/trajectory/aim.h"
 #include "core/trajectory/constraints.h"
 #include "core/trajectory/refine.h"
 #include "core/trajectory/selection.h"
@@ -22,10 +23,6 @@ namespace {
 // Number of individuals that one thread flies side by side: enough to keep the lanes busy, few enough to
 // share a population among threads.
 constexpr std::size_t kTogether = 2 * kAscentWidth;
-
-// Tolerance for an engine with a cut-off velocity: the vehicle's file gives that velocity with few digits.
-// 0.1 m/s moves the other apsis by 0.4 km.
-constexpr double kCutOffTolerance_m_s = 0.1;
 
 void Require(bool holds, const char* field, double value, const char* allowed) {
   if (!holds)
@@ -130,7 +127,31 @@ GeneticAlgorithmResult Search(const AscentModel& model, const TrajectoryProblem&
 
 }  // namespace
 
+namespace {
+
+// Of the shape of an ellipse, wherever it is entered. The error of velocity is that of energy, at the place.
+OrbitErrors ErrorsOfShape(const TrajectoryProblem& problem, const Orbit& orbit) {
+  const double mu = Wgs84().mu_m3_s2;
+  const PlaceInOrbit is = PlaceOf(orbit);
+  const double perigee_m = is.semi_major_axis_m * (1.0 - is.eccentricity) - Wgs84().equatorial_radius_m;
+  const double squared = mu * (2.0 / orbit.radius_m - 1.0 / EllipseOf(problem).semi_major_axis_m);
+  OrbitErrors errors;
+  errors.altitude_m = perigee_m - problem.target_altitude_m;
+  errors.velocity_m_s =
+      orbit.velocity_m_s - std::sqrt(std::fmax(squared, 0.0)) - problem.velocity_reserve_m_s;
+  if (problem.target_inclination_rad)
+    errors.inclination_rad = orbit.inclination_rad - *problem.target_inclination_rad;
+  if (problem.target_argument_of_perigee_rad)
+    errors.argument_of_perigee_rad = std::remainder(
+        orbit.argument_of_latitude_rad - is.true_anomaly_rad - *problem.target_argument_of_perigee_rad,
+        kTwoPi);
+  return errors;
+}
+
+}  // namespace
+
 OrbitErrors ErrorsOf(const TrajectoryProblem& problem, const Orbit& orbit) {
+  if (problem.is_entered_anywhere) return ErrorsOfShape(problem, orbit);
   // The altitudes of an ellipse count from the equator's radius, as its elements do.
   const double altitude_m =
       problem.target_apogee_m ? orbit.radius_m - Wgs84().equatorial_radius_m : orbit.altitude_m;
@@ -181,6 +202,7 @@ OptimizationResult OptimizeTrajectory(const Vehicle& vehicle, const TrajectoryPr
                                       const GeneticAlgorithm::Observer& observer) {
   Validate(options);
   AscentModel model = BuildAscentModel(vehicle, options.tick_s);
+  AimAt(problem, model.vehicle);
   model.reaction_control_propellant_kg = problem.reaction_control_propellant_kg;
   OptimizationResult result;
   result.genetic = Search(model, problem, options, observer);
@@ -209,13 +231,13 @@ OptimizationResult OptimizeTrajectory(const Vehicle& vehicle, const TrajectoryPr
   result.reference.evaluations = ascents;
   result.errors = ErrorsOf(problem, result.reference.orbit);
 
-  OrbitErrors tolerance = options.tolerance;
+  result.tolerance = options.tolerance;
   if (EndsByVelocity(model, FlyAscent(model, program, AscentOptionsOf(problem, options.steps))))
-    tolerance.velocity_m_s = std::max(tolerance.velocity_m_s, kCutOffTolerance_m_s);
+    result.tolerance.velocity_m_s = std::max(result.tolerance.velocity_m_s, kCutOffTolerance_m_s);
   const AscentOptions halved = AscentOptionsOf(problem, HalvedSteps(options.steps));
   result.halved_step_errors = ErrorsOf(problem, FlyAscent(model, program, halved).orbit);
 
-  result.reached = AreSatisfied(result.reference.constraints) && IsWithin(result.errors, tolerance);
+  result.reached = AreSatisfied(result.reference.constraints) && IsWithin(result.errors, result.tolerance);
   if (!result.reached) result.statement = DescribeShortfall(model, problem, options, result);
   return result;
 }

@@ -25,6 +25,10 @@ OrbitErrors ErrorsOf(const TrajectoryProblem& problem, const Orbit& orbit);
 /// Whether no error is larger than its tolerance.
 bool IsWithin(const OrbitErrors& errors, const OrbitErrors& tolerance);
 
+/// Tolerance for an engine with a cut-off velocity: the vehicle's file gives that velocity with few digits.
+/// 0.1 m/s moves the other apsis by 0.4 km.
+inline constexpr double kCutOffTolerance_m_s = 0.1;
+
 /// Settings of the search. Bounds, weights, limits, population, generations and seed belong to the trajectory
 /// problem and come from the user's file.
 struct TrajectoryOptions {
@@ -69,6 +73,7 @@ struct OptimizationResult {
   std::string statement;           ///< how near the search came and what limited it (empty: target reached)
   Reference reference;             ///< the best found, with attitude program and margins
   OrbitErrors errors;              ///< of the reference
+  OrbitErrors tolerance;           ///< of the target, for `reached`
   OrbitErrors halved_step_errors;  ///< of the same program flown with half the steps
   std::vector<AscentSample> history;
   GeneticAlgorithmResult genetic;

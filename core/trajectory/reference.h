@@ -20,7 +20,7 @@ namespace dispersa {
 /// too much altitude. It fades in within kSteeringRise_s, and fades out within kSteeringFade_s after the
 /// burn.
 struct Steering {
-  double begin_rad = 0.0;  ///< at ignition
+  double begin_rad = 0.0;  ///< at ignition; of a first stage, when its boosters leave
   double end_rad = 0.0;    ///< when the propellant would be used up
 
   bool empty() const { return begin_rad == 0.0 && end_rad == 0.0; }
@@ -82,10 +82,11 @@ struct TrajectoryProblem {
   double target_flight_path_angle_rad = 0.0;
   std::optional<double>
       target_apogee_m;  ///< above the equator's radius; makes the orbit an ellipse, entered at its perigee
-  bool velocity_is_free = false;  ///< the target names no velocity
+  bool is_entered_anywhere = false;  ///< the ellipse, else at its perigee
+  bool velocity_is_free = false;     ///< the target names no velocity
   std::optional<double> target_inclination_rad;
   std::optional<double> target_node_rad;  ///< right ascension; the time of day of the lift-off provides it
-  std::optional<double> target_argument_of_perigee_rad;  ///< of an ellipse, with an inclination
+  std::optional<double> target_argument_of_perigee_rad;  ///< of an ellipse
   double velocity_reserve_m_s = 0.0;  ///< extra velocity of the trajectory, which guidance may spend
   Bounds alpha_max_rad, t1_s, t3_s, t2_s, coast_s, launch_azimuth_rad;
   std::array<Bounds, kMaxStages> earlier_coast_s{};

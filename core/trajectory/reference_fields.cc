@@ -53,8 +53,10 @@ void DescribeEllipse(Fields& fields, TrajectoryProblem& problem) {
   if (!problem.target_apogee_m) problem.target_apogee_m.emplace();
   double& apogee_m = *problem.target_apogee_m;
   fields.Quantity("perigee_altitude", kLength, kPositive, problem.target_altitude_m,
-                  "of an ellipse, entered at its perigee; above the equator's radius");
+                  "of an ellipse; above the equator's radius");
   fields.Quantity("apogee_altitude", kLength, kPositive, apogee_m, "apogee of the same ellipse");
+  fields.Choice<bool>("entered_at", {{"perigee", false}, {"anywhere", true}}, problem.is_entered_anywhere,
+                      "true anomaly of the injection: 0, or any", false);
   if (problem.target_altitude_m > apogee_m)
     fields.Refuse("", "the perigee is above the apogee", "perigee_altitude up to apogee_altitude");
   else
@@ -85,11 +87,10 @@ void DescribeTarget(Fields& fields, TrajectoryProblem& problem) {
   fields.OptionalQuantity("node", kAngle, Between(0.0, kTwoPi), problem.target_node_rad,
                           "right ascension; it sets the time of day of the lift-off");
   fields.OptionalQuantity("argument_of_perigee", kAngle, Between(0.0, kTwoPi),
-                          problem.target_argument_of_perigee_rad, "for an ellipse with an inclination");
-  if (problem.target_argument_of_perigee_rad && !(problem.target_inclination_rad && problem.target_apogee_m))
-    fields.Refuse(
-        "", "an argument of perigee counts along an ellipse from its node",
-        "argument_of_perigee_deg beside perigee_altitude_km, apogee_altitude_km and inclination_deg");
+                          problem.target_argument_of_perigee_rad, "of an ellipse");
+  if (problem.target_argument_of_perigee_rad && !problem.target_apogee_m)
+    fields.Refuse("", "an argument of perigee counts along an ellipse from its node",
+                  "argument_of_perigee_deg beside perigee_altitude_km and apogee_altitude_km");
 }
 
 // The keys of a stage that steers. They are given together.
@@ -133,7 +134,10 @@ void DescribeWeights(Fields& fields, TrajectoryProblem& problem, bool of_inclina
     weights.Quantity("altitude", kPerLength, kNonNegative, problem.weight_altitude_1_m, "G1 of (8)");
     weights.Quantity("velocity", kPerSpeed, kNonNegative, problem.weight_velocity_s_m, "G2 of (8)");
     weights.Quantity("flight_path_angle", kPerAngle, kNonNegative, problem.weight_angle_1_rad, "G3 of (8)");
-    if (of_inclination)
+    if (of_argument)
+      weights.Quantity("inclination", kPerAngle, kNonNegative, problem.weight_inclination_1_rad,
+                       "of a target with an inclination", 0.0);
+    else if (of_inclination)
       weights.Quantity("inclination", kPerAngle, kNonNegative, problem.weight_inclination_1_rad,
                        "of a target with an inclination");
     if (of_argument)

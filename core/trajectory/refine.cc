@@ -6,6 +6,7 @@
 #include <utility>
 
 #include "core/math/constants.h"
+#include "core/vehicle/cut_off.h"
 
 namespace dispersa {
 
@@ -19,27 +20,53 @@ constexpr double kDifference = 1e-5;
 // A refinement ends this far inside the tolerance, so that rounding in files, other steps and other compilers
 // stay within it.
 constexpr double kWithinTolerance = 0.02;
+// Far from the target, errors that cost about the same to remove count alike. In units of the tolerances an
+// angle would be met first, and the rest along a valley as narrow as its tolerance. Then: the end of this.
+constexpr OrbitErrors kFarOff = {1e3, 1.0, 0.05 * kRadPerDeg, 0.05 * kRadPerDeg, 0.5 * kRadPerDeg};
+constexpr double kNearEnough = 1e-3;
+
+// Speed (m/s, not positive) that the last engine lacks of its cut-off when its propellant ends.
+double LacksOfCutOff(const AscentModel& model, const AscentResult& ascent) {
+  if (EndsByVelocity(model, ascent)) return 0.0;
+  const Orbit& orbit = ascent.orbit;
+  return orbit.velocity_m_s -
+         CutOffSpeed(model.vehicle.stages.back().motor, orbit.radius_m, orbit.altitude_m);
+}
+
+// What a refinement solves.
+struct Refinement {
+  const std::vector<ProgramVariable>& freedoms;
+  bool with_speed = true;  ///< and plane and perigee, where the target names them
+  bool with_all = false;   ///< else as many of the freedoms, from the first on, as there are conditions
+  OrbitErrors scale;       ///< errors that count alike
+  double within = kWithinTolerance;  ///< of `scale`: where it ends
+};
 
 LeastSquaresResult Solve(const AscentModel& model, const TrajectoryProblem& problem,
-                         const TrajectoryOptions& options, const std::vector<ProgramVariable>& freedoms,
-                         bool with_speed, FlightProgram* program, AscentResult* ascent = nullptr) {
+                         const TrajectoryOptions& options, const Refinement& refinement,
+                         FlightProgram* program, AscentResult* ascent = nullptr) {
   const AscentOptions ascent_options = AscentOptionsOf(problem, options.steps);
+  const bool with_speed = refinement.with_speed;
   // If the engine is cut off at a velocity, no variable of the program changes the speed. As a condition it
-  // would stall the others.
-  const bool speed = with_speed && !problem.velocity_is_free &&
-                     !EndsByVelocity(model, FlyAscent(model, *program, ascent_options));
+  // would stall the others. The speed that an engine lacks when its propellant ends is a condition: without
+  // it the search would go where the engine burns out.
+  const bool ends = with_speed && EndsByVelocity(model, FlyAscent(model, *program, ascent_options));
+  const bool speed = with_speed && !problem.velocity_is_free && !ends;
+  const bool reach = ends && refinement.with_all;
   const bool plane = with_speed && problem.target_inclination_rad.has_value();
   const bool turned = with_speed && problem.target_argument_of_perigee_rad.has_value();
-  const std::size_t conditions = 2 + (speed ? 1 : 0) + (plane ? 1 : 0) + (turned ? 1 : 0);
+  const bool angle = !problem.is_entered_anywhere;
+  const std::size_t conditions = 1 + (angle ? 1 : 0) + (speed ? 1 : 0) + (plane ? 1 : 0) + (turned ? 1 : 0);
   LeastSquaresProblem least_squares;
   std::vector<ProgramVariable> free;
   std::vector<std::size_t> index;
   std::vector<double> start;
-  for (std::size_t i = 0; i < freedoms.size(); ++i) {
-    const ProgramVariable& freedom = freedoms[i];
+  for (std::size_t i = 0; i < refinement.freedoms.size(); ++i) {
+    const ProgramVariable& freedom = refinement.freedoms[i];
     const Bounds& bounds = freedom.BoundsOf(problem);
-    // A variable with equal bounds is frozen. More unknowns than conditions would leave a manifold.
-    if (!(bounds.low < bounds.high) || free.size() == conditions) continue;
+    // A variable with equal bounds is frozen. More unknowns than conditions leave a manifold, of which the
+    // damping takes the nearest program.
+    if (!(bounds.low < bounds.high) || (!refinement.with_all && free.size() == conditions)) continue;
     Unknown unknown;
     unknown.lower = bounds.low;
     unknown.upper = bounds.high;
@@ -57,11 +84,13 @@ LeastSquaresResult Solve(const AscentModel& model, const TrajectoryProblem& prob
     if (!flown.completed) return values;
     const OrbitErrors errors = ErrorsOf(problem, flown.orbit);
     values[0] = errors.altitude_m;
-    values[1] = errors.flight_path_angle_rad;
-    std::size_t next = 2;
+    std::size_t next = 1;
+    if (angle) values[next++] = errors.flight_path_angle_rad;
     if (speed) values[next++] = errors.velocity_m_s;
     if (plane) values[next++] = errors.inclination_rad;
-    if (turned) values[next] = errors.argument_of_perigee_rad;
+    if (turned) values[next++] = errors.argument_of_perigee_rad;
+    if (reach) values[next++] = LacksOfCutOff(model, flown);
+    for (; next < values.size(); ++next) values[next] = 0.0;
     return values;
   };
   const auto program_at = [&](const std::vector<double>& unknowns) {
@@ -69,10 +98,14 @@ LeastSquaresResult Solve(const AscentModel& model, const TrajectoryProblem& prob
     for (std::size_t i = 0; i < free.size(); ++i) free[i].Of(trial) = unknowns[i];
     return trial;
   };
-  least_squares.residual_scales = {options.tolerance.altitude_m, options.tolerance.flight_path_angle_rad};
-  if (speed) least_squares.residual_scales.push_back(options.tolerance.velocity_m_s);
-  if (plane) least_squares.residual_scales.push_back(options.tolerance.inclination_rad);
-  if (turned) least_squares.residual_scales.push_back(options.tolerance.argument_of_perigee_rad);
+  least_squares.residual_scales = {refinement.scale.altitude_m};
+  if (angle) least_squares.residual_scales.push_back(refinement.scale.flight_path_angle_rad);
+  if (speed) least_squares.residual_scales.push_back(refinement.scale.velocity_m_s);
+  if (plane) least_squares.residual_scales.push_back(refinement.scale.inclination_rad);
+  if (turned) least_squares.residual_scales.push_back(refinement.scale.argument_of_perigee_rad);
+  if (reach) least_squares.residual_scales.push_back(refinement.scale.velocity_m_s);
+  // The method needs as many residuals as unknowns: further ones are 0.
+  while (least_squares.residual_scales.size() < free.size()) least_squares.residual_scales.push_back(1.0);
   // The ascent of every point tried. One of them is the end.
   std::vector<std::pair<std::vector<double>, AscentResult>> tried;
   least_squares.residuals = [&](const std::vector<double>& unknowns) {
@@ -101,7 +134,7 @@ LeastSquaresResult Solve(const AscentModel& model, const TrajectoryProblem& prob
     return result;
   }
   LevenbergMarquardtOptions settings;
-  settings.residual_tolerance = kWithinTolerance;
+  settings.residual_tolerance = refinement.within;
   settings.max_iterations = options.refinement_iterations;
   LeastSquaresResult result = LevenbergMarquardt(settings).Solve(least_squares, start);
   end_at(result.unknowns);
@@ -135,20 +168,51 @@ std::vector<ProgramVariable> RefinedVariables(const Vehicle& vehicle, const Traj
   return variables;
 }
 
+// Those, the earlier coasts and the end of the pitch-over.
+std::vector<ProgramVariable> AllRefinedVariables(const Vehicle& vehicle, const TrajectoryProblem& problem) {
+  std::vector<ProgramVariable> variables = {{Kind::kAlphaMax}, {Kind::kCoast}, {Kind::kAzimuth}, {Kind::kT2}};
+  for (const std::size_t stage : EarlierCoasts(vehicle)) variables.push_back({Kind::kEarlierCoast, stage});
+  const std::vector<ProgramVariable> steering = SteeringVariables(vehicle, problem);
+  variables.insert(variables.end(), steering.begin(), steering.end());
+  return variables;
+}
+
 LeastSquaresResult RefineProgram(const AscentModel& model, const TrajectoryProblem& problem,
                                  const TrajectoryOptions& options, FlightProgram* program,
                                  AscentResult* ascent) {
-  return Solve(model, problem, options, RefinedVariables(model.vehicle, problem), true, program, ascent);
+  const FlightProgram start = *program;
+  const std::vector<ProgramVariable> first = RefinedVariables(model.vehicle, problem);
+  LeastSquaresResult result =
+      Solve(model, problem, options, {first, true, false, options.tolerance}, program, ascent);
+  if (result.status == LeastSquaresStatus::kConverged) return result;
+  // Some of those variables may be frozen, at a bound, or without effect on what is missing: so with all.
+  const std::vector<ProgramVariable> all = AllRefinedVariables(model.vehicle, problem);
+  FlightProgram again = start;
+  AscentResult flown;
+  const LeastSquaresResult near =
+      Solve(model, problem, options, {all, true, true, kFarOff, kNearEnough}, &again, &flown);
+  LeastSquaresResult more =
+      Solve(model, problem, options, {all, true, true, options.tolerance}, &again, &flown);
+  more.evaluations += near.evaluations + result.evaluations;
+  if (more.status == LeastSquaresStatus::kConverged) {
+    *program = again;
+    if (ascent) *ascent = std::move(flown);
+    more.held_at_bound.clear();  // positions in another list, and of no interest
+    return more;
+  }
+  result.evaluations = more.evaluations;
+  return result;
 }
 
 LeastSquaresResult RefineAltitudeAndAngle(const AscentModel& model, const TrajectoryProblem& problem,
                                           const TrajectoryOptions& options, FlightProgram* program) {
-  return Solve(model, problem, options, AltitudeAndAngleVariables(model.vehicle, problem), false, program);
+  const std::vector<ProgramVariable> variables = AltitudeAndAngleVariables(model.vehicle, problem);
+  return Solve(model, problem, options, {variables, false, false, options.tolerance}, program);
 }
 
 bool EndsByVelocity(const AscentModel& model, const AscentResult& ascent) {
   const std::size_t last = model.vehicle.stages.size() - 1;
-  return model.vehicle.stages[last].motor.cut_off == CutOff::kAtVelocity && ascent.completed &&
+  return EndsAtSpeed(model.vehicle.stages[last].motor) && ascent.completed &&
          std::isfinite(ascent.cut_off_s[last]);
 }
 

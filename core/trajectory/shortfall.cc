@@ -60,9 +60,11 @@ const char* Where(const SpeedAtTarget& speed) {
 std::string CutOffText(const AscentModel& model, const TrajectoryProblem& problem,
                        const TrajectoryOptions& options, FlightProgram program) {
   std::string text;
-  const double ends_m_s = model.vehicle.stages.back().motor.cut_off_velocity_m_s;
+  const Motor& engine = model.vehicle.stages.back().motor;
+  const double ends_m_s = engine.cut_off_velocity_m_s;
   const double asked_m_s = AimedVelocity(problem);
-  if (!problem.velocity_is_free && std::fabs(ends_m_s - asked_m_s) > options.tolerance.velocity_m_s)
+  if (engine.cut_off == CutOff::kAtVelocity && !problem.velocity_is_free && !problem.is_entered_anywhere &&
+      std::fabs(ends_m_s - asked_m_s) > kCutOffTolerance_m_s)
     text +=
         fmt::format(" Cut-off: the last engine is cut off at {:.3f} m/s, {:.3f} m/s {} than the target asks.",
                     ends_m_s, std::fabs(ends_m_s - asked_m_s), ends_m_s < asked_m_s ? "less" : "more");
@@ -77,10 +79,13 @@ std::string CutOffText(const AscentModel& model, const TrajectoryProblem& proble
 // The cause for altitude and angle, then for speed, each on its own. The refinement ends at a compromise
 // between the three, at bounds that are not the cause.
 std::string CauseText(const AscentModel& model, const TrajectoryProblem& problem,
-                      const TrajectoryOptions& options, const FlightProgram& program) {
-  // An engine with a cut-off velocity could burn on, so energy is not the cause.
-  if (EndsByVelocity(model, FlyAscent(model, program, AscentOptionsOf(problem, options.steps))))
-    return CutOffText(model, problem, options, program);
+                      const TrajectoryOptions& options, const FlightProgram& program,
+                      const FlightProgram& best) {
+  // An engine with a cut-off velocity could burn on, so energy is not the cause. The refinement may have
+  // ended where the propellant does, and the best program not.
+  for (const FlightProgram& one : {program, best})
+    if (EndsByVelocity(model, FlyAscent(model, one, AscentOptionsOf(problem, options.steps))))
+      return CutOffText(model, problem, options, one);
   const Bounds& azimuth = problem.launch_azimuth_rad;
   SpeedAtTarget slow = SpeedToward(model, problem, options, program, azimuth.high);
   SpeedAtTarget fast = SpeedToward(model, problem, options, program, azimuth.low);
@@ -134,7 +139,7 @@ std::string DescribeShortfall(const AscentModel& model, const TrajectoryProblem&
     if (c.enforced && c.margin < 0.0)
       text += fmt::format(" Constraint: {} = {:.6g} exceeds its limit of {:.6g}.", c.name, c.value, c.limit);
   if (result.refinement.status != LeastSquaresStatus::kConverged) {
-    text += CauseText(model, problem, options, result.refined);
+    text += CauseText(model, problem, options, result.refined, program);
     if (text.size() > before) return text;
     const std::vector<ProgramVariable> variables = RefinedVariables(model.vehicle, problem);
     for (const std::size_t held : result.refinement.held_at_bound)

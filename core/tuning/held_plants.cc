@@ -52,7 +52,8 @@ void HeldPlants::Hold(LauncherPlant plant, const std::string& name, const TickSa
                                        ? std::vector{kPitch, kYaw, kRoll}
                                        : std::vector{kPitch, kYaw};
     for (const Axis axis : axes) {
-      if (axis == kRoll && !plant.stacks[stage].layout.rolls) continue;  // thrusters hold it
+      if (axis == kRoll && !plant.LayoutOf(sample.stack, sample.boosting).rolls)
+        continue;  // thrusters hold it
       held_[stage].push_back(
           {&set == &sets.front() ? name : fmt::format("{}, {}", name, set.name), sample.since_ignition_s,
            axis, gates,

@@ -1,11 +1,23 @@
 // Aerodynamic coefficients of a stack, as tables give them.
 #pragma once
 
+#include <string>
 #include <vector>
 
 namespace dispersa {
 
 class Fields;
+
+/// Standard deviations that a table states of itself, one for each row of (mach, incidence). Empty: none.
+struct AeroUncertainty {
+  std::vector<double> ca, cn;  ///< as parts of the coefficient
+  std::vector<double> xcp_m;
+  std::vector<double> damping;  ///< of cmq and clp, as parts; shape (mach)
+
+  bool empty() const { return ca.empty() && cn.empty() && xcp_m.empty() && damping.empty(); }
+};
+
+struct AeroConfiguration;
 
 /// Aerodynamic coefficients of one stack (the stages still attached) over Mach number and total incidence, in
 /// body axes: F = -q S (CA x + CN n), n the direction of the cross-flow. Outside the grid the end value
@@ -20,8 +32,47 @@ struct AeroTable {
   std::vector<double> xcp_station_m;  ///< where the normal force acts
   std::vector<double> cmq_per_rad;    ///< shape (mach): pitch and yaw damping, on q d / (2 V), about the CG
   std::vector<double> clp_per_rad;    ///< shape (mach): roll damping on p d / (2 V)
+  // cmq and clp may be empty: then those built up from the profile hold (aerodynamics_build_up.h).
+  std::vector<double> ca_power_off = {};  ///< shape (mach, incidence), with the motor out (empty: as ca)
+  AeroUncertainty uncertainty = {};
+  bool is_by_moment = false;               ///< its file gives cm in place of the centre of pressure
+  std::vector<AeroConfiguration> lighter;  ///< the same stack after bodies have left
+
+  std::size_t RowOf(std::size_t at_mach, std::size_t at_incidence) const {
+    return at_mach * incidence_rad.size() + at_incidence;
+  }
 };
 
+/// A stack's table after these bodies have left: names of jettisoned bodies, or kBoostersName.
+struct AeroConfiguration {
+  std::vector<std::string> without;
+  AeroTable table;
+};
+inline constexpr const char* kBoostersName = "boosters";
+
+/// Reads the forms that a file may have, and derives the one above:
+///
+/// - The place of the normal force: xcp_station_*, or cm about moment_reference_station_*, nose up on q S d.
+///   Then xcp = reference - d cm / cn in each row. Where cn is 0 (at incidence 0, for one) the neighbouring
+///   row's holds: a moment without a force is refused.
+/// - Incidence from 0, or signed. A signed table is folded: ca is even, cn and cm are odd. Rows that differ
+///   from their mirror images by more than kFoldTolerance are refused.
+/// - Power off: ca_power_off, or base_area_*, to whose base drag (drag.h) ca is then increased.
+/// - Uncertainties: columns, or one number for all rows; of one or of three standard deviations.
 void Describe(Fields& fields, AeroTable& table);
+
+/// Part of the greatest coefficient of a Mach number by which mirrored rows may differ.
+inline constexpr double kFoldTolerance = 0.02;
+
+/// Draws of a flight, in standard deviations of the tables' uncertainties. The same for all tables.
+struct AeroSigmas {
+  double ca = 0.0, cn = 0.0, xcp = 0.0, damping = 0.0;
+
+  bool is_nominal() const { return ca == 0.0 && cn == 0.0 && xcp == 0.0 && damping == 0.0; }
+};
+/// The table, and its lighter ones, so many standard deviations away.
+AeroTable Drawn(const AeroTable& table, const AeroSigmas& sigmas);
+/// Whether the table or a lighter one states an uncertainty.
+bool IsUncertain(const AeroTable& table);
 
 }  // namespace dispersa

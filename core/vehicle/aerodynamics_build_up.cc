@@ -206,4 +206,42 @@ std::vector<AeroTable> BuildAerodynamics(const Vehicle& vehicle) {
   return tables;
 }
 
+namespace {
+
+bool LacksDamping(const AeroTable& table) {
+  return table.cmq_per_rad.empty() || table.clp_per_rad.empty() ||
+         std::any_of(table.lighter.begin(), table.lighter.end(),
+                     [](const AeroConfiguration& lighter) { return LacksDamping(lighter.table); });
+}
+
+void AddDamping(const AeroTable& built, AeroTable& table) {
+  // On q d / (2 V) and q S d: the moment of a rate is in proportion to S d^2.
+  const double scale = built.reference_area_m2 * Square(built.reference_length_m) /
+                       (table.reference_area_m2 * Square(table.reference_length_m));
+  const auto fill = [&](const std::vector<double>& from, std::vector<double>& to) {
+    if (!to.empty()) return;
+    const Table1D over_mach{built.mach, from};
+    for (double mach : table.mach) to.push_back(scale * over_mach(mach));
+  };
+  fill(built.cmq_per_rad, table.cmq_per_rad);
+  fill(built.clp_per_rad, table.clp_per_rad);
+  for (AeroConfiguration& lighter : table.lighter) AddDamping(built, lighter.table);
+}
+
+}  // namespace
+
+bool NeedsProfile(const Vehicle& vehicle) {
+  return vehicle.aerodynamics.empty() ||
+         std::any_of(vehicle.aerodynamics.begin(), vehicle.aerodynamics.end(), LacksDamping);
+}
+
+std::vector<AeroTable> AerodynamicsOf(const Vehicle& vehicle) {
+  if (vehicle.aerodynamics.empty()) return BuildAerodynamics(vehicle);
+  std::vector<AeroTable> tables = vehicle.aerodynamics;
+  if (!NeedsProfile(vehicle)) return tables;
+  const std::vector<AeroTable> built = BuildAerodynamics(vehicle);
+  for (std::size_t i = 0; i < tables.size(); ++i) AddDamping(built[i], tables[i]);
+  return tables;
+}
+
 }  // namespace dispersa

@@ -39,4 +39,10 @@ namespace dispersa {
 /// Precondition: a profile that passes Problems(), so that it reaches every stage's bottom.
 std::vector<AeroTable> BuildAerodynamics(const Vehicle& vehicle);
 
+/// The vehicle's tables, or those built up. Dampings that a table lacks are those of the build-up, on the
+/// table's reference area and length.
+std::vector<AeroTable> AerodynamicsOf(const Vehicle& vehicle);
+/// Whether AerodynamicsOf needs the profile.
+bool NeedsProfile(const Vehicle& vehicle);
+
 }  // namespace dispersa

@@ -18,9 +18,11 @@ struct StackMassLanes {
   T outer2_m2;        ///< the grain's outer radius squared
   T inner_per_kg_m2;  ///< by which each kilogram lowers the bore's radius squared
   T length2_m2;       ///< the grain's length squared, over 12
-  bool any_drains;    ///< of any lane:
-  T drains;           ///< 1 for liquid stages (DrainingMass), 0 for grains
+  bool any_drains;    ///< any lane has tanks or a table in place of the grain:
+  T drains;           ///< 1 for liquid stages (DrainingMass), 2 for tables (MassRows), 0 for grains
   T first_per_kg_m, first_per_kg2_m, second_per_kg_m2, second_per_kg2_m2, second_per_kg3_m2;
+  bool any_tables;
+  const MassRows* table[kWidth<T>];  ///< null: none
 };
 template <class T>
 DISPERSA_INLINE void SetLane(StackMassLanes<T>& s, int lane, const StackMass& mass) {
@@ -30,17 +32,35 @@ DISPERSA_INLINE void SetLane(StackMassLanes<T>& s, int lane, const StackMass& ma
   Lane(s.fixed_axial_kg_m2, lane) = mass.fixed_axial_inertia_kg_m2;
   Lane(s.grain_station_m, lane) = mass.grain_station_m;
   Lane(s.outer2_m2, lane) = mass.grain_outer_radius_m * mass.grain_outer_radius_m;
-  Lane(s.inner_per_kg_m2, lane) =
-      mass.drains ? 0.0 : 1.0 / (kPi * mass.grain_density_kg_m3 * mass.grain_length_m);
+  Lane(s.inner_per_kg_m2, lane) = mass.drains || mass.table != nullptr
+                                      ? 0.0
+                                      : 1.0 / (kPi * mass.grain_density_kg_m3 * mass.grain_length_m);
   Lane(s.length2_m2, lane) = mass.grain_length_m * mass.grain_length_m / 12.0;
-  Lane(s.drains, lane) = mass.drains ? 1.0 : 0.0;
+  s.table[lane] = mass.table;
+  Lane(s.drains, lane) = s.table[lane] != nullptr ? 2.0 : mass.drains ? 1.0 : 0.0;
   Lane(s.first_per_kg_m, lane) = mass.tanks.first_per_kg_m;
   Lane(s.first_per_kg2_m, lane) = mass.tanks.first_per_kg2_m;
   Lane(s.second_per_kg_m2, lane) = mass.tanks.second_per_kg_m2;
   Lane(s.second_per_kg2_m2, lane) = mass.tanks.second_per_kg2_m2;
   Lane(s.second_per_kg3_m2, lane) = mass.tanks.second_per_kg3_m2;
-  s.any_drains = false;
-  for (int i = 0; i < kWidth<T>; ++i) s.any_drains |= Lane(s.drains, i) > 0.0;
+  s.any_drains = s.any_tables = false;
+  for (int i = 0; i < kWidth<T>; ++i) {
+    s.any_drains |= Lane(s.drains, i) > 0.0;
+    s.any_tables |= s.table[i] != nullptr;
+  }
+}
+
+/// The row of a table that a mass of propellant falls into.
+alignas(32) inline constexpr double kNoMassRow[MassRows::kRowSize] = {};
+DISPERSA_INLINE const double* MassRowAt(const MassRows* table, double propellant_kg) {
+  if (table == nullptr) return kNoMassRow;
+  const double* begin_kg = table->begin_kg.data();
+  int low = 0, high = static_cast<int>(table->begin_kg.size());
+  while (high - low > 1) {
+    const int middle = (low + high) / 2;
+    (propellant_kg < begin_kg[middle] ? high : low) = middle;
+  }
+  return table->rows.data() + MassRows::kRowSize * low;
 }
 
 /// MassProperties of StackMass::At.
@@ -69,17 +89,32 @@ DISPERSA_INLINE MassPropertiesLanes<T> MassesAt(const StackMassLanes<T>& s, T pr
   if (s.any_drains) {
     const auto drains = s.drains > T(0.0);
     const T p = propellant_kg;
-    const T first = Fma(p, Fma(p, s.first_per_kg2_m, s.first_per_kg_m), s.first_moment_kg_m);
-    const T surface = Fma(T(2.0) * p, s.first_per_kg2_m, s.first_per_kg_m);  // of the first moment by mass
-    const T second = Fma(p, Fma(p, Fma(p, s.second_per_kg3_m2, s.second_per_kg2_m2), s.second_per_kg_m2),
-                         s.second_moment_kg_m2);
-    const T second_per_kg =
+    T first = Fma(p, Fma(p, s.first_per_kg2_m, s.first_per_kg_m), s.first_moment_kg_m);
+    T surface = Fma(T(2.0) * p, s.first_per_kg2_m, s.first_per_kg_m);  // of the first moment by mass
+    T second = Fma(p, Fma(p, Fma(p, s.second_per_kg3_m2, s.second_per_kg2_m2), s.second_per_kg_m2),
+                   s.second_moment_kg_m2);
+    T second_per_kg =
         Fma(p, Fma(T(3.0) * p, s.second_per_kg3_m2, T(2.0) * s.second_per_kg2_m2), s.second_per_kg_m2);
+    T axial = s.fixed_axial_kg_m2, axial_per_kg(0.0);
+    if (s.any_tables) {
+      const double* piece[kWidth<T>];
+      for (int lane = 0; lane < kWidth<T>; ++lane) piece[lane] = MassRowAt(s.table[lane], Lane(p, lane));
+      T row[MassRows::kRowSize];
+      LoadRow(piece, MassRows::kRowSize / 4, row);
+      const auto tabled = s.drains > T(1.0);
+      const T from = p - row[0];
+      first = Select(tabled, s.first_moment_kg_m + Fma(from, row[2], row[1]), first);
+      surface = Select(tabled, row[2], surface);
+      second = Select(tabled, s.second_moment_kg_m2 + Fma(from, row[4], row[3]), second);
+      second_per_kg = Select(tabled, row[4], second_per_kg);
+      axial = Select(tabled, axial + Fma(from, row[6], row[5]), axial);
+      axial_per_kg = Select(tabled, row[6], axial_per_kg);
+    }
     const T at = first / m.mass_kg;
     m.cg_station_m = Select(drains, at, m.cg_station_m);
-    m.axial_kg_m2 = Select(drains, s.fixed_axial_kg_m2, m.axial_kg_m2);
+    m.axial_kg_m2 = Select(drains, axial, m.axial_kg_m2);
     m.transverse_kg_m2 = Select(drains, second - m.mass_kg * at * at, m.transverse_kg_m2);
-    m.axial_per_kg_m2 = Select(drains, T(0.0), m.axial_per_kg_m2);
+    m.axial_per_kg_m2 = Select(drains, axial_per_kg, m.axial_per_kg_m2);
     // About C, which moves by (surface - C) / m for each kilogram.
     m.transverse_per_kg_m2 =
         Select(drains, Fma(at, at, second_per_kg) - T(2.0) * at * surface, m.transverse_per_kg_m2);

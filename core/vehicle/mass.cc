@@ -42,6 +42,20 @@ void Add(const Tank& tank, StackMass& stack) {
       tank.propellant_mass_kg * (0.25 * radius2 + Square(height) / 12.0 + Square(station));
 }
 
+// The dry mass of a stage with a table, and what was added to it.
+void AddTable(const Stage& stage, double dry_kg, StackMass& stack) {
+  const StageMassTable& flown = stage.flown_mass;
+  stack.fixed_mass_kg += dry_kg - flown.added_kg;
+  stack.fixed_first_moment_kg_m += flown.dry_factor * flown.rows->first_moment_kg_m;
+  stack.fixed_second_moment_kg_m2 += flown.dry_factor * flown.rows->second_moment_kg_m2;
+  stack.fixed_axial_inertia_kg_m2 += flown.dry_factor * flown.rows->axial_inertia_kg_m2;
+  if (flown.added_kg == 0.0) return;
+  const MassElement& e = stage.structure[flown.element];
+  Add(Tube{flown.added_kg, e.top_station_m, e.bottom_station_m, 0.5 * e.outer_diameter_m,
+           0.5 * e.inner_diameter_m},
+      stack);
+}
+
 DrainingMass Draining(const Stage& stage) {
   DrainingMass sum;
   for (const Tank& tank : stage.tanks) {
@@ -150,13 +164,25 @@ std::vector<StackMass> BuildStackMasses(const Vehicle& vehicle) {
     for (int i = lowest; i < count; i = LastBurn(vehicle, i) + 1) {
       const Stage& stage = vehicle.stages[static_cast<std::size_t>(i)];
       const double dry = DryMass(vehicle, i);
-      for (const MassElement& e : stage.structure)
-        Add({dry * e.fraction, e.top_station_m, e.bottom_station_m, 0.5 * e.outer_diameter_m,
-             0.5 * e.inner_diameter_m},
-            stack);
+      if (stage.flown_mass.rows)
+        AddTable(stage, dry, stack);
+      else
+        for (const MassElement& e : stage.structure)
+          Add({dry * e.fraction, e.top_station_m, e.bottom_station_m, 0.5 * e.outer_diameter_m,
+               0.5 * e.inner_diameter_m},
+              stack);
       const Stage& at_last = vehicle.stages[static_cast<std::size_t>(LastBurn(vehicle, i))];
       for (const Jettison& jettison : at_last.jettisoned) Add(TubeOf(jettison), stack);
       const Grain& g = stage.grain;
+      if (stage.flown_mass.rows) {
+        if (i == lowest) continue;
+        const MassRows::Sums sums = stage.flown_mass.rows->OfPropellant(stage.propellant_mass_kg);
+        stack.fixed_mass_kg += stage.propellant_mass_kg;
+        stack.fixed_first_moment_kg_m += sums.first_moment_kg_m;
+        stack.fixed_second_moment_kg_m2 += sums.second_moment_kg_m2;
+        stack.fixed_axial_inertia_kg_m2 += sums.axial_inertia_kg_m2;
+        continue;
+      }
       for (const Tank& tank : stage.tanks)
         if (i > lowest) Add(tank, stack);
       if (i > lowest && !stage.is_liquid())
@@ -166,6 +192,10 @@ std::vector<StackMass> BuildStackMasses(const Vehicle& vehicle) {
     }
     const Stage& burning = vehicle.stages[static_cast<std::size_t>(lowest)];
     stack.propellant_mass_kg = burning.propellant_mass_kg;
+    if (burning.flown_mass.rows) {
+      stack.table = burning.flown_mass.rows.get();
+      continue;
+    }
     if (burning.is_liquid()) {
       stack.drains = true;
       stack.tanks = Draining(burning);

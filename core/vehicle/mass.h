@@ -49,6 +49,7 @@ struct StackMass {
   double propellant_mass_kg = 0.0;  ///< at ignition
   bool drains = false;              ///< tanks in place of the grain
   DrainingMass tanks;
+  const MassRows* table = nullptr;  ///< in place of grain or tanks (null: none), the stage's own
 
   MassProperties At(double propellant_kg) const;
 };

@@ -22,6 +22,16 @@ enum class CutOff {
   kAtDepletion,  ///< when all but the residual has flown
   kAtTime,       ///< `cut_off_s` after ignition, or by depletion if that comes first
   kAtVelocity,   ///< at the inertial speed `cut_off_velocity_m_s`, or by depletion if that comes first
+  kAtTarget,     ///< when the orbit has the energy of the trajectory's target, or by depletion
+};
+
+/// The energy at which cut_off: {at: target} ends a burn. The file does not have it: it is the trajectory's.
+struct AimedEnergy {
+  bool is_known = false;
+  bool is_ellipse = false;
+  double mu_m3_s2 = 0.0;
+  double energy_m2_s2 = 0.0;                    ///< of an ellipse
+  double altitude_m = 0.0, velocity_m_s = 0.0;  ///< else of this speed at this geodetic altitude
 };
 
 inline void Describe(Fields& fields, Throttle& throttle) {
@@ -63,6 +73,7 @@ struct Motor {
   double cut_off_velocity_m_s = 0.0;
   double specific_impulse_s = 0.0;
   double residual_mass_kg = 0.0;
+  AimedEnergy aimed_energy = {};
 };
 /// Gives a motor a curve, and the greatest thrust and the time that its propellant would last at the greatest
 /// flow.
@@ -78,8 +89,11 @@ inline void DescribeCommands(Fields& fields, Motor& motor) {
         cut.Choice<CutOff>("at",
                            {{"depletion", CutOff::kAtDepletion},
                             {"time", CutOff::kAtTime},
-                            {"inertial_velocity", CutOff::kAtVelocity}},
-                           motor.cut_off, "event that ends the burn");
+                            {"inertial_velocity", CutOff::kAtVelocity},
+                            {"target", CutOff::kAtTarget}},
+                           motor.cut_off,
+                           "event that ends the burn; target, of the last burn: the energy of the target "
+                           "orbit");
         cut.When(Is("at", {"time"}),
                  [&] { cut.Quantity("after", kTime, kPositive, motor.cut_off_s, "since ignition"); });
         cut.When(Is("at", {"inertial_velocity"}), [&] {

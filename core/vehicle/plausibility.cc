@@ -30,11 +30,15 @@ struct Subject {
   const Vehicle& vehicle;
   const std::vector<StageFigures>& figures;
   std::size_t index = 0;
-  std::size_t part = 0;  ///< tank, or body jettisoned, of the stage
+  std::size_t part = 0;  ///< tank or jettisoned body of the stage, lighter table (from 1)
 
   const Tank& tank() const { return stage().tanks[part]; }
   const Jettison& jettison() const { return stage().jettisoned[part]; }
-  const AeroTable& table() const { return vehicle.aerodynamics[index]; }
+  /// Of the stack, or a lighter one's.
+  const AeroTable& table() const {
+    const AeroTable& whole = vehicle.aerodynamics[index];
+    return part == 0 ? whole : whole.lighter[part - 1].table;
+  }
   const Stage& stage() const { return vehicle.stages[index]; }
   const StageFigures& figure() const { return figures[index]; }
   std::size_t last_burn() const {
@@ -70,6 +74,42 @@ double WidestDiameter(const Vehicle& vehicle, double top_m, double bottom_m) {
     }
   }
   return widest_m;
+}
+
+// Of thrust and chamber pressure over the burn, about 0.
+double PressureCorrelation(const ThrustCurve& curve) {
+  if (curve.pressure_pa.empty()) return kNothing;
+  double both = 0.0, thrust = 0.0, pressure = 0.0;
+  for (std::size_t i = 0; i + 1 < curve.time_s.size(); ++i) {
+    const double step_s = curve.time_s[i + 1] - curve.time_s[i];
+    const double p = 0.5 * (curve.pressure_pa[i] + curve.pressure_pa[i + 1]);
+    const double f = 0.5 * (curve.thrust_n[i] + curve.thrust_n[i + 1]);
+    both += step_s * p * f;
+    thrust += step_s * f * f;
+    pressure += step_s * p * p;
+  }
+  return pressure > 0.0 ? both / Sqrt(thrust * pressure) : 0.0;
+}
+
+// Of a stage with a table, alone and full: by the table, and by its tubes. Without a table NaN.
+std::pair<MassProperties, MassProperties> TableAndTubes(const Subject& s) {
+  MassProperties none;
+  none.cg_station_m = none.axial_inertia_kg_m2 = none.transverse_inertia_kg_m2 = kNothing;
+  if (!s.stage().flown_mass.rows) return {none, none};
+  Vehicle alone = s.vehicle;
+  alone.boosters = {};
+  alone.stages = {s.stage()};
+  alone.stages[0].jettisoned.clear();
+  const double own_kg = DryMass(s.vehicle, static_cast<int>(s.index)) + s.stage().propellant_mass_kg;
+  alone.stages[0].liftoff_mass_kg = own_kg;
+  const StackMass by_table = BuildStackMasses(alone)[0];
+  alone.stages[0].flown_mass = {};
+  const StackMass by_tubes = BuildStackMasses(alone)[0];
+  return {by_table.At(by_table.propellant_mass_kg), by_tubes.At(by_tubes.propellant_mass_kg)};
+}
+double TableOverTubes(const Subject& s, double MassProperties::*value) {
+  const auto [table, tubes] = TableAndTubes(s);
+  return tubes.*value > 0.0 ? table.*value / (tubes.*value) : kNothing;
 }
 
 constexpr Check kStageChecks[] = {
@@ -216,6 +256,49 @@ constexpr Check kStageChecks[] = {
        const double area_m2 = s.stage().motor.nozzle_exit_area_m2;
        return area_m2 > 0.0 ? area_m2 / (0.25 * kPi * Square(s.stage().diameter_m)) : kNothing;
      }},
+    {"motor.thrust_curve.table.chamber_pressure",
+     "is at most",
+     "MPa",
+     {0.0, 1000.0},
+     {0.2, 30.0},
+     "solid motors burn at 3 to 15 MPa; a pressure in bar or psi may stand under another unit",
+     [](const Subject& s) {
+       const std::vector<double>& pressure_pa = s.stage().motor.thrust_curve.pressure_pa;
+       return pressure_pa.empty() ? kNothing
+                                  : 1e-6 * *std::max_element(pressure_pa.begin(), pressure_pa.end());
+     }},
+    {"motor.thrust_curve.table.chamber_pressure",
+     "goes with the thrust with a correlation of",
+     "",
+     kAnything,
+     {0.9, kAny},
+     "thrust is the pressure times throat area and thrust coefficient, which change little; a channel may "
+     "belong to another test or run late",
+     [](const Subject& s) { return PressureCorrelation(s.stage().motor.thrust_curve); }},
+    {"mass_table.transverse_inertia_kg_m2",
+     "is, at ignition, that of the stage's tubes times",
+     "",
+     kAnything,
+     {0.3, 3.0},
+     "structure, grain and tanks weigh the same; kg mm2 or an inertia about another point are far off",
+     [](const Subject& s) { return TableOverTubes(s, &MassProperties::transverse_inertia_kg_m2); }},
+    {"mass_table.axial_inertia_kg_m2",
+     "is, at ignition, that of the stage's tubes times",
+     "",
+     kAnything,
+     {0.1, 10.0},
+     "structure and grain weigh the same; liquids count as none about the axis",
+     [](const Subject& s) { return TableOverTubes(s, &MassProperties::axial_inertia_kg_m2); }},
+    {"mass_table.cg_station_m",
+     "is, at ignition, from that of the stage's tubes away by",
+     "m",
+     kAnything,
+     {-2.0, 2.0},
+     "stations count aft from the nose tip of the full vehicle",
+     [](const Subject& s) {
+       const auto [table, tubes] = TableAndTubes(s);
+       return table.cg_station_m - tubes.cg_station_m;
+     }},
     {"motor.published_mass_flow_kg_s",
      "is the flow that propellant and burning time give times",
      "",
@@ -341,6 +424,20 @@ double LeastAxial(const AeroTable& table) {
   return least;
 }
 
+// Of ca with the motor out over that with power, at the smallest incidence.
+double PowerOffExcess(const AeroTable& table, bool of_largest) {
+  double found = kNothing;
+  for (std::size_t m = 0; m < table.mach.size() && !table.ca_power_off.empty(); ++m) {
+    const double excess = table.ca_power_off[table.RowOf(m, 0)] - table.ca[table.RowOf(m, 0)];
+    if (std::isnan(found) || (of_largest ? excess > found : excess < found)) found = excess;
+  }
+  return found;
+}
+
+double GreatestOfTable(const std::vector<double>& values) {
+  return values.empty() ? kNothing : *std::max_element(values.begin(), values.end());
+}
+
 // Checks of the aerodynamic table of each stack.
 constexpr Check kAeroChecks[] = {
     {"reference_area_m2",
@@ -394,6 +491,43 @@ constexpr Check kAeroChecks[] = {
      {0.0, 2.0},
      "0.2 to 1.2 of launchers, about 1.5 of a blunt face",
      [](const Subject& s) { return Farthest(s.table(), s.table().ca, 0, 0.0); }},
+    {"table.ca_power_off",
+     "exceeds ca, at the smallest incidence, by at least",
+     "",
+     {-2.0, 2.0},
+     {-0.01, 0.5},
+     "without a jet the base is sucked at: 0.05 to 0.25 of its share of the cross-section",
+     [](const Subject& s) { return PowerOffExcess(s.table(), false); }},
+    {"table.ca_power_off",
+     "exceeds ca, at the smallest incidence, by at most",
+     "",
+     {-2.0, 2.0},
+     {-0.01, 0.5},
+     "without a jet the base is sucked at: 0.05 to 0.25 of its share of the cross-section",
+     [](const Subject& s) { return PowerOffExcess(s.table(), true); }},
+    {"table.ca_uncertainty",
+     "is, as one standard deviation, at most",
+     "",
+     kAnything,
+     {0.0, 0.5},
+     "5 to 10 % of wind tunnels; a part may stand under percent",
+     [](const Subject& s) { return GreatestOfTable(s.table().uncertainty.ca); }},
+    {"table.cn_uncertainty",
+     "is, as one standard deviation, at most",
+     "",
+     kAnything,
+     {0.0, 0.5},
+     "5 to 10 % of wind tunnels",
+     [](const Subject& s) { return GreatestOfTable(s.table().uncertainty.cn); }},
+    {"table.xcp_uncertainty_m",
+     "is, as one standard deviation and part of the stack's length, at most",
+     "",
+     kAnything,
+     {0.0, 0.1},
+     "0.1 to 1 diameter",
+     [](const Subject& s) {
+       return GreatestOfTable(s.table().uncertainty.xcp_m) / s.stage().bottom_station_m;
+     }},
     {"table.cn",
      "is at an incidence of 0",
      "",
@@ -446,6 +580,7 @@ constexpr Check kAeroChecks[] = {
      "the air takes from a turning body; above 0 it drives it",
      [](const Subject& s) {
        const std::vector<double>& cmq = s.table().cmq_per_rad;
+       if (cmq.empty()) return kNothing;
        return *std::max_element(cmq.begin(), cmq.end());
      }},
     {"table.cmq_per_rad",
@@ -456,6 +591,7 @@ constexpr Check kAeroChecks[] = {
      "slender-body theory gives with the length L and the diameter d about -(L/d)²: -400 of a fineness of 20",
      [](const Subject& s) {
        const std::vector<double>& cmq = s.table().cmq_per_rad;
+       if (cmq.empty()) return kNothing;
        return *std::min_element(cmq.begin(), cmq.end());
      }},
     {"table.clp_per_rad",
@@ -466,6 +602,7 @@ constexpr Check kAeroChecks[] = {
      "the air takes from a rolling body; above 0 it drives it",
      [](const Subject& s) {
        const std::vector<double>& clp = s.table().clp_per_rad;
+       if (clp.empty()) return kNothing;
        return *std::max_element(clp.begin(), clp.end());
      }},
 };
@@ -646,6 +783,7 @@ std::string SpanText(const Span& span, const std::string& unit) {
 // A thrust curve or an engine replaces the key of the thrust.
 std::string PathOf(const Check& check, const Subject& subject) {
   const std::string field = check.field;
+  if (field == "table.xcp_station_m" && subject.table().is_by_moment) return "table.cm";
   if (field != "motor.thrust_n") return field;
   if (subject.stage().is_liquid()) return "motor.liquid.thrust_n";
   return subject.stage().motor.thrust_curve.empty() ? field : "motor.thrust_curve";
@@ -688,7 +826,11 @@ std::vector<PlausibilityFinding> Plausibility(const Vehicle& vehicle) {
       Apply(kNozzleChecks, {vehicle, figures, i}, "nozzles" + index, findings);
   }
   for (std::size_t i = 0; i < vehicle.aerodynamics.size(); ++i)
-    Apply(kAeroChecks, {vehicle, figures, i}, "aerodynamics.tables[" + std::to_string(i) + "].", findings);
+    for (std::size_t k = 0; k <= vehicle.aerodynamics[i].lighter.size(); ++k)
+      Apply(kAeroChecks, {vehicle, figures, i, k},
+            "aerodynamics.tables[" + std::to_string(i) + "]." +
+                (k == 0 ? "" : "lighter[" + std::to_string(k - 1) + "]."),
+            findings);
   for (std::size_t i = 0; i < vehicle.sensors.rate_gyros.size(); ++i)
     Apply(kGyroChecks, {vehicle, figures, i}, "sensors.rate_gyros[" + std::to_string(i) + "].", findings);
   Apply(kVehicleChecks, {vehicle, figures}, "", findings);

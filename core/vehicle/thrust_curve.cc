@@ -2,6 +2,9 @@
 
 #include <algorithm>
 
+#include "core/math/table.h"
+#include "core/vehicle/thin_table.h"
+
 namespace dispersa {
 namespace {
 
@@ -36,12 +39,16 @@ ThrustCurve InVacuum(ThrustCurve at_sea_level, double exit_area_m2) {
 }
 
 void Describe(Fields& fields, ThrustCurve& curve) {
-  fields.Quantities("time", kTime, kNonNegative, 2, kThrustCurveCorners, curve.time_s,
-                    "since ignition, from 0; linear between points");
-  fields.Quantities("thrust", kForce, kNonNegative, 2, kThrustCurveCorners, curve.thrust_n, "as measured");
+  curve.thinned = {};
+  fields.Quantities("time", kTime, kNonNegative, 2, kThrustCurveRows, curve.time_s,
+                    "since ignition, from 0; linear between points. More than 1000 rows are thinned: the "
+                    "impulse stays, validate states the error");
+  fields.Quantities("thrust", kForce, kNonNegative, 2, kThrustCurveRows, curve.thrust_n, "as measured");
   fields.OptionalQuantities(
-      "mass_flow", kMassFlow, kNonNegative, 2, kThrustCurveCorners, curve.flow_kg_s,
+      "mass_flow", kMassFlow, kNonNegative, 2, kThrustCurveRows, curve.flow_kg_s,
       "its integral is the propellant, within 1 %; default: proportional to the thrust");
+  fields.OptionalQuantities("chamber_pressure", kGasPressure, kNonNegative, 2, kThrustCurveRows,
+                            curve.pressure_pa, "of the test; checked against the thrust, not used in flight");
   fields.Check([&] {
     const auto refuse_count = [&](std::size_t count, const std::string& what, const std::string& allowed) {
       fields.Refuse(
@@ -55,6 +62,9 @@ void Describe(Fields& fields, ThrustCurve& curve) {
     if (!curve.flow_kg_s.empty() && curve.flow_kg_s.size() != curve.time_s.size())
       return refuse_count(curve.flow_kg_s.size(), " mass flows",
                           "one mass flow for each time, or none at all");
+    if (!curve.pressure_pa.empty() && curve.pressure_pa.size() != curve.time_s.size())
+      return refuse_count(curve.pressure_pa.size(), " chamber pressures",
+                          "one chamber pressure for each time, or none at all");
     if (curve.time_s[0] != 0.0)
       fields.Refuse("time[0]", fields.Quote("time[0]") + " is not the time of ignition",
                     "0 as the first time");
@@ -69,7 +79,31 @@ void Describe(Fields& fields, ThrustCurve& curve) {
       fields.Refuse("thrust", "the thrust is 0 at all times", "a thrust above 0 somewhere");
     if (!curve.flow_kg_s.empty() && curve.Flown() == 0.0)
       fields.Refuse("mass_flow", "the mass flow is 0 at all times", "a mass flow above 0 somewhere");
+    if (curve.time_s.size() <= kThrustCurveCorners || !IsStrictlyIncreasing(curve.time_s)) return;
+    curve = Thin(curve);
+    // The campaign's text carries the corners alone.
+    fields.Replace("time", kTime, curve.time_s);
+    fields.Replace("thrust", kForce, curve.thrust_n);
+    if (!curve.flow_kg_s.empty()) fields.Replace("mass_flow", kMassFlow, curve.flow_kg_s);
+    if (!curve.pressure_pa.empty()) fields.Replace("chamber_pressure", kGasPressure, curve.pressure_pa);
   });
+}
+
+ThrustCurve Thin(const ThrustCurve& curve) {
+  std::vector<const std::vector<double>*> columns;
+  for (const auto* column : {&curve.thrust_n, &curve.flow_kg_s, &curve.pressure_pa})
+    if (!column->empty()) columns.push_back(column);
+  const std::vector<std::size_t> corners =
+      ChooseCorners(curve.time_s, columns, kThrustCurveCorners, kThinnedCurveTolerance);
+  ThrustCurve thin;
+  for (std::size_t corner : corners) thin.time_s.push_back(curve.time_s[corner]);
+  thin.thrust_n = FitCorners(curve.time_s, curve.thrust_n, corners);
+  if (!curve.flow_kg_s.empty()) thin.flow_kg_s = FitCorners(curve.time_s, curve.flow_kg_s, corners);
+  if (!curve.pressure_pa.empty()) thin.pressure_pa = FitCorners(curve.time_s, curve.pressure_pa, corners);
+  thin.thinned = {
+      curve.time_s.size(), GreatestMiss(curve.time_s, curve.thrust_n, corners, thin.thrust_n),
+      curve.flow_kg_s.empty() ? 0.0 : GreatestMiss(curve.time_s, curve.flow_kg_s, corners, thin.flow_kg_s)};
+  return thin;
 }
 
 BurnCurve Prepare(const ThrustCurve& curve) {

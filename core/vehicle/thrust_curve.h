@@ -18,6 +18,17 @@ namespace dispersa {
 inline constexpr double kSeaLevelPressure_pa = 101325.0;
 /// Every corner ends an integration step.
 inline constexpr std::size_t kThrustCurveCorners = 1000;
+/// Rows of a file. More than kThrustCurveCorners are thinned to that many, or fewer.
+inline constexpr std::size_t kThrustCurveRows = 1'000'000;
+/// A corner is left out if the curve moves by less, as a part of its greatest value.
+inline constexpr double kThinnedCurveTolerance = 1e-4;
+
+/// How a curve of few corners was made of a file of many rows (rows 0: it was not).
+struct ThinnedCurve {
+  std::size_t rows = 0;
+  double thrust_error = 0.0;  ///< greatest difference at a row, as a part of the greatest thrust
+  double flow_error = 0.0;    ///< the same of the mass flow
+};
 
 struct ThrustCurve {
   std::vector<double> time_s;    ///< since ignition, from 0, each larger than the one before
@@ -25,6 +36,10 @@ struct ThrustCurve {
   /// 0 or more (empty: proportional to the thrust). Its integral must be the propellant within 1 %, and is
   /// scaled to it exactly.
   std::vector<double> flow_kg_s = {};
+  /// Chamber pressure of the test (empty: not given). It is checked against the thrust. Flights do not use
+  /// it.
+  std::vector<double> pressure_pa = {};
+  ThinnedCurve thinned = {};
 
   bool empty() const { return time_s.empty(); }
   double Greatest() const;
@@ -34,6 +49,10 @@ struct ThrustCurve {
 };
 
 void Describe(Fields& fields, ThrustCurve& curve);
+
+/// A curve of at most kThrustCurveCorners corners for one of more. The corners are rows of the curve. Their
+/// values are the least-squares fit to the curve, and its impulse and flow are kept, to rounding.
+ThrustCurve Thin(const ThrustCurve& curve);
 
 /// Flows given sum up to the propellant within this.
 inline constexpr double kFlowSumTolerance = 0.01;

@@ -6,6 +6,8 @@
 #include "core/math/constants.h"
 #include "core/math/functions.h"
 #include "core/math/table.h"
+#include "core/vehicle/aerodynamics_build_up.h"
+#include "core/vehicle/cut_off.h"
 #include "core/vehicle/mass.h"
 #include "core/vehicle/mould_line.h"
 #include "core/vehicle/propulsion.h"
@@ -82,6 +84,40 @@ void CheckIgnition(const Stage& stage, bool first, const std::string& path, Chec
       first ? "lift_off" : "burnout_detection or timer");
 }
 
+// Of a stage that has one, over propellant.
+void CheckMassTable(const Stage& stage, double dry_kg, const std::string& path, Checker& check) {
+  const MassTable& table = stage.mass_table;
+  if (table.empty() || !(dry_kg > 0.0)) return;
+  const std::string at = path + ".mass_table";
+  const std::vector<double>& left = table.propellant_kg;
+  constexpr double kCovered = 0.02;
+  const double all_kg = stage.propellant_mass_kg, spare_kg = kCovered * all_kg;
+  if (left.size() < 2 || left.back() < all_kg - spare_kg ||
+      left.front() > stage.motor.residual_mass_kg + spare_kg) {
+    check.Require(
+        false, at,
+        "covers " + std::to_string(left.front()) + " to " + std::to_string(left.back()) + " kg of propellant",
+        "rows from " + std::to_string(all_kg) + " kg at ignition to burnout, within 2 %");
+    return;
+  }
+  constexpr double kMassPart = 0.005;
+  for (std::size_t i = 0; i < left.size(); ++i) {
+    const double own_kg = dry_kg + left[i];
+    if (!table.mass_kg.empty() && std::fabs(table.mass_kg[i] - own_kg) > kMassPart * own_kg) {
+      check.Require(false, at + ".mass_kg",
+                    "is " + std::to_string(table.mass_kg[i]) + " with " + std::to_string(left[i]) +
+                        " kg of propellant, but dry mass and propellant are " + std::to_string(own_kg),
+                    "the stage alone, within 0.5 %: without stages above, boosters and jettisoned bodies");
+      return;
+    }
+    if (table.cg_station_m[i] < stage.bottom_station_m) continue;
+    check.Require(false, at + ".cg_station_m",
+                  "is " + std::to_string(table.cg_station_m[i]) + ", aft of the stage",
+                  "less than bottom_station_m of the stage");
+    return;
+  }
+}
+
 void CheckStage(const Vehicle& vehicle, std::size_t i, Checker& check) {
   const Stage& stage = vehicle.stages[i];
   const std::string path = "stages[" + std::to_string(i) + "]";
@@ -104,6 +140,8 @@ void CheckStage(const Vehicle& vehicle, std::size_t i, Checker& check) {
                 "leaves the stage no dry mass: lift-off mass less what is above it and its propellant is " +
                     std::to_string(dry) + " kg",
                 "less propellant than the stage's own mass");
+
+  CheckMassTable(stage, dry, path, check);
 
   double density = 0.0;
   if (stage.is_liquid()) {
@@ -176,6 +214,22 @@ void CheckTables(const Vehicle& vehicle, Checker& check) {
   check.Require(vehicle.aerodynamics.empty() || vehicle.aerodynamics.size() == vehicle.stages.size(),
                 "aerodynamics.tables", "has " + std::to_string(vehicle.aerodynamics.size()) + " tables",
                 "one table for each of the " + std::to_string(vehicle.stages.size()) + " stacks");
+  for (std::size_t i = 0; i < vehicle.aerodynamics.size() && i < vehicle.stages.size(); ++i) {
+    std::vector<std::string> carried;
+    for (std::size_t k = i; k < vehicle.stages.size(); ++k)
+      for (const Jettison& jettison : vehicle.stages[k].jettisoned) carried.push_back(jettison.name);
+    if (i == 0 && vehicle.boosters.count > 0) carried.emplace_back(kBoostersName);
+    std::string names;
+    for (const std::string& name : carried) names += (names.empty() ? "" : ", ") + name;
+    const std::vector<AeroConfiguration>& lighter = vehicle.aerodynamics[i].lighter;
+    for (std::size_t k = 0; k < lighter.size(); ++k)
+      for (const std::string& name : lighter[k].without)
+        check.Require(
+            std::find(carried.begin(), carried.end(), name) != carried.end(),
+            "aerodynamics.tables[" + std::to_string(i) + "].lighter[" + std::to_string(k) + "].without",
+            "names '" + name + "', which this stack does not jettison",
+            names.empty() ? "no lighter tables: the stack jettisons nothing" : "of " + names);
+  }
 }
 
 // Boosters that are bodies of their own.
@@ -235,13 +289,22 @@ void CheckRestarts(const Vehicle& vehicle, Checker& check) {
     const std::string path = "stages[" + std::to_string(i) + "].restarts";
     if (i == 0) continue;  // said at its ignition
     const Stage& before = vehicle.stages[i - 1];
-    if (before.motor.cut_off == CutOff::kAtVelocity) continue;  // what it leaves a flight tells
+    if (EndsAtSpeed(before.motor)) continue;  // what it leaves a flight tells
     const double left_kg = BuildBurn(before, 1.0, 1.0).left_kg;
     check.Require(
         left_kg > before.motor.residual_mass_kg, path,
         "has nothing to burn: the burn before leaves " + std::to_string(left_kg) + " kg, the residual",
         "a cut_off of the burn before that leaves propellant");
   }
+}
+
+void CheckAims(const Vehicle& vehicle, Checker& check) {
+  for (std::size_t i = 0; i + 1 < vehicle.stages.size(); ++i)
+    check.Require(vehicle.stages[i].motor.cut_off != CutOff::kAtTarget,
+                  "stages[" + std::to_string(i) +
+                      (vehicle.stages[i].restarts ? "].cut_off.at" : "].motor.liquid.cut_off.at"),
+                  "is target, but another burn follows: this one does not end in the target orbit",
+                  "inertial_velocity, time or depletion; target is of the last burn");
 }
 
 void CheckJettisons(const Vehicle& vehicle, Checker& check) {
@@ -265,7 +328,7 @@ int LastBurn(const Vehicle& vehicle, int stage) {
 
 bool CutsOffAtVelocity(const Vehicle& vehicle) {
   return std::any_of(vehicle.stages.begin(), vehicle.stages.end(),
-                     [](const Stage& stage) { return stage.motor.cut_off == CutOff::kAtVelocity; });
+                     [](const Stage& stage) { return EndsAtSpeed(stage.motor); });
 }
 
 std::vector<StructProblem> Problems(const Vehicle& vehicle) {
@@ -279,7 +342,7 @@ std::vector<StructProblem> Problems(const Vehicle& vehicle) {
                   "stations that decrease in the order of flight");
   double length = 0.0;
   for (const ProfileSection& section : vehicle.profile) length += section.length_m;
-  if (vehicle.aerodynamics.empty())
+  if (NeedsProfile(vehicle))
     // Lengths are written to the millimetre.
     check.Require(std::fabs(length - vehicle.stages[0].bottom_station_m) < 1e-3, "profile",
                   "is " + std::to_string(length) + " m long in all",
@@ -290,6 +353,7 @@ std::vector<StructProblem> Problems(const Vehicle& vehicle) {
   CheckNozzles(vehicle, check);
   CheckTables(vehicle, check);
   CheckRestarts(vehicle, check);
+  CheckAims(vehicle, check);
   CheckJettisons(vehicle, check);
   CheckBoosters(vehicle, check);
   const ReactionControl& rcs = vehicle.reaction_control;

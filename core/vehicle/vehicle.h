@@ -20,6 +20,7 @@
 #include "core/vehicle/fins.h"
 #include "core/vehicle/gimbal.h"
 #include "core/vehicle/loss_of_control.h"
+#include "core/vehicle/mass_table.h"
 #include "core/vehicle/motor.h"
 #include "core/vehicle/rail.h"
 #include "core/vehicle/sensors.h"
@@ -49,7 +50,9 @@ struct Stage {
   std::vector<Tank> tanks;             ///< of a liquid stage, else empty (their propellant is the stage's)
   std::vector<MassElement> structure;  ///< the dry mass, in fractions that sum to 1
   std::vector<Jettison> jettisoned;
-  std::vector<FinSet> fins;  ///< they leave with the stage
+  std::vector<FinSet> fins;   ///< they leave with the stage
+  MassTable mass_table;       ///< as its file gives it (empty: the tubes above)
+  StageMassTable flown_mass;  ///< the same as it flies
   Gimbal gimbal;
   std::optional<SpinMotors> spin_motors;  ///< of a stage without gimbal
   IgnitionTrigger ignition = IgnitionTrigger::kLiftOff;
@@ -111,6 +114,10 @@ inline void Describe(Fields& fields, Stage& stage) {
                 }}});
           fields.List("structure", 1, SIZE_MAX, stage.structure,
                       "elements of its dry mass; the fractions add up to 1");
+          bool has_table = !stage.mass_table.empty();
+          fields.OptionalTable("mass_table", has_table,
+                               "mass properties of the stage alone, in place of its tubes, or their CSV file",
+                               [&](Fields& table) { Describe(table, stage.mass_table); });
           fields.List("jettisoned", 0, kMaxJettisons, stage.jettisoned,
                       "masses on the axis, jettisoned while the stage is attached: fairing, tower, skirt");
           fields.List("fins", 0, 4, stage.fins,

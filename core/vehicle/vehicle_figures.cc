@@ -4,6 +4,7 @@
 
 #include "core/math/constants.h"
 #include "core/math/functions.h"
+#include "core/vehicle/cut_off.h"
 #include "core/vehicle/mass.h"
 #include "core/vehicle/propulsion.h"
 
@@ -74,8 +75,7 @@ std::vector<StageFigures> FiguresOf(const Vehicle& vehicle) {
     one.ideal_delta_v_m_s =
         burn.ExhaustVelocity() * Log(stage.liftoff_mass_kg / (stage.liftoff_mass_kg - burnt_kg));
     // It has counted what a cut-off by velocity leaves it as burnt.
-    if (stage.restarts && vehicle.stages[i - 1].motor.cut_off == CutOff::kAtVelocity)
-      one.ideal_delta_v_m_s = 0.0;
+    if (stage.restarts && EndsAtSpeed(vehicle.stages[i - 1].motor)) one.ideal_delta_v_m_s = 0.0;
     double thrust_n = GreatestOfFirstSecond(burn, i == 0 ? vehicle.hold_down_s : 0.0);
     if (i == 0) {
       double released_kg = empty_kg + burn.Propellant(vehicle.hold_down_s);

@@ -7,6 +7,7 @@
 #include <cmath>
 
 #include "core/math/constants.h"
+#include "core/trajectory/aim.h"
 #include "core/trajectory/refine.h"
 #include "services/client/reference_search.h"
 
@@ -85,6 +86,7 @@ std::vector<SeedRow> RunSeedStudy(const OptimizationInput& input, int seeds, con
   std::vector<SeedRow> rows;
   TrajectoryProblem problem = input.problem;
   AscentModel model = BuildAscentModel(input.vehicle, options.tick_s);
+  AimAt(problem, model.vehicle);
   model.reaction_control_propellant_kg = problem.reaction_control_propellant_kg;
   for (int i = 0; i < seeds; ++i, ++problem.seed) {
     const auto begin = std::chrono::steady_clock::now();
@@ -100,7 +102,7 @@ std::vector<SeedRow> RunSeedStudy(const OptimizationInput& input, int seeds, con
                       FlyAscent(model, read.program, AscentOptionsOf(read.problem, steps)).orbit);
     };
     row.read_back = errors(options.steps);
-    row.reached = result.reached && IsWithin(row.read_back, options.tolerance);
+    row.reached = result.reached && IsWithin(row.read_back, result.tolerance);
     row.halved = errors(HalvedSteps(options.steps));
     row.flown = FlyReference(input, read);
     row.program = read.program;

@@ -38,6 +38,17 @@ std::string JettisonText(const Stage& stage, const Jettison& jettison) {
                      fmt::format(fmt::runtime(when), ReadableText(jettison.threshold)));
 }
 
+// Of a test stand's table, if it was thinned.
+std::string ThinnedText(const std::string& whose, const ThrustCurve& curve) {
+  if (curve.thinned.rows == 0) return {};
+  return fmt::format(
+      "thrust table of {}: {} rows thinned to {} corners; impulse kept, thrust within {:.2g} % of the "
+      "greatest{}\n",
+      whose, curve.thinned.rows, curve.time_s.size(), 100.0 * curve.thinned.thrust_error,
+      curve.flow_kg_s.empty() ? ""
+                              : fmt::format(", mass flow within {:.2g} %", 100.0 * curve.thinned.flow_error));
+}
+
 }  // namespace
 
 std::string VehicleText(const Vehicle& vehicle) {
@@ -63,7 +74,9 @@ std::string VehicleText(const Vehicle& vehicle) {
   text +=
       "dry/own of the last stage includes the payload; dv and Isp in vacuum, without losses; T/W of stage 1 "
       "at its release\n";
-  if (vehicle.boosters.count > 0) text += BoosterText(vehicle);
+  if (vehicle.boosters.count > 0)
+    text += BoosterText(vehicle) + ThinnedText("the boosters", vehicle.boosters.motor.thrust_curve);
+  for (const Stage& stage : vehicle.stages) text += ThinnedText(stage.name, stage.motor.thrust_curve);
   for (const Stage& stage : vehicle.stages)
     for (const Jettison& jettison : stage.jettisoned) text += JettisonText(stage, jettison);
   std::string limits;
@@ -89,6 +102,11 @@ nlohmann::ordered_json VehicleJson(const Vehicle& vehicle) {
                       {"ideal_delta_v_m_s", one.ideal_delta_v_m_s},
                       {"thrust_to_weight", one.thrust_to_weight},
                       {"burnout_load_g", one.burnout_load_g}});
+    const ThrustCurve& curve = vehicle.stages[i].motor.thrust_curve;
+    if (curve.thinned.rows > 0)
+      stages.back()["thrust_table"] = {{"rows", curve.thinned.rows},
+                                       {"corners", curve.time_s.size()},
+                                       {"thrust_error", curve.thinned.thrust_error}};
   }
   return {{"name", vehicle.name}, {"ideal_delta_v_m_s", TotalDeltaV(figures)}, {"stages", std::move(stages)}};
 }

@@ -88,10 +88,46 @@ void MapSchema::Keys::AddTo(Json& schema) const {
   if (!rules.empty()) schema["allOf"] = rules;
 }
 
+// Keys in further units, whose meaning stands with the first one, are said together where they are alike.
+void MapSchema::AddProperties(const Json& values, Json& schema) const {
+  std::map<std::string, std::map<std::string, std::vector<std::string>>> alike;  // stems by schema and units
+  Json own = Json::object();
+  for (const auto& [key, value] : values.items()) {
+    const auto quantity = quantities_.find(key);
+    if (quantity == quantities_.end() || !value.is_object() || value.contains("description"))
+      own[key] = value;
+  }
+  for (const auto& [stem, units] : FurtherUnits(values, own))
+    for (const auto& [text, suffixes] : units) alike[text][suffixes].push_back(stem);
+  schema["properties"] = std::move(own);
+  for (const auto& [text, by_units] : alike) {
+    std::string pattern;
+    for (const auto& [suffixes, stems] : by_units) {
+      std::string names;
+      for (const std::string& stem : stems) names += (names.empty() ? "" : "|") + stem;
+      pattern += (pattern.empty() ? "" : "|") + Alternatives(names) + "_" + Alternatives(suffixes);
+    }
+    schema["patternProperties"]["^(" + pattern + ")$"] = Json::parse(text);
+  }
+}
+
+// Of the values that are not in `own`: by stem and schema the endings, "km|mm".
+std::map<std::string, std::map<std::string, std::string>> MapSchema::FurtherUnits(const Json& values,
+                                                                                  const Json& own) const {
+  std::map<std::string, std::map<std::string, std::string>> found;
+  for (const auto& [key, value] : values.items()) {
+    if (own.contains(key)) continue;
+    const std::string& stem = quantities_.at(key).stem;
+    std::string& suffixes = found[stem][value.dump()];
+    suffixes += (suffixes.empty() ? "" : "|") + key.substr(stem.size() + 1);
+  }
+  return found;
+}
+
 MapSchema::Json MapSchema::Finish() const {
   Json schema = {{"type", "object"}};
   if (keys_.groups.empty()) {
-    schema["properties"] = keys_.values;
+    AddProperties(keys_.values, schema);
     schema["additionalProperties"] = false;
   } else {  // names that a group has are said by it
     Json own = Json::object(), names = Json::array();
@@ -101,7 +137,7 @@ MapSchema::Json MapSchema::Finish() const {
     Json any = Json::array();
     if (!names.empty()) any.push_back({{"enum", std::move(names)}});
     for (const std::string& group : keys_.groups) any.push_back({{"$ref", "#/$defs/" + group}});
-    schema["properties"] = std::move(own);
+    AddProperties(own, schema);
     schema["propertyNames"] = any.size() == 1 ? any.front() : Json{{"anyOf", any}};
   }
   if (base_.empty()) {
@@ -137,7 +173,10 @@ void MapSchema::AddUnits(const NumberKey& key, const std::function<Json(const Un
     const std::string name = key.name + ("_" + std::string(unit.suffix));
     names.push_back(name);
     Json number = value(unit);
-    if (&unit != &dimension.front()) number.erase("description");  // said once; the key's ending is the unit
+    if (&unit != &dimension.front()) {  // said once; the key's ending is the unit
+      number.erase("description");
+      number.erase("default");
+    }
     Add({name.c_str(), "", key.needed && dimension.size() == 1}, std::move(number));
     quantities_[name] = {key.name, units};
     any.push_back(Required(name));
@@ -316,7 +355,8 @@ void MapSchema::Group(const char* name, const std::string& of, const Part& part)
   keys_.groups.insert(keys);
   shared_.Named(keys, [&] { return Json{{"pattern", Pattern(names)}}; });
   keys_.rules.push_back(shared_.Named(full, [&] {
-    Json schema = {{"properties", group.keys_.values}};
+    Json schema = Json::object();
+    group.AddProperties(group.keys_.values, schema);
     group.keys_.AddTo(schema);
     return schema;
   }));

@@ -83,6 +83,10 @@ class MapSchema : public Fields {
   // Adds one key for each unit in which it may end. `value` makes a key's schema from its scale and unit.
   void AddUnits(const NumberKey& key, const std::function<Json(const Unit& unit)>& value);
   std::string Pattern(const std::vector<std::string>& keys) const;
+  /// Adds the keys to a map's schema.
+  void AddProperties(const Json& values, Json& schema) const;
+  std::map<std::string, std::map<std::string, std::string>> FurtherUnits(const Json& values,
+                                                                         const Json& own) const;
   Json MapOf(const Part& part) const;
   std::vector<Json> Holds(const Condition& condition) const;
   bool IsNoneIfEmpty(const Condition& condition) const;

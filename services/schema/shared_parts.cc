@@ -19,6 +19,8 @@ void VisitParts(Json& schema, const std::function<void(Json&, const std::string&
   for (const char* keyword : {"properties", "$defs"})
     if (const auto parts = schema.find(keyword); parts != schema.end())
       for (auto& [key, part] : parts->items()) visit(part, key);
+  if (const auto parts = schema.find("patternProperties"); parts != schema.end())
+    for (auto& [pattern, part] : parts->items()) visit(part, "");
   for (const char* keyword : {"anyOf", "oneOf", "allOf"})
     if (const auto parts = schema.find(keyword); parts != schema.end())
       for (Json& part : *parts) visit(part, "");

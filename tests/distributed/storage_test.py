@@ -2,6 +2,7 @@
 
 Environment as of processes.py. The full disk is a tmpfs in the mount namespace of this program.
 """
+import errno
 import json
 import os
 import sqlite3
@@ -34,9 +35,14 @@ class StorageTest(ServiceCase):
         """Takes the space that is left but for so many bytes."""
         file = self.data / "filling"
         with file.open("wb") as out:
-            space = os.statvfs(self.data)
-            os.posix_fallocate(out.fileno(), 0, space.f_bavail * space.f_frsize - leave)
-        return file
+            while True:
+                space = os.statvfs(self.data)
+                try:
+                    os.posix_fallocate(out.fileno(), 0, space.f_bavail * space.f_frsize - leave)
+                    return file
+                except OSError as error:  # the coordinator has written meanwhile
+                    if error.errno != errno.ENOSPC:
+                        raise
 
     def wait_until_it_waits(self, identity):
         wait_for(lambda: ": no space left on the disk; it " in (self.status(identity)["problem"] or ""),

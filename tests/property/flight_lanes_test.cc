@@ -14,9 +14,11 @@
 #include "core/campaign_yaml/load.h"
 #include "core/flight/lane_engine.h"
 #include "core/random/draws.h"
+#include "core/vehicle/aerodynamics_build_up.h"
 #include "tests/flexible_guided.h"
 #include "tests/liquid_stage.h"
 #include "tests/slv4_flight.h"
+#include "tests/tabulated_masses.h"
 
 namespace dispersa::flight_lanes_test {
 namespace {
@@ -68,6 +70,19 @@ FlightDefinition Definition(const std::string& law, bool with_winds, bool guided
     stages[3].jettisoned = {{"tower", 15.0, 0.1, 0.5, 0.2, 0.1, JettisonTrigger::kAtAltitude, 60e3},
                             {"fairing", 50.0, 0.2, 2.5, 1.0, 0.97, JettisonTrigger::kAtHeatFlux, 1135.0}};
     definition.jettison_s = {20.0, 85.0, 180.0};
+    // Aerodynamics that change with them and with the motor, and states an uncertainty.
+    std::vector<AeroTable> tables = BuildAerodynamics(definition.vehicle);
+    for (AeroTable& table : tables) {
+      table.ca_power_off = table.ca;
+      for (double& ca : table.ca_power_off) ca *= 1.1;
+      table.uncertainty.cn.assign(table.cn.size(), 0.05);
+    }
+    AeroTable lighter = tables[0];
+    for (double& xcp_m : lighter.xcp_station_m) xcp_m -= 0.2;
+    tables[0].lighter = {{{"skirt"}, lighter}};
+    definition.vehicle.aerodynamics = tables;
+    // Masses by tables beside grains.
+    for (const std::size_t stage : {0u, 2u}) TabulateMasses(definition.vehicle, stage, 9);
   }
   if (autopilot == "pd_aac") {
     Boosters& b = definition.vehicle.boosters;
@@ -141,7 +156,11 @@ FlightDefinition Definition(const std::string& law, bool with_winds, bool guided
   if (with_winds) {
     definition.turbulence_path =
         std::make_shared<const TurbulencePath>(ClimbPath{{0.0, 1000.0, 40e3}, {1.0, 1.0, 0.5}, 3.0});
-    definition.wind_table = WindTable{{0.0, 5000.0, 12000.0}, {1.0, 12.0, -20.0}, {3.0, -8.0, 30.0}};
+    definition.wind_table =
+        WeatherTable{WindTable{{0.0, 5000.0, 12000.0}, {1.0, 12.0, -20.0}, {3.0, -8.0, 30.0}},
+                     {},
+                     {100e3, 55e3, 20e3},
+                     {1.2, 0.75, 0.32}};
     definition.wind_statistics = WindStatistics{{0.0, 6000.0, 14000.0},
                                                 {0.0, 5.0, 20.0},
                                                 {1.0, 2.0, 3.0},

@@ -72,17 +72,17 @@ TEST(UnusualDispersions, AreErrorsOfNavigationThatNothingUses) {
 
 TEST(UnusualDispersions, AreWindsOfAnotherUnit) {
   Campaign campaign;
-  campaign.wind_table = WindTable{{0.0, 20.0}, {0.0, 3000.0}, {0.0, 4000.0}};
+  campaign.wind_table = WeatherTable{WindTable{{0.0, 20.0}, {0.0, 3000.0}, {0.0, 4000.0}}};
   EXPECT_THAT(Texts(campaign),
               testing::ElementsAre(
                   "wind_profile has a wind of 5000 m/s | up to 150 m/s (the strongest jet streams have 100 "
                   "to 120 m/s)"));
-  campaign.wind_table = WindTable{{0.0, 20.0}, {0.0, 30.0}, {0.0, 40.0}};
+  campaign.wind_table = WeatherTable{WindTable{{0.0, 20.0}, {0.0, 30.0}, {0.0, 40.0}}};
   EXPECT_THAT(Texts(campaign),
               testing::ElementsAre(
                   "wind_profile ends at 20 m, above which the wind fades within 10000 m | 5000 m or more "
                   "(altitudes may be in kilometres)"));
-  campaign.wind_table = WindTable{{0.0, 20e3}, {0.0, 30.0}, {0.0, 40.0}};
+  campaign.wind_table = WeatherTable{WindTable{{0.0, 20e3}, {0.0, 30.0}, {0.0, 40.0}}};
   EXPECT_THAT(Texts(campaign), testing::IsEmpty());
 }
 

@@ -506,7 +506,7 @@ TEST(CampaignYamlErrors, TableWithOtherColumns) {
   EXPECT_EQ(
       files.Texts(CheckFile(files.Path("campaign.yaml")).errors),
       "wind.csv:1:22: unknown column 'eest_m_s' (did you mean 'east_m_s'?), allowed: the columns altitude_m, "
-      "north_m_s, east_m_s\n");
+      "north_m_s, east_m_s, and temperature_k, pressure_pa, density_kg_m3 if there is one\n");
 }
 
 TEST(CampaignYamlErrors, ColumnThatIsGivenTwice) {
@@ -515,7 +515,7 @@ TEST(CampaignYamlErrors, ColumnThatIsGivenTwice) {
   files.Write("wind.csv", "altitude_m,north_m_s,altitude_m,east_m_s\n0,0,0,0\n1000,0,1000,5\n");
   EXPECT_EQ(files.Texts(CheckFile(files.Path("campaign.yaml")).errors),
             "wind.csv:1:22: the column 'altitude_m' is given twice, allowed: the columns altitude_m, "
-            "north_m_s, east_m_s\n");
+            "north_m_s, east_m_s, and temperature_k, pressure_pa, density_kg_m3 if there is one\n");
 }
 
 // Values without relation to an unreadable table are checked all the same.

@@ -136,7 +136,7 @@ INSTANTIATE_TEST_SUITE_P(
         BadLiquid{"CutOffByWish", With("cut_off: {at: will}"), kTanks,
                   "vehicle.yaml:11:76: stages[0].motor.liquid.cut_off.at: 'will' is not a choice, allowed: "
                   "one of depletion, "
-                  "time, inertial_velocity\n"},
+                  "time, inertial_velocity, target\n"},
         BadLiquid{"CutOffWithoutTime", With("cut_off: {at: time}"), kTanks,
                   "vehicle.yaml:11:71: stages[0].motor.liquid.cut_off: missing key 'after_s' or 'after_ms', "
                   "allowed: a "

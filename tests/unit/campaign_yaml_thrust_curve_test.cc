@@ -1,7 +1,14 @@
 // Thrust curves in vehicle files: tables, .eng files, contradictions, with the full text for each mistake.
 #include <gtest/gtest.h>
 
+#include <algorithm>
+#include <chrono>
+#include <cmath>
+
 #include "core/campaign_yaml/load.h"
+#include "core/input/number_text.h"
+#include "core/math/functions.h"
+#include "core/math/table.h"
 #include "tests/unit/input_files.h"
 
 namespace dispersa::campaign_yaml_thrust_curve_test {
@@ -75,6 +82,126 @@ TEST(ThrustCurveFile, MayGiveTheMassFlow) {
   EXPECT_EQ(motor.thrust_curve.flow_kg_s, (std::vector<double>{20.0, 30.0, 20.0}));
   EXPECT_EQ(motor.thrust_curve.thrust_n, (std::vector<double>{50e3, 70e3, 50e3}));
   EXPECT_DOUBLE_EQ(motor.burning_time_s, 25.0 * 60.2 / 30.0);
+}
+
+// A test stand's 100,000 rows: a smooth burn with a fast rise, and noise of 1 % of the greatest thrust.
+std::string TestStand(std::size_t rows, double noise, double* impulse_n_s = nullptr) {
+  std::string text = "time_s,thrust_n,chamber_pressure_bar\n";
+  const double end_s = 25.0;
+  double sum = 0.0, before_n = 0.0, before_s = 0.0;
+  std::uint64_t state = 1;
+  for (std::size_t i = 0; i < rows; ++i) {
+    const double time_s = end_s * static_cast<double>(i) / static_cast<double>(rows - 1);
+    const double x = time_s / end_s;
+    state = state * 6364136223846793005ull + 1442695040888963407ull;
+    const double random = static_cast<double>(state >> 11) / 9007199254740992.0 - 0.5;
+    const double full_n = 60e3 * (1.0 + 0.4 * std::sin(3.0 * x)) * (1.0 + 2.0 * noise * random);
+    const double thrust_n =
+        i + 1 == rows ? 0.0 : full_n * std::min({1.0, time_s / 0.1, (end_s - time_s) / 0.5});
+    if (i > 0) sum += 0.5 * (thrust_n + before_n) * (time_s - before_s);
+    before_n = thrust_n, before_s = time_s;
+    text += FormatNumber(time_s) + "," + FormatNumber(thrust_n) + "," + FormatNumber(1e-3 * thrust_n) + "\n";
+  }
+  if (impulse_n_s != nullptr) *impulse_n_s = sum;
+  return text;
+}
+
+TEST(ThrustCurveFile, OfATestStandIsThinned) {
+  const InputFiles files;
+  double impulse_n_s = 0.0;
+  files.Write("curve.csv", TestStand(100'000, 0.0, &impulse_n_s));
+  const auto start = std::chrono::steady_clock::now();
+  const Motor motor = MotorOf(files, "{thrust_curve: {reference: vacuum, table: curve.csv}}");
+  // A tenth of it on a free machine, with optimisation.
+  EXPECT_LT(std::chrono::steady_clock::now() - start, std::chrono::seconds(5));
+  const ThrustCurve& curve = motor.thrust_curve;
+  EXPECT_EQ(curve.thinned.rows, 100'000u);
+  EXPECT_LT(curve.time_s.size(), 200u);  // the error falls with the square of their number
+  EXPECT_NEAR(curve.Impulse(), impulse_n_s, 1e-12 * impulse_n_s);
+  EXPECT_LE(curve.thinned.thrust_error, kThinnedCurveTolerance);
+  EXPECT_GT(curve.thinned.thrust_error, 0.0);
+  // The exact function, everywhere, not only at rows.
+  for (int i = 0; i <= 1000; ++i) {
+    const double time_s = 25.0 * i / 1000.0;
+    const double exact_n = 60e3 * (1.0 + 0.4 * std::sin(3.0 * time_s / 25.0)) *
+                           std::min({1.0, time_s / 0.1, (25.0 - time_s) / 0.5});
+    const Table1D table{curve.time_s, curve.thrust_n};
+    EXPECT_NEAR(table(time_s), exact_n, 1.2e-4 * curve.Greatest()) << time_s;
+  }
+}
+
+// 1 % of noise cannot be followed. The fit averages it: it is nearer to the motor than the noise is.
+TEST(ThrustCurveFile, OfATestStandWithNoiseIsItsFit) {
+  const InputFiles files;
+  double impulse_n_s = 0.0;
+  files.Write("curve.csv", TestStand(20'000, 0.01, &impulse_n_s));
+  const ThrustCurve curve =
+      MotorOf(files, "{thrust_curve: {reference: vacuum, table: curve.csv}}").thrust_curve;
+  EXPECT_EQ(curve.time_s.size(), kThrustCurveCorners);
+  EXPECT_NEAR(curve.Impulse(), impulse_n_s, 1e-12 * impulse_n_s);
+  EXPECT_GE(curve.thinned.thrust_error, 0.009);
+  EXPECT_LE(curve.thinned.thrust_error, 0.016);
+  double sum = 0.0;
+  const Table1D table{curve.time_s, curve.thrust_n};
+  for (int i = 0; i <= 1000; ++i) {
+    const double time_s = 25.0 * i / 1000.0;
+    const double exact_n = 60e3 * (1.0 + 0.4 * std::sin(3.0 * time_s / 25.0)) *
+                           std::min({1.0, time_s / 0.1, (25.0 - time_s) / 0.5});
+    sum += Square((table(time_s) - exact_n) / curve.Greatest());
+  }
+  EXPECT_LT(std::sqrt(sum / 1001.0), 0.004);  // the noise has 0.0058
+}
+
+TEST(ThrustCurveFile, IsThinnedOnceForAll) {
+  const InputFiles files;
+  files.Edit("vehicle.yaml", kMotor, "{thrust_curve: {reference: vacuum, table: curve.csv}}");
+  files.Write("curve.csv", TestStand(5000, 0.01));
+  const Campaign campaign = LoadCampaign(files.Path("campaign.yaml"));
+  const Campaign again = ParseCampaign(campaign.canonical_yaml, "again");
+  EXPECT_EQ(again.canonical_yaml, campaign.canonical_yaml);
+  EXPECT_EQ(again.flight_id, campaign.flight_id);
+  const ThrustCurve &here = campaign.vehicle.stages[0].motor.thrust_curve,
+                    &there = again.vehicle.stages[0].motor.thrust_curve;
+  EXPECT_EQ(here.time_s.size(), kThrustCurveCorners);
+  EXPECT_EQ(there.time_s, here.time_s);
+  EXPECT_EQ(there.thrust_n, here.thrust_n);
+  EXPECT_EQ(there.pressure_pa, here.pressure_pa);
+}
+
+TEST(ThrustCurveFile, OfAThousandRowsIsNotThinned) {
+  const InputFiles files;
+  files.Write("curve.csv", TestStand(1000, 0.01));
+  const ThrustCurve curve =
+      MotorOf(files, "{thrust_curve: {reference: vacuum, table: curve.csv}}").thrust_curve;
+  EXPECT_EQ(curve.thinned.rows, 0u);
+  EXPECT_EQ(curve.time_s.size(), 1000u);
+}
+
+// One row more, of an .eng file, and rows of noise alone: no value below 0.
+TEST(ThrustCurveFile, OfAnEngFileIsThinnedToo) {
+  const InputFiles files;
+  std::string text = "A 98 640 0 1 2 NOBODY\n";
+  for (int i = 1; i <= 1001; ++i)
+    text += FormatNumber(0.02 * i) + " " + FormatNumber(i == 1001 ? 0.0 : i % 2 == 0 ? 50e3 : 1.0) + "\n";
+  files.Write("curve.eng", text);
+  const ThrustCurve curve =
+      MotorOf(files, "{thrust_curve: {reference: vacuum, table: curve.eng}}").thrust_curve;
+  EXPECT_EQ(curve.thinned.rows, 1002u);
+  EXPECT_EQ(curve.time_s.size(), kThrustCurveCorners);
+  for (double thrust_n : curve.thrust_n) EXPECT_GE(thrust_n, 0.0);
+}
+
+TEST(ThrustCurveFile, ChamberPressureOfAnotherTestIsUnusual) {
+  const InputFiles files;
+  files.Edit(
+      "vehicle.yaml", kMotor,
+      "{thrust_curve: {reference: vacuum, table: {time_s: [0, 30, 60], thrust_n: [60000, 60000, 40000], "
+      "chamber_pressure_bar: [0, 1, 60]}}}");
+  const std::string said = files.Texts(CheckFile(files.Path("vehicle.yaml")).warnings);
+  EXPECT_NE(said.find("stages[0].motor.thrust_curve.table.chamber_pressure_bar: goes with the thrust with a "
+                      "correlation of 0.65"),
+            std::string::npos)
+      << said;
 }
 
 TEST(ThrustCurveFile, StandsInTheIdOfWhatFlies) {
@@ -178,7 +305,8 @@ INSTANTIATE_TEST_SUITE_P(
             "propellant_mass_kg is 1500.000000, allowed: flows that sum up to the propellant within 1 %\n"},
         BadCurve{"FlowMisspelt", kCsvMotor, "curve.csv", "time_s,thrust_n,mass_flow_kgs\n0,9,1\n5,9,1\n",
                  "curve.csv:1:17: unknown column 'mass_flow_kgs' (did you mean 'mass_flow_kg_s'?), "
-                 "allowed: the columns time_s, thrust_n, and mass_flow_kg_s if there is one\n"},
+                 "allowed: the columns time_s, thrust_n, and mass_flow_kg_s, chamber_pressure_pa if there is "
+                 "one\n"},
         BadCurve{"ShortHeader", kEngMotor, "curve.eng", Eng(" NOBODY", ""),
                  "curve.eng:2:1: the header has 6 fields in place of 7, allowed: " HEADER "\n"},
         BadCurve{"DiameterOfWords", kEngMotor, "curve.eng", Eng(" 98 ", " wide "),

@@ -117,7 +117,7 @@ class Shells(unittest.TestCase):
         self.assertEqual(self.bash("dispersa", "run", "table.yaml", "--out", "t"), ["tables"])
         self.assertEqual(self.bash("dispersa", "fly", "table.yaml", "--history", "score.c"), ["score.csv"])
         self.assertEqual(self.bash("dispersa", "fly", "sc"), ["score.yml"])
-        self.assertEqual(self.bash("dispersa", "search", "table.yaml", "--metric", "apo"), ["apogee_km"])
+        self.assertEqual(self.bash("dispersa", "search", "table.yaml", "--metric", "perig"), ["perigee_km"])
         self.assertEqual(self.bash("dispersa-worker", "--pe"), ["--peer"])
 
     @unittest.skipUnless(shutil.which("fish"), "fish is not installed (tests/packages.txt)")
@@ -134,7 +134,7 @@ class Shells(unittest.TestCase):
         self.assertEqual(sorted(fish("dispersa fly t")), ["table.yaml", "tables/", "two words.yaml"])
         self.assertEqual(fish("dispersa fly table.yaml --history score.c"), ["score.csv"])
         self.assertEqual(fish("dispersa fly sc"), ["score.yml"])
-        self.assertEqual(fish("dispersa compare a b --metric apo"), ["apogee_km"])
+        self.assertEqual(fish("dispersa compare a b --metric perig"), ["perigee_km"])
         self.assertEqual(fish("dispersa run table.yaml --out t"), ["tables/"])
         self.assertEqual(fish("dispersa run table.yaml --out=t"), ["--out=tables/"])
         self.assertEqual(fish("dispersa-worker --pe"), ["--peer"])
@@ -176,7 +176,7 @@ class Shells(unittest.TestCase):
                                 ("dispersa fly tw", "dispersa fly two\\ words.yaml "),
                                 ("dispersa fly table.yaml --history score.c", "dispersa fly table.yaml --history score.csv "),
                                 ("dispersa fly sc", "dispersa fly score.yml "),
-                                ("dispersa search --metric apog", "dispersa search --metric apogee_km "),
+                                ("dispersa search --metric perig", "dispersa search --metric perigee_km "),
                                 ("dispersa run table.yaml --out t", "dispersa run table.yaml --out tables/"),
                                 ("dispersa-worker --pe", "dispersa-worker --peer ")]:
             self.assertEqual(self.zsh(line), completed)

@@ -22,6 +22,7 @@ inline const std::vector<std::pair<const char*, Dimension>> kDimensions = {
     {"force", kForce},
     {"moment", kMoment},
     {"pressure", kPressure},
+    {"pressure of a gas", kGasPressure},
     {"pressure times angle", kPressureAngle},
     {"heat flux", kHeatFlux},
     {"speed", kSpeed},
@@ -36,6 +37,7 @@ inline const std::vector<std::pair<const char*, Dimension>> kDimensions = {
     {"per speed", kPerSpeed},
     {"density", kDensity},
     {"share", kShare},
+    {"temperature", kTemperature},
     {"temperature difference", kTemperatureDifference},
     {"per temperature", kPerTemperature},
     {"per angle", kPerAngle}};

@@ -10,7 +10,7 @@ import unittest
 BINARY = pathlib.Path(os.environ["DISPERSA_BINARIES"]) / "dispersa"
 GALLERY = pathlib.Path(os.environ["DISPERSA_CAMPAIGNS"]) / "gallery"
 TABLE = pathlib.Path(__file__).parent.parent / "tools" / "gallery_table.py"
-CONTROLLED = ("vega", "electron", "scout")
+CONTROLLED = ("vega", "electron", "scout", "falcon9", "falcon9_leo")
 LAUNCHERS = (*CONTROLLED, "nike_apache")
 CASES = 8
 
@@ -48,7 +48,8 @@ class Gallery(unittest.TestCase):
 
     def test_the_sounding_rocket_has_no_autopilot(self):
         for command in ("margins", "tune", "optimize"):
-            done = run(BINARY, command, GALLERY / "nike_apache" / "campaign.yaml")
+            out = ["--out", "tuned.yaml"] if command == "tune" else []
+            done = run(BINARY, command, GALLERY / "nike_apache" / "campaign.yaml", *out)
             self.assertEqual(done.returncode, 2, command)
             self.assertIn("'nike_apache' has no autopilot", done.stderr, command)
 

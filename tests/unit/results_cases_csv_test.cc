@@ -23,8 +23,13 @@ using testing::HasSubstr;
 using testing::Not;
 using testing::StartsWith;
 
-// Of the law that has every metric.
-std::vector<std::size_t> AllMetrics() { return MetricsUnder(kUsualStages, ControlLaw::kAdaptiveFuzzy); }
+// Of the law that has every metric, and of flights of all kinds.
+std::vector<std::size_t> AllMetrics(ControlLaw law = ControlLaw::kAdaptiveFuzzy) {
+  FlightKind kind(law);
+  kind.has_free_stage = kind.has_rail = true;
+  kind.ends = FlightEnd::kImpact;
+  return MetricsUnder(kUsualStages, kind);
+}
 CsvColumns AllColumns() {
   CsvColumns columns{std::vector<std::size_t>(InputCount(kUsualStages)), AllMetrics()};
   std::iota(columns.inputs.begin(), columns.inputs.end(), std::size_t{0});
@@ -75,8 +80,8 @@ TEST(CasesCsv, HasTheMetricsOfItsLawAlone) {
   for (std::size_t i = 0; i < stored.size(); ++i)
     EXPECT_EQ(std::isnan(stored[i]), Metrics()[i].of_law != nullptr) << MetricNames()[i];
 
-  EXPECT_EQ(MetricsUnder(kUsualStages, ControlLaw::kPd).size() + 4, AllMetrics().size());
-  EXPECT_EQ(MetricsUnder(kUsualStages, ControlLaw::kFrozenFuzzy).size() + 1, AllMetrics().size());
+  EXPECT_EQ(AllMetrics(ControlLaw::kPd).size() + 4, AllMetrics().size());
+  EXPECT_EQ(AllMetrics(ControlLaw::kFrozenFuzzy).size() + 1, AllMetrics().size());
 }
 
 TEST(CasesCsv, WritesOneLineACase) {

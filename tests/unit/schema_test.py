@@ -201,7 +201,9 @@ class SchemaTest(unittest.TestCase):
         self.assertEqual({"type": "number", "exclusiveMinimum": 0, "exclusiveMaximum": 1,
                           "description": "above 0 and below 1: share of flights that must keep the limit"},
                          campaign["properties"]["requirements"]["items"]["properties"]["probability"])
-        limit = vehicle["properties"]["stages"]["items"]["properties"]["gimbal"]["properties"]["rate_limit_deg_s"]
+        limit = vehicle["properties"]["boosters"]["properties"]["gimbal"]["properties"]["rate_limit_deg_s"]
+        if "$ref" in limit:  # said once, for stages and boosters
+            limit = vehicle["$defs"][limit["$ref"].rsplit("/", 1)[1]]
         self.assertEqual("°/s, above 0: of each drive", limit["description"])
         self.assertEqual(6, autopilot["$defs"]["axis_law"]["properties"]["gains"]["maxItems"])
 

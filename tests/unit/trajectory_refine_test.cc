@@ -10,6 +10,7 @@
 
 #include "core/campaign_yaml/load.h"
 #include "core/math/constants.h"
+#include "core/trajectory/aim.h"
 
 namespace dispersa::trajectory_refine_test {
 namespace {
@@ -62,6 +63,46 @@ TEST(RefineProgram, LeavesTheSpeedToAnEngineThatIsCutOffAtOne) {
   EXPECT_LT(std::fabs(errors.altitude_m), 1.0);
   EXPECT_LT(std::fabs(errors.flight_path_angle_rad), 1e-6 * kRadPerDeg);
   EXPECT_LT(std::fabs(errors.velocity_m_s), 0.1);
+}
+
+// Falcon 9 to a transfer orbit by two burns of stage 2. The first variables, the incidence of stage 1 and the
+// azimuth, are frozen: coast and the incidence of stage 2 meet the perigee and its argument.
+TEST(RefineProgram, FindsATransferOrbitFromWideBoundsBesideACutOff) {
+  AscentModel model = BuildAscentModel(LoadVehicle(DISPERSA_CAMPAIGNS "/gallery/falcon9/vehicle.yaml"), 0.01);
+  const Reference shipped = LoadReference(DISPERSA_CAMPAIGNS "/gallery/falcon9/reference.yaml");
+  TrajectoryProblem problem = shipped.problem;
+  AimAt(problem, model.vehicle);
+  problem.coast_s = {600.0, 1500.0};
+  problem.steering[1] = {{-5.0 * kRadPerDeg, 30.0 * kRadPerDeg}, {-20.0 * kRadPerDeg, 10.0 * kRadPerDeg}};
+  for (const double off : {-1.0, 1.0}) {
+    FlightProgram program = shipped.program;
+    program.coast_s += 60.0 * off;
+    program.steering[1].begin_rad += 2.0 * off * kRadPerDeg;
+    program.steering[1].end_rad -= 2.0 * off * kRadPerDeg;
+    AscentResult ascent;
+    const LeastSquaresResult refined = RefineProgram(model, problem, {}, &program, &ascent);
+    EXPECT_EQ(refined.status, LeastSquaresStatus::kConverged) << Describe(refined.status);
+    EXPECT_TRUE(EndsByVelocity(model, ascent));
+    EXPECT_TRUE(IsWithin(ErrorsOf(problem, ascent.orbit), TrajectoryOptions().tolerance));
+  }
+}
+
+// Electron with a frozen coast and pitch-over: the azimuth, which comes before the incidence of stage 2, does
+// nothing for altitude and angle. The refinement goes on with all that is free.
+TEST(RefineProgram, GoesOnWithAllVariablesWhereTheFirstDoNothing) {
+  const AscentModel model =
+      BuildAscentModel(LoadVehicle(DISPERSA_CAMPAIGNS "/gallery/electron/vehicle.yaml"), 0.01);
+  const Reference shipped = LoadReference(DISPERSA_CAMPAIGNS "/gallery/electron/reference.yaml");
+  TrajectoryProblem problem = shipped.problem;
+  problem.alpha_max_rad = {shipped.program.alpha_max_rad, shipped.program.alpha_max_rad};
+  FlightProgram program = shipped.program;
+  program.steering[1].begin_rad -= 1.0 * kRadPerDeg;
+  AscentResult ascent;
+  const LeastSquaresResult refined = RefineProgram(model, problem, {}, &program, &ascent);
+  EXPECT_EQ(refined.status, LeastSquaresStatus::kConverged) << Describe(refined.status);
+  const OrbitErrors errors = ErrorsOf(problem, ascent.orbit);
+  EXPECT_LT(std::fabs(errors.altitude_m), 1.0);
+  EXPECT_LT(std::fabs(errors.flight_path_angle_rad), 1e-6 * kRadPerDeg);
 }
 
 // One condition is tight and the others loose, in turn: a residual in another's scale would end too early.

@@ -300,6 +300,8 @@ TEST(ApartBoosters, EffectivenessIsTheDerivativeOfTheMotion) {
         const double table = (axis == kRoll ? control.roll_effectiveness_1_s2
                                             : control.pitch_effectiveness_1_s2)(s.since_ignition_s);
         EXPECT_NEAR(linear.a(1, 2), table, 5e-3 * table) << alone << " " << axis << " " << s.time_s;
+        // The slower drives stand for all: 25 rad/s of the stage, 30 of the boosters.
+        EXPECT_NEAR(-linear.a(3, 2), alone && s.boosting ? 900.0 : 625.0, 1e-9);
       }
       ++seen;
     }

@@ -1,0 +1,21 @@
+// Ends of burns that the flight computer finds by the speed: cut_off: {at: inertial_velocity} and {at:
+// target}.
+#pragma once
+
+#include "core/vehicle/motor.h"
+
+namespace dispersa {
+
+/// Whether a speed ends a motor's burn: then only a flight tells when.
+inline bool EndsAtSpeed(const Motor& motor) {
+  return motor.cut_off == CutOff::kAtVelocity || motor.cut_off == CutOff::kAtTarget;
+}
+
+/// The inertial speed (m/s) at which the engine is cut off, at a distance from the Earth's centre and a
+/// geodetic altitude. For `at: target` it is that of an orbit with the target's energy about a point mass.
+/// Infinite if no target has been given (core/trajectory/aim.h). Precondition: EndsAtSpeed(motor).
+double CutOffSpeed(const Motor& motor, double radius_m, double altitude_m);
+/// How fast that speed changes (m/s²) while the radius grows by `climb_m_s`.
+double CutOffSpeedRate(const Motor& motor, double radius_m, double altitude_m, double climb_m_s);
+
+}  // namespace dispersa

@@ -1,0 +1,61 @@
+// Mass properties of a stage as CAD gives them, over the propellant that is left.
+#pragma once
+
+#include <memory>
+#include <vector>
+
+#include "core/math/aligned_rows.h"
+
+namespace dispersa {
+
+class Fields;
+struct MotorBurn;
+
+/// The stage alone: its dry mass and its propellant, without boosters, jettisoned bodies and stages above.
+/// Centre of gravity on the axis. Inertias are about it, along and across the axis. Replaces the tubes of
+/// structure, grain and tanks in flight. Its dry and propellant masses are the stage's own keys.
+struct MassTable {
+  std::vector<double> time_s;         ///< since ignition (empty: the rows are over propellant)
+  std::vector<double> propellant_kg;  ///< left
+  std::vector<double> mass_kg;        ///< of the stage, checked (empty: not given)
+  std::vector<double> cg_station_m;
+  std::vector<double> axial_inertia_kg_m2;
+  std::vector<double> transverse_inertia_kg_m2;
+
+  bool empty() const { return cg_station_m.empty(); }
+};
+void Describe(Fields& fields, MassTable& table);
+
+/// Replaces the times by the propellant that the burn leaves at them, and sorts the rows by it.
+void PutOverPropellant(const MotorBurn& burn, MassTable& table);
+
+/// Sums of the stage over its propellant m: the first and the second (transverse) moment about station 0,
+/// and the axial inertia. They are linear between the rows and beyond them. So mass, centre of gravity and
+/// inertias meet the table at its rows, and the derivatives by m, which the equations of the flow need, are
+/// those of the same functions. The error between rows falls with the square of their distance.
+struct MassRows {
+  /// m at the row, then of each sum its value less that without propellant, and its slope.
+  static constexpr int kRowSize = 8;
+  AlignedRows rows;
+  std::vector<double> begin_kg;  ///< of each piece
+  // Without propellant:
+  double first_moment_kg_m = 0.0, second_moment_kg_m2 = 0.0, axial_inertia_kg_m2 = 0.0;
+
+  struct Sums {
+    double first_moment_kg_m, second_moment_kg_m2, axial_inertia_kg_m2;
+  };
+  /// Of the propellant: to be added to those without.
+  Sums OfPropellant(double propellant_kg) const;
+};
+/// Precondition: two rows or more, over propellant.
+MassRows BuildMassRows(const MassTable& table, double dry_kg);
+
+/// What a stage with a table is in a flight: the rows, and how its dry mass differs from theirs.
+struct StageMassTable {
+  std::shared_ptr<const MassRows> rows;  ///< null: the stage has none
+  double dry_factor = 1.0;
+  double added_kg = 0.0;  ///< of an element of the structure
+  std::size_t element = 0;
+};
+
+}  // namespace dispersa

@@ -1,0 +1,393 @@
+// Every pair of the vehicle's capabilities in one launcher: it flies to its end, in any number of lanes with
+// the same bits, and neither mass nor momentum appears or vanishes. The page of capabilities is written from
+// what this test finds.
+#include <gtest/gtest.h>
+
+#include <algorithm>
+#include <cmath>
+#include <cstdlib>
+#include <fstream>
+#include <functional>
+#include <iterator>
+#include <string>
+#include <vector>
+
+#include "core/campaign_yaml/load.h"
+#include "core/environment/earth.h"
+#include "core/flight/flight_queue.h"
+#include "core/flight/flight_record.h"
+#include "core/flight/lane_engine.h"
+#include "core/flight/tick_sample.h"
+#include "core/math/rotation.h"
+#include "core/random/draws.h"
+#include "core/trajectory/ascent.h"
+#include "core/vehicle/mass.h"
+#include "tests/liquid_stage.h"
+#include "tests/slv4_flight.h"
+
+namespace dispersa::capability_pairs_test {
+namespace {
+
+constexpr char kPage[] = DISPERSA_CAMPAIGNS "/../services/docs/pages/capabilities.md";
+constexpr char kBegin[] = "<!-- pairs:begin -->\n", kEnd[] = "<!-- pairs:end -->";
+
+// SLV-4 with capabilities. What it flies follows from the vehicle, by an ascent of its own.
+struct Launcher {
+  Vehicle vehicle = LoadVehicle(DISPERSA_CAMPAIGNS "/vehicles/slv4.yaml");
+  FlightProgram program = LoadReference(DISPERSA_CAMPAIGNS "/references/slv4_500km_reserve.yaml").program;
+  std::string autopilot = "adaptive_fuzzy";
+  bool is_guided = false, is_turbulent = false, draws_masses = false;
+};
+
+Vehicle Flexible() { return LoadVehicle(DISPERSA_CAMPAIGNS "/vehicles/slv4_flexible.yaml"); }
+
+void AddBoosters(Launcher& launcher) {
+  Boosters& b = launcher.vehicle.boosters;
+  b = {4, 150.0, 900.0, 0.97, 0.62, 21.0, 26.5, 26.4, {}, {22.0, 24.05, 0.6, 0.2}, 0.5};
+  b.motor.thrust_n = 80e3;
+  b.motor.burning_time_s = 30.0;
+  launcher.vehicle.stages[0].liftoff_mass_kg += b.LiftOffMass();
+}
+// The same boosters, or as many: each a body of its own, with a canted nozzle that turns.
+void SteerByBoosters(Launcher& launcher) {
+  Boosters& b = launcher.vehicle.boosters;
+  if (b.count == 0) AddBoosters(launcher);
+  for (int k = 0; k < b.count; ++k) b.angles_rad.push_back(kTwoPi * k / b.count);
+  b.cant_rad = 3.0 * kRadPerDeg;
+  b.gimbal = launcher.vehicle.stages[0].gimbal;
+  b.gimbal.nozzles.clear();
+  b.gimbal.nozzle_mass_kg = b.gimbal.nozzle_inertia_kg_m2 = b.gimbal.nozzle_cg_m = 0.0;
+  b.towards_rad = {90.0 * kRadPerDeg, 180.0 * kRadPerDeg};
+}
+void AddFairing(Launcher& launcher) {
+  launcher.vehicle.stages[3].jettisoned = {
+      {"fairing", 50.0, 0.1, 2.5, 0.6, 0.57, JettisonTrigger::kAtAltitude, 90e3}};
+}
+void AddBending(Launcher& launcher) {
+  Vehicle& vehicle = launcher.vehicle;
+  const Vehicle flexible = Flexible();
+  vehicle.structure_beam = flexible.structure_beam;
+  vehicle.sensors = flexible.sensors;
+  launcher.autopilot = "flexible";  // which blends the gyros
+  StructureBeam& beam = *vehicle.structure_beam;
+  beam.elements = 12;  // coarse: flights whose masses are drawn have modes of their own
+  beam.propellant_levels = 5;
+  if (vehicle.stages[3].jettisoned.empty()) return;
+  LumpedMass fairing;
+  fairing.name = fairing.element = "fairing";
+  fairing.station_m = 1.65;
+  beam.stages[3].lumped_masses.push_back(fairing);
+}
+void MakeLastStageLiquid(Launcher& launcher) {
+  Stage& last = launcher.vehicle.stages.back();
+  if (!last.is_liquid()) MakeLiquid(last);
+}
+void AddRestart(Launcher& launcher) {
+  Vehicle& vehicle = launcher.vehicle;
+  MakeLastStageLiquid(launcher);
+  vehicle.stages.push_back(vehicle.stages.back());
+  Stage &first = *(vehicle.stages.end() - 2), &again = vehicle.stages.back();
+  again.restarts = true;
+  first.motor.cut_off = CutOff::kAtTime;
+  first.motor.cut_off_s = 0.5 * first.motor.burning_time_s;
+  again.liftoff_mass_kg -= 0.5 * again.propellant_mass_kg;
+  again.propellant_mass_kg *= 0.5;
+  again.motor.burning_time_s *= 0.5;
+  for (Tank& tank : again.tanks) tank.propellant_mass_kg *= 0.5;
+  launcher.program.earlier_coast_s[3] = launcher.program.coast_s;
+  launcher.program.coast_s = 100.0;
+  if (!vehicle.structure_beam) return;
+  vehicle.structure_beam->stages.push_back(vehicle.structure_beam->stages.back());
+}
+void CutOffAtVelocity(Launcher& launcher) {
+  MakeLastStageLiquid(launcher);
+  Motor& engine = launcher.vehicle.stages.back().motor;
+  engine.cut_off = CutOff::kAtVelocity;
+  engine.cut_off_velocity_m_s = 7300.0;
+}
+void Throttle(Launcher& launcher) {
+  Stage& stage = launcher.vehicle.stages[1];
+  MakeLiquid(stage);
+  stage.motor.residual_mass_kg = 0.005 * stage.propellant_mass_kg;
+  stage.motor.throttle = {{0.0, 10.0, 20.0}, {1.0, 1.0, 0.8}};
+}
+void UseThrustCurve(Launcher& launcher) {
+  Motor& motor = launcher.vehicle.stages[0].motor;
+  ThrustCurve curve{{0.0, 0.7, 13.3, 41.1, 54.0, 55.0}, {0.3, 1.0, 1.05, 0.95, 0.9, 0.0}};
+  for (double& time_s : curve.time_s) time_s *= motor.burning_time_s / 55.0;
+  for (double& thrust_n : curve.thrust_n) thrust_n *= motor.thrust_n;
+  SetThrustCurve(curve, motor);
+}
+void ListNozzles(Launcher& launcher) {
+  Gimbal& gimbal = launcher.vehicle.stages[1].gimbal;
+  for (const double at : {0.0, 120.0 * kRadPerDeg, 240.0 * kRadPerDeg})
+    gimbal.nozzles.push_back({"at " + std::to_string(gimbal.nozzles.size()),
+                              gimbal.radius_m * std::cos(at),
+                              gimbal.radius_m * std::sin(at),
+                              1.0 / 3.0,
+                              {at + 90.0 * kRadPerDeg},
+                              0.0});
+}
+// Eight engines in a ring about one, with two hinges each.
+void AddCluster(Launcher& launcher) {
+  Gimbal& gimbal = launcher.vehicle.stages[0].gimbal;
+  const std::vector<double> hinges = {90.0 * kRadPerDeg, 180.0 * kRadPerDeg};
+  gimbal.nozzles = {{"centre", 0.0, 0.0, 1.0 / 9.0, hinges, 0.0}};
+  for (int k = 0; k < 8; ++k)
+    gimbal.nozzles.push_back({"ring " + std::to_string(k + 1), 0.4 * std::cos(kTwoPi * k / 8),
+                              0.4 * std::sin(kTwoPi * k / 8), 1.0 / 9.0, hinges, 0.0});
+}
+void AddGyros(Launcher& launcher) {
+  const Vehicle flexible = Flexible();
+  launcher.vehicle.sensors = flexible.sensors;
+}
+
+struct Capability {
+  std::string name;
+  std::function<void(Launcher&)> add;
+};
+// In the order in which they are added. What comes later knows what came before.
+const std::vector<Capability>& Capabilities() {
+  static const std::vector<Capability> all = {
+      {"boosters", AddBoosters},
+      {"boosters that steer", SteerByBoosters},
+      {"fairing", AddFairing},
+      {"bending", AddBending},
+      {"restart", AddRestart},
+      {"cut-off by velocity", CutOffAtVelocity},
+      {"throttle", Throttle},
+      {"thrust curve", UseThrustCurve},
+      {"list of nozzles", ListNozzles},
+      {"cluster of engines", AddCluster},
+      {"rate gyros", AddGyros},
+      {"closed loop", [](Launcher& launcher) { launcher.is_guided = true; }},
+      {"turbulence", [](Launcher& launcher) { launcher.is_turbulent = true; }},
+      {"drawn masses", [](Launcher& launcher) { launcher.draws_masses = true; }},
+  };
+  return all;
+}
+
+FlightDefinition DefinitionOf(const Launcher& launcher) {
+  AscentOptions options;
+  options.record = true;
+  const AscentResult ascent = FlyAscent(BuildAscentModel(launcher.vehicle, 0.01), launcher.program, options);
+  FlightDefinition definition = Slv4Definition(DISPERSA_CAMPAIGNS, launcher.autopilot, "slv4_500km_reserve");
+  definition.vehicle = launcher.vehicle;
+  definition.program = ascent.attitude;
+  definition.last_ignition_s = ascent.last_ignition_s;
+  definition.earlier_ignition_s = ascent.earlier_ignition_s;
+  definition.cut_off_s = ascent.cut_off_s;
+  definition.jettison_s = ascent.jettison_s;
+  definition.guidance.closed_loop = launcher.is_guided;
+  definition.noise_seed = 7;
+  if (launcher.is_turbulent)
+    definition.turbulence_path =
+        std::make_shared<const TurbulencePath>(ClimbPath{{0.0, 1000.0, 40e3}, {1.0, 1.0, 0.5}, 3.0});
+  for (AxisConfig* axis :
+       {&definition.autopilot.roll, &definition.autopilot.pitch, &definition.autopilot.yaw})
+    for (std::size_t stage = 4; stage < launcher.vehicle.stages.size(); ++stage) {
+      const auto repeat = [](auto& list) {
+        if (list.size() >= 4) list.push_back(list.back());
+      };
+      repeat(axis->gains);
+      repeat(axis->adaptation.gamma);
+      repeat(axis->integral.ki_1_s3);
+    }
+  return definition;
+}
+
+FlightInputs InputsOf(const Launcher& launcher, std::uint64_t index) {
+  Stream draws(3, index, "pairs");
+  FlightInputs in = Table3Inputs();
+  for (double& factor : in.thrust_factor) factor = 1.0 + 0.002 * draws.Normal();
+  in.wind_max_speed_m_s = 30.0 * draws.Uniform();
+  if (launcher.is_turbulent) in.turbulence_exceedance = 1e-1;
+  if (launcher.vehicle.sensors.rate_gyros.empty()) in.gyro_noise_rad_s = 0.002 * kRadPerDeg;
+  if (!launcher.draws_masses) return in;
+  for (std::size_t stage = 0; stage < 4; ++stage) {
+    in.dry_mass_factor[stage] = 1.0 + 0.005 * draws.Normal();
+    in.propellant_factor[stage] = 1.0 + 0.002 * draws.Normal();
+  }
+  return in;
+}
+
+// What an outsider with a balance and a clock sees of a flight: samples at its ticks and events.
+class Bookkeeper {
+ public:
+  explicit Bookkeeper(const Earth& earth) : earth_(earth) {}
+
+  void See(const TickSample& now) {
+    const double mass_kg = now.instant.loads.mass_kg;
+    const Vector3 acceleration =
+        Gravitation(earth_, now.state.p_EoC_I) + Rotate(now.state.q_IB, now.instant.loads.force_n / mass_kg);
+    if (is_first_) {
+      is_first_ = false;
+    } else {
+      const double step_s = now.time_s - time_s_;
+      const bool is_event = step_s <= 0.0 || now.stack != stack_ || now.burning != burning_ ||
+                            now.boosting != boosting_ || now.jettisoned != jettisoned_;
+      const double change_m_s = (now.state.v_IC_I - v_m_s_ - 0.5 * step_s * (acceleration + a_m_s2_)).norm();
+      const double flown_kg = mass_kg_ - mass_kg;
+      if (is_event) {
+        const double part_m_s = step_s * std::max(acceleration.norm(), a_m_s2_.norm());
+        largest_event_m_s = std::max(largest_event_m_s, change_m_s - part_m_s);
+      } else {
+        largest_tick_m_s = std::max(largest_tick_m_s, change_m_s);
+        unbooked_kg += flown_kg - 0.5 * step_s * (now.instant.flow_kg_s + flow_kg_s_) -
+                       (now.expelled_mass_kg - expelled_kg_);
+      }
+    }
+    time_s_ = now.time_s;
+    stack_ = now.stack;
+    burning_ = now.burning;
+    boosting_ = now.boosting;
+    jettisoned_ = now.jettisoned;
+    mass_kg_ = mass_kg;
+    flow_kg_s_ = now.instant.flow_kg_s;
+    expelled_kg_ = now.expelled_mass_kg;
+    v_m_s_ = now.state.v_IC_I;
+    a_m_s2_ = acceleration;
+  }
+
+  double largest_tick_m_s = 0.0;   ///< change of speed that no force explains, over a tick
+  double largest_event_m_s = 0.0;  ///< the same over a tick with an event, without what a part of it may do
+  double unbooked_kg = 0.0;        ///< mass that left neither through a nozzle nor at an event
+
+ private:
+  const Earth& earth_;
+  bool is_first_ = true;
+  double time_s_ = 0.0, mass_kg_ = 0.0, flow_kg_s_ = 0.0, expelled_kg_ = 0.0;
+  int stack_ = 0;
+  bool burning_ = false, boosting_ = false;
+  unsigned jettisoned_ = 0;
+  Vector3 v_m_s_ = Vector3::Zero(), a_m_s2_ = Vector3::Zero();
+};
+
+class Queue : public FlightQueue {
+ public:
+  Queue(const FlightModel& model, std::vector<FlightOrder> orders)
+      : model_(model), orders_(std::move(orders)) {
+    results.resize(orders_.size());
+    records_.resize(orders_.size());
+  }
+  FlightRecord* Next(bool) override {
+    if (next_ == orders_.size()) return nullptr;
+    records_[next_] = std::make_unique<FlightRecord>(model_, orders_[next_]);
+    return records_[next_++].get();
+  }
+  void Done(FlightRecord* record) override {
+    for (std::size_t i = 0; i < records_.size(); ++i)
+      if (records_[i].get() == record) results[i] = record->Result();
+  }
+  std::vector<FlightResult> results;
+
+ private:
+  const FlightModel& model_;
+  std::vector<FlightOrder> orders_;
+  std::vector<std::unique_ptr<FlightRecord>> records_;
+  std::size_t next_ = 0;
+};
+
+// Empty if the pair flies, else why the vehicle is refused.
+std::string Refusal(const Launcher& launcher) {
+  const std::vector<StructProblem> problems = Problems(launcher.vehicle);
+  return problems.empty() ? "" : problems[0].path + ": " + problems[0].message;
+}
+
+std::uint64_t Cases() {
+  const char* cases = std::getenv("DISPERSA_PAIR_CASES");
+  return cases == nullptr ? 2 : std::stoull(cases);
+}
+
+void ExpectFlies(const Launcher& launcher) {
+  const FlightModel model(DefinitionOf(launcher));
+  std::vector<FlightOrder> orders;
+  std::vector<FlightResult> alone;
+  for (std::uint64_t index = 0; index < Cases(); ++index) {
+    FlightOrder order{InputsOf(launcher, index), {}};
+    order.options.case_index = index;
+    orders.push_back(order);
+    Bookkeeper books(model.nominal_plant().environment.earth);
+    order.options.observe = [&](const TickSample& now) { books.See(now); };
+    alone.push_back(Fly(model, order.inputs, order.options));
+    EXPECT_EQ(alone.back().outcome, Outcome::kCompleted) << alone.back().reason;
+    // Of the trapezium rule over a tick, with the jumps of wind and thrust inside it.
+    EXPECT_LT(books.largest_tick_m_s, 2e-3);
+    // Nothing pushes where a body leaves. The rest's centre of gravity is elsewhere in a turning body: metres
+    // at a few degrees a second.
+    EXPECT_LT(books.largest_event_m_s, 0.5);
+    EXPECT_LT(std::fabs(books.unbooked_kg), 1e-4 * launcher.vehicle.stages[0].liftoff_mass_kg);
+  }
+  for (const LaneEngine& engine : UsableEngines()) {
+    Queue together(model, orders);
+    engine.fly(model, together);
+    for (std::size_t i = 0; i < orders.size(); ++i)
+      EXPECT_EQ(together.results[i].digest, alone[i].digest)
+          << engine.isa << ", " << engine.lanes << " lanes, case " << i;
+  }
+}
+
+Launcher With(const std::vector<std::size_t>& capabilities) {
+  Launcher launcher;
+  for (const std::size_t i : capabilities) Capabilities()[i].add(launcher);
+  return launcher;
+}
+
+class Pair : public testing::TestWithParam<std::size_t> {};
+
+// A capability with each of those after it, and alone.
+TEST_P(Pair, Flies) {
+  const std::size_t first = GetParam();
+  for (std::size_t second = first; second < Capabilities().size(); ++second) {
+    SCOPED_TRACE(Capabilities()[first].name + ", " + Capabilities()[second].name);
+    const Launcher launcher =
+        With(first == second ? std::vector<std::size_t>{first} : std::vector<std::size_t>{first, second});
+    if (Refusal(launcher).empty()) ExpectFlies(launcher);
+  }
+}
+INSTANTIATE_TEST_SUITE_P(Of, Pair, testing::Range<std::size_t>(0, Capabilities().size()),
+                         [](const auto& one) {
+                           std::string name = Capabilities()[one.param].name;
+                           std::replace_if(
+                               name.begin(), name.end(), [](char c) { return c == ' ' || c == '-'; }, '_');
+                           return name;
+                         });
+
+// The table of the page of capabilities: a row and a column for each.
+std::string Table() {
+  const std::vector<Capability>& all = Capabilities();
+  std::string text = "| |", line = "|---|", refusals;
+  for (std::size_t i = 0; i < all.size(); ++i) {
+    text += " " + all[i].name + " |";
+    line += "---|";
+  }
+  text += "\n" + line + "\n";
+  for (std::size_t row = 0; row < all.size(); ++row) {
+    text += "| " + all[row].name + " |";
+    for (std::size_t column = 0; column < all.size(); ++column) {
+      const std::string refusal =
+          row == column ? "" : Refusal(With({std::min(row, column), std::max(row, column)}));
+      text += row == column ? " |" : refusal.empty() ? " flies |" : " refused |";
+      if (!refusal.empty() && row < column)
+        refusals += "- " + all[row].name + " with " + all[column].name + ": " + refusal + "\n";
+    }
+    text += "\n";
+  }
+  return text + (refusals.empty() ? "" : "\nRefused:\n\n" + refusals);
+}
+
+TEST(CapabilityPage, ListsWhatFliesTogether) {
+  std::ifstream file(kPage);
+  std::string page{std::istreambuf_iterator<char>(file), {}};
+  const std::size_t begin = page.find(kBegin), end = page.find(kEnd);
+  ASSERT_TRUE(begin != std::string::npos && end != std::string::npos) << kPage;
+  std::string written = page;
+  const std::size_t after = begin + sizeof kBegin - 1;
+  written.replace(after, end - after, Table());
+  if (std::getenv("DISPERSA_REWRITE_TABLES") != nullptr) std::ofstream(kPage) << written;
+  EXPECT_EQ(written, page) << "DISPERSA_REWRITE_TABLES=1 build/release/tests/property_tests "
+                              "--gtest_filter=CapabilityPage.*";
+}
+
+}  // namespace
+}  // namespace dispersa::capability_pairs_test

@@ -1,0 +1,374 @@
+// Tables of aerodynamics, weather and masses in files: the forms that they may have, what follows from them,
+// and the full text for each mistake.
+#include <gmock/gmock.h>
+#include <gtest/gtest.h>
+
+#include <array>
+#include <cmath>
+#include <string>
+
+#include "core/campaign_yaml/load.h"
+#include "core/environment/weather_table.h"
+#include "core/input/number_text.h"
+#include "core/math/constants.h"
+#include "core/vehicle/drag.h"
+#include "core/vehicle/mass.h"
+#include "tests/unit/input_files.h"
+
+namespace dispersa::campaign_yaml_tables_test {
+namespace {
+
+using testing::ElementsAre;
+using testing::HasSubstr;
+
+// ---- aerodynamics ----
+
+constexpr char kWhole[] =
+    "mach,incidence_deg,ca,cn,xcp_station_m\n0.5,0,0.3,0,4\n0.5,10,0.3,0.5,4\n2,0,0.3,0,3\n2,10,0.3,0.6,3\n";
+
+// The first stage's table has these keys, and stands in first.csv.
+void Tabulate(const InputFiles& files, const std::string& keys, const std::string& csv) {
+  files.Write("first.csv", csv);
+  files.Write("second.csv", kWhole);
+  files.Edit(
+      "vehicle.yaml", "surface_roughness_um: 6",
+      "aerodynamics:\n  tables:\n    - {reference_area_m2: 0.785, reference_length_m: 1, table: first.csv" +
+          keys +
+          "}\n    - {reference_area_m2: 0.785, reference_length_m: 1, table: second.csv}\n"
+          "surface_roughness_um: 6");
+}
+AeroTable FirstTable(const std::string& keys, const std::string& csv) {
+  const InputFiles files;
+  Tabulate(files, keys, csv);
+  return LoadVehicle(files.Path("vehicle.yaml")).aerodynamics[0];
+}
+std::string ErrorsOf(const std::string& keys, const std::string& csv) {
+  const InputFiles files;
+  Tabulate(files, keys, csv);
+  return files.Texts(CheckFile(files.Path("vehicle.yaml")).errors);
+}
+
+TEST(AeroTableFile, NeedsNoDamping) {
+  const AeroTable table = FirstTable("", kWhole);
+  EXPECT_TRUE(table.cmq_per_rad.empty());
+  EXPECT_TRUE(table.clp_per_rad.empty());
+  EXPECT_THAT(table.xcp_station_m, ElementsAre(4.0, 4.0, 3.0, 3.0));
+}
+
+// xcp = reference - d cm / cn; at an incidence of 0 the next row's.
+TEST(AeroTableFile, ByMomentsAboutAStation) {
+  const AeroTable table = FirstTable(", moment_reference_station_m: 6",
+                                     "mach,incidence_deg,ca,cn,cm\n0.5,0,0.3,0,0\n0.5,10,0.3,0.5,1\n"
+                                     "2,0,0.3,0,0\n2,10,0.3,0.6,-0.6\n");
+  EXPECT_TRUE(table.is_by_moment);
+  EXPECT_THAT(table.xcp_station_m, ElementsAre(4.0, 4.0, 7.0, 7.0));
+}
+
+TEST(AeroTableFile, OfSignedIncidenceIsFolded) {
+  const AeroTable table = FirstTable(
+      "",
+      "mach,incidence_deg,ca,cn,xcp_station_m\n0.5,-10,0.30,-0.50,4\n0.5,0,0.3,0,4\n0.5,10,0.302,0.498,4\n"
+      "0.5,20,0.4,1,4\n2,-10,0.3,-0.6,3\n2,0,0.3,0,3\n2,10,0.3,0.6,3\n2,20,0.4,1,3\n");
+  EXPECT_THAT(table.incidence_rad, ElementsAre(0.0, 10.0 * kRadPerDeg, 20.0 * kRadPerDeg));
+  EXPECT_DOUBLE_EQ(table.ca[1], 0.301);
+  EXPECT_DOUBLE_EQ(table.cn[1], 0.499);
+  EXPECT_EQ(table.cn[2], 1.0);
+  EXPECT_EQ(table.cn[4], 0.6);
+}
+
+// Rows of alpha and beta of a body of revolution, with cn = 3 sin(incidence) at each Mach number.
+std::string OfTwoAngles(double right_cy) {
+  std::string text = "mach,alpha_deg,beta_deg,ca,cn,cy,xcp_station_m\n";
+  for (const double mach : {0.5, 2.0})
+    for (const double alpha : {-8.0, -4.0, 0.0, 4.0, 8.0})
+      for (const double beta : {-4.0, 0.0, 4.0}) {
+        const double v = std::sin(beta * kRadPerDeg),
+                     w = std::sin(alpha * kRadPerDeg) * std::cos(beta * kRadPerDeg);
+        const double cy = -3.0 * v + (alpha == 4.0 && beta == 4.0 ? right_cy : 0.0);
+        for (const double value : {mach, alpha, beta, 0.3, 3.0 * w, cy, 4.0})
+          text += FormatNumber(value) + ",";
+        text.back() = '\n';
+      }
+  return text;
+}
+
+TEST(AeroTableFile, OverAlphaAndBetaIsThatOfTheTotalIncidence) {
+  const AeroTable table = FirstTable("", OfTwoAngles(0.0));
+  EXPECT_THAT(table.incidence_rad, ElementsAre(0.0, 4.0 * kRadPerDeg, 8.0 * kRadPerDeg));
+  for (std::size_t i = 0; i < 3; ++i) EXPECT_NEAR(table.cn[i], 3.0 * std::sin(table.incidence_rad[i]), 1e-15);
+  EXPECT_EQ(
+      ErrorsOf("", OfTwoAngles(0.03)),
+      "first.csv:13:33: cy[11]: is not that of the same total incidence without sideslip, allowed: a body "
+      "of revolution: within 5 % of the greatest of the Mach number\n");
+}
+
+TEST(AeroTableFile, WithoutPowerHasTheBaseDragOfAnArea) {
+  const AeroTable table = FirstTable(", base_area_m2: 0.157", kWhole);
+  EXPECT_DOUBLE_EQ(table.ca_power_off[0], 0.3 + 0.2 * BaseDrag(0.5));
+  EXPECT_DOUBLE_EQ(table.ca_power_off[3], 0.3 + 0.2 * BaseDrag(2.0));
+}
+
+TEST(AeroTableFile, StatesUncertaintiesOfOneOrThreeSigma) {
+  const AeroTable one =
+      FirstTable(", ca_uncertainty_percent: 6, xcp_uncertainty_m: 0.3, uncertainty_is: sigma", kWhole);
+  EXPECT_THAT(one.uncertainty.ca, ElementsAre(0.06, 0.06, 0.06, 0.06));
+  EXPECT_THAT(one.uncertainty.xcp_m, ElementsAre(0.3, 0.3, 0.3, 0.3));
+  EXPECT_TRUE(one.uncertainty.cn.empty());
+  const AeroTable three =
+      FirstTable(", uncertainty_is: three_sigma, damping_uncertainty_percent: 30",
+                 "mach,incidence_deg,ca,cn,xcp_station_m,ca_uncertainty_percent\n0.5,0,0.3,0,4,3\n"
+                 "0.5,10,0.3,0.5,4,6\n2,0,0.3,0,3,9\n2,10,0.3,0.6,3,12\n");
+  EXPECT_NEAR(three.uncertainty.ca[1], 0.02, 1e-15);
+  EXPECT_NEAR(three.uncertainty.ca[3], 0.04, 1e-15);
+  EXPECT_NEAR(three.uncertainty.damping[1], 0.1, 1e-15);
+}
+
+TEST(AeroTableFile, OfALighterStackNamesWhatHasLeft) {
+  const InputFiles files;
+  files.Edit("vehicle.yaml", "    gimbal: {pivot_station_m: 3.9",
+             "    jettisoned: [{name: tower, mass_kg: 5, top_station_m: 0.5, bottom_station_m: 1, "
+             "outer_diameter_m: 0.2, at: {time_s: 30}}]\n    gimbal: {pivot_station_m: 3.9");
+  Tabulate(
+      files,
+      ", lighter: [{without: [tower], reference_area_m2: 0.7, reference_length_m: 0.9, table: first.csv}]",
+      kWhole);
+  const Vehicle vehicle = LoadVehicle(files.Path("vehicle.yaml"));
+  ASSERT_EQ(vehicle.aerodynamics[0].lighter.size(), 1u);
+  EXPECT_THAT(vehicle.aerodynamics[0].lighter[0].without, ElementsAre("tower"));
+  EXPECT_EQ(vehicle.aerodynamics[0].lighter[0].table.reference_area_m2, 0.7);
+  files.Edit("vehicle.yaml", "without: [tower]", "without: [fairing]");
+  EXPECT_EQ(
+      files.Texts(CheckFile(files.Path("vehicle.yaml")).errors),
+      "vehicle.yaml:36:95: aerodynamics.tables[0].lighter[0].without: names 'fairing', which this stack "
+      "does not jettison, allowed: of tower\n");
+}
+
+TEST(AeroTableFile, MistakesAreReportedInFull) {
+  EXPECT_EQ(
+      ErrorsOf("", "mach,incidence_deg,ca,cn\n0.5,0,0.3,0\n0.5,10,0.3,0.5\n2,0,0.3,0\n2,10,0.3,0.6\n"),
+      "first.csv:1:1: missing column 'xcp_station_m' or 'cm', allowed: the centre of pressure, or cm about "
+      "the table's moment_reference_station_*\n");
+  EXPECT_EQ(
+      ErrorsOf("",
+               "mach,incidence_deg,ca,cn,cm\n0.5,0,0.3,0,0\n0.5,10,0.3,0.5,1\n2,0,0.3,0,0\n"
+               "2,10,0.3,0.6,1\n"),
+      "vehicle.yaml:35:7: aerodynamics.tables[0]: missing key 'moment_reference_station_m', allowed: the "
+      "station about which the table's cm is\n");
+  EXPECT_EQ(
+      ErrorsOf(", moment_reference_station_m: 4", kWhole),
+      "vehicle.yaml:35:103: aerodynamics.tables[0].moment_reference_station_m: the table has no column cm, "
+      "allowed: a table with cm\n");
+  EXPECT_EQ(
+      ErrorsOf(", moment_reference_station_m: 4",
+               "mach,incidence_deg,ca,cn,cm\n0.5,0,0.3,0,0.4\n0.5,10,0.3,0.5,1\n2,0,0.3,0,0\n"
+               "2,10,0.3,0.6,1\n"),
+      "first.csv:2:13: aerodynamics.tables[0].table.cm[0]: is a moment without a normal force, allowed: 0 "
+      "where cn is 0 (at an incidence of 0 a body of revolution has neither)\n");
+  EXPECT_EQ(
+      ErrorsOf("",
+               "mach,incidence_deg,ca,cn,xcp_station_m\n0.5,-10,0.3,-0.6,4\n0.5,0,0.3,0,4\n"
+               "0.5,10,0.3,0.5,4\n2,-10,0.3,-0.5,4\n2,0,0.3,0,3\n2,10,0.3,0.5,3\n"),
+      "first.csv:4:12: cn[2]: is not that of the opposite incidence, allowed: a vehicle whose coefficients "
+      "mirror within 2 % of the greatest of the Mach number\n");
+  EXPECT_EQ(
+      ErrorsOf("",
+               "mach,incidence_deg,ca,cn,xcp_station_m\n0.5,-10,0.3,-0.6,4\n0.5,0,0.3,0,4\n"
+               "2,-10,0.3,-0.5,4\n2,0,0.3,0,3\n"),
+      "first.csv:2:5: incidence_deg[0]: has no row of the opposite incidence, allowed: for each incidence "
+      "below 0 the same above, or incidences from 0 on\n");
+  EXPECT_EQ(ErrorsOf(", ca_uncertainty_percent: 6", kWhole),
+            "vehicle.yaml:35:7: aerodynamics.tables[0]: missing key 'uncertainty_is', allowed: sigma, or "
+            "three_sigma\n");
+  EXPECT_EQ(
+      ErrorsOf(", uncertainty_is: sigma", kWhole),
+      "vehicle.yaml:35:91: aerodynamics.tables[0].uncertainty_is: there is no uncertainty, allowed: none, "
+      "or an uncertainty of the table\n");
+  EXPECT_EQ(
+      ErrorsOf(", base_area_m2: 0.1",
+               "mach,incidence_deg,ca,cn,xcp_station_m,ca_power_off\n0.5,0,0.3,0,4,0.4\n"
+               "0.5,10,0.3,0.5,4,0.4\n2,0,0.3,0,3,0.4\n2,10,0.3,0.6,3,0.4\n"),
+      "vehicle.yaml:35:89: aerodynamics.tables[0].base_area_m2: is given beside the table's ca_power_off, "
+      "allowed: one of the two\n");
+  EXPECT_EQ(ErrorsOf("",
+                     "mach,incidence_deg,ca,cn,xcp_station_m\n0.5,0,0.3,nan,4\n0.5,10,0.3,0.5,4\n"
+                     "2,0,0.3,0,3\n2,10,0.3,0.6,3\n"),
+            "first.csv:2:11: cn[0]: 'nan' is not finite, allowed: a number\n");
+}
+
+// A byte order mark of a spreadsheet is no part of a column's name.
+TEST(AeroTableFile, MayBeginWithAByteOrderMark) {
+  EXPECT_EQ(FirstTable("", std::string("\xEF\xBB\xBF") + kWhole).cn[1], 0.5);
+}
+
+TEST(AeroTableFile, UncertaintyIsDrawnByItsOwnKey) {
+  const InputFiles files;
+  Tabulate(files, ", ca_uncertainty_percent: 6, uncertainty_is: sigma", kWhole);
+  files.Edit("campaign.yaml", "  wind:", "  aerodynamic_uncertainty: {of: [ca, xcp]}\n  wind:");
+  const Campaign campaign = LoadCampaign(files.Path("campaign.yaml"));
+  int drawn = 0;
+  for (const Dispersion& dispersion : campaign.dispersions)
+    if (dispersion.name.starts_with("aerodynamic_uncertainty/")) {
+      ++drawn;
+      EXPECT_EQ(dispersion.distribution.kind, Distribution::kNormal);
+      EXPECT_EQ(dispersion.distribution.sigma, 1.0);
+    }
+  EXPECT_EQ(drawn, 2);
+  files.Edit("campaign.yaml", "  aerodynamic_uncertainty: {of: [ca, xcp]}\n", "");
+  EXPECT_THAT(files.Texts(CheckFile(files.Path("campaign.yaml")).warnings),
+              HasSubstr("do not draw the uncertainty that the vehicle's aerodynamic tables state"));
+  const InputFiles plain;
+  plain.Edit("campaign.yaml", "  wind:", "  aerodynamic_uncertainty: {of: [ca]}\n  wind:");
+  EXPECT_EQ(
+      plain.Texts(CheckFile(plain.Path("campaign.yaml")).errors),
+      "campaign.yaml:9:28: dispersions.aerodynamic_uncertainty: the vehicle has no aerodynamic table that "
+      "states an uncertainty, allowed: tables with ca_uncertainty_percent, cn_uncertainty_percent, "
+      "xcp_uncertainty_m or damping_uncertainty_percent\n");
+}
+
+// ---- weather ----
+
+std::string WeatherProblems(const std::string& csv, bool warnings = false) {
+  const InputFiles files;
+  files.Write("weather.csv", csv);
+  files.Edit("campaign.yaml", "  wind:", "  wind_profile: {table: weather.csv}\n  wind:");
+  const FileCheck check = CheckFile(files.Path("campaign.yaml"));
+  return files.Texts(warnings ? check.warnings : check.errors);
+}
+
+TEST(WeatherFile, MayHaveTheAir) {
+  const InputFiles files;
+  files.Write("weather.csv",
+              "altitude_km,north_m_s,east_m_s,pressure_hpa,temperature_k\n0,1,2,1010,300\n10,3,4,280,230\n");
+  files.Edit("campaign.yaml", "  wind:", "  wind_profile: {table: weather.csv}\n  wind:");
+  EXPECT_THAT(files.Texts(CheckFile(files.Path("campaign.yaml")).errors), HasSubstr("altitude"));
+  files.Write(
+      "weather.csv",
+      "altitude_m,north_m_s,east_m_s,pressure_hpa,temperature_k\n0,1,2,1010,300\n10000,3,4,280,230\n");
+  const Campaign campaign = LoadCampaign(files.Path("campaign.yaml"));
+  ASSERT_TRUE(campaign.wind_table && campaign.wind_table->has_air());
+  EXPECT_EQ(campaign.wind_table->pressure_pa[1], 28000.0);
+  EXPECT_NEAR(AirOfLevel(*campaign.wind_table, 0).density_kg_m3, 1.1728, 1e-4);
+  EXPECT_EQ(ParseCampaign(campaign.canonical_yaml, "again").flight_id, campaign.flight_id);
+}
+
+TEST(WeatherFile, MistakesAreReportedInFull) {
+  EXPECT_EQ(
+      WeatherProblems("altitude_m,north_m_s,east_m_s,density_kg_m3\n0,0,0,1.2\n9000,0,0,0.4\n"),
+      "weather.csv:1:1: one column alone does not give the air, allowed: two or three of temperature_k, "
+      "pressure_* and density_kg_m3, or none\n");
+  EXPECT_EQ(WeatherProblems("altitude_m,north_m_s,east_m_s,density_kg_m3,temperature_k\n0,0,0,1.2,15\n"
+                            "9000,0,0,0.4,-45\n"),
+            "weather.csv:2:11: temperature_k[0]: 15 is out of range, allowed: a number from 100 to 3000\n"
+            "weather.csv:3:14: temperature_k[1]: -45 is out of range, allowed: a number from 100 to 3000\n");
+  EXPECT_EQ(WeatherProblems("altitude_m,north_m_s,east_m_s,density_kg_m3,temperature_k\n0,0,0,1.2,288\n"
+                            "5,0,0,1.2,288\n"),
+            "weather.csv:3:1: altitude_m[1]: is less than 10 m above the one before, allowed: altitudes 10 m "
+            "apart or more, in a table with the air's state\n");
+}
+
+TEST(WeatherFile, AirOfAnotherPlanetIsUnusual) {
+  EXPECT_THAT(
+      WeatherProblems("altitude_m,north_m_s,east_m_s,density_kg_m3,temperature_k,pressure_pa\n"
+                      "0,0,0,1.2,288,110000\n20000,0,0,0.09,217,5600\n",
+                      true),
+      HasSubstr("has at 0 m a pressure 1.11 times that of its density and temperature, usual: within 2 % "
+                "(the gas law of dry air; vapour makes up to 1.5 %)"));
+  EXPECT_THAT(WeatherProblems("altitude_m,north_m_s,east_m_s,density_kg_m3,temperature_k\n"
+                              "0,0,0,1.2,288\n20000,0,0,0.5,217\n",
+                              true),
+              HasSubstr("has at 20000 m a density of 0.5 kg/m3"));
+}
+
+// ---- masses ----
+
+constexpr char kMasses[] =
+    "propellant_left_kg,mass_kg,cg_station_m,axial_inertia_kg_m2,transverse_inertia_kg_m2\n"
+    "1500,2000,7,180,1900\n750,1250,6.9,120,1300\n0,500,7.2,70,1000\n";
+
+void Weigh(const InputFiles& files, const std::string& csv) {
+  files.Write("masses.csv", csv);
+  files.Edit("vehicle.yaml", "    gimbal: {pivot_station_m: 9.8",
+             "    mass_table: masses.csv\n    gimbal: {pivot_station_m: 9.8");
+}
+std::string MassProblems(const std::string& csv) {
+  const InputFiles files;
+  Weigh(files, csv);
+  return files.Texts(CheckFile(files.Path("vehicle.yaml")).errors);
+}
+
+TEST(MassTableFile, GivesTheStageItsMasses) {
+  const InputFiles files;
+  const MassProperties tubes = BuildStackMasses(LoadVehicle(files.Path("vehicle.yaml")))[1].At(500.0);
+  Weigh(files, kMasses);
+  const StackMass stack = BuildStackMasses(LoadVehicle(files.Path("vehicle.yaml")))[0];
+  for (const auto& [left_kg, cg_m, axial, transverse] :
+       {std::array{1500.0, 7.0, 180.0, 1900.0}, {750.0, 6.9, 120.0, 1300.0}, {0.0, 7.2, 70.0, 1000.0}}) {
+    const double own_kg = 500.0 + left_kg, whole_kg = own_kg + 1000.0;
+    const MassProperties at = stack.At(left_kg);
+    EXPECT_NEAR(at.mass_kg, whole_kg, 1e-9);
+    EXPECT_NEAR(at.cg_station_m, (own_kg * cg_m + 1000.0 * tubes.cg_station_m) / whole_kg, 1e-12);
+    EXPECT_NEAR(at.axial_inertia_kg_m2, axial + tubes.axial_inertia_kg_m2, 1e-9);
+    const double apart = cg_m - tubes.cg_station_m;
+    EXPECT_NEAR(at.transverse_inertia_kg_m2,
+                transverse + tubes.transverse_inertia_kg_m2 + own_kg * 1000.0 / whole_kg * apart * apart,
+                1e-8);
+  }
+}
+
+// Times are those of the nominal burn: a third of 60 s at full thrust, in round numbers of the ramps.
+TEST(MassTableFile, OverTimeIsThatOfTheNominalBurn) {
+  const InputFiles files;
+  Weigh(files,
+        "time_s,cg_station_m,axial_inertia_kg_m2,transverse_inertia_kg_m2\n0,7,180,1900\n30.1,6.9,120,1300\n"
+        "60.3,7.2,70,1000\n70,7.2,70,1000\n");
+  const MassTable table = LoadVehicle(files.Path("vehicle.yaml")).stages[0].mass_table;
+  ASSERT_EQ(table.propellant_kg.size(), 3u);
+  EXPECT_NEAR(table.propellant_kg[0], 0.0, 1e-9);
+  EXPECT_NEAR(table.propellant_kg[1], 750.0, 1e-9);  // 25 kg/s, from 0.1 s on by the ramp
+  EXPECT_EQ(table.propellant_kg[2], 1500.0);
+  EXPECT_THAT(table.cg_station_m, ElementsAre(7.2, 6.9, 7.0));
+}
+
+TEST(MassTableFile, MistakesAreReportedInFull) {
+  const std::string head = "propellant_left_kg,cg_station_m,axial_inertia_kg_m2,transverse_inertia_kg_m2\n";
+  EXPECT_EQ(
+      MassProblems("cg_station_m,axial_inertia_kg_m2,transverse_inertia_kg_m2\n7,180,1900\n7,70,1000\n"),
+      "masses.csv:1:1: missing column 'propellant_left_kg' or 'time_s', allowed: propellant_left_*, or "
+      "time_*\n");
+  EXPECT_EQ(
+      MassProblems(head + "1500,7,180,1900\n700,7,180,1900\n800,7,70,1000\n"),
+      "masses.csv:4:1: propellant_left_kg[2]: does not continue from the one before, allowed: values that "
+      "all increase, or all decrease\n");
+  EXPECT_EQ(MassProblems(head + "1500,7,180,1900\n0,7,180,80\n"),
+            "masses.csv:3:9: transverse_inertia_kg_m2[1]: is that of no body: it is below half the axial "
+            "inertia, allowed: half the axial inertia or more\n");
+  EXPECT_EQ(
+      MassProblems(head + "1500,7,180,1900\n200,7,180,1900\n"),
+      "masses.csv:1:1: stages[0].mass_table: covers 200.000000 to 1500.000000 kg of propellant, allowed: "
+      "rows from 1500.000000 kg at ignition to burnout, within 2 %\n");
+  EXPECT_EQ(
+      MassProblems(head + "1500,70,180,1900\n0,7,180,1900\n"),
+      "vehicle.yaml:17:31: stages[0].gimbal.pivot_station_m: is not aft of the centre of gravity, which "
+      "reaches station 47.500000 m, allowed: a station aft of the centre of gravity\n"
+      "masses.csv:1:20: stages[0].mass_table.cg_station_m: is 70.000000, aft of the stage, allowed: less "
+      "than bottom_station_m of the stage\n");
+  EXPECT_EQ(
+      MassProblems("propellant_left_kg,mass_kg,cg_station_m,axial_inertia_kg_m2,transverse_inertia_kg_m2\n"
+                   "1500,3000,7,180,1900\n0,500,7,180,1900\n"),
+      "masses.csv:1:20: stages[0].mass_table.mass_kg: is 3000.000000 with 1500.000000 kg of propellant, "
+      "but dry mass and propellant are 2000.000000, allowed: the stage alone, within 0.5 %: without stages "
+      "above, boosters and jettisoned bodies\n");
+}
+
+TEST(MassTableFile, OfOtherUnitsIsUnusual) {
+  const InputFiles files;
+  Weigh(files,
+        "propellant_left_kg,cg_station_m,axial_inertia_kg_m2,transverse_inertia_kg_m2\n"
+        "1500,7,180,190000\n0,7.2,70,100000\n");
+  EXPECT_THAT(files.Texts(CheckFile(files.Path("vehicle.yaml")).warnings),
+              HasSubstr("stages[0].mass_table.transverse_inertia_kg_m2: is, at ignition, that of the stage's "
+                        "tubes times"));
+}
+
+}  // namespace
+}  // namespace dispersa::campaign_yaml_tables_test
