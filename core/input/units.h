@@ -73,7 +73,7 @@ inline constexpr std::string_view kUnitLike[] = {"m",       "km",      "mm",    
                                                  "gpa",     "mpa",     "n_m2",    "kn_m2",
                                                  "mn_m2",   "1_m",     "n_m",     "kn_m",
                                                  "w_m2",    "kw_m2",   "k",       "percent_per_k",
-                                                 "kg_m3"};
+                                                 "kg_m3",   "hpa"};
 
 /// Other spellings of a unit, and its name here.
 struct UnitSpelling {
