@@ -152,9 +152,14 @@ void Batch<T>::Happen(int lane) {
     }
     case EventKind::kBoosterBurnout:
       metrics_.AddLoadsOfLane(lane, step_.InstantOf(lane, time_s_));  // they peak here, between ticks
-      if (event.booster < 0)
+      if (event.booster < 0) {
         step_.BurnOutBoosters(lane);
-      else if (step_.BurnOutBooster(lane, event.booster) && step_.plant().nozzles_listed)
+        break;
+      }
+      // Commands of one unit turn other nozzles, or move the body less, from here on: no swing of a nozzle.
+      record.ripple.Interrupt();
+      record.limit_cycle.Interrupt();
+      if (step_.BurnOutBooster(lane, event.booster) && step_.plant().nozzles_listed)
         SetAllocation(lane, record.plant.LayoutOf(0, false));
       break;
     case EventKind::kBoosterSeparation: {

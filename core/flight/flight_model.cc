@@ -259,30 +259,42 @@ std::vector<double> EffectivenessTimes(const MotorBurn& burn, double duration_s,
 namespace {
 
 // Moments about x and y by a radian commanded about each, while boosters with turning nozzles burn: each
-// drive by the thrust that it turns at that time. Thrust of the stage and its lever are given.
+// drive by the thrust that it turns at that time. Thrust of the stage and its lever are given. Where boosters
+// alone turn the vehicle, their thrust counts as kLeastThrustFraction at least: in roll, and in pitch beside
+// a stage whose nozzles stay centred.
 Vector2 BoostedMoments(const LauncherPlant& plant, double thrust_n, double lever_m, double cg_station_m,
                        double since_s) {
   const BoosterSet& set = *plant.boosters;
   const NozzleLayout& layout = set.layout;
   const int first = plant.stacks[0].layout.banks() * kNozzles;
-  Vector2 moment = Vector2::Zero();
+  Vector2 moment = Vector2::Zero(), by_boosters = Vector2::Zero(), at_least = Vector2::Zero();
   for (int drive = 0; drive < layout.banks() * kDrives; ++drive) {
     const int k = NozzleOf(drive);
     if (!(layout.there[drive] > 0.0)) continue;
     const Vector3 towards(0.0, layout.towards_y[drive], layout.towards_z[drive]);
     Vector3 force = layout.share[k] * thrust_n * towards, arm(-lever_m, layout.y_m[k], layout.z_m[k]);
+    double level = 1.0;
     if (k >= first) {
       const EachBooster& one = set.each[static_cast<std::size_t>(k - first)];
-      const double level = one.burn.curve ? std::max(one.burn.Fraction(since_s), kLeastThrustFraction) : 1.0;
+      if (one.burn.curve) level = one.burn.Fraction(since_s);
       const bool is_second = drive % kDrives >= kNozzles;
-      force = one.burn.vacuum_thrust_n * level * (is_second ? one.second : one.first);
+      force = one.burn.vacuum_thrust_n * (is_second ? one.second : one.first);
       arm.x() = cg_station_m - set.nozzle_station_m;
     }
     const Vector3 by_radian = arm.cross(force);
-    moment +=
-        Vector2(layout.allocation[drive][0] * by_radian.x(), layout.allocation[drive][1] * by_radian.y());
+    const Vector2 commanded(layout.allocation[drive][0] * by_radian.x(),
+                            layout.allocation[drive][1] * by_radian.y());
+    if (k < first) {
+      moment += commanded;
+    } else {
+      by_boosters += level * commanded;
+      at_least += std::max(level, kLeastThrustFraction) * commanded;
+    }
   }
-  return moment;
+  const auto both = [&](int axis) {
+    return moment[axis] + (moment[axis] == 0.0 ? at_least[axis] : by_boosters[axis]);
+  };
+  return {both(0), both(1)};
 }
 
 }  // namespace

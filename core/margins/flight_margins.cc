@@ -84,9 +84,26 @@ void LeastMargins::Take(const LoopMargins& m) {
 
 namespace {
 
+// Whether boosters alone turn the vehicle about an axis, with hardly any thrust: in their tail-off, as a
+// stage in its own, they ask for no margins.
+bool IsInBoostersTailOff(const LauncherPlant& plant, const TickSample& sample, Axis axis) {
+  if (!sample.boosting || !plant.boosters_steer()) return false;
+  const NozzleLayout& layout = plant.boosters->layout;
+  const int first = plant.stacks[0].layout.banks() * kDrives;
+  constexpr double kRounding = 1e-9;  // of places and directions by sines
+  for (int drive = 0; drive < first; ++drive)
+    if (std::fabs(layout.allocation[drive][axis]) > kRounding) return false;
+  for (const EachBooster& one : plant.boosters->each) {
+    const double since_s = std::clamp(sample.since_ignition_s, 0.0, one.burn.duration_s);
+    if (!one.burn.curve || one.burn.Fraction(since_s) >= kLeastThrustFraction) return false;
+  }
+  return true;
+}
+
 // Roll that thrusters hold has no linear loop.
 bool HasLoop(const LauncherPlant& plant, const TickSample& sample, Axis axis) {
-  return axis != kRoll || plant.LayoutOf(sample.stack, sample.boosting).rolls;
+  if (axis == kRoll && !plant.LayoutOf(sample.stack, sample.boosting).rolls) return false;
+  return !IsInBoostersTailOff(plant, sample, axis);
 }
 
 // Whether learning changes the slopes of the control law.

@@ -69,11 +69,13 @@ DISPERSA_INLINE T IncidenceAt(const FlightProgramLanes<T>& program, T time_s) {
   return T(0.0) - program.alpha_max_rad * SmoothStep(Clamp(s, T(0.0), T(1.0)));
 }
 
-/// Incidence of Steering.
+/// Incidence of Steering. A phase that begins during the pitch-over sets in after it: the pitch-over's own
+/// incidence ends at 0, from which it rises.
 template <class T>
 DISPERSA_INLINE T SteeringAt(const Leg<T>& leg, T time_s) {
   const T since = time_s - leg.steer_from_s;
-  const T rise = SmoothStep(Clamp(since * T(1.0 / kSteeringRise_s), T(0.0), T(1.0)));
+  const T risen = time_s - Max(leg.steer_from_s, leg.program.t2_s);
+  const T rise = SmoothStep(Clamp(risen * T(1.0 / kSteeringRise_s), T(0.0), T(1.0)));
   const T fade = SmoothStep(Clamp((time_s - leg.fade_from_s) * T(1.0 / kSteeringFade_s), T(0.0), T(1.0)));
   return Fma(rise, Fma(leg.steer_rad_s, since, leg.steer_rad), leg.fade_rad * (T(1.0) - fade));
 }

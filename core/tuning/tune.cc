@@ -70,6 +70,7 @@ class Tuner {
     campaign_.autopilot = autopilot;
     campaign_.sampling = {SamplingMethod::kMonteCarlo, static_cast<std::uint64_t>(options.cases),
                           options.seed};
+    campaign_.guidance = {};  // its turns are commands, which no gains take away
     // A first model, only for properties of the plant that the loop below needs.
     start_ = std::make_unique<CampaignFlights>(campaign_);
     for (int stage = 0; stage < Plant().StageCount(); ++stage) {

@@ -11,6 +11,9 @@
 //   and adapting, at every instant of MarginInstants. Every case completes. Every ripple of the deflection is
 //   below kLimitCycleLimit_deg.
 //
+// Designs fly the reference, without closed-loop guidance. Its commanded turns would count as ripple: on the
+// gallery's Falcon 9 as 0.3 deg under any gains, where the autopilot alone makes 0.02 deg.
+//
 // If the schedule of a stage has times, the stage has a design for each (autopilot_config.h; the times of
 // pitch count). Damping, learning and weights of the gyros are searched for all of them together. The filters
 // follow the frequency of the first mode at each time. The bandwidth is the largest that suffices near the

@@ -56,6 +56,25 @@ TEST(FlightProgramSteering, SetsInWithin20SecondsAndFadesWithin60) {
   EXPECT_GT(fading, 10);
 }
 
+// The search tries pitch-overs that outlast the first stage. Steering of the second one then waits for their
+// end.
+TEST(FlightProgramSteering, SetsInAfterAPitchOverThatOutlastsItsIgnition) {
+  FlightProgram program = Shipped();
+  const double incidence_rad = 6.0 * kRadPerDeg;
+  program.steering[1] = {incidence_rad, incidence_rad};
+  program.t2_s = Slv4().stages[0].motor.burning_time_s + 12.0;
+  const AscentResult ascent = Recorded(program);
+  int rising = 0;
+  for (const AscentSample& s : ascent.samples) {
+    if (s.stage != 2 || s.time_s < program.t2_s || s.time_s > program.t2_s + 25.0) continue;
+    EXPECT_NEAR(s.alpha_rad, Smooth(s.time_s - program.t2_s, 20.0) * incidence_rad, 1e-6) << s.time_s;
+    ++rising;
+  }
+  EXPECT_GT(rising, 20);
+  program.steering[1] = {};
+  EXPECT_EQ(ascent.turn_rate_max_rad_s, Recorded(program).turn_rate_max_rad_s);
+}
+
 // A turn of seconds asks for knots much closer than a gravity turn or a coast.
 TEST(AttitudeProgramKnots, StandAtTheProgramsTimesAndATenthOfASecondApartBeforeT2) {
   const FlightProgram program = Shipped();

@@ -182,6 +182,21 @@ TEST(Tune, DependsOnItsSeed) {
             WriteAutopilot(Tune(campaign, campaign.autopilot, other).autopilot));
 }
 
+// Guidance's turns are commands: no gains take their deflections away.
+TEST(Tune, FliesTheReferenceWithoutGuidance) {
+  const Campaign guided = LoadCampaign(DISPERSA_CAMPAIGNS "/gallery/electron/campaign.yaml");
+  ASSERT_TRUE(guided.guidance.closed_loop);
+  Campaign open_loop = guided;
+  open_loop.guidance = {};
+  TuningOptions few = Small();
+  few.evaluations = 32;
+  const TuningResult results[] = {Tune(guided, guided.autopilot, few),
+                                  Tune(open_loop, guided.autopilot, few)};
+  ASSERT_TRUE(results[0].stages[1].feasible);
+  EXPECT_EQ(WriteAutopilot(results[0].autopilot), WriteAutopilot(results[1].autopilot));
+  EXPECT_EQ(results[0].stages[1].mean_rms_deg, results[1].stages[1].mean_rms_deg);
+}
+
 TEST(Tune, DoesNotSeeTheVerdictsCases) {
   const Campaign campaign = SampleCampaign();
   Campaign other = campaign;

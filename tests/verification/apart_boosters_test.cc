@@ -317,6 +317,36 @@ TEST(ApartBoosters, EffectivenessIsTheDerivativeOfTheMotion) {
   }
 }
 
+// In the boosters' tail-off too: the stage's own thrust stays, however little theirs is. Where they alone
+// turn the vehicle, the autopilot counts a fifth of their greatest thrust at least, or it would divide by
+// nothing.
+TEST(ApartBoosters, EffectivenessFollowsTheirTailOffToItsEnd) {
+  for (const bool alone : {false, true}) {
+    FlightDefinition definition = Gimballed({0.0, 90.0, 180.0, 270.0}, alone);
+    Motor& motor = definition.vehicle.boosters.motor;
+    motor.thrust_curve = {{0.0, 8.0, 14.0, 19.0}, {kThrust_n, kThrust_n, 0.03 * kThrust_n, 0.03 * kThrust_n}};
+    motor.thrust_n = motor.thrust_curve.Greatest();
+    motor.burning_time_s = motor.thrust_curve.Impulse() / motor.thrust_n;
+    ASSERT_TRUE(Problems(definition.vehicle).empty());
+    const FlightModel model(definition);
+    FlightResult result;
+    const auto ticks = Ticks(model.definition(), {}, &result);
+    ASSERT_EQ(result.outcome, Outcome::kCompleted) << result.reason;
+    int seen = 0;
+    for (const TickSample& s : ticks) {
+      if (s.stack != 0 || !s.boosting || s.time_s < 15.0 || s.time_s > 18.5) continue;
+      const AxisPlant linear = LineariseAxis(model.nominal_plant(), s, kYaw, model.sensors());
+      const double table = model.autopilot().stages[0].pitch_effectiveness_1_s2(s.since_ignition_s);
+      if (alone)
+        EXPECT_NEAR(linear.a(1, 2), 0.03 / kLeastThrustFraction * table, 1e-2 * linear.a(1, 2)) << s.time_s;
+      else
+        EXPECT_NEAR(linear.a(1, 2), table, 5e-3 * table) << s.time_s;
+      ++seen;
+    }
+    EXPECT_GT(seen, 300);
+  }
+}
+
 // The judges integrate the same equations by other means.
 TEST(ApartBoosters, JudgesFlyTheSameFlight) {
   FlightDefinition definition = Gimballed({15.0, 195.0});
