@@ -17,7 +17,7 @@ import tempfile
 import yaml
 
 WITHIN = 0.02
-LAUNCHERS = ("vega", "electron", "scout", "falcon9", "falcon9_leo", "nike_apache")
+LAUNCHERS = ("vega", "electron", "scout", "falcon9", "falcon9_leo", "ariane5", "nike_apache")
 TITLES = {
     "lift_off": "lift-off",
     "mach_1": "Mach 1",
@@ -57,6 +57,12 @@ def events_of(rows, vehicle):
         if row["thrust_n"] > 0:
             events.setdefault(f"stage{stage}_ignition", row)
             events[f"stage{stage}_cut_off"] = row
+    boosters = vehicle.get("boosters")
+    if boosters:
+        empty = boosters["dry_mass_kg"] * len(boosters.get("angles_deg", [0] * boosters.get("count", 0)))
+        for before, row in zip(rows, rows[1:]):
+            if before["mass_kg"] - row["mass_kg"] > 0.9 * empty:
+                events.setdefault("booster_separation", row)
     for stage in vehicle["stages"]:
         for jettison in stage.get("jettisoned", []):
             drop = jettison["mass_kg"]
