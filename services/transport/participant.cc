@@ -122,7 +122,9 @@ dds::DomainParticipantQos MakeQos(const ParticipantOptions& options) {
   qos.transport().user_transports.push_back(Sieved(udp, options.network.keys.has_value()));
 
   auto& builtin = qos.wire_protocol().builtin;
-  builtin.discovery_config.leaseDuration = eprosima::fastrtps::Duration_t(5, 0);
+  // Who is silent is known sooner from its messages. To find a participant again costs a message to and from
+  // every other one, so a host that is busy for some seconds does not lose its own.
+  builtin.discovery_config.leaseDuration = eprosima::fastrtps::Duration_t(20, 0);
   builtin.discovery_config.leaseDuration_announcementperiod = eprosima::fastrtps::Duration_t(1, 0);
   // Own locators replace the default ones, which include multicast. Discovery is then by peers alone, and
   // nothing leaves the chosen interface. The ports are explicit. By itself Fast DDS tries a hundred ports and

@@ -19,7 +19,7 @@ from processes import BINARIES, CAMPAIGN, PATIENCE_S, Run, content, end, main, s
 PARTICIPANTS = int(os.environ.get("DISPERSA_PARTICIPANTS", "300"))
 WITH_KEYS = bool(os.environ.get("DISPERSA_WITH_KEYS"))
 HOSTS = 3
-CASES = 10 * PARTICIPANTS
+CASES = PARTICIPANTS // 5  # so many fly side by side at most: each flight would have a host of its own elsewhere
 AT_ONCE = 15        # programs that start side by side: a start is a burst of work, and the machine may have two cores
 ANSWER_S = 8.0      # the patience of a health probe
 IDLE_S = 15.0
