@@ -77,12 +77,12 @@ DISPERSA_INLINE void SetLane(ApartBoosters<T>& a, int lane, const BoosterSet& se
   }
 }
 
-/// Adds the boosters' propellant, and says how their masses lie. Rates by mass and the place that mass comes
-/// from become such that the whole flow times them is what the stage's own flow does; the boosters' part is
-/// TurningOf.
+/// `m` with the boosters' propellant; says also how their masses lie. Rates by mass and the place that mass
+/// comes from become such that the whole flow times them is what the stage's own flow does; the boosters'
+/// part is in LoadsOfApart. By value: a reference would keep `m` in memory for vehicles without boosters too.
 template <class T>
-DISPERSA_OUT_OF_LINE void AddApart(ApartBoosters<T>& a, T since_ignition_s, T flow_kg_s,
-                                   MassPropertiesLanes<T>& m) {
+DISPERSA_OUT_OF_LINE MassPropertiesLanes<T> WithApart(ApartBoosters<T>& a, T since_ignition_s, T flow_kg_s,
+                                                      MassPropertiesLanes<T> m) {
   const T none(0.0), half(0.5), one(1.0);
   T beside_kg(0.0), own_axial(0.0);
   a.flow_kg_s = a.lateral_y_kg_m = a.lateral_z_kg_m = none;
@@ -108,20 +108,15 @@ DISPERSA_OUT_OF_LINE void AddApart(ApartBoosters<T>& a, T since_ignition_s, T fl
   for (T* sum : {&a.lateral_y_kg_m, &a.lateral_z_kg_m, &a.mean_station_y_kg_m2, &a.mean_station_z_kg_m2,
                  &a.about_y_kg_m2, &a.yz_kg_m2})
     *sum = Select(a.attached, *sum, none);
-  const T apart = beside_kg * a.radius2_m2;
-  const T old_cg = m.cg_station_m, old_kg = m.mass_kg;
-  m.mass_kg = old_kg + beside_kg;
-  m.cg_station_m = Fma(beside_kg, a.grain_station_m, old_kg * old_cg) / m.mass_kg;
-  m.axial_kg_m2 = m.axial_kg_m2 + own_axial + apart;
-  m.transverse_kg_m2 =
-      m.transverse_kg_m2 + old_kg * Square(m.cg_station_m - old_cg) +
-      Fma(half, own_axial + apart, beside_kg * (a.length2_m2 + Square(a.grain_station_m - m.cg_station_m)));
+  const T old_cg = m.cg_station_m;
+  AddTubes(beside_kg, own_axial, a.grain_station_m, a.length2_m2, a.radius2_m2, m);
   const T total_kg_s = a.flow_kg_s + flow_kg_s;
   const T own = Select(total_kg_s > none, flow_kg_s / Select(total_kg_s > none, total_kg_s, one), one);
   const T moved = Square(m.source_station_m - m.cg_station_m) - Square(m.source_station_m - old_cg);
   m.axial_per_kg_m2 = own * m.axial_per_kg_m2;
   m.transverse_per_kg_m2 = own * (m.transverse_per_kg_m2 + moved);
   m.source_station_m = a.grain_station_m + own * (m.source_station_m - a.grain_station_m);
+  return m;
 }
 
 /// Forces of the boosters, with their moments about C at (cg_station, cg_y, cg_z), and the moment by which

@@ -120,20 +120,19 @@ DISPERSA_INLINE TimedMasses<T> MassesAt(const LauncherPlantLanes<T>& plant,
               flow_kg_s, m);
     flow_kg_s = flow_kg_s + o.beside_flow_kg_s;
   }
+  T lateral_y_kg_m = plant.lateral_moment_y_kg_m, lateral_z_kg_m = plant.lateral_moment_z_kg_m;
   if (plant.apart) {
-    AddApart(*plant.apart, time_s - phase.ignition_s, flow_kg_s, m);
+    m = WithApart(*plant.apart, time_s - phase.ignition_s, flow_kg_s, m);
+    lateral_y_kg_m = lateral_y_kg_m + plant.apart->lateral_y_kg_m;
+    lateral_z_kg_m = lateral_z_kg_m + plant.apart->lateral_z_kg_m;
     o.beside_flow_kg_s = plant.apart->flow_kg_s;
     flow_kg_s = flow_kg_s + o.beside_flow_kg_s;
   }
   o.mass_kg = m.mass_kg - phase.expelled_kg;
   o.inverse_mass_1_kg = T(1.0) / o.mass_kg;
   o.cg_station_m = m.cg_station_m * plant.cg_factor;
-  o.cg_y_m = plant.lateral_moment_y_kg_m * o.inverse_mass_1_kg;
-  o.cg_z_m = plant.lateral_moment_z_kg_m * o.inverse_mass_1_kg;
-  if (plant.apart) {
-    o.cg_y_m = (plant.lateral_moment_y_kg_m + plant.apart->lateral_y_kg_m) * o.inverse_mass_1_kg;
-    o.cg_z_m = (plant.lateral_moment_z_kg_m + plant.apart->lateral_z_kg_m) * o.inverse_mass_1_kg;
-  }
+  o.cg_y_m = lateral_y_kg_m * o.inverse_mass_1_kg;
+  o.cg_z_m = lateral_z_kg_m * o.inverse_mass_1_kg;
   o.axial_kg_m2 = m.axial_kg_m2 * plant.inertia_factor;
   o.transverse_kg_m2 = m.transverse_kg_m2 * plant.inertia_factor;
   o.axial_per_kg_m2 = m.axial_per_kg_m2 * plant.inertia_factor;

@@ -224,22 +224,31 @@ DISPERSA_INLINE void SetLane(BesideStage<T>& b, int lane, const MotorBurn& burn,
   Lane(b.radius2_m2, lane) = grains.radius_m * grains.radius_m;
 }
 
+/// Adds tubes of propellant whose axes are off the vehicle's axis by a radius, spread evenly about it.
+/// `own_axial_kg_m2`: their moments of inertia about their own axes. `length2_m2`: their length squared, over
+/// 12. By Huygens and Steiner, from both centres to the common one.
+template <class T>
+DISPERSA_INLINE void AddTubes(T kg, T own_axial_kg_m2, T station_m, T length2_m2, T radius2_m2,
+                              MassPropertiesLanes<T>& m) {
+  const T apart = kg * radius2_m2;
+  const T old_cg = m.cg_station_m, old_kg = m.mass_kg;
+  m.mass_kg = old_kg + kg;
+  m.cg_station_m = Fma(kg, station_m, old_kg * old_cg) / m.mass_kg;
+  m.axial_kg_m2 = m.axial_kg_m2 + own_axial_kg_m2 + apart;
+  m.transverse_kg_m2 =
+      m.transverse_kg_m2 + old_kg * Square(m.cg_station_m - old_cg) +
+      Fma(T(0.5), own_axial_kg_m2 + apart, kg * (length2_m2 + Square(station_m - m.cg_station_m)));
+}
+
 /// Adds `beside_kg` of the boosters' propellant, of which `beside_kg_s` flows beside the stage's own
 /// `flow_kg_s`. Rates by mass and the place that mass comes from become those of both flows together.
 template <class T>
 DISPERSA_INLINE void AddBeside(const BesideStage<T>& b, T beside_kg, T beside_kg_s, T flow_kg_s,
                                MassPropertiesLanes<T>& m) {
   const T inner2 = Fma(-beside_kg, b.inner_per_kg_m2, b.outer2_m2);
-  const T own_axial = T(0.5) * beside_kg * (b.outer2_m2 + inner2);
-  const T apart = beside_kg * b.radius2_m2;
-  const T old_cg = m.cg_station_m, old_kg = m.mass_kg;
-  m.mass_kg = old_kg + beside_kg;
-  m.cg_station_m = Fma(beside_kg, b.station_m, old_kg * old_cg) / m.mass_kg;
-  m.axial_kg_m2 = m.axial_kg_m2 + own_axial + apart;
-  // Huygens and Steiner, from both centres to the common one.
-  m.transverse_kg_m2 =
-      m.transverse_kg_m2 + old_kg * Square(m.cg_station_m - old_cg) +
-      Fma(T(0.5), own_axial + apart, beside_kg * (b.length2_m2 + Square(b.station_m - m.cg_station_m)));
+  const T old_cg = m.cg_station_m;
+  AddTubes(beside_kg, T(0.5) * beside_kg * (b.outer2_m2 + inner2), b.station_m, b.length2_m2, b.radius2_m2,
+           m);
   const T total_kg_s = beside_kg_s + flow_kg_s;
   const T none(0.0), one(1.0);
   const T share = Select(total_kg_s > none, beside_kg_s / Select(total_kg_s > none, total_kg_s, one), none);
