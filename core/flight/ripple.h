@@ -20,20 +20,23 @@ class RippleMeter {
 
  private:
   static constexpr int kChannels = 3;
+  static constexpr int kWidth = 4;  ///< of a sample: the channels side by side, the last unused
   static constexpr int kBlocks = 10;
-  /// Sums of one channel over one block. The moment counts samples from the block's first.
+  /// Sums over one block. The moment counts samples from the block's first.
   struct Block {
-    double sum, moment, low, high;
+    double sum[kWidth], moment[kWidth], low[kWidth], high[kWidth];
   };
 
-  void Evaluate(int channel);
+  void Evaluate();
 
   int block_size_;
-  int blocks_;                              ///< in a window
-  int at_ = 0;                              ///< where the next sample goes
-  int filled_ = 0;                          ///< samples since the last interruption, up to a window
-  std::vector<double> samples_[kChannels];  ///< the window as a ring
-  Block block_[kChannels][kBlocks];
+  int blocks_;                   ///< in a window
+  double begin_[kBlocks];        ///< of each block in a window, from the window's middle
+  int block_at_ = 0;             ///< where the next sample goes: which block,
+  int within_ = 0;               ///< and where in it
+  int filled_ = 0;               ///< samples since the last interruption, up to a window
+  std::vector<double> samples_;  ///< the window as a ring
+  Block block_[kBlocks];
   double worst_ = -1.0;
 };
 
