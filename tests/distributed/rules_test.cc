@@ -16,29 +16,15 @@
 #include "services/coordinator/watchdog.h"
 #include "services/ledger/campaign_book.h"
 #include "services/ledger/prepare_run.h"
+#include "tests/distributed/forgetful_store.h"
 
 namespace dispersa::rules_test {
 namespace {
 
-class Nowhere : public ResultStore {
- public:
-  void Store(std::span<const CaseResult>, std::span<const ExecutionRecord>) override {}
-  void Quarantine(const QuarantinedCase&) override {}
-  std::vector<std::pair<std::uint64_t, Digest>> Fingerprints() const override { return {}; }
-  CaseResult Load(std::uint64_t) const override { return {}; }
-  void ForEach(const std::function<void(const CaseResult&)>&) const override {}
-  std::int64_t PlannedCases() const override { return 0; }
-  std::vector<std::int64_t> PastLooks() const override { return {}; }
-  std::optional<std::string> WorkerOf(std::uint64_t) const override { return std::nullopt; }
-  void AppendAudits(std::span<const Claim>) override {}
-  void ForEachUnaudited(const std::function<void(const Claim&)>&) const override {}
-  std::vector<std::uint64_t> Disown(const std::string&) override { return {}; }
-};
-
 TEST(Rules, AConflictFailsTheCampaignWhateverItsVerdict) {
   Campaign campaign;
   campaign.sampling.cases = 2;
-  CampaignBook book(campaign, std::make_unique<Nowhere>());
+  CampaignBook book(campaign, std::make_unique<ForgetfulStore>());
   CaseResult result;
   book.Accept("w", "h", 1, result, 0.0);
   book.Accept("w", "h", 1, result, 0.0);

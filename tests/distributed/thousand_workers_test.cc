@@ -24,6 +24,7 @@
 #include "services/coordinator/dispatcher.h"
 #include "services/log/log.h"
 #include "services/worker/flight_desk.h"
+#include "tests/distributed/forgetful_store.h"
 
 namespace dispersa::thousand_workers_test {
 namespace {
@@ -63,7 +64,7 @@ CaseResult ResultOf(std::uint64_t case_index) {
 }
 
 /// Keeps how often each case was stored, and nothing else of it.
-class CountingStore : public ResultStore {
+class CountingStore : public ForgetfulStore {
  public:
   explicit CountingStore(std::vector<std::uint8_t>& times) : times_(times) {}
   void Store(std::span<const CaseResult> results, std::span<const ExecutionRecord>) override {
@@ -73,15 +74,7 @@ class CountingStore : public ResultStore {
     }
   }
   void Quarantine(const QuarantinedCase&) override { ADD_FAILURE() << "nobody is to blame"; }
-  std::vector<std::pair<std::uint64_t, Digest>> Fingerprints() const override { return {}; }
   CaseResult Load(std::uint64_t case_index) const override { return ResultOf(case_index); }
-  void ForEach(const std::function<void(const CaseResult&)>&) const override {}
-  std::int64_t PlannedCases() const override { return 0; }
-  std::vector<std::int64_t> PastLooks() const override { return {}; }
-  std::optional<std::string> WorkerOf(std::uint64_t) const override { return std::nullopt; }
-  void AppendAudits(std::span<const Claim>) override {}
-  void ForEachUnaudited(const std::function<void(const Claim&)>&) const override {}
-  std::vector<std::uint64_t> Disown(const std::string&) override { return {}; }
 
  private:
   std::vector<std::uint8_t>& times_;

@@ -9,10 +9,10 @@
 
 #include "core/flight/flight.h"
 #include "core/flight/metrics.h"
-#include "core/flight/tick_sample.h"
 #include "core/margins/flight_margins.h"
 #include "core/math/constants.h"
 #include "core/random/draws.h"
+#include "tests/flown_ticks.h"
 #include "tests/unit/sample_vehicle.h"
 
 namespace dispersa::flight_clusters_test {
@@ -99,17 +99,6 @@ TEST(Clusters, AddForcesAndMomentsOfEveryEngine) {
   }
 }
 
-std::vector<TickSample> Ticks(const FlightDefinition& definition, const FlightInputs& inputs,
-                              FlightResult* result = nullptr, Scheme scheme = Scheme::kSimpson) {
-  std::vector<TickSample> ticks;
-  FlightOptions options;
-  options.scheme = scheme;
-  options.observe = [&](const TickSample& s) { ticks.push_back(s); };
-  const FlightResult flown = Fly(FlightModel(definition), inputs, options);
-  if (result) *result = flown;
-  return ticks;
-}
-
 FlightInputs Disturbed() {
   FlightInputs inputs;
   inputs.thrust_misalignment_rad = AllStages(0.2 * kDeg);
@@ -132,8 +121,8 @@ TEST(Clusters, NineEnginesThatTurnAlikeFlyAsOne) {
   std::vector<Nozzle> nine = Octaweb();
   for (Nozzle& entry : nine) entry.group = "all";
   FlightResult cluster, single;
-  const auto many = Ticks(Definition(nine), Disturbed(), &cluster);
-  const auto one = Ticks(Definition({Centre()}), Disturbed(), &single);
+  const auto many = TicksOf(Definition(nine), Disturbed(), &cluster);
+  const auto one = TicksOf(Definition({Centre()}), Disturbed(), &single);
   ASSERT_EQ(cluster.outcome, Outcome::kCompleted) << cluster.reason;
   EXPECT_LT(Apart(many, one), 1e-9);
   double turned = 0.0;
@@ -187,8 +176,8 @@ TEST(Clusters, JudgesFlyTheSameFlight) {
   for (const auto& nozzles : {Octaweb(), Named(ThirtyThree())}) {
     FlightInputs inputs = Disturbed();
     inputs.further_thrust_factor[1] = 0.97;
-    const auto engine = Ticks(Definition(nozzles), inputs);
-    const auto judge = Ticks(Definition(nozzles), inputs, nullptr, Scheme::kRungeKutta4);
+    const auto engine = TicksOf(Definition(nozzles), inputs);
+    const auto judge = TicksOf(Definition(nozzles), inputs, nullptr, {.scheme = Scheme::kRungeKutta4});
     EXPECT_LT(Apart(engine, judge, 40.0), 1e-6);
     EXPECT_GT(engine.size(), 4000u);
   }
@@ -200,7 +189,7 @@ TEST(Clusters, AWeakEngineIsTrimmedByTheAngleOfItsMoment) {
   FlightInputs inputs;
   inputs.further_thrust_factor[0] = 0.95;  // the fifth nozzle, number 4 of the ring: at 135 deg
   const FlightDefinition definition = Definition(Octaweb());
-  const auto ticks = Ticks(definition, inputs);
+  const auto ticks = TicksOf(definition, inputs);
   const LauncherPlant plant = FlightModel(definition).PlantFor(inputs);
   const double each_n = kThrust_n / 9.0, lost_n = 0.05 * each_n, half = 0.5 * std::sqrt(0.5);
   int seen = 0;
@@ -268,7 +257,7 @@ TEST(Clusters, AStuckEngineStandsAndTheOthersTakeItsPart) {
   inputs.stuck_nozzle_rad = 3.0 * kDeg;
   FlightResult result;
   double others = 0.0;
-  for (const TickSample& s : Ticks(Definition(Octaweb()), inputs, &result)) {
+  for (const TickSample& s : TicksOf(Definition(Octaweb()), inputs, &result)) {
     if (!s.burning || s.stack != 0) continue;
     EXPECT_EQ(s.nozzle_rad[static_cast<std::size_t>(DriveOf(7, 0))], 3.0 * kDeg) << s.time_s;
     EXPECT_EQ(s.nozzle_rad[static_cast<std::size_t>(DriveOf(7, 1))], 0.0);
@@ -299,7 +288,7 @@ TEST(Clusters, VerniersSteerBesideFixedEngines) {
   inputs.thrust_misalignment_rad[0] = 0.02 * kDeg;
   FlightResult result;
   double turned = 0.0;
-  for (const TickSample& s : Ticks(definition, inputs, &result)) {
+  for (const TickSample& s : TicksOf(definition, inputs, &result)) {
     if (!s.burning || s.stack != 0) continue;
     for (int k = 0; k < 4; ++k) ASSERT_EQ(s.nozzle_rad[static_cast<std::size_t>(DriveOf(k, 0))], 0.0);
     for (int k = 4; k < 8; ++k)

@@ -8,8 +8,8 @@
 #include <vector>
 
 #include "core/flight/flight.h"
-#include "core/flight/tick_sample.h"
 #include "core/math/constants.h"
+#include "tests/flown_ticks.h"
 #include "tests/unit/sample_vehicle.h"
 
 namespace dispersa::flight_dispersions_test {
@@ -246,16 +246,6 @@ TEST(Dispersions, BandwidthOfTheActuators) {
   EXPECT_DOUBLE_EQ(acceleration(inputs), 12.5 * 12.5 * 0.01);
 }
 
-std::vector<TickSample> Ticks(const FlightInputs& inputs, std::uint64_t case_index = 0) {
-  const FlightModel model(HighDefinition());
-  std::vector<TickSample> ticks;
-  FlightOptions options;
-  options.case_index = case_index;
-  options.observe = [&](const TickSample& sample) { ticks.push_back(sample); };
-  Fly(model, inputs, options);
-  return ticks;
-}
-
 const TickSample& TickAt(const std::vector<TickSample>& ticks, double time_s) {
   return *std::find_if(ticks.begin(), ticks.end(),
                        [&](const TickSample& s) { return s.time_s > time_s - 1e-6; });
@@ -266,7 +256,7 @@ TEST(Dispersions, TipOffIsAddedAsTheStageSeparates) {
   inputs.tip_off_roll_rad_s[0] = 0.01;
   inputs.tip_off_pitch_rad_s[0] = -0.02;
   inputs.tip_off_yaw_rad_s[0] = 0.03;
-  const auto nominal = Ticks({}), tipped = Ticks(inputs);
+  const auto nominal = TicksOf(HighDefinition(), {}), tipped = TicksOf(HighDefinition(), inputs);
   // Burnout at 40 s, separation half a second later, on a tick.
   EXPECT_EQ(TickAt(tipped, 40.49).state.w_IB_B, TickAt(nominal, 40.49).state.w_IB_B);
   const Vector3 added = TickAt(tipped, 40.5).state.w_IB_B - TickAt(nominal, 40.5).state.w_IB_B;
@@ -278,7 +268,7 @@ TEST(Dispersions, AStuckNozzleStaysInItsStageAlone) {
   inputs.stuck_nozzle = 3.0;
   inputs.stuck_nozzle_stage = 1.0;
   inputs.stuck_nozzle_rad = 1.0 * kRadPerDeg;
-  const auto ticks = Ticks(inputs);
+  const auto ticks = TicksOf(HighDefinition(), inputs);
   double others = 0.0;
   bool second_burned = false;
   for (const TickSample& s : ticks) {
@@ -301,7 +291,7 @@ TEST(Dispersions, AStuckNozzleStaysInItsStageAlone) {
 TEST(Dispersions, AGyroBiasDriftsTheAttitude) {
   FlightInputs inputs;
   inputs.gyro_bias_yaw_rad_s = 0.01 * kRadPerDeg;
-  const auto nominal = Ticks({}), biased = Ticks(inputs);
+  const auto nominal = TicksOf(HighDefinition(), {}), biased = TicksOf(HighDefinition(), inputs);
   for (const double t : {20.0, 35.0}) {
     const Vector3 drift = TickAt(biased, t).error.angle_rad - TickAt(nominal, t).error.angle_rad;
     EXPECT_NEAR(drift.z() / (0.01 * kRadPerDeg * t), 1.0, 0.02) << t;

@@ -10,9 +10,9 @@
 
 #include "core/flight/flight.h"
 #include "core/flight/metrics.h"
-#include "core/flight/tick_sample.h"
 #include "core/margins/flight_margins.h"
 #include "core/math/constants.h"
+#include "tests/flown_ticks.h"
 #include "tests/unit/sample_vehicle.h"
 
 namespace dispersa::flight_nozzles_test {
@@ -131,17 +131,6 @@ TEST(ListedNozzles, MassesOfNozzlesReactAsTheCrossDoes) {
   EXPECT_GT(cross.norm(), 1e-3);
 }
 
-std::vector<TickSample> Ticks(const FlightDefinition& definition, const FlightInputs& inputs,
-                              FlightResult* result = nullptr, Scheme scheme = Scheme::kSimpson) {
-  std::vector<TickSample> ticks;
-  FlightOptions options;
-  options.scheme = scheme;
-  options.observe = [&](const TickSample& s) { ticks.push_back(s); };
-  const FlightResult flown = Fly(FlightModel(definition), inputs, options);
-  if (result) *result = flown;
-  return ticks;
-}
-
 FlightInputs Disturbed() {
   FlightInputs inputs;
   inputs.thrust_misalignment_rad = AllStages(0.2 * kDeg);
@@ -155,8 +144,8 @@ FlightInputs Disturbed() {
 // The list goes another way through the arithmetic and arrives at the same flight.
 TEST(ListedNozzles, ACrossAsAListFliesAsTheCross) {
   FlightResult cross, list;
-  const auto ticks = Ticks(HighDefinition(), Disturbed(), &cross);
-  const auto again = Ticks(Definition(CrossAsList(0.4)), Disturbed(), &list);
+  const auto ticks = TicksOf(HighDefinition(), Disturbed(), &cross);
+  const auto again = TicksOf(Definition(CrossAsList(0.4)), Disturbed(), &list);
   ASSERT_EQ(cross.outcome, Outcome::kCompleted);
   ASSERT_EQ(list.outcome, Outcome::kCompleted);
   ASSERT_EQ(ticks.size(), again.size());
@@ -177,8 +166,8 @@ TEST(ListedNozzles, ACrossAsAListFliesAsTheCross) {
 // The judges integrate the same equations by other means.
 TEST(ListedNozzles, JudgesFlyTheSameFlight) {
   for (const auto& nozzles : {OneNozzle(), Three(0.4)}) {
-    const auto engine = Ticks(Definition(nozzles), Disturbed());
-    const auto judge = Ticks(Definition(nozzles), Disturbed(), nullptr, Scheme::kRungeKutta4);
+    const auto engine = TicksOf(Definition(nozzles), Disturbed());
+    const auto judge = TicksOf(Definition(nozzles), Disturbed(), nullptr, {.scheme = Scheme::kRungeKutta4});
     ASSERT_EQ(engine.size(), judge.size());
     double apart = 0.0;
     for (std::size_t i = 0; i < engine.size() && engine[i].time_s < 40.0; ++i)
@@ -208,7 +197,7 @@ TEST(ListedNozzles, TheReactionControlHoldsTheRollThatOneNozzleCannot) {
   FlightDefinition definition = Definition(OneBetweenFixed());
   const FlightInputs inputs = Rolled();
   FlightResult held;
-  const auto ticks = Ticks(definition, inputs, &held);
+  const auto ticks = TicksOf(definition, inputs, &held);
   ASSERT_EQ(held.outcome, Outcome::kCompleted) << held.reason;
   double roll = 0.0, roll_commanded = 0.0, worst_pitch = 0.0;
   int fired = 0;
@@ -233,7 +222,7 @@ TEST(ListedNozzles, TheReactionControlHoldsTheRollThatOneNozzleCannot) {
   // Without its couple the vehicle rolls away.
   definition.vehicle.reaction_control.roll_arm_m = 1e-6;
   double free = 0.0;
-  for (const TickSample& s : Ticks(definition, inputs))
+  for (const TickSample& s : TicksOf(definition, inputs))
     if (s.burning && s.stack == 0) free = std::max(free, std::fabs(s.error.angle_rad.x()));
   EXPECT_GT(free, 10.0 * roll);
 }
@@ -241,7 +230,7 @@ TEST(ListedNozzles, TheReactionControlHoldsTheRollThatOneNozzleCannot) {
 // 2 F arm / Ixx from one tick to the next while a couple fires, beside the steady moment.
 TEST(ListedNozzles, ACoupleTurnsTheBurningVehicleByItsMoment) {
   const FlightDefinition definition = Definition(OneBetweenFixed());
-  const auto ticks = Ticks(definition, Rolled());
+  const auto ticks = TicksOf(definition, Rolled());
   const LauncherPlant plant = FlightModel(definition).PlantFor({});
   int compared = 0;
   for (std::size_t i = 2; i + 1 < ticks.size() && ticks[i + 1].burning; ++i) {
@@ -269,7 +258,7 @@ TEST(ListedNozzles, AStuckNozzleOfFourStandsAndTheOthersTakeItsPart) {
   inputs.stuck_nozzle_rad = 0.3 * kDeg;
   double others = 0.0;
   FlightResult result;
-  for (const TickSample& s : Ticks(Definition(Ring(4, 0.4)), inputs, &result)) {
+  for (const TickSample& s : TicksOf(Definition(Ring(4, 0.4)), inputs, &result)) {
     if (!s.burning || s.stack != 0) continue;
     EXPECT_EQ(s.nozzle_rad[1], 0.3 * kDeg) << s.time_s;
     others = std::max({others, std::fabs(s.nozzle_rad[0]), std::fabs(s.nozzle_rad[2])});
@@ -287,7 +276,7 @@ TEST(ListedNozzles, AStuckNozzleOfTwoPlanesStandsInBoth) {
   inputs.stuck_nozzle_stage = 1.0;
   inputs.stuck_nozzle_rad = 0.2 * kDeg;
   bool moves = false;
-  for (const TickSample& s : Ticks(Definition(two), inputs)) {
+  for (const TickSample& s : TicksOf(Definition(two), inputs)) {
     if (!s.burning || s.stack != 0) continue;
     EXPECT_EQ(s.nozzle_rad[0], 0.2 * kDeg);
     EXPECT_EQ(s.nozzle_rad[4], 0.0);
@@ -306,7 +295,7 @@ TEST(ListedNozzles, TheLimitIsOfTheWholeDeflection) {
   inputs.thrust_misalignment_clock_rad[0] = 0.25 * kPi;
   double widest = 0.0, first = 0.0, second = 0.0;
   FlightResult result;
-  for (const TickSample& s : Ticks(definition, inputs, &result)) {
+  for (const TickSample& s : TicksOf(definition, inputs, &result)) {
     if (!s.burning || s.stack != 0) continue;
     widest = std::max(widest, std::hypot(s.command_rad[0], s.command_rad[4]));
     first = std::max(first, std::fabs(s.command_rad[0]));

@@ -7,22 +7,13 @@
 
 #include "core/flight/flight.h"
 #include "core/flight/sequence.h"
-#include "core/flight/tick_sample.h"
 #include "core/math/constants.h"
 #include "core/math/rotation.h"
+#include "tests/flown_ticks.h"
 #include "tests/unit/sample_vehicle.h"
 
 namespace dispersa::flight_sequence_dispersions_test {
 namespace {
-
-std::vector<TickSample> TicksOf(const FlightDefinition& definition, const FlightInputs& inputs) {
-  const FlightModel model(definition);
-  std::vector<TickSample> ticks;
-  FlightOptions options;
-  options.observe = [&](const TickSample& sample) { ticks.push_back(sample); };
-  Fly(model, inputs, options);
-  return ticks;
-}
 
 // The first tick of a stack, burning or not.
 const TickSample& First(const std::vector<TickSample>& ticks, int stack, bool burning) {

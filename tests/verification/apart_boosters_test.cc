@@ -9,11 +9,11 @@
 
 #include "core/dynamics/jettison.h"
 #include "core/flight/flight.h"
-#include "core/flight/tick_sample.h"
 #include "core/margins/linear_axis.h"
 #include "core/math/constants.h"
 #include "core/trajectory/ascent.h"
 #include "core/vehicle/mass.h"
+#include "tests/flown_ticks.h"
 #include "tests/slv4_flight.h"
 #include "tests/unit/sample_vehicle.h"
 
@@ -57,17 +57,6 @@ FlightDefinition Gimballed(const std::vector<double>& angles_deg, bool alone = f
   b.steer_alone = alone;
   EXPECT_TRUE(Problems(definition.vehicle).empty());
   return definition;
-}
-
-std::vector<TickSample> Ticks(const FlightDefinition& definition, const FlightInputs& inputs,
-                              FlightResult* result = nullptr, Scheme scheme = Scheme::kSimpson) {
-  std::vector<TickSample> ticks;
-  FlightOptions options;
-  options.scheme = scheme;
-  options.observe = [&](const TickSample& s) { ticks.push_back(s); };
-  const FlightResult flown = Fly(FlightModel(definition), inputs, options);
-  if (result) *result = flown;
-  return ticks;
 }
 
 LauncherPhase Boosting(std::size_t count) {
@@ -208,7 +197,7 @@ TEST(ApartBoosters, AllAlikeFlyAsOneMotorDoes) {
   FlightDefinition together = apart;
   together.vehicle.boosters.angles_rad = {};
   FlightResult one, many;
-  const auto a = Ticks(together, inputs, &one), b = Ticks(apart, inputs, &many);
+  const auto a = TicksOf(together, inputs, &one), b = TicksOf(apart, inputs, &many);
   ASSERT_EQ(one.outcome, Outcome::kCompleted) << one.reason;
   ASSERT_EQ(a.size(), b.size());
   double rates = 0.0, speeds = 0.0;
@@ -232,7 +221,7 @@ TEST(ApartBoosters, BurnRatesMoveThrustAndBurnoutAtConstantImpulse) {
   EXPECT_NEAR(fast.duration_s, kBurn_s / 1.05, 1e-12);
   EXPECT_NEAR(fast.vacuum_thrust_n * fast.duration_s, slow.vacuum_thrust_n * slow.duration_s, 1e-6);
   FlightResult result;
-  const auto ticks = Ticks(definition, inputs, &result);
+  const auto ticks = TicksOf(definition, inputs, &result);
   ASSERT_EQ(result.outcome, Outcome::kCompleted) << result.reason;
   int trimmed = 0;
   double alone_moment = 0.0;
@@ -264,7 +253,7 @@ TEST(ApartBoosters, BurnRatesMoveThrustAndBurnoutAtConstantImpulse) {
 TEST(ApartBoosters, AnOddOneIsTrimmed) {
   const FlightDefinition definition = Boosted({90.0});
   FlightResult result;
-  const auto ticks = Ticks(definition, {}, &result);
+  const auto ticks = TicksOf(definition, {}, &result);
   ASSERT_EQ(result.outcome, Outcome::kCompleted) << result.reason;
   const LauncherPlant plant = FlightModel(definition).PlantFor({});
   int seen = 0;
@@ -289,7 +278,7 @@ TEST(ApartBoosters, EffectivenessIsTheDerivativeOfTheMotion) {
   for (const bool alone : {false, true}) {
     const FlightModel model(Gimballed({0.0, 90.0, 180.0, 270.0}, alone));
     FlightResult result;
-    const auto ticks = Ticks(model.definition(), {}, &result);
+    const auto ticks = TicksOf(model.definition(), {}, &result);
     ASSERT_EQ(result.outcome, Outcome::kCompleted) << result.reason;
     int seen = 0;
     for (const TickSample& s : ticks) {
@@ -354,8 +343,8 @@ TEST(ApartBoosters, JudgesFlyTheSameFlight) {
   FlightInputs inputs;
   inputs.further_thrust_factor[1] = inputs.further_flow_factor[1] = 1.03;
   inputs.further_misalignment_z_rad[0] = 0.004;
-  const auto engine = Ticks(definition, inputs),
-             judge = Ticks(definition, inputs, nullptr, Scheme::kRungeKutta4);
+  const auto engine = TicksOf(definition, inputs),
+             judge = TicksOf(definition, inputs, nullptr, {.scheme = Scheme::kRungeKutta4});
   ASSERT_EQ(engine.size(), judge.size());
   double apart = 0.0;
   for (std::size_t i = 0; i < engine.size() && engine[i].time_s < 40.0; ++i)
