@@ -46,6 +46,9 @@ std::string VehicleSha256(const InputNode& vehicle) {
           return member.key.starts_with("dead_zone_") || member.key.starts_with("friction_") ||
                  member.key.starts_with("resolution_");
         });
+  if (InputNode* boosters = rigid.Find("boosters"))
+    std::erase_if(boosters->members,
+                  [](const InputMember& member) { return member.key.starts_with("attachment_station_"); });
   return Sha256Hex(CanonicalText(rigid));
 }
 

@@ -178,6 +178,19 @@ DISPERSA_INLINE Bent<T> BentAtPivot(const BendingTableLanes<T>& b, const Bending
   }
   return o;
 }
+/// The same of the boosters' rigid link, at the station of their nozzles.
+template <class T>
+DISPERSA_INLINE Bent<T> BentAtBoosters(const BendingTableLanes<T>& b, const BendingState<T>& s) {
+  Bent<T> o{T(0.0), T(0.0), T(0.0), T(0.0)};
+  for (int mode = 0; mode < b.modes; ++mode) {
+    const T q_y = s.q_m[0][mode], q_z = s.q_m[1][mode];
+    o.y_m = Fma(b.ColumnAt(0, mode, BendingTable::kBoosterDeflection), q_y, o.y_m);
+    o.z_m = Fma(b.ColumnAt(1, mode, BendingTable::kBoosterDeflection), q_z, o.z_m);
+    o.about_z_rad = Fma(-b.ColumnAt(0, mode, BendingTable::kBoosterSlope), q_y, o.about_z_rad);
+    o.about_y_rad = Fma(b.ColumnAt(1, mode, BendingTable::kBoosterSlope), q_z, o.about_y_rad);
+  }
+  return o;
+}
 /// How far the inertial unit is turned against the mean axes, rad about x, y, z.
 template <class T>
 DISPERSA_INLINE Vector<T> UnitTurn(const BendingTableLanes<T>& b, const BendingState<T>& s) {
@@ -210,6 +223,26 @@ DISPERSA_INLINE void DriveAtPivot(const BendingTableLanes<T>& b, Vector<T> force
     T& of_z = o.drive_m_s2[1][mode];
     of_y = Fma(force_n.y, y.pivot_deflection, Fma(-couple_n_m.z, y.pivot_slope_1_m, of_y));
     of_z = Fma(force_n.z, z.pivot_deflection, Fma(couple_n_m.y, z.pivot_slope_1_m, of_z));
+  }
+}
+
+/// The same for the boosters, and the beam behind their link, which their force along the axis relieves.
+template <class T>
+DISPERSA_INLINE void DriveAtBoosters(const BendingTableLanes<T>& b, const BendingState<T>& s,
+                                     Vector<T> force_n, Vector<T> couple_n_m, ModalForce<T>& o) {
+  for (int plane = 0; plane < kPlanes; ++plane) {
+    const T across_n = plane == 0 ? force_n.y : force_n.z;
+    const T turning_n_m = plane == 0 ? -couple_n_m.z : couple_n_m.y;
+    for (int mode = 0; mode < b.modes; ++mode) {
+      T behind(0.0);
+      for (int other = 0; other < b.modes; ++other)
+        behind =
+            Fma(b.ColumnAt(plane, mode, BendingTable::kBehindBoosters + other), s.q_m[plane][other], behind);
+      T& of = o.drive_m_s2[plane][mode];
+      of = Fma(across_n, b.ColumnAt(plane, mode, BendingTable::kBoosterDeflection),
+               Fma(turning_n_m, b.ColumnAt(plane, mode, BendingTable::kBoosterSlope),
+                   Fma(-force_n.x, behind, of)));
+    }
   }
 }
 

@@ -125,9 +125,6 @@ struct BoosterSet {
   Gimbal gimbal = {};                  ///< of each (a limit of 0: their nozzles are fixed)
   NozzleLayout layout = {};            ///< of the stage's nozzles and theirs, while any of them burns
 };
-/// The boosters' bit of LauncherPhase::jettisoned.
-inline constexpr unsigned kBoostersGone = 1u << kMaxJettisons;
-
 /// A vehicle of one flight.
 struct LauncherPlant {
   Environment environment;

@@ -402,11 +402,30 @@ DISPERSA_INLINE void BendThrust(const LauncherPlantLanes<T>& plant, const Launch
   Blend<T>(phase.burning, driven, *bent.modal);
 }
 
+/// The boosters' forces where the body bends: their rigid link moves and turns them. `couple_n_m`: about the
+/// axis at the station of their nozzles.
+template <class T>
+DISPERSA_INLINE void BendBoosters(const LauncherPhaseLanes<T>& phase, const TimedMasses<T>& masses,
+                                  T nozzle_station_m, const Vector<T>& force_n, const Vector<T>& couple_n_m,
+                                  const BentBody<T>& bent, Thrust<T>& thrust, LoadsOf<T>& o) {
+  const Bent<T> at = BentAtBoosters(*bent.bending, *bent.state);
+  const Vector<T> turn{T(0.0), at.about_y_rad, at.about_z_rad}, moved{T(0.0), at.y_m, at.z_m};
+  const Vector<T> turned_n = Cross(turn, force_n), turned_n_m = Cross(turn, couple_n_m);
+  const Vector<T> arm{masses.cg_station_m - nozzle_station_m, -masses.cg_y_m, -masses.cg_z_m};
+  const Vector<T> moment_n_m = Cross(arm, turned_n) + Cross(moved, force_n) + turned_n_m;
+  o.force_n = Select(phase.boosting, o.force_n + turned_n, o.force_n);
+  thrust.moment_n_m = Select(phase.boosting, thrust.moment_n_m + moment_n_m, thrust.moment_n_m);
+  ModalForce<T> driven = *bent.modal;
+  DriveAtBoosters(*bent.bending, *bent.state, force_n + turned_n, couple_n_m + turned_n_m, driven);
+  Blend<T>(phase.boosting, driven, *bent.modal);
+}
+
 /// Boosters push along the axis at their places. A lateral offset of C turns that into a moment. Returns the
 /// mean place at which the flow of stage and boosters leaves.
-template <class T>
+template <class T, class Body>
 DISPERSA_INLINE T AddBoosters(const LauncherPlantLanes<T>& plant, const LauncherPhaseLanes<T>& phase,
-                              const TimedMasses<T>& masses, T pressure_pa, Thrust<T>& thrust, LoadsOf<T>& o) {
+                              const TimedMasses<T>& masses, T pressure_pa, const Body& body,
+                              Thrust<T>& thrust, LoadsOf<T>& o) {
   const T none(0.0);
   const MotorBurnLanes<T>& burn = plant.beside.burn;
   const T net_n =
@@ -416,6 +435,9 @@ DISPERSA_INLINE T AddBoosters(const LauncherPlantLanes<T>& plant, const Launcher
   o.force_n.x = Select(phase.boosting, o.force_n.x + push_n, o.force_n.x);
   thrust.moment_n_m.y = thrust.moment_n_m.y - masses.cg_z_m * push_n;
   thrust.moment_n_m.z = thrust.moment_n_m.z + masses.cg_y_m * push_n;
+  if constexpr (Body::kBends)
+    BendBoosters(phase, masses, plant.beside_nozzle_m, Vector<T>{push_n, none, none}, Zero<T>(), body, thrust,
+                 o);
   o.flow_kg_s = o.flow_kg_s + masses.beside_flow_kg_s;
   const T share = Select(o.flow_kg_s > none,
                          masses.beside_flow_kg_s / Select(o.flow_kg_s > none, o.flow_kg_s, T(1.0)), none);
@@ -423,10 +445,10 @@ DISPERSA_INLINE T AddBoosters(const LauncherPlantLanes<T>& plant, const Launcher
 }
 
 /// The same of boosters that are bodies of their own.
-template <class T, class Turned>
+template <class T, class Turned, class Body>
 DISPERSA_INLINE T AddApartBoosters(const LauncherPlantLanes<T>& plant, const LauncherPhaseLanes<T>& phase,
                                    const TimedMasses<T>& masses, T pressure_pa, const Turned& nozzles,
-                                   const Vector<T>& w, Thrust<T>& thrust, LoadsOf<T>& o) {
+                                   const Vector<T>& w, const Body& body, Thrust<T>& thrust, LoadsOf<T>& o) {
   const BankNozzles<T>* banks = nullptr;
   if constexpr (requires { nozzles.further; }) banks = nozzles.further;
   const ApartLoads<T> beside = LoadsOfApart(*plant.apart, banks, pressure_pa, masses.cg_station_m,
@@ -435,6 +457,12 @@ DISPERSA_INLINE T AddApartBoosters(const LauncherPlantLanes<T>& plant, const Lau
   o.thrust_n = Select(phase.boosting, o.thrust_n + beside.thrust_n, o.thrust_n);
   o.force_n = Select(phase.boosting, o.force_n + beside.force_n, o.force_n);
   thrust.moment_n_m = Select(phase.boosting, thrust.moment_n_m + beside.moment_n_m, thrust.moment_n_m);
+  if constexpr (Body::kBends) {
+    const T nozzle_m = plant.apart->nozzle_station_m;
+    const Vector<T> arm{masses.cg_station_m - nozzle_m, -masses.cg_y_m, -masses.cg_z_m};
+    BendBoosters(phase, masses, nozzle_m, beside.force_n, beside.moment_n_m - Cross(arm, beside.force_n),
+                 body, thrust, o);
+  }
   o.flow_kg_s = o.flow_kg_s + masses.beside_flow_kg_s;
   const T share = Select(o.flow_kg_s > none,
                          masses.beside_flow_kg_s / Select(o.flow_kg_s > none, o.flow_kg_s, T(1.0)), none);
@@ -489,9 +517,11 @@ DISPERSA_INLINE LoadsOf<T> LoadsAt(double earth_rate_rad_s, const LauncherPlantL
   o.flow_kg_s = Select(phase.burning, thrust.flow_kg_s, none);
   o.force_n = Select(phase.burning, o.force_n + thrust.force_n, o.force_n);
   T exit_station_m = plant.pivot_station_m;  // of what flows
-  if (plant.has_boosters) exit_station_m = AddBoosters(plant, phase, masses, around.pressure_pa, thrust, o);
+  if (plant.has_boosters)
+    exit_station_m = AddBoosters(plant, phase, masses, around.pressure_pa, body, thrust, o);
   if (plant.apart)
-    exit_station_m = AddApartBoosters(plant, phase, masses, around.pressure_pa, nozzles, s.w, thrust, o);
+    exit_station_m =
+        AddApartBoosters(plant, phase, masses, around.pressure_pa, nozzles, s.w, body, thrust, o);
   if (plant.flow_coriolis) {
     const T turned = T(2.0) * o.flow_kg_s * (exit_station_m - masses.source_station_m);
     o.force_n.y = Fma(turned, s.w.z, o.force_n.y);

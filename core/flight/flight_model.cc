@@ -185,6 +185,8 @@ void SetMasses(const Vehicle& vehicle, LauncherPlant& plant) {
       stack.loads = plant.stacks[i - 1].loads;
     else if (!vehicle.profile.empty() && (i > 0 || vehicle.boosters.count == 0))
       stack.loads = std::make_shared<const LoadTable>(BuildLoadTable(vehicle, static_cast<int>(i)));
+    else if (vehicle.structure_beam)
+      stack.loads = std::make_shared<const LoadTable>(BuildLiftTable(vehicle, static_cast<int>(i)));
   }
   if (plant.bending_modes() == 0) return;
   const auto modes = [&](std::size_t i, const StackModes&) { return plant.stacks[i].bending->modes; };

@@ -469,9 +469,11 @@ void FlightRecord::CutOff(int stage, double time_s) {
 }
 
 void FlightRecord::LetGoOfBoosters(unsigned jettisoned, double time_s, double propellant_kg, double* y) {
-  WriteState(AfterJettison(plant, 0, jettisoned, jettisoned | kBoostersGone, propellant_kg,
-                           time_s - events.front().time_s, ReadState(y)),
-             y);
+  const unsigned without = jettisoned | kBoostersGone;
+  RigidBodyState left = AfterJettison(plant, 0, jettisoned, without, propellant_kg,
+                                      time_s - events.front().time_s, ReadState(y));
+  LetGoBent(plant.stacks[0], jettisoned, without, propellant_kg, y + kModalState, left);
+  WriteState(left, y);
   if (!plant.boosters_steer()) return;
   for (int drive = plant.stacks[0].layout.banks() * kDrives; drive < plant.nozzle_banks() * kDrives; ++drive)
     y[AngleOf(drive)] = y[RateOf(drive)] = 0.0;

@@ -129,12 +129,12 @@ AxisPlant LineariseAxis(const LauncherPlant& plant, const TickSample& sample, Ax
 
   linear.attitude = Eigen::RowVectorXd::Unit(size, 0);
   linear.rates.clear();
+  const BendingTable* const table = stack.BendingWithout(sample.jettisoned);
   const SensorModel::Weights& weights = sensors.stages[static_cast<std::size_t>(sample.stack)];
   const double sign = axis == kPitch ? 1.0 : -1.0;
   const auto slope_of = [&](int column, int mode) {
-    const BendingTable& table = *stack.bending;
     const double propellant = stack.burn.Propellant(sample.since_ignition_s);
-    return sign * plant.bending.slope * table.At(table.planes == 1 ? 0 : plane, mode, column, propellant);
+    return sign * plant.bending.slope * table->At(table->planes == 1 ? 0 : plane, mode, column, propellant);
   };
   const auto rate_at = [&](int column) {
     Eigen::RowVectorXd row = Eigen::RowVectorXd::Unit(size, 1);
@@ -148,12 +148,10 @@ AxisPlant LineariseAxis(const LauncherPlant& plant, const TickSample& sample, Ax
     linear.rates.push_back({rate_at(BendingTable::kGyroSlope + static_cast<int>(g)), sensors.gyros[g].section,
                             weights.gyro[g], 0.5 * (sensors.gyros[g].sample_ticks - 1)});
   }
-  if (modes > 0) {
-    const BendingTable& table = *stack.bending;
+  if (modes > 0)
     linear.lowest_mode_rad_s =
-        plant.bending.frequency[0] * table.At(table.planes == 1 ? 0 : plane, 0, BendingTable::kFrequency,
-                                              stack.burn.Propellant(sample.since_ignition_s));
-  }
+        plant.bending.frequency[0] * table->At(table->planes == 1 ? 0 : plane, 0, BendingTable::kFrequency,
+                                               stack.burn.Propellant(sample.since_ignition_s));
   return linear;
 }
 

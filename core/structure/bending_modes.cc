@@ -6,6 +6,7 @@
 #include "core/structure/beam_elements.h"
 #include "core/structure/free_free_modes.h"
 #include "core/structure/mode_tracking.h"
+#include "core/vehicle/booster_course.h"
 #include "core/vehicle/mass.h"
 
 namespace dispersa {
@@ -109,6 +110,25 @@ void Append(const Level& level, std::vector<BendingLevel>& levels) {
   levels.push_back(std::move(out));
 }
 
+// Levels of propellant at which the modes are solved, falling. Boosters burn for a part of their stage's
+// burn: their levels are even over that part. One more lies as far behind the separation, since a flight's
+// boosters may burn longer.
+std::vector<double> LevelsOf(const Vehicle& vehicle, int stage, unsigned gone) {
+  const double full_kg = vehicle.stages[static_cast<std::size_t>(stage)].propellant_mass_kg;
+  const int steps = vehicle.structure_beam->propellant_levels - 1;
+  std::vector<double> levels_kg;
+  if (stage > 0 || vehicle.boosters.count == 0 || (gone & kBoostersGone)) {
+    for (int i = steps; i >= 0; --i) levels_kg.push_back(full_kg * i / steps);
+    return levels_kg;
+  }
+  const BoosterCourse course(vehicle);
+  const double burnout_kg = course.StageAtBurnout(), step_kg = (full_kg - burnout_kg) / steps;
+  for (int i = steps; i > 0; --i) levels_kg.push_back(burnout_kg + step_kg * i);
+  levels_kg.push_back(burnout_kg);
+  levels_kg.push_back(std::max(course.StageAtSeparation() - step_kg, 0.0));
+  return levels_kg;
+}
+
 // `basis` takes what others may be sought among. `near`: see BuildStackModes.
 void SolvePlane(const Vehicle& vehicle, BeamPlane plane, const StackModes* near, StackModes& stack,
                 ModeBasis& basis) {
@@ -128,9 +148,16 @@ void SolvePlane(const Vehicle& vehicle, BeamPlane plane, const StackModes* near,
   const std::vector<BeamElement> elements = BuildElements(beam, plane, stations);
   stack.station_m[Index(plane)] = stations;
   for (const BeamElement& element : elements) stack.shear_ratio[Index(plane)].push_back(element.shear_ratio);
-  const int last = structure.propellant_levels - 1;
+  const std::vector<double> levels_kg = LevelsOf(vehicle, stack.stage, stack.gone);
   std::vector<FreeFreeModes>& kept = basis.modes[Index(plane)];
-  kept.resize(static_cast<std::size_t>(structure.propellant_levels));
+  kept.resize(levels_kg.size());
+  const auto nearest_to = [&](double propellant_kg) {
+    std::size_t nearest = 0;
+    for (std::size_t i = 1; i < levels_kg.size(); ++i)
+      if (std::fabs(propellant_kg - levels_kg[i]) <= std::fabs(propellant_kg - levels_kg[nearest]))
+        nearest = i;
+    return nearest;
+  };
 
   const auto solve = [&](double propellant_kg) {
     beam.masses = BuildBeamMasses(vehicle, stack.stage, propellant_kg, stack.gone);
@@ -138,14 +165,13 @@ void SolvePlane(const Vehicle& vehicle, BeamPlane plane, const StackModes* near,
     level.propellant_kg = propellant_kg;
     level.mass = MassMatrix(beam, stations, elements);
     const int count = structure.modes + kFurtherModes;
-    const double from_full = (1.0 - propellant_kg / full_kg) * last;
-    const std::size_t nearest = static_cast<std::size_t>(std::lround(from_full));
+    const std::size_t nearest = nearest_to(propellant_kg);
     FreeFreeModes modes;
     if (near) {
       modes = SolveFreeFreeNear(stations, near->basis->modes[Index(plane)][nearest], level.mass, count);
     } else {
       modes = SolveFreeFree(stations, elements, level.mass, std::max(count, kBasisModes));
-      if (std::fabs(from_full - static_cast<double>(nearest)) < 1e-9) kept[nearest] = modes;
+      if (propellant_kg == levels_kg[nearest]) kept[nearest] = modes;
       const Eigen::Index wanted = std::min<Eigen::Index>(count, modes.frequency_rad_s.size());
       modes.frequency_rad_s.conservativeResize(wanted);
       modes.shape.conservativeResize(Eigen::NoChange, wanted);
@@ -156,11 +182,11 @@ void SolvePlane(const Vehicle& vehicle, BeamPlane plane, const StackModes* near,
     Scale(level);
     return level;
   };
-  Level level = solve(full_kg);
+  Level level = solve(levels_kg.front());
   Begin(level, structure.modes);
   Append(level, stack.levels[Index(plane)]);
-  for (int i = structure.propellant_levels - 2; i >= 0; --i) {
-    level = Follow(level, full_kg * i / (structure.propellant_levels - 1), solve, kHalvings);
+  for (std::size_t i = 1; i < levels_kg.size(); ++i) {
+    level = Follow(level, levels_kg[i], solve, kHalvings);
     Append(level, stack.levels[Index(plane)]);
   }
 }
@@ -229,28 +255,23 @@ bool IsAxisymmetric(const StructureBeam& beam, int stage) {
 
 }  // namespace
 
-StationShape ShapeOf(const StackModes& stack, BeamPlane plane, const BendingMode& mode, double station_m) {
+BeamPlace PlaceAt(const StackModes& stack, BeamPlane plane, double station_m) {
   const std::vector<double>& stations = stack.station_m[Index(plane)];
   const std::size_t last = stations.size() - 1;
   if (station_m <= stations.front())
-    return {mode.deflection.front() + (station_m - stations.front()) * mode.slope_1_m.front(),
-            mode.slope_1_m.front()};
+    return {0, {1.0, station_m - stations.front(), 0.0, 0.0}, {0.0, 1.0, 0.0, 0.0}};
   if (station_m >= stations.back())
-    return {mode.deflection[last] + (station_m - stations[last]) * mode.slope_1_m[last],
-            mode.slope_1_m[last]};
+    return {last - 1, {0.0, 0.0, 1.0, station_m - stations[last]}, {0.0, 0.0, 0.0, 1.0}};
   const auto above = std::upper_bound(stations.begin(), stations.end(), station_m);
   const std::size_t i = static_cast<std::size_t>(above - stations.begin()) - 1;
   const double length = stations[i + 1] - stations[i];
   const BeamShape shape =
       ShapeAt((station_m - stations[i]) / length, length, stack.shear_ratio[Index(plane)][i]);
-  const double ends[4] = {mode.deflection[i], mode.slope_1_m[i], mode.deflection[i + 1],
-                          mode.slope_1_m[i + 1]};
-  StationShape at;
-  for (std::size_t k = 0; k < 4; ++k) {
-    at.deflection += shape.deflection[k] * ends[k];
-    at.slope_1_m += shape.rotation[k] * ends[k];
-  }
-  return at;
+  return {i, shape.deflection, shape.rotation};
+}
+
+StationShape ShapeOf(const StackModes& stack, BeamPlane plane, const BendingMode& mode, double station_m) {
+  return PlaceAt(stack, plane, station_m).Of(mode);
 }
 
 StackModes BuildStackModes(const Vehicle& vehicle, int stage, unsigned gone, const StackModes* near) {
@@ -276,14 +297,16 @@ std::vector<StackModes> ShownStacks(const Vehicle& vehicle) {
   std::vector<StackModes> stacks;
   for (int i = 0; i < static_cast<int>(vehicle.stages.size()); i = LastBurn(vehicle, i) + 1) {
     stacks.push_back(BuildStackModes(vehicle, i));
-    if (const unsigned carried = CarriedBy(vehicle, i))
-      stacks.push_back(BuildStackModes(vehicle, i, carried));
+    const unsigned carried = CarriedBy(vehicle, i);
+    if (carried & ~kBoostersGone && carried & kBoostersGone)
+      stacks.push_back(BuildStackModes(vehicle, i, kBoostersGone));
+    if (carried != 0) stacks.push_back(BuildStackModes(vehicle, i, carried));
   }
   return stacks;
 }
 
 std::string WithoutText(const Vehicle& vehicle, const StackModes& stack) {
-  std::string text;
+  std::string text = stack.gone & kBoostersGone ? std::string(", without ") + kBoostersName : "";
   unsigned bit = 1;
   for (const Stage& stage : vehicle.stages)
     for (const Jettison& jettison : stage.jettisoned) {

@@ -52,9 +52,30 @@ struct StationShape {
   double deflection = 0.0;
   double slope_1_m = 0.0;
 };
+/// A station of the beam, found once for all modes and levels: its element, and the shares of what the
+/// element's two nodes do.
+struct BeamPlace {
+  std::size_t node = 0;
+  std::array<double, 4> deflection{}, rotation{};
+
+  StationShape Of(const BendingMode& mode) const {
+    const double ends[4] = {mode.deflection[node], mode.slope_1_m[node], mode.deflection[node + 1],
+                            mode.slope_1_m[node + 1]};
+    StationShape at;
+    for (std::size_t k = 0; k < 4; ++k) {
+      at.deflection += deflection[k] * ends[k];
+      at.slope_1_m += rotation[k] * ends[k];
+    }
+    return at;
+  }
+};
+BeamPlace PlaceAt(const StackModes& stack, BeamPlane plane, double station_m);
 StationShape ShapeOf(const StackModes& stack, BeamPlane plane, const BendingMode& mode, double station_m);
 
 /// The modes of the stack of a stage that is no restart.
+///
+/// A stack with boosters has its levels over their burn, with the propellant that they have at each
+/// (booster_course.h). The last level lies behind their separation.
 ///
 /// Further levels are added between those of the file where a mode changes so much that its modal assurance
 /// criterion falls below 0.9, down to 1/32 of a step. Precondition: a vehicle with a beam and without
@@ -65,8 +86,8 @@ StationShape ShapeOf(const StackModes& stack, BeamPlane plane, const BendingMode
 /// (SolveFreeFreeNear), on the same mesh.
 StackModes BuildStackModes(const Vehicle& vehicle, int stage, unsigned gone = 0,
                            const StackModes* near = nullptr);
-/// The modes that pages show: of each stage that is no restart with all its bodies, then without those that
-/// it jettisons.
+/// The modes that pages show: of each stage that is no restart with all its bodies, then without boosters,
+/// then without all that it jettisons.
 std::vector<StackModes> ShownStacks(const Vehicle& vehicle);
 /// "", or ", without fairing": what has left.
 std::string WithoutText(const Vehicle& vehicle, const StackModes& stack);

@@ -39,7 +39,8 @@ struct BendingTable {
   /// per radian. These are the columns of each step. From kSectionsAt on: the same effects about each load
   /// station, and from kMomentAt on the bending moment of the mode's inertia there, for a unit acceleration
   /// of the mode. If there is a stage above: mean displacement of its centre of gravity, and mean rotation,
-  /// for a unit of the mode.
+  /// for a unit of the mode. If there are boosters: deflection at the station of their nozzles and slope,
+  /// both of their rigid link, and the shortening of the beam behind the link with each mode.
   enum Column : int {
     kFrequency = 0,
     kInverseMass = 1,
@@ -54,12 +55,16 @@ struct BendingTable {
     kSectionsAt = 44,
     kMomentAt = 72,
     kUpperTurn = 79,
-    kRowSize = 80
+    kBoosterDeflection = 80,
+    kBoosterSlope = 81,
+    kBehindBoosters = 82,
+    kRowSize = 88
   };
   static_assert(kGyroSlope + kRateGyros == kShortening && kShortening + kModes == kStraightLift &&
                 kLiftAt + int{kLiftCauses} * int{kSectionEffects} == kSectionsAt &&
                 kSectionsAt + int{kLiftCauses} * kLoadStations == kMomentAt &&
-                kMomentAt + kLoadStations == kUpperTurn);
+                kMomentAt + kLoadStations == kUpperTurn && kBehindBoosters + kModes <= kRowSize &&
+                kRowSize % 4 == 0);
   static constexpr int LiftColumn(int cause, int effect) {
     return effect < kSectionEffects ? kLiftAt + kSectionEffects * cause + effect
                                     : kSectionsAt + kLoadStations * cause + effect - kSectionEffects;
@@ -88,7 +93,9 @@ int ModesBelow(const Vehicle& vehicle, const StackModes& stack, double highest_r
 /// `shortening` of modes j and k: the integral of w_j' w_k' over the beam, weighted with the share of the
 /// mass that lies ahead. The axial force F carried by the stack lowers the stiffness by F times that (the
 /// potential energy of a compressed beam, e.g. S. Timoshenko and J. Gere, "Theory of Elastic
-/// Stability", 1.11; drag taken as carried like thrust).
+/// Stability", 1.11; drag taken as carried like thrust). The thrust of boosters enters the beam at their
+/// link, so the beam behind carries so much less: that times the shortening `behind` the link, without the
+/// weight.
 BendingTable BuildBendingTable(const Vehicle& vehicle, const StackModes& stack, const LoadTable& loads,
                                int modes);
 

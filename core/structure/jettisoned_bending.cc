@@ -22,11 +22,12 @@ std::vector<std::vector<StationShape>> ShapesAt(const StackModes& stack, std::si
   if (&low != &high)
     within =
         std::clamp((low.propellant_kg - propellant_kg) / (low.propellant_kg - high.propellant_kg), 0.0, 1.0);
+  std::vector<BeamPlace> places;
+  for (const MassPoint& m : points) places.push_back(PlaceAt(stack, kBeamPlanes[plane], m.fixed_at_m));
   std::vector<std::vector<StationShape>> shapes(static_cast<std::size_t>(modes));
   for (std::size_t mode = 0; mode < shapes.size(); ++mode)
-    for (const MassPoint& m : points) {
-      const StationShape a = ShapeOf(stack, kBeamPlanes[plane], low.modes[mode], m.fixed_at_m),
-                         b = ShapeOf(stack, kBeamPlanes[plane], high.modes[mode], m.fixed_at_m);
+    for (const BeamPlace& place : places) {
+      const StationShape a = place.Of(low.modes[mode]), b = place.Of(high.modes[mode]);
       shapes[mode].push_back({a.deflection + within * (b.deflection - a.deflection),
                               a.slope_1_m + within * (b.slope_1_m - a.slope_1_m)});
     }

@@ -53,6 +53,12 @@ LoadTable BuildLoadTable(const Vehicle& vehicle, int stage) {
   return table;
 }
 
+LoadTable BuildLiftTable(const Vehicle& vehicle, int stage) {
+  LoadTable table;
+  table.lift = DistributeLift(vehicle, stage);
+  return table;
+}
+
 const LoadTable& NoLoads() {
   static const LoadTable none{};
   return none;

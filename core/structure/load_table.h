@@ -31,6 +31,9 @@ struct LoadTable {
 /// (beam_masses.h).
 LoadTable BuildLoadTable(const Vehicle& vehicle, int stage);
 
+/// The same without loads of cross-sections: what boosters do to these is not modelled.
+LoadTable BuildLiftTable(const Vehicle& vehicle, int stage);
+
 /// A table without loads, for lanes without one. It is made here: code of one instruction set must not hold
 /// the destructor of a type that all share.
 const LoadTable& NoLoads();

@@ -35,12 +35,14 @@ struct BeamMasses {
 };
 
 /// The masses of the stack of stages `stage` (from 0) and above, with `propellant_kg` left in its lowest
-/// stage. Bit i of `gone`: jettison i (BuildJettisonedMasses) has left.
+/// stage. Bit i of `gone`: jettison i (BuildJettisonedMasses) has left. kBoostersGone: the boosters have.
 ///
 /// Structure elements, jettisoned bodies and grains are the tubes of the mass model. They are spread evenly
 /// over their length, or fixed at one station if the beam lumps them. So mass, centre of gravity and
 /// transverse inertia are those of StackMass::At to rounding, at any level, with or without a beam. A stage
-/// that gives its own masses has them scaled (ScaleOwnMasses).
+/// that gives its own masses has them scaled (ScaleOwnMasses), and so has a stage with a mass table. Boosters
+/// are rigid bodies at their attachment station, with the propellant that they have by the nominal burns
+/// (booster_course.h).
 BeamMasses BuildBeamMasses(const Vehicle& vehicle, int stage, double propellant_kg, unsigned gone = 0);
 
 /// Whether the beam has this element of its stage's structure, or jettisoned body, among its lumped masses.
@@ -59,6 +61,12 @@ struct OwnMassScale {
   double stage_cg_m = 0.0;
 };
 OwnMassScale ScaleOwnMasses(const Vehicle& vehicle, int stage);
+/// The same for a stage with a mass table, whose parts and propellant are multiplied by one polynomial at
+/// each propellant. Returned: the least and the greatest value of the polynomial over the parts.
+struct TableScale {
+  double least = 0.0, greatest = 0.0;
+};
+TableScale ScaleToMassTable(const Vehicle& vehicle, int stage, double propellant_kg);
 /// Beyond these the masses are another vehicle's.
 inline constexpr double kLeastMassScale = 0.5;
 inline constexpr double kGreatestMassScale = 2.0;

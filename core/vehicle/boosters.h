@@ -37,6 +37,7 @@ struct Boosters {
   Gimbal gimbal = {};                    ///< its drives (a limit of 0: the nozzles are fixed)
   std::vector<double> towards_rad = {};  ///< their hinges, as of a Nozzle
   bool steer_alone = false;              ///< the stage's own nozzles stay centred while they burn
+  double attachment_station_m = 0.0;     ///< of a beam, which carries them there (0: not given)
 
   /// Each is a body of its own.
   bool are_apart() const { return !angles_rad.empty(); }
@@ -101,6 +102,8 @@ inline void Describe(Fields& fields, Boosters& boosters) {
   fields.Map("grain", "of one, about its own axis", [&](Fields& grain) { Describe(grain, boosters.grain); });
   fields.Quantity("separation_delay", kTime, kNonNegative, boosters.separation_delay_s,
                   "from detected burnout of the last; before the stage separates", 0.0);
+  fields.Quantity("attachment_station", kLength, kPositive, boosters.attachment_station_m,
+                  "of structure_beam, which carries them by a rigid link", 0.0);
 }
 
 }  // namespace dispersa

@@ -131,7 +131,7 @@ std::vector<JettisonedMass> BuildJettisonedMasses(const Vehicle& vehicle) {
 }
 
 unsigned CarriedBy(const Vehicle& vehicle, int stage) {
-  unsigned carried = 0, bit = 1;
+  unsigned carried = stage == 0 && vehicle.boosters.count > 0 ? kBoostersGone : 0u, bit = 1;
   for (std::size_t i = 0; i < vehicle.stages.size(); ++i)
     for (std::size_t k = 0; k < vehicle.stages[i].jettisoned.size(); ++k, bit <<= 1)
       if (static_cast<int>(i) >= stage) carried |= bit;

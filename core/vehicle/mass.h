@@ -64,7 +64,9 @@ struct JettisonedMass {
   double axial_inertia_kg_m2 = 0.0;
 };
 std::vector<JettisonedMass> BuildJettisonedMasses(const Vehicle& vehicle);
-/// Those that the stack of a stage carries, as bits.
+/// The boosters' bit beside those of the jettisoned bodies.
+inline constexpr unsigned kBoostersGone = 1u << kMaxJettisons;
+/// Those that the stack of a stage carries, as bits, boosters among them.
 unsigned CarriedBy(const Vehicle& vehicle, int stage);
 
 /// A stack without what has been jettisoned: bit i of `gone` stands for jettison i, whether the stack carried

@@ -37,6 +37,14 @@ class BeamChecker {
     }
     if (!beam_.table.empty()) {
       CheckTable();
+      if (vehicle_.boosters.count > 0)
+        Add("modes_table", "has the modes of a stack that keeps its boosters",
+            "structure_beam.stages, from which the modes with them and without them follow");
+      return std::move(problems_);
+    }
+    if (vehicle_.boosters.count > 0 && !(vehicle_.boosters.attachment_station_m > 0.0)) {
+      problems_.push_back({"boosters", "missing key 'attachment_station_m'",
+                           "the station at which structure_beam carries them"});
       return std::move(problems_);
     }
     if (beam_.stages.size() != vehicle_.stages.size()) {
@@ -155,11 +163,33 @@ class BeamChecker {
             "sections along the whole element, or the element among lumped_masses");
     };
     for (const Jettison& j : JettisonedOf(i)) check_tube(j, "jettisoned bodies");
+    const Boosters& boosters = vehicle_.boosters;
+    if (i == 0 && boosters.count > 0 && !inside(boosters.attachment_station_m, boosters.attachment_station_m))
+      problems_.push_back(
+          {"boosters.attachment_station_m", "lies outside of " + beam, "a station of the beam"});
+    if (stage.flown_mass.rows) CheckMassTable(i);
     if (beam_.stages[i].own_masses) {
-      CheckOwnMasses(i, path);
+      if (!stage.flown_mass.rows) CheckOwnMasses(i, path);
       return;
     }
     for (const MassElement& e : stage.structure) check_tube(e, "structure");
+  }
+
+  // The tubes say how the table's masses lie along the beam.
+  void CheckMassTable(std::size_t i) {
+    const double full_kg = vehicle_.stages[i].propellant_mass_kg;
+    for (const double propellant_kg : {full_kg, 0.5 * full_kg, 0.0}) {
+      const TableScale scale = ScaleToMassTable(vehicle_, static_cast<int>(i), propellant_kg);
+      if (scale.least >= kLeastMassScale && scale.greatest <= kGreatestMassScale) continue;
+      problems_.push_back({"stages[" + std::to_string(i) + "].mass_table",
+                           "does not fit the tubes, which lie along structure_beam: with " +
+                               std::to_string(propellant_kg) + " kg they would be multiplied by " +
+                               std::to_string(scale.least) + " to " + std::to_string(scale.greatest),
+                           "tubes of structure, grain or tanks that are multiplied by " +
+                               std::to_string(kLeastMassScale) + " to " + std::to_string(kGreatestMassScale) +
+                               " to have the table's centre of gravity and inertia"});
+      return;
+    }
   }
 
   void CheckOwnMasses(std::size_t i, const std::string& path) {

@@ -271,9 +271,6 @@ void CheckBoosters(const Vehicle& vehicle, Checker& check) {
   check.Require(b.grain.outer_diameter_m <= b.diameter_m, "boosters.grain.outer_diameter_m",
                 "is larger than the booster", "at most diameter_m");
   if (b.are_apart()) CheckApart(vehicle, check);
-  check.Require(!vehicle.structure_beam, "boosters",
-                "change the modes of a vehicle that bends, which is not modelled",
-                "none beside structure_beam");
   CheckFlows(b.motor.thrust_curve, b.propellant_mass_kg, "boosters.motor", check);
   const double beside_s = BuildBoosterBurn(b, 1.0, 1.0).duration_s + b.separation_delay_s;
   const double core_s = BuildBurn(core, 1.0, 1.0).duration_s;

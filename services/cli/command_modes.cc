@@ -16,6 +16,7 @@
 #include "core/results/json_number.h"
 #include "core/results/output_file.h"
 #include "core/structure/bending_modes.h"
+#include "core/structure/free_body.h"
 #include "core/vehicle/mass.h"
 #include "services/cli/command.h"
 #include "services/cli/warn.h"
@@ -80,9 +81,14 @@ nlohmann::ordered_json StacksJson(const Vehicle& vehicle, const std::vector<Stac
             modes.push_back(ModeJson(vehicle, stack, plane, i, level.modes[i], shapes));
         }
       }
-      const MassProperties rigid =
+      MassProperties rigid =
           Without(masses[static_cast<std::size_t>(stack.stage)], stack.stage, jettisons, stack.gone)
               .At(propellant_kg);
+      if (stack.stage == 0 && vehicle.boosters.count > 0) {  // with the propellant that they have then
+        const FreeBody body(BuildBeamMasses(vehicle, 0, propellant_kg, stack.gone), {});
+        rigid.mass_kg = body.mass_kg;
+        rigid.cg_station_m = body.cg_station_m;
+      }
       json.push_back({{"stage", stack.stage + 1},
                       {"jettisoned", stack.gone != 0},
                       {"propellant_kg", propellant_kg},

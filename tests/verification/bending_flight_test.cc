@@ -233,7 +233,7 @@ TEST(BendingFlight, TheStepConvergesToCvode) {
     double error[3] = {(at.w_IB_B - truth.w_IB_B).norm(), 0.0, 0.0};
     for (int i = kModalState; i < kModalRate; ++i)
       error[1] = std::max(error[1], std::fabs(y[i] - exact[static_cast<std::size_t>(i)]));
-    for (int i = kModalRate; i < kLauncherSize; ++i)
+    for (int i = kModalRate; i < kBentLauncherSize; ++i)
       error[2] = std::max(error[2], std::fabs(y[i] - exact[static_cast<std::size_t>(i)]));
     for (int i = 0; i < 3; ++i) {
       if (last[i] > 0.0) {
