@@ -49,6 +49,9 @@ std::vector<StructProblem> ControlProblems(const Vehicle& vehicle, const FlightC
                         "autopilot, or stages with nozzle_station_m in place of gimbal"});
     return problems;
   }
+  if (vehicle.boosters.turn_nozzles())
+    problems.push_back({"control", "the boosters of " + name + " have a gimbal, which nothing would command",
+                        "autopilot, or boosters without gimbal"});
   if (!vehicle.rail)
     problems.push_back({"control", name + " has no rail, so its direction is not known",
                         "a vehicle with rail: {length_m, azimuth_deg, elevation_deg}"});

@@ -12,7 +12,9 @@
 #include <string>
 #include <vector>
 
+#include "core/campaign/free_flight.h"
 #include "core/campaign_yaml/load.h"
+#include "core/environment/atmosphere.h"
 #include "core/environment/earth.h"
 #include "core/flight/flight_queue.h"
 #include "core/flight/flight_record.h"
@@ -21,9 +23,11 @@
 #include "core/math/rotation.h"
 #include "core/random/draws.h"
 #include "core/trajectory/ascent.h"
+#include "core/vehicle/aerodynamics_build_up.h"
 #include "core/vehicle/mass.h"
 #include "tests/liquid_stage.h"
 #include "tests/slv4_flight.h"
+#include "tests/tabulated_masses.h"
 
 namespace dispersa::capability_pairs_test {
 namespace {
@@ -36,7 +40,8 @@ struct Launcher {
   Vehicle vehicle = LoadVehicle(DISPERSA_CAMPAIGNS "/vehicles/slv4.yaml");
   FlightProgram program = LoadReference(DISPERSA_CAMPAIGNS "/references/slv4_500km_reserve.yaml").program;
   std::string autopilot = "adaptive_fuzzy";
-  bool is_guided = false, is_turbulent = false, draws_masses = false;
+  bool is_guided = false, is_turbulent = false, draws_masses = false, has_weather = false;
+  FlightCourse course;
 };
 
 Vehicle Flexible() { return LoadVehicle(DISPERSA_CAMPAIGNS "/vehicles/slv4_flexible.yaml"); }
@@ -70,6 +75,7 @@ void AddBending(Launcher& launcher) {
   vehicle.sensors = flexible.sensors;
   launcher.autopilot = "flexible";  // which blends the gyros
   StructureBeam& beam = *vehicle.structure_beam;
+  vehicle.boosters.attachment_station_m = 23.0;
   beam.elements = 12;  // coarse: flights whose masses are drawn have modes of their own
   beam.propellant_levels = 5;
   if (vehicle.stages[3].jettisoned.empty()) return;
@@ -137,6 +143,74 @@ void AddCluster(Launcher& launcher) {
     gimbal.nozzles.push_back({"ring " + std::to_string(k + 1), 0.4 * std::cos(kTwoPi * k / 8),
                               0.4 * std::sin(kTwoPi * k / 8), 1.0 / 9.0, hinges, 0.0});
 }
+FinSet Fins(double leading_edge_m, double root_m, double tip_m, double span_m) {
+  FinSet fins;
+  fins.leading_edge_station_m = leading_edge_m;
+  fins.root_chord_m = root_m;
+  fins.tip_chord_m = tip_m;
+  fins.span_m = span_m;
+  fins.sweep_m = root_m - tip_m;
+  fins.thickness_m = 0.04;
+  return fins;
+}
+void AddFins(Launcher& launcher) { launcher.vehicle.stages[0].fins = {Fins(24.6, 1.8, 1.0, 0.8)}; }
+void AddRail(Launcher& launcher) { launcher.vehicle.rail = Rail{8.0, 0.1, 2.5, 80.0 * kRadPerDeg}; }
+// The last stage, in each of its burns: held by thrusters in the coast, by its spin while it burns.
+void SpinLastStage(Launcher& launcher) {
+  std::vector<Stage>& stages = launcher.vehicle.stages;
+  for (std::size_t i = 3; i < stages.size(); ++i) {
+    stages[i].gimbal = FixedNozzle(stages[i].gimbal.pivot_station_m);
+    stages[i].spin_motors = SpinMotors{60.0, 1.5};
+  }
+  // Nothing steers it against a misaligned thrust: it cones.
+  launcher.vehicle.loss_of_control = {170.0 * kRadPerDeg, 0.5, 50.0};
+}
+// Tables of what is computed, with the motor out, and after each body has left.
+void UseAeroTables(Launcher& launcher) {
+  Vehicle& vehicle = launcher.vehicle;
+  std::vector<AeroTable> tables = AerodynamicsOf(vehicle);
+  for (AeroTable& table : tables) {
+    table.ca_power_off = table.ca;
+    for (double& ca : table.ca_power_off) ca *= 1.1;
+  }
+  const auto leaves = [](const char* name, AeroTable& table) {
+    AeroTable lighter = table;
+    for (double& cn : lighter.cn) cn *= 0.9;
+    table.lighter.push_back({{name}, lighter});
+  };
+  for (AeroTable& table : tables)
+    if (!vehicle.stages[3].jettisoned.empty()) leaves("fairing", table);
+  if (vehicle.boosters.count > 0) leaves(kBoostersName, tables[0]);
+  vehicle.aerodynamics = std::move(tables);
+}
+// A little more than the tubes: CAD knows better.
+void UseMassTables(Launcher& launcher) {
+  Vehicle& vehicle = launcher.vehicle;
+  for (std::size_t i = 0; i < vehicle.stages.size(); ++i) {
+    Stage& stage = vehicle.stages[i];
+    if (stage.restarts) {
+      stage.flown_mass = vehicle.stages[i - 1].flown_mass;
+      continue;
+    }
+    stage.mass_table = TableOfTubes(vehicle, i, 41);
+    for (double& inertia : stage.mass_table.transverse_inertia_kg_m2) inertia *= 1.03;
+    stage.flown_mass.rows = std::make_shared<const MassRows>(
+        BuildMassRows(stage.mass_table, DryMass(vehicle, static_cast<int>(i))));
+  }
+}
+// The last stage has a third of its thrust, stays below an orbit and comes down under a parachute.
+void Land(Launcher& launcher) {
+  Vehicle& vehicle = launcher.vehicle;
+  for (std::size_t i = 3; i < vehicle.stages.size(); ++i) {
+    Motor& motor = vehicle.stages[i].motor;
+    motor.thrust_n *= 0.3;
+    for (double& thrust_n : motor.thrust_curve.thrust_n) thrust_n *= 0.3;
+  }
+  vehicle.descent.parachute_area_m2 = 40.0;
+  vehicle.descent.parachute_drag_coefficient = 0.8;
+  vehicle.descent.parachute_altitude_m = 4000.0;
+  launcher.course.ends = FlightEnd::kImpact;
+}
 void AddGyros(Launcher& launcher) {
   const Vehicle flexible = Flexible();
   launcher.vehicle.sensors = flexible.sensors;
@@ -159,12 +233,33 @@ const std::vector<Capability>& Capabilities() {
       {"thrust curve", UseThrustCurve},
       {"list of nozzles", ListNozzles},
       {"cluster of engines", AddCluster},
+      {"fins", AddFins},
+      {"rail", AddRail},
+      {"spun last stage", SpinLastStage},
+      {"tables of aerodynamics", UseAeroTables},
+      {"mass tables", UseMassTables},
       {"rate gyros", AddGyros},
       {"closed loop", [](Launcher& launcher) { launcher.is_guided = true; }},
       {"turbulence", [](Launcher& launcher) { launcher.is_turbulent = true; }},
       {"drawn masses", [](Launcher& launcher) { launcher.draws_masses = true; }},
+      {"measured atmosphere", [](Launcher& launcher) { launcher.has_weather = true; }},
+      {"parachute", Land},
   };
   return all;
+}
+
+// Wind, and air a little denser than the standard's.
+WeatherTable Weather() {
+  WeatherTable table;
+  for (double z = 0.0; z <= 30e3; z += 2000.0) {
+    const AirState air = StandardAtmosphere1976(z);
+    table.altitude_m.push_back(z);
+    table.north_m_s.push_back(5.0 + 1e-3 * z);
+    table.east_m_s.push_back(-0.5e-3 * z);
+    table.pressure_pa.push_back(1.01 * air.pressure_pa);
+    table.density_kg_m3.push_back(1.02 * air.density_kg_m3);
+  }
+  return table;
 }
 
 FlightDefinition DefinitionOf(const Launcher& launcher) {
@@ -178,8 +273,11 @@ FlightDefinition DefinitionOf(const Launcher& launcher) {
   definition.earlier_ignition_s = ascent.earlier_ignition_s;
   definition.cut_off_s = ascent.cut_off_s;
   definition.jettison_s = ascent.jettison_s;
+  definition.course = launcher.course;
   definition.guidance.closed_loop = launcher.is_guided;
+  definition.guidance.steers_last_burn = launcher.vehicle.stages.back().is_controlled();
   definition.noise_seed = 7;
+  if (launcher.has_weather) definition.wind_table = Weather();
   if (launcher.is_turbulent)
     definition.turbulence_path =
         std::make_shared<const TurbulencePath>(ClimbPath{{0.0, 1000.0, 40e3}, {1.0, 1.0, 0.5}, 3.0});
@@ -216,7 +314,11 @@ class Bookkeeper {
  public:
   explicit Bookkeeper(const Earth& earth) : earth_(earth) {}
 
+  /// On a rail a force acts that no sample has.
+  double held_until_s = 0.0;
+
   void See(const TickSample& now) {
+    if (now.time_s < held_until_s) return;
     const double mass_kg = now.instant.loads.mass_kg;
     const Vector3 acceleration =
         Gravitation(earth_, now.state.p_EoC_I) + Rotate(now.state.q_IB, now.instant.loads.force_n / mass_kg);
@@ -290,7 +392,8 @@ class Queue : public FlightQueue {
 
 // Empty if the pair flies, else why the vehicle is refused.
 std::string Refusal(const Launcher& launcher) {
-  const std::vector<StructProblem> problems = Problems(launcher.vehicle);
+  std::vector<StructProblem> problems = Problems(launcher.vehicle);
+  if (problems.empty()) problems = ControlProblems(launcher.vehicle, launcher.course);
   return problems.empty() ? "" : problems[0].path + ": " + problems[0].message;
 }
 
@@ -308,6 +411,7 @@ void ExpectFlies(const Launcher& launcher) {
     order.options.case_index = index;
     orders.push_back(order);
     Bookkeeper books(model.nominal_plant().environment.earth);
+    if (launcher.vehicle.rail) books.held_until_s = 3.0;
     order.options.observe = [&](const TickSample& now) { books.See(now); };
     alone.push_back(Fly(model, order.inputs, order.options));
     EXPECT_EQ(alone.back().outcome, Outcome::kCompleted) << alone.back().reason;
@@ -331,6 +435,19 @@ Launcher With(const std::vector<std::size_t>& capabilities) {
   Launcher launcher;
   for (const std::size_t i : capabilities) Capabilities()[i].add(launcher);
   return launcher;
+}
+
+TEST(FreeFlights, HaveNoBoostersThatSteer) {
+  Launcher launcher = With({1});
+  for (Stage& stage : launcher.vehicle.stages) {
+    stage.gimbal = FixedNozzle(stage.gimbal.pivot_station_m);
+    stage.ignition = IgnitionTrigger::kBurnoutDetection;
+  }
+  launcher.vehicle.rail = Rail{};
+  const std::vector<StructProblem> problems =
+      ControlProblems(launcher.vehicle, {FlightEnd::kApogee, false, kFreeStep_s});
+  ASSERT_EQ(problems.size(), 1u);
+  EXPECT_EQ(problems[0].message, "the boosters of 'slv4' have a gimbal, which nothing would command");
 }
 
 class Pair : public testing::TestWithParam<std::size_t> {};
