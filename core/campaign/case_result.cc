@@ -12,8 +12,17 @@ namespace dispersa {
 
 namespace {
 
+void SetTarget(const TrajectoryProblem& problem, FlightKind& kind) {
+  kind.has_node = problem.target_node_rad.has_value();
+  kind.has_argument_of_perigee = problem.target_argument_of_perigee_rad.has_value();
+  kind.has_true_anomaly =
+      problem.target_true_anomaly_rad || (kind.has_argument_of_perigee && !problem.is_entered_anywhere);
+}
+
 FlightKind KindOf(const Campaign& campaign) {
-  return dispersa::KindOf(campaign.vehicle, campaign.autopilot, campaign.course);
+  FlightKind kind = dispersa::KindOf(campaign.vehicle, campaign.autopilot, campaign.course);
+  SetTarget(campaign.reference.problem, kind);
+  return kind;
 }
 
 }  // namespace
@@ -26,8 +35,10 @@ MetricList MetricsOf(const Campaign& campaign) {
 
 std::vector<std::size_t> MeasuredMetrics(const Campaign& campaign) {
   const std::size_t stages = ColumnClass(campaign.vehicle);
-  // Columns of all that a law's flights may have: those of other needs are empty.
+  // Columns of all that a law's flights may have: those of other needs are empty. Those of a target's angles
+  // are there only if it names them.
   FlightKind any(campaign.autopilot.pitch.law);
+  SetTarget(campaign.reference.problem, any);
   any.has_free_stage = any.has_rail = true;
   any.ends = FlightEnd::kImpact;
   std::vector<std::size_t> positions = MetricsUnder(stages, any);

@@ -105,11 +105,15 @@ FlightDefinition DefinitionOf(const Campaign& campaign) {
           : problem.target_velocity_m_s,
       problem.is_entered_anywhere ? reached.flight_path_angle_rad : problem.target_flight_path_angle_rad,
       problem.target_inclination_rad.value_or(reached.inclination_rad)};
-  if (problem.is_entered_anywhere) {
+  if (problem.is_entered_anywhere || problem.target_argument_of_perigee_rad ||
+      problem.target_true_anomaly_rad) {
     const AimedEllipse ellipse = EllipseOf(problem);
-    definition.target.orbit = {ellipse.semi_major_axis_m, ellipse.eccentricity,
-                               problem.target_argument_of_perigee_rad};
+    TargetOrbit& orbit = definition.target.orbit.emplace();
+    orbit = {ellipse.semi_major_axis_m, ellipse.eccentricity, problem.target_argument_of_perigee_rad};
+    if (!problem.is_entered_anywhere) orbit.true_anomaly_rad = problem.target_true_anomaly_rad.value_or(0.0);
   }
+  // The time of day gives the reference's node its right ascension. I turns with that time.
+  if (problem.target_node_rad) definition.target.node_rad = reached.node_longitude_rad;
   definition.guidance = campaign.guidance;
   definition.velocity_reserve_m_s = problem.velocity_reserve_m_s;
   definition.wind_table = campaign.wind_table;
@@ -117,7 +121,7 @@ FlightDefinition DefinitionOf(const Campaign& campaign) {
   definition.noise_seed = campaign.sampling.seed;
   definition.own_metrics = campaign.own_metrics;
   definition.course = campaign.course;
-  if (campaign.course.is_controlled && (Jettisons(campaign.vehicle) || CutsOffAtVelocity(campaign.vehicle))) {
+  if (campaign.course.is_controlled && (Jettisons(campaign.vehicle) || CutsOffInFlight(campaign.vehicle))) {
     const AscentResult ascent = FlyReference(campaign);
     definition.jettison_s = ascent.jettison_s;
     definition.cut_off_s = ascent.cut_off_s;

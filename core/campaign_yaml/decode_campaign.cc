@@ -150,12 +150,13 @@ void CheckGuidance(Fields& fields, const GuidanceConfig& guidance, const Vehicle
             " follows the one before at once and ends by itself: guidance can change neither its "
             "beginning nor its end",
         "open_loop, or a last stage with ignition: {trigger: timer} or with a liquid engine that has "
-        "cut_off: {at: inertial_velocity}");
+        "cut_off: {at: inertial_velocity}, {at: target} or {at: time}");
   else if (!is_cut_off && last.restarts)
     fields.Refuse("mode",
                   "the last burn of " + name +
                       " uses up what the burns before leave: its energy is not known before they end",
-                  "open_loop, or cut_off: {at: inertial_velocity} of the last burn");
+                  "open_loop, or cut_off: {at: inertial_velocity}, {at: target} or {at: time} of the last "
+                  "burn");
   else if (!last.is_controlled() && guidance.steers_last_burn)
     fields.Refuse("last_burn", "the last stage of " + name + " has no gimbal by which it could be steered",
                   "as_planned: it is pointed before its ignition");
@@ -169,6 +170,11 @@ void CheckGuidance(Fields& fields, const GuidanceConfig& guidance, const Vehicle
         "mode",
         "guidance would steer the stage of " + name + " that has boosters, whose thrust it does not know",
         "open_loop, or a vehicle of three stages or more");
+  else if (guidance.burns > 2 && static_cast<std::size_t>(guidance.burns) >= vehicle.stages.size())
+    fields.Refuse("burns",
+                  name + " has " + std::to_string(vehicle.stages.size()) +
+                      " burns, and the first of them begins in the air",
+                  "up to " + std::to_string(std::max<std::size_t>(vehicle.stages.size() - 1, 2)));
 }
 
 // A value of the campaign that may be a file of its own.
@@ -258,7 +264,17 @@ class CampaignDescription {
              "guidance steers the stage of '" + campaign_.vehicle.name +
                  "' that lifts off, and its prediction has no air: incidence is whatever the orbit asks for",
              "open_loop, or a vehicle whose last two burns are above the air");
-    const GuidedAuthority authority = AuthorityOf(campaign_.vehicle, campaign_.autopilot);
+    const GuidedAuthority authority = AuthorityOf(campaign_.vehicle, campaign_.autopilot, campaign_.guidance);
+    // The place along the orbit is a fourth condition in its plane, beside energy and path.
+    const TrajectoryProblem& problem = campaign_.reference.problem;
+    const bool is_timed = campaign_.vehicle.stages.back().ignition == IgnitionTrigger::kTimer;
+    if (problem.target_argument_of_perigee_rad && !problem.is_entered_anywhere && !is_timed &&
+        !SteersBelow(campaign_.vehicle))
+      WarnOf(reference_, "problem.target.argument_of_perigee_deg",
+             "with a true anomaly (at the perigee: 0) it is a place along the orbit, which only a coast of "
+             "another duration can move, and no timer ignites the last burn of '" +
+                 campaign_.vehicle.name + "'",
+             "entered_at: anywhere, or a last burn with ignition: {trigger: timer}");
     for (const GuidanceExcess& one : ExcessesOf(campaign_.guidance, authority))
       WarnOf({root_, ""}, "guidance." + one.key, one.message, one.allowed);
   }

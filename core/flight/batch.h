@@ -118,7 +118,7 @@ class Batch {
   FlightQueue& queue_;
   const double tick_s_;
   const double ticks_a_second_;
-  const bool has_jettisons_, cuts_off_at_velocity_, has_plugin_;
+  const bool has_jettisons_, cuts_off_in_flight_, has_plugin_;
   const int most_further_;                ///< banks of nozzles after the first, of any stage
   const bool has_free_stage_, flies_on_;  ///< flies_on_: after the last burn
   Slot slot_[kLanes];
@@ -178,7 +178,7 @@ Batch<T>::Batch(const FlightModel& model, FlightQueue& queue)
       tick_s_(definition_.autopilot.tick_s),
       ticks_a_second_(static_cast<double>(static_cast<long>(1.0 / tick_s_ + 0.5))),
       has_jettisons_(!model.nominal_plant().jettisons.empty()),
-      cuts_off_at_velocity_(CutsOffAtVelocity(definition_.vehicle)),
+      cuts_off_in_flight_(CutsOffInFlight(definition_.vehicle)),
       has_plugin_(model.autopilot().plugin != nullptr),
       most_further_(model.nominal_plant().nozzle_banks() - 1),
       has_free_stage_(model.has_free_stage()),

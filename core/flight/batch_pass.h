@@ -18,7 +18,7 @@ void Batch<T>::Pass() {
   if (Any(coasting_)) FlyThrusters();
   step_.EvaluateStart(time_s_);
   if (has_jettisons_) LetGo();
-  if (cuts_off_at_velocity_) CutOff();
+  if (cuts_off_in_flight_) CutOff();
   if (definition_.guidance.closed_loop) Guide();
   metrics_.AddLoads(live_ & !coasting_, step_.now());
   metrics_.AddMoment(live_ & !coasting_, step_.LargestMomentNow());
@@ -56,8 +56,9 @@ void Batch<T>::LetGo() {
   step_.EvaluateStart(time_s_);
 }
 
-/// Engines that are cut off at an inertial speed. The flight computer extrapolates the speed over the next
-/// tick at its present growth. It commands the cut-off for the instant at which the speed is reached.
+/// Engines that are cut off at an inertial speed, or by guidance. The flight computer extrapolates the speed
+/// over the next tick at its present growth. It commands the cut-off for the instant at which the speed is
+/// reached.
 template <class T>
 void Batch<T>::CutOff() {
   const unsigned burning = Bits(live_ & step_.phase().burning);
@@ -70,6 +71,11 @@ void Batch<T>::CutOff() {
     }
     const Motor* const engine = slot.record->CutOffEngine(slot.stack);
     if (engine == nullptr) continue;
+    if (engine->cut_off == CutOff::kByGuidance) {  // which has no plan
+      const double end_s = Lane(step_.phase().ignition_s, lane) + engine->cut_off_s;
+      if (end_s - Lane(time_s_, lane) <= tick_s_) CutOffAt(lane, Max(end_s, Lane(time_s_, lane)));
+      continue;
+    }
     const Vector<double> v = LaneOf(step_.motion().v, lane);
     const double speed_m_s = Sqrt(Dot(v, v));
     double rate_m_s2 = Dot(v, LaneOf(step_.acceleration_m_s2(), lane)) / speed_m_s;
@@ -86,7 +92,7 @@ void Batch<T>::CutOff() {
   }
 }
 
-/// The same at a speed that guidance has planned, by measured values.
+/// The same at a speed or a time that guidance has planned, by measured values.
 template <class T>
 void Batch<T>::CutOffByGuidance(int lane) {
   const auto vector_of = [lane](const Vector<T>& v) {
@@ -95,8 +101,8 @@ void Batch<T>::CutOffByGuidance(int lane) {
   const Instant<T>& now = step_.now();
   const double time_s = Lane(time_s_, lane);
   const double in_s = slot_[lane].record->guided->CutOffIn(
-      time_s, vector_of(step_.motion().v), vector_of(step_.acceleration_m_s2()),
-      vector_of(now.force_n).norm() / Lane(now.mass_kg, lane));
+      time_s, Lane(step_.phase().ignition_s, lane), vector_of(step_.motion().v),
+      vector_of(step_.acceleration_m_s2()), vector_of(now.force_n).norm() / Lane(now.mass_kg, lane));
   if (!(in_s <= tick_s_)) return;
   CutOffAt(lane, time_s + (in_s > 0.0 ? in_s : 0.0));
 }
@@ -447,6 +453,7 @@ void Batch<T>::Guide() {
     }
     sight.stack = phase.stack;
     sight.burning = phase.burning;
+    sight.jettisoned = phase.jettisoned;
     sight.ignition_s = phase.ignition_s;
     sight.expelled_kg = phase.expelled_mass_kg;
     sight.specific_force_m_s2 = size_of(now.force_n) / Lane(now.mass_kg, lane);

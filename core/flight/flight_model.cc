@@ -386,7 +386,8 @@ FeedForwardRows TabulateFeedForward(const AttitudeProgram& program, const Autopi
 }
 
 GuidanceLimits GuidanceLimitsOf(const FlightDefinition& definition) {
-  return LimitsOf(definition.guidance, AuthorityOf(definition.vehicle, definition.autopilot));
+  return LimitsOf(definition.guidance,
+                  AuthorityOf(definition.vehicle, definition.autopilot, definition.guidance));
 }
 
 GuidanceMission BuildMission(const FlightDefinition& definition, const LauncherPlant& plant,
@@ -402,6 +403,7 @@ GuidanceMission BuildMission(const FlightDefinition& definition, const LauncherP
   mission.target = {target.altitude_m, target.velocity_m_s, target.flight_path_angle_rad,
                     target.inclination_rad};
   mission.orbit = target.orbit;
+  mission.node_rad = target.node_rad;
   const auto stage = [&](std::size_t i) {
     const LauncherStack& stack = plant.stacks[i];
     // One mass for all of the burn: what leaves during it is gone, or not, by its middle.
@@ -414,19 +416,36 @@ GuidanceMission BuildMission(const FlightDefinition& definition, const LauncherP
                     definition.jettison_s[k] <= times[i].burnout_s;
     GuidedStage guided{stack.burn, fixed_kg + stack.burn.propellant_mass_kg, loses_mass};
     const Stage& of_vehicle = definition.vehicle.stages[i];
-    if (!IsCutOffByGuidance(of_vehicle)) return guided;
+    if (!of_vehicle.is_liquid() || !EndsInFlight(of_vehicle.motor)) return guided;
     guided.levels.emplace(of_vehicle.motor.throttle);
+    guided.ends_by_time = of_vehicle.motor.cut_off == CutOff::kByGuidance;
     guided.usable_kg = stack.burn.propellant_mass_kg - of_vehicle.motor.residual_mass_kg;
+    // Bodies that leave at an altitude are there until the flight computer lets go of them.
+    unsigned before = GoneAt(definition.jettison_s, times[i].ignition_s);
+    for (std::size_t k = 0; k < definition.jettison_s.size(); ++k) {
+      if (plant.jettisoned_masses[k].stage < static_cast<int>(i)) continue;
+      const Jettison& body = plant.jettisons[k];
+      const double mass_kg = plant.jettisoned_masses[k].mass_kg;
+      if (body.trigger == JettisonTrigger::kAtAltitude) {
+        before &= ~(1u << k);
+        guided.drops.push_back({HUGE_VAL, mass_kg, body.threshold, 1u << k});
+      } else if (definition.jettison_s[k] > times[i].ignition_s && definition.jettison_s[k] < HUGE_VAL) {
+        guided.drops.push_back({definition.jettison_s[k], mass_kg});
+      }
+    }
     guided.ignition_mass_kg =
-        MassOf(plant, static_cast<int>(i), GoneAt(definition.jettison_s, times[i].ignition_s)).fixed_mass_kg +
-        stack.burn.propellant_mass_kg;
-    for (std::size_t k = 0; k < definition.jettison_s.size(); ++k)
-      if (plant.jettisoned_masses[k].stage >= static_cast<int>(i) &&
-          definition.jettison_s[k] > times[i].ignition_s && definition.jettison_s[k] < HUGE_VAL)
-        guided.drops.push_back({definition.jettison_s[k], plant.jettisoned_masses[k].mass_kg});
+        MassOf(plant, static_cast<int>(i), before).fixed_mass_kg + stack.burn.propellant_mass_kg;
     return guided;
   };
   const std::size_t last = plant.stacks.size() - 1;
+  const auto start_of = [&](std::size_t i) {
+    return BurnStart{definition.vehicle.stages[i].ignition == IgnitionTrigger::kTimer, times[i].ignition_s,
+                     i > 0 ? times[i].ignition_s - times[i - 1].burnout_s : 0.0,
+                     definition.vehicle.stages[i].restarts};
+  };
+  for (std::size_t i = FirstGuided(definition.vehicle, definition.guidance); i + 1 < last; ++i)
+    mission.earlier.push_back({stage(i), start_of(i)});
+  mission.below_start = start_of(last - 1);
   mission.below = stage(last - 1);
   mission.last = stage(last);
   mission.steers_below = SteersBelow(definition.vehicle);
@@ -445,8 +464,29 @@ GuidanceMission BuildMission(const FlightDefinition& definition, const LauncherP
 
 }  // namespace
 
+namespace {
+
+// Guidance computes how long an engine with a timer burns. What the file says then is only the time of the
+// reference, and of a flight without a plan.
+FlightDefinition WithGuidedTimers(FlightDefinition definition) {
+  if (!definition.guidance.closed_loop || definition.vehicle.stages.empty()) return definition;
+  // A last burn that uses up what the ones before leave does not bear another duration of theirs.
+  const Stage& last = definition.vehicle.stages.back();
+  if (last.restarts && !IsCutOffByGuidance(last)) return definition;
+  for (std::size_t i = FirstGuided(definition.vehicle, definition.guidance);
+       i < definition.vehicle.stages.size(); ++i) {
+    Motor& motor = definition.vehicle.stages[i].motor;
+    if (!definition.vehicle.stages[i].is_liquid() || motor.cut_off != CutOff::kAtTime) continue;
+    motor.cut_off = CutOff::kByGuidance;
+    definition.cut_off_s[i] = motor.cut_off_s;
+  }
+  return definition;
+}
+
+}  // namespace
+
 FlightModel::FlightModel(FlightDefinition definition)
-    : definition_(std::move(definition)), nominal_(BuildNominalPlant(definition_.vehicle)) {
+    : definition_(WithGuidedTimers(std::move(definition))), nominal_(BuildNominalPlant(definition_.vehicle)) {
   // Completed once: cases may draw them.
   if (!definition_.vehicle.aerodynamics.empty())
     definition_.vehicle.aerodynamics = AerodynamicsOf(definition_.vehicle);
@@ -464,7 +504,7 @@ FlightModel::FlightModel(FlightDefinition definition)
   }
   LauncherPlant planned = nominal_;
   for (std::size_t i = 0; i < planned.stacks.size(); ++i)
-    if (EndsAtSpeed(definition_.vehicle.stages[i].motor))
+    if (EndsInFlight(definition_.vehicle.stages[i].motor))
       CutOffStage(definition_.vehicle, static_cast<int>(i), definition_.cut_off_s[i], planned);
   std::vector<MotorBurn> burns;
   for (const LauncherStack& stack : planned.stacks) burns.push_back(stack.burn);

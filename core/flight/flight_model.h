@@ -29,8 +29,10 @@ struct InjectionTarget {
   double velocity_m_s = 0.0;
   double flight_path_angle_rad = 0.0;
   double inclination_rad = 0.0;  ///< of the reference's orbit
-  /// An ellipse that may be entered anywhere. The values above then are those of the reference.
+  /// An ellipse that is not just a state at its perigee. Of one that may be entered anywhere, the values
+  /// above are those of the reference.
   std::optional<TargetOrbit> orbit = {};
+  std::optional<double> node_rad = {};  ///< from I's x axis, if the target names a node
 };
 
 /// Everything that decides a flight, except its inputs.

@@ -456,7 +456,7 @@ unsigned FlightRecord::LetGo(int stack, unsigned jettisoned, double time_s, doub
 
 const Motor* FlightRecord::CutOffEngine(int stage) const {
   const Motor& engine = model_.definition().vehicle.stages[static_cast<std::size_t>(stage)].motor;
-  return EndsAtSpeed(engine) ? &engine : nullptr;
+  return EndsInFlight(engine) ? &engine : nullptr;
 }
 
 void FlightRecord::CutOff(int stage, double time_s) {

@@ -21,11 +21,11 @@ double GuidedFlight::ignition_s() const { return guidance_->ignition_s(); }
 
 bool GuidedFlight::cuts_off() const { return guidance_->cuts_off(); }
 
-double GuidedFlight::CutOffIn(double time_s, const Vector3& v_IC_I, const Vector3& acceleration_m_s2_I,
-                              double specific_force_m_s2) const {
+double GuidedFlight::CutOffIn(double time_s, double ignition_s, const Vector3& v_IC_I,
+                              const Vector3& acceleration_m_s2_I, double specific_force_m_s2) const {
   const Vector3 seen = v_IC_I + velocity_error_I_;
   const double speed_m_s = seen.norm();
-  return guidance_->CutOffIn(time_s, speed_m_s, seen.dot(acceleration_m_s2_I) / speed_m_s,
+  return guidance_->CutOffIn(time_s, ignition_s, speed_m_s, seen.dot(acceleration_m_s2_I) / speed_m_s,
                              accelerometer_factor_ * specific_force_m_s2);
 }
 
@@ -35,15 +35,21 @@ bool GuidedFlight::See(const LaneSight& sight) {
   const double tick_s = model_.definition().autopilot.tick_s;
   const int last = static_cast<int>(model_.nominal_plant().stacks.size()) - 1;
   GuidanceSight seen;
-  const bool is_below = sight.stack == last - 1 && model_.guidance_mission()->steers_below,
-             is_last = sight.stack == last;
-  if (!(is_below && sight.burning) && !is_last) {
+  const GuidanceMission& mission = *model_.guidance_mission();
+  const bool is_below = sight.stack == last - 1 && mission.steers_below, is_last = sight.stack == last;
+  const int earlier = sight.stack - (last - 1 - static_cast<int>(mission.earlier.size()));
+  const bool is_earlier = !is_below && !is_last && earlier >= 0 && !mission.earlier.empty();
+  if (!(is_below && sight.burning) && !is_last && !(is_earlier && sight.burning)) {
+    guidance_->Wait();
     next_tick_ += 1.0 / tick_s;
     return false;
   }
-  seen.phase = is_below        ? GuidancePhase::kBelowBurns
+  seen.phase = is_earlier      ? GuidancePhase::kEarlierBurns
+               : is_below      ? GuidancePhase::kBelowBurns
                : sight.burning ? GuidancePhase::kLastBurns
                                : GuidancePhase::kCoast;
+  if (is_earlier) seen.earlier = static_cast<std::size_t>(earlier);
+  seen.jettisoned = sight.jettisoned;
   seen.state = {sight.time_s, Vector3(sight.p_EoC_I) + position_error_I_,
                 Vector3(sight.v_IC_I) + velocity_error_I_};
   seen.burn_ignition_s = sight.ignition_s;

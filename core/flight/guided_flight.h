@@ -23,6 +23,7 @@ struct LaneSight {
   double v_IC_I[3] = {};
   int stack = 0;
   bool burning = false;
+  unsigned jettisoned = 0;  ///< bits of LauncherPhase::jettisoned
   double ignition_s = 0.0;
   double expelled_kg = 0.0;
   double specific_force_m_s2 = 0.0;
@@ -43,7 +44,7 @@ class GuidedFlight {
   /// Whether guidance decides when the present burn ends.
   bool cuts_off() const;
   /// Then: the time from now until it is to end, s. The arguments are true values.
-  double CutOffIn(double time_s, const Vector3& v_IC_I, const Vector3& acceleration_m_s2_I,
+  double CutOffIn(double time_s, double ignition_s, const Vector3& v_IC_I, const Vector3& acceleration_m_s2_I,
                   double specific_force_m_s2) const;
 
   /// Whether the lane's reference is its own.

@@ -67,6 +67,9 @@ constexpr Traits kNotDigested{.is_digested = false};
 // What is not said of flights without a target: the orbit, and how far it is from the target's.
 constexpr Traits kOfOrbit{.needs = MetricNeeds::kControl},
     kOfOrbitNotDigested{.is_digested = false, .needs = MetricNeeds::kControl};
+constexpr Traits kOfNode{.is_digested = false, .needs = MetricNeeds::kNode},
+    kOfArgumentOfPerigee{.is_digested = false, .needs = MetricNeeds::kArgumentOfPerigee},
+    kOfTrueAnomaly{.is_digested = false, .needs = MetricNeeds::kTrueAnomaly};
 constexpr Traits kOfFreeStage{.is_digested = false, .needs = MetricNeeds::kFreeStage},
     kOfRail{.is_digested = false, .needs = MetricNeeds::kRail},
     kOfApogee{.is_usual = true, .is_digested = false, .needs = MetricNeeds::kApogee},
@@ -94,6 +97,16 @@ constexpr auto kAttitude = MetricGroup::kAttitude, kControlEffort = MetricGroup:
 
 double SemiMajorAxis(const Earth& earth, double radius_m, double speed_m_s) {
   return 1.0 / (2.0 / radius_m - speed_m_s * speed_m_s / earth.mu_m3_s2);
+}
+
+// In degrees, from -180 to 180.
+double AngleError(double is_rad, double wanted_rad) {
+  const double error_rad = is_rad - wanted_rad;
+  return (error_rad - kTwoPi * std::floor(error_rad / kTwoPi + 0.5)) * kDegPerRad;
+}
+
+TargetOrbit OrbitOf(const FlightDefinition& definition) {
+  return definition.target.orbit.value_or(TargetOrbit{});
 }
 
 // One row a metric. Columns stand in the order of the rows; those of phases come first. A new row goes to the
@@ -317,6 +330,29 @@ constexpr Row kRows[] = {
        return std::isfinite(m.sums.free.least_static_margin) ? m.sums.free.least_static_margin : kUndefined;
      },
      kOfFreeStage},
+
+    {"node_error", kDegrees, "ΔΩ", kInjection, "Node error",
+     "right ascension of the ascending node at injection minus the target's", kFarther,
+     [](const Measured& m) {
+       return m.AtInjection(
+           AngleError(m.sums.orbit.ascending_node_rad, m.definition.target.node_rad.value_or(0.0)));
+     },
+     kOfNode},
+    {"argument_of_perigee_error", kDegrees, "Δω", kInjection, "Argument of perigee error",
+     "osculating, at injection, minus the target's", kFarther,
+     [](const Measured& m) {
+       const OrbitElements& orbit = m.sums.orbit;
+       return m.AtInjection(AngleError(orbit.argument_of_latitude_rad - orbit.true_anomaly_rad,
+                                       OrbitOf(m.definition).argument_of_perigee_rad.value_or(0.0)));
+     },
+     kOfArgumentOfPerigee},
+    {"true_anomaly_error", kDegrees, "Δν", kInjection, "True anomaly error",
+     "osculating, at injection, minus the target's", kFarther,
+     [](const Measured& m) {
+       return m.AtInjection(
+           AngleError(m.sums.orbit.true_anomaly_rad, OrbitOf(m.definition).true_anomaly_rad.value_or(0.0)));
+     },
+     kOfTrueAnomaly},
 };
 
 // Sums of all stages together. If several stages share a peak, the first stage has it.
@@ -386,6 +422,12 @@ bool Meets(const FlightKind& kind, MetricNeeds needs) {
       return kind.ends != FlightEnd::kInjection;
     case MetricNeeds::kImpact:
       return kind.ends == FlightEnd::kImpact;
+    case MetricNeeds::kNode:
+      return kind.has_node;
+    case MetricNeeds::kArgumentOfPerigee:
+      return kind.has_argument_of_perigee;
+    case MetricNeeds::kTrueAnomaly:
+      return kind.has_true_anomaly;
   }
   return false;
 }
@@ -464,6 +506,12 @@ std::string NeedsOf(const Metric& metric) {
       return "flight: {ends: apogee} or {ends: impact}";
     case MetricNeeds::kImpact:
       return "flight: {ends: impact}";
+    case MetricNeeds::kNode:
+      return "a target that names a node";
+    case MetricNeeds::kArgumentOfPerigee:
+      return "a target that names an argument of perigee";
+    case MetricNeeds::kTrueAnomaly:
+      return "a target that names a true anomaly";
   }
   return "";
 }
@@ -493,7 +541,11 @@ std::size_t MetricColumn(const std::string& name) {
 MeasuredFlight Measure(const FlightSums& sums, const FlightDefinition& definition) {
   const std::size_t count = MetricCount(ColumnClass(definition.vehicle));
   const LawInfo& law = InfoOf(definition.autopilot.pitch.law);
-  const FlightKind kind = KindOf(definition.vehicle, definition.autopilot, definition.course);
+  FlightKind kind = KindOf(definition.vehicle, definition.autopilot, definition.course);
+  const InjectionTarget& target = definition.target;
+  kind.has_node = target.node_rad.has_value();
+  kind.has_argument_of_perigee = target.orbit && target.orbit->argument_of_perigee_rad;
+  kind.has_true_anomaly = target.orbit && target.orbit->true_anomaly_rad;
   MeasuredFlight measured;
   measured.metrics.reserve(MetricNames().size());
   measured.digested.reserve(MetricNames().size());

@@ -49,6 +49,9 @@ enum class MetricNeeds {
   kRail,
   kApogee,  ///< they end there, or later
   kImpact,
+  kNode,  ///< a target that names it, as the next two
+  kArgumentOfPerigee,
+  kTrueAnomaly,
 };
 /// What decides which metrics the flights of a campaign have.
 struct FlightKind {
@@ -59,6 +62,8 @@ struct FlightKind {
   bool has_free_stage = false;
   bool has_rail = false;
   FlightEnd ends = FlightEnd::kInjection;
+  // What the target names.
+  bool has_node = false, has_argument_of_perigee = false, has_true_anomaly = false;
 };
 FlightKind KindOf(const Vehicle& vehicle, const AutopilotConfig& autopilot, const FlightCourse& course);
 

@@ -25,6 +25,7 @@ OrbitElements ElementsOf(const Earth& earth, const Vector3& p, const Vector3& v)
   const double energy = 0.5 * e.speed_m_s * e.speed_m_s - earth.mu_m3_s2 / r;
   const Vector3 eccentricity_vector = v.cross(h) / earth.mu_m3_s2 - p / r;
   const double eccentricity = eccentricity_vector.norm();
+  e.true_anomaly_rad = Atan2(p.dot(v) * h.norm(), h.squaredNorm() - earth.mu_m3_s2 * r);
   const double perigee = h.squaredNorm() / earth.mu_m3_s2 / (1.0 + eccentricity);
   e.perigee_altitude_m = perigee - earth.equatorial_radius_m;
   e.apogee_altitude_m = energy < 0.0 ? -earth.mu_m3_s2 / energy - perigee - earth.equatorial_radius_m

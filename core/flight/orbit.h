@@ -15,7 +15,8 @@ struct OrbitElements {
   double radius_m = 0.0;            ///< of the place
   double ascending_node_rad = 0.0;  ///< from I's x axis, 0 to 2 pi (0 for an equatorial orbit)
   double argument_of_latitude_rad =
-      0.0;  ///< of the place, from the node, 0 to 2 pi (0 for an equatorial orbit)
+      0.0;                        ///< of the place, from the node, 0 to 2 pi (0 for an equatorial orbit)
+  double true_anomaly_rad = 0.0;  ///< of the place, from the perigee, -pi to pi (0 for a circle)
 };
 
 /// Osculating Keplerian elements about a point mass at the Earth's centre.

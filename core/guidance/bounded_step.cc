@@ -14,27 +14,27 @@ using Which = std::array<bool, kPlanUnknowns>;
 std::size_t Index(int i) { return static_cast<std::size_t>(i); }
 
 // The least value over those unknowns that move, the others where `step` has them.
-template <int count>
-Unknowns<count> LeastOver(const StepModel<count>& model, const Unknowns<count>& weight, const Which& moves,
-                          const Unknowns<count>& step) {
-  Eigen::Matrix<double, kMisses, count> j = model.jacobian;
+template <int count, int misses>
+Unknowns<count> LeastOver(const StepModel<count, misses>& model, const Unknowns<count>& weight,
+                          const Which& moves, const Unknowns<count>& step) {
+  Eigen::Matrix<double, misses, count> j = model.jacobian;
   Unknowns<count> y = model.departure.cwiseQuotient(weight);
-  Misses rest = model.miss;
+  Misses<misses> rest = model.miss;
   for (int i = 0; i < count; ++i) {
     if (moves[Index(i)]) continue;
     rest += model.jacobian.col(i) * step(i);
     j.col(i).setZero();
     y(i) = 0.0;
   }
-  const Eigen::Matrix<double, kMisses, count> weighted = j * weight.cwiseInverse().asDiagonal();
-  const Eigen::Matrix<double, kMisses, kMisses> normal =
-      weighted * j.transpose() + Eigen::Matrix<double, kMisses, kMisses>::Identity();
+  const Eigen::Matrix<double, misses, count> weighted = j * weight.cwiseInverse().asDiagonal();
+  const Eigen::Matrix<double, misses, misses> normal =
+      weighted * j.transpose() + Eigen::Matrix<double, misses, misses>::Identity();
   return -y - weighted.transpose() * normal.llt().solve(rest - j * y);
 }
 
 // The held unknown that would best leave its bound; -1 where none would.
-template <int count>
-int BestToRelease(const StepModel<count>& model, const Unknowns<count>& weight, const Which& moves,
+template <int count, int misses>
+int BestToRelease(const StepModel<count, misses>& model, const Unknowns<count>& weight, const Which& moves,
                   const Unknowns<count>& step) {
   const Unknowns<count> slope = model.jacobian.transpose() * (model.miss + model.jacobian * step) +
                                 model.departure + weight.cwiseProduct(step);
@@ -55,8 +55,8 @@ int BestToRelease(const StepModel<count>& model, const Unknowns<count>& weight, 
 
 }  // namespace
 
-template <int count>
-Unknowns<count> BoundedStep(const StepModel<count>& model, const Unknowns<count>& weight) {
+template <int count, int misses>
+Unknowns<count> BoundedStep(const StepModel<count, misses>& model, const Unknowns<count>& weight) {
   // More changes than unknowns are rare; rounding must not make it go round for ever.
   constexpr int kMostChanges = 4 * count;
   Which moves = model.free;
@@ -89,8 +89,14 @@ Unknowns<count> BoundedStep(const StepModel<count>& model, const Unknowns<count>
   return step;
 }
 
-template Unknowns<kUncutUnknowns> BoundedStep(const StepModel<kUncutUnknowns>&,
-                                              const Unknowns<kUncutUnknowns>&);
-template Unknowns<kPlanUnknowns> BoundedStep(const StepModel<kPlanUnknowns>&, const Unknowns<kPlanUnknowns>&);
+#define DISPERSA_BOUNDED_STEP(count, misses) \
+  template Unknowns<count> BoundedStep<count, misses>(const StepModel<count, misses>&, const Unknowns<count>&)
+DISPERSA_BOUNDED_STEP(kUncutUnknowns, kMisses);
+DISPERSA_BOUNDED_STEP(kTwoBurnUnknowns, kMisses);
+DISPERSA_BOUNDED_STEP(kPlanUnknowns, kMisses);
+DISPERSA_BOUNDED_STEP(kUncutUnknowns, kAllMisses);
+DISPERSA_BOUNDED_STEP(kTwoBurnUnknowns, kAllMisses);
+DISPERSA_BOUNDED_STEP(kPlanUnknowns, kAllMisses);
+#undef DISPERSA_BOUNDED_STEP
 
 }  // namespace dispersa

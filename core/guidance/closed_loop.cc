@@ -30,6 +30,8 @@ constexpr double kOfSince = 0.2, kOfLeft = 0.05, kLongestPeriod_s = 10.0;
 constexpr double kArmed_s = 3.0, kArmedOfBurn = 0.25;
 // Where the speed grows by less than this part of the specific force, time ends the burn.
 constexpr double kAlong = 0.2;
+// A timer does not end a burn that lacks more than this of the target's energy: the propellant does.
+constexpr double kLacking_m_s = 1.0;
 // Between a burn's end and the ignition of the next, at least: separation and settling.
 constexpr double kApart_s = 10.0;
 // Thrust is measured over the time between two calls, and smoothed.
@@ -54,6 +56,7 @@ ClosedLoopGuidance::ClosedLoopGuidance(const GuidanceMission& mission)
       at_ignition_(prior_.nominal),
       below_(mission.below),
       last_(mission.last) {
+  if (!mission.earlier.empty()) phase_ = GuidancePhase::kEarlierBurns;
   if (mission.below.is_cut_off()) below_engine_.emplace(mission.below);
   if (mission.last.is_cut_off()) last_engine_.emplace(mission.last);
 }
@@ -69,8 +72,33 @@ CorrectorTask ClosedLoopGuidance::Task(std::initializer_list<PlanUnknown> free, 
   return task;
 }
 
+void ClosedLoopGuidance::Wait() {
+  if (phase_ != GuidancePhase::kEarlierBurns || !earlier_ || waits_) return;
+  waits_ = true;
+  cut_off_.reset();
+}
+
+std::optional<GuidedStage> ClosedLoopGuidance::LeftFor(const GuidedStage& stage,
+                                                       const BurnStart& start) const {
+  if (!start.is_restart || !earlier_engine_) return {};
+  const GuidedStage before = earlier_engine_->Stage(0.0);
+  return AfterBurn(before, stage, std::min(plan_.value[kEarlierCutOff], before.Depletes()));
+}
+
 bool ClosedLoopGuidance::See(const GuidanceSight& sight) {
+  waits_ = false;
+  if (sight.jettisoned != jettisoned_) {
+    jettisoned_ = sight.jettisoned;
+    for (std::optional<EngineEstimate>* engine : {&earlier_engine_, &below_engine_, &last_engine_})
+      if (*engine) (*engine)->SeeLeft(jettisoned_, sight.state.time_s);
+  }
   if (sight.phase != phase_) {
+    if (phase_ == GuidancePhase::kEarlierBurns) {
+      cut_off_.reset();
+      if (below_engine_)
+        if (const std::optional<GuidedStage> left = LeftFor(mission_.below, mission_.below_start))
+          below_engine_->Begin(left->ignition_mass_kg, left->usable_kg);
+    }
     if (phase_ == GuidancePhase::kBelowBurns && below_engine_ && mission_.is_restart) {
       const GuidedStage below = below_engine_->Stage(0.0);
       const double end_s = std::min(plan_.value[kBelowCutOff], below.Depletes());
@@ -85,6 +113,9 @@ bool ClosedLoopGuidance::See(const GuidanceSight& sight) {
   }
   next_call_s_ = sight.state.time_s + mission_.config.period_s;
   switch (sight.phase) {
+    case GuidancePhase::kEarlierBurns:
+      SeeEarlierBurn(sight);
+      return false;
     case GuidancePhase::kBelowBurns:
       SeeBelowBurn(sight);
       return false;
@@ -150,23 +181,110 @@ void ClosedLoopGuidance::BoundCutOffs(const Knowledge& known, double time_s, Cor
 void ClosedLoopGuidance::SetCutOff(const Correction& found) {
   const Injection& reached = found.reached;
   double speed_m_s = reached.burn_end_speed_m_s;
-  if (phase_ != GuidancePhase::kBelowBurns) {
-    const double excess_m2_s2 = OrbitMissOf(mission_, reached).energy_m_s * mission_.target.velocity_m_s;
-    speed_m_s = Sqrt(Square(speed_m_s) - 2.0 * excess_m2_s2);
+  PlanUnknown duration = kEarlierCutOff;
+  const GuidedStage* stage = &mission_.below;
+  bool lacks = false;
+  switch (phase_) {
+    case GuidancePhase::kEarlierBurns:
+      stage = &mission_.earlier[*earlier_].stage;
+      break;
+    case GuidancePhase::kBelowBurns:
+      duration = kBelowCutOff;
+      break;
+    case GuidancePhase::kCoast:
+    case GuidancePhase::kLastBurns: {
+      const double excess_m2_s2 = OrbitMissOf(mission_, reached).energy_m_s * mission_.target.velocity_m_s;
+      speed_m_s = Sqrt(Square(speed_m_s) - 2.0 * excess_m2_s2);
+      duration = kCutOff;
+      stage = &mission_.last;
+      lacks = excess_m2_s2 < -kLacking_m_s * mission_.target.velocity_m_s;
+      break;
+    }
   }
-  if (speed_m_s > 0.0 && std::isfinite(speed_m_s) && std::isfinite(reached.burn_end_s))
-    cut_off_ = {speed_m_s, reached.burn_end_s};
+  if (!(speed_m_s > 0.0) || !std::isfinite(speed_m_s) || !std::isfinite(reached.burn_end_s)) return;
+  cut_off_ = {speed_m_s, reached.burn_end_s};
+  if (stage->ends_by_time) cut_off_->duration_s = lacks ? HUGE_VAL : plan_.value[duration];
 }
 
-double ClosedLoopGuidance::CutOffIn(double time_s, double speed_m_s, double growth_m_s2,
+double ClosedLoopGuidance::CutOffIn(double time_s, double ignition_s, double speed_m_s, double growth_m_s2,
                                     double specific_force_m_s2) const {
+  // The next burn may begin before guidance sees it.
+  if (cut_off_->ignition_s && *cut_off_->ignition_s != ignition_s) return HUGE_VAL;
+  if (cut_off_->duration_s) return ignition_s + *cut_off_->duration_s - time_s;
   const double left_s = cut_off_->time_s - time_s;
   const double burn_s =
       phase_ == GuidancePhase::kBelowBurns ? plan_.value[kBelowCutOff] : plan_.value[kCutOff];
-  const bool is_steered = mission_.config.steers_last_burn || phase_ == GuidancePhase::kBelowBurns;
+  const bool is_steered = mission_.config.steers_last_burn || phase_ == GuidancePhase::kBelowBurns ||
+                          phase_ == GuidancePhase::kEarlierBurns;
   if (left_s > (is_steered ? kArmed_s : kArmedOfBurn * burn_s)) return left_s;
   if (!(std::fabs(growth_m_s2) > kAlong * specific_force_m_s2)) return left_s;
   return (cut_off_->speed_m_s - speed_m_s) / growth_m_s2;
+}
+
+void ClosedLoopGuidance::BeginEarlierBurn(std::size_t index) {
+  const EarlierBurn& burn = mission_.earlier[index];
+  const std::optional<GuidedStage> left = LeftFor(burn.stage, burn.start);
+  earlier_ = index;
+  earlier_motor_.emplace(burn.stage);
+  earlier_engine_.reset();
+  if (burn.stage.is_cut_off()) {
+    earlier_engine_.emplace(burn.stage);
+    if (left) earlier_engine_->Begin(left->ignition_mass_kg, left->usable_kg);
+    earlier_engine_->SeeLeft(jettisoned_, mission_.program.start_s);
+  }
+  SetEarlier(burn.stage, prior_);
+  for (const PlanUnknown unknown : {kEarlierPitch, kEarlierYaw, kEarlierCutOff})
+    plan_.value[unknown] = prior_.nominal.value[unknown];
+  cut_off_.reset();
+  has_previous_ = false;
+  thrust_offset_rad_I_ = Vector3::Zero();
+}
+
+// As in the burn below, with everything after it free too.
+void ClosedLoopGuidance::SeeEarlierBurn(const GuidanceSight& sight) {
+  if (earlier_ != sight.earlier) BeginEarlierBurn(sight.earlier);
+  const double time_s = sight.state.time_s, since_s = time_s - sight.burn_ignition_s;
+  if (!earlier_engine_) earlier_motor_->Add(since_s, sight.specific_force_m_s2);
+  if (since_s < kTakeOver_s) return;
+  TakeOver(time_s);
+  if (earlier_engine_) earlier_engine_->Add(time_s, since_s, sight.specific_force_m_s2, sight.expelled_kg);
+  MeasureThrust(sight);
+  Knowledge known;
+  known.phase = sight.phase;
+  known.earlier = sight.earlier;
+  known.expelled_kg = sight.expelled_kg;
+  known.burn_ignition_s = sight.burn_ignition_s;
+  known.below =
+      earlier_engine_ ? earlier_engine_->Stage(sight.expelled_kg) : earlier_motor_->Stage(sight.expelled_kg);
+  known.last = last_engine_ ? last_engine_->Stage(sight.expelled_kg) : last_.Stage(sight.expelled_kg);
+  known.thrust_offset_rad_I = thrust_offset_rad_I_;
+  known.commanded = command_.direction();
+  const double burn_s = earlier_engine_ ? std::min(plan_.value[kEarlierCutOff], known.below.Depletes())
+                                        : known.below.burn.duration_s;
+  if (sight.burn_ignition_s + burn_s - time_s < kHold_s) return;
+  CorrectorTask task = Task({kEarlierPitch, kEarlierYaw, kBelowPitch, kBelowYaw, kIgnition, kPitchMiddle,
+                             kPitchHalf, kYawMiddle, kWaste},
+                            prior_.nominal, outcome_.acted ? kIterations : kFirstIterations);
+  if (last_engine_) FreeCutOff(task);
+  task.free[kBelowCutOff] = below_engine_.has_value();
+  task.free[kIgnition] = mission_.moves_ignition;
+  task.keeps_solved = true;
+  if (earlier_engine_) {
+    task.free[kEarlierCutOff] = true;
+    task.high[kEarlierCutOff] = std::max(known.below.Depletes(), since_s);
+    task.low[kEarlierCutOff] =
+        std::min(std::max(task.low[kEarlierCutOff], since_s), task.high[kEarlierCutOff]);
+    plan_.value[kEarlierCutOff] =
+        Clamp(plan_.value[kEarlierCutOff], task.low[kEarlierCutOff], task.high[kEarlierCutOff]);
+  }
+  const Correction found = Correct(mission_, prior_, known, sight.state, plan_, task);
+  plan_ = found.plan;
+  outcome_.acted = true;
+  if (earlier_engine_) {
+    SetCutOff(found);
+    if (cut_off_) cut_off_->ignition_s = sight.burn_ignition_s;
+  }
+  SetEnginePeriod(since_s, found.reached.burn_end_s - time_s);
 }
 
 void ClosedLoopGuidance::SeeBelowBurn(const GuidanceSight& sight) {
@@ -316,6 +434,20 @@ void ClosedLoopGuidance::Command(double time_s) {
   const GuidanceLimits& limits = mission_.limits;
   Direction wanted, rate;
   switch (phase_) {
+    case GuidancePhase::kEarlierBurns: {
+      // In a coast it turns to what the next burn begins with.
+      const bool is_last = waits_ && earlier_ && *earlier_ + 1 == mission_.earlier.size();
+      wanted = mission_.program.At(time_s);
+      rate = mission_.program.RateAt(time_s);
+      if (!waits_ || is_last) {
+        wanted.pitch_rad += plan_.value[waits_ ? kBelowPitch : kEarlierPitch];
+        wanted.yaw_rad += plan_.value[waits_ ? kBelowYaw : kEarlierYaw];
+      }
+      if (waits_)
+        return command_.Follow(time_s, wanted, rate, limits.coast_rate_rad_s,
+                               limits.coast_acceleration_rad_s2);
+      return command_.Follow(time_s, wanted, rate, limits.turn_rate_rad_s, limits.turn_acceleration_rad_s2);
+    }
     case GuidancePhase::kBelowBurns:
       wanted = mission_.program.At(time_s);
       rate = mission_.program.RateAt(time_s);

@@ -14,6 +14,8 @@ namespace dispersa {
 struct GuidanceSight {
   NavigatedState state;
   GuidancePhase phase = GuidancePhase::kCoast;
+  std::size_t earlier = 0;           ///< which of the mission's earlier burns
+  unsigned jettisoned = 0;           ///< bodies that have left, as bits
   double burn_ignition_s = 0.0;      ///< of the motor that burns
   double specific_force_m_s2 = 0.0;  ///< by the accelerometers, its magnitude
   double expelled_kg = 0.0;          ///< by the reaction control, from its valves' times
@@ -29,13 +31,16 @@ class ClosedLoopGuidance {
   double next_call_s() const { return next_call_s_; }
   /// Plans. True when the last stage's ignition is to be at ignition_s() from now on.
   bool See(const GuidanceSight& sight);
+  /// In place of it in a coast before the last burn but one.
+  void Wait();
   double ignition_s() const { return plan_.ignition_s(); }
 
   /// Whether it decides when the present burn ends. If not, the vehicle's own cut-off stands.
   bool cuts_off() const { return cut_off_.has_value(); }
-  /// Time from now until the present burn is to end, s. `growth_m_s2` is that of the speed. All are measured.
-  /// Far off, it is only a time after the next tick.
-  double CutOffIn(double time_s, double speed_m_s, double growth_m_s2, double specific_force_m_s2) const;
+  /// Time from now until the present burn, of this ignition, is to end, s. `growth_m_s2` is that of the
+  /// speed. All are measured. Far off, it is only a time after the next tick.
+  double CutOffIn(double time_s, double ignition_s, double speed_m_s, double growth_m_s2,
+                  double specific_force_m_s2) const;
 
   /// Whether the attitude is its own and no longer the reference's.
   bool steers() const { return steers_; }
@@ -46,6 +51,10 @@ class ClosedLoopGuidance {
   const GuidanceOutcome& outcome() const { return outcome_; }
 
  private:
+  void SeeEarlierBurn(const GuidanceSight& sight);
+  void BeginEarlierBurn(std::size_t index);
+  /// A stage as it begins to burn, if it is another burn of the engine that burnt before.
+  std::optional<GuidedStage> LeftFor(const GuidedStage& stage, const BurnStart& start) const;
   void SeeBelowBurn(const GuidanceSight& sight);
   bool SeeCoast(const GuidanceSight& sight);
   void SeeLastBurn(const GuidanceSight& sight);
@@ -59,7 +68,7 @@ class ClosedLoopGuidance {
   CorrectorTask Task(std::initializer_list<PlanUnknown> free, const Plan& prior, int iterations) const;
 
   const GuidanceMission& mission_;
-  const PlanPrior prior_;
+  PlanPrior prior_;
   Plan plan_;
   bool met_all_ = false;  ///< the last plan that had to meet altitude and plane too did so
   Plan at_ignition_;      ///< what the last burn's plans depart from as little as they can
@@ -69,9 +78,17 @@ class ClosedLoopGuidance {
   double next_call_s_ = 0.0;
   MotorEstimate below_, last_;
   std::optional<EngineEstimate> below_engine_, last_engine_;  ///< in their place, if guidance cuts them off
-  /// The planned end of a burn: reaching this speed, about at this time.
+  std::optional<std::size_t> earlier_;                        ///< the earlier burn that burns, or did last
+  std::optional<MotorEstimate> earlier_motor_;
+  std::optional<EngineEstimate> earlier_engine_;
+  bool waits_ = false;        ///< in a coast between burns
+  unsigned jettisoned_ = 0u;  ///< as last seen
+  /// The planned end of a burn: reaching this speed, about at this time. Of a burn with a timer: its
+  /// duration.
   struct CutOffPlan {
     double speed_m_s = 0.0, time_s = 0.0;
+    std::optional<double> duration_s = {};
+    std::optional<double> ignition_s = {};  ///< of the burn, if it is an earlier one
   };
   std::optional<CutOffPlan> cut_off_;  ///< of the present burn
   Vector3 thrust_offset_rad_I_ = Vector3::Zero();

@@ -1,6 +1,7 @@
 #include "core/guidance/corrector.h"
 
 #include <cmath>
+#include <type_traits>
 
 #include "core/guidance/bounded_step.h"
 #include "core/math/constants.h"
@@ -11,8 +12,8 @@ namespace dispersa {
 namespace {
 
 // Energy, path, path, plane, m/s. A degree of plane, 130 m/s, then asks for less than 0.1 degree of a thrust
-// that lacks 10 m/s of energy.
-constexpr double kTolerance[kMisses] = {1e-2, 3e-2, 3e-2, 1.0};
+// that lacks 10 m/s of energy. Then node and place.
+constexpr double kTolerance[kAllMisses] = {1e-2, 3e-2, 3e-2, 1.0, 1.0, 10.0};
 // Differences for derivatives: small against the curvature, large against the rounding of a prediction.
 constexpr double kDifference = 1e-3;  // of a scale
 // A step that moves no miss by more, in tolerances, needs no further one.
@@ -30,21 +31,27 @@ Arrival Less(const Arrival& a, const Arrival& b) {
           a.flight_path_angle_rad - b.flight_path_angle_rad, a.inclination_rad - b.inclination_rad};
 }
 
-Misses Scaled(const GuidanceMission& mission, const Injection& reached, const CorrectorTask& task) {
+template <int misses>
+Misses<misses> Scaled(const GuidanceMission& mission, const Injection& reached, const CorrectorTask& task) {
   const OrbitMiss miss = OrbitMissOf(mission, reached);
-  Misses m;
-  m << miss.energy_m_s / kTolerance[0], miss.radial_m_s / kTolerance[1],
-      (task.meets_altitude ? miss.shape_m_s / kTolerance[2] : 0.0),
-      (task.meets_plane ? miss.plane_m_s / kTolerance[3] : 0.0);
+  Misses<misses> m;
+  m(0) = miss.energy_m_s / kTolerance[0];
+  m(1) = miss.radial_m_s / kTolerance[1];
+  m(2) = task.meets_altitude ? miss.shape_m_s / kTolerance[2] : 0.0;
+  m(3) = task.meets_plane ? miss.plane_m_s / kTolerance[3] : 0.0;
+  if constexpr (misses > kMisses) {
+    m(4) = task.meets_plane ? miss.node_m_s / kTolerance[4] : 0.0;
+    m(5) = task.meets_altitude ? miss.place_m_s / kTolerance[5] : 0.0;
+  }
   return m;
 }
 
 // Thrust at an angle to the velocity loses 1 - cos of its energy: the second derivative that a miss of energy
 // has in the angles, in units of scales. Only what would be missing of the energy if no more were wasted, or
 // if the engine burnt on, holds a step back. `spent`: departures of waste and cut-off that could be had back.
-template <int count>
+template <int count, int misses>
 Unknowns<count> CurvatureOf(const GuidanceMission& mission, const Knowledge& known, const PlanPrior& prior,
-                            const StepModel<count>& model, double spent, double unburnt) {
+                            const StepModel<count, misses>& model, double spent, double unburnt) {
   Unknowns<count> curvature = Unknowns<count>::Zero();
   double missing = -(model.miss(0) - spent * model.jacobian(0, kWaste));
   if constexpr (count > kCutOff) missing -= unburnt * model.jacobian(0, kCutOff);
@@ -53,18 +60,27 @@ Unknowns<count> CurvatureOf(const GuidanceMission& mission, const Knowledge& kno
   curvature(kPitchMiddle) = curvature(kYawMiddle) = last;
   curvature(kPitchHalf) = last / 3.0;
   if constexpr (count > kYawHalf) curvature(kYawHalf) = last / 3.0;
-  if (known.phase == GuidancePhase::kBelowBurns)
+  if (known.phase == GuidancePhase::kBelowBurns || known.phase == GuidancePhase::kEarlierBurns)
     curvature(kBelowPitch) = curvature(kBelowYaw) = missing * IdealVelocity(mission.below) / kTolerance[0];
+  if constexpr (count > kEarlierYaw)
+    curvature(kEarlierPitch) = curvature(kEarlierYaw) = missing * IdealVelocity(known.below) / kTolerance[0];
   for (int i = 0; i < count; ++i) curvature(i) *= Square(prior.scale[static_cast<std::size_t>(i)]);
   return curvature;
 }
 
-// The same of an orbit that may be entered anywhere.
+constexpr double kArrives_rad = 0.01 * kRadPerDeg;
+
+// The same of an orbit that is not a state.
 bool ArrivesInOrbit(const OrbitMiss& miss, double speed_m_s, bool meets_shape, bool meets_plane) {
-  const double angle_m_s = 0.01 * kRadPerDeg * speed_m_s;
+  const double angle_m_s = kArrives_rad * speed_m_s;
   return std::fabs(miss.energy_m_s) <= 0.5 && std::fabs(miss.radial_m_s) <= angle_m_s &&
          (!meets_shape || std::fabs(miss.shape_m_s) <= angle_m_s) &&
          (!meets_plane || std::fabs(miss.plane_m_s) <= 2.0 * angle_m_s);
+}
+bool ArrivesInPlace(const OrbitMiss& miss, double speed_m_s, bool meets_shape, bool meets_plane) {
+  const double angle_m_s = kArrives_rad * speed_m_s;
+  return (!meets_shape || std::fabs(miss.place_m_s) <= 10.0 * angle_m_s) &&
+         (!meets_plane || std::fabs(miss.node_m_s) <= 2.0 * angle_m_s);
 }
 
 }  // namespace
@@ -77,7 +93,7 @@ bool Arrives(const Arrival& miss, bool meets_altitude, bool meets_plane) {
 
 namespace {
 
-template <int count>
+template <int count, int misses>
 Correction CorrectFirst(const GuidanceMission& mission, const PlanPrior& prior, const Knowledge& known,
                         const NavigatedState& from, const Plan& start, const CorrectorTask& task) {
   Correction best;
@@ -86,16 +102,16 @@ Correction CorrectFirst(const GuidanceMission& mission, const PlanPrior& prior, 
     ++best.predictions;
     return Predict(mission, prior, known, from, plan);
   };
-  const auto keep = [&](const Plan& plan, const Injection& reached, const Misses& miss) {
+  const auto keep = [&](const Plan& plan, const Injection& reached, const Misses<misses>& miss) {
     best.plan = plan;
     best.miss = Less(reached.at, mission.target);
     best.reached = reached;
     best.prioritised_miss = miss.norm();
   };
   const Injection at_start = predict(start);
-  StepModel<count> model;
+  StepModel<count, misses> model;
   model.free = task.free;
-  model.miss = Scaled(mission, at_start, task);
+  model.miss = Scaled<misses>(mission, at_start, task);
   keep(start, at_start, model.miss);
   best.start_prioritised_miss = best.prioritised_miss;
   double damping = 0.0;
@@ -111,7 +127,7 @@ Correction CorrectFirst(const GuidanceMission& mission, const PlanPrior& prior, 
       Plan moved = best.plan;
       const double difference = model.high(i) > kDifference ? kDifference : -kDifference;
       moved.value[k] += difference * scale;
-      model.jacobian.col(i) = (Scaled(mission, predict(moved), task) - model.miss) / difference;
+      model.jacobian.col(i) = (Scaled<misses>(mission, predict(moved), task) - model.miss) / difference;
     }
     const Unknowns<count> curvature = CurvatureOf(
         mission, known, prior, model,
@@ -126,7 +142,7 @@ Correction CorrectFirst(const GuidanceMission& mission, const PlanPrior& prior, 
       const bool is_damped = damping > 0.0;
       // Misses are curved: the same Jacobian corrects the rest that a step leaves, before the step is
       // dropped.
-      StepModel<count> bent = model;
+      StepModel<count, misses> bent = model;
       double before = 1e300;
       for (int turn = 0; turn < kBends && !taken && !is_still; ++turn) {
         const Unknowns<count> step = BoundedStep(bent, weight);
@@ -137,7 +153,7 @@ Correction CorrectFirst(const GuidanceMission& mission, const PlanPrior& prior, 
             next.value[k] = Clamp(next.value[k] + step(i) * prior.scale[k], task.low[k], task.high[k]);
         }
         const Injection reached = predict(next);
-        const Misses miss = Scaled(mission, reached, task);
+        const Misses<misses> miss = Scaled<misses>(mission, reached, task);
         const double next_sum = miss.squaredNorm() + (model.departure + step).squaredNorm();
         is_still = (miss - model.miss).template lpNorm<Eigen::Infinity>() < kStill &&
                    step.template lpNorm<Eigen::Infinity>() < kDifference;
@@ -161,15 +177,20 @@ Correction CorrectFirst(const GuidanceMission& mission, const PlanPrior& prior, 
     }
     if (!taken || is_found) break;
   }
+  const double speed_m_s = mission.target.velocity_m_s;
+  bool is_in_place = true;
+  if constexpr (misses > kMisses)
+    is_in_place =
+        ArrivesInPlace(OrbitMissOf(mission, best.reached), speed_m_s, task.meets_altitude, task.meets_plane);
   if (mission.orbit) {
-    best.arrives = ArrivesInOrbit(OrbitMissOf(mission, best.reached), mission.target.velocity_m_s,
-                                  task.meets_altitude, task.meets_plane);
+    best.arrives = is_in_place && ArrivesInOrbit(OrbitMissOf(mission, best.reached), speed_m_s,
+                                                 task.meets_altitude, task.meets_plane);
     return best;
   }
   // An altitude that is not met any more is made up for by the speed.
   Arrival judged = best.miss;
   if (!task.meets_altitude) judged.velocity_m_s = model.miss(0) * kTolerance[0];
-  best.arrives = Arrives(judged, task.meets_altitude, task.meets_plane);
+  best.arrives = is_in_place && Arrives(judged, task.meets_altitude, task.meets_plane);
   return best;
 }
 
@@ -177,9 +198,16 @@ Correction CorrectFirst(const GuidanceMission& mission, const PlanPrior& prior, 
 
 Correction Correct(const GuidanceMission& mission, const PlanPrior& prior, const Knowledge& known,
                    const NavigatedState& from, const Plan& start, const CorrectorTask& task) {
+  const auto correct = [&]<int count>(std::integral_constant<int, count>) {
+    return NamesNodeOrPlace(mission)
+               ? CorrectFirst<count, kAllMisses>(mission, prior, known, from, start, task)
+               : CorrectFirst<count, kMisses>(mission, prior, known, from, start, task);
+  };
+  if (known.phase == GuidancePhase::kEarlierBurns)
+    return correct(std::integral_constant<int, kPlanUnknowns>{});
   return mission.below.is_cut_off() || mission.last.is_cut_off()
-             ? CorrectFirst<kPlanUnknowns>(mission, prior, known, from, start, task)
-             : CorrectFirst<kUncutUnknowns>(mission, prior, known, from, start, task);
+             ? correct(std::integral_constant<int, kTwoBurnUnknowns>{})
+             : correct(std::integral_constant<int, kUncutUnknowns>{});
 }
 
 }  // namespace dispersa

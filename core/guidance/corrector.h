@@ -7,15 +7,15 @@
 //   sum ((x - x0) / scale)² + sum (miss / tolerance)²
 //
 // The tolerances are so tight that the first sum only chooses among plans that meet the second. The misses
-// are those of orbit_miss.h. Path has three times the tolerance of energy, the plane a hundred times. So
-// energy comes first, then path, then plane.
+// are those of orbit_miss.h. Path has three times the tolerance of energy, the plane a hundred times, the
+// place a thousand times. So energy comes first, then path, then plane, then place.
 //
 // J' is the Jacobian of miss / tolerance by x / scale, and y = (x - x0) / scale. A step is
 //
 //   dx / scale = -W⁻¹ y - W⁻¹ J'ᵀ (J' W⁻¹ J'ᵀ + 1)⁻¹ (miss / tolerance - J' W⁻¹ y)
 //
-// within the bounds (bounded_step.h). These are four equations for any number of unknowns, solvable for any
-// rank of J'. W is 1, and more in two cases:
+// within the bounds (bounded_step.h). These are as many equations as misses for any number of unknowns,
+// solvable for any rank of J'. W is 1, and more in two cases:
 // - Energy is missing that no smaller turn gives back. Energy is greatest along the velocity, where J' says
 //   nothing of the angles. Without W a step could have any length.
 // - A step did not make the sum smaller. Such a step is not taken.

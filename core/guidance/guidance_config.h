@@ -5,6 +5,7 @@
 
 #include "core/input/fields.h"
 #include "core/math/constants.h"
+#include "core/math/stages.h"
 
 namespace dispersa {
 
@@ -12,6 +13,7 @@ struct GuidanceConfig {
   bool closed_loop = false;      ///< else the reference's attitude and ignition time are flown as they are
   bool steers_last_burn = true;  ///< else that burn is flown as it was planned at its ignition
   double period_s = 1.0;         ///< between two solutions while a motor burns
+  int burns = 2;                 ///< that are guided, counted from the last one
   // None: what the vehicle can do (guidance_limits.h).
   std::optional<double> turn_rate_rad_s = {};  ///< of the commanded attitude under thrust, by the nozzles
   std::optional<double> turn_acceleration_rad_s2 = {};
@@ -30,6 +32,7 @@ inline void Describe(Fields& fields, GuidanceConfig& guidance) {
                       guidance.steers_last_burn);
   fields.Quantity("period", kTime, Between(0.1, 10.0), guidance.period_s,
                   "between two solutions under thrust", guidance.period_s);
+  fields.Integer("burns", 2, kMaxStages - 1, guidance.burns, "guided ones, counted from the last", 2);
   // A launcher's attitude loops follow some degrees a second. A faster turn would be a loss of control.
   constexpr Range kRate = UpTo(20.0 * kRadPerDeg);
   fields.OptionalQuantity(

@@ -25,14 +25,14 @@ constexpr double kOfDeadband = 1.5, kOfChange = 1.5;
 
 }  // namespace
 
-GuidedAuthority AuthorityOf(const Vehicle& vehicle, const AutopilotConfig& autopilot) {
+GuidedAuthority AuthorityOf(const Vehicle& vehicle, const AutopilotConfig& autopilot,
+                            const GuidanceConfig& config) {
   const std::vector<StackMass> stacks = BuildStackMasses(vehicle);
   GuidedAuthority authority;
   authority.deadband_rad = autopilot.reaction_control.deadband_rad;
   authority.nozzles_rad_s2 = HUGE_VAL;
   const std::size_t last = stacks.size() - 1;
-  for (const std::size_t i : {last - 1, last}) {
-    if (i < last && !SteersBelow(vehicle)) continue;
+  for (std::size_t i = FirstGuided(vehicle, config); i <= last; ++i) {
     const Stage& stage = vehicle.stages[i];
     if (!stage.is_controlled()) continue;  // it is pointed before its ignition
     const MassProperties full = stacks[i].At(stacks[i].propellant_mass_kg);

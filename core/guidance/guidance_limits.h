@@ -31,7 +31,8 @@ struct GuidedAuthority {
 };
 
 /// Precondition: two stages or more.
-GuidedAuthority AuthorityOf(const Vehicle& vehicle, const AutopilotConfig& autopilot);
+GuidedAuthority AuthorityOf(const Vehicle& vehicle, const AutopilotConfig& autopilot,
+                            const GuidanceConfig& config = {});
 
 /// The campaign's limits. Where it gives none: those of GuidanceLimits, or less, so that nozzles and
 /// thrusters keep most of their authority for disturbances. A settled attitude is one that the deadband

@@ -1,5 +1,6 @@
 #include "core/guidance/mission.h"
 
+#include <algorithm>
 #include <cstddef>
 
 #include "core/math/functions.h"
@@ -68,7 +69,15 @@ double IdealVelocity(const GuidedStage& stage) {
              (stage.ignition_mass_kg - stage.burn.propellant_mass_kg + stage.burn.left_kg));
 }
 
-bool IsCutOffByGuidance(const Stage& stage) { return stage.is_liquid() && EndsAtSpeed(stage.motor); }
+bool IsCutOffByGuidance(const Stage& stage) {
+  return stage.is_liquid() && (EndsInFlight(stage.motor) || stage.motor.cut_off == CutOff::kAtTime);
+}
+
+std::size_t FirstGuided(const Vehicle& vehicle, const GuidanceConfig& config) {
+  const std::size_t burns = vehicle.stages.size();
+  if (!SteersBelow(vehicle)) return burns - 1;
+  return burns - std::min(burns, static_cast<std::size_t>(config.burns));
+}
 
 bool SteersBelow(const Vehicle& vehicle) {
   return vehicle.stages.size() > 2 || !IsCutOffByGuidance(vehicle.stages.back());

@@ -1,7 +1,9 @@
 // Data that the guidance of every flight of a campaign has before lift-off: the nominal motors and masses of
-// the last two stages, the reference's attitude, and the target.
+// the guided burns, the reference's attitude, and the target.
 #pragma once
 
+#include <cmath>
+#include <cstddef>
 #include <optional>
 #include <vector>
 
@@ -27,11 +29,12 @@ struct Direction {
   double pitch_rad = 0.0;
   double yaw_rad = 0.0;
 };
-/// An orbit that may be entered at any place, about a point mass.
+/// An orbit's size, shape and place, about a point mass.
 struct TargetOrbit {
   double semi_major_axis_m = 0.0;
   double eccentricity = 0.0;
   std::optional<double> argument_of_perigee_rad = {};  ///< none: any
+  std::optional<double> true_anomaly_rad = {};         ///< of the injection; none: any
 };
 /// Body x in L.
 Vector3 UnitVector(const Direction& direction);
@@ -47,10 +50,15 @@ struct DirectionTable {
   Direction RateAt(double time_s) const;
 };
 
-/// A body that the reference lets go of.
+/// A body that leaves after a burn's ignition.
 struct MassDrop {
-  double time_s = 0.0;  ///< since lift-off
+  double time_s =
+      0.0;  ///< since lift-off, of the reference. Of one with an altitude: never, until it has left
   double mass_kg = 0.0;
+  std::optional<double> altitude_m = {};  ///< geodetic, at which the flight computer lets go of it
+  unsigned body = 0;                      ///< its bit of those that have left
+
+  bool waits() const { return altitude_m && !(time_s < HUGE_VAL); }
 };
 
 /// A stack with its motor as the documents give them.
@@ -60,6 +68,7 @@ struct GuidedStage {
   bool loses_mass = false;        ///< the reference lets go of something while it burns
   // Of an engine that guidance cuts off. The reference's burn ends after burn.duration_s.
   std::optional<EngineLevels> levels = {};
+  bool ends_by_time = false;         ///< by a timer, and not at a speed
   double usable_kg = 0.0;            ///< propellant at ignition without the residual
   std::vector<MassDrop> drops = {};  ///< after the reference's ignition
 
@@ -71,6 +80,19 @@ struct GuidedStage {
   double Burnt(double duration_s) const { return burn.full_flow_kg_s * levels->Sum(duration_s); }
 };
 
+/// How a burn begins after the one before.
+struct BurnStart {
+  bool on_timer = false;         ///< at `ignition_s`, else `after_burnout_s` after the one before has ended
+  double ignition_s = 0.0;       ///< of the reference
+  double after_burnout_s = 0.0;  ///< of the reference
+  bool is_restart = false;       ///< of the engine that burnt before
+};
+/// A guided burn before the last two.
+struct EarlierBurn {
+  GuidedStage stage;
+  BurnStart start;
+};
+
 struct GuidanceMission {
   GuidanceConfig config;
   GuidanceLimits limits;
@@ -78,6 +100,9 @@ struct GuidanceMission {
   Matrix3 R_IL = Matrix3::Identity();
   Arrival target;
   std::optional<TargetOrbit> orbit = {};  ///< then only its inclination and speed count of `target`
+  std::optional<double> node_rad = {};    ///< wanted right ascension of the node, from I's x axis
+  std::vector<EarlierBurn> earlier = {};  ///< guided burns before the last two, in their order
+  BurnStart below_start = {};             ///< if there are any
   GuidedStage below;                      ///< the stage before the last
   GuidedStage last;
   bool steers_below = true;           ///< else guidance begins with the last stage
@@ -89,8 +114,8 @@ struct GuidanceMission {
   DirectionTable program;             ///< from the ignition of the stage before the last on
 };
 
-/// The last stage, if it is another burn of the engine below after a burn of `duration_s`: what is left is
-/// its mass and its propellant.
+/// The next burn (`last`), if it is another one of the same engine after a burn of `duration_s`: what is left
+/// is its mass and its propellant.
 GuidedStage AfterBurn(const GuidedStage& below, GuidedStage last, double duration_s);
 
 /// Ideal velocity change of a burn.
@@ -98,6 +123,8 @@ double IdealVelocity(const GuidedStage& stage);
 
 /// Whether guidance decides when the burn of a stage ends.
 bool IsCutOffByGuidance(const Stage& stage);
+/// The first of the burns that the settings let guidance plan, as an index of the vehicle's stages.
+std::size_t FirstGuided(const Vehicle& vehicle, const GuidanceConfig& config);
 /// Whether it steers the last stage but one. A stage that lifts off is steered by the reference, if the last
 /// stage's engine can be cut off.
 bool SteersBelow(const Vehicle& vehicle);

@@ -2,6 +2,7 @@
 
 #include <cmath>
 
+#include "core/math/constants.h"
 #include "core/math/functions.h"
 
 namespace dispersa {
@@ -34,6 +35,16 @@ double KeepsPerigee(double eccentricity, double missing_of_energy) {
   return 1.0 + (1.0 - eccentricity) / std::fmax(eccentricity, kElliptic) * missing_of_energy;
 }
 
+// From -pi to pi.
+double Wrapped(double angle_rad) { return angle_rad - kTwoPi * std::floor(angle_rad / kTwoPi + 0.5); }
+
+double NodeMiss(const GuidanceMission& mission, const Injection& reached) {
+  if (!mission.node_rad) return 0.0;
+  const Vector3 h = reached.p_EoC_I.cross(reached.v_IC_I);
+  return mission.target.velocity_m_s * Sin(mission.target.inclination_rad) *
+         Wrapped(Atan2(h.x(), -h.y()) - *mission.node_rad);
+}
+
 OrbitMiss MissOfOrbit(const GuidanceMission& mission, const Injection& reached) {
   const TargetOrbit& orbit = *mission.orbit;
   const double mu = mission.earth.mu_m3_s2, speed = mission.target.velocity_m_s;
@@ -42,21 +53,33 @@ OrbitMiss MissOfOrbit(const GuidanceMission& mission, const Injection& reached) 
   const double missing = is.energy_m2_s2 - energy_m2_s2;
   const double eccentricity =
       orbit.eccentricity * KeepsPerigee(orbit.eccentricity, missing / std::fabs(energy_m2_s2));
-  double along = eccentricity, across = 0.0;
+  double along = eccentricity, across = 0.0, place_rad = 0.0;
   if (orbit.argument_of_perigee_rad) {
-    const SinCos anomaly =
-        SineCosine(ArgumentOfLatitude(reached.p_EoC_I, reached.v_IC_I) - *orbit.argument_of_perigee_rad);
+    const double from_perigee_rad =
+        ArgumentOfLatitude(reached.p_EoC_I, reached.v_IC_I) - *orbit.argument_of_perigee_rad;
+    const SinCos anomaly = SineCosine(from_perigee_rad);
     along = eccentricity * anomaly.cos;
     across = eccentricity * anomaly.sin;
+    if (orbit.true_anomaly_rad) place_rad = Wrapped(from_perigee_rad - *orbit.true_anomaly_rad);
   } else if (const double size = Sqrt(Square(is.along) + Square(is.across)); size > 0.0) {
     along = eccentricity * is.along / size;
     across = eccentricity * is.across / size;
+    if (orbit.true_anomaly_rad)
+      place_rad = orbit.eccentricity * Wrapped(Atan2(is.across, is.along) - *orbit.true_anomaly_rad);
   }
-  return {missing / speed, speed * (is.across - across), speed * (is.along - along),
-          speed * (reached.at.inclination_rad - mission.target.inclination_rad)};
+  return {missing / speed,
+          speed * (is.across - across),
+          speed * (is.along - along),
+          speed * (reached.at.inclination_rad - mission.target.inclination_rad),
+          NodeMiss(mission, reached),
+          speed * place_rad};
 }
 
 }  // namespace
+
+bool NamesNodeOrPlace(const GuidanceMission& mission) {
+  return mission.node_rad || (mission.orbit && mission.orbit->true_anomaly_rad);
+}
 
 OrbitMiss OrbitMissOf(const GuidanceMission& mission, const Injection& reached) {
   if (mission.orbit) return MissOfOrbit(mission, reached);
@@ -72,7 +95,8 @@ OrbitMiss OrbitMissOf(const GuidanceMission& mission, const Injection& reached) 
   const double keeps_perigee = (1.0 - eccentricity) / std::fmax(eccentricity, kElliptic);
   const double size = 1.0 + keeps_perigee * missing / std::fabs(wanted.energy_m2_s2);
   return {missing / speed, speed * (is.across - size * wanted.across),
-          speed * (is.along - size * wanted.along), speed * (at.inclination_rad - target.inclination_rad)};
+          speed * (is.along - size * wanted.along), speed * (at.inclination_rad - target.inclination_rad),
+          NodeMiss(mission, reached)};
 }
 
 }  // namespace dispersa

@@ -13,6 +13,9 @@ namespace {
 // acceleration: what is left makes up for what the command loses.
 constexpr double kOfTurnRate = 0.7;
 
+// A burn's duration: its scale, and its shortest.
+constexpr double kOfBurn = 0.05, kShortestOfBurn = 0.2;
+
 // 0 before, the time since after, by a parabola within `round_s` of it; and its slope.
 double Ramp(double since_s, double round_s) {
   if (since_s >= round_s) return since_s;
@@ -124,16 +127,15 @@ namespace {
 // flight.
 void SetReach(const GuidanceMission& mission, PlanPrior& prior) {
   constexpr double kDeg = kRadPerDeg;
-  constexpr double kOfBurn = 0.05, kShortestOfBurn = 0.2;
   const auto& value = prior.nominal.value;
   const double below_s = value[kBelowCutOff], last_s = value[kCutOff];
   const auto scale_s = [](double burn_s) { return burn_s > 0.0 ? kOfBurn * burn_s : 1.0; };
-  prior.scale = {2.0 * kDeg,       1.0 * kDeg,      20.0,      5.0 * kDeg, 5.0 * kDeg, 3.0 * kDeg, 0.03,
-                 scale_s(below_s), scale_s(last_s), 3.0 * kDeg};
+  prior.scale = {2.0 * kDeg,       1.0 * kDeg,      20.0,       5.0 * kDeg, 5.0 * kDeg, 3.0 * kDeg, 0.03,
+                 scale_s(below_s), scale_s(last_s), 3.0 * kDeg, 2.0 * kDeg, 1.0 * kDeg, 1.0};
   const double late_s = (1.0 - kShortestOfBurn);
-  const std::array<double, kPlanUnknowns> reach = {10.0 * kDeg,     5.0 * kDeg,  120.0, 25.0 * kDeg,
-                                                   25.0 * kDeg,     25.0 * kDeg, 0.0,   late_s * below_s,
-                                                   late_s * last_s, 25.0 * kDeg};
+  const std::array<double, kPlanUnknowns> reach = {
+      10.0 * kDeg,      5.0 * kDeg,      120.0,       25.0 * kDeg, 25.0 * kDeg, 25.0 * kDeg, 0.0,
+      late_s * below_s, late_s * last_s, 25.0 * kDeg, 10.0 * kDeg, 5.0 * kDeg,  0.0};
   for (int i = 0; i < kPlanUnknowns; ++i) {
     const auto k = static_cast<std::size_t>(i);
     prior.low[k] = value[k] - reach[k];
@@ -170,6 +172,19 @@ PlanPrior BuildPrior(const GuidanceMission& mission) {
   prior.low[kWaste] = 0.0;
   prior.high[kWaste] = 0.5 * Square(45.0 * kRadPerDeg) * prior.turn.early_variance;
   return prior;
+}
+
+void SetEarlier(const GuidedStage& stage, PlanPrior& prior) {
+  auto& value = prior.nominal.value;
+  value[kEarlierPitch] = value[kEarlierYaw] = value[kEarlierCutOff] = 0.0;
+  prior.scale[kEarlierCutOff] = 1.0;
+  prior.low[kEarlierCutOff] = prior.high[kEarlierCutOff] = 0.0;
+  if (!stage.is_cut_off()) return;
+  const double burn_s = stage.burn.duration_s;
+  value[kEarlierCutOff] = burn_s;
+  prior.scale[kEarlierCutOff] = kOfBurn * burn_s;
+  prior.low[kEarlierCutOff] = kShortestOfBurn * burn_s;
+  prior.high[kEarlierCutOff] = stage.Depletes();
 }
 
 }  // namespace dispersa

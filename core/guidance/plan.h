@@ -21,6 +21,11 @@ enum PlanUnknown {
   kBelowCutOff = kUncutUnknowns,  ///< duration of the burn of the stage before the last, s
   kCutOff,                        ///< the same of the last stage
   kYawHalf,                       ///< as kPitchHalf, of a last burn that guidance cuts off
+  kTwoBurnUnknowns,
+  // Of the present burn, if it is before the last two.
+  kEarlierPitch = kTwoBurnUnknowns,  ///< offset to the reference's attitude, rad
+  kEarlierYaw,
+  kEarlierCutOff,  ///< its duration, s
   kPlanUnknowns
 };
 struct Plan {
@@ -57,6 +62,8 @@ struct PlanPrior {
   std::array<double, kPlanUnknowns> low{}, high{};
 };
 PlanPrior BuildPrior(const GuidanceMission& mission);
+/// For plans in a burn before the last two, which begins with this stage.
+void SetEarlier(const GuidedStage& stage, PlanPrior& prior);
 
 /// Direction of the last burn's thrust by a plan: pitch and yaw linear in time, plus the turn in yaw about
 /// its mean. The turn takes a²/2 of the course's variance from the ideal velocity; kWaste stands for it. It

@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <cmath>
 #include <initializer_list>
+#include <iterator>
 #include <vector>
 
 #include "core/math/constants.h"
@@ -71,6 +72,55 @@ void Burn(const GuidanceMission& mission, const GuidedStage& stage, double ignit
   }
 }
 
+double AltitudeOf(const Earth& earth, const NavigatedState& state) {
+  return ToGeodetic(earth, InertialToEarth(earth, state.time_s, state.p_EoC_I)).altitude_m;
+}
+
+// The same as Advance, with bodies that leave at an altitude. `waiting`: those that are still there.
+// `left_kg`: mass of those that have left, which `mass_kg` does not know. A step ends where a body leaves, so
+// that the end of the way changes smoothly with the plan.
+template <class ThrustAt>
+void AdvanceAndLetGo(const Earth& earth, double to_s, double longest_s, const ThrustAt& thrust,
+                     std::vector<MassDrop>& waiting, double& left_kg, double& mass_kg,
+                     NavigatedState& state) {
+  mass_kg -= left_kg;
+  const auto lower = [](const MassDrop& a, const MassDrop& b) { return *a.altitude_m < *b.altitude_m; };
+  const auto let_go = [&](std::vector<MassDrop>::iterator drop) {
+    left_kg += drop->mass_kg;
+    mass_kg -= drop->mass_kg;
+    waiting.erase(drop);
+  };
+  while (state.time_s < to_s && !waiting.empty()) {
+    const auto next = std::min_element(waiting.begin(), waiting.end(), lower);
+    const double above_m = *next->altitude_m;
+    const NavigatedState from = state;
+    const double from_m = AltitudeOf(earth, from);
+    if (from_m >= above_m) {
+      let_go(next);
+      continue;
+    }
+    const double end_s = std::min(to_s, from.time_s + longest_s);
+    Advance(earth, end_s, longest_s, thrust, state);
+    double end_m = AltitudeOf(earth, state);
+    if (end_m < above_m) continue;
+    // The secant's steps from the end: the altitude is almost straight within a step.
+    double before_s = from.time_s, before_m = from_m, at_s = end_s;
+    constexpr int kSteps = 5;
+    for (int step = 0; step < kSteps && end_m != before_m; ++step) {
+      const double then_s =
+          std::clamp(at_s - (end_m - above_m) * (at_s - before_s) / (end_m - before_m), from.time_s, end_s);
+      before_s = at_s;
+      before_m = end_m;
+      at_s = then_s;
+      state = from;
+      Advance(earth, at_s, longest_s, thrust, state);
+      end_m = AltitudeOf(earth, state);
+    }
+    let_go(next);
+  }
+  Advance(earth, to_s, longest_s, thrust, state);
+}
+
 // An engine's burn until guidance cuts it off after `duration_s`, or the propellant is used up. Steps end
 // where the level bends and where a body leaves.
 template <class DirectionAt>
@@ -82,11 +132,15 @@ void BurnEngine(const GuidanceMission& mission, const GuidedStage& stage, double
   for (const MassDrop& drop : stage.drops) ends.push_back(drop.time_s - ignition_s);
   ends.push_back(end_s);
   std::sort(ends.begin(), ends.end());
+  std::vector<MassDrop> waiting;
+  std::copy_if(stage.drops.begin(), stage.drops.end(), std::back_inserter(waiting),
+               [](const MassDrop& drop) { return drop.waits(); });
+  double left_kg = 0.0;
   for (const double end : ends) {
     if (end > end_s) break;
     const double begin = state.time_s - ignition_s;
     if (!(end > begin)) continue;
-    const double mass_kg = stage.ignition_mass_kg - stage.DroppedBy(0.5 * (begin + end) + ignition_s);
+    double mass_kg = stage.ignition_mass_kg - stage.DroppedBy(0.5 * (begin + end) + ignition_s);
     const auto thrust = [&](double time_s) -> Vector3 {
       const double since = time_s - ignition_s;
       const double acceleration =
@@ -94,7 +148,10 @@ void BurnEngine(const GuidanceMission& mission, const GuidedStage& stage, double
       const Vector3 along = mission.R_IL * UnitVector(direction_at(time_s));
       return acceleration * (along + offset_rad_I.cross(along));
     };
-    Advance(mission.earth, ignition_s + end, longest_s, thrust, state);
+    if (waiting.empty() && left_kg == 0.0)
+      Advance(mission.earth, ignition_s + end, longest_s, thrust, state);
+    else
+      AdvanceAndLetGo(mission.earth, ignition_s + end, longest_s, thrust, waiting, left_kg, mass_kg, state);
   }
 }
 
@@ -149,6 +206,61 @@ Lags LagsOf(const GuidanceLimits& limits, const Knowledge& known, const Directio
   return lags;
 }
 
+// The rest of an earlier burn and all burns after it but the last one. The last one's stage, if it burns what
+// they leave.
+std::optional<GuidedStage> FlyEarlierBurns(const GuidanceMission& mission, const Knowledge& known,
+                                           const Plan& plan, const PredictorSteps& steps,
+                                           NavigatedState& state, Injection& injection) {
+  const auto offset_by = [&](PlanUnknown pitch, PlanUnknown yaw) {
+    return [&mission, by_pitch = plan.value[pitch], by_yaw = plan.value[yaw]](double time_s) {
+      Direction along = mission.program.At(time_s);
+      along.pitch_rad += by_pitch;
+      along.yaw_rad += by_yaw;
+      return along;
+    };
+  };
+  const auto fly = [&](const GuidedStage& stage, double ignition_s, double duration_s, const Vector3& offset,
+                       const auto& direction) {
+    if (stage.is_cut_off())
+      BurnEngine(mission, stage, ignition_s, duration_s, steps.engine_s, offset, direction, state);
+    else
+      Burn(mission, stage, ignition_s, steps.burn_s, offset, {}, direction, state);
+  };
+  const auto planned = offset_by(kEarlierPitch, kEarlierYaw);
+  const double from_s = state.time_s;
+  const Lags lags = LagsOf(mission.limits, known, planned(from_s), mission.program.RateAt(from_s));
+  fly(known.below, known.burn_ignition_s, plan.value[kEarlierCutOff], known.thrust_offset_rad_I,
+      [&](double time_s) { return lags.Of(planned(time_s), time_s - from_s); });
+  injection.burn_end_speed_m_s = state.v_IC_I.norm();
+  injection.burn_end_s = state.time_s;
+  GuidedStage before = known.below;
+  double ignition_s = known.burn_ignition_s;
+  // What the reaction control has expelled counts in the mass of the burn that is estimated.
+  const auto begin = [&](const GuidedStage& nominal, const BurnStart& start) {
+    GuidedStage stage = nominal;
+    if (start.is_restart && before.is_cut_off())
+      stage = AfterBurn(before, nominal, state.time_s - ignition_s);
+    else
+      stage.ignition_mass_kg -= known.expelled_kg;
+    ignition_s =
+        start.on_timer ? std::max(start.ignition_s, state.time_s) : state.time_s + start.after_burnout_s;
+    Advance(
+        mission.earth, ignition_s, steps.coast_s, [](double) { return Vector3(0.0, 0.0, 0.0); }, state);
+    before = stage;
+    return stage;
+  };
+  const Vector3 no_offset(0.0, 0.0, 0.0);
+  for (std::size_t i = known.earlier + 1; i < mission.earlier.size(); ++i) {
+    const GuidedStage stage = begin(mission.earlier[i].stage, mission.earlier[i].start);
+    fly(stage, ignition_s, mission.earlier[i].stage.burn.duration_s, no_offset,
+        [&](double time_s) { return mission.program.At(time_s); });
+  }
+  const GuidedStage below = begin(mission.below, mission.below_start);
+  fly(below, ignition_s, plan.value[kBelowCutOff], no_offset, offset_by(kBelowPitch, kBelowYaw));
+  if (!mission.is_restart || !below.is_cut_off()) return {};
+  return AfterBurn(below, known.last, state.time_s - ignition_s);
+}
+
 }  // namespace
 
 Arrival ArrivalOf(const Earth& earth, double time_s, const Vector3& p, const Vector3& v) {
@@ -167,6 +279,8 @@ Injection Predict(const GuidanceMission& mission, const PlanPrior& prior, const 
   Injection injection;
   // Of an engine that burns again: what its burn before leaves.
   std::optional<GuidedStage> restarted;
+  if (known.phase == GuidancePhase::kEarlierBurns)
+    restarted = FlyEarlierBurns(mission, known, plan, steps, state, injection);
   if (known.phase == GuidancePhase::kBelowBurns) {
     const auto planned = [&](double time_s) {
       Direction along = mission.program.At(time_s);
@@ -191,6 +305,7 @@ Injection Predict(const GuidanceMission& mission, const PlanPrior& prior, const 
   }
   const bool lit = known.phase == GuidancePhase::kLastBurns;
   double ignition_s = lit ? known.burn_ignition_s : plan.ignition_s();
+  if (known.phase == GuidancePhase::kEarlierBurns) ignition_s = std::max(ignition_s, state.time_s);
   if (!lit && !mission.moves_ignition)
     ignition_s = state.time_s + (mission.last_ignition_s - mission.below_burnout_s);
   if (!lit)
@@ -222,7 +337,7 @@ Injection Predict(const GuidanceMission& mission, const PlanPrior& prior, const 
   injection.radius_m = state.p_EoC_I.norm();
   injection.p_EoC_I = state.p_EoC_I;
   injection.v_IC_I = state.v_IC_I;
-  if (known.phase != GuidancePhase::kBelowBurns) {
+  if (known.phase == GuidancePhase::kCoast || lit) {
     injection.burn_end_speed_m_s = injection.at.velocity_m_s;
     injection.burn_end_s = state.time_s;
   }

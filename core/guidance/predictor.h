@@ -1,5 +1,5 @@
 // Predicts the injection of a plan: a point mass under gravitation (central and J2) and the thrust of known
-// motors, through the rest of a burn, the coast and the last burn.
+// motors, through the rest of a burn, the coasts and the burns after it.
 #pragma once
 
 #include <optional>
@@ -15,13 +15,20 @@ struct NavigatedState {
   Vector3 v_IC_I = Vector3::Zero();
 };
 
-enum class GuidancePhase { kBelowBurns, kCoast, kLastBurns };
+enum class GuidancePhase {
+  kEarlierBurns,  ///< a burn before the last two
+  kBelowBurns,
+  kCoast,  ///< before the last burn
+  kLastBurns,
+};
 
 /// The values at the time of the prediction.
 struct Knowledge {
   GuidancePhase phase = GuidancePhase::kCoast;
   double burn_ignition_s = 0.0;  ///< of the motor that burns
-  GuidedStage below;             ///< as estimated, while it burns
+  std::size_t earlier = 0;       ///< which of the earlier burns it is
+  double expelled_kg = 0.0;      ///< by the reaction control, while an earlier burn
+  GuidedStage below;             ///< as estimated, while it burns, or the earlier one that burns
   GuidedStage last;  ///< nominal until it burns, then as estimated, minus the propellant expelled by the
                      ///< reaction control. While the same engine burns before: its masses do not count
   /// Small rotation from where thrust shall point to where it does, as measured.

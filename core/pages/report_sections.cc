@@ -307,7 +307,7 @@ the campaign declares: no navigation filter, no error that grows.</li>
 altitude. Thrust, mass flow and drag therefore spread the orbit by tens of kilometres whatever the autopilot
 does; injection metrics are reported for that spread and are no measure of the autopilot.</li>
 )html";
-  if (CutsOffAtVelocity(campaign.vehicle))
+  if (CutsOffInFlight(campaign.vehicle))
     html +=
         R"html(<li>Engines are cut off at the true inertial velocity: that speeds at injection hardly differ is the
 cut-off's doing, and no measure of guidance or autopilot.</li>

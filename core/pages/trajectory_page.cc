@@ -9,6 +9,7 @@
 #include "core/pages/svg_chart.h"
 #include "core/pages/trajectory_figures.h"
 #include "core/results/text.h"
+#include "core/trajectory/aim.h"
 
 namespace dispersa {
 namespace {
@@ -155,8 +156,11 @@ std::vector<InjectionRow> InjectionRows(const OptimizationResult& result,
   // The altitudes of an ellipse count from the equator's radius. The flight's geodetic altitude is no measure
   // of them.
   const bool ellipse = problem.target_apogee_m.has_value();
-  rows.push_back({ellipse ? "perigee altitude, km" : "altitude, km", 6, problem.target_altitude_m * 1e-3,
-                  (problem.target_altitude_m + error.altitude_m) * 1e-3, error.altitude_m * 1e-3,
+  const double altitude_m = AimedAltitude(problem);
+  const char* const at = problem.target_true_anomaly_rad ? "altitude at the true anomaly, km"
+                         : ellipse                       ? "perigee altitude, km"
+                                                         : "altitude, km";
+  rows.push_back({at, 6, altitude_m * 1e-3, (altitude_m + error.altitude_m) * 1e-3, error.altitude_m * 1e-3,
                   halved.altitude_m * 1e-3,
                   ellipse ? std::nullopt : arrived(&OrbitErrors::altitude_m, 1e-3)});
   if (problem.is_entered_anywhere)
@@ -178,7 +182,7 @@ std::vector<InjectionRow> InjectionRows(const OptimizationResult& result,
     rows.push_back({"argument of perigee, deg", 4, Deg(*problem.target_argument_of_perigee_rad),
                     problem.is_entered_anywhere
                         ? Deg(*problem.target_argument_of_perigee_rad + error.argument_of_perigee_rad)
-                        : Deg(orbit.argument_of_latitude_rad),
+                        : Deg(orbit.argument_of_latitude_rad - problem.target_true_anomaly_rad.value_or(0.0)),
                     Deg(error.argument_of_perigee_rad), Deg(halved.argument_of_perigee_rad), std::nullopt});
   return rows;
 }

@@ -26,6 +26,20 @@ AimedEllipse EllipseOf(const TrajectoryProblem& problem) {
   return {0.5 * (perigee_m + apogee_m), (apogee_m - perigee_m) / (apogee_m + perigee_m)};
 }
 
+AimedPlace PlaceAimedAt(const TrajectoryProblem& problem) {
+  const double mu = Wgs84().mu_m3_s2;
+  const AimedEllipse ellipse = EllipseOf(problem);
+  const SinCos anomaly = SineCosine(problem.target_true_anomaly_rad.value_or(0.0));
+  const double e = ellipse.eccentricity, along = 1.0 + e * anomaly.cos;
+  const double radius_m = ellipse.semi_major_axis_m * (1.0 - e * e) / along;
+  return {radius_m - Wgs84().equatorial_radius_m,
+          Sqrt(mu * (2.0 / radius_m - 1.0 / ellipse.semi_major_axis_m)), Atan2(e * anomaly.sin, along)};
+}
+
+double AimedAltitude(const TrajectoryProblem& problem) {
+  return problem.target_true_anomaly_rad ? PlaceAimedAt(problem).altitude_m : problem.target_altitude_m;
+}
+
 PlaceInOrbit PlaceOf(const Orbit& orbit) {
   const double mu = Wgs84().mu_m3_s2;
   const SinCos angle = SineCosine(orbit.flight_path_angle_rad);

@@ -161,7 +161,7 @@ class Fleet {
       : model_(model),
         options_(options),
         ground_(GroundOf(model)),
-        cuts_off_at_velocity_(CutsOffAtVelocity(model.vehicle)) {}
+        cuts_off_in_flight_(CutsOffInFlight(model.vehicle)) {}
 
   void Fly(std::span<const FlightProgram> programs, std::span<AscentResult> results);
 
@@ -216,7 +216,7 @@ class Fleet {
   const AscentModel& model_;
   const AscentOptions& options_;
   lanes::Ground ground_;
-  const bool cuts_off_at_velocity_;
+  const bool cuts_off_in_flight_;
   std::array<Flight, kWidth> flights_;
   lanes::Leg<T> leg_{};
   T time_s_ = T(0.0), next_s_ = T(0.0);
@@ -287,7 +287,7 @@ void Fleet<T>::AdvanceAll() {
   const T from_s = time_s_;
   lanes::Step(ground_, leg_, time_s_, next_s_, now.acceleration_I, &p_, &v_);
   time_s_ = next_s_;
-  if (cuts_off_at_velocity_)
+  if (cuts_off_in_flight_)
     for (int lane = 0; lane < kWidth; ++lane)
       if (flights_[lane].result && flights_[lane].burning)
         CutOff(lane, Lane(from_s, lane), LaneOf(p, lane), LaneOf(v, lane));

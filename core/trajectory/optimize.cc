@@ -155,14 +155,15 @@ OrbitErrors ErrorsOf(const TrajectoryProblem& problem, const Orbit& orbit) {
   // The altitudes of an ellipse count from the equator's radius, as its elements do.
   const double altitude_m =
       problem.target_apogee_m ? orbit.radius_m - Wgs84().equatorial_radius_m : orbit.altitude_m;
-  return {
-      altitude_m - problem.target_altitude_m,
-      problem.velocity_is_free ? 0.0 : orbit.velocity_m_s - AimedVelocity(problem),
-      orbit.flight_path_angle_rad - problem.target_flight_path_angle_rad,
-      problem.target_inclination_rad ? orbit.inclination_rad - *problem.target_inclination_rad : 0.0,
-      problem.target_argument_of_perigee_rad
-          ? std::remainder(orbit.argument_of_latitude_rad - *problem.target_argument_of_perigee_rad, kTwoPi)
-          : 0.0};
+  return {altitude_m - AimedAltitude(problem),
+          problem.velocity_is_free ? 0.0 : orbit.velocity_m_s - AimedVelocity(problem),
+          orbit.flight_path_angle_rad - problem.target_flight_path_angle_rad,
+          problem.target_inclination_rad ? orbit.inclination_rad - *problem.target_inclination_rad : 0.0,
+          problem.target_argument_of_perigee_rad
+              ? std::remainder(orbit.argument_of_latitude_rad - *problem.target_argument_of_perigee_rad -
+                                   problem.target_true_anomaly_rad.value_or(0.0),
+                               kTwoPi)
+              : 0.0};
 }
 
 bool IsWithin(const OrbitErrors& errors, const OrbitErrors& tolerance) {

@@ -87,6 +87,10 @@ struct TrajectoryProblem {
   std::optional<double> target_inclination_rad;
   std::optional<double> target_node_rad;  ///< right ascension; the time of day of the lift-off provides it
   std::optional<double> target_argument_of_perigee_rad;  ///< of an ellipse
+  std::optional<double> target_true_anomaly_rad;         ///< of its entry, if the target gives one
+  /// The target gives these in place of its apsides, which follow from them.
+  bool is_given_by_axis = false;
+  double target_semi_major_axis_m = 0.0, target_eccentricity = 0.0;
   double velocity_reserve_m_s = 0.0;  ///< extra velocity of the trajectory, which guidance may spend
   Bounds alpha_max_rad, t1_s, t3_s, t2_s, coast_s, launch_azimuth_rad;
   std::array<Bounds, kMaxStages> earlier_coast_s{};

@@ -1,6 +1,7 @@
 #include <cmath>
 
 #include "core/environment/earth.h"
+#include "core/trajectory/aim.h"
 #include "core/trajectory/optimize.h"
 #include "core/trajectory/reference.h"
 
@@ -49,18 +50,56 @@ double PerigeeSpeed(double perigee_m, double apogee_m) {
   return std::sqrt(earth.mu_m3_s2 * (2.0 / perigee_radius_m - 1.0 / axis_m));
 }
 
-void DescribeEllipse(Fields& fields, TrajectoryProblem& problem) {
+// Where an ellipse is entered. Then its speed and flight path angle are known.
+void DescribeEntry(Fields& fields, TrajectoryProblem& problem) {
+  fields.Either(
+      {{Has("true_anomaly", kAngle),
+        [&] {
+          fields.OptionalQuantity("true_anomaly", kAngle, Between(-kPi, kTwoPi),
+                                  problem.target_true_anomaly_rad, "of the injection");
+          fields.Misplaced("entered_at", {}, "'entered_at' and 'true_anomaly' are both given", "one of them");
+        },
+        problem.target_true_anomaly_rad.has_value()},
+       {Else(), [&] {
+          fields.Choice<bool>("entered_at", {{"perigee", false}, {"anywhere", true}},
+                              problem.is_entered_anywhere, "true anomaly of the injection: 0, or any", false);
+        }}});
+  problem.target_velocity_m_s = PerigeeSpeed(problem.target_altitude_m, *problem.target_apogee_m);
+  if (problem.target_true_anomaly_rad) {
+    const AimedPlace place = PlaceAimedAt(problem);
+    problem.target_velocity_m_s = place.velocity_m_s;
+    problem.target_flight_path_angle_rad = place.flight_path_angle_rad;
+  }
+}
+
+void DescribeApsides(Fields& fields, TrajectoryProblem& problem) {
   if (!problem.target_apogee_m) problem.target_apogee_m.emplace();
   double& apogee_m = *problem.target_apogee_m;
   fields.Quantity("perigee_altitude", kLength, kPositive, problem.target_altitude_m,
                   "of an ellipse; above the equator's radius");
   fields.Quantity("apogee_altitude", kLength, kPositive, apogee_m, "apogee of the same ellipse");
-  fields.Choice<bool>("entered_at", {{"perigee", false}, {"anywhere", true}}, problem.is_entered_anywhere,
-                      "true anomaly of the injection: 0, or any", false);
-  if (problem.target_altitude_m > apogee_m)
+  if (problem.target_altitude_m > apogee_m) {
     fields.Refuse("", "the perigee is above the apogee", "perigee_altitude up to apogee_altitude");
-  else
-    problem.target_velocity_m_s = PerigeeSpeed(problem.target_altitude_m, apogee_m);
+    apogee_m = problem.target_altitude_m;
+  }
+  DescribeEntry(fields, problem);
+}
+
+void DescribeAxis(Fields& fields, TrajectoryProblem& problem) {
+  problem.is_given_by_axis = true;
+  const Earth earth = Wgs84();
+  double &axis_m = problem.target_semi_major_axis_m, &eccentricity = problem.target_eccentricity;
+  fields.Quantity("semi_major_axis", kLength, kPositive, axis_m, "of an ellipse, in place of its apsides");
+  fields.Number("eccentricity", {0.0, 1.0, false, true}, eccentricity, "of the same ellipse");
+  problem.target_altitude_m = axis_m * (1.0 - eccentricity) - earth.equatorial_radius_m;
+  problem.target_apogee_m = axis_m * (1.0 + eccentricity) - earth.equatorial_radius_m;
+  if (axis_m > 0.0 && !(problem.target_altitude_m > 0.0)) {
+    fields.Refuse("", "the perigee is below the equator's radius",
+                  "semi_major_axis times (1 - eccentricity) above 6378.137 km");
+    problem.target_altitude_m = 1.0;
+    problem.target_apogee_m = 1.0;
+  }
+  DescribeEntry(fields, problem);
 }
 
 void DescribeInjection(Fields& fields, TrajectoryProblem& problem) {
@@ -78,10 +117,13 @@ void DescribeInjection(Fields& fields, TrajectoryProblem& problem) {
 }
 
 void DescribeTarget(Fields& fields, TrajectoryProblem& problem) {
-  const auto ellipse = [&] { DescribeEllipse(fields, problem); };
-  fields.Either({{Has("perigee_altitude", kLength), ellipse, problem.target_apogee_m.has_value()},
-                 {Has("apogee_altitude", kLength), ellipse},
-                 {Else(), [&] { DescribeInjection(fields, problem); }}});
+  const auto apsides = [&] { DescribeApsides(fields, problem); };
+  fields.Either(
+      {{Has("perigee_altitude", kLength), apsides,
+        problem.target_apogee_m.has_value() && !problem.is_given_by_axis},
+       {Has("apogee_altitude", kLength), apsides},
+       {Has("semi_major_axis", kLength), [&] { DescribeAxis(fields, problem); }, problem.is_given_by_axis},
+       {Else(), [&] { DescribeInjection(fields, problem); }}});
   fields.OptionalQuantity("inclination", kAngle, Between(0.0, kPi), problem.target_inclination_rad,
                           "of the orbit");
   fields.OptionalQuantity("node", kAngle, Between(0.0, kTwoPi), problem.target_node_rad,
@@ -91,6 +133,14 @@ void DescribeTarget(Fields& fields, TrajectoryProblem& problem) {
   if (problem.target_argument_of_perigee_rad && !problem.target_apogee_m)
     fields.Refuse("", "an argument of perigee counts along an ellipse from its node",
                   "argument_of_perigee_deg beside perigee_altitude_km and apogee_altitude_km");
+  // A circle has no perigee, but a place on it has an angle from the node: the sum of both.
+  const bool is_circle = problem.target_apogee_m && *problem.target_apogee_m == problem.target_altitude_m;
+  const bool has_argument = problem.target_argument_of_perigee_rad.has_value();
+  if (is_circle &&
+      ((problem.target_true_anomaly_rad && !has_argument) || (has_argument && problem.is_entered_anywhere)))
+    fields.Refuse("", "a circle has no perigee from which an angle could count",
+                  "argument_of_perigee_deg and true_anomaly_deg, whose sum is the argument of latitude, or "
+                  "neither");
 }
 
 // The keys of a stage that steers. They are given together.
@@ -308,6 +358,11 @@ void Describe(Fields& fields, Reference& reference) {
              [&](Fields& program) { DescribeProgram(program, reference); });
   fields.Map("orbit", "reached, by the optimiser's own simulation",
              [&](Fields& orbit) { DescribeOrbit(orbit, reference.orbit); });
+  fields.Check([&] {
+    if (reference.problem.target_node_rad && reference.orbit.node_longitude_rad == 0.0)
+      fields.Refuse("orbit", "has no node_longitude_deg, but the problem's target names a node",
+                    "a reference that `dispersa optimize` wrote for this problem");
+  });
   fields.Map("errors", "of that orbit", [&](Fields& errors) { DescribeErrors(errors, reference); });
   fields.List("constraints", 0, SIZE_MAX, reference.constraints, "values and margins", DescribeConstraint);
   fields.Map("provenance", "of the search",

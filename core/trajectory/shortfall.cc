@@ -7,6 +7,7 @@
 #include <optional>
 
 #include "core/math/constants.h"
+#include "core/trajectory/aim.h"
 #include "core/trajectory/refine.h"
 
 namespace dispersa {
@@ -42,7 +43,7 @@ SpeedAtTarget SpeedToward(const AscentModel& model, const TrajectoryProblem& pro
   const AscentResult ascent = FlyAscent(model, program, AscentOptionsOf(problem, options.steps));
   const double mu = model.plant.environment.earth.mu_m3_s2;
   const double radius_m = ascent.p_EoC_I.norm();
-  const double target_radius_m = radius_m - ascent.orbit.altitude_m + problem.target_altitude_m;
+  const double target_radius_m = radius_m - ascent.orbit.altitude_m + AimedAltitude(problem);
   const double squared = ascent.v_IC_I.squaredNorm() + 2.0 * mu * (1.0 / target_radius_m - 1.0 / radius_m);
   speed.on_target = refined.status == LeastSquaresStatus::kConverged;
   speed.velocity_m_s = std::sqrt(std::fmax(squared, 0.0));

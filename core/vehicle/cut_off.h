@@ -6,9 +6,14 @@
 
 namespace dispersa {
 
-/// Whether a speed ends a motor's burn: then only a flight tells when.
+/// Whether a speed ends a motor's burn.
 inline bool EndsAtSpeed(const Motor& motor) {
   return motor.cut_off == CutOff::kAtVelocity || motor.cut_off == CutOff::kAtTarget;
+}
+
+/// Whether only a flight tells when a motor's burn ends, because of a speed or of guidance.
+inline bool EndsInFlight(const Motor& motor) {
+  return EndsAtSpeed(motor) || motor.cut_off == CutOff::kByGuidance;
 }
 
 /// The inertial speed (m/s) at which the engine is cut off, at a distance from the Earth's centre and a

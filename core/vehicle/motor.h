@@ -23,6 +23,7 @@ enum class CutOff {
   kAtTime,       ///< `cut_off_s` after ignition, or by depletion if that comes first
   kAtVelocity,   ///< at the inertial speed `cut_off_velocity_m_s`, or by depletion if that comes first
   kAtTarget,     ///< when the orbit has the energy of the trajectory's target, or by depletion
+  kByGuidance,   ///< in no file: kAtTime, of a burn whose duration closed-loop guidance computes in flight
 };
 
 /// The energy at which cut_off: {at: target} ends a burn. The file does not have it: it is the trajectory's.

@@ -323,9 +323,9 @@ int LastBurn(const Vehicle& vehicle, int stage) {
   return static_cast<int>(last);
 }
 
-bool CutsOffAtVelocity(const Vehicle& vehicle) {
+bool CutsOffInFlight(const Vehicle& vehicle) {
   return std::any_of(vehicle.stages.begin(), vehicle.stages.end(),
-                     [](const Stage& stage) { return EndsAtSpeed(stage.motor); });
+                     [](const Stage& stage) { return EndsInFlight(stage.motor); });
 }
 
 std::vector<StructProblem> Problems(const Vehicle& vehicle) {

@@ -263,8 +263,8 @@ void Describe(Fields& fields, Vehicle& vehicle);
 
 /// The last burn of the stage whose burn this is: itself unless the next one restarts it.
 int LastBurn(const Vehicle& vehicle, int stage);
-/// Whether some engine is cut off at a velocity: when it will is known only in flight.
-bool CutsOffAtVelocity(const Vehicle& vehicle);
+/// Whether some engine is cut off at a velocity or by guidance: when it will is known only in flight.
+bool CutsOffInFlight(const Vehicle& vehicle);
 
 /// Contradictions within a vehicle.
 std::vector<StructProblem> Problems(const Vehicle& vehicle);

@@ -451,6 +451,25 @@ TEST(GuidedCutOffLanes, AreTheFlightsAlone) {
   }
 }
 
+// Timers that guidance sets, three guided burns, a node and a place as targets, and a body that leaves at an
+// altitude.
+TEST(GuidedSequenceLanes, AreTheFlightsAlone) {
+  FlightDefinition vega = DefinitionOf(LoadCampaign(DISPERSA_CAMPAIGNS "/gallery/vega/campaign.yaml"));
+  vega.guidance.burns = 3;
+  vega.target.node_rad = 1.0;  // out of reach
+  for (const std::size_t stage : {3u, 4u}) {
+    vega.vehicle.stages[stage].motor.cut_off = CutOff::kAtTime;
+    vega.vehicle.stages[stage].motor.cut_off_s = vega.cut_off_s[stage];
+  }
+  ExpectTheFlightsAlone(FlightModel(vega), 4);
+  FlightDefinition electron =
+      DefinitionOf(LoadCampaign(DISPERSA_CAMPAIGNS "/gallery/electron/campaign.yaml"));
+  electron.vehicle.stages[1].jettisoned[0].trigger = JettisonTrigger::kAtAltitude;
+  electron.vehicle.stages[1].jettisoned[0].threshold = 110e3;
+  electron.target.orbit = TargetOrbit{6778137.0, 0.0295, 0.5, 0.01};
+  ExpectTheFlightsAlone(FlightModel(electron), 4);
+}
+
 INSTANTIATE_TEST_SUITE_P(Laws, FlightLanes,
                          testing::Values("adaptive_fuzzy", "frozen_fuzzy", "pd", "pid", "pd_aac", "pid_aac",
                                          "flexible", "guided_adaptive_fuzzy", "guided_pid_aac",

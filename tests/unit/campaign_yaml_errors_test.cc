@@ -593,7 +593,8 @@ TEST(GuidanceOfAVehicle, NeedsALastBurnThatItCanChange) {
       "campaign.yaml:3:18: guidance.mode: the last burn of 'two-stage' follows the one before at once and "
       "ends "
       "by itself: guidance can change neither its beginning nor its end, allowed: open_loop, or a last stage "
-      "with ignition: {trigger: timer} or with a liquid engine that has cut_off: {at: inertial_velocity}\n");
+      "with ignition: {trigger: timer} or with a liquid engine that has cut_off: {at: inertial_velocity}, "
+      "{at: target} or {at: time}\n");
 }
 
 // A metric of one law is required of its flights alone.

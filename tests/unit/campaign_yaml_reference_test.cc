@@ -187,6 +187,68 @@ TEST(CampaignYamlReference, AnEllipseIsEnteredAtItsPerigee) {
               std::sqrt(mu * (2.0 / (radius + 200e3) - 1.0 / (radius + 500e3))), 1e-6);
 }
 
+Reference WithTarget(const std::string& target) {
+  std::string text = ReadWholeFile(DISPERSA_TEST_DATA "/yaml/reference.yaml");
+  const std::string from = "target: {altitude_km: 500, velocity_m_s: 7612.6, flight_path_angle_deg: 0}";
+  text.replace(text.find(from), from.size(), "target: {" + target + "}");
+  const std::string weights = "flight_path_angle_per_deg: 10}";
+  if (target.find("argument") != std::string::npos)
+    text.replace(text.find(weights), weights.size(),
+                 "flight_path_angle_per_deg: 10, argument_of_perigee_per_deg: 1}");
+  return LoadReference({"reference.yaml", text});
+}
+
+// By the conic section: r = p / (1 + e cos v), v² = mu (2/r - 1/a), tan(angle) = e sin v / (1 + e cos v).
+TEST(CampaignYamlReference, AnEllipseIsGivenByItsAxisAndEnteredAtATrueAnomaly) {
+  const Reference read = WithTarget(
+      "semi_major_axis_km: 24400, eccentricity: 0.73, true_anomaly_deg: 20, "
+      "argument_of_perigee_deg: 178");
+  const double mu = 3.986004418e14, nu = 20.0 * kRadPerDeg, along = 1.0 + 0.73 * std::cos(nu);
+  const double radius_m = 24.4e6 * (1.0 - 0.73 * 0.73) / along;
+  EXPECT_NEAR(read.problem.target_altitude_m, 24.4e6 * 0.27 - 6378137.0, 1e-6);
+  EXPECT_NEAR(*read.problem.target_apogee_m, 24.4e6 * 1.73 - 6378137.0, 1e-6);
+  EXPECT_NEAR(read.problem.target_velocity_m_s, std::sqrt(mu * (2.0 / radius_m - 1.0 / 24.4e6)), 1e-8);
+  EXPECT_NEAR(read.problem.target_flight_path_angle_rad, std::atan2(0.73 * std::sin(nu), along), 1e-14);
+  EXPECT_EQ(read.problem.target_true_anomaly_rad, nu);
+  EXPECT_FALSE(read.problem.is_entered_anywhere);
+  const std::string text = WriteReference(read);
+  EXPECT_NE(text.find("semi_major_axis_km: 24400, eccentricity: 0.73, true_anomaly_deg: 20"),
+            std::string::npos)
+      << text;
+  EXPECT_EQ(text.find("apogee_altitude"), std::string::npos);
+  EXPECT_EQ(text.find("entered_at"), std::string::npos);
+  EXPECT_EQ(WriteReference(LoadReference({"reference.yaml", text})), text);
+}
+
+TEST(CampaignYamlReference, AnEllipseThatContradictsItselfIsRefused) {
+  const auto problem = [](const std::string& target) {
+    try {
+      WithTarget(target);
+    } catch (const std::exception& error) {
+      return std::string(error.what());
+    }
+    return std::string();
+  };
+  const auto has = [&](const std::string& target, const std::string& text) {
+    EXPECT_NE(problem(target).find(text), std::string::npos) << target << ": " << problem(target);
+  };
+  has("perigee_altitude_km: 200, apogee_altitude_km: 800, true_anomaly_deg: 5, entered_at: anywhere",
+      "problem.target.entered_at: 'entered_at' and 'true_anomaly' are both given, allowed: one of them");
+  has("semi_major_axis_km: 7000, eccentricity: 0.2",
+      "the perigee is below the equator's radius, allowed: semi_major_axis times (1 - eccentricity) above "
+      "6378.137 km");
+  has("semi_major_axis_km: 7000, eccentricity: 0, true_anomaly_deg: 5",
+      "a circle has no perigee from which an angle could count");
+  has("semi_major_axis_km: 7000, eccentricity: 1", "eccentricity");
+  has("semi_major_axis_km: 7000", "eccentricity");
+  has("semi_major_axis_km: 7000, eccentricity: 0, node_deg: 30",
+      "has no node_longitude_deg, but the problem's target names a node");
+  EXPECT_EQ(
+      problem("semi_major_axis_km: 7000, eccentricity: 0, true_anomaly_deg: 5, argument_of_perigee_deg: 30"),
+      "");
+  EXPECT_EQ(problem("perigee_altitude_km: 200, apogee_altitude_km: 800, true_anomaly_deg: -170"), "");
+}
+
 // 90 degrees at lift-off is exactly the constant that the loader makes of it.
 TEST(CampaignYamlReference, AnglesBecomeRadiansOnce) {
   const Reference reference = LoadReference(DISPERSA_TEST_DATA "/yaml/reference.yaml");

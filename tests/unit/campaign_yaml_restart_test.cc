@@ -184,8 +184,8 @@ TEST(GuidedRestart, NeedsALastBurnThatIsCutOff) {
   EXPECT_EQ(
       GuidanceProblems("vega", "vehicle.yaml", kAgain, ""),
       "campaign.yaml:7:18: guidance.mode: the last burn of 'vega' uses up what the burns before leave: its "
-      "energy is not known before they end, allowed: open_loop, or cut_off: {at: inertial_velocity} of "
-      "the last burn\n");
+      "energy is not known before they end, allowed: open_loop, or cut_off: {at: inertial_velocity}, "
+      "{at: target} or {at: time} of the last burn\n");
   EXPECT_EQ(GuidanceProblems("vega", "campaign.yaml", "mode: closed_loop",
                              "mode: closed_loop, last_burn: as_planned"),
             "");
@@ -203,7 +203,7 @@ TEST(GuidedCutOff, IsPlannedInTheBurnItselfIfNoCoastPrecedesIt) {
       "campaign.yaml:7:18: guidance.mode: the last burn of 'electron' follows the one before at once and "
       "ends by itself: guidance can change neither its beginning nor its end, allowed: open_loop, or a "
       "last stage with ignition: {trigger: timer} or with a liquid engine that has cut_off: {at: "
-      "inertial_velocity}\n");
+      "inertial_velocity}, {at: target} or {at: time}\n");
 }
 
 }  // namespace

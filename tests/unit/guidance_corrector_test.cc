@@ -240,22 +240,22 @@ TEST(OrbitMiss, WantsTheBestShapeOfTheEnergyThereIs) {
   EXPECT_NEAR(ellipse.shape_m_s, 0.0, 0.1) << "of -20 if the shape of the target were wanted";
 }
 
-template <int count>
+template <int count, int misses>
 void ExpectLeastWithinBounds() {
   for (std::uint64_t draw = 0; draw < 200; ++draw) {
     Stream random(17, draw, "models");
-    StepModel<count> model;
+    StepModel<count, misses> model;
     Unknowns<count> weight = Unknowns<count>::Ones();
     for (int i = 0; i < count; ++i) {
       const auto k = static_cast<std::size_t>(i);
       model.free[k] = i != static_cast<int>(draw % 9);
-      for (int m = 0; m < kMisses; ++m) model.jacobian(m, i) = 30.0 * random.Normal();
+      for (int m = 0; m < misses; ++m) model.jacobian(m, i) = 30.0 * random.Normal();
       model.departure(i) = random.Normal();
       model.low(i) = -0.5 * std::fabs(random.Normal());
       model.high(i) = 0.5 * std::fabs(random.Normal());
       weight(i) = 1.0 + std::fabs(random.Normal());
     }
-    for (int m = 0; m < kMisses; ++m) model.miss(m) = 100.0 * random.Normal();
+    for (int m = 0; m < misses; ++m) model.miss(m) = 100.0 * random.Normal();
     const auto value = [&](const Unknowns<count>& s) {
       return model.At(s) + s.cwiseProduct(weight - Unknowns<count>::Ones()).dot(s);
     };
@@ -278,8 +278,9 @@ void ExpectLeastWithinBounds() {
 }
 
 TEST(BoundedStep, IsTheLeastWithinItsBounds) {
-  ExpectLeastWithinBounds<kUncutUnknowns>();
-  ExpectLeastWithinBounds<kPlanUnknowns>();
+  ExpectLeastWithinBounds<kUncutUnknowns, kMisses>();
+  ExpectLeastWithinBounds<kTwoBurnUnknowns, kMisses>();
+  ExpectLeastWithinBounds<kPlanUnknowns, kAllMisses>();
 }
 
 TEST(MotorEstimate, FindsThrustAndFlowOfAMotorByItsAcceleration) {

@@ -206,12 +206,15 @@ TEST(ClosedLoopGuidance, MeetsEnergyByTheCutOff) {
   EXPECT_GT(guidance.plan().value[kCutOff], 350.0 - 3.0);
 
   const double end_s = kIgnition_s + guidance.plan().value[kCutOff], speed_m_s = mission.target.velocity_m_s;
-  EXPECT_NEAR(guidance.CutOffIn(end_s - 10.0, speed_m_s, 20.0, 20.0), 10.0, 1e-6)
+  EXPECT_NEAR(guidance.CutOffIn(end_s - 10.0, kIgnition_s, speed_m_s, 20.0, 20.0), 10.0, 1e-6)
       << "too far off for its speed";
-  EXPECT_NEAR(guidance.CutOffIn(end_s - 1.0, speed_m_s - 4.0, 20.0, 20.0), 0.2, 1e-3);
-  EXPECT_NEAR(guidance.CutOffIn(end_s - 1.0, speed_m_s + 4.0, -20.0, 20.0), 0.2, 1e-3) << "speed falls";
-  EXPECT_NEAR(guidance.CutOffIn(end_s - 1.0, speed_m_s - 4.0, 2.0, 20.0), 1.0, 1e-6) << "thrust across";
-  EXPECT_GT(guidance.CutOffIn(end_s + 2.0, speed_m_s - 4.0, 2.1e1, 20.0), 0.1) << "a weak engine burns on";
+  EXPECT_NEAR(guidance.CutOffIn(end_s - 1.0, kIgnition_s, speed_m_s - 4.0, 20.0, 20.0), 0.2, 1e-3);
+  EXPECT_NEAR(guidance.CutOffIn(end_s - 1.0, kIgnition_s, speed_m_s + 4.0, -20.0, 20.0), 0.2, 1e-3)
+      << "speed falls";
+  EXPECT_NEAR(guidance.CutOffIn(end_s - 1.0, kIgnition_s, speed_m_s - 4.0, 2.0, 20.0), 1.0, 1e-6)
+      << "thrust across";
+  EXPECT_GT(guidance.CutOffIn(end_s + 2.0, kIgnition_s, speed_m_s - 4.0, 2.1e1, 20.0), 0.1)
+      << "a weak engine burns on";
 }
 
 // Out of reach: it burns until the propellant ends, or the energy is there after all.
@@ -224,7 +227,7 @@ TEST(ClosedLoopGuidance, DoesNotCutOffAnEngineThatLacksEnergy) {
   EXPECT_FALSE(guidance.outcome().arrives);
   EXPECT_NEAR(guidance.plan().value[kCutOff], mission.last.Depletes(), 0.5);
   const double end_s = kIgnition_s + mission.last.Depletes();
-  EXPECT_GT(guidance.CutOffIn(end_s, mission.target.velocity_m_s - 1900.0, 20.0, 20.0), 50.0);
+  EXPECT_GT(guidance.CutOffIn(end_s, kIgnition_s, mission.target.velocity_m_s - 1900.0, 20.0, 20.0), 50.0);
 }
 
 // Navigation that is no number gives no plan: the reference's attitude is flown, and the engine's own cut-off

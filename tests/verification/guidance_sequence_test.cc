@@ -1,0 +1,186 @@
+// Guidance over more than two burns, and bodies that leave at an altitude: its prediction against the
+// engine's flight, and where its flights end.
+#include <gtest/gtest.h>
+
+#include <cmath>
+#include <string>
+
+#include "core/campaign/flight_definition.h"
+#include "core/campaign_yaml/load.h"
+#include "core/cases/campaign_flights.h"
+#include "core/flight/tick_sample.h"
+#include "core/guidance/predictor.h"
+#include "tests/slv4_flight.h"
+
+namespace dispersa::guidance_sequence_test {
+namespace {
+
+Campaign Shipped(const std::string& launcher) {
+  return LoadCampaign(DISPERSA_CAMPAIGNS "/gallery/" + launcher + "/campaign.yaml");
+}
+
+// A burn of an open-loop flight: its first sample after `since_s`, and how long it lasts.
+struct Burn {
+  NavigatedState state;
+  double ignition_s = 0.0, end_s = 0.0, expelled_kg = 0.0, altitude_m = 0.0;
+  bool seen = false;
+};
+void Watch(const TickSample& sample, int stack, double since_s, Burn& burn) {
+  if (sample.stack != stack || !sample.burning) return;
+  burn.end_s = sample.time_s;
+  if (burn.seen || sample.since_ignition_s < since_s) return;
+  burn.seen = true;
+  burn.ignition_s = sample.time_s - sample.since_ignition_s;
+  burn.state = {sample.time_s, sample.state.p_EoC_I, sample.state.v_IC_I};
+  burn.expelled_kg = sample.expelled_mass_kg;
+}
+
+// Electron's fairing leaves at an altitude. A weak first stage comes there later than the reference.
+TEST(AltitudeDrop, IsPredictedWhereTheFlightComesToIt) {
+  FlightDefinition definition = DefinitionOf(Shipped("electron"));
+  Jettison& fairing = definition.vehicle.stages[1].jettisoned.front();
+  FlightOptions options;
+  double at_m = 0.0;
+  definition.guidance.closed_loop = false;
+  options.observe = [&](const TickSample& sample) {
+    if (sample.time_s <= fairing.threshold) at_m = sample.instant.air.altitude_m;
+  };
+  Fly(FlightModel(definition), {}, options);
+  fairing.trigger = JettisonTrigger::kAtAltitude;
+  fairing.threshold = at_m;
+  FlightInputs inputs;
+  inputs.thrust_factor[0] = 0.97;
+  Burn burn;
+  double left_s = 0.0;
+  options.observe = [&](const TickSample& sample) {
+    Watch(sample, 1, 10.0, burn);
+    if (left_s == 0.0 && (sample.jettisoned & 1u) != 0u) left_s = sample.time_s;
+  };
+  const FlightResult flown = Fly(FlightModel(definition), inputs, options);
+  ASSERT_EQ(flown.outcome, Outcome::kCompleted);
+  ASSERT_TRUE(burn.seen);
+  EXPECT_GT(left_s, definition.jettison_s[0] + 3.0);
+  ASSERT_LT(burn.state.time_s, definition.jettison_s[0]);
+
+  definition.guidance.closed_loop = true;
+  const FlightModel closed(definition);
+  const GuidanceMission& mission = *closed.guidance_mission();
+  const PlanPrior prior = BuildPrior(mission);
+  Knowledge known;
+  known.phase = GuidancePhase::kLastBurns;
+  known.burn_ignition_s = burn.ignition_s;
+  known.last = mission.last;
+  known.last.ignition_mass_kg -= burn.expelled_kg;
+  Plan plan = prior.nominal;
+  plan.value[kCutOff] = flown.end_time_s - burn.ignition_s;
+  const Injection predicted = Predict(mission, prior, known, burn.state, plan);
+  Knowledge by_time = known;
+  for (MassDrop& drop : by_time.last.drops)
+    if (drop.waits()) drop.time_s = definition.jettison_s[0];
+  const Injection wrong = Predict(mission, prior, by_time, burn.state, plan);
+  const double flown_m_s = MetricOf(flown, "injection_velocity_m_s");
+  std::printf(
+      "the fairing leaves %.2f s after the reference's; predicted less flown: %.4f m/s, %.2f m; with "
+      "the reference's time %.4f m/s\n",
+      left_s - definition.jettison_s[0], predicted.at.velocity_m_s - flown_m_s,
+      predicted.at.altitude_m - 1e3 * MetricOf(flown, "injection_altitude_km"),
+      wrong.at.velocity_m_s - flown_m_s);
+  EXPECT_NEAR(predicted.at.velocity_m_s, flown_m_s, 0.15);
+  EXPECT_GT(std::fabs(wrong.at.velocity_m_s - flown_m_s), 1.0);
+  // The end is a smooth function of the plan: its second difference is that of a curve, not of a jump.
+  const auto speed_at = [&](double pitch_rad) {
+    Plan turned = plan;
+    turned.value[kPitchMiddle] = pitch_rad;
+    return Predict(mission, prior, known, burn.state, turned).at.velocity_m_s;
+  };
+  const double step = 1e-3 * kRadPerDeg * 5.0;
+  const double slope_low = (speed_at(0.0) - speed_at(-step)) / step,
+               slope_high = (speed_at(step) - speed_at(0.0)) / step;
+  EXPECT_NEAR(slope_low, slope_high, 1e-2 * std::fmax(std::fabs(slope_low), 100.0));
+
+  const FlightResult guided = Fly(closed, inputs);
+  EXPECT_EQ(MetricOf(guided, "guidance_converged"), 1.0);
+  EXPECT_LT(std::fabs(MetricOf(guided, "semi_major_axis_error_km")), 1e-3);
+}
+
+// Vega from its third burn on: through that, a coast, the fourth, a long coast and the fifth.
+TEST(ThreeBurns, ArePredictedAsTheEngineFliesThem) {
+  FlightDefinition definition = DefinitionOf(Shipped("vega"));
+  definition.guidance.burns = 3;
+  const FlightModel closed(definition);
+  definition.guidance.closed_loop = false;
+  Burn third, fourth, fifth;
+  FlightOptions options;
+  options.observe = [&](const TickSample& sample) {
+    Watch(sample, 2, 30.0, third);
+    Watch(sample, 3, 0.0, fourth);
+    Watch(sample, 4, 0.0, fifth);
+  };
+  const FlightResult flown = Fly(FlightModel(definition), {}, options);
+  const GuidanceMission& mission = *closed.guidance_mission();
+  ASSERT_EQ(mission.earlier.size(), 1u);
+  PlanPrior prior = BuildPrior(mission);
+  SetEarlier(mission.earlier[0].stage, prior);
+  Knowledge known;
+  known.phase = GuidancePhase::kEarlierBurns;
+  known.burn_ignition_s = third.ignition_s;
+  known.below = mission.earlier[0].stage;
+  known.expelled_kg = third.expelled_kg;
+  known.last = mission.last;
+  Plan plan = prior.nominal;
+  plan.value[kBelowCutOff] = fourth.end_s + 0.5 * definition.autopilot.tick_s - fourth.ignition_s;
+  plan.value[kIgnition] = fifth.ignition_s;
+  plan.value[kCutOff] = flown.end_time_s - fifth.ignition_s;
+  const Injection predicted = Predict(mission, prior, known, third.state, plan);
+  const double altitude_m = predicted.at.altitude_m - 1e3 * MetricOf(flown, "injection_altitude_km"),
+               velocity_m_s = predicted.at.velocity_m_s - MetricOf(flown, "injection_velocity_m_s");
+  std::printf("%.0f s ahead, predicted less flown: %.1f m, %.4f m/s, %.6f deg of inclination\n",
+              flown.end_time_s - third.state.time_s, altitude_m, velocity_m_s,
+              predicted.at.inclination_rad / kRadPerDeg - MetricOf(flown, "inclination_deg"));
+  EXPECT_NEAR(altitude_m, 0.0, 1000.0);
+  EXPECT_NEAR(velocity_m_s, 0.0, 1.0);
+  EXPECT_NEAR(predicted.at.inclination_rad / kRadPerDeg, MetricOf(flown, "inclination_deg"), 0.005);
+}
+
+class MoreBurns : public testing::TestWithParam<int> {};
+
+// Whatever a stage lacks, with two burns guided or three: no worse than open loop, and not worse with three.
+TEST_P(MoreBurns, AreNoWorseThanOpenLoop) {
+  FlightDefinition definition = DefinitionOf(Shipped("vega"));
+  const FlightModel two(definition);
+  definition.guidance.burns = GetParam();
+  const FlightModel more(definition);
+  definition.guidance.closed_loop = false;
+  const FlightModel open_loop(definition);
+  for (std::size_t stage = 0; stage < definition.vehicle.stages.size(); ++stage) {
+    for (const double percent : {-6.0, -3.0, 3.0}) {
+      FlightInputs inputs;
+      inputs.specific_impulse_factor[stage] = 1.0 + 0.01 * percent;
+      const FlightResult open = Fly(open_loop, inputs), with_two = Fly(two, inputs),
+                         flown = Fly(more, inputs);
+      if (open.outcome != Outcome::kCompleted) continue;
+      SCOPED_TRACE("stage " + std::to_string(stage + 1) + ", " + std::to_string(percent) + " %");
+      ASSERT_EQ(flown.outcome, Outcome::kCompleted) << flown.reason;
+      const auto axis_km = [](const FlightResult& flight) {
+        return MetricOf(flight, "semi_major_axis_error_km");
+      };
+      std::printf(
+          "stage %d %+4.1f %%: axis %9.3f km open loop, %9.4f two burns (%g), %9.4f %d burns (%g); "
+          "perigee %8.1f, %8.1f, %8.1f km; inclination %7.4f, %7.4f deg\n",
+          static_cast<int>(stage + 1), percent, axis_km(open), axis_km(with_two),
+          MetricOf(with_two, "guidance_converged"), axis_km(flown), GetParam(),
+          MetricOf(flown, "guidance_converged"), MetricOf(open, "perigee_km"),
+          MetricOf(with_two, "perigee_km"), MetricOf(flown, "perigee_km"),
+          MetricOf(with_two, "inclination_error_deg"), MetricOf(flown, "inclination_error_deg"));
+      EXPECT_GE(axis_km(flown), std::fmin(axis_km(open), 0.0) - 5.0);
+      EXPECT_LE(axis_km(flown), std::fmax(axis_km(open), 0.0) + 5.0);
+      EXPECT_GE(MetricOf(flown, "guidance_converged"), MetricOf(with_two, "guidance_converged"));
+    }
+  }
+}
+
+INSTANTIATE_TEST_SUITE_P(Vega, MoreBurns, testing::Values(3),
+                         [](const auto& burns) { return std::to_string(burns.param); });
+
+}  // namespace
+}  // namespace dispersa::guidance_sequence_test
