@@ -206,5 +206,35 @@ TEST(GuidedCutOff, IsPlannedInTheBurnItselfIfNoCoastPrecedesIt) {
       "inertial_velocity}, {at: target} or {at: time}\n");
 }
 
+TEST(GuidedBurns, AreThoseAfterTheFirst) {
+  EXPECT_EQ(GuidanceProblems("vega", "campaign.yaml", "mode: closed_loop", "mode: closed_loop, burns: 4"),
+            "");
+  EXPECT_EQ(
+      GuidanceProblems("vega", "campaign.yaml", "mode: closed_loop", "mode: closed_loop, burns: 5"),
+      "campaign.yaml:7:42: guidance.burns: 'vega' has 5 burns, and the first of them begins in the air, "
+      "allowed: up to 4\n");
+  // With timers guidance has what it needs.
+  EXPECT_EQ(GuidanceProblems("vega", "vehicle.yaml", kAgain, "    cut_off: {at: time, after_s: 100}\n"), "");
+}
+
+// A place along the orbit needs a coast, or a burn before, that guidance can change.
+TEST(GuidedPlace, IsOutOfReachOfASingleBurn) {
+  const std::string said = "with a true anomaly (at the perigee: 0) it is a place along the orbit";
+  for (const bool is_anywhere : {false, true}) {
+    const InputFiles files;
+    for (const char* name : {"vehicle.yaml", "reference.yaml", "autopilot.yaml", "campaign.yaml"})
+      files.Write(name, ReadWholeFile(DISPERSA_CAMPAIGNS "/gallery/electron/" + std::string(name)));
+    files.Edit("reference.yaml", "apogee_altitude_km: 600}",
+               std::string("apogee_altitude_km: 600, argument_of_perigee_deg: 180") +
+                   (is_anywhere ? ", entered_at: anywhere}" : "}"));
+    files.Edit("reference.yaml", "flight_path_angle_per_deg: 10}",
+               "flight_path_angle_per_deg: 10, argument_of_perigee_per_deg: 1}");
+    const FileCheck checked = CheckFile(files.Path("campaign.yaml"));
+    ASSERT_EQ(files.Texts(checked.errors), "");
+    EXPECT_EQ(files.Texts(checked.warnings).find(said) == std::string::npos, is_anywhere)
+        << files.Texts(checked.warnings);
+  }
+}
+
 }  // namespace
 }  // namespace dispersa::campaign_yaml_restart_test

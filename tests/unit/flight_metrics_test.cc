@@ -336,7 +336,11 @@ TEST(MetricsRecorder, EveryMetricOfAMadeUpFlight) {
       {"rail_exit_time_s", nan},
       {"rail_exit_speed_m_s", nan},
       {"roll_rate_peak_deg_s", nan},
-      {"static_margin_min", nan}};
+      {"static_margin_min", nan},
+      // Of targets that name them.
+      {"node_error_deg", nan},
+      {"argument_of_perigee_error_deg", nan},
+      {"true_anomaly_error_deg", nan}};
 
   const std::vector<double> values = flight.recorder.Finish();
   ASSERT_EQ(values.size(), MetricCount(kUsualStages));

@@ -166,11 +166,12 @@ class GuidedToANode : public testing::TestWithParam<const char*> {};
 TEST_P(GuidedToANode, TurnsThePlane) {
   Launched launched(GetParam());
   FlightDefinition& definition = launched.definition;
-  const double wanted_rad = launched.nominal.ascending_node_rad + 0.15 * kDeg;
+  const double wanted_rad = launched.nominal.ascending_node_rad + 0.06 * kDeg;
   definition.target.node_rad = wanted_rad;
   const FlightModel model(definition);
   definition.target.node_rad.reset();
   const FlightModel without(definition);
+  double farthest_deg = 0.0;
   for (std::uint64_t index = 0; index < 3; ++index) {
     SCOPED_TRACE(index);
     const FlightInputs inputs = launched.Drawn(index);
@@ -186,8 +187,10 @@ TEST_P(GuidedToANode, TurnsThePlane) {
     EXPECT_TRUE(std::isnan(MetricOf(free, "node_error_deg")));
     EXPECT_NEAR(MetricOf(flight, "inclination_error_deg"), 0.0, 0.01);
     EXPECT_EQ(MetricOf(flight, "guidance_converged"), 1.0);
-    EXPECT_GT(std::fabs(Apart_deg(Launched::OrbitOf(free).ascending_node_rad, wanted_rad)), 0.05);
+    farthest_deg =
+        std::fmax(farthest_deg, std::fabs(Apart_deg(Launched::OrbitOf(free).ascending_node_rad, wanted_rad)));
   }
+  EXPECT_GT(farthest_deg, 0.05);
 }
 
 INSTANTIATE_TEST_SUITE_P(Gallery, GuidedToANode, testing::Values("electron", "vega", "falcon9"),

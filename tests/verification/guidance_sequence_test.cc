@@ -7,7 +7,7 @@
 
 #include "core/campaign/flight_definition.h"
 #include "core/campaign_yaml/load.h"
-#include "core/cases/campaign_flights.h"
+#include "core/environment/earth.h"
 #include "core/flight/tick_sample.h"
 #include "core/guidance/predictor.h"
 #include "tests/slv4_flight.h"
@@ -22,7 +22,7 @@ Campaign Shipped(const std::string& launcher) {
 // A burn of an open-loop flight: its first sample after `since_s`, and how long it lasts.
 struct Burn {
   NavigatedState state;
-  double ignition_s = 0.0, end_s = 0.0, expelled_kg = 0.0, altitude_m = 0.0;
+  double ignition_s = 0.0, end_s = 0.0, expelled_kg = 0.0;
   bool seen = false;
 };
 void Watch(const TickSample& sample, int stack, double since_s, Burn& burn) {
@@ -43,7 +43,8 @@ TEST(AltitudeDrop, IsPredictedWhereTheFlightComesToIt) {
   double at_m = 0.0;
   definition.guidance.closed_loop = false;
   options.observe = [&](const TickSample& sample) {
-    if (sample.time_s <= fairing.threshold) at_m = sample.instant.air.altitude_m;
+    if (sample.time_s <= fairing.threshold)
+      at_m = ToGeodetic(Wgs84(), InertialToEarth(Wgs84(), sample.time_s, sample.state.p_EoC_I)).altitude_m;
   };
   Fly(FlightModel(definition), {}, options);
   fairing.trigger = JettisonTrigger::kAtAltitude;
@@ -125,6 +126,7 @@ TEST(ThreeBurns, ArePredictedAsTheEngineFliesThem) {
   known.phase = GuidancePhase::kEarlierBurns;
   known.burn_ignition_s = third.ignition_s;
   known.below = mission.earlier[0].stage;
+  known.below.ignition_mass_kg -= third.expelled_kg;
   known.expelled_kg = third.expelled_kg;
   known.last = mission.last;
   Plan plan = prior.nominal;
@@ -137,9 +139,10 @@ TEST(ThreeBurns, ArePredictedAsTheEngineFliesThem) {
   std::printf("%.0f s ahead, predicted less flown: %.1f m, %.4f m/s, %.6f deg of inclination\n",
               flown.end_time_s - third.state.time_s, altitude_m, velocity_m_s,
               predicted.at.inclination_rad / kRadPerDeg - MetricOf(flown, "inclination_deg"));
-  EXPECT_NEAR(altitude_m, 0.0, 1000.0);
-  EXPECT_NEAR(velocity_m_s, 0.0, 1.0);
-  EXPECT_NEAR(predicted.at.inclination_rad / kRadPerDeg, MetricOf(flown, "inclination_deg"), 0.005);
+  // Measured: 3 m, 0.07 m/s.
+  EXPECT_NEAR(altitude_m, 0.0, 50.0);
+  EXPECT_NEAR(velocity_m_s, 0.0, 0.3);
+  EXPECT_NEAR(predicted.at.inclination_rad / kRadPerDeg, MetricOf(flown, "inclination_deg"), 0.001);
 }
 
 class MoreBurns : public testing::TestWithParam<int> {};
