@@ -53,6 +53,7 @@ enum class MetricNeeds {
   kArgumentOfPerigee,
   kTrueAnomaly,
 };
+inline bool IsOfTarget(MetricNeeds needs) { return needs >= MetricNeeds::kNode; }
 /// What decides which metrics the flights of a campaign have.
 struct FlightKind {
   FlightKind(ControlLaw law) : pitch_law(law) {}

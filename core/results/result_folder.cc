@@ -69,15 +69,17 @@ bool HasTable(Database& database, const std::string& name) {
   return select.Step();
 }
 
-/// A law's own metrics are there if it was flown; of all others a folder must have a column.
+/// A law's own metrics are there if it was flown, those of a target's angles if it names them. Of all others
+/// a folder must have a column.
 Positions StoredMetrics(Database& database, const MetricList& list) {
   std::set<std::string> columns;
   Statement names = database.Prepare("SELECT name FROM pragma_table_info('cases')");
   while (names.Step()) columns.insert(names.Text(0));
   Positions metrics;
   for (std::size_t i = 0; i < list.size(); ++i) {
-    const bool is_of_law = i < MetricCount(list.stages()) && Metrics()[i].of_law != nullptr;
-    if (!is_of_law || columns.count("metric_" + list.NameAt(i)) > 0) metrics.push_back(i);
+    const bool is_of_some =
+        i < MetricCount(list.stages()) && (Metrics()[i].of_law != nullptr || IsOfTarget(Metrics()[i].needs));
+    if (!is_of_some || columns.count("metric_" + list.NameAt(i)) > 0) metrics.push_back(i);
   }
   return metrics;
 }

@@ -461,13 +461,13 @@ TEST(GuidedSequenceLanes, AreTheFlightsAlone) {
     vega.vehicle.stages[stage].motor.cut_off = CutOff::kAtTime;
     vega.vehicle.stages[stage].motor.cut_off_s = vega.cut_off_s[stage];
   }
-  ExpectTheFlightsAlone(FlightModel(vega), 4);
+  ExpectTheFlightsAlone(FlightModel(vega), 3);
   FlightDefinition electron =
       DefinitionOf(LoadCampaign(DISPERSA_CAMPAIGNS "/gallery/electron/campaign.yaml"));
   electron.vehicle.stages[1].jettisoned[0].trigger = JettisonTrigger::kAtAltitude;
   electron.vehicle.stages[1].jettisoned[0].threshold = 110e3;
   electron.target.orbit = TargetOrbit{6778137.0, 0.0295, 0.5, 0.01};
-  ExpectTheFlightsAlone(FlightModel(electron), 4);
+  ExpectTheFlightsAlone(FlightModel(electron), 2);
 }
 
 INSTANTIATE_TEST_SUITE_P(Laws, FlightLanes,
