@@ -28,6 +28,7 @@ std::vector<std::size_t> AllMetrics(ControlLaw law = ControlLaw::kAdaptiveFuzzy)
   FlightKind kind(law);
   kind.has_free_stage = kind.has_rail = true;
   kind.ends = FlightEnd::kImpact;
+  kind.has_node = kind.has_argument_of_perigee = kind.has_true_anomaly = true;
   return MetricsUnder(kUsualStages, kind);
 }
 CsvColumns AllColumns() {
@@ -75,6 +76,15 @@ TEST(CasesCsv, HasTheMetricsOfItsLawAlone) {
   EXPECT_THAT(csv, Not(HasSubstr("rules_fired")));
   EXPECT_THAT(csv, Not(HasSubstr("adaptation")));
   EXPECT_THAT(csv, HasSubstr(",metric_semi_major_axis_error_km,"));
+  EXPECT_THAT(csv, HasSubstr(",metric_node_error_deg,metric_argument_of_perigee_error_deg,"));
+  // Nothing of angles that the target does not name.
+  campaign.reference.problem = {};
+  ResultFolder plain = ResultFolder::Create(temporary / "plain", campaign);
+  plain.Append({{MakeCase(0)}});
+  WriteCasesCsv(plain, StoredColumns(plain), temporary / "plain" / "cases.csv");
+  EXPECT_THAT(ReadText(temporary / "plain" / "cases.csv"), Not(HasSubstr("node_error")));
+  EXPECT_TRUE(
+      std::isnan(ResultFolder::Open(temporary / "plain").Load(0).metrics[MetricColumn("node_error_deg")]));
   // What a folder stores it reads again: of other laws' metrics nothing.
   const std::vector<double> stored = ResultFolder::Open(temporary / "out").Load(0).metrics;
   for (std::size_t i = 0; i < stored.size(); ++i)
