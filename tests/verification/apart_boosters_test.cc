@@ -319,7 +319,7 @@ TEST(ApartBoosters, EffectivenessFollowsTheirTailOffToItsEnd) {
     ASSERT_TRUE(Problems(definition.vehicle).empty());
     const FlightModel model(definition);
     FlightResult result;
-    const auto ticks = Ticks(model.definition(), {}, &result);
+    const auto ticks = TicksOf(model.definition(), {}, &result);
     ASSERT_EQ(result.outcome, Outcome::kCompleted) << result.reason;
     int seen = 0;
     for (const TickSample& s : ticks) {
