@@ -316,7 +316,10 @@ TEST_F(RemoteCampaign, HasAllItsCasesAlsoWhileSomebodyReadsThem) {
   ASSERT_GT(fs::file_size(results / "results.sqlite-wal"), 0u);
   const FetchedCampaign first = FetchCampaign(session_, campaign.id, (folder_ / "first").string());
   EXPECT_THAT(ResultFolder::Open(first.directory).PresentCases(), ElementsAre(0, 1, 3));
-  EXPECT_EQ(ResultFolder::Open(first.directory).Load(3).metrics, MadeUpWorkforce::ResultOf(3).metrics);
+  const CaseResult row = ResultFolder::Open(first.directory).Load(3), returned = MadeUpWorkforce::ResultOf(3);
+  EXPECT_EQ(row.inputs, returned.inputs);
+  for (const std::size_t metric : MeasuredMetrics(campaign))
+    EXPECT_EQ(row.metrics[metric], returned.metrics[metric]) << metric;
 
   // The copy for the first client is not used when there are more results.
   service_->Relaunch(campaign.id, 0);

@@ -19,6 +19,7 @@
 #include "core/flight/metrics.h"
 #include "core/results/fingerprint.h"
 #include "core/results/result_folder.h"
+#include "tests/every_metric.h"
 #include "tests/fuzz.h"
 
 namespace dispersa::hostile_files_test {
@@ -184,7 +185,7 @@ TEST_F(HostileFiles, NoWrongNumberComesOutOfADamagedDatabase) {
   campaign.flight_id = std::string(64, '2');
   campaign.canonical_yaml = "name: made up\n";
   campaign.sampling.cases = 8;
-  campaign.autopilot.pitch.law = ControlLaw::kAdaptiveFuzzy;  // it has every metric
+  MeasureEverything(campaign);
   std::map<std::uint64_t, Digest> stored;
   {
     ResultFolder folder = ResultFolder::Create(root_ / "out", campaign);

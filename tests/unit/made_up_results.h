@@ -20,6 +20,7 @@
 #include "core/flight/flight_inputs.h"
 #include "core/flight/history.h"
 #include "core/flight/metrics.h"
+#include "tests/every_metric.h"
 
 namespace dispersa::report_test {
 
@@ -58,11 +59,8 @@ inline Campaign MakeCampaign(std::uint64_t cases) {
   campaign.sampling = {SamplingMethod::kMonteCarlo, cases, 7};
   campaign.vehicle.name = "vehicle";
   campaign.reference.name = "reference";
-  TrajectoryProblem& problem = campaign.reference.problem;
-  problem.target_apogee_m = 600e3;
-  problem.target_node_rad = problem.target_argument_of_perigee_rad = problem.target_true_anomaly_rad = 0.1;
   campaign.autopilot.name = "autopilot";
-  campaign.autopilot.pitch.law = ControlLaw::kAdaptiveFuzzy;  // it has every metric
+  MeasureEverything(campaign);
   campaign.canonical_yaml = "name: made_up\n";
   campaign.id = std::string(64, '1');
   campaign.flight_id = std::string(64, '2');

@@ -405,7 +405,8 @@ TEST(MassTables, MeetTheTubesAtTheirRows) {
 
 // The flow's terms are the derivatives of the masses: d(transverse inertia)/dm about the moving centre.
 TEST(MassTables, GiveTheFlowItsDerivatives) {
-  for (const StackMass& mass : BuildStackMasses(Tabulated(6).vehicle))
+  const FlightDefinition definition = Tabulated(6);  // stacks point to its tables
+  for (const StackMass& mass : BuildStackMasses(definition.vehicle))
     for (const double part : {0.11, 0.33, 0.52, 0.77, 0.93}) {
       const double m = part * mass.propellant_mass_kg, h = 1e-3 * mass.propellant_mass_kg;
       const MassProperties at = mass.At(m), above = mass.At(m + h), below = mass.At(m - h);
