@@ -25,6 +25,21 @@ FlightKind KindOf(const Campaign& campaign) {
   return kind;
 }
 
+// All that a law's flights may have: those of other needs are empty.
+FlightKind AnyUnder(ControlLaw law) {
+  FlightKind any(law);
+  any.has_free_stage = any.has_rail = true;
+  any.ends = FlightEnd::kImpact;
+  return any;
+}
+
+std::vector<std::size_t> MetricsOfKind(const Campaign& campaign, const FlightKind& kind) {
+  const std::size_t stages = ColumnClass(campaign.vehicle);
+  std::vector<std::size_t> positions = MetricsUnder(stages, kind);
+  for (std::size_t i = 0; i < campaign.own_metrics.size(); ++i) positions.push_back(MetricCount(stages) + i);
+  return positions;
+}
+
 }  // namespace
 
 MetricList MetricsOf(const Campaign& campaign) {
@@ -34,16 +49,15 @@ MetricList MetricsOf(const Campaign& campaign) {
 }
 
 std::vector<std::size_t> MeasuredMetrics(const Campaign& campaign) {
-  const std::size_t stages = ColumnClass(campaign.vehicle);
-  // Columns of all that a law's flights may have: those of other needs are empty. Those of a target's angles
-  // are there only if it names them.
-  FlightKind any(campaign.autopilot.pitch.law);
-  SetTarget(campaign.reference.problem, any);
-  any.has_free_stage = any.has_rail = true;
-  any.ends = FlightEnd::kImpact;
-  std::vector<std::size_t> positions = MetricsUnder(stages, any);
-  for (std::size_t i = 0; i < campaign.own_metrics.size(); ++i) positions.push_back(MetricCount(stages) + i);
-  return positions;
+  FlightKind any = AnyUnder(campaign.autopilot.pitch.law);
+  SetTarget(campaign.reference.problem, any);  // columns of its angles only if it names them
+  return MetricsOfKind(campaign, any);
+}
+
+std::vector<std::size_t> ResultMetrics(const Campaign& campaign) {
+  FlightKind any = AnyUnder(campaign.autopilot.pitch.law);
+  any.has_node = any.has_argument_of_perigee = any.has_true_anomaly = true;
+  return MetricsOfKind(campaign, any);
 }
 
 std::vector<std::size_t> ShownMetrics(const Campaign& campaign) {

@@ -30,6 +30,8 @@ struct CaseResult {
 MetricList MetricsOf(const Campaign& campaign);
 /// Positions in MetricsOf of those that the campaign's flights have.
 std::vector<std::size_t> MeasuredMetrics(const Campaign& campaign);
+/// The same, with those of angles that its target does not name: what programs of others make results of.
+std::vector<std::size_t> ResultMetrics(const Campaign& campaign);
 /// Why the campaign's flights lack a metric: "is of flights whose law of pitch is ..."; empty if they have
 /// it.
 std::string WhyNotMeasured(const Campaign& campaign, const std::string& metric);

@@ -39,7 +39,7 @@ void PrintJson(const CaseResult& result, const Campaign& campaign) {
       {"end_stage", result.end_stage},
       {"reason", result.reason},
       {"inputs", InputsJson(result.inputs)},
-      {"metrics", MetricsJson(result.metrics, MetricsOf(campaign), MeasuredMetrics(campaign))},
+      {"metrics", MetricsJson(result.metrics, MetricsOf(campaign), ResultMetrics(campaign))},
       {"digest", result.digest.Hex()}};
   fmt::print("{}\n", json.dump(2));
 }
