@@ -1,4 +1,5 @@
-// A guidance mission like that of the shipped launcher, with round numbers.
+// A guidance mission like that of the shipped launcher, with round numbers, and what guidance knows in a
+// burn.
 #pragma once
 
 #include "core/guidance/predictor.h"
@@ -30,6 +31,16 @@ inline GuidanceMission PlainMission() {
   // From the launch site's horizon the local one falls by an orbit's turn, 0.065 deg/s.
   for (int i = 0; i < 60; ++i) mission.program.at.push_back({-0.065 * kRadPerDeg * 10.0 * i, 0.0});
   return mission;
+}
+
+/// What guidance knows during the last burn, from its ignition and the mass expelled since.
+inline Knowledge KnowledgeInLastBurn(const GuidanceMission& mission, double ignition_s, double expelled_kg) {
+  Knowledge known;
+  known.phase = GuidancePhase::kLastBurns;
+  known.burn_ignition_s = ignition_s;
+  known.last = mission.last;
+  known.last.ignition_mass_kg -= expelled_kg;
+  return known;
 }
 
 /// In the coast, 300 s before the last ignition.

@@ -12,6 +12,7 @@
 #include "core/cases/campaign_flights.h"
 #include "core/flight/tick_sample.h"
 #include "core/guidance/corrector.h"
+#include "tests/guidance_mission.h"
 #include "tests/liquid_stage.h"
 #include "tests/slv4_flight.h"
 
@@ -230,11 +231,7 @@ TEST(EnginePrediction, IsTheEnginesFlightOfAThrottledBurn) {
   ASSERT_FALSE(mission.steers_below);
   ASSERT_EQ(mission.last.drops.size(), 2u);
   const PlanPrior prior = BuildPrior(mission);
-  Knowledge known;
-  known.phase = GuidancePhase::kLastBurns;
-  known.burn_ignition_s = seen.ignition_s;
-  known.last = mission.last;
-  known.last.ignition_mass_kg -= seen.expelled_kg;
+  const Knowledge known = KnowledgeInLastBurn(mission, seen.ignition_s, seen.expelled_kg);
   Plan plan = prior.nominal;
   plan.value[kCutOff] = flown.end_time_s - seen.ignition_s;
   // 300 s ahead, measured: 1 m, 0.03 m/s. The rest is attitude errors of hundredths of a degree, and air.

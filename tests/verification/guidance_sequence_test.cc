@@ -10,6 +10,7 @@
 #include "core/environment/earth.h"
 #include "core/flight/tick_sample.h"
 #include "core/guidance/predictor.h"
+#include "tests/guidance_mission.h"
 #include "tests/slv4_flight.h"
 
 namespace dispersa::guidance_sequence_test {
@@ -67,11 +68,7 @@ TEST(AltitudeDrop, IsPredictedWhereTheFlightComesToIt) {
   const FlightModel closed(definition);
   const GuidanceMission& mission = *closed.guidance_mission();
   const PlanPrior prior = BuildPrior(mission);
-  Knowledge known;
-  known.phase = GuidancePhase::kLastBurns;
-  known.burn_ignition_s = burn.ignition_s;
-  known.last = mission.last;
-  known.last.ignition_mass_kg -= burn.expelled_kg;
+  const Knowledge known = KnowledgeInLastBurn(mission, burn.ignition_s, burn.expelled_kg);
   Plan plan = prior.nominal;
   plan.value[kCutOff] = flown.end_time_s - burn.ignition_s;
   const Injection predicted = Predict(mission, prior, known, burn.state, plan);

@@ -12,6 +12,7 @@
 #include "core/environment/surroundings.h"
 #include "core/input/number_text.h"
 #include "core/vehicle/aerodynamics_build_up.h"
+#include "tests/flown_history.h"
 #include "tests/slv4_flight.h"
 #include "tests/tabulated_masses.h"
 #include "tests/unit/input_files.h"
@@ -19,10 +20,6 @@
 namespace dispersa::measured_tables_test {
 namespace {
 
-struct Flown {
-  FlightResult result;
-  History history;
-};
 Flown FlyOne(const FlightDefinition& definition, const FlightInputs& inputs = {}) {
   Flown flown;
   flown.history.step_s = 0.5;
@@ -33,15 +30,8 @@ Flown FlyOne(const FlightDefinition& definition, const FlightInputs& inputs = {}
   return flown;
 }
 
-// Largest difference of a column, up to a time before the coast, where thrusters fire by thresholds.
-double Apart(const Flown& a, const Flown& b, const char* column, double until_s = 160.0) {
-  const int at = FindHistoryColumn(column), time = FindHistoryColumn("time_s");
-  double largest = 0.0;
-  for (std::size_t row = 0; row < std::min(a.history.rows(), b.history.rows()); ++row)
-    if (a.history.at(row, time) < until_s)
-      largest = std::max(largest, std::fabs(a.history.at(row, at) - b.history.at(row, at)));
-  return largest;
-}
+// Up to a time before the coast, where thrusters fire by thresholds.
+double Apart(const Flown& a, const Flown& b, const char* column) { return Apart(a, b, column, 160.0); }
 
 FlightDefinition Slv4() { return Slv4Definition(DISPERSA_CAMPAIGNS); }
 

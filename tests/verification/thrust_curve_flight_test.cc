@@ -8,6 +8,7 @@
 #include <vector>
 
 #include "tests/burn_in_space.h"
+#include "tests/flown_history.h"
 #include "tests/slv4_flight.h"
 
 namespace dispersa::thrust_curve_flight_test {
@@ -30,10 +31,6 @@ FlightDefinition CurvedDefinition() {
   return definition;
 }
 
-struct Flown {
-  FlightResult result;
-  History history;
-};
 Flown FlyWith(const FlightModel& model, const FlightInputs& inputs, Scheme scheme, int steps_per_tick) {
   Flown flown;
   flown.history.step_s = 0.1;
@@ -43,16 +40,6 @@ Flown FlyWith(const FlightModel& model, const FlightInputs& inputs, Scheme schem
   options.history = &flown.history;
   flown.result = Fly(model, inputs, options);
   return flown;
-}
-
-// The largest difference of a column as long as two flights are to be compared.
-double Apart(const Flown& a, const Flown& b, const char* column, double until_s) {
-  const int at = FindHistoryColumn(column), time = FindHistoryColumn("time_s");
-  double largest = 0.0;
-  for (std::size_t row = 0; row < std::min(a.history.rows(), b.history.rows()); ++row)
-    if (a.history.at(row, time) < until_s)
-      largest = std::max(largest, std::fabs(a.history.at(row, at) - b.history.at(row, at)));
-  return largest;
 }
 
 // The speed is held to a limit alone: it differs from CVODE's by 3e-7 m/s at most and 1e-8 in quarter steps,

@@ -1,0 +1,27 @@
+// A flight with its history, and how far two of them are apart.
+#pragma once
+
+#include <algorithm>
+#include <cmath>
+
+#include "core/flight/flight.h"
+#include "core/flight/history.h"
+
+namespace dispersa {
+
+struct Flown {
+  FlightResult result;
+  History history;
+};
+
+/// Largest difference of a column between two flights, as long as the first one's time is below `until_s`.
+inline double Apart(const Flown& a, const Flown& b, const char* column, double until_s) {
+  const int at = FindHistoryColumn(column), time = FindHistoryColumn("time_s");
+  double largest = 0.0;
+  for (std::size_t row = 0; row < std::min(a.history.rows(), b.history.rows()); ++row)
+    if (a.history.at(row, time) < until_s)
+      largest = std::max(largest, std::fabs(a.history.at(row, at) - b.history.at(row, at)));
+  return largest;
+}
+
+}  // namespace dispersa
