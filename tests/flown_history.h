@@ -1,4 +1,4 @@
-// A flight with its history, and how far two of them are apart.
+// A flight with its history, by any integrator, and how far two of them are apart.
 #pragma once
 
 #include <algorithm>
@@ -13,6 +13,19 @@ struct Flown {
   FlightResult result;
   History history;
 };
+
+/// Sampled each 0.1 s.
+inline Flown FlyWith(const FlightModel& model, const FlightInputs& inputs, Scheme scheme,
+                     int steps_per_tick) {
+  Flown flown;
+  flown.history.step_s = 0.1;
+  FlightOptions options;
+  options.scheme = scheme;
+  options.steps_per_tick = steps_per_tick;
+  options.history = &flown.history;
+  flown.result = Fly(model, inputs, options);
+  return flown;
+}
 
 /// Largest difference of a column between two flights, as long as the first one's time is below `until_s`.
 inline double Apart(const Flown& a, const Flown& b, const char* column, double until_s) {

@@ -49,7 +49,7 @@ inline void Describe(Fields& fields, FinSet& fins) {
   fields.Quantity("sweep", kLength, kAnyNumber, fins.sweep_m,
                   "by which the tip's leading edge is aft of the root's", 0.0);
   fields.Quantity("thickness", kLength, kNonNegative, fins.thickness_m, "greatest, for drag", 0.0);
-  fields.Quantity("cant", kAngle, Between(-0.2, 0.2), fins.cant_rad,
+  fields.Quantity("cant", kAngle, Between(-kPi / 15.0, kPi / 15.0), fins.cant_rad,
                   "of all fins; positive turns the body clockwise, seen from behind", 0.0);
 }
 

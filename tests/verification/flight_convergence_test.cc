@@ -9,26 +9,11 @@
 #include <cmath>
 #include <limits>
 
+#include "tests/flown_history.h"
 #include "tests/slv4_flight.h"
 
 namespace dispersa::flight_convergence_test {
 namespace {
-
-struct Flown {
-  FlightResult result;
-  History history;
-};
-
-Flown FlyWith(const FlightModel& model, const FlightInputs& inputs, Scheme scheme, int steps_per_tick) {
-  Flown flown;
-  flown.history.step_s = 0.1;
-  FlightOptions options;
-  options.scheme = scheme;
-  options.steps_per_tick = steps_per_tick;
-  options.history = &flown.history;
-  flown.result = Fly(model, inputs, options);
-  return flown;
-}
 
 constexpr double kSameFiring_kg = 1e-9;
 constexpr double kLastPoweredBeforeCoast_s = 170.0;  // burnout of stage 3 is after it

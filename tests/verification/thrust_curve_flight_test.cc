@@ -31,17 +31,6 @@ FlightDefinition CurvedDefinition() {
   return definition;
 }
 
-Flown FlyWith(const FlightModel& model, const FlightInputs& inputs, Scheme scheme, int steps_per_tick) {
-  Flown flown;
-  flown.history.step_s = 0.1;
-  FlightOptions options;
-  options.scheme = scheme;
-  options.steps_per_tick = steps_per_tick;
-  options.history = &flown.history;
-  flown.result = Fly(model, inputs, options);
-  return flown;
-}
-
 // The speed is held to a limit alone: it differs from CVODE's by 3e-7 m/s at most and 1e-8 in quarter steps,
 // with curves and with constant thrust alike. Up to the coast, in which a thruster's firing one cycle earlier
 // is another flight (flight_convergence_test.cc).
