@@ -104,10 +104,13 @@ class ControlLaws : public testing::TestWithParam<ControlLaw> {
   }
 };
 
-INSTANTIATE_TEST_SUITE_P(All, ControlLaws,
-                         testing::Values(ControlLaw::kAdaptiveFuzzy, ControlLaw::kFrozenFuzzy,
-                                         ControlLaw::kPd, ControlLaw::kPid, ControlLaw::kPdAac,
-                                         ControlLaw::kPidAac, ControlLaw::kPlugin),
+std::vector<ControlLaw> AllLaws() {
+  std::vector<ControlLaw> laws;
+  for (const LawInfo& info : kLaws) laws.push_back(info.law);
+  return laws;
+}
+
+INSTANTIATE_TEST_SUITE_P(All, ControlLaws, testing::ValuesIn(AllLaws()),
                          [](const auto& law) { return InfoOf(law.param).name; });
 
 TEST_P(ControlLaws, GoOnFromACopyOfTheirMemory) {
