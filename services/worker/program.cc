@@ -29,7 +29,7 @@ int RunWorker(int argc, char** argv) {
   LogForDaemon("dispersa-worker");
 
   WorkerOptions options;
-  std::string peer;
+  std::string peer = "127.0.0.1";
   Admission admission;
   CLI::App app(
       "Flies cases for a coordinator, and waits while there is none. At SIGTERM it finishes its cases in "
@@ -42,8 +42,8 @@ int RunWorker(int argc, char** argv) {
       ->envname("DISPERSA_DOMAIN")
       ->transform(WholeNumber(0, 99));
   app.add_option("--peer", peer,
-                 "HOST[:PORT] of the coordinator; several with commas between, if another host may take over")
-      ->required();
+                 "HOST[:PORT] of the coordinator, several with commas between if another host may take over; "
+                 "default: this machine");
   app.add_option("--address", options.network.address, "IPv4 address of the only network interface to use")
       ->check(CLI::ValidIPV4);
   app.add_option("--keys", admission.keys, kKeysHelp)->type_name(kFolderType);

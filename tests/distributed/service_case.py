@@ -49,7 +49,7 @@ class ServiceCase(unittest.TestCase):
         return self.start("dispersa-coordinator", "--data", self.data, *self.DAEMON)
 
     def start_worker(self, *arguments):
-        return self.start("dispersa-worker", "--peer", "127.0.0.1", *self.DAEMON, *arguments)
+        return self.start("dispersa-worker", *self.DAEMON, *arguments)
 
     def dispersa(self, *arguments, code=0):
         """Runs a client command; its standard output."""
