@@ -13,7 +13,7 @@ TABLE = pathlib.Path(__file__).parent.parent / "tools" / "gallery_table.py"
 CONTROLLED = ("vega", "electron", "scout", "falcon9", "falcon9_leo", "ariane5")
 LAUNCHERS = (*CONTROLLED, "nike_apache")
 FURTHER = ("vega", "falcon9", "falcon9_leo", "ariane5")
-CASES = 8
+CASES = 4
 
 
 def run(*arguments, environment=None):
