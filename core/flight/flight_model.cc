@@ -142,7 +142,7 @@ LauncherPlant BuildNominalPlant(const Vehicle& vehicle) {
 namespace {
 
 // The bending of every stack. `modes_of`: how many fly of a stage's, which has these with all it carries. Of
-// a plant that has its nominal modes: near these.
+// a plant that has its nominal modes: as many, near these.
 template <typename ModesOf>
 void SetBending(const Vehicle& vehicle, const ModesOf& modes_of, LauncherPlant& plant) {
   std::shared_ptr<const Vehicle> kept;  // by the stacks that jettison
@@ -157,10 +157,12 @@ void SetBending(const Vehicle& vehicle, const ModesOf& modes_of, LauncherPlant& 
     const int stage = static_cast<int>(i);
     // A table of modes is of the nominal masses, and is scaled to others as it stands.
     const StackModes* const near = stack.modes && stack.modes->basis ? stack.modes.get() : nullptr;
-    const auto whole = std::make_shared<const StackModes>(BuildStackModes(vehicle, stage, 0, near));
+    if (near && stack.bending->modes == 0) continue;
+    const auto whole = std::make_shared<const StackModes>(
+        near ? BuildStackModesNear(vehicle, *near, stack.bending->modes) : BuildStackModes(vehicle, stage));
     const int modes = modes_of(i, *whole);
-    stack.bending =
-        std::make_shared<const BendingTable>(BuildBendingTable(vehicle, *whole, *stack.loads, modes));
+    stack.bending = std::make_shared<const BendingTable>(
+        BuildBendingTable(vehicle, *whole, *stack.loads, modes, near ? stack.bending.get() : nullptr));
     if (!stack.modes) stack.modes = whole;
     const std::shared_ptr<const JettisonedBending> nominal = std::move(stack.lighter_bending);
     stack.lighter_bending = nullptr;

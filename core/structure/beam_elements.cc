@@ -3,24 +3,11 @@
 #include <algorithm>
 #include <cmath>
 
+#include "core/structure/element_masses.h"
+
 namespace dispersa {
 
 namespace {
-
-/// Boundaries that are nearer to each other than this are one.
-constexpr double kSameStation_m = 1e-6;
-
-// f(weight, fraction) over the points of Gauss's rule that is exact up to degree 9; the weights sum to 1.
-template <typename F>
-void Gauss(F f) {
-  constexpr double kPoint[3] = {0.0, 0.53846931010568309104, 0.90617984593866399280};
-  constexpr double kWeight[3] = {0.56888888888888888889, 0.47862867049936646804, 0.23692688505618908751};
-  f(0.5 * kWeight[0], 0.5);
-  for (const int i : {1, 2}) {
-    f(0.5 * kWeight[i], 0.5 - 0.5 * kPoint[i]);
-    f(0.5 * kWeight[i], 0.5 + 0.5 * kPoint[i]);
-  }
-}
 
 struct Stiffness {
   double bending_n_m2 = 0.0;
@@ -77,6 +64,13 @@ std::vector<double> MeshStations(const std::vector<BeamSection>& sections, const
   return stations;
 }
 
+std::size_t NearestNode(const std::vector<double>& stations, double station_m) {
+  const auto nearest = std::min_element(stations.begin(), stations.end(), [&](double a, double b) {
+    return std::fabs(a - station_m) < std::fabs(b - station_m);
+  });
+  return static_cast<std::size_t>(nearest - stations.begin());
+}
+
 std::vector<BeamElement> BuildElements(const Beam& beam, BeamPlane plane,
                                        const std::vector<double>& stations) {
   std::vector<BeamElement> elements;
@@ -90,7 +84,7 @@ std::vector<BeamElement> BuildElements(const Beam& beam, BeamPlane plane,
     const double phi = element.shear_ratio, scale = 1.0 / (1.0 + phi);
     const double shear = -0.5 * phi * scale;  // dw/ds - theta for a unit rotation of either end
     element.flexural_stiffness_n_m.setZero();
-    Gauss([&](double weight, double x) {
+    GaussFive([&](double weight, double x) {
       const Stiffness at = StiffnessAt(beam, plane, stations[i] + x * h);
       const Eigen::Vector2d curvature =
           Eigen::Vector2d(6.0 * x - 4.0 - phi, 6.0 * x - 2.0 + phi) * (scale / h);
@@ -110,29 +104,22 @@ Eigen::MatrixXd MassMatrix(const Beam& beam, const std::vector<double>& stations
     const double h = elements[i].length_m;
     auto block = mass.block<4, 4>(2 * static_cast<Eigen::Index>(i), 2 * static_cast<Eigen::Index>(i));
     for (const SpreadMass& m : beam.masses.spread) {
-      // A liquid's surface falls through elements: one counts as far as it is wet. Other masses end at nodes.
-      const double ahead_m = m.top_station_m - stations[i], along_m = m.bottom_station_m - stations[i];
-      if (ahead_m > h - kSameStation_m || along_m < kSameStation_m) continue;
-      const double from = ahead_m > kSameStation_m ? ahead_m / h : 0.0;
-      const double to = along_m < h - kSameStation_m ? along_m / h : 1.0;
-      Gauss([&](double of_part, double within) {
-        const double weight = of_part * (to - from), x = from + (to - from) * within;
-        const BeamShape shape = ShapeAt(x, h, elements[i].shear_ratio);
-        const Eigen::Map<const Eigen::Vector4d> deflection(shape.deflection.data()),
-            rotation(shape.rotation.data());
-        const double station = stations[i] + x * h;
-        const double mass_kg = weight * h * m.MassPerLength(station);
-        block += mass_kg * deflection * deflection.transpose();
-        if (beam.rotary_inertia) block += mass_kg * m.Gyration2(station) * rotation * rotation.transpose();
-      });
+      const CoveredPart part = PartCovered(m, stations[i], h);
+      if (part.to == 0.0) continue;
+      ForEachMassOf(m, part, stations[i], elements[i],
+                    [&](double mass_kg, double gyration2_m2, const BeamShape& shape) {
+                      const Eigen::Map<const Eigen::Vector4d> deflection(shape.deflection.data()),
+                          rotation(shape.rotation.data());
+                      block += mass_kg * deflection * deflection.transpose();
+                      if (beam.rotary_inertia)
+                        block += mass_kg * gyration2_m2 * rotation * rotation.transpose();
+                    });
     }
   }
   for (const FixedMass& m : beam.masses.fixed) {
-    const auto nearest = std::min_element(stations.begin(), stations.end(), [&](double a, double b) {
-      return std::fabs(a - m.station_m) < std::fabs(b - m.station_m);
-    });
-    const Eigen::Index row = 2 * (nearest - stations.begin());
-    const double arm = m.cg_station_m - *nearest;  // its centre of gravity moves by w + arm theta
+    const std::size_t nearest = NearestNode(stations, m.station_m);
+    const Eigen::Index row = 2 * static_cast<Eigen::Index>(nearest);
+    const double arm = m.cg_station_m - stations[nearest];  // its centre of gravity moves by w + arm theta
     mass(row, row) += m.mass_kg;
     mass(row, row + 1) += m.mass_kg * arm;
     mass(row + 1, row) += m.mass_kg * arm;

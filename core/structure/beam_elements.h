@@ -39,6 +39,9 @@ struct Beam {
 std::vector<double> MeshStations(const std::vector<BeamSection>& sections, const BeamMasses& masses,
                                  int elements);
 
+/// The node that is nearest to a station.
+std::size_t NearestNode(const std::vector<double>& stations, double station_m);
+
 /// Elastic energy of an element is e' flexural_stiffness e / 2, e the rotations of its two ends relative to
 /// the chord.
 struct BeamElement {

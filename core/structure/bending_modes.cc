@@ -2,25 +2,19 @@
 
 #include <algorithm>
 #include <cmath>
+#include <optional>
+#include <utility>
 
 #include "core/structure/beam_elements.h"
 #include "core/structure/free_free_modes.h"
 #include "core/structure/mode_tracking.h"
+#include "core/structure/near_modes.h"
 #include "core/vehicle/booster_course.h"
 #include "core/vehicle/mass.h"
 
 namespace dispersa {
 
-// By plane, then by level of the file from full to empty.
-struct ModeBasis {
-  std::array<std::vector<FreeFreeModes>, 2> modes;
-};
-
 namespace {
-
-/// Kept of each level. Three sigma of masses at once then leave frequencies within 1e-6 and generalised
-/// masses within 5e-4 of the whole solution; with half as many 6e-6 and 1.5e-3 (structure_near_modes_test).
-constexpr int kBasisModes = 32;
 
 /// A mode that resembles its predecessor less than this is looked at more closely.
 constexpr double kSureMac = 0.9;
@@ -129,9 +123,28 @@ std::vector<double> LevelsOf(const Vehicle& vehicle, int stage, unsigned gone) {
   return levels_kg;
 }
 
-// `basis` takes what others may be sought among. `near`: see BuildStackModes.
-void SolvePlane(const Vehicle& vehicle, BeamPlane plane, const StackModes* near, StackModes& stack,
-                ModeBasis& basis) {
+// The nominal modes of a level for NearModes: those that are followed, then others by rising frequency. None
+// if the mesh has too few.
+std::optional<FreeFreeModes> ShapesNear(const Level& level, const FreeFreeModes& lowest) {
+  const Eigen::Index followed = level.shape.cols();
+  const Eigen::Index count = NearModes::ShapesFor(static_cast<int>(followed));
+  FreeFreeModes shapes{Eigen::VectorXd(count), Eigen::MatrixXd(level.shape.rows(), count)};
+  Eigen::Index column = 0;
+  for (; column < followed; ++column) {
+    shapes.frequency_rad_s[column] = level.frequency_rad_s[column];
+    shapes.shape.col(column) = level.shape.col(column) / std::sqrt(level.generalized_mass_kg[column]);
+  }
+  for (Eigen::Index k = 0; k < lowest.frequency_rad_s.size() && column < count; ++k) {
+    if ((level.frequency_rad_s.array() == lowest.frequency_rad_s[k]).any()) continue;
+    shapes.frequency_rad_s[column] = lowest.frequency_rad_s[k];
+    shapes.shape.col(column++) = lowest.shape.col(k);
+  }
+  if (column < count) return {};
+  return shapes;
+}
+
+// `basis` takes what the modes of other masses are sought near.
+void SolvePlane(const Vehicle& vehicle, BeamPlane plane, StackModes& stack, ModeBasis& basis) {
   const StructureBeam& structure = *vehicle.structure_beam;
   const double full_kg = vehicle.stages[static_cast<std::size_t>(stack.stage)].propellant_mass_kg;
   Beam beam;
@@ -143,52 +156,62 @@ void SolvePlane(const Vehicle& vehicle, BeamPlane plane, const StackModes* near,
   }
   beam.masses = BuildBeamMasses(vehicle, stack.stage, full_kg, stack.gone);
   // One mesh for all levels, so that shapes can be compared node by node.
-  const std::vector<double> stations =
-      near ? near->station_m[Index(plane)] : MeshStations(beam.sections, beam.masses, structure.elements);
+  const std::vector<double> stations = MeshStations(beam.sections, beam.masses, structure.elements);
   const std::vector<BeamElement> elements = BuildElements(beam, plane, stations);
   stack.station_m[Index(plane)] = stations;
   for (const BeamElement& element : elements) stack.shear_ratio[Index(plane)].push_back(element.shear_ratio);
-  const std::vector<double> levels_kg = LevelsOf(vehicle, stack.stage, stack.gone);
-  std::vector<FreeFreeModes>& kept = basis.modes[Index(plane)];
-  kept.resize(levels_kg.size());
-  const auto nearest_to = [&](double propellant_kg) {
-    std::size_t nearest = 0;
-    for (std::size_t i = 1; i < levels_kg.size(); ++i)
-      if (std::fabs(propellant_kg - levels_kg[i]) <= std::fabs(propellant_kg - levels_kg[nearest]))
-        nearest = i;
-    return nearest;
-  };
+  auto near = std::make_unique<NearModes>(stations, elements, beam.rotary_inertia);
 
+  const int count = structure.modes + kFurtherModes;
+  FreeFreeModes lowest;  // of the level solved last
   const auto solve = [&](double propellant_kg) {
     beam.masses = BuildBeamMasses(vehicle, stack.stage, propellant_kg, stack.gone);
     Level level;
     level.propellant_kg = propellant_kg;
     level.mass = MassMatrix(beam, stations, elements);
-    const int count = structure.modes + kFurtherModes;
-    const std::size_t nearest = nearest_to(propellant_kg);
-    FreeFreeModes modes;
-    if (near) {
-      modes = SolveFreeFreeNear(stations, near->basis->modes[Index(plane)][nearest], level.mass, count);
-    } else {
-      modes = SolveFreeFree(stations, elements, level.mass, std::max(count, kBasisModes));
-      if (propellant_kg == levels_kg[nearest]) kept[nearest] = modes;
-      const Eigen::Index wanted = std::min<Eigen::Index>(count, modes.frequency_rad_s.size());
-      modes.frequency_rad_s.conservativeResize(wanted);
-      modes.shape.conservativeResize(Eigen::NoChange, wanted);
-    }
-    level.frequency_rad_s = std::move(modes.frequency_rad_s);
-    level.shape = std::move(modes.shape);
+    lowest = SolveFreeFree(stations, elements, level.mass,
+                           std::max(count, NearModes::ShapesFor(structure.modes) + structure.modes));
+    const Eigen::Index wanted = std::min<Eigen::Index>(count, lowest.frequency_rad_s.size());
+    level.frequency_rad_s = lowest.frequency_rad_s.head(wanted);
+    level.shape = lowest.shape.leftCols(wanted);
     level.generalized_mass_kg = Eigen::VectorXd::Ones(level.shape.cols());
     Scale(level);
     return level;
   };
+  const auto keep = [&](const Level& level) {
+    Append(level, stack.levels[Index(plane)]);
+    const std::optional<FreeFreeModes> shapes = ShapesNear(level, lowest);
+    if (!shapes) near = nullptr;
+    if (near) near->AddLevel(*shapes);
+  };
+  const std::vector<double> levels_kg = LevelsOf(vehicle, stack.stage, stack.gone);
   Level level = solve(levels_kg.front());
   Begin(level, structure.modes);
-  Append(level, stack.levels[Index(plane)]);
+  keep(level);
   for (std::size_t i = 1; i < levels_kg.size(); ++i) {
     level = Follow(level, levels_kg[i], solve, kHalvings);
-    Append(level, stack.levels[Index(plane)]);
+    keep(level);
   }
+  basis.planes[Index(plane)] = std::move(near);
+}
+
+// The first modes of a plane, sought near nominal ones; false if they are not found there.
+bool SolvePlaneNear(const Vehicle& vehicle, BeamPlane plane, const StackModes& nominal, int modes,
+                    StackModes& stack) {
+  const std::vector<double> levels_kg = LevelsOf(vehicle, stack.stage, stack.gone);
+  const NearModes* const near = nominal.basis ? nominal.basis->planes[Index(plane)].get() : nullptr;
+  if (!near) return false;
+  std::vector<BendingLevel> levels;
+  for (const double propellant_kg : levels_kg) {
+    std::optional<std::vector<BendingMode>> found = near->Find(
+        levels.size(), BuildBeamMasses(vehicle, stack.stage, propellant_kg, stack.gone), modes, kSureMac);
+    if (!found) return false;
+    levels.push_back({propellant_kg, std::move(*found)});
+  }
+  stack.station_m[Index(plane)] = nominal.station_m[Index(plane)];
+  stack.shear_ratio[Index(plane)] = nominal.shear_ratio[Index(plane)];
+  stack.levels[Index(plane)] = std::move(levels);
+  return true;
 }
 
 // The modes of a table for one stack and plane; false if it has none.
@@ -274,7 +297,7 @@ StationShape ShapeOf(const StackModes& stack, BeamPlane plane, const BendingMode
   return PlaceAt(stack, plane, station_m).Of(mode);
 }
 
-StackModes BuildStackModes(const Vehicle& vehicle, int stage, unsigned gone, const StackModes* near) {
+StackModes BuildStackModes(const Vehicle& vehicle, int stage, unsigned gone) {
   const StructureBeam& beam = *vehicle.structure_beam;
   StackModes stack;
   stack.stage = stage;
@@ -282,13 +305,25 @@ StackModes BuildStackModes(const Vehicle& vehicle, int stage, unsigned gone, con
   if (beam.table.empty()) {
     stack.axisymmetric = IsAxisymmetric(beam, stage);
     ModeBasis basis;
-    SolvePlane(vehicle, BeamPlane::kY, near, stack, basis);
-    if (!stack.axisymmetric) SolvePlane(vehicle, BeamPlane::kZ, near, stack, basis);
-    if (near == nullptr) stack.basis = std::make_shared<const ModeBasis>(std::move(basis));
+    SolvePlane(vehicle, BeamPlane::kY, stack, basis);
+    if (!stack.axisymmetric) SolvePlane(vehicle, BeamPlane::kZ, stack, basis);
+    stack.basis = std::make_shared<const ModeBasis>(std::move(basis));
   } else {
     TakePlane(vehicle, BeamPlane::kY, stack);
     stack.axisymmetric = !TakePlane(vehicle, BeamPlane::kZ, stack);
   }
+  if (stack.axisymmetric) CopyPlaneY(stack);
+  return stack;
+}
+
+StackModes BuildStackModesNear(const Vehicle& vehicle, const StackModes& nominal, int modes) {
+  StackModes stack;
+  stack.stage = nominal.stage;
+  stack.gone = nominal.gone;
+  stack.axisymmetric = nominal.axisymmetric;
+  if (!SolvePlaneNear(vehicle, BeamPlane::kY, nominal, modes, stack) ||
+      (!stack.axisymmetric && !SolvePlaneNear(vehicle, BeamPlane::kZ, nominal, modes, stack)))
+    return BuildStackModes(vehicle, nominal.stage, nominal.gone);
   if (stack.axisymmetric) CopyPlaneY(stack);
   return stack;
 }

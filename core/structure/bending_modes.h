@@ -15,18 +15,10 @@
 #include <string>
 #include <vector>
 
+#include "core/structure/bending_mode.h"
 #include "core/vehicle/vehicle.h"
 
 namespace dispersa {
-
-struct BendingMode {
-  double frequency_rad_s = 0.0;
-  double generalized_mass_kg = 0.0;
-  double mac =
-      1.0;  ///< modal assurance criterion with the same mode at the level before, which has more propellant
-  std::vector<double> deflection;  ///< at the nodes
-  std::vector<double> slope_1_m;
-};
 
 /// The modes of one plane at one propellant level. A mode has the same index at all levels.
 struct BendingLevel {
@@ -34,7 +26,7 @@ struct BendingLevel {
   std::vector<BendingMode> modes;
 };
 
-struct ModeBasis;  ///< more modes of the same stack, in bending_modes.cc alone
+struct ModeBasis;  ///< near_modes.h
 
 struct StackModes {
   int stage = 0;                                    ///< the stack's lowest, from 0
@@ -43,8 +35,8 @@ struct StackModes {
   std::array<std::vector<double>, 2> station_m;     ///< of the nodes, by plane
   std::array<std::vector<double>, 2> shear_ratio;   ///< of the elements between them
   std::array<std::vector<BendingLevel>, 2> levels;  ///< by plane, in order of falling propellant
-  std::shared_ptr<const ModeBasis>
-      basis;  ///< basis for the modes of other masses (null: the modes come from a table)
+  /// For the modes of other masses (null: the modes come from a table, or are of other masses themselves).
+  std::shared_ptr<const ModeBasis> basis;
 };
 
 /// Shape at a station. Beyond the ends of the beam it goes on straight.
@@ -81,11 +73,11 @@ StationShape ShapeOf(const StackModes& stack, BeamPlane plane, const BendingMode
 /// criterion falls below 0.9, down to 1/32 of a step. Precondition: a vehicle with a beam and without
 /// Problems(). A table's shapes and generalised masses are scaled as above. Its modes are tracked in the same
 /// way, with the vehicle's mass model as weight. Then nothing is jettisoned (`gone` 0).
-///
-/// `near`: the modes of the same vehicle with other masses. The new modes are then combinations of them
-/// (SolveFreeFreeNear), on the same mesh.
-StackModes BuildStackModes(const Vehicle& vehicle, int stage, unsigned gone = 0,
-                           const StackModes* near = nullptr);
+StackModes BuildStackModes(const Vehicle& vehicle, int stage, unsigned gone = 0);
+/// The first `modes` modes of the same stack of a vehicle with other masses than the nominal ones, which
+/// `nominal` has. They are sought near these, on the same mesh (near_modes.h). If one does not resemble its
+/// nominal mode, all are solved as a whole.
+StackModes BuildStackModesNear(const Vehicle& vehicle, const StackModes& nominal, int modes);
 /// The modes that pages show: of each stage that is no restart with all its bodies, then without boosters,
 /// then without all that it jettisons.
 std::vector<StackModes> ShownStacks(const Vehicle& vehicle);

@@ -3,17 +3,14 @@
 #include <algorithm>
 #include <optional>
 
+#include "core/structure/bending_places.h"
 #include "core/structure/free_body.h"
-#include "core/structure/mass_points.h"
 #include "core/vehicle/beam_masses.h"
 #include "core/vehicle/mass.h"
 
 namespace dispersa {
 
 namespace {
-
-/// Pieces of the beam in which the shortening is summed.
-constexpr int kShorteningPieces = 400;
 
 bool FliesAtAllLevels(const StackModes& stack, std::size_t mode, double highest_rad_s) {
   for (const std::vector<BendingLevel>& plane : stack.levels)
@@ -22,106 +19,107 @@ bool FliesAtAllLevels(const StackModes& stack, std::size_t mode, double highest_
   return true;
 }
 
-// Of even pieces of the beam, from the nose aft.
-struct EvenPieces {
-  double top_m = 0.0, length_m = 0.0;
+using FourColumns = std::array<FourShapes, BendingTable::kRowSize>;
 
-  explicit EvenPieces(const std::vector<double>& stations)
-      : top_m(stations.front()), length_m((stations.back() - stations.front()) / kShorteningPieces) {}
-  double Middle(std::size_t i) const { return top_m + length_m * (static_cast<double>(i) + 0.5); }
-};
-
-// A place between the edges of the pieces.
-struct PieceEdge {
-  std::size_t before;
-  double part;  // of the piece behind it
-};
-PieceEdge EdgeBefore(const EvenPieces& pieces, double station_m) {
-  const double at =
-      std::clamp((station_m - pieces.top_m) / pieces.length_m, 0.0, static_cast<double>(kShorteningPieces));
-  const std::size_t before = std::min<std::size_t>(static_cast<std::size_t>(at), kShorteningPieces - 1);
-  return {before, at - static_cast<double>(before)};
+// The values of a level's first modes at the nodes, side by side.
+ShapeColumns SideBySide(const BendingLevel& level, std::size_t modes) {
+  const std::size_t nodes = level.modes[0].deflection.size();
+  ShapeColumns columns(2 * nodes, (modes + 3) / 4);
+  std::fill(columns.values.begin(), columns.values.end(), FourShapes(0.0));
+  for (std::size_t k = 0; k < modes; ++k) {
+    double* const at = Values(columns.Four(k / 4)) + k % 4;
+    for (std::size_t i = 0; i < nodes; ++i) {
+      at[8 * i] = level.modes[k].deflection[i];
+      at[8 * i + 4] = level.modes[k].slope_1_m[i];
+    }
+  }
+  return columns;
 }
 
-// The integral of the product of two modes' slopes (at the middles of the pieces) from a place to the end.
+// The integrals of the products of one mode's slopes with those of four (at the middles of the pieces) from a
+// place to the end.
 class SlopesBehind {
  public:
-  SlopesBehind(double piece_m, const std::vector<double>& slopes, const std::vector<double>& other)
-      : behind_(slopes.size() + 1, 0.0) {
-    for (std::size_t i = slopes.size(); i-- > 0;)
-      behind_[i] = behind_[i + 1] + slopes[i] * other[i] * piece_m;
+  // `one`: lane of the first value.
+  SlopesBehind(double piece_m, const double* one, const std::vector<FourShapes>& four)
+      : behind_(four.size() + 1, FourShapes(0.0)) {
+    for (std::size_t i = four.size(); i-- > 0;)
+      behind_[i] = behind_[i + 1] + FourShapes(one[4 * i]) * four[i] * FourShapes(piece_m);
   }
-  double At(const PieceEdge& at) const {
-    return behind_[at.before] + at.part * (behind_[at.before + 1] - behind_[at.before]);
+  FourShapes At(const PieceEdge& at) const {
+    return behind_[at.before] + FourShapes(at.part) * (behind_[at.before + 1] - behind_[at.before]);
   }
   // Weighted with the share of the mass ahead: each mass counts for all of the beam behind it.
-  double ByMass(const std::vector<MassPoint>& points, const std::vector<PieceEdge>& edges) const {
-    double sum = 0.0, mass_kg = 0.0;
+  FourShapes ByMass(const std::vector<MassPoint>& points, const std::vector<MassPlace>& places) const {
+    FourShapes sum = 0.0;
+    double mass_kg = 0.0;
     for (std::size_t i = 0; i < points.size(); ++i) {
-      sum += points[i].mass_kg * At(edges[i]);
+      sum = sum + FourShapes(points[i].mass_kg) * At(places[i].edge);
       mass_kg += points[i].mass_kg;
     }
-    return sum / mass_kg;
+    return sum / FourShapes(mass_kg);
   }
 
  private:
-  std::vector<double> behind_;  // from each edge of the pieces
+  std::vector<FourShapes> behind_;  // from each edge of the pieces
 };
 
-// What the lift by a unit of a mode does. `deflections`: of each mode that flies, at the middle of each
-// piece. `shapes`: of the mode, where and in the order in which LiftDistribution asks for incidences.
-void AddLift(const LoadTable& loads, const std::vector<std::vector<double>>& deflections,
-             const std::vector<StationShape>& shapes, double* row) {
-  for (const bool by_rate : {false, true}) {
-    std::size_t piece = 0, next = 0;
-    const auto add = [&](double force, double station_m, LiftCause cause) {
-      double* const effects = row + BendingTable::LiftColumn(cause, 0);
-      double* const of_sections = row + BendingTable::LiftColumn(cause, kSectionEffects);
-      effects[kForceEffect] += force;
-      effects[kFirstEffect] += force * station_m;
-      for (std::size_t j = 0; j < deflections.size(); ++j)
-        effects[kWorkEffects + j] += force * deflections[j][piece];
-      for (std::size_t i = 0; i < kLoadStations; ++i)
-        of_sections[i] += force * std::max(loads.station_m[i] - station_m, 0.0);
-    };
-    loads.lift.ForEach(
-        [&](double) {
-          const StationShape& shape = shapes[next++];
-          return by_rate ? shape.deflection : shape.slope_1_m;
-        },
-        [&](double station_m, double by_slender, double by_shift) {
-          add(by_slender, station_m, by_rate ? kRateSlender : kSlopeSlender);
-          add(by_shift, station_m, by_rate ? kRateShift : kSlopeShift);
-          ++piece;
-        });
-  }
-}
+// Four modes where the lift is summed.
+struct LiftShapes {
+  std::vector<FourStations> at;  // in the order in which LiftDistribution asks for incidences
+  std::vector<std::array<FourShapes, kLiftCauses>> force;  // by piece
 
-// The places of a stack's beam at which its modes are looked at, found once for all levels.
-struct StackPlaces {
-  std::vector<BeamPlace> pieces;  // middles of even ones
-  std::vector<BeamPlace> lift;    // in the order in which LiftDistribution asks: the middles are each third
-  std::size_t lift_pieces = 0;
-
-  StackPlaces(const StackModes& stack, BeamPlane plane, const EvenPieces& even, const LoadTable& loads)
-      : lift_pieces(loads.lift.pieces.size()) {
-    for (std::size_t i = 0; i < kShorteningPieces; ++i)
-      pieces.push_back(PlaceAt(stack, plane, even.Middle(i)));
-    loads.lift.ForEach(
-        [&](double station_m) {
-          lift.push_back(PlaceAt(stack, plane, station_m));
-          return 0.0;
-        },
-        [](double, double, double) {});
+  LiftShapes(const LoadTable& loads, const PlanePlaces& places, const FourShapes* modes)
+      : force(loads.lift.pieces.size()) {
+    at.reserve(places.lift().size());
+    for (const BeamPlace& place : places.lift()) at.push_back(FourAt(place, modes));
+    for (const bool by_rate : {false, true}) {
+      std::size_t piece = 0, next = 0;
+      loads.lift.ForEach(
+          [&](double) {
+            const FourStations& shape = at[next++];
+            return by_rate ? shape.deflection : shape.slope_1_m;
+          },
+          [&](double, FourShapes by_slender, FourShapes by_shift) {
+            force[piece][by_rate ? kRateSlender : kSlopeSlender] = by_slender;
+            force[piece][by_rate ? kRateShift : kSlopeShift] = by_shift;
+            ++piece;
+          });
+    }
   }
-  static std::size_t MiddleOf(std::size_t lift_piece) { return 2 * lift_piece + 2; }
+  // Of a mode of these by its lane, at the middle of a piece.
+  double Deflection(std::size_t piece, std::size_t lane) const {
+    return Values(&at[PlanePlaces::MiddleOf(piece)].deflection)[lane];
+  }
 };
 
-std::vector<StationShape> ShapesAtPlaces(const std::vector<BeamPlace>& places, const BendingMode& mode) {
-  std::vector<StationShape> shapes;
-  shapes.reserve(places.size());
-  for (const BeamPlace& place : places) shapes.push_back(place.Of(mode));
-  return shapes;
+// What the lift by a unit of each of `four` modes does. `all`: those of all modes that fly.
+void AddLift(const LoadTable& loads, const LiftShapes& four, const std::vector<LiftShapes>& all,
+             std::size_t modes, FourColumns& columns) {
+  const std::vector<LiftPiece>& pieces = loads.lift.pieces;
+  // The sums over the first pieces of the forces times a factor.
+  const auto add = [&](int effect, std::size_t piece_count, const auto& factor_of) {
+    std::array<FourShapes, kLiftCauses> sum = {0.0, 0.0, 0.0, 0.0};
+    for (std::size_t i = 0; i < piece_count; ++i) {
+      const FourShapes factor = factor_of(i);
+      for (std::size_t cause = 0; cause < kLiftCauses; ++cause)
+        sum[cause] = sum[cause] + four.force[i][cause] * factor;
+    }
+    for (int cause = 0; cause < kLiftCauses; ++cause)
+      columns[static_cast<std::size_t>(BendingTable::LiftColumn(cause, effect))] =
+          sum[static_cast<std::size_t>(cause)];
+  };
+  add(kForceEffect, pieces.size(), [](std::size_t) { return 1.0; });
+  add(kFirstEffect, pieces.size(), [&](std::size_t i) { return pieces[i].Middle(); });
+  for (std::size_t j = 0; j < modes; ++j)
+    add(kWorkEffects + static_cast<int>(j), pieces.size(),
+        [&](std::size_t i) { return all[j / 4].Deflection(i, j % 4); });
+  std::size_t ahead = 0;  // pieces ahead of a station
+  for (std::size_t s = 0; s < kLoadStations; ++s) {
+    while (ahead < pieces.size() && pieces[ahead].Middle() < loads.station_m[s]) ++ahead;
+    add(kSectionEffects + static_cast<int>(s), ahead,
+        [&](std::size_t i) { return loads.station_m[s] - pieces[i].Middle(); });
+  }
 }
 
 // The stages above, which a separation leaves as a body of their own.
@@ -154,86 +152,100 @@ int ModesBelow(const Vehicle& vehicle, const StackModes& stack, double highest_r
 }
 
 BendingTable BuildBendingTable(const Vehicle& vehicle, const StackModes& stack, const LoadTable& loads,
-                               int modes) {
+                               int modes, const BendingTable* near) {
   const Stage& stage = vehicle.stages[static_cast<std::size_t>(stack.stage)];
   BendingTable table;
   table.modes = modes;
   table.planes = stack.axisymmetric ? 1 : 2;
   for (const BendingLevel& level : stack.levels[0]) table.propellant_kg.push_back(level.propellant_kg);
+  if (modes == 0) return table;
+  if (near && near->places && near->places->AreOf(stack))
+    table.places = near->places;
+  else
+    table.places = std::make_shared<const BendingPlaces>(stack, loads);
 
   const std::optional<FreeBody> upper = UpperOf(vehicle, stack);
   const bool has_boosters = CarriedBy(vehicle, stack.stage) & ~stack.gone & kBoostersGone;
   const Boosters* const boosters = has_boosters ? &vehicle.boosters : nullptr;
+  const std::size_t count = static_cast<std::size_t>(modes);
   for (std::size_t p = 0; p < static_cast<std::size_t>(table.planes); ++p) {
-    const BeamPlane plane = kBeamPlanes[p];
-    const EvenPieces pieces(stack.station_m[p]);
-    const StackPlaces places(stack, plane, pieces, loads);
-    std::vector<BeamPlace> at_upper;
-    if (upper)
-      for (const MassPoint& m : upper->points) at_upper.push_back(PlaceAt(stack, plane, m.fixed_at_m));
-    std::vector<double> cuts_m = stack.station_m[p];
-    cuts_m.insert(cuts_m.end(), loads.station_m.begin(), loads.station_m.end());
+    const PlanePlaces& places = table.places->Of(p);
+    const auto place_at = [&](double station_m) { return PlaceAt(stack, kBeamPlanes[p], station_m); };
+    const BeamPlace pivot = place_at(stage.gimbal.pivot_station_m),
+                    unit = place_at(vehicle.sensors.inertial_unit_station_m);
+    std::vector<BeamPlace> gyros;
+    for (const RateGyro& gyro : vehicle.sensors.rate_gyros) gyros.push_back(place_at(gyro.station_m));
+    BeamPlace link;
+    if (boosters) link = place_at(boosters->attachment_station_m);
+    std::vector<MassPlace> at_upper;
+    if (upper) at_upper = places.Of(upper->points, stack);
+    table.rows.reserve(table.planes * stack.levels[p].size() * count * BendingTable::kRowSize);
     for (const BendingLevel& level : stack.levels[p]) {
-      const std::vector<MassPoint> points =
-          MassPointsOf(BuildBeamMasses(vehicle, stack.stage, level.propellant_kg, stack.gone), cuts_m);
-      std::vector<BeamPlace> at_points;
-      std::vector<PieceEdge> edges;
-      for (const MassPoint& m : points) {
-        at_points.push_back(PlaceAt(stack, plane, m.fixed_at_m));
-        edges.push_back(EdgeBefore(pieces, m.fixed_at_m));
+      const std::vector<MassPoint> points = MassPointsOf(
+          BuildBeamMasses(vehicle, stack.stage, level.propellant_kg, stack.gone), places.cuts_m());
+      const std::vector<MassPlace> at_points = places.Of(points, stack);
+      const ShapeColumns shapes = SideBySide(level, count);
+      std::vector<std::vector<FourShapes>> slopes;
+      std::vector<LiftShapes> lifts;
+      for (std::size_t four = 0; four < shapes.fours(); ++four) {
+        slopes.emplace_back();
+        slopes[four].reserve(kShorteningPieces);
+        for (const BeamPlace& place : places.pieces())
+          slopes[four].push_back(FourAt(place, shapes.Four(four)).slope_1_m);
+        lifts.emplace_back(loads, places, shapes.Four(four));
       }
-      std::vector<std::vector<double>> slopes(static_cast<std::size_t>(table.modes)),
-          deflections(slopes.size());
-      std::vector<std::vector<StationShape>> lifts;
-      for (std::size_t k = 0; k < slopes.size(); ++k) {
-        for (const BeamPlace& place : places.pieces) slopes[k].push_back(place.Of(level.modes[k]).slope_1_m);
-        lifts.push_back(ShapesAtPlaces(places.lift, level.modes[k]));
-        for (std::size_t i = 0; i < places.lift_pieces; ++i)
-          deflections[k].push_back(lifts[k][StackPlaces::MiddleOf(i)].deflection);
-      }
-      for (std::size_t k = 0; k < slopes.size(); ++k) {
-        const BendingMode& mode = level.modes[k];
-        const auto at = [&](double station_m) { return ShapeOf(stack, plane, mode, station_m); };
-        std::array<double, BendingTable::kRowSize> row{};
-        row[BendingTable::kFrequency] = mode.frequency_rad_s;
-        row[BendingTable::kInverseMass] = 1.0 / mode.generalized_mass_kg;
-        const StationShape pivot = at(stage.gimbal.pivot_station_m);
-        row[BendingTable::kPivotDeflection] = pivot.deflection;
-        row[BendingTable::kPivotSlope] = pivot.slope_1_m;
-        row[BendingTable::kUnitSlope] = at(vehicle.sensors.inertial_unit_station_m).slope_1_m;
-        for (std::size_t g = 0; g < vehicle.sensors.rate_gyros.size(); ++g)
-          row[BendingTable::kGyroSlope + g] = at(vehicle.sensors.rate_gyros[g].station_m).slope_1_m;
-        for (std::size_t j = 0; j < slopes.size(); ++j) {
-          const SlopesBehind behind(pieces.length_m, slopes[j], slopes[k]);
-          row[BendingTable::kShortening + j] = behind.ByMass(points, edges);
+      for (std::size_t four = 0; four < shapes.fours(); ++four) {
+        const auto at = [&](const BeamPlace& place) { return FourAt(place, shapes.Four(four)); };
+        FourColumns columns;
+        columns.fill(0.0);
+        const FourStations at_pivot = at(pivot);
+        columns[BendingTable::kPivotDeflection] = at_pivot.deflection;
+        columns[BendingTable::kPivotSlope] = at_pivot.slope_1_m;
+        columns[BendingTable::kUnitSlope] = at(unit).slope_1_m;
+        for (std::size_t g = 0; g < gyros.size(); ++g)
+          columns[BendingTable::kGyroSlope + g] = at(gyros[g]).slope_1_m;
+        for (std::size_t j = 0; j < count; ++j) {
+          const SlopesBehind behind(places.piece_m(), Values(slopes[j / 4].data()) + j % 4, slopes[four]);
+          columns[BendingTable::kShortening + j] = behind.ByMass(points, at_points);
           if (boosters)
-            row[BendingTable::kBehindBoosters + j] =
-                behind.At(EdgeBefore(pieces, boosters->attachment_station_m));
+            columns[BendingTable::kBehindBoosters + j] =
+                behind.At(places.EdgeBefore(boosters->attachment_station_m));
         }
         if (boosters) {
-          const StationShape link = at(boosters->attachment_station_m);
-          row[BendingTable::kBoosterDeflection] =
-              link.deflection +
-              link.slope_1_m * (boosters->nozzle_station_m - boosters->attachment_station_m);
-          row[BendingTable::kBoosterSlope] = link.slope_1_m;
+          const FourStations at_link = at(link);
+          columns[BendingTable::kBoosterDeflection] =
+              at_link.deflection +
+              at_link.slope_1_m * (boosters->nozzle_station_m - boosters->attachment_station_m);
+          columns[BendingTable::kBoosterSlope] = at_link.slope_1_m;
         }
         for (std::size_t i = 0; i < loads.lift.pieces.size(); ++i) {
           const LiftPiece& piece = loads.lift.pieces[i];
-          row[BendingTable::kStraightLift] += (piece.area_to - piece.area_from) * deflections[k][i];
-          row[BendingTable::kStraightLift + 1] += piece.shift_1_m * deflections[k][i];
+          const FourShapes deflection = lifts[four].at[PlanePlaces::MiddleOf(i)].deflection;
+          FourShapes* const lift = &columns[BendingTable::kStraightLift];
+          lift[0] = lift[0] + (piece.area_to - piece.area_from) * deflection;
+          lift[1] = lift[1] + piece.shift_1_m * deflection;
         }
-        AddLift(loads, deflections, lifts[k], row.data());
+        AddLift(loads, lifts[four], lifts, count, columns);
         if (upper) {
-          const StationShape mean =
-              upper->MeanOf([&](const MassPoint&, std::size_t i) { return at_upper[i].Of(mode); });
-          row[BendingTable::kUpperShift] = mean.deflection;
-          row[BendingTable::kUpperTurn] = mean.slope_1_m;
+          const FourStations mean =
+              upper->MeanOf([&](const MassPoint&, std::size_t i) { return at(at_upper[i].place); });
+          columns[BendingTable::kUpperShift] = mean.deflection;
+          columns[BendingTable::kUpperTurn] = mean.slope_1_m;
         }
-        const std::vector<StationShape> shapes = ShapesAtPlaces(at_points, mode);
-        const auto at_point = [&](const MassPoint&, std::size_t i) { return shapes[i]; };
+        std::vector<FourStations> of_points;
+        of_points.reserve(points.size());
+        for (const MassPlace& m : at_points) of_points.push_back(at(m.place));
+        const auto at_point = [&](const MassPoint&, std::size_t i) { return of_points[i]; };
         for (std::size_t i = 0; i < kLoadStations && loads.station_m[i] > 0.0; ++i)
-          row[BendingTable::kMomentAt + i] = InertiaMoment(points, loads.station_m[i], at_point);
-        table.rows.insert(table.rows.end(), row.begin(), row.end());
+          columns[BendingTable::kMomentAt + i] = InertiaMoment(points, loads.station_m[i], at_point);
+        for (std::size_t mode = 4 * four; mode < std::min(count, 4 * four + 4); ++mode) {
+          const std::size_t row = table.rows.size();
+          const double* const lane = Values(columns.data()) + mode % 4;
+          for (std::size_t column = 0; column < columns.size(); ++column)
+            table.rows.push_back(lane[4 * column]);
+          table.rows[row + BendingTable::kFrequency] = level.modes[mode].frequency_rad_s;
+          table.rows[row + BendingTable::kInverseMass] = 1.0 / level.modes[mode].generalized_mass_kg;
+        }
       }
     }
   }

@@ -3,6 +3,7 @@
 #pragma once
 
 #include <array>
+#include <memory>
 #include <vector>
 
 #include "core/math/aligned_rows.h"
@@ -29,6 +30,8 @@ enum LiftEffect : int {
 /// by slender-body theory, and in proportion to the shift of the centre of pressure aft of it
 /// (lift_distribution.h).
 enum LiftCause : int { kSlopeSlender, kSlopeShift, kRateSlender, kRateShift, kLiftCauses };
+
+class BendingPlaces;  ///< places of a stack's mesh, found once for all masses (bending_places.h)
 
 struct BendingTable {
   /// Columns. Frequency (rad/s) and 1 / generalised mass. At the pivot: deflection and slope. Slopes at the
@@ -74,6 +77,8 @@ struct BendingTable {
   int planes = 1;                     ///< 1: plane z is plane y
   std::vector<double> propellant_kg;  ///< of the levels, falling
   AlignedRows rows;                   ///< by plane, level, mode; linear between levels, held beyond
+  /// Of the mesh of its modes (null: made up).
+  std::shared_ptr<const BendingPlaces> places;
 
   /// A column at a propellant, for uses outside flights.
   double At(int plane, int mode, int column, double propellant_kg) const;
@@ -96,7 +101,10 @@ int ModesBelow(const Vehicle& vehicle, const StackModes& stack, double highest_r
 /// Stability", 1.11; drag taken as carried like thrust). The thrust of boosters enters the beam at their
 /// link, so the beam behind carries so much less: that times the shortening `behind` the link, without the
 /// weight.
+///
+/// `near`: the table of the same stack with its nominal masses, or null. It saves time where the mesh is the
+/// same.
 BendingTable BuildBendingTable(const Vehicle& vehicle, const StackModes& stack, const LoadTable& loads,
-                               int modes);
+                               int modes, const BendingTable* near = nullptr);
 
 }  // namespace dispersa

@@ -20,16 +20,19 @@ struct FreeBody {
   /// The mean displacement and rotation of the body by a shape. A rigid motion by these has the momentum and
   /// the angular momentum of the masses.
   template <typename Shape>
-  StationShape MeanOf(const Shape& at) const {
-    StationShape sum;
+  auto MeanOf(const Shape& at) const {
+    decltype(at(points[0], 0)) sum;
+    sum.deflection = sum.slope_1_m = 0.0;
     for (std::size_t i = 0; i < points.size(); ++i) {
       const MassPoint& m = points[i];
-      const StationShape shape = m.Move(at(m, i));
-      sum.deflection += m.mass_kg * shape.deflection;
-      sum.slope_1_m +=
-          m.mass_kg * shape.deflection * (m.cg_station_m - cg_station_m) + m.inertia_kg_m2 * shape.slope_1_m;
+      const auto shape = m.Move(at(m, i));
+      sum.deflection = sum.deflection + m.mass_kg * shape.deflection;
+      sum.slope_1_m = sum.slope_1_m + (m.mass_kg * shape.deflection * (m.cg_station_m - cg_station_m) +
+                                       m.inertia_kg_m2 * shape.slope_1_m);
     }
-    return {sum.deflection / mass_kg, sum.slope_1_m / inertia_kg_m2};
+    sum.deflection = sum.deflection / mass_kg;
+    sum.slope_1_m = sum.slope_1_m / inertia_kg_m2;
+    return sum;
   }
 
   /// The integral over its masses of one shape times another, kg: the work of the inertia of `b` on `a`.

@@ -75,11 +75,4 @@ FreeFreeModes SolveFreeFree(const std::vector<double>& stations, const std::vect
   return ModesAmong(DisplacementsByEnergy(elements), stations, mass, count);
 }
 
-FreeFreeModes SolveFreeFreeNear(const std::vector<double>& stations, const FreeFreeModes& basis,
-                                const Eigen::MatrixXd& mass, int count) {
-  Eigen::MatrixXd shape = basis.shape;  // whose energies are the squares of the frequencies
-  for (Eigen::Index i = 0; i < shape.cols(); ++i) shape.col(i) /= basis.frequency_rad_s[i];
-  return ModesAmong(std::move(shape), stations, mass, count);
-}
-
 }  // namespace dispersa

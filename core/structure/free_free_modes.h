@@ -34,10 +34,4 @@ struct FreeFreeModes {
 FreeFreeModes SolveFreeFree(const std::vector<double>& stations, const std::vector<BeamElement>& elements,
                             const Eigen::MatrixXd& mass, int count);
 
-/// The same for masses near those of `basis`, which are modes of the same mesh and stiffness. The method of
-/// Rayleigh and Ritz combines the shapes of `basis` and the rigid motions. Frequencies are too high by the
-/// square of the shapes' error; near_modes_test has the limits. It takes a fiftieth of the work.
-FreeFreeModes SolveFreeFreeNear(const std::vector<double>& stations, const FreeFreeModes& basis,
-                                const Eigen::MatrixXd& mass, int count);
-
 }  // namespace dispersa

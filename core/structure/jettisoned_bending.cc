@@ -61,9 +61,12 @@ const JettisonedBending::Lighter& JettisonedBending::Of(unsigned gone) const {
   const std::lock_guard<std::mutex> lock(mutex_);
   std::unique_ptr<const Lighter>& made = made_[gone];
   if (!made) {
-    const StackModes* const near = near_ ? near_->Of(gone).modes.get() : nullptr;
-    auto modes = std::make_shared<const StackModes>(BuildStackModes(*vehicle_, stage_, gone, near));
-    auto table = std::make_shared<const BendingTable>(BuildBendingTable(*vehicle_, *modes, *loads_, modes_));
+    const Lighter* const near = near_ ? &near_->Of(gone) : nullptr;
+    auto modes =
+        std::make_shared<const StackModes>(near ? BuildStackModesNear(*vehicle_, *near->modes, modes_)
+                                                : BuildStackModes(*vehicle_, stage_, gone));
+    auto table = std::make_shared<const BendingTable>(
+        BuildBendingTable(*vehicle_, *modes, *loads_, modes_, near ? near->table.get() : nullptr));
     made = std::make_unique<const Lighter>(Lighter{std::move(modes), std::move(table)});
   }
   return *made;

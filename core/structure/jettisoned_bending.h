@@ -27,7 +27,7 @@ struct ModalPassage {
 class JettisonedBending {
  public:
   /// `whole` and `table`: with all bodies. The vehicle has a beam without a table of modes. `near`: that of
-  /// the same vehicle with other masses, or null (BuildStackModes).
+  /// the same vehicle with its nominal masses, or null (BuildStackModesNear).
   JettisonedBending(std::shared_ptr<const Vehicle> vehicle, std::shared_ptr<const StackModes> whole,
                     std::shared_ptr<const BendingTable> table, std::shared_ptr<const LoadTable> loads,
                     std::shared_ptr<const JettisonedBending> near = nullptr);

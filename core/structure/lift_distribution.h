@@ -27,14 +27,14 @@ struct LiftDistribution {
   /// The effect of an incidence that varies along the body. In slender-body theory the momentum of the
   /// cross-flow per length is A alpha. A piece of the body gets its increase, d(A alpha). A curved body
   /// therefore has lift even where its cross-section does not grow. The share of `shift` sees the incidence
-  /// at its place. `incidence_at` gives the incidence at a station. `take` receives each piece's middle, and
-  /// its force for a slope of 1 and for a shift of 1 m.
+  /// at its place. `incidence_at` gives the incidence at a station, or those of several modes side by side.
+  /// `take` receives each piece's middle, and its force for a slope of 1 and for a shift of 1 m.
   template <typename Incidence, typename Take>
   void ForEach(const Incidence& incidence_at, const Take& take) const {
     if (pieces.empty()) return;
-    double before = pieces.front().area_from * incidence_at(pieces.front().from_m);
+    auto before = pieces.front().area_from * incidence_at(pieces.front().from_m);
     for (const LiftPiece& piece : pieces) {
-      const double after = piece.area_to * incidence_at(piece.to_m);
+      const auto after = piece.area_to * incidence_at(piece.to_m);
       take(piece.Middle(), after - before, piece.shift_1_m * incidence_at(piece.Middle()));
       before = after;
     }

@@ -16,17 +16,19 @@ struct MassPoint {
   double mass_kg = 0.0;
   double inertia_kg_m2 = 0.0;  ///< about its own centre, across the axis
 
-  /// The motion of the part, as a rigid body that is fixed to the beam at `fixed_at_m`.
-  StationShape Move(StationShape at_fixed) const {
-    at_fixed.deflection += at_fixed.slope_1_m * (cg_station_m - fixed_at_m);
+  /// The motion of the part, as a rigid body that is fixed to the beam at `fixed_at_m`. A shape is a
+  /// StationShape, or has the same members for several modes side by side.
+  template <typename Shape>
+  Shape Move(Shape at_fixed) const {
+    at_fixed.deflection = at_fixed.deflection + at_fixed.slope_1_m * (cg_station_m - fixed_at_m);
     return at_fixed;
   }
 };
 
 /// The masses, from the nose aft by their stations on the beam. Spread masses are taken by Gauss's rule of
-/// three points between the stations `cuts_m`, which is exact to the fifth power. So sums over modes are cut
-/// at the nodes, between which a mode is a cubic. Cells of half the length change a moment of a mode by less
-/// than 1e-6 (structure_near_modes_test).
+/// three points between the stations `cuts_m` (in any order), which is exact to the fifth power. So sums over
+/// modes are cut at the nodes, between which a mode is a cubic. Cells of half the length change a moment of a
+/// mode by less than 1e-6 (structure_near_modes_test).
 std::vector<MassPoint> MassPointsOf(const BeamMasses& masses, std::vector<double> cuts_m);
 
 /// A shape that is a function of the beam's station, for the sums over points.
@@ -40,12 +42,13 @@ auto AtStations(const Shape& shape) {
 /// slope); g is the radius of gyration of the mass about its own section. `points` are cut at the station.
 /// `shape_at` returns the StationShape of the beam at a point, by the point and its number.
 template <typename Shape>
-double InertiaMoment(const std::vector<MassPoint>& points, double station_m, const Shape& shape_at) {
-  double sum = 0.0;
+auto InertiaMoment(const std::vector<MassPoint>& points, double station_m, const Shape& shape_at) {
+  decltype(shape_at(points[0], 0).deflection) sum = 0.0;
   for (std::size_t i = 0; i < points.size() && points[i].fixed_at_m <= station_m; ++i) {
     const MassPoint& m = points[i];
-    const StationShape shape = m.Move(shape_at(m, i));
-    sum += m.mass_kg * shape.deflection * (station_m - m.cg_station_m) - m.inertia_kg_m2 * shape.slope_1_m;
+    const auto shape = m.Move(shape_at(m, i));
+    sum = sum +
+          (m.mass_kg * shape.deflection * (station_m - m.cg_station_m) - m.inertia_kg_m2 * shape.slope_1_m);
   }
   return sum;
 }

@@ -1,5 +1,7 @@
 #include "core/structure/mode_tracking.h"
 
+#include <utility>
+
 #include "core/structure/beam_elements.h"
 
 namespace dispersa {
@@ -16,6 +18,10 @@ std::vector<ModeMatch> MatchModes(const Eigen::MatrixXd& earlier, const Eigen::M
     for (Eigen::Index column = 0; column < mac.cols(); ++column)
       mac(row, column) /= earlier_norm[row] * later_norm[column];
   }
+  return PairByFallingMac(std::move(mac), product);
+}
+
+std::vector<ModeMatch> PairByFallingMac(Eigen::MatrixXd mac, const Eigen::MatrixXd& product) {
   std::vector<ModeMatch> matches(static_cast<std::size_t>(mac.rows()));
   for (Eigen::Index pair = 0; pair < mac.rows(); ++pair) {
     Eigen::Index row = 0, column = 0;

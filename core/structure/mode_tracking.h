@@ -20,4 +20,7 @@ struct ModeMatch {
 std::vector<ModeMatch> MatchModes(const Eigen::MatrixXd& earlier, const Eigen::MatrixXd& later,
                                   const Eigen::MatrixXd& mass);
 
+/// The same pairs, from the criterion of each row with each column, and from products whose signs count.
+std::vector<ModeMatch> PairByFallingMac(Eigen::MatrixXd mac, const Eigen::MatrixXd& product);
+
 }  // namespace dispersa

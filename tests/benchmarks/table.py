@@ -2,10 +2,11 @@
 tuner, campaigns in process and over DDS, memory and instructions.
 
 usage: table.py BUILD [OLD_BUILD]
-       table.py --instructions BUILD
+       table.py --instructions BUILD [--bending]
 BUILD is a build folder with the benchmarks (target by_hand) and programs; OLD_BUILD, one of another commit, gives ratios. What is
 compared is measured in turn, so that a change of the machine's load meets both: medians of five turns, ratios with
-their least and greatest. Callgrind counts where valgrind is installed; --instructions counts and does nothing else.
+their least and greatest. Callgrind counts where valgrind is installed; --instructions counts and does nothing else,
+with --bending also flights that bend, without drawn masses and with them.
 """
 import json
 import os
@@ -21,6 +22,8 @@ import time
 
 ROOT = pathlib.Path(__file__).resolve().parents[2]
 TABLE3 = ROOT / "campaigns/table3.yaml"
+BENDING = {"bending": ROOT / "campaigns/table3_flexible.yaml",
+           "bending, drawn masses": ROOT / "tests/benchmarks/table3_flexible_masses.yaml"}
 TURNS = 5
 CASES = 400
 EVALUATIONS = 64  # the fewest that the tuner takes
@@ -101,7 +104,7 @@ def tuner(dispersa):
         return {"s": time.monotonic() - begin}
 
 
-def instructions(dispersa):
+def instructions(dispersa, flown=TABLE3):
     """Millions a flight in process on one thread: what 12 cases take beyond 4. A build that cannot leave histories out
     flies each case twice; both count as flights."""
     told = output(dispersa, "run", "--help")
@@ -111,7 +114,7 @@ def instructions(dispersa):
     def count(cases):
         with tempfile.TemporaryDirectory() as folder:
             done = subprocess.run(["valgrind", "--tool=callgrind", f"--callgrind-out-file={folder}/profile", dispersa,
-                                   "run", TABLE3, "--cases", str(cases), "--quiet", "--out", f"{folder}/out",
+                                   "run", flown, "--cases", str(cases), "--quiet", "--out", f"{folder}/out",
                                    "--workers", "0", *options],
                                   text=True, capture_output=True, timeout=1800, check=False)
             return int(re.search(r"Collected : (\d+)", done.stderr).group(1))
@@ -177,6 +180,9 @@ def main(build, old_build=None):
     if shutil.which("valgrind"):
         counted = instructions(dispersa)
         row("instructions a flight, in process", [counted], "M")
+        for what, flown in BENDING.items():
+            of_bending = instructions(dispersa, flown)
+            row(f"instructions, {what}", [of_bending], "M", f"x {of_bending / counted:.2f} of the rigid flight")
         if old_build:
             other = instructions(old_build / "bin/dispersa")
             row("instructions a flight, other build", [other], "M", f"x {other / counted:.2f} of this one")
@@ -184,6 +190,10 @@ def main(build, old_build=None):
 
 if __name__ == "__main__":
     if sys.argv[1] == "--instructions":
-        print(f"instructions a flight: {instructions(pathlib.Path(sys.argv[2]) / 'bin/dispersa'):.1f} M")
+        rigid = instructions(pathlib.Path(sys.argv[2]) / "bin/dispersa")
+        print(f"instructions a flight: {rigid:.1f} M", flush=True)
+        for name, of_bending in BENDING.items() if "--bending" in sys.argv else ():
+            more = instructions(pathlib.Path(sys.argv[2]) / "bin/dispersa", of_bending)
+            print(f"instructions a flight, {name}: {more:.1f} M, {more / rigid:.2f} of it", flush=True)
     else:
         main(*(pathlib.Path(argument).resolve() for argument in sys.argv[1:]))

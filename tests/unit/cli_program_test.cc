@@ -5,6 +5,7 @@
 
 #include <array>
 #include <cstdio>
+#include <fstream>
 #include <nlohmann/json.hpp>
 #include <sstream>
 
@@ -113,6 +114,43 @@ TEST(CliProgram, ModesShowsHowAVehicleBends) {
   EXPECT_GT(modes[0]["generalized_mass_kg"], 0.0);
   EXPECT_EQ(modes[0]["stations"][0]["name"], "gyro");
   EXPECT_EQ(modes[0]["shape"]["station_m"].size(), modes[0]["shape"]["slope_1_m"].size());
+}
+
+// Stack 1 has its boosters first, at levels over their burn and one behind the separation; then it has none.
+TEST(CliProgram, ModesTellsAStackWithItsBoostersAndWithout) {
+  const InputFiles files;
+  std::ofstream(files.Path("boosted.yaml"))
+      << "schema: dispersa/vehicle/1\nbased_on: " DISPERSA_CAMPAIGNS "/vehicles/slv4_flexible.yaml\n"
+      << "boosters:\n  count: 4\n  dry_mass_kg: 80\n  propellant_mass_kg: 270\n  radius_m: 0.97\n"
+      << "  diameter_m: 0.62\n  top_station_m: 21\n  bottom_station_m: 26.5\n  nozzle_station_m: 26.4\n"
+      << "  attachment_station_m: 23\n  separation_delay_s: 0.5\n"
+      << "  motor: {thrust_kn: 25, burning_time_s: 30, ignition_rise_s: 0.2, tail_off_s: 0.4}\n"
+      << "  grain: {top_station_m: 24, bottom_station_m: 24.7, outer_diameter_m: 0.6, inner_diameter_m: "
+         "0.2}\n";
+  const Output output = Dispersa("modes " + files.Path("boosted.yaml") + " --json");
+  EXPECT_EQ(output.code, 0) << output.error;
+  const auto stacks = nlohmann::json::parse(output.text)["stacks"];
+  constexpr std::size_t kLevels = 11;
+  ASSERT_EQ(stacks.size(), 1 + 5 * kLevels);
+  const auto &with = stacks[0], &without = stacks[kLevels + 1];
+  for (std::size_t i = 0; i <= kLevels; ++i) {
+    EXPECT_EQ(stacks[i]["stage"], 1);
+    EXPECT_EQ(stacks[i]["jettisoned"], false);
+  }
+  EXPECT_EQ(without["stage"], 1);
+  EXPECT_EQ(without["jettisoned"], true);
+  EXPECT_EQ(stacks[2 * kLevels + 1]["stage"], 2);
+  EXPECT_EQ(with["propellant_kg"], without["propellant_kg"]);
+  EXPECT_NEAR(double(with["mass_kg"]) - double(without["mass_kg"]), 4 * (80.0 + 270.0), 1e-6);
+  EXPECT_GT(with["cg_station_m"], without["cg_station_m"]);
+  // Mass without stiffness.
+  EXPECT_LT(with["modes"][0]["frequency_hz"], without["modes"][0]["frequency_hz"]);
+  // Their propellant leaves with the stage's: at their burnout 4 dry boosters are left.
+  const double burnt_out = stacks[kLevels - 1]["propellant_kg"];
+  double core_kg = without["mass_kg"];
+  core_kg -= double(without["propellant_kg"]) - burnt_out;
+  EXPECT_NEAR(double(stacks[kLevels - 1]["mass_kg"]), core_kg + 4 * 80.0, 0.1);
+  EXPECT_LT(double(stacks[kLevels]["propellant_kg"]), burnt_out);
 }
 
 TEST(CliProgram, ModesOfARigidOrWrongVehicleAreBadInput) {

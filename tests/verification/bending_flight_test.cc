@@ -20,6 +20,7 @@
 #include "core/margins/linear_axis.h"
 #include "core/structure/beam_elements.h"
 #include "core/structure/mass_points.h"
+#include "tests/bending_in_space.h"
 #include "tests/slv4_flight.h"
 
 namespace dispersa::bending_flight_test {
@@ -33,30 +34,9 @@ Vehicle Flexible(int modes = 3) {
   return vehicle;
 }
 
-// The first stack in space, 20 s after ignition, where neither air nor gravity bends anything.
-struct InSpace {
-  explicit InSpace(const Vehicle& v) : vehicle(v), plant(BuildNominalPlant(v)) {
-    AddBending(v, kTick_s, plant);
-    plant.jet_damping = false;
-    phase.burning = true;
-    RigidBodyState s;
-    s.p_EoC_I = Vector3(plant.environment.earth.equatorial_radius_m + 2e6, 0.0, 0.0);
-    WriteState(s, y.data());
-  }
-  std::array<double, kLauncherSize> Rates() const {
-    std::array<double, kLauncherSize> dydt{};
-    LauncherModel(plant).Derivative(phase, time_s, y.data(), dydt.data());
-    return dydt;
-  }
-  double propellant_kg() const { return plant.stacks[0].burn.Propellant(time_s); }
-  const BendingTable& table() const { return *plant.stacks[0].bending; }
-  double At(int mode, int column) const { return table().At(0, mode, column, propellant_kg()); }
-
-  Vehicle vehicle;
-  LauncherPlant plant;
-  LauncherPhase phase;
-  double time_s = 20.0;
-  std::array<double, kLauncherSize> y{};
+// 20 s after ignition.
+struct InSpace : BendingInSpace {
+  explicit InSpace(const Vehicle& v) : BendingInSpace(v, 20.0) {}
 };
 
 // What a lateral force at the pivot bends the beam of finite elements by: its slope at a station against that

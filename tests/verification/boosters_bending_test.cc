@@ -22,6 +22,7 @@
 #include "core/structure/free_body.h"
 #include "core/trajectory/ascent.h"
 #include "core/vehicle/mass.h"
+#include "tests/bending_in_space.h"
 #include "tests/slv4_flight.h"
 
 namespace dispersa::boosters_bending_test {
@@ -201,7 +202,7 @@ TEST(BoostersBending, DrawnMassesHaveModesNearTheNominalOnes) {
   const Vehicle vehicle = WithDispersedMasses(nominal, inputs);
   for (const unsigned gone : {0u, kBoostersGone}) {
     const StackModes near = BuildStackModes(nominal, 0, gone);
-    const StackModes sought = BuildStackModes(vehicle, 0, gone, &near),
+    const StackModes sought = BuildStackModesNear(vehicle, near, 3),
                      whole = BuildStackModes(vehicle, 0, gone);
     ASSERT_EQ(sought.levels[0].size(), whole.levels[0].size());
     for (std::size_t level = 0; level < whole.levels[0].size(); ++level)
@@ -215,36 +216,18 @@ TEST(BoostersBending, DrawnMassesHaveModesNearTheNominalOnes) {
   }
 }
 
-// The first stack in space, in the middle of the boosters' burn, which is a level of the table.
-struct InSpace {
-  explicit InSpace(const Vehicle& v) : vehicle(v), plant(PlantOf(v)) {
-    plant.jet_damping = plant.flow_coriolis = false;
-    phase.burning = phase.boosting = true;
+// In the middle of the boosters' burn, which is a level of the table.
+struct InSpace : BendingInSpace {
+  explicit InSpace(const Vehicle& v) : BendingInSpace(v, 0.5 * kBoost_s) {
+    plant.flow_coriolis = false;
+    phase.boosting = true;
     phase.boosters_burning = (1u << kCount) - 1u;
-    RigidBodyState s;
-    s.p_EoC_I = Vector3(plant.environment.earth.equatorial_radius_m + 2e6, 0.0, 0.0);
-    WriteState(s, y.data());
-  }
-  std::array<double, kLauncherSize> Rates() const {
-    std::array<double, kLauncherSize> dydt{};
-    LauncherModel(plant).Derivative(phase, time_s, y.data(), dydt.data());
-    return dydt;
   }
   void Change(const std::function<void(BoosterSet&)>& change) {
     BoosterSet set = *plant.boosters;
     change(set);
     plant.boosters = std::make_shared<const BoosterSet>(std::move(set));
   }
-  double propellant_kg() const { return plant.stacks[0].burn.Propellant(time_s); }
-  double At(int mode, int column) const {
-    return plant.stacks[0].bending->At(0, mode, column, propellant_kg());
-  }
-
-  Vehicle vehicle;
-  LauncherPlant plant;
-  LauncherPhase phase;
-  double time_s = 0.5 * kBoost_s;
-  std::array<double, kLauncherSize> y{};
 };
 
 // By how much a side force at the boosters' nozzles bends the finite elements: the slope at the nose against

@@ -1,0 +1,18 @@
+// One bending mode of a beam.
+#pragma once
+
+#include <vector>
+
+namespace dispersa {
+
+struct BendingMode {
+  double frequency_rad_s = 0.0;
+  double generalized_mass_kg = 0.0;
+  /// Modal assurance criterion with the same mode at the level before, which has more propellant. Of drawn
+  /// masses: with the same mode of the nominal masses.
+  double mac = 1.0;
+  std::vector<double> deflection;  ///< at the nodes
+  std::vector<double> slope_1_m;
+};
+
+}  // namespace dispersa

@@ -1,0 +1,315 @@
+#include "core/structure/near_modes.h"
+
+#include <algorithm>
+#include <cmath>
+#include <utility>
+
+#include "core/math/functions.h"
+#include "core/math/matrices.h"
+
+namespace dispersa {
+
+namespace {
+
+/// Shapes beyond those that are sought: they carry the error of these.
+constexpr int kFurtherShapes = 3;
+constexpr int kMostTurns = 10;
+
+// The motion of a free beam as a rigid body: by 1 m, and about its centre of gravity by 1 rad.
+struct RigidMotion {
+  std::vector<double> push, turn;      // inertia of both at the rows
+  std::vector<double> turn_m;          // deflection of the turn at the nodes
+  double mass_kg = 0.0, inertia_kg_m2 = 0.0;
+
+  RigidMotion(const NodeMasses& masses, const std::vector<double>& arms_m)
+      : push(masses.Times(std::vector<double>(arms_m.size(), 1.0), 0.0)),
+        turn(masses.Times(arms_m, 1.0)),
+        turn_m(arms_m) {
+    // About the middle of the beam first, so that nothing cancels.
+    double first = 0.0;
+    for (std::size_t i = 0; i < arms_m.size(); ++i) {
+      mass_kg += push[2 * i];
+      first += turn[2 * i];
+      inertia_kg_m2 += turn[2 * i] * arms_m[i] + turn[2 * i + 1];
+    }
+    const double arm = first / mass_kg;
+    inertia_kg_m2 -= first * arm;
+    for (double& m : turn_m) m -= arm;
+    for (std::size_t row = 0; row < turn.size(); ++row) turn[row] -= arm * push[row];
+  }
+
+  // Adds the inertia of a rigid motion, such that no force and no moment is left.
+  void Balance(ShapeColumns& loads) const {
+    for (std::size_t k = 0; k < loads.fours(); ++k) {
+      FourShapes* const f = loads.Four(k);
+      FourShapes force = 0.0, moment = 0.0;
+      for (std::size_t i = 0; i < turn_m.size(); ++i) {
+        force = force + f[2 * i];
+        moment = Fma(FourShapes(turn_m[i]), f[2 * i], moment + f[2 * i + 1]);
+      }
+      const FourShapes pushed = force / FourShapes(-mass_kg), turned = moment / FourShapes(-inertia_kg_m2);
+      for (std::size_t row = 0; row < loads.rows; ++row)
+        f[row] = Fma(FourShapes(push[row]), pushed, Fma(FourShapes(turn[row]), turned, f[row]));
+    }
+  }
+
+  // Takes the rigid motion from shapes, in the sense of the masses.
+  void TakeFrom(ShapeColumns& shapes) const {
+    for (std::size_t k = 0; k < shapes.fours(); ++k) {
+      FourShapes* const x = shapes.Four(k);
+      FourShapes force = 0.0, moment = 0.0;
+      for (std::size_t row = 0; row < shapes.rows; ++row) {
+        force = Fma(FourShapes(push[row]), x[row], force);
+        moment = Fma(FourShapes(turn[row]), x[row], moment);
+      }
+      const FourShapes pushed = force / FourShapes(-mass_kg), turned = moment / FourShapes(-inertia_kg_m2);
+      for (std::size_t i = 0; i < turn_m.size(); ++i) {
+        x[2 * i] = Fma(FourShapes(turn_m[i]), turned, x[2 * i] + pushed);
+        x[2 * i + 1] = x[2 * i + 1] + turned;
+      }
+    }
+  }
+};
+
+// a' b. Both have as many columns. Of a product that is symmetric a half is computed.
+Eigen::MatrixXd ProductOf(const ShapeColumns& a, const ShapeColumns& b, bool is_symmetric) {
+  const std::size_t fours = a.fours();
+  Eigen::MatrixXd product(4 * fours, 4 * fours);
+  for (std::size_t p = 0; p < fours; ++p)
+    for (std::size_t q = is_symmetric ? p : 0; q < fours; ++q) {
+      const FourShapes* x = a.Four(p);
+      const FourShapes* y = b.Four(q);
+      FourShapes sum[4] = {0.0, 0.0, 0.0, 0.0};
+      for (std::size_t row = 0; row < a.rows; ++row) {
+        const double* const of_row = Values(x + row);
+        for (std::size_t lane = 0; lane < 4; ++lane)
+          sum[lane] = Fma(FourShapes(of_row[lane]), y[row], sum[lane]);
+      }
+      for (std::size_t i = 0; i < 4; ++i)
+        for (std::size_t j = 0; j < 4; ++j) {
+          const Eigen::Index row = static_cast<Eigen::Index>(4 * p + i),
+                             column = static_cast<Eigen::Index>(4 * q + j);
+          product(row, column) = Values(sum)[4 * i + j];
+          if (is_symmetric) product(column, row) = product(row, column);
+        }
+    }
+  return product;
+}
+
+void ScaleColumns(const double* factor, ShapeColumns& columns) {
+  for (std::size_t k = 0; k < columns.fours(); ++k) {
+    FourShapes* const x = columns.Four(k);
+    const FourShapes by = _mm256_loadu_pd(factor + 4 * k);
+    for (std::size_t row = 0; row < columns.rows; ++row) x[row] = x[row] * by;
+  }
+}
+
+// Modes among shapes of these stiffnesses and masses.
+std::optional<RitzModes> FindAmong(const Eigen::MatrixXd& stiffness, const Eigen::MatrixXd& mass) {
+  const Eigen::Index size = stiffness.rows();
+  Eigen::MatrixXd root = stiffness;  // L of stiffness = L L'
+  for (Eigen::Index j = 0; j < size; ++j) {
+    for (Eigen::Index k = 0; k < j; ++k)
+      for (Eigen::Index i = j; i < size; ++i) root(i, j) -= root(i, k) * root(j, k);
+    if (!(root(j, j) > 0.0)) return {};
+    const double inverse = 1.0 / std::sqrt(root(j, j));
+    for (Eigen::Index i = j; i < size; ++i) root(i, j) *= inverse;
+  }
+  // L^-1 mass L'^-1: masses of shapes of unit stiffness. The greatest are those of the lowest modes.
+  const auto solve = [&](Eigen::MatrixXd& right) {
+    for (Eigen::Index column = 0; column < size; ++column)
+      for (Eigen::Index j = 0; j < size; ++j) {
+        right(j, column) /= root(j, j);
+        for (Eigen::Index i = j + 1; i < size; ++i) right(i, column) -= root(i, j) * right(j, column);
+      }
+  };
+  Eigen::MatrixXd by_stiffness = mass;
+  solve(by_stiffness);
+  by_stiffness.transposeInPlace();
+  solve(by_stiffness);
+  const auto [values, vectors] = EigenOfSymmetric(by_stiffness);
+  RitzModes modes{Eigen::VectorXd(size), Eigen::MatrixXd(size, size)};
+  for (Eigen::Index mode = 0; mode < size; ++mode) {
+    const Eigen::Index from = size - 1 - mode;
+    if (!(values[from] > 0.0)) return {};
+    modes.stiffness[mode] = 1.0 / values[from];
+    const double scale = std::sqrt(modes.stiffness[mode]);
+    for (Eigen::Index j = size; j-- > 0;) {
+      double rest = vectors(j, from) * scale;
+      for (Eigen::Index i = j + 1; i < size; ++i) rest -= root(i, j) * modes.share(i, mode);
+      modes.share(j, mode) = rest / root(j, j);
+    }
+  }
+  return modes;
+}
+
+// By how much a turn has changed a mode: the root of the mass of the difference. `before` are the masses of
+// the shapes that the turn began with, times the stiffness of both.
+double ChangeOf(const RitzModes& modes, Eigen::Index mode, const Eigen::MatrixXd& before) {
+  double sum = 0.0;
+  for (Eigen::Index j = 0; j < before.cols(); ++j)
+    for (Eigen::Index i = 0; i < before.rows(); ++i)
+      sum += modes.share(i, mode) * before(i, j) * modes.share(j, mode);
+  return std::sqrt(std::max(sum / Square(modes.stiffness[mode]) - 1.0, 0.0));
+}
+
+// Sums of columns with the shares of each mode.
+ShapeColumns Combined(const ShapeColumns& columns, const Eigen::MatrixXd& share, std::size_t fours) {
+  ShapeColumns combined(columns.rows, fours);
+  for (std::size_t to = 0; to < fours; ++to)
+    for (std::size_t from = 0; from < columns.fours(); ++from) {
+      FourShapes by[4];
+      for (std::size_t lane = 0; lane < 4; ++lane) {
+        const auto at = [&](std::size_t j) {
+          return share(static_cast<Eigen::Index>(4 * from + lane), static_cast<Eigen::Index>(4 * to + j));
+        };
+        by[lane] = _mm256_set_pd(at(3), at(2), at(1), at(0));
+      }
+      const FourShapes* const x = columns.Four(from);
+      FourShapes* const y = combined.Four(to);
+      for (std::size_t row = 0; row < columns.rows; ++row) {
+        const double* const of_row = Values(x + row);
+        FourShapes sum = from == 0 ? FourShapes(0.0) : y[row];
+        for (std::size_t lane = 0; lane < 4; ++lane) sum = Fma(FourShapes(of_row[lane]), by[lane], sum);
+        y[row] = sum;
+      }
+    }
+  return combined;
+}
+
+// The found mode of each of the first `count` nominal ones. `product`: inertia of the nominal shapes times the
+// shapes that `found` combines.
+std::vector<ModeMatch> MatchesOf(const Eigen::MatrixXd& product, const RitzModes& found,
+                                 const Eigen::VectorXd& nominal_mass, int count) {
+  const Eigen::MatrixXd of_modes = product.topRows(count) * found.share;
+  Eigen::MatrixXd mac = of_modes.cwiseAbs2();
+  for (Eigen::Index i = 0; i < mac.rows(); ++i) mac.row(i) /= nominal_mass[i];
+  return PairByFallingMac(std::move(mac), of_modes);
+}
+
+// The matched modes, scaled to a largest deflection of 1.
+std::optional<std::vector<BendingMode>> ModesOf(const ShapeColumns& bent, const RitzModes& found,
+                                                const std::vector<ModeMatch>& matches, double least_mac) {
+  const Eigen::Index count = static_cast<Eigen::Index>(matches.size());
+  Eigen::MatrixXd share = Eigen::MatrixXd::Zero(found.share.rows(), (count + 3) / 4 * 4);
+  for (Eigen::Index mode = 0; mode < count; ++mode) {
+    const ModeMatch& match = matches[static_cast<std::size_t>(mode)];
+    if (!(match.mac >= least_mac)) return {};
+    share.col(mode) = match.sign * found.share.col(match.index);
+  }
+  const ShapeColumns sought = Combined(bent, share, static_cast<std::size_t>(share.cols() / 4));
+  std::vector<BendingMode> modes(matches.size());
+  for (std::size_t mode = 0; mode < modes.size(); ++mode) {
+    BendingMode& m = modes[mode];
+    const double* const at = Values(sought.Four(mode / 4)) + mode % 4;
+    double largest = 0.0;
+    for (std::size_t row = 0; row < sought.rows; row += 2) largest = std::max(largest, std::fabs(at[4 * row]));
+    m.frequency_rad_s = std::sqrt(found.stiffness[matches[mode].index]);
+    m.generalized_mass_kg = 1.0 / Square(largest);
+    m.mac = matches[mode].mac;
+    m.deflection.resize(sought.rows / 2);
+    m.slope_1_m.resize(sought.rows / 2);
+    for (std::size_t i = 0; i < sought.rows / 2; ++i) {
+      m.deflection[i] = at[8 * i] / largest;
+      m.slope_1_m[i] = at[8 * i + 4] / largest;
+    }
+  }
+  return modes;
+}
+
+}  // namespace
+
+NearModes::NearModes(std::vector<double> stations, std::vector<BeamElement> elements, bool rotary_inertia)
+    : masses_(std::move(stations), std::move(elements), rotary_inertia) {
+  for (const BeamElement& element : masses_.elements()) {
+    const Eigen::Matrix2d& k = element.flexural_stiffness_n_m;
+    const double determinant = k(0, 0) * k(1, 1) - k(0, 1) * k(1, 0);
+    flexibility_.push_back({k(1, 1) / determinant, -k(0, 1) / determinant, k(0, 0) / determinant});
+  }
+  const double middle_m = 0.5 * (this->stations().front() + this->stations().back());
+  for (const double station_m : this->stations()) arms_m_.push_back(station_m - middle_m);
+}
+
+int NearModes::ShapesFor(int modes) { return (modes + kFurtherShapes + 3) / 4 * 4; }
+
+void NearModes::AddLevel(const FreeFreeModes& nominal) {
+  const std::size_t columns = static_cast<std::size_t>(nominal.shape.cols());
+  Level level{ShapeColumns(2 * arms_m_.size(), columns / 4), nominal.frequency_rad_s.cwiseAbs2()};
+  for (std::size_t j = 0; j < columns; ++j) {
+    const Eigen::Index from = static_cast<Eigen::Index>(j);
+    for (std::size_t row = 0; row < level.shapes.rows; ++row)
+      Values(level.shapes.Four(j / 4) + row)[j % 4] =
+          nominal.shape(static_cast<Eigen::Index>(row), from);
+  }
+  levels_.push_back(std::move(level));
+}
+
+// Of the beam held at its first node. Loads that leave neither force nor moment bend it so.
+ShapeColumns NearModes::Bent(const ShapeColumns& loads) const {
+  ShapeColumns bent(loads.rows, loads.fours());
+  std::vector<std::array<FourShapes, 2>> turned(flexibility_.size());
+  for (std::size_t k = 0; k < loads.fours(); ++k) {
+    const FourShapes* const f = loads.Four(k);
+    FourShapes* const x = bent.Four(k);
+    // The force and the moment of the loads behind turn the ends of an element against its chord.
+    FourShapes force = 0.0, moment = 0.0;
+    for (std::size_t i = flexibility_.size(); i-- > 0;) {
+      force = force + f[2 * i + 2];
+      moment = moment + f[2 * i + 3];
+      const FourShapes ahead = Fma(FourShapes(masses_.elements()[i].length_m), force, moment);
+      const std::array<double, 3>& by = flexibility_[i];
+      turned[i][0] = Fma(FourShapes(by[1]), moment, -(FourShapes(by[0]) * ahead));
+      turned[i][1] = Fma(FourShapes(by[2]), moment, -(FourShapes(by[1]) * ahead));
+      moment = ahead;
+    }
+    FourShapes deflection = 0.0, rotation = 0.0;
+    x[0] = x[1] = 0.0;
+    for (std::size_t i = 0; i < flexibility_.size(); ++i) {
+      const FourShapes chord = rotation - turned[i][0];
+      deflection = Fma(FourShapes(masses_.elements()[i].length_m), chord, deflection);
+      rotation = chord + turned[i][1];
+      x[2 * i + 2] = deflection;
+      x[2 * i + 3] = rotation;
+    }
+  }
+  return bent;
+}
+
+std::optional<std::vector<BendingMode>> NearModes::Find(std::size_t level, const BeamMasses& masses,
+                                                        int count, double least_mac) const {
+  const NodeMasses mass = masses_.Of(masses);
+  const RigidMotion rigid(mass, arms_m_);
+  const ShapeColumns& nominal = levels_[level].shapes;
+  ShapeColumns nominal_loads = mass.Times(nominal);
+  rigid.Balance(nominal_loads);
+  Eigen::MatrixXd before = ProductOf(nominal, nominal_loads, true);  // masses of the shapes of a turn
+  const Eigen::VectorXd nominal_mass = before.diagonal();
+  Eigen::VectorXd stiffness = levels_[level].stiffness;
+  const ShapeColumns* loads = &nominal_loads;
+  std::optional<ShapeColumns> next_loads;
+  for (int turn = 1; turn <= kMostTurns; ++turn) {
+    // Scaled to shapes that are about those of the turn before.
+    ShapeColumns bent = Bent(*loads);
+    rigid.TakeFrom(bent);
+    const Eigen::MatrixXd energy = stiffness.asDiagonal() * ProductOf(bent, *loads, true) * stiffness.asDiagonal();
+    ScaleColumns(stiffness.data(), bent);
+    const std::optional<RitzModes> found = FindAmong(energy, ProductOf(bent, mass.Times(bent), true));
+    if (!found) return {};
+    before = stiffness.asDiagonal() * before * stiffness.asDiagonal();
+    const std::vector<ModeMatch> matches = MatchesOf(ProductOf(nominal_loads, bent, false), *found, nominal_mass, count);
+    double error = 0.0;
+    for (const ModeMatch& match : matches)
+      error = std::max(error, ChangeOf(*found, match.index, before) * found->stiffness[match.index] /
+                                  found->stiffness[found->stiffness.size() - 1]);
+    if (error <= kShapeError) return ModesOf(bent, *found, matches, least_mac);
+    stiffness = found->stiffness;
+    const ShapeColumns shapes = Combined(bent, found->share, bent.fours());
+    next_loads = mass.Times(shapes);
+    rigid.Balance(*next_loads);
+    loads = &*next_loads;
+    before = ProductOf(shapes, *loads, true);
+  }
+  return {};
+}
+
+}  // namespace dispersa
