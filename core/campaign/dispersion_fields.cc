@@ -337,6 +337,9 @@ class DispersionFields {
     if (is_sound_ && !vehicle_.boosters.are_apart())
       return fields.Misplaced(row.key, {}, "the vehicle has no boosters, or such that are all alike",
                               "boosters with angles_deg in place of count");
+    if (is_sound_ && row.draws == Draws::kBoostersTemperature && vehicle_.boosters.is_liquid())
+      return fields.Misplaced(row.key, {}, "the boosters are liquid: pumps or tank pressure set their flow",
+                              "booster_burn_rate, or boosters with solid motors");
     bool is_there = false;
     fields.OptionalMap(row.key, is_there, row.meaning, [&](Fields& map) {
       ScalarDistribution distribution = ReadScalar(map, row.scalar);

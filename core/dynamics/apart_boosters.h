@@ -2,15 +2,16 @@
 // its burn and its nozzle, so the centre of gravity is off the axis and the moments of inertia differ.
 //
 // Frames and signs as in launcher_body.h: B at the vehicle's axis, x forward, stations aft. A booster k
-// stands at (y_k, z_k). Its shell is a thin tube. Its grain burns from its bore outwards. Each counts by
+// stands at (y_k, z_k). Its shell is a thin tube. Its grain burns from its bore outwards, or its tanks drain
+// (DrainingMass). Each counts by
 // Huygens and Steiner: moments about x, y, z and products of inertia are exact for the boosters. The rest of
 // the vehicle is axisymmetric. Motions of the centre of gravity across the body (millimetres a second) are
 // left out, as for a dispersed offset.
 // The flow of the stage itself counts as if C were on the axis.
 //
-// Flow m_dot_k leaves the grain and goes out of the nozzle at r_k from C. The angular momentum that it takes
-// from a turning body, less the inertia that the body loses: m_dot_k (J_k w - r_k x (w x r_k)), with J_k the
-// inertia about C of a kilogram at the grain's surface.
+// Flow m_dot_k leaves the propellant and goes out of the nozzle at r_k from C. The angular momentum that it
+// takes from a turning body, less the inertia that the body loses: m_dot_k (J_k w - r_k x (w x r_k)), with
+// J_k the inertia about C of a kilogram at the propellant's surface.
 #pragma once
 
 #include "core/dynamics/launcher.h"
@@ -28,6 +29,9 @@ struct ApartBooster {
   Vector<T> first, second;  ///< across it, where a positive angle turns the thrust about each hinge
   MaskOf<T> burning;
   T fraction, flow_kg_s, kg;  ///< now: of full thrust; propellant
+  // Now, of the kilogram that leaves next: its place, and squares of its radii of gyration along the
+  // booster's axis and across it, about that place.
+  T source_station_m, source_axial_m2, source_across_m2;
 };
 template <class T>
 struct ApartBoosters {
@@ -36,6 +40,8 @@ struct ApartBoosters {
   MaskOf<T> attached;  ///< lanes that carry them
   T nozzle_station_m, dry_kg, dry_station_m;
   T grain_station_m, outer2_m2, inner_per_kg_m2, length2_m2, radius2_m2;
+  bool drains;            ///< tanks in place of grains: of the vehicle, the same in all lanes
+  BoosterTanks<T> tanks;  ///< of one
   ApartBooster<T> each[kMaxBoosters];
   // Now, of all that are attached.
   T flow_kg_s;
@@ -52,10 +58,12 @@ DISPERSA_INLINE void SetLane(ApartBoosters<T>& a, int lane, const BoosterSet& se
   Lane(a.nozzle_station_m, lane) = set.nozzle_station_m;
   Lane(a.dry_kg, lane) = set.empty.mass_kg / a.count;
   Lane(a.dry_station_m, lane) = set.empty.first_moment_kg_m / set.empty.mass_kg;
-  const BoosterGrains& g = set.grains;
+  const BoosterPropellant& g = set.propellant;
+  a.drains = g.drains;
+  SetLane(a.tanks, lane, OfOneBooster(g, a.count).tanks);
   Lane(a.grain_station_m, lane) = g.station_m;
   Lane(a.outer2_m2, lane) = g.outer_radius_m * g.outer_radius_m;
-  Lane(a.inner_per_kg_m2, lane) = a.count / g.kilograms_per_area_m2;
+  Lane(a.inner_per_kg_m2, lane) = g.drains ? 0.0 : a.count / g.kilograms_per_area_m2;
   Lane(a.length2_m2, lane) = g.length_m * g.length_m / 12.0;
   Lane(a.radius2_m2, lane) = set.radius_m * set.radius_m;
   for (int k = 0; k < a.count; ++k) {
@@ -77,6 +85,25 @@ DISPERSA_INLINE void SetLane(ApartBoosters<T>& a, int lane, const BoosterSet& se
   }
 }
 
+/// Where the propellant of a booster lies, and what leaves it next. Returns its centre's station. Of liquids
+/// it adds their moments to `first` and `second`.
+template <class T>
+DISPERSA_INLINE T LieIn(const ApartBoosters<T>& a, ApartBooster<T>& b, T& first, T& second) {
+  if (!a.drains) {
+    b.source_station_m = a.grain_station_m;
+    b.source_axial_m2 = Fma(-b.kg, a.inner_per_kg_m2, a.outer2_m2);
+    b.source_across_m2 = Fma(T(0.5), b.source_axial_m2, a.length2_m2);
+    return a.grain_station_m;
+  }
+  const BoosterLiquids<T> liquids = LiquidsOf(a.tanks, b.kg);
+  b.source_station_m = liquids.surface_m;
+  b.source_axial_m2 = T(0.0);
+  b.source_across_m2 = liquids.surface_gyration2_m2;
+  first = Fma(b.kg, liquids.station_m, first);
+  second = Fma(b.kg, liquids.gyration2_m2 + Square(liquids.station_m), second);
+  return liquids.station_m;
+}
+
 /// `m` with the boosters' propellant; says also how their masses lie. Rates by mass and the place that mass
 /// comes from become such that the whole flow times them is what the stage's own flow does; the boosters'
 /// part is in LoadsOfApart. By value: a reference would keep `m` in memory for vehicles without boosters too.
@@ -84,7 +111,7 @@ template <class T>
 DISPERSA_OUT_OF_LINE MassPropertiesLanes<T> WithApart(ApartBoosters<T>& a, T since_ignition_s, T flow_kg_s,
                                                       MassPropertiesLanes<T> m) {
   const T none(0.0), half(0.5), one(1.0);
-  T beside_kg(0.0), own_axial(0.0);
+  T beside_kg(0.0), own_axial(0.0), first(0.0), second(0.0), surfaces(0.0);
   a.flow_kg_s = a.lateral_y_kg_m = a.lateral_z_kg_m = none;
   a.mean_station_y_kg_m2 = a.mean_station_z_kg_m2 = a.about_y_kg_m2 = a.yz_kg_m2 = none;
   for (int k = 0; k < a.count; ++k) {
@@ -92,12 +119,14 @@ DISPERSA_OUT_OF_LINE MassPropertiesLanes<T> WithApart(ApartBoosters<T>& a, T sin
     const BurnState<T> burn = BurnAt(b.burn, since_ignition_s);
     b.fraction = Select(b.burning, burn.fraction, none);
     b.flow_kg_s = Select(b.burning, b.burn.full_flow_kg_s * burn.flow_fraction, none);
-    b.kg = Select(b.burning, burn.propellant_kg, none);
+    b.kg = Select(b.burning, burn.propellant_kg, Select(a.attached, b.burn.left_kg, none));
+    const T station_m = LieIn(a, b, first, second);
+    surfaces = Fma(b.flow_kg_s, b.source_station_m, surfaces);
     a.flow_kg_s = a.flow_kg_s + b.flow_kg_s;
     beside_kg = beside_kg + b.kg;
     own_axial = own_axial + half * b.kg * Fma(-b.kg, a.inner_per_kg_m2, T(2.0) * a.outer2_m2);
     const T all_kg = a.dry_kg + b.kg;
-    const T stations = Fma(b.kg, a.grain_station_m, a.dry_kg * a.dry_station_m);
+    const T stations = Fma(b.kg, station_m, a.dry_kg * a.dry_station_m);
     a.lateral_y_kg_m = Fma(all_kg, b.y_m, a.lateral_y_kg_m);
     a.lateral_z_kg_m = Fma(all_kg, b.z_m, a.lateral_z_kg_m);
     a.mean_station_y_kg_m2 = Fma(stations, b.y_m, a.mean_station_y_kg_m2);
@@ -109,13 +138,21 @@ DISPERSA_OUT_OF_LINE MassPropertiesLanes<T> WithApart(ApartBoosters<T>& a, T sin
                  &a.about_y_kg_m2, &a.yz_kg_m2})
     *sum = Select(a.attached, *sum, none);
   const T old_cg = m.cg_station_m;
-  AddTubes(beside_kg, own_axial, a.grain_station_m, a.length2_m2, a.radius2_m2, m);
+  T station_m = a.grain_station_m, length2_m2 = a.length2_m2, source_m = a.grain_station_m;
+  if (a.drains) {  // all liquids together
+    const T inverse_kg = one / Select(beside_kg > none, beside_kg, one);
+    station_m = first * inverse_kg;
+    length2_m2 = Fma(second, inverse_kg, -Square(station_m));
+    own_axial = none;
+    source_m = Select(a.flow_kg_s > none, surfaces / Select(a.flow_kg_s > none, a.flow_kg_s, one), station_m);
+  }
+  AddTubes(beside_kg, own_axial, station_m, length2_m2, a.radius2_m2, m);
   const T total_kg_s = a.flow_kg_s + flow_kg_s;
   const T own = Select(total_kg_s > none, flow_kg_s / Select(total_kg_s > none, total_kg_s, one), one);
   const T moved = Square(m.source_station_m - m.cg_station_m) - Square(m.source_station_m - old_cg);
   m.axial_per_kg_m2 = own * m.axial_per_kg_m2;
   m.transverse_per_kg_m2 = own * (m.transverse_per_kg_m2 + moved);
-  m.source_station_m = a.grain_station_m + own * (m.source_station_m - a.grain_station_m);
+  m.source_station_m = source_m + own * (m.source_station_m - source_m);
   return m;
 }
 
@@ -130,7 +167,7 @@ template <class T, class Bank>
 DISPERSA_OUT_OF_LINE ApartLoads<T> LoadsOfApart(const ApartBoosters<T>& a, const Bank* banks, T pressure_pa,
                                                 T cg_station_m, T cg_y_m, T cg_z_m, bool damps,
                                                 const Vector<T>& w) {
-  const T none(0.0), half(0.5);
+  const T none(0.0);
   ApartLoads<T> o{Zero<T>(), Zero<T>(), none};
   for (int k = 0; k < a.count; ++k) {
     const ApartBooster<T>& b = a.each[k];
@@ -149,12 +186,11 @@ DISPERSA_OUT_OF_LINE ApartLoads<T> LoadsOfApart(const ApartBoosters<T>& a, const
     o.thrust_n = o.thrust_n + push_n;
     o.force_n = o.force_n + force;
     o.moment_n_m = o.moment_n_m + Cross(place, force);
-    // J w of a kilogram at the bore about C, and what the flow takes out of the nozzle.
-    const T inner2 = Fma(-b.kg, a.inner_per_kg_m2, a.outer2_m2);
-    const Vector<T> grain{cg_station_m - a.grain_station_m, place.y, place.z};
-    const T across = Fma(half, inner2, a.length2_m2);
+    // J w of the kilogram that leaves next about C, and what the flow takes out of the nozzle.
+    const Vector<T> source{cg_station_m - b.source_station_m, place.y, place.z};
+    const T across = b.source_across_m2;
     const Vector<T> spin =
-        Vector<T>{inner2 * w.x, across * w.y, across * w.z} + Cross(grain, Cross(w, grain));
+        Vector<T>{b.source_axial_m2 * w.x, across * w.y, across * w.z} + Cross(source, Cross(w, source));
     const Vector<T> taken = damps ? Cross(place, Cross(w, place)) : Zero<T>();
     o.moment_n_m = o.moment_n_m + b.flow_kg_s * (spin - taken);
   }

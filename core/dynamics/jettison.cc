@@ -24,12 +24,13 @@ Vector3 CgStep(const LauncherPlant& plant, const LauncherStack& from_stack, cons
 }
 
 // Sums of mass times place across the axis of boosters that leave: their shells, which are bodies of their
-// own. All have burnt out.
+// own, with what their tanks have left. All have burnt out.
 Vector3 LateralOf(const LauncherPlant& plant, int stack, unsigned leaving) {
   Vector3 sum = Vector3::Zero();
   if (stack > 0 || (leaving & kBoostersGone) == 0 || !plant.has_apart_boosters()) return sum;
   const double dry_kg = plant.boosters->empty.mass_kg / static_cast<double>(plant.boosters->each.size());
-  for (const EachBooster& one : plant.boosters->each) sum += dry_kg * Vector3(0.0, one.y_m, one.z_m);
+  for (const EachBooster& one : plant.boosters->each)
+    sum += (dry_kg + one.burn.left_kg) * Vector3(0.0, one.y_m, one.z_m);
   return sum;
 }
 
@@ -54,9 +55,19 @@ MassProperties MassesOn(const LauncherPlant& plant, int stack, unsigned jettison
   lanes::StackMassLanes<double> own;
   lanes::SetLane(own, 0, mass);
   lanes::MassPropertiesLanes<double> m = lanes::MassesAt(own, propellant_kg);
+  const BoosterSet& set = *plant.boosters;
   lanes::BesideStage<double> beside;
-  lanes::SetLane(beside, 0, plant.boosters->burn, plant.boosters->grains);
-  lanes::AddBeside(beside, plant.boosters->burn.Propellant(since_ignition_s), 0.0, 0.0, m);
+  if (set.propellant.drains && plant.has_apart_boosters()) {
+    // Each with its own burn: tanks cut off by time keep different masses.
+    const BoosterPropellant of_one = OfOneBooster(set.propellant, static_cast<int>(set.each.size()));
+    for (const EachBooster& one : set.each) {
+      lanes::SetLane(beside, 0, one.burn, of_one);
+      lanes::AddBeside(beside, one.burn.Propellant(since_ignition_s), 0.0, 0.0, m);
+    }
+  } else {
+    lanes::SetLane(beside, 0, set.burn, set.propellant);
+    lanes::AddBeside(beside, set.burn.Propellant(since_ignition_s), 0.0, 0.0, m);
+  }
   return {m.mass_kg,          m.cg_station_m,    m.axial_kg_m2,
           m.transverse_kg_m2, m.axial_per_kg_m2, m.transverse_per_kg_m2};
 }

@@ -102,6 +102,7 @@ struct OneLane {
     if (now.jettisoned == 0 && stack.apart == nullptr && !of.aero_variants) return std::nullopt;
     lanes::LauncherPlantLanes<double> lighter = stack;
     if (now.jettisoned != 0) lanes::SetLane(lighter.stack, 0, MassOf(from, now.stack, now.jettisoned));
+    if (now.jettisoned & kBoostersGone) lighter.beside.burn.left_kg = 0.0;
     lanes::SetShape(lighter.aero, 0, of, of.AeroAfter(now.jettisoned, now.burning));
     if (stack.apart != nullptr) {
       apart = *stack.apart;

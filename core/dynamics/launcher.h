@@ -116,7 +116,7 @@ struct EachBooster {
 /// The boosters of the first stage.
 struct BoosterSet {
   MotorBurn burn;  ///< of all together
-  BoosterGrains grains;
+  BoosterPropellant propellant;
   JettisonedMass empty;
   double nozzle_station_m = 0.0;
   double radius_m = 0.0;

@@ -116,8 +116,8 @@ DISPERSA_INLINE TimedMasses<T> MassesAt(const LauncherPlantLanes<T>& plant,
     o.beside_thrust_fraction = Select(phase.boosting, beside.fraction, T(0.0));
     o.beside_flow_kg_s =
         Select(phase.boosting, plant.beside.burn.full_flow_kg_s * beside.flow_fraction, T(0.0));
-    AddBeside(plant.beside, Select(phase.boosting, beside.propellant_kg, T(0.0)), o.beside_flow_kg_s,
-              flow_kg_s, m);
+    AddBeside(plant.beside, Select(phase.boosting, beside.propellant_kg, plant.beside.burn.left_kg),
+              o.beside_flow_kg_s, flow_kg_s, m);
     flow_kg_s = flow_kg_s + o.beside_flow_kg_s;
   }
   T lateral_y_kg_m = plant.lateral_moment_y_kg_m, lateral_z_kg_m = plant.lateral_moment_z_kg_m;

@@ -165,7 +165,8 @@ DISPERSA_INLINE void SetLane(LauncherPlantLanes<T>& p, int lane, const LauncherP
   p.any_departs = Any(p.departs);
   p.has_boosters = boosters != nullptr && p.apart == nullptr;
   if (p.has_boosters) {  // of stacks above, which do not boost, they do not count
-    SetLane(p.beside, lane, boosters->burn, boosters->grains);
+    SetLane(p.beside, lane, boosters->burn, boosters->propellant);
+    if (stack > 0) Lane(p.beside.burn.left_kg, lane) = 0.0;
     Lane(p.beside_nozzle_m, lane) = boosters->nozzle_station_m;
     Lane(p.beside_radius_m, lane) = boosters->radius_m;
   }

@@ -18,7 +18,7 @@ namespace {
 
 BoosterSet BuildBoosterSet(const Boosters& boosters, double thrust_factor, double flow_factor) {
   return {BuildBoosterBurn(boosters, thrust_factor, flow_factor),
-          BuildBoosterGrains(boosters),
+          BuildBoosterPropellant(boosters),
           BuildBoosterMass(boosters),
           boosters.nozzle_station_m,
           boosters.radius_m,

@@ -131,6 +131,7 @@ class StepState {
     return burning;
   }
   void DropBoosters(int lane) {
+    Lane(plant_.beside.burn.left_kg, lane) = 0.0;
     if (!plant_.apart) return;
     SetLane(apart_.attached, lane, false);
     MarkDriven(plant_, most_further_);

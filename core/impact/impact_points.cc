@@ -57,6 +57,15 @@ double TopStation(const Vehicle& vehicle, int stage) {
   return above < vehicle.stages.size() ? vehicle.stages[above].bottom_station_m : 0.0;
 }
 
+/// Centre of gravity of one that has burnt out, with what its tanks have left.
+double SpentStation(const Boosters& boosters, double left_kg) {
+  const double shell_m = 0.5 * (boosters.top_station_m + boosters.bottom_station_m);
+  if (!(left_kg > 0.0)) return shell_m;
+  const DrainingMass tanks = OfOneBooster(BuildBoosterPropellant(boosters), boosters.count).tanks;
+  const double first_kg_m = left_kg * (tanks.first_per_kg_m + left_kg * tanks.first_per_kg2_m);
+  return (boosters.dry_mass_kg * shell_m + first_kg_m) / (boosters.dry_mass_kg + left_kg);
+}
+
 /// Since lift-off, if the vehicle has boosters.
 std::optional<double> BoosterSeparation(const Vehicle& vehicle, const LauncherPlant& plant,
                                         const CampaignFlights& flights) {
@@ -99,13 +108,16 @@ std::vector<ImpactPoint> ImpactPoints(const CampaignFlights& flights, const Case
     const double since_s = *boosters_left_s + vehicle.hold_down_s;
     const LauncherStack& stack = plant.stacks[0];
     const MassProperties mass = MassesOn(plant, 0, kBoostersGone, stack.burn.Propellant(since_s), since_s);
-    const double ahead_m = mass.cg_station_m - 0.5 * (boosters.top_station_m + boosters.bottom_station_m);
-    const FallingBody body = {
-        boosters.dry_mass_kg,
-        TumblingCylinderDragArea(boosters.bottom_station_m - boosters.top_station_m, boosters.diameter_m)};
     std::vector<EachBooster> each = plant.boosters->each;
-    if (each.empty()) each.resize(1);
+    if (each.empty()) {
+      each.resize(1);
+      each[0].burn.left_kg = plant.boosters->burn.left_kg / boosters.count;
+    }
     for (const EachBooster& one : each) {
+      const FallingBody body = {
+          boosters.dry_mass_kg + one.burn.left_kg,
+          TumblingCylinderDragArea(boosters.bottom_station_m - boosters.top_station_m, boosters.diameter_m)};
+      const double ahead_m = mass.cg_station_m - SpentStation(boosters, one.burn.left_kg);
       const RigidBodyState spent =
           AtPoint(left, Vector3(ahead_m, one.y_m - stack.lateral_moment_y_kg_m / mass.mass_kg,
                                 one.z_m - stack.lateral_moment_z_kg_m / mass.mass_kg));

@@ -100,6 +100,15 @@ class Drawing {
     Line("axis", X(0.0) - 18.0, axis_px_, X(length_m_) + 18.0, axis_px_);
   }
 
+  void DrawTanks(const std::vector<Tank>& tanks) {
+    for (const Tank& tank : tanks) {
+      const double height_m = (tank.bottom_station_m - tank.top_station_m) * tank.propellant_mass_kg /
+                              (tank.density_kg_m3 * tank.Volume());
+      Tube("bore", tank.top_station_m, tank.bottom_station_m, tank.diameter_m);
+      Tube("grain", tank.bottom_station_m - height_m, tank.bottom_station_m, tank.diameter_m);
+    }
+  }
+
   // A side view shows two of those that are alike, and each of the others at its place to the right.
   void DrawBoosters() {
     const Boosters& b = vehicle_.boosters;
@@ -111,6 +120,8 @@ class Drawing {
     for (const double side : sides) {
       axis_px_ = middle_px + side * b.radius_m * scale_;
       Tube("part", b.top_station_m, b.bottom_station_m, b.diameter_m);
+      DrawTanks(b.tanks);
+      if (b.is_liquid()) continue;
       Tube("grain", b.grain.top_station_m, b.grain.bottom_station_m, b.grain.outer_diameter_m);
       if (b.grain.inner_diameter_m > 0.0)
         Tube("bore", b.grain.top_station_m, b.grain.bottom_station_m, b.grain.inner_diameter_m);
@@ -123,12 +134,7 @@ class Drawing {
     const std::size_t above = static_cast<std::size_t>(LastBurn(vehicle_, static_cast<int>(i))) + 1;
     const bool is_last = above == vehicle_.stages.size();
     const double top_m = is_last ? 0.0 : vehicle_.stages[above].bottom_station_m;
-    for (const Tank& tank : stage.tanks) {
-      const double height_m = (tank.bottom_station_m - tank.top_station_m) * tank.propellant_mass_kg /
-                              (tank.density_kg_m3 * tank.Volume());
-      Tube("bore", tank.top_station_m, tank.bottom_station_m, tank.diameter_m);
-      Tube("grain", tank.bottom_station_m - height_m, tank.bottom_station_m, tank.diameter_m);
-    }
+    DrawTanks(stage.tanks);
     if (!stage.is_liquid())
       Tube("grain", stage.grain.top_station_m, stage.grain.bottom_station_m, stage.grain.outer_diameter_m);
     if (!stage.is_liquid() && stage.grain.inner_diameter_m > 0.0)

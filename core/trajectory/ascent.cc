@@ -83,7 +83,10 @@ void SetLane(lanes::Leg<T>& leg, int lane, const AscentModel& model, const Fligh
   SetShape(leg.aero, lane, shape, shape.AeroAfter(flight.jettisoned, flight.burning));
   SetLane(leg.weather, lane, model.weather);
   leg.has_boosters = model.plant.boosters != nullptr;
-  if (leg.has_boosters) SetLane(leg.beside, lane, model.plant.boosters->burn, model.plant.boosters->grains);
+  if (leg.has_boosters) {
+    SetLane(leg.beside, lane, model.plant.boosters->burn, model.plant.boosters->propellant);
+    if (stack > 0 || (flight.jettisoned & kBoostersGone) != 0) Lane(leg.beside.burn.left_kg, lane) = 0.0;
+  }
   lanes::SetLane(leg.boosting, lane, flight.boosting);
   lanes::SetLane(leg.burning, lane, flight.burning);
   lanes::SetLane(leg.burnt, lane, flight.burnt);

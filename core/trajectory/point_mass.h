@@ -147,7 +147,7 @@ DISPERSA_OUT_OF_LINE AscentInstant<T> InstantAt(const Ground& ground, const Leg<
   if (leg.has_boosters) {
     const MotorBurnLanes<T>& beside = leg.beside.burn;
     const BurnState<T> boost = BurnAt(beside, time_s - leg.ignition_s);
-    AddBeside(leg.beside, Select(leg.boosting, boost.propellant_kg, T(0.0)), T(0.0), T(0.0), masses);
+    AddBeside(leg.beside, Select(leg.boosting, boost.propellant_kg, beside.left_kg), T(0.0), T(0.0), masses);
     const T push =
         Max(Fma(beside.vacuum_thrust_n, boost.fraction, -(around.pressure_pa * beside.exit_area_m2)), T(0.0));
     beside_thrust_n = Select(leg.boosting, push, T(0.0));

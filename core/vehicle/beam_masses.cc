@@ -113,15 +113,18 @@ void AddTube(const Tube& tube, double mass_kg, const BeamStage& beam, BeamMasses
                           mass_kg * (spread.gyration2_m2.top + Square(length) / 12.0)});
 }
 
+// Height of a tank's liquid, which stands on the bottom (StackMass).
+double HeightOf(const Tank& tank, double mass_kg) {
+  return mass_kg / (tank.density_kg_m3 * 0.25 * kPi * Square(tank.diameter_m));
+}
+
 // Grain or liquids of a stage.
 void AddPropellant(const Stage& s, double grain_kg, BeamMasses& masses) {
   if (s.is_liquid()) {
-    // Each tank's liquid stands on its bottom (StackMass).
     for (const Tank& tank : s.tanks) {
       const double mass_kg = grain_kg * tank.propellant_mass_kg / s.propellant_mass_kg;
-      const double height = mass_kg / (tank.density_kg_m3 * 0.25 * kPi * Square(tank.diameter_m));
-      masses.spread.push_back(
-          Spread(mass_kg, tank.bottom_station_m - height, tank.bottom_station_m, tank.diameter_m, 0.0));
+      masses.spread.push_back(Spread(mass_kg, tank.bottom_station_m - HeightOf(tank, mass_kg),
+                                     tank.bottom_station_m, tank.diameter_m, 0.0));
     }
     return;
   }
@@ -176,8 +179,8 @@ TabledParts PartsOf(const Stage& stage, const BeamStage& beam, double dry_kg, do
   return parts;
 }
 
-// Shells and grains of all boosters together, with the moments of inertia of the mass model: what their
-// distance from the axis adds counts by half about either lateral axis.
+// Shells and grains or liquids of all boosters together, with the moments of inertia of the mass model: what
+// their distance from the axis adds counts by half about either lateral axis.
 void AddBoosters(const Vehicle& vehicle, double stage_kg, BeamMasses& masses) {
   const Boosters& b = vehicle.boosters;
   const double apart2 = 0.5 * Square(b.radius_m);
@@ -185,12 +188,20 @@ void AddBoosters(const Vehicle& vehicle, double stage_kg, BeamMasses& masses) {
   masses.fixed.push_back(
       {b.attachment_station_m, dry_kg, 0.5 * (b.top_station_m + b.bottom_station_m),
        dry_kg * (TubeGyration2(b.diameter_m, b.diameter_m) + Square(length) / 12.0 + apart2)});
-  const double grains_kg = BoosterCourse(vehicle).BoosterPropellant(stage_kg);
-  if (!(grains_kg > 0.0)) return;
-  const BoosterGrains g = BuildBoosterGrains(b);
-  const double outer2 = Square(g.outer_radius_m), inner2 = outer2 - grains_kg / g.kilograms_per_area_m2;
-  masses.fixed.push_back({b.attachment_station_m, grains_kg, g.station_m,
-                          grains_kg * (0.25 * (outer2 + inner2) + Square(g.length_m) / 12.0 + apart2)});
+  const double propellant_kg = BoosterCourse(vehicle).PropellantOfAll(stage_kg);
+  if (!(propellant_kg > 0.0)) return;
+  for (const Tank& tank : b.tanks) {
+    const double mass_kg = propellant_kg * tank.propellant_mass_kg / b.propellant_mass_kg;
+    const double height = HeightOf(tank, mass_kg / b.count);
+    masses.fixed.push_back(
+        {b.attachment_station_m, mass_kg, tank.bottom_station_m - 0.5 * height,
+         mass_kg * (TubeGyration2(tank.diameter_m, 0.0) + Square(height) / 12.0 + apart2)});
+  }
+  if (b.is_liquid()) return;
+  const BoosterPropellant g = BuildBoosterPropellant(b);
+  const double outer2 = Square(g.outer_radius_m), inner2 = outer2 - propellant_kg / g.kilograms_per_area_m2;
+  masses.fixed.push_back({b.attachment_station_m, propellant_kg, g.station_m,
+                          propellant_kg * (0.25 * (outer2 + inner2) + Square(g.length_m) / 12.0 + apart2)});
 }
 
 }  // namespace

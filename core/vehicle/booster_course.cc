@@ -7,7 +7,7 @@ BoosterCourse::BoosterCourse(const Vehicle& vehicle)
       boosters_(BuildBoosterBurn(vehicle.boosters, 1.0, 1.0)),
       delay_s_(vehicle.boosters.separation_delay_s) {}
 
-double BoosterCourse::BoosterPropellant(double stage_kg) const {
+double BoosterCourse::PropellantOfAll(double stage_kg) const {
   // The stage's propellant only falls: bisection to the last digit of the time.
   double from_s = 0.0, to_s = boosters_.duration_s;
   if (stage_kg >= stage_.Propellant(from_s)) return boosters_.Propellant(from_s);

@@ -12,8 +12,8 @@ class BoosterCourse {
   /// Precondition: the vehicle has boosters. They burn out before their stage.
   explicit BoosterCourse(const Vehicle& vehicle);
 
-  /// Of all boosters together, where the stage has `stage_kg` left.
-  double BoosterPropellant(double stage_kg) const;
+  /// What all boosters together have, where the stage has `stage_kg` left.
+  double PropellantOfAll(double stage_kg) const;
   /// Of the stage, where the boosters burn out and where they leave.
   double StageAtBurnout() const { return stage_.Propellant(boosters_.duration_s); }
   double StageAtSeparation() const { return stage_.Propellant(boosters_.duration_s + delay_s_); }

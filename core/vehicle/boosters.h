@@ -7,19 +7,20 @@
 #include "core/vehicle/bodies.h"
 #include "core/vehicle/gimbal.h"
 #include "core/vehicle/motor.h"
+#include "core/vehicle/propulsion_fields.h"
 
 namespace dispersa {
 
 /// Boosters at most.
 inline constexpr int kMaxBoosters = 8;
 
-/// Solid motors of one type beside the first stage, ignited with it. They leave together, after the last has
-/// burnt out and before the stage does, at rest against the body. The aerodynamics of the first stack include
-/// them and stay after they have left.
+/// Solid motors or liquid engines of one type beside the first stage, ignited with it. They leave together,
+/// after the last has burnt out and before the stage does, at rest against the body, with what their tanks
+/// have left. The aerodynamics of the first stack include them and stay after they have left.
 ///
-/// Without a list of angles they stand at equal angles and are all alike: one motor and one grain stand for
-/// them, and their nozzles are fixed along the axis. With it each is a body of its own: it has its place, its
-/// burn, its nozzle, and a centre of gravity off the vehicle's axis.
+/// Without a list of angles they stand at equal angles and are all alike: one motor and one grain or set of
+/// tanks stand for them, and their nozzles are fixed along the axis. With it each is a body of its own: it
+/// has its place, its burn, its nozzle, and a centre of gravity off the vehicle's axis.
 struct Boosters {
   int count = 0;                    ///< 0: none
   double dry_mass_kg = 0.0;         ///< of one, a thin tube from top to bottom station
@@ -30,7 +31,7 @@ struct Boosters {
   double bottom_station_m = 0.0;
   double nozzle_station_m = 0.0;         ///< where the thrust acts
   Motor motor;                           ///< of one
-  Grain grain;                           ///< of one, about its own axis
+  Grain grain;                           ///< of one, about its own axis, of a solid motor
   double separation_delay_s = 0.0;       ///< after burnout is detected
   std::vector<double> angles_rad = {};   ///< of each, from body y towards body z (empty: all alike)
   double cant_rad = 0.0;                 ///< by which the thrust is turned towards the vehicle's axis
@@ -38,10 +39,12 @@ struct Boosters {
   std::vector<double> towards_rad = {};  ///< their hinges, as of a Nozzle
   bool steer_alone = false;              ///< the stage's own nozzles stay centred while they burn
   double attachment_station_m = 0.0;     ///< of a beam, which carries them there (0: not given)
+  std::vector<Tank> tanks = {};          ///< of one, about its own axis, of a liquid engine, else empty
 
   /// Each is a body of its own.
   bool are_apart() const { return !angles_rad.empty(); }
   bool turn_nozzles() const { return gimbal.limit_rad > 0.0; }
+  bool is_liquid() const { return !tanks.empty(); }
   /// Mass of all boosters with their propellant.
   double LiftOffMass() const { return count * (dry_mass_kg + propellant_mass_kg); }
 };
@@ -90,16 +93,7 @@ inline void Describe(Fields& fields, Boosters& boosters) {
   fields.Quantity("top_station", kLength, kNonNegative, boosters.top_station_m, "upper end");
   fields.Quantity("bottom_station", kLength, kPositive, boosters.bottom_station_m, "lower end");
   fields.Quantity("nozzle_station", kLength, kPositive, boosters.nozzle_station_m, "where the thrust acts");
-  fields.Map("motor", "of one; solid", [&](Fields& motor) {
-    motor.Either({{Has("liquid"),
-                   [&] {
-                     motor.Misplaced("liquid", {}, "boosters are solid",
-                                     "thrust_* with burning_time_*, or thrust_curve");
-                     DescribeExit(motor, boosters.motor);
-                   }},
-                  {Else(), [&] { DescribeSolid(motor, boosters.motor); }}});
-  });
-  fields.Map("grain", "of one, about its own axis", [&](Fields& grain) { Describe(grain, boosters.grain); });
+  DescribePropulsion(fields, boosters.motor, boosters.grain, boosters.tanks);
   fields.Quantity("separation_delay", kTime, kNonNegative, boosters.separation_delay_s,
                   "from detected burnout of the last; before the stage separates", 0.0);
   fields.Quantity("attachment_station", kLength, kPositive, boosters.attachment_station_m,

@@ -206,27 +206,64 @@ DISPERSA_INLINE BurnState<T> BurnAt(const MotorBurnLanes<T>& b, T since_ignition
   return state;
 }
 
+/// Tanks of boosters: moments over the mass that they have (DrainingMass).
+template <class T>
+struct BoosterTanks {
+  T first_per_kg_m, first_per_kg2_m, second_per_kg_m2, second_per_kg2_m2, second_per_kg3_m2;
+};
+template <class T>
+DISPERSA_INLINE void SetLane(BoosterTanks<T>& t, int lane, const DrainingMass& tanks) {
+  Lane(t.first_per_kg_m, lane) = tanks.first_per_kg_m;
+  Lane(t.first_per_kg2_m, lane) = tanks.first_per_kg2_m;
+  Lane(t.second_per_kg_m2, lane) = tanks.second_per_kg_m2;
+  Lane(t.second_per_kg2_m2, lane) = tanks.second_per_kg2_m2;
+  Lane(t.second_per_kg3_m2, lane) = tanks.second_per_kg3_m2;
+}
+/// Their liquids of a mass: the centre of gravity, and the square of the radius of gyration about it, across
+/// the axis. The kilogram that leaves next: its place at the surfaces, and the same square.
+template <class T>
+struct BoosterLiquids {
+  T station_m, gyration2_m2, surface_m, surface_gyration2_m2;
+};
+template <class T>
+DISPERSA_INLINE BoosterLiquids<T> LiquidsOf(const BoosterTanks<T>& t, T kg) {
+  BoosterLiquids<T> o;
+  o.station_m = Fma(kg, t.first_per_kg2_m, t.first_per_kg_m);
+  o.gyration2_m2 =
+      Fma(kg, Fma(kg, t.second_per_kg3_m2, t.second_per_kg2_m2), t.second_per_kg_m2) - Square(o.station_m);
+  o.surface_m = Fma(T(2.0) * kg, t.first_per_kg2_m, t.first_per_kg_m);
+  o.surface_gyration2_m2 =
+      Fma(kg, Fma(T(3.0) * kg, t.second_per_kg3_m2, T(2.0) * t.second_per_kg2_m2), t.second_per_kg_m2) -
+      Square(o.surface_m);
+  return o;
+}
+
 /// All boosters of the first stage together.
 template <class T>
 struct BesideStage {
-  MotorBurnLanes<T> burn;
+  MotorBurnLanes<T> burn;  ///< left_kg: what they still carry when it has ended
   T station_m, outer2_m2, inner_per_kg_m2, length2_m2, radius2_m2;
+  bool drains;  ///< tanks in place of grains: of the vehicle, the same in all lanes
+  BoosterTanks<T> tanks;
 };
 template <class T>
 DISPERSA_INLINE void SetLane(BesideStage<T>& b, int lane, const MotorBurn& burn,
-                             const BoosterGrains& grains) {
+                             const BoosterPropellant& propellant) {
   SetLane(b.burn, lane, burn);
-  Lane(b.station_m, lane) = grains.station_m;
-  Lane(b.outer2_m2, lane) = grains.outer_radius_m * grains.outer_radius_m;
+  Lane(b.station_m, lane) = propellant.station_m;
+  Lane(b.outer2_m2, lane) = propellant.outer_radius_m * propellant.outer_radius_m;
   Lane(b.inner_per_kg_m2, lane) =
-      grains.kilograms_per_area_m2 > 0.0 ? 1.0 / grains.kilograms_per_area_m2 : 0.0;
-  Lane(b.length2_m2, lane) = grains.length_m * grains.length_m / 12.0;
-  Lane(b.radius2_m2, lane) = grains.radius_m * grains.radius_m;
+      propellant.kilograms_per_area_m2 > 0.0 ? 1.0 / propellant.kilograms_per_area_m2 : 0.0;
+  Lane(b.length2_m2, lane) = propellant.length_m * propellant.length_m / 12.0;
+  Lane(b.radius2_m2, lane) = propellant.radius_m * propellant.radius_m;
+  b.drains = propellant.drains;
+  SetLane(b.tanks, lane, propellant.tanks);
 }
 
 /// Adds tubes of propellant whose axes are off the vehicle's axis by a radius, spread evenly about it.
 /// `own_axial_kg_m2`: their moments of inertia about their own axes. `length2_m2`: their length squared, over
-/// 12. By Huygens and Steiner, from both centres to the common one.
+/// 12; of liquids, which have none about the axis, their gyration2_m2. By Huygens and Steiner, from both
+/// centres to the common one.
 template <class T>
 DISPERSA_INLINE void AddTubes(T kg, T own_axial_kg_m2, T station_m, T length2_m2, T radius2_m2,
                               MassPropertiesLanes<T>& m) {
@@ -240,11 +277,36 @@ DISPERSA_INLINE void AddTubes(T kg, T own_axial_kg_m2, T station_m, T length2_m2
       Fma(T(0.5), own_axial_kg_m2 + apart, kg * (length2_m2 + Square(station_m - m.cg_station_m)));
 }
 
+/// AddBeside of tanks. A function of its own: few vehicles need it.
+template <class T>
+DISPERSA_OUT_OF_LINE MassPropertiesLanes<T> WithTanksBeside(const BesideStage<T>& b, T beside_kg,
+                                                            T beside_kg_s, T flow_kg_s,
+                                                            MassPropertiesLanes<T> m) {
+  const T none(0.0), one(1.0), half(0.5);
+  const BoosterLiquids<T> liquids = LiquidsOf(b.tanks, beside_kg);
+  const T old_cg = m.cg_station_m;
+  AddTubes(beside_kg, none, liquids.station_m, liquids.gyration2_m2, b.radius2_m2, m);
+  const T total_kg_s = beside_kg_s + flow_kg_s;
+  const T share = Select(total_kg_s > none, beside_kg_s / Select(total_kg_s > none, total_kg_s, one), none);
+  const T moved = Square(m.source_station_m - m.cg_station_m) - Square(m.source_station_m - old_cg);
+  const T beside_transverse =
+      Fma(half, b.radius2_m2, liquids.surface_gyration2_m2) + Square(liquids.surface_m - m.cg_station_m);
+  m.axial_per_kg_m2 = m.axial_per_kg_m2 + share * (b.radius2_m2 - m.axial_per_kg_m2);
+  const T own_transverse = m.transverse_per_kg_m2 + moved;
+  m.transverse_per_kg_m2 = own_transverse + share * (beside_transverse - own_transverse);
+  m.source_station_m = m.source_station_m + share * (liquids.surface_m - m.source_station_m);
+  return m;
+}
+
 /// Adds `beside_kg` of the boosters' propellant, of which `beside_kg_s` flows beside the stage's own
 /// `flow_kg_s`. Rates by mass and the place that mass comes from become those of both flows together.
 template <class T>
 DISPERSA_INLINE void AddBeside(const BesideStage<T>& b, T beside_kg, T beside_kg_s, T flow_kg_s,
                                MassPropertiesLanes<T>& m) {
+  if (b.drains) {
+    m = WithTanksBeside(b, beside_kg, beside_kg_s, flow_kg_s, m);
+    return;
+  }
   const T inner2 = Fma(-beside_kg, b.inner_per_kg_m2, b.outer2_m2);
   const T old_cg = m.cg_station_m;
   AddTubes(beside_kg, T(0.5) * beside_kg * (b.outer2_m2 + inner2), b.station_m, b.length2_m2, b.radius2_m2,

@@ -56,12 +56,13 @@ void AddTable(const Stage& stage, double dry_kg, StackMass& stack) {
       stack);
 }
 
-DrainingMass Draining(const Stage& stage) {
+// By the mass in all tanks, which is `propellant_kg` when they are full.
+DrainingMass Draining(const std::vector<Tank>& tanks, double propellant_kg) {
   DrainingMass sum;
-  for (const Tank& tank : stage.tanks) {
-    const double share = tank.propellant_mass_kg / stage.propellant_mass_kg, bottom = tank.bottom_station_m;
+  for (const Tank& tank : tanks) {
+    const double share = tank.propellant_mass_kg / propellant_kg, bottom = tank.bottom_station_m;
     const double radius2 = 0.25 * Square(tank.diameter_m);
-    const double height_per_kg = share / (tank.density_kg_m3 * kPi * radius2);  // of the stage's propellant
+    const double height_per_kg = share / (tank.density_kg_m3 * kPi * radius2);  // of all propellant
     sum.first_per_kg_m += share * bottom;
     sum.first_per_kg2_m -= share * 0.5 * height_per_kg;
     sum.second_per_kg_m2 += share * (Square(bottom) + 0.25 * radius2);
@@ -104,12 +105,37 @@ JettisonedMass BuildBoosterMass(const Boosters& boosters) {
           n * (one.fixed_second_moment_kg_m2 + 0.5 * apart), n * (one.fixed_axial_inertia_kg_m2 + apart)};
 }
 
-BoosterGrains BuildBoosterGrains(const Boosters& boosters) {
+BoosterPropellant BuildBoosterPropellant(const Boosters& boosters) {
+  BoosterPropellant all;
+  all.radius_m = boosters.radius_m;
+  if (boosters.is_liquid()) {
+    all.drains = true;
+    all.tanks = Draining(boosters.tanks, boosters.count * boosters.propellant_mass_kg);
+    // So far with shares of the mass in all: a tank's, of which there is one in each booster.
+    const double n = boosters.count;
+    DrainingMass& t = all.tanks;
+    t.first_per_kg_m *= n;
+    t.first_per_kg2_m *= n;
+    t.second_per_kg_m2 *= n;
+    t.second_per_kg2_m2 *= n;
+    t.second_per_kg3_m2 *= n;
+    return all;
+  }
   const Grain& g = boosters.grain;
   const double area_m2 = 0.25 * (Square(g.outer_diameter_m) - Square(g.inner_diameter_m));
-  return {0.5 * (g.top_station_m + g.bottom_station_m), g.bottom_station_m - g.top_station_m,
-          0.5 * g.outer_diameter_m, boosters.radius_m,
-          boosters.count * boosters.propellant_mass_kg / area_m2};
+  all.station_m = 0.5 * (g.top_station_m + g.bottom_station_m);
+  all.length_m = g.bottom_station_m - g.top_station_m;
+  all.outer_radius_m = 0.5 * g.outer_diameter_m;
+  all.kilograms_per_area_m2 = boosters.count * boosters.propellant_mass_kg / area_m2;
+  return all;
+}
+
+BoosterPropellant OfOneBooster(BoosterPropellant all, int count) {
+  all.kilograms_per_area_m2 /= count;
+  all.tanks.first_per_kg2_m *= count;
+  all.tanks.second_per_kg2_m2 *= count;
+  all.tanks.second_per_kg3_m2 *= Square(count);
+  return all;
 }
 
 double PropellantDensity(const Stage& stage) {
@@ -198,7 +224,7 @@ std::vector<StackMass> BuildStackMasses(const Vehicle& vehicle) {
     }
     if (burning.is_liquid()) {
       stack.drains = true;
-      stack.tanks = Draining(burning);
+      stack.tanks = Draining(burning.tanks, burning.propellant_mass_kg);
       continue;
     }
     stack.grain_station_m = 0.5 * (burning.grain.top_station_m + burning.grain.bottom_station_m);

@@ -77,15 +77,19 @@ StackMass Without(StackMass stack, int lowest_stage, const std::vector<Jettisone
 /// Everything of a vehicle's boosters together, empty, as the first stack's sums count it.
 JettisonedMass BuildBoosterMass(const Boosters& boosters);
 /// The propellant of all boosters together: the sums grow with its mass. Each grain burns from its bore
-/// outwards.
-struct BoosterGrains {
-  double station_m = 0.0;  ///< of the middles
+/// outwards. Tanks drain as those of a stage, each about its booster's axis.
+struct BoosterPropellant {
+  double radius_m = 0.0;   ///< of their axes from the vehicle's
+  double station_m = 0.0;  ///< of the grains' middles
   double length_m = 0.0;
   double outer_radius_m = 0.0;
-  double radius_m = 0.0;               ///< of their axes from the vehicle's
   double kilograms_per_area_m2 = 0.0;  ///< of all: by which the sections' area, over pi, shrinks
+  bool drains = false;                 ///< tanks in place of grains
+  DrainingMass tanks = {};             ///< of all, by the mass in all
 };
-BoosterGrains BuildBoosterGrains(const Boosters& boosters);
+BoosterPropellant BuildBoosterPropellant(const Boosters& boosters);
+/// That of one of `count` boosters.
+BoosterPropellant OfOneBooster(BoosterPropellant all, int count);
 
 /// Dry mass of a stage, for any of its burns: its lift-off mass less the stages above, its propellant, its
 /// jettisoned bodies and boosters.

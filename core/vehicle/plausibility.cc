@@ -25,14 +25,15 @@ struct Span {
 };
 constexpr Span kAnything{};
 
-/// The subject of a check: the vehicle, and one of its stages, nozzles or gyros.
+/// The subject of a check: the vehicle, and one of its stages, nozzles or gyros, or a tank of its boosters.
 struct Subject {
   const Vehicle& vehicle;
   const std::vector<StageFigures>& figures;
   std::size_t index = 0;
   std::size_t part = 0;  ///< tank or jettisoned body of the stage, lighter table (from 1)
+  bool is_booster = false;
 
-  const Tank& tank() const { return stage().tanks[part]; }
+  const Tank& tank() const { return (is_booster ? vehicle.boosters.tanks : stage().tanks)[part]; }
   const Jettison& jettison() const { return stage().jettisoned[part]; }
   /// Of the stack, or a lighter one's.
   const AeroTable& table() const {
@@ -112,6 +113,19 @@ double TableOverTubes(const Subject& s, double MassProperties::*value) {
   return tubes.*value > 0.0 ? table.*value / (tubes.*value) : kNothing;
 }
 
+// Of engines of stages and of boosters.
+struct Known {
+  Span possible, usual;
+  const char* source;
+};
+constexpr Known kLiquidImpulse = {
+    {0.0, 1000.0},
+    {200.0, 470.0},
+    "in vacuum 220 to 240 s of hydrazine alone, 280 to 330 s of storable pairs, 300 to 360 s of oxygen with "
+    "kerosene, to 465 s with hydrogen; combustion never gave more than 550 s, reactors 900 s"};
+constexpr Known kResidual = {
+    kAnything, {0.0, 0.05}, "0.5 to 3 % of a liquid stage's propellant stays in tanks and lines"};
+
 constexpr Check kStageChecks[] = {
     {"propellant_mass_kg",
      "implies with thrust and burning time a specific impulse of",
@@ -122,20 +136,11 @@ constexpr Check kStageChecks[] = {
      "table 2-1; "
      "465 s of hydrogen stages in vacuum; combustion never gave more than 550 s, reactors 900 s",
      [](const Subject& s) { return s.stage().is_liquid() ? kNothing : s.figure().specific_impulse_s; }},
-    {"motor.liquid.specific_impulse_s",
-     "is",
-     "s",
-     {0.0, 1000.0},
-     {200.0, 470.0},
-     "in vacuum 220 to 240 s of hydrazine alone, 280 to 330 s of storable pairs, 300 to 360 s of oxygen with "
-     "kerosene, to 465 s with hydrogen; combustion never gave more than 550 s, reactors 900 s",
+    {"motor.liquid.specific_impulse_s", "is", "s", kLiquidImpulse.possible, kLiquidImpulse.usual,
+     kLiquidImpulse.source,
      [](const Subject& s) { return s.stage().is_liquid() ? s.figure().specific_impulse_s : kNothing; }},
-    {"motor.liquid.residual_mass_kg",
-     "is, as part of the propellant,",
-     "",
-     kAnything,
-     {0.0, 0.05},
-     "0.5 to 3 % of a liquid stage's propellant stays in tanks and lines",
+    {"motor.liquid.residual_mass_kg", "is, as part of the propellant,", "", kResidual.possible,
+     kResidual.usual, kResidual.source,
      [](const Subject& s) { return s.stage().motor.residual_mass_kg / s.stage().propellant_mass_kg; }},
     {"tanks",
      "take together, as part of the stage's diameter_m from its bottom to the next stage's (of the last: to "
@@ -624,6 +629,8 @@ constexpr Check kTankChecks[] = {
      [](const Subject& s) {
        return s.tank().propellant_mass_kg / (s.tank().density_kg_m3 * s.tank().Volume());
      }},
+};
+constexpr Check kTankInStageChecks[] = {
     {"diameter_m",
      "is, as part of the stage's diameter_m,",
      "",
@@ -700,7 +707,20 @@ constexpr Check kVehicleChecks[] = {
      "200 to 300 s of solid rockets: Sutton and Biblarz, Rocket Propulsion Elements, 7th ed., table 2-1",
      [](const Subject& s) {
        const Boosters& b = s.vehicle.boosters;
-       return b.count > 0 ? BuildBoosterBurn(b, 1.0, 1.0).ExhaustVelocity() / kStandardGravity : kNothing;
+       if (b.count == 0 || b.is_liquid()) return kNothing;
+       return BuildBoosterBurn(b, 1.0, 1.0).ExhaustVelocity() / kStandardGravity;
+     }},
+    {"boosters.motor.liquid.specific_impulse_s", "is", "s", kLiquidImpulse.possible, kLiquidImpulse.usual,
+     kLiquidImpulse.source,
+     [](const Subject& s) {
+       const Boosters& b = s.vehicle.boosters;
+       return b.is_liquid() ? b.motor.specific_impulse_s : kNothing;
+     }},
+    {"boosters.motor.liquid.residual_mass_kg", "is, as part of the propellant,", "", kResidual.possible,
+     kResidual.usual, kResidual.source,
+     [](const Subject& s) {
+       const Boosters& b = s.vehicle.boosters;
+       return b.is_liquid() ? b.motor.residual_mass_kg / b.propellant_mass_kg : kNothing;
      }},
     {"boosters.grain",
      "implies a propellant density of",
@@ -710,8 +730,9 @@ constexpr Check kVehicleChecks[] = {
      "solid propellants: Sutton and Biblarz, table 12-1",
      [](const Subject& s) {
        const Boosters& b = s.vehicle.boosters;
-       const BoosterGrains grains = BuildBoosterGrains(b);
-       return b.count > 0 ? grains.kilograms_per_area_m2 / (b.count * kPi * grains.length_m) : kNothing;
+       if (b.count == 0 || b.is_liquid()) return kNothing;
+       const BoosterPropellant grains = BuildBoosterPropellant(b);
+       return grains.kilograms_per_area_m2 / (b.count * kPi * grains.length_m);
      }},
     {"sensors.inertial_unit.station_m",
      "lies, as part of the vehicle's length,",
@@ -816,9 +837,11 @@ std::vector<PlausibilityFinding> Plausibility(const Vehicle& vehicle) {
     if (vehicle.stages[i].restarts) continue;  // the same body
     const std::string index = "[" + std::to_string(i) + "].";
     Apply(kStageChecks, {vehicle, figures, i}, "stages" + index, findings);
-    for (std::size_t k = 0; k < vehicle.stages[i].tanks.size(); ++k)
-      Apply(kTankChecks, {vehicle, figures, i, k}, "stages" + index + "tanks[" + std::to_string(k) + "].",
-            findings);
+    for (std::size_t k = 0; k < vehicle.stages[i].tanks.size(); ++k) {
+      const std::string tank = "stages" + index + "tanks[" + std::to_string(k) + "].";
+      Apply(kTankChecks, {vehicle, figures, i, k}, tank, findings);
+      Apply(kTankInStageChecks, {vehicle, figures, i, k}, tank, findings);
+    }
     for (std::size_t k = 0; k < vehicle.stages[i].jettisoned.size(); ++k)
       Apply(kJettisonChecks, {vehicle, figures, i, k},
             "stages" + index + "jettisoned[" + std::to_string(k) + "].", findings);
@@ -833,6 +856,9 @@ std::vector<PlausibilityFinding> Plausibility(const Vehicle& vehicle) {
             findings);
   for (std::size_t i = 0; i < vehicle.sensors.rate_gyros.size(); ++i)
     Apply(kGyroChecks, {vehicle, figures, i}, "sensors.rate_gyros[" + std::to_string(i) + "].", findings);
+  for (std::size_t k = 0; k < vehicle.boosters.tanks.size(); ++k)
+    Apply(kTankChecks, {vehicle, figures, 0, k, true}, "boosters.tanks[" + std::to_string(k) + "].",
+          findings);
   Apply(kVehicleChecks, {vehicle, figures}, "", findings);
   return findings;
 }

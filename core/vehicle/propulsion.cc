@@ -49,6 +49,7 @@ MotorBurn BuildOneBoosterBurn(const Boosters& boosters, double thrust_factor, do
   Stage one;
   one.propellant_mass_kg = boosters.propellant_mass_kg;
   one.motor = boosters.motor;
+  one.tanks = boosters.tanks;
   return BuildBurn(one, thrust_factor, flow_factor);
 }
 
@@ -61,6 +62,7 @@ MotorBurn BuildBoosterBurn(const Boosters& boosters, double thrust_factor, doubl
   all.vacuum_thrust_n *= boosters.count;
   all.full_flow_kg_s *= boosters.count;
   all.propellant_mass_kg *= boosters.count;
+  all.left_kg *= boosters.count;
   all.exit_area_m2 *= boosters.count;
   return all;
 }

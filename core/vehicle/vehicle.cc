@@ -37,19 +37,22 @@ void CheckTube(const std::string& path, double top, double bottom, double outer,
                 "lies aft of the " + part + "'s bottom_station_m", "at most bottom_station_m of the " + part);
 }
 
-// Engine and tanks of a liquid stage.
-void CheckLiquid(const Stage& stage, const std::string& path, Checker& check) {
-  const Motor& motor = stage.motor;
-  check.Require(motor.residual_mass_kg < stage.propellant_mass_kg, path + ".motor.liquid.residual_mass_kg",
-                "leaves nothing to burn", "0 to below propellant_mass_kg");
+// Engine and tanks of a liquid stage or booster. Body is a Stage or Boosters.
+template <class Body>
+void CheckLiquid(const Body& body, const std::string& path, Checker& check,
+                 const std::string& part = "stage") {
+  check.Require(body.motor.residual_mass_kg < body.propellant_mass_kg,
+                path + ".motor.liquid.residual_mass_kg", "leaves nothing to burn",
+                "0 to below propellant_mass_kg");
   double sum_kg = 0.0;
-  for (std::size_t k = 0; k < stage.tanks.size(); ++k) {
-    const Tank& tank = stage.tanks[k];
+  for (std::size_t k = 0; k < body.tanks.size(); ++k) {
+    const Tank& tank = body.tanks[k];
     const std::string at = path + ".tanks[" + std::to_string(k) + "]";
     check.Require(tank.bottom_station_m > tank.top_station_m, at + ".bottom_station_m",
                   "is not aft of top_station_m", "a station larger than top_station_m");
-    check.Require(tank.bottom_station_m <= stage.bottom_station_m, at + ".bottom_station_m",
-                  "lies aft of the stage's bottom_station_m", "at most bottom_station_m of the stage");
+    check.Require(tank.bottom_station_m <= body.bottom_station_m, at + ".bottom_station_m",
+                  "lies aft of the " + part + "'s bottom_station_m",
+                  "at most bottom_station_m of the " + part);
     sum_kg += tank.propellant_mass_kg;
     if (!(tank.bottom_station_m > tank.top_station_m)) continue;
     const double volume_m3 = tank.propellant_mass_kg / tank.density_kg_m3;
@@ -60,9 +63,9 @@ void CheckLiquid(const Stage& stage, const std::string& path, Checker& check) {
   }
   // Masses are written with a few digits.
   check.Require(
-      std::fabs(sum_kg - stage.propellant_mass_kg) <= 1e-6 * stage.propellant_mass_kg,
+      std::fabs(sum_kg - body.propellant_mass_kg) <= 1e-6 * body.propellant_mass_kg,
       path + ".propellant_mass_kg",
-      "is " + std::to_string(stage.propellant_mass_kg) + ", the tanks hold " + std::to_string(sum_kg),
+      "is " + std::to_string(body.propellant_mass_kg) + ", the tanks hold " + std::to_string(sum_kg),
       "the sum of the tanks' propellant_mass_kg");
 }
 
@@ -263,8 +266,21 @@ void CheckBoosters(const Vehicle& vehicle, Checker& check) {
                 "at least half its diameter_m, " + std::to_string(0.5 * core.diameter_m));
   check.Require(b.bottom_station_m > b.top_station_m, "boosters.bottom_station_m",
                 "is not aft of top_station_m", "a station larger than top_station_m");
-  CheckTube("boosters.grain", b.grain.top_station_m, b.grain.bottom_station_m, b.grain.outer_diameter_m,
-            b.grain.inner_diameter_m, b.bottom_station_m, check, "booster");
+  if (b.is_liquid()) {
+    CheckLiquid(b, "boosters", check, "booster");
+    for (std::size_t k = 0; k < b.tanks.size(); ++k)
+      check.Require(b.tanks[k].diameter_m <= b.diameter_m,
+                    "boosters.tanks[" + std::to_string(k) + "].diameter_m", "is larger than the booster",
+                    "at most diameter_m");
+    // Their empty tanks, not the speed, say when they are of no more use.
+    check.Require(!EndsInFlight(b.motor), "boosters.motor.liquid.cut_off.at",
+                  "is a speed of the vehicle, but the boosters leave by a clock after their burnout",
+                  "depletion or time");
+    if (EndsInFlight(b.motor)) return;
+  } else {
+    CheckTube("boosters.grain", b.grain.top_station_m, b.grain.bottom_station_m, b.grain.outer_diameter_m,
+              b.grain.inner_diameter_m, b.bottom_station_m, check, "booster");
+  }
   check.Require(0.5 * (b.motor.ignition_rise_s + b.motor.tail_off_s) < b.motor.burning_time_s,
                 "boosters.motor.tail_off_s", "leaves no time at full thrust",
                 "ramps that are together shorter than twice burning_time_s");

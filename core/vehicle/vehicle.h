@@ -22,6 +22,7 @@
 #include "core/vehicle/loss_of_control.h"
 #include "core/vehicle/mass_table.h"
 #include "core/vehicle/motor.h"
+#include "core/vehicle/propulsion_fields.h"
 #include "core/vehicle/rail.h"
 #include "core/vehicle/sensors.h"
 #include "core/vehicle/spin_motors.h"
@@ -97,21 +98,7 @@ inline void Describe(Fields& fields, Stage& stage) {
           fields.Quantity("diameter", kLength, kPositive, stage.diameter_m, "of its body");
           fields.Quantity("bottom_station", kLength, kPositive, stage.bottom_station_m,
                           "aft end of the stack, while this stage is its lowest");
-          fields.Map("motor", "motor or engine", [&](Fields& motor) { Describe(motor, stage.motor); });
-          fields.Either(
-              {{Has("motor.liquid"),
-                [&] {
-                  fields.Misplaced("grain", {}, "the motor is liquid", "tanks in place of the grain");
-                  fields.List(
-                      "tanks", 1, SIZE_MAX, stage.tanks,
-                      "of a liquid engine: upright cylinders about the axis; their lengths may overlap");
-                }},
-               {Else(), [&] {
-                  fields.Misplaced("tanks", {}, "the motor is not liquid",
-                                   "a grain in place of the tanks, or motor: {liquid: {...}}");
-                  fields.Map("grain", "of a solid motor",
-                             [&](Fields& grain) { Describe(grain, stage.grain); });
-                }}});
+          DescribePropulsion(fields, stage.motor, stage.grain, stage.tanks);
           fields.List("structure", 1, SIZE_MAX, stage.structure,
                       "elements of its dry mass; the fractions add up to 1");
           bool has_table = !stage.mass_table.empty();

@@ -47,8 +47,8 @@ void Describe(Fields& fields, Vehicle& vehicle) {
   CheckRestarts(fields, vehicle.stages);
   bool has_boosters = vehicle.boosters.count > 0;
   fields.OptionalMap("boosters", has_boosters,
-                     "solid motors beside the first stage, ignited with it, in its lift-off mass; computed "
-                     "aerodynamics leave them out",
+                     "beside the first stage, ignited with it, in its lift-off mass; each has its motor and "
+                     "propellant about an axis of its own; computed aerodynamics leave them out",
                      [&](Fields& boosters) { Describe(boosters, vehicle.boosters); });
   fields.List("profile", 1, SIZE_MAX, vehicle.profile, "outer mould line, from the nose aft");
   bool has_tables = !vehicle.aerodynamics.empty();

@@ -44,11 +44,11 @@ double GreatestLoad_m_s2(const MotorBurn& burn, double empty_kg) {
 double BoostedDeltaV(const Vehicle& vehicle, const MotorBurn& core, const MotorBurn& boost) {
   const double boost_s = boost.duration_s;
   const double core_kg = core.propellant_mass_kg - core.Propellant(boost_s);
-  const double flown_kg = core_kg + boost.propellant_mass_kg;
-  const double impulse_n_s =
-      core_kg * core.ExhaustVelocity() + boost.propellant_mass_kg * boost.ExhaustVelocity();
+  const double boost_kg = boost.propellant_mass_kg - boost.left_kg;
+  const double flown_kg = core_kg + boost_kg;
+  const double impulse_n_s = core_kg * core.ExhaustVelocity() + boost_kg * boost.ExhaustVelocity();
   const double whole_kg = vehicle.stages[0].liftoff_mass_kg, left_kg = whole_kg - flown_kg;
-  const double alone_kg = left_kg - vehicle.boosters.count * vehicle.boosters.dry_mass_kg;
+  const double alone_kg = left_kg - vehicle.boosters.count * vehicle.boosters.dry_mass_kg - boost.left_kg;
   const double last_kg = core.Propellant(boost_s) - core.left_kg;
   return impulse_n_s / flown_kg * Log(whole_kg / left_kg) +
          core.ExhaustVelocity() * Log(alone_kg / (alone_kg - last_kg));
@@ -96,7 +96,8 @@ std::vector<StageFigures> FiguresOf(const Vehicle& vehicle) {
     if (i == 0 && beside.count > 0) {
       const MotorBurn boost = BuildBoosterBurn(beside, 1.0, 1.0);
       const double at_s = boost.duration_s;
-      const double at_kg = empty_kg + burn.Propellant(at_s) + beside.count * beside.dry_mass_kg;
+      const double at_kg =
+          empty_kg + burn.Propellant(at_s) + beside.count * beside.dry_mass_kg + boost.left_kg;
       const double together_n =
           burn.vacuum_thrust_n * burn.Fraction(at_s) + boost.vacuum_thrust_n * boost.Fraction(at_s);
       one.burnout_load_g = std::max(one.burnout_load_g, together_n / (at_kg * kStandardGravity));

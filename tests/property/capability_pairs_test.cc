@@ -65,6 +65,14 @@ void SteerByBoosters(Launcher& launcher) {
   b.gimbal.nozzle_mass_kg = b.gimbal.nozzle_inertia_kg_m2 = b.gimbal.nozzle_cg_m = 0.0;
   b.towards_rad = {90.0 * kRadPerDeg, 180.0 * kRadPerDeg};
 }
+// The same boosters, or as many, with tanks that keep a rest.
+void MakeBoostersLiquid(Launcher& launcher) {
+  Boosters& b = launcher.vehicle.boosters;
+  if (b.count == 0) AddBoosters(launcher);
+  MakeLiquid(b);
+  b.motor.residual_mass_kg = 10.0;
+  b.motor.throttle = {{0.0, 12.0, 14.0}, {1.0, 1.0, 0.8}};
+}
 void AddFairing(Launcher& launcher) {
   launcher.vehicle.stages[3].jettisoned = {
       {"fairing", 50.0, 0.1, 2.5, 0.6, 0.57, JettisonTrigger::kAtAltitude, 90e3}};
@@ -226,6 +234,7 @@ const std::vector<Capability>& Capabilities() {
   static const std::vector<Capability> all = {
       {"boosters", AddBoosters},
       {"boosters that steer", SteerByBoosters},
+      {"liquid boosters", MakeBoostersLiquid},
       {"fairing", AddFairing},
       {"bending", AddBending},
       {"restart", AddRestart},

@@ -78,6 +78,55 @@ TEST(BoostersFile, ReadThrustCurvesAndStandInTheId) {
   EXPECT_NE(LoadCampaign(files.Path("campaign.yaml")).flight_id, campaign.flight_id);
 }
 
+constexpr char kGrain[] =
+    "grain: {top_station_m: 8, bottom_station_m: 8.9, outer_diameter_m: 0.28, inner_diameter_m: 0.1}";
+void MakeLiquid(const InputFiles& files) {
+  files.Edit("vehicle.yaml", kAfter, kBoosters);
+  files.Edit("vehicle.yaml", "motor: {thrust_kn: 5, burning_time_s: 30}",
+             "motor: {nozzle_exit_area_m2: 0.01, liquid: {thrust_kn: 5, specific_impulse_s: 300, "
+             "residual_mass_kg: 1, throttle: {time_s: [0, 10, 20], level_percent: [100, 100, 80]}, "
+             "cut_off: {at: time, after_s: 25}}}");
+  files.Edit("vehicle.yaml", kGrain,
+             "tanks: [{name: oxygen, propellant_mass_kg: 42, density_kg_m3: 1141, top_station_m: 7.1, "
+             "bottom_station_m: 8.2, diameter_m: 0.28}, {name: kerosene, propellant_mass_kg: 18, "
+             "density_kg_m3: 810, top_station_m: 8.3, bottom_station_m: 8.9, diameter_m: 0.28}]");
+}
+
+// The same keys as of a stage. What a campaign's folder keeps of them is read again as it was.
+TEST(BoostersFile, ReadLiquidEnginesAndTanks) {
+  const InputFiles files;
+  MakeLiquid(files);
+  const Campaign campaign = LoadCampaign(files.Path("campaign.yaml"));
+  const auto expect = [](const Boosters& b) {
+    ASSERT_EQ(b.tanks.size(), 2u);
+    EXPECT_EQ(b.tanks[1].propellant_mass_kg, 18.0);
+    EXPECT_EQ(b.motor.thrust_n, 5e3);
+    EXPECT_EQ(b.motor.nozzle_exit_area_m2, 0.01);
+    EXPECT_EQ(b.motor.residual_mass_kg, 1.0);
+    EXPECT_EQ(b.motor.cut_off, CutOff::kAtTime);
+    EXPECT_EQ(b.motor.cut_off_s, 25.0);
+    EXPECT_EQ(b.motor.throttle.level, (std::vector<double>{1.0, 1.0, 0.8}));
+    EXPECT_NEAR(b.motor.burning_time_s, 60.0 * 300.0 * kStandardGravity / 5e3, 1e-12);
+  };
+  expect(campaign.vehicle.boosters);
+  files.Write("kept.yaml", campaign.canonical_yaml);
+  const Campaign kept = LoadCampaign(files.Path("kept.yaml"));
+  expect(kept.vehicle.boosters);
+  EXPECT_EQ(kept.flight_id, campaign.flight_id);
+}
+
+TEST(BoostersFile, OfLiquidsHaveNoTemperatureOfTheGrain) {
+  const InputFiles files;
+  MakeLiquid(files);
+  files.Edit("vehicle.yaml", "count: 2,", "angles_deg: [0, 120, 240],");
+  files.Edit("campaign.yaml", "  thrust: ",
+             "  booster_temperature: {distribution: normal, sigma_k: 5, sensitivity_percent_k: 0.2}\n"
+             "  thrust: ");
+  EXPECT_EQ(files.Texts(CheckFile(files.Path("campaign.yaml")).errors),
+            "campaign.yaml:11:24: dispersions.booster_temperature: the boosters are liquid: pumps or tank "
+            "pressure set their flow, allowed: booster_burn_rate, or boosters with solid motors\n");
+}
+
 // Each with its place, its nozzle's drives, and dispersions of its own.
 TEST(BoostersFile, ReadBodiesOfTheirOwn) {
   const InputFiles files;
@@ -152,10 +201,10 @@ constexpr BadInput kBadBoosters[] = {
      "vehicle.yaml:34:191: boosters.motor: burns, and the boosters leave, after 61.500000 s, the stage burns "
      "60.300000 s, "
      "allowed: boosters that leave while their stage burns\n"},
-    {"Liquid", "", "motor: {thrust_kn: 5, burning_time_s: 30}", "motor: {liquid: {thrust_kn: 5}}",
-     "vehicle.yaml:34:200: boosters.motor.liquid: boosters are solid, allowed: thrust_* with burning_time_*, "
-     "or "
-     "thrust_curve\n"},
+    {"LiquidWithGrain", "", "motor: {thrust_kn: 5, burning_time_s: 30}",
+     "motor: {liquid: {thrust_kn: 5, specific_impulse_s: 300}}",
+     "vehicle.yaml:34:11: boosters: missing key 'tanks', allowed: a list of 1 or more\n"
+     "vehicle.yaml:34:249: boosters.grain: the motor is liquid, allowed: tanks in place of the grain\n"},
     {"GrainTooThick", "", "outer_diameter_m: 0.28", "outer_diameter_m: 0.31",
      "vehicle.yaml:34:294: boosters.grain.outer_diameter_m: is larger than the booster, allowed: at most "
      "diameter_m\n"},

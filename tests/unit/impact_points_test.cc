@@ -10,6 +10,7 @@
 #include "core/flight/tick_sample.h"
 #include "core/math/constants.h"
 #include "core/vehicle/mass.h"
+#include "tests/liquid_stage.h"
 
 namespace dispersa::impact_points_test {
 namespace {
@@ -76,7 +77,7 @@ TEST(ImpactPoints, ASpentStageFallsFromWhereTheFlightLeftIt) {
 }
 
 // The last tick with them shows where each is: four at their places, and the same four all alike as one on
-// the axis.
+// the axis. Those with tanks fall with what these have left, 20 kg on the bottoms.
 TEST(ImpactPoints, BoostersFallFromTheirPlaces) {
   Campaign campaign = LoadCampaign(DISPERSA_CAMPAIGNS "/smoke.yaml");
   Boosters& b = campaign.vehicle.boosters;
@@ -84,8 +85,21 @@ TEST(ImpactPoints, BoostersFallFromTheirPlaces) {
   b.motor.thrust_n = 80e3;
   b.motor.burning_time_s = 30.0;
   campaign.vehicle.stages[0].liftoff_mass_kg += b.LiftOffMass();
-  for (const bool apart : {false, true}) {
+  for (const auto& [apart, liquid] : {std::pair{false, false}, {true, false}, {true, true}, {false, true}}) {
+    b.angles_rad = {};
     if (apart) b.angles_rad = {0.5, 0.5 + 0.5 * kPi, 0.5 + kPi, 0.5 + 1.5 * kPi};
+    double body_kg = 150.0, body_m = 23.75;
+    if (liquid) {
+      if (!b.is_liquid()) MakeLiquid(b);
+      const double left_kg = b.motor.residual_mass_kg = 20.0;
+      body_kg += left_kg;
+      body_m *= 150.0;
+      for (const Tank& tank : b.tanks) {
+        const double kg = left_kg * tank.propellant_mass_kg / b.propellant_mass_kg;
+        body_m += kg * (tank.bottom_station_m - 0.5 * kg / (tank.density_kg_m3 * kPi * 0.09));
+      }
+      body_m /= body_kg;
+    }
     const CampaignFlights flights(campaign);
     TickSample last;
     FlightOptions options;
@@ -111,8 +125,8 @@ TEST(ImpactPoints, BoostersFallFromTheirPlaces) {
       stack.v_IC_I += left_s * acceleration;
       const double y = apart ? 0.97 * std::cos(b.angles_rad[k]) : 0.0,
                    z = apart ? 0.97 * std::sin(b.angles_rad[k]) : 0.0;
-      const RigidBodyState spent = AtPoint(stack, Vector3(last.instant.cg_station_m - 23.75, y, z));
-      const auto expected = Fall(plant.environment, {150.0, TumblingCylinderDragArea(5.5, 0.62)},
+      const RigidBodyState spent = AtPoint(stack, Vector3(last.instant.cg_station_m - body_m, y, z));
+      const auto expected = Fall(plant.environment, {body_kg, TumblingCylinderDragArea(5.5, 0.62)},
                                  {fallen[k].from_time_s, spent.p_EoC_I, spent.v_IC_I});
       ASSERT_TRUE(expected && fallen[k].impact);
       // The state's roundings and the case's own offsets of the centre of gravity, times the fall.

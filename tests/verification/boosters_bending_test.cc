@@ -23,6 +23,7 @@
 #include "core/trajectory/ascent.h"
 #include "core/vehicle/mass.h"
 #include "tests/bending_in_space.h"
+#include "tests/liquid_stage.h"
 #include "tests/slv4_flight.h"
 
 namespace dispersa::boosters_bending_test {
@@ -161,9 +162,15 @@ TEST(BoostersBending, ModesAreThoseOfABeamWithBodiesOnLinks) {
                   bare.levels[0][level].modes[mode].frequency_rad_s, 1e-7);
 }
 
+// Grains, and tanks that keep a rest.
 TEST(BoostersBending, TheBeamWeighsWhatTheVehicleWeighs) {
-  for (const bool apart : {false, true}) {
-    const Vehicle vehicle = Boosted(apart);
+  for (const auto& [apart, liquid] : {std::pair{false, false}, {true, false}, {false, true}, {true, true}}) {
+    Vehicle vehicle = Boosted(apart);
+    if (liquid) {
+      MakeLiquid(vehicle.boosters);
+      vehicle.boosters.motor.residual_mass_kg = 20.0;
+      ASSERT_TRUE(Problems(vehicle).empty());
+    }
     const LauncherPlant plant = PlantOf(vehicle);
     for (const double since_s : {0.0, 11.0, 29.9, 30.3}) {
       const double propellant_kg = plant.stacks[0].burn.Propellant(since_s);
