@@ -557,12 +557,16 @@ Aside AsideOf(double magnitude, double clock, double y, double z) {
 // The spin for each metre of way that a stack's fins ask for: of all strips together no roll moment.
 double TwistOf(const Vehicle& vehicle, std::size_t stack, const PerStage& cant_rad) {
   double wanted_m3 = 0.0, damped_m4 = 0.0;
-  for (std::size_t i = stack; i < vehicle.stages.size(); ++i)
+  for (std::size_t i = stack; i < vehicle.stages.size();
+       i = static_cast<std::size_t>(LastBurn(vehicle, static_cast<int>(i))) + 1) {
+    std::size_t first = i;  // burn of the stage, whose draws are the stage's
+    while (vehicle.stages[first].restarts) --first;
     for (const FinSet& fins : vehicle.stages[i].fins) {
       const FinStrips strips = StripsOf(fins, 0.5 * vehicle.stages[i].diameter_m);
-      wanted_m3 += fins.count * (fins.cant_rad + cant_rad[i]) * strips.first_m3;
+      wanted_m3 += fins.count * (fins.cant_rad + cant_rad[first]) * strips.first_m3;
       damped_m4 += fins.count * strips.second_m4;
     }
+  }
   return damped_m4 > 0.0 ? wanted_m3 / damped_m4 : 0.0;
 }
 

@@ -41,7 +41,9 @@ double SmoothStep(double low, double high, double x) {
 class Stack {
  public:
   Stack(const Vehicle& vehicle, std::size_t index) : Stack(vehicle, vehicle.stages[index]) {
-    for (std::size_t i = index; i < vehicle.stages.size(); ++i)
+    // A stage has its fins once, in whichever of its burns.
+    for (std::size_t i = index; i < vehicle.stages.size();
+         i = static_cast<std::size_t>(LastBurn(vehicle, static_cast<int>(i))) + 1)
       for (const FinSet& fins : vehicle.stages[i].fins)
         fins_.push_back({fins, 0.5 * vehicle.stages[i].diameter_m});
   }

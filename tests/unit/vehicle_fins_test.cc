@@ -103,6 +103,14 @@ TEST(Fins, MoveTheCentreOfPressureAft) {
     EXPECT_LT(finned.clp_per_rad[mach], 10.0 * bare.clp_per_rad[mach]);
     EXPECT_LT(finned.cmq_per_rad[mach], bare.cmq_per_rad[mach]);
   }
+  // A stage that burns again is one body with one set, in either burn.
+  vehicle.stages.push_back(vehicle.stages[0]);
+  vehicle.stages[1].restarts = true;
+  for (const AeroTable& table : BuildAerodynamics(vehicle)) {
+    EXPECT_EQ(table.cn, finned.cn);
+    EXPECT_EQ(table.ca, finned.ca);
+    EXPECT_EQ(table.clp_per_rad, finned.clp_per_rad);
+  }
 }
 
 }  // namespace

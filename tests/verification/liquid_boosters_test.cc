@@ -24,8 +24,8 @@ namespace dispersa::liquid_boosters_test {
 namespace {
 
 constexpr double kDeg = kRadPerDeg;
-constexpr double kThrust_n = 20e3, kFlow_kg_s = 25.0, kDry_kg = 100.0, kPropellant_kg = 500.0, kRest_kg = 10.0,
-                 kRadius_m = 0.9, kNozzle_m = 19.2, kCore_n = 200e3, kPivot_m = 19.5;
+constexpr double kThrust_n = 20e3, kFlow_kg_s = 25.0, kDry_kg = 100.0, kPropellant_kg = 500.0,
+                 kRest_kg = 10.0, kRadius_m = 0.9, kNozzle_m = 19.2, kCore_n = 200e3, kPivot_m = 19.5;
 
 // The sample vehicle, which flies in almost no air, with boosters of oxygen and kerosene at these angles, or
 // with two that are all alike.
@@ -207,7 +207,8 @@ TEST(LiquidBoosters, TurnByTheEquationOfRotation) {
     // The stage's own flow counts as if C were on the axis. Of an odd set it is beside it: what that flow
     // carries off is wrong by its lever times this distance.
     const double aside_m = all.cg.tail<2>().norm();
-    const double beside_1_s2 = core_kg_s * std::fabs(lever) * aside_m * w.norm() * all.inertia.inverse().norm();
+    const double beside_1_s2 =
+        core_kg_s * std::fabs(lever) * aside_m * w.norm() * all.inertia.inverse().norm();
     EXPECT_NEAR((is - expected).norm(), 0.0, 1e-6 * expected.norm() + beside_1_s2) << angles.size();
     EXPECT_LT(beside_1_s2, 1e-2 * expected.norm());
     EXPECT_GT((all.inertia.inverse() * (rate * w)).norm(), 1e-3 * expected.norm()) << "the surfaces count";
@@ -441,9 +442,10 @@ TEST(LiquidBoosters, AreCutOffByTimeOrDepletion) {
             "boosters.tanks[0].diameter_m: is larger than the booster, allowed: at most diameter_m\n");
   b.tanks[0].diameter_m = 0.4;
   b.tanks[1].bottom_station_m = 19.1;
-  EXPECT_EQ(problems(),
-            "boosters.tanks[1].bottom_station_m: lies aft of the booster's bottom_station_m, allowed: at most "
-            "bottom_station_m of the booster\n");
+  EXPECT_EQ(
+      problems(),
+      "boosters.tanks[1].bottom_station_m: lies aft of the booster's bottom_station_m, allowed: at most "
+      "bottom_station_m of the booster\n");
 }
 
 }  // namespace
