@@ -13,6 +13,7 @@
 #include <string_view>
 #include <vector>
 
+#include "core/campaign/flight_definition.h"
 #include "core/campaign/free_flight.h"
 #include "core/campaign_yaml/load.h"
 #include "core/environment/atmosphere.h"
@@ -164,12 +165,40 @@ FinSet Fins(double leading_edge_m, double root_m, double tip_m, double span_m) {
 }
 void AddFins(Launcher& launcher) { launcher.vehicle.stages[0].fins = {Fins(24.6, 1.8, 1.0, 0.8)}; }
 void AddRail(Launcher& launcher) { launcher.vehicle.rail = Rail{8.0, 0.1, 2.5, 80.0 * kRadPerDeg}; }
-// The last stage, in each of its burns: held by thrusters in the coast, by its spin while it burns.
+// Twice the thrust in half the time.
+void Hasten(Motor& motor) {
+  motor.thrust_n *= 2.0;
+  motor.burning_time_s *= 0.5;
+  motor.cut_off_s *= 0.5;
+  for (double& thrust_n : motor.thrust_curve.thrust_n) thrust_n *= 2.0;
+  for (auto* times_s : {&motor.thrust_curve.time_s, &motor.throttle.time_s})
+    for (double& time_s : *times_s) time_s *= 0.5;
+}
+// A sounding rocket of the same stages: canted fins hold each of them and spin it. It leaves a long rail
+// fast, and nothing commands it. Lists of nozzles and boosters that steer stay, which are refused.
+void LetFree(Launcher& launcher) {
+  Vehicle& vehicle = launcher.vehicle;
+  launcher.course.is_controlled = false;
+  launcher.course.ends = FlightEnd::kApogee;
+  vehicle.rail = Rail{30.0, 0.1, 2.5, 85.0 * kRadPerDeg};
+  Hasten(vehicle.boosters.motor);
+  for (std::size_t i = 0; i < vehicle.stages.size(); ++i) {
+    Stage& stage = vehicle.stages[i];
+    Hasten(stage.motor);
+    if (i > 0) stage.ignition = IgnitionTrigger::kBurnoutDetection;
+    if (stage.gimbal.nozzles.empty()) stage.gimbal = FixedNozzle(stage.gimbal.pivot_station_m);
+    const double root_m = 2.0 * stage.diameter_m;
+    stage.fins = {Fins(stage.bottom_station_m - root_m, root_m, 0.6 * root_m, 1.2 * stage.diameter_m)};
+    stage.fins[0].cant_rad = (i == 0 ? 0.3 : i == 1 ? 0.05 : 0.0) * kRadPerDeg;
+  }
+}
+// The last stage, in each of its burns: held by thrusters in the coast, by its spin while it burns. Where
+// nothing controls the vehicle it spins already.
 void SpinLastStage(Launcher& launcher) {
   std::vector<Stage>& stages = launcher.vehicle.stages;
   for (std::size_t i = 3; i < stages.size(); ++i) {
     stages[i].gimbal = FixedNozzle(stages[i].gimbal.pivot_station_m);
-    stages[i].spin_motors = SpinMotors{60.0, 1.5};
+    stages[i].spin_motors = SpinMotors{launcher.course.is_controlled ? 60.0 : 5.0, 1.5};
   }
   // Nothing steers it against a misaligned thrust: it cones.
   launcher.vehicle.loss_of_control = {170.0 * kRadPerDeg, 0.5, 50.0};
@@ -245,6 +274,7 @@ const std::vector<Capability>& Capabilities() {
       {"cluster of engines", AddCluster},
       {"fins", AddFins},
       {"rail", AddRail},
+      {"no control", LetFree},
       {"spun last stage", SpinLastStage},
       {"tables of aerodynamics", UseAeroTables},
       {"mass tables", UseMassTables},
@@ -272,7 +302,16 @@ WeatherTable Weather() {
   return table;
 }
 
-FlightDefinition DefinitionOf(const Launcher& launcher) {
+// A flight along no reference.
+FlightDefinition FreeDefinitionOf(const Launcher& launcher) {
+  Campaign campaign;
+  campaign.vehicle = launcher.vehicle;
+  campaign.course = launcher.course;
+  SetFreeFlight(campaign);
+  return DefinitionOf(campaign);
+}
+
+FlightDefinition GuidedDefinitionOf(const Launcher& launcher) {
   AscentOptions options;
   options.record = true;
   const AscentResult ascent = FlyAscent(BuildAscentModel(launcher.vehicle, 0.01), launcher.program, options);
@@ -286,11 +325,6 @@ FlightDefinition DefinitionOf(const Launcher& launcher) {
   definition.course = launcher.course;
   definition.guidance.closed_loop = launcher.is_guided;
   definition.guidance.steers_last_burn = launcher.vehicle.stages.back().is_controlled();
-  definition.noise_seed = 7;
-  if (launcher.has_weather) definition.wind_table = Weather();
-  if (launcher.is_turbulent)
-    definition.turbulence_path =
-        std::make_shared<const TurbulencePath>(ClimbPath{{0.0, 1000.0, 40e3}, {1.0, 1.0, 0.5}, 3.0});
   for (AxisConfig* axis :
        {&definition.autopilot.roll, &definition.autopilot.pitch, &definition.autopilot.yaw})
     for (std::size_t stage = 4; stage < launcher.vehicle.stages.size(); ++stage) {
@@ -304,11 +338,23 @@ FlightDefinition DefinitionOf(const Launcher& launcher) {
   return definition;
 }
 
+FlightDefinition DefinitionOf(const Launcher& launcher) {
+  FlightDefinition definition =
+      launcher.course.is_controlled ? GuidedDefinitionOf(launcher) : FreeDefinitionOf(launcher);
+  definition.noise_seed = 7;
+  if (launcher.has_weather) definition.wind_table = Weather();
+  if (launcher.is_turbulent)
+    definition.turbulence_path =
+        std::make_shared<const TurbulencePath>(ClimbPath{{0.0, 1000.0, 40e3}, {1.0, 1.0, 0.5}, 3.0});
+  return definition;
+}
+
 FlightInputs InputsOf(const Launcher& launcher, std::uint64_t index) {
   Stream draws(3, index, "pairs");
   FlightInputs in = Table3Inputs();
   for (double& factor : in.thrust_factor) factor = 1.0 + 0.002 * draws.Normal();
-  in.wind_max_speed_m_s = 30.0 * draws.Uniform();
+  // What is left of the wind after a rail was set for it.
+  in.wind_max_speed_m_s = (launcher.course.is_controlled ? 30.0 : 3.0) * draws.Uniform();
   if (launcher.is_turbulent) in.turbulence_exceedance = 1e-1;
   if (launcher.vehicle.sensors.rate_gyros.empty()) in.gyro_noise_rad_s = 0.002 * kRadPerDeg;
   if (!launcher.draws_masses) return in;
@@ -341,7 +387,10 @@ class Bookkeeper {
       const double change_m_s = (now.state.v_IC_I - v_m_s_ - 0.5 * step_s * (acceleration + a_m_s2_)).norm();
       const double flown_kg = mass_kg_ - mass_kg;
       if (is_event) {
-        const double part_m_s = step_s * std::max(acceleration.norm(), a_m_s2_.norm());
+        // The rest's centre of gravity is elsewhere in a turning body.
+        const double shifted_m = std::fabs(now.instant.cg_station_m - cg_station_m_);
+        const double part_m_s = step_s * std::max(acceleration.norm(), a_m_s2_.norm()) +
+                                shifted_m * now.state.w_IB_B.tail<2>().norm();
         largest_event_m_s = std::max(largest_event_m_s, change_m_s - part_m_s);
       } else {
         largest_tick_m_s = std::max(largest_tick_m_s, change_m_s);
@@ -355,6 +404,7 @@ class Bookkeeper {
     boosting_ = now.boosting;
     jettisoned_ = now.jettisoned;
     mass_kg_ = mass_kg;
+    cg_station_m_ = now.instant.cg_station_m;
     flow_kg_s_ = now.instant.flow_kg_s;
     expelled_kg_ = now.expelled_mass_kg;
     v_m_s_ = now.state.v_IC_I;
@@ -368,7 +418,7 @@ class Bookkeeper {
  private:
   const Earth& earth_;
   bool is_first_ = true;
-  double time_s_ = 0.0, mass_kg_ = 0.0, flow_kg_s_ = 0.0, expelled_kg_ = 0.0;
+  double time_s_ = 0.0, mass_kg_ = 0.0, cg_station_m_ = 0.0, flow_kg_s_ = 0.0, expelled_kg_ = 0.0;
   int stack_ = 0;
   bool burning_ = false, boosting_ = false;
   unsigned jettisoned_ = 0;
@@ -404,6 +454,9 @@ class Queue : public FlightQueue {
 std::string Refusal(const Launcher& launcher) {
   std::vector<StructProblem> problems = Problems(launcher.vehicle);
   if (problems.empty()) problems = ControlProblems(launcher.vehicle, launcher.course);
+  // As the reader of campaigns says it.
+  if (problems.empty() && launcher.is_guided && !launcher.course.is_controlled)
+    problems.push_back({"guidance", "'guidance' is given, and nothing controls the flights", ""});
   return problems.empty() ? "" : problems[0].path + ": " + problems[0].message;
 }
 
@@ -438,8 +491,7 @@ void ExpectFlies(const Launcher& launcher) {
     EXPECT_EQ(alone.back().outcome, Outcome::kCompleted) << alone.back().reason;
     // Of the trapezium rule over a tick, with the jumps of wind and thrust inside it.
     EXPECT_LT(books.largest_tick_m_s, 2e-3);
-    // Nothing pushes where a body leaves. The rest's centre of gravity is elsewhere in a turning body: metres
-    // at a few degrees a second.
+    // Nothing pushes where a body leaves. Bending passes some of its motion on.
     EXPECT_LT(books.largest_event_m_s, 0.5);
     EXPECT_LT(std::fabs(books.unbooked_kg), 1e-4 * launcher.vehicle.stages[0].liftoff_mass_kg);
   }
