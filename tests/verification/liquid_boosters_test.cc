@@ -15,6 +15,7 @@
 #include "core/math/constants.h"
 #include "core/trajectory/ascent.h"
 #include "core/vehicle/mass.h"
+#include "core/vehicle/plausibility.h"
 #include "core/vehicle/vehicle_figures.h"
 #include "tests/flown_ticks.h"
 #include "tests/slv4_flight.h"
@@ -420,6 +421,26 @@ TEST(LiquidBoosters, FlyInThreeAndSixDegreesOfFreedom) {
   ASSERT_EQ(flown.outcome, Outcome::kCompleted) << flown.reason;
   EXPECT_NEAR(MetricOf(flown, "injection_velocity_m_s"), ascent.orbit.velocity_m_s, 2.0);
   EXPECT_NEAR(MetricOf(flown, "injection_altitude_km"), 1e-3 * ascent.orbit.altitude_m, 2.0);
+}
+
+// As engines and tanks of stages are.
+TEST(LiquidBoosters, AreComparedWithKnownEnginesAndTanks) {
+  Vehicle vehicle = Boosted({}).vehicle;
+  const auto unusual = [&] {
+    std::string paths;
+    for (const PlausibilityFinding& finding : Plausibility(vehicle))
+      if (finding.path.starts_with("boosters")) paths += finding.path + " ";
+    return paths;
+  };
+  Boosters& b = vehicle.boosters;
+  EXPECT_EQ(unusual(), "boosters.motor.liquid.specific_impulse_s ");
+  b.motor.specific_impulse_s = 300.0;
+  EXPECT_EQ(unusual(), "");
+  b.motor.residual_mass_kg = 50.0;
+  EXPECT_EQ(unusual(), "boosters.motor.liquid.residual_mass_kg ");
+  b.motor.residual_mass_kg = kRest_kg;
+  b.tanks[1].density_kg_m3 = 2000.0;
+  EXPECT_EQ(unusual(), "boosters.tanks[1].density_kg_m3 boosters.tanks[1].propellant_mass_kg ");
 }
 
 TEST(LiquidBoosters, AreCutOffByTimeOrDepletion) {
