@@ -144,7 +144,7 @@ TEST(ThreeBurns, ArePredictedAsTheEngineFliesThem) {
 
 class MoreBurns : public testing::TestWithParam<int> {};
 
-// Whatever a stage lacks, with two burns guided or three: no worse than open loop, and not worse with three.
+// Whatever a stage lacks, with two burns guided or more: no worse than open loop, and not worse with more.
 TEST_P(MoreBurns, AreNoWorseThanOpenLoop) {
   FlightDefinition definition = DefinitionOf(Shipped("vega"));
   const FlightModel two(definition);
@@ -179,7 +179,7 @@ TEST_P(MoreBurns, AreNoWorseThanOpenLoop) {
   }
 }
 
-INSTANTIATE_TEST_SUITE_P(Vega, MoreBurns, testing::Values(3),
+INSTANTIATE_TEST_SUITE_P(Vega, MoreBurns, testing::Values(3, 4),
                          [](const auto& burns) { return std::to_string(burns.param); });
 
 }  // namespace
