@@ -29,22 +29,23 @@ PlanePlaces::PlanePlaces(const StackModes& stack, BeamPlane plane, const LoadTab
 }
 
 PieceEdge PlanePlaces::EdgeBefore(double station_m) const {
-  const double at =
-      std::clamp((station_m - top_m_) / piece_m_, 0.0, static_cast<double>(kShorteningPieces));
+  const double at = std::clamp((station_m - top_m_) / piece_m_, 0.0, static_cast<double>(kShorteningPieces));
   const std::size_t before = std::min<std::size_t>(static_cast<std::size_t>(at), kShorteningPieces - 1);
   return {before, at - static_cast<double>(before)};
 }
 
-std::vector<MassPlace> PlanePlaces::Of(const std::vector<MassPoint>& points, const StackModes& stack) const {
-  std::vector<MassPlace> places(points.size());
-  std::size_t next = 0;
+std::vector<const MassPlace*> PlanePlaces::Of(const std::vector<MassPoint>& points, const StackModes& stack,
+                                              std::deque<MassPlace>& found) const {
+  std::vector<const MassPlace*> places(points.size());
+  const MassPlace* known = known_.data();
+  const MassPlace* const end = known + known_.size();
   for (std::size_t i = 0; i < points.size(); ++i) {
     const double station_m = points[i].fixed_at_m;
-    while (next < known_.size() && known_[next].station_m < station_m) ++next;
-    if (next < known_.size() && known_[next].station_m == station_m)
-      places[i] = known_[next];
-    else
-      places[i] = {station_m, PlaceAt(stack, plane_, station_m), EdgeBefore(station_m)};
+    while (known < end && known->station_m < station_m) ++known;
+    places[i] = known;
+    if (known < end && known->station_m == station_m) continue;
+    found.push_back({station_m, PlaceAt(stack, plane_, station_m), EdgeBefore(station_m)});
+    places[i] = &found.back();
   }
   return places;
 }

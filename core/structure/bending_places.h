@@ -1,8 +1,9 @@
-// The places of a stack's beam at which a bending table looks at its modes. They are the same for all masses and
-// levels, so they are found once.
+// The places of a stack's beam at which a bending table looks at its modes. They are the same for all masses
+// and levels, so they are found once.
 #pragma once
 
 #include <array>
+#include <deque>
 #include <vector>
 
 #include "core/structure/bending_modes.h"
@@ -56,10 +57,13 @@ class PlanePlaces {
   static std::size_t MiddleOf(std::size_t lift_piece) { return 2 * lift_piece + 2; }
   /// At which the points of a mass are cut: the nodes and the load stations, rising.
   const std::vector<double>& cuts_m() const { return cuts_m_; }
-  /// Of points, whose stations rise. Where they are not known beforehand they are found in `stack`.
-  std::vector<MassPlace> Of(const std::vector<MassPoint>& points, const StackModes& stack) const;
+  /// Of points, whose stations rise. `found` takes those that are not known beforehand.
+  std::vector<const MassPlace*> Of(const std::vector<MassPoint>& points, const StackModes& stack,
+                                   std::deque<MassPlace>& found) const;
   PieceEdge EdgeBefore(double station_m) const;
-  bool AreOf(const StackModes& stack) const { return stack.station_m[plane_ == BeamPlane::kY ? 0 : 1] == nodes_m_; }
+  bool AreOf(const StackModes& stack) const {
+    return stack.station_m[plane_ == BeamPlane::kY ? 0 : 1] == nodes_m_;
+  }
 
  private:
   BeamPlane plane_;

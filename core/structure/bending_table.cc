@@ -1,6 +1,8 @@
 #include "core/structure/bending_table.h"
 
 #include <algorithm>
+#include <deque>
+#include <memory>
 #include <optional>
 
 #include "core/structure/bending_places.h"
@@ -25,7 +27,7 @@ using FourColumns = std::array<FourShapes, BendingTable::kRowSize>;
 ShapeColumns SideBySide(const BendingLevel& level, std::size_t modes) {
   const std::size_t nodes = level.modes[0].deflection.size();
   ShapeColumns columns(2 * nodes, (modes + 3) / 4);
-  std::fill(columns.values.begin(), columns.values.end(), FourShapes(0.0));
+  std::fill_n(columns.Four(0), columns.rows * columns.fours, FourShapes(0.0));
   for (std::size_t k = 0; k < modes; ++k) {
     double* const at = Values(columns.Four(k / 4)) + k % 4;
     for (std::size_t i = 0; i < nodes; ++i) {
@@ -41,38 +43,40 @@ ShapeColumns SideBySide(const BendingLevel& level, std::size_t modes) {
 class SlopesBehind {
  public:
   // `one`: lane of the first value.
-  SlopesBehind(double piece_m, const double* one, const std::vector<FourShapes>& four)
-      : behind_(four.size() + 1, FourShapes(0.0)) {
-    for (std::size_t i = four.size(); i-- > 0;)
+  SlopesBehind(double piece_m, const double* one, const FourShapes* four)
+      : behind_(std::make_unique_for_overwrite<FourShapes[]>(kShorteningPieces + 1)) {
+    behind_[kShorteningPieces] = 0.0;
+    for (std::size_t i = kShorteningPieces; i-- > 0;)
       behind_[i] = behind_[i + 1] + FourShapes(one[4 * i]) * four[i] * FourShapes(piece_m);
   }
   FourShapes At(const PieceEdge& at) const {
     return behind_[at.before] + FourShapes(at.part) * (behind_[at.before + 1] - behind_[at.before]);
   }
   // Weighted with the share of the mass ahead: each mass counts for all of the beam behind it.
-  FourShapes ByMass(const std::vector<MassPoint>& points, const std::vector<MassPlace>& places) const {
+  FourShapes ByMass(const std::vector<MassPoint>& points, const std::vector<const MassPlace*>& places) const {
     FourShapes sum = 0.0;
     double mass_kg = 0.0;
     for (std::size_t i = 0; i < points.size(); ++i) {
-      sum = sum + FourShapes(points[i].mass_kg) * At(places[i].edge);
+      sum = sum + FourShapes(points[i].mass_kg) * At(places[i]->edge);
       mass_kg += points[i].mass_kg;
     }
     return sum / FourShapes(mass_kg);
   }
 
  private:
-  std::vector<FourShapes> behind_;  // from each edge of the pieces
+  std::unique_ptr<FourShapes[]> behind_;  // from each edge of the pieces
 };
 
 // Four modes where the lift is summed.
 struct LiftShapes {
-  std::vector<FourStations> at;  // in the order in which LiftDistribution asks for incidences
-  std::vector<std::array<FourShapes, kLiftCauses>> force;  // by piece
+  std::unique_ptr<FourStations[]> at;  // in the order in which LiftDistribution asks for incidences
+  std::unique_ptr<std::array<FourShapes, kLiftCauses>[]> force;  // by piece
 
   LiftShapes(const LoadTable& loads, const PlanePlaces& places, const FourShapes* modes)
-      : force(loads.lift.pieces.size()) {
-    at.reserve(places.lift().size());
-    for (const BeamPlace& place : places.lift()) at.push_back(FourAt(place, modes));
+      : at(std::make_unique_for_overwrite<FourStations[]>(places.lift().size())),
+        force(
+            std::make_unique_for_overwrite<std::array<FourShapes, kLiftCauses>[]>(loads.lift.pieces.size())) {
+    for (std::size_t i = 0; i < places.lift().size(); ++i) at[i] = FourAt(places.lift()[i], modes);
     for (const bool by_rate : {false, true}) {
       std::size_t piece = 0, next = 0;
       loads.lift.ForEach(
@@ -177,24 +181,24 @@ BendingTable BuildBendingTable(const Vehicle& vehicle, const StackModes& stack, 
     for (const RateGyro& gyro : vehicle.sensors.rate_gyros) gyros.push_back(place_at(gyro.station_m));
     BeamPlace link;
     if (boosters) link = place_at(boosters->attachment_station_m);
-    std::vector<MassPlace> at_upper;
-    if (upper) at_upper = places.Of(upper->points, stack);
+    std::deque<MassPlace> found;
+    std::vector<const MassPlace*> at_upper;
+    if (upper) at_upper = places.Of(upper->points, stack, found);
     table.rows.reserve(table.planes * stack.levels[p].size() * count * BendingTable::kRowSize);
     for (const BendingLevel& level : stack.levels[p]) {
       const std::vector<MassPoint> points = MassPointsOf(
           BuildBeamMasses(vehicle, stack.stage, level.propellant_kg, stack.gone), places.cuts_m());
-      const std::vector<MassPlace> at_points = places.Of(points, stack);
+      const std::vector<const MassPlace*> at_points = places.Of(points, stack, found);
       const ShapeColumns shapes = SideBySide(level, count);
-      std::vector<std::vector<FourShapes>> slopes;
+      std::vector<std::unique_ptr<FourShapes[]>> slopes;
       std::vector<LiftShapes> lifts;
-      for (std::size_t four = 0; four < shapes.fours(); ++four) {
-        slopes.emplace_back();
-        slopes[four].reserve(kShorteningPieces);
-        for (const BeamPlace& place : places.pieces())
-          slopes[four].push_back(FourAt(place, shapes.Four(four)).slope_1_m);
+      for (std::size_t four = 0; four < shapes.fours; ++four) {
+        slopes.push_back(std::make_unique_for_overwrite<FourShapes[]>(kShorteningPieces));
+        for (std::size_t i = 0; i < kShorteningPieces; ++i)
+          slopes[four][i] = FourAt(places.pieces()[i], shapes.Four(four)).slope_1_m;
         lifts.emplace_back(loads, places, shapes.Four(four));
       }
-      for (std::size_t four = 0; four < shapes.fours(); ++four) {
+      for (std::size_t four = 0; four < shapes.fours; ++four) {
         const auto at = [&](const BeamPlace& place) { return FourAt(place, shapes.Four(four)); };
         FourColumns columns;
         columns.fill(0.0);
@@ -205,7 +209,8 @@ BendingTable BuildBendingTable(const Vehicle& vehicle, const StackModes& stack, 
         for (std::size_t g = 0; g < gyros.size(); ++g)
           columns[BendingTable::kGyroSlope + g] = at(gyros[g]).slope_1_m;
         for (std::size_t j = 0; j < count; ++j) {
-          const SlopesBehind behind(places.piece_m(), Values(slopes[j / 4].data()) + j % 4, slopes[four]);
+          const SlopesBehind behind(places.piece_m(), Values(slopes[j / 4].get()) + j % 4,
+                                    slopes[four].get());
           columns[BendingTable::kShortening + j] = behind.ByMass(points, at_points);
           if (boosters)
             columns[BendingTable::kBehindBoosters + j] =
@@ -228,13 +233,12 @@ BendingTable BuildBendingTable(const Vehicle& vehicle, const StackModes& stack, 
         AddLift(loads, lifts[four], lifts, count, columns);
         if (upper) {
           const FourStations mean =
-              upper->MeanOf([&](const MassPoint&, std::size_t i) { return at(at_upper[i].place); });
+              upper->MeanOf([&](const MassPoint&, std::size_t i) { return at(at_upper[i]->place); });
           columns[BendingTable::kUpperShift] = mean.deflection;
           columns[BendingTable::kUpperTurn] = mean.slope_1_m;
         }
-        std::vector<FourStations> of_points;
-        of_points.reserve(points.size());
-        for (const MassPlace& m : at_points) of_points.push_back(at(m.place));
+        const auto of_points = std::make_unique_for_overwrite<FourStations[]>(points.size());
+        for (std::size_t i = 0; i < points.size(); ++i) of_points[i] = at(at_points[i]->place);
         const auto at_point = [&](const MassPoint&, std::size_t i) { return of_points[i]; };
         for (std::size_t i = 0; i < kLoadStations && loads.station_m[i] > 0.0; ++i)
           columns[BendingTable::kMomentAt + i] = InertiaMoment(points, loads.station_m[i], at_point);

@@ -14,51 +14,57 @@ void Gauss(double from_m, double to_m, F f) {
   f(half * kOuter, middle + half * kPoint);
 }
 
-// The points in the order of their stations, and of `points` where these are equal.
-std::vector<MassPoint> SortedByCell(const std::vector<MassPoint>& points,
-                                    const std::vector<std::size_t>& cells, std::size_t cell_count) {
-  std::vector<std::size_t> next(cell_count + 1);
-  for (const std::size_t cell : cells) ++next[cell + 1];
-  for (std::size_t cell = 0; cell < cell_count; ++cell) next[cell + 1] += next[cell];
-  std::vector<MassPoint> sorted(points.size());
-  for (std::size_t i = 0; i < points.size(); ++i) sorted[next[cells[i]]++] = points[i];
-  // Those of several masses in one cell.
-  for (std::size_t i = 1; i < sorted.size(); ++i) {
-    const MassPoint point = sorted[i];
-    std::size_t to = i;
-    for (; to > 0 && sorted[to - 1].fixed_at_m > point.fixed_at_m; --to) sorted[to] = sorted[to - 1];
-    if (to < i) sorted[to] = point;
+// f(cell, from, to) for each piece of a mass between cuts; a cell has so many cuts ahead.
+template <typename F>
+void ForEachCell(const SpreadMass& m, const std::vector<double>& cuts_m, F f) {
+  double from_m = m.top_station_m;
+  std::size_t cell =
+      static_cast<std::size_t>(std::upper_bound(cuts_m.begin(), cuts_m.end(), from_m) - cuts_m.begin());
+  for (; cell < cuts_m.size() && cuts_m[cell] < m.bottom_station_m; ++cell) {
+    if (cuts_m[cell] > from_m) f(cell, from_m, cuts_m[cell]);
+    from_m = cuts_m[cell];
   }
-  return sorted;
+  if (m.bottom_station_m > from_m) f(cell, from_m, m.bottom_station_m);
+}
+
+std::size_t CellOf(const FixedMass& m, const std::vector<double>& cuts_m) {
+  return static_cast<std::size_t>(std::upper_bound(cuts_m.begin(), cuts_m.end(), m.station_m) -
+                                  cuts_m.begin());
 }
 
 }  // namespace
 
 std::vector<MassPoint> MassPointsOf(const BeamMasses& masses, std::vector<double> cuts_m) {
   if (!std::is_sorted(cuts_m.begin(), cuts_m.end())) std::sort(cuts_m.begin(), cuts_m.end());
-  std::vector<MassPoint> points;
-  std::vector<std::size_t> cells;  // of the points: number of cuts ahead
+  // The place of the next point of each cell.
+  std::vector<std::size_t> next(cuts_m.size() + 2);
+  for (const SpreadMass& m : masses.spread)
+    ForEachCell(m, cuts_m, [&](std::size_t cell, double, double) { next[cell + 1] += 3; });
+  for (const FixedMass& m : masses.fixed) ++next[CellOf(m, cuts_m) + 1];
+  for (std::size_t cell = 0; cell + 1 < next.size(); ++cell) next[cell + 1] += next[cell];
+  std::vector<MassPoint> points(next.back());
   for (const SpreadMass& m : masses.spread) {
-    double from_m = m.top_station_m;
-    auto cut = std::upper_bound(cuts_m.begin(), cuts_m.end(), from_m);
-    const auto add_up_to = [&](double to_m) {
-      if (!(to_m > from_m)) return;
+    const bool is_uniform = m.IsUniform();
+    ForEachCell(m, cuts_m, [&](std::size_t cell, double from_m, double to_m) {
+      MassPoint* point = &points[next[cell]];
+      next[cell] += 3;
       Gauss(from_m, to_m, [&](double length_m, double x) {
-        const double mass_kg = length_m * m.MassPerLength(x);
-        points.push_back({x, x, mass_kg, mass_kg * m.Gyration2(x)});
-        cells.push_back(static_cast<std::size_t>(cut - cuts_m.begin()));
+        const double mass_kg = length_m * (is_uniform ? m.mass_per_length_kg_m.top : m.MassPerLength(x));
+        *point++ = {x, x, mass_kg, mass_kg * (is_uniform ? m.gyration2_m2.top : m.Gyration2(x))};
       });
-      from_m = to_m;
-    };
-    for (; cut != cuts_m.end() && *cut < m.bottom_station_m; ++cut) add_up_to(*cut);
-    add_up_to(m.bottom_station_m);
+    });
   }
-  for (const FixedMass& m : masses.fixed) {
-    points.push_back({m.station_m, m.cg_station_m, m.mass_kg, m.inertia_kg_m2});
-    cells.push_back(static_cast<std::size_t>(std::upper_bound(cuts_m.begin(), cuts_m.end(), m.station_m) -
-                                             cuts_m.begin()));
+  for (const FixedMass& m : masses.fixed)
+    points[next[CellOf(m, cuts_m)]++] = {m.station_m, m.cg_station_m, m.mass_kg, m.inertia_kg_m2};
+  // Those of several masses in one cell. Masses at one station stay in their order.
+  for (std::size_t i = 1; i < points.size(); ++i) {
+    if (!(points[i - 1].fixed_at_m > points[i].fixed_at_m)) continue;
+    const MassPoint point = points[i];
+    std::size_t to = i;
+    for (; to > 0 && points[to - 1].fixed_at_m > point.fixed_at_m; --to) points[to] = points[to - 1];
+    points[to] = point;
   }
-  return SortedByCell(points, cells, cuts_m.size() + 1);
+  return points;
 }
 
 }  // namespace dispersa

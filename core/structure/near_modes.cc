@@ -17,8 +17,8 @@ constexpr int kMostTurns = 10;
 
 // The motion of a free beam as a rigid body: by 1 m, and about its centre of gravity by 1 rad.
 struct RigidMotion {
-  std::vector<double> push, turn;      // inertia of both at the rows
-  std::vector<double> turn_m;          // deflection of the turn at the nodes
+  std::vector<double> push, turn;  // inertia of both at the rows
+  std::vector<double> turn_m;      // deflection of the turn at the nodes
   double mass_kg = 0.0, inertia_kg_m2 = 0.0;
 
   RigidMotion(const NodeMasses& masses, const std::vector<double>& arms_m)
@@ -40,7 +40,7 @@ struct RigidMotion {
 
   // Adds the inertia of a rigid motion, such that no force and no moment is left.
   void Balance(ShapeColumns& loads) const {
-    for (std::size_t k = 0; k < loads.fours(); ++k) {
+    for (std::size_t k = 0; k < loads.fours; ++k) {
       FourShapes* const f = loads.Four(k);
       FourShapes force = 0.0, moment = 0.0;
       for (std::size_t i = 0; i < turn_m.size(); ++i) {
@@ -55,7 +55,7 @@ struct RigidMotion {
 
   // Takes the rigid motion from shapes, in the sense of the masses.
   void TakeFrom(ShapeColumns& shapes) const {
-    for (std::size_t k = 0; k < shapes.fours(); ++k) {
+    for (std::size_t k = 0; k < shapes.fours; ++k) {
       FourShapes* const x = shapes.Four(k);
       FourShapes force = 0.0, moment = 0.0;
       for (std::size_t row = 0; row < shapes.rows; ++row) {
@@ -73,7 +73,7 @@ struct RigidMotion {
 
 // a' b. Both have as many columns. Of a product that is symmetric a half is computed.
 Eigen::MatrixXd ProductOf(const ShapeColumns& a, const ShapeColumns& b, bool is_symmetric) {
-  const std::size_t fours = a.fours();
+  const std::size_t fours = a.fours;
   Eigen::MatrixXd product(4 * fours, 4 * fours);
   for (std::size_t p = 0; p < fours; ++p)
     for (std::size_t q = is_symmetric ? p : 0; q < fours; ++q) {
@@ -97,7 +97,7 @@ Eigen::MatrixXd ProductOf(const ShapeColumns& a, const ShapeColumns& b, bool is_
 }
 
 void ScaleColumns(const double* factor, ShapeColumns& columns) {
-  for (std::size_t k = 0; k < columns.fours(); ++k) {
+  for (std::size_t k = 0; k < columns.fours; ++k) {
     FourShapes* const x = columns.Four(k);
     const FourShapes by = _mm256_loadu_pd(factor + 4 * k);
     for (std::size_t row = 0; row < columns.rows; ++row) x[row] = x[row] * by;
@@ -157,7 +157,7 @@ double ChangeOf(const RitzModes& modes, Eigen::Index mode, const Eigen::MatrixXd
 ShapeColumns Combined(const ShapeColumns& columns, const Eigen::MatrixXd& share, std::size_t fours) {
   ShapeColumns combined(columns.rows, fours);
   for (std::size_t to = 0; to < fours; ++to)
-    for (std::size_t from = 0; from < columns.fours(); ++from) {
+    for (std::size_t from = 0; from < columns.fours; ++from) {
       FourShapes by[4];
       for (std::size_t lane = 0; lane < 4; ++lane) {
         const auto at = [&](std::size_t j) {
@@ -177,8 +177,8 @@ ShapeColumns Combined(const ShapeColumns& columns, const Eigen::MatrixXd& share,
   return combined;
 }
 
-// The found mode of each of the first `count` nominal ones. `product`: inertia of the nominal shapes times the
-// shapes that `found` combines.
+// The found mode of each of the first `count` nominal ones. `product`: inertia of the nominal shapes times
+// the shapes that `found` combines.
 std::vector<ModeMatch> MatchesOf(const Eigen::MatrixXd& product, const RitzModes& found,
                                  const Eigen::VectorXd& nominal_mass, int count) {
   const Eigen::MatrixXd of_modes = product.topRows(count) * found.share;
@@ -203,7 +203,8 @@ std::optional<std::vector<BendingMode>> ModesOf(const ShapeColumns& bent, const 
     BendingMode& m = modes[mode];
     const double* const at = Values(sought.Four(mode / 4)) + mode % 4;
     double largest = 0.0;
-    for (std::size_t row = 0; row < sought.rows; row += 2) largest = std::max(largest, std::fabs(at[4 * row]));
+    for (std::size_t row = 0; row < sought.rows; row += 2)
+      largest = std::max(largest, std::fabs(at[4 * row]));
     m.frequency_rad_s = std::sqrt(found.stiffness[matches[mode].index]);
     m.generalized_mass_kg = 1.0 / Square(largest);
     m.mac = matches[mode].mac;
@@ -238,17 +239,16 @@ void NearModes::AddLevel(const FreeFreeModes& nominal) {
   for (std::size_t j = 0; j < columns; ++j) {
     const Eigen::Index from = static_cast<Eigen::Index>(j);
     for (std::size_t row = 0; row < level.shapes.rows; ++row)
-      Values(level.shapes.Four(j / 4) + row)[j % 4] =
-          nominal.shape(static_cast<Eigen::Index>(row), from);
+      Values(level.shapes.Four(j / 4) + row)[j % 4] = nominal.shape(static_cast<Eigen::Index>(row), from);
   }
   levels_.push_back(std::move(level));
 }
 
 // Of the beam held at its first node. Loads that leave neither force nor moment bend it so.
 ShapeColumns NearModes::Bent(const ShapeColumns& loads) const {
-  ShapeColumns bent(loads.rows, loads.fours());
+  ShapeColumns bent(loads.rows, loads.fours);
   std::vector<std::array<FourShapes, 2>> turned(flexibility_.size());
-  for (std::size_t k = 0; k < loads.fours(); ++k) {
+  for (std::size_t k = 0; k < loads.fours; ++k) {
     const FourShapes* const f = loads.Four(k);
     FourShapes* const x = bent.Four(k);
     // The force and the moment of the loads behind turn the ends of an element against its chord.
@@ -291,19 +291,21 @@ std::optional<std::vector<BendingMode>> NearModes::Find(std::size_t level, const
     // Scaled to shapes that are about those of the turn before.
     ShapeColumns bent = Bent(*loads);
     rigid.TakeFrom(bent);
-    const Eigen::MatrixXd energy = stiffness.asDiagonal() * ProductOf(bent, *loads, true) * stiffness.asDiagonal();
+    const Eigen::MatrixXd energy =
+        stiffness.asDiagonal() * ProductOf(bent, *loads, true) * stiffness.asDiagonal();
     ScaleColumns(stiffness.data(), bent);
     const std::optional<RitzModes> found = FindAmong(energy, ProductOf(bent, mass.Times(bent), true));
     if (!found) return {};
     before = stiffness.asDiagonal() * before * stiffness.asDiagonal();
-    const std::vector<ModeMatch> matches = MatchesOf(ProductOf(nominal_loads, bent, false), *found, nominal_mass, count);
+    const std::vector<ModeMatch> matches =
+        MatchesOf(ProductOf(nominal_loads, bent, false), *found, nominal_mass, count);
     double error = 0.0;
     for (const ModeMatch& match : matches)
       error = std::max(error, ChangeOf(*found, match.index, before) * found->stiffness[match.index] /
                                   found->stiffness[found->stiffness.size() - 1]);
     if (error <= kShapeError) return ModesOf(bent, *found, matches, least_mac);
     stiffness = found->stiffness;
-    const ShapeColumns shapes = Combined(bent, found->share, bent.fours());
+    const ShapeColumns shapes = Combined(bent, found->share, bent.fours);
     next_loads = mass.Times(shapes);
     rigid.Balance(*next_loads);
     loads = &*next_loads;

@@ -22,8 +22,8 @@ struct RitzModes {
 /// The beam of a stack in one plane, with its nominal modes at each propellant level.
 ///
 /// Subspace iteration from the nominal modes (K. J. Bathe, E. L. Wilson, Solution methods for eigenvalue
-/// problems in structural mechanics, Int. J. Numer. Methods Eng. 6, 1973). The inertia of the shapes bends the
-/// free beam into new shapes. Among these the method of Rayleigh and Ritz finds the modes. A free beam is
+/// problems in structural mechanics, Int. J. Numer. Methods Eng. 6, 1973). The inertia of the shapes bends
+/// the free beam into new shapes. Among these the method of Rayleigh and Ritz finds the modes. A free beam is
 /// statically determinate, so no system of equations is solved (SolveFreeFree). One turn multiplies the error
 /// of a shape by (its frequency / that of the first mode beyond the shapes)². It is repeated until the error
 /// left in each mode, by this ratio and the change of the last turn, is below kShapeError.
@@ -36,13 +36,13 @@ class NearModes {
 
   /// Number of nominal modes that AddLevel takes, for so many `modes` that are sought.
   static int ShapesFor(int modes);
-  /// The nominal modes of the next level, with unit modal masses. Those that are sought come first, in their order
-  /// and with their signs.
+  /// The nominal modes of the next level, with unit modal masses. Those that are sought come first, in their
+  /// order and with their signs.
   void AddLevel(const FreeFreeModes& nominal);
 
-  /// The first `count` modes with other masses at a level, in the order of the nominal ones and with their signs, scaled to
-  /// a largest deflection of 1. `mac` is that with the nominal mode. Nothing where one of them resembles its
-  /// nominal mode by less than `least_mac`, or the iteration does not converge.
+  /// The first `count` modes with other masses at a level, in the order of the nominal ones and with their
+  /// signs, scaled to a largest deflection of 1. `mac` is that with the nominal mode. Nothing where one of
+  /// them resembles its nominal mode by less than `least_mac`, or the iteration does not converge.
   std::optional<std::vector<BendingMode>> Find(std::size_t level, const BeamMasses& masses, int count,
                                                double least_mac) const;
 

@@ -19,16 +19,11 @@ std::array<double, 10> ProductsOf(const std::array<double, 4>& share) {
   return products;
 }
 
-bool IsUniform(const SpreadMass& m) {
-  return m.mass_per_length_kg_m.top == m.mass_per_length_kg_m.bottom &&
-         m.gyration2_m2.top == m.gyration2_m2.bottom && m.scale == std::array<double, 3>{1.0, 0.0, 0.0};
-}
-
 }  // namespace
 
 ShapeColumns NodeMasses::Times(const ShapeColumns& shapes) const {
-  ShapeColumns product(shapes.rows, shapes.fours());
-  for (std::size_t k = 0; k < shapes.fours(); ++k) {
+  ShapeColumns product(shapes.rows, shapes.fours);
+  for (std::size_t k = 0; k < shapes.fours; ++k) {
     const FourShapes* x = shapes.Four(k);
     FourShapes* y = product.Four(k);
     FourShapes from_before_w = 0.0, from_before_theta = 0.0;
@@ -100,7 +95,7 @@ NodeMasses NodeMassMaker::Of(const BeamMasses& masses) const {
   for (const SpreadMass& m : masses.spread) {
     const auto first = std::upper_bound(stations_.begin(), stations_.end(), m.top_station_m);
     std::size_t i = first == stations_.begin() ? 0 : static_cast<std::size_t>(first - stations_.begin()) - 1;
-    const bool is_uniform = IsUniform(m);
+    const bool is_uniform = m.IsUniform();
     for (; i < elements_.size() && stations_[i] < m.bottom_station_m; ++i) {
       const CoveredPart part = PartCovered(m, stations_[i], elements_[i].length_m);
       if (part.to == 0.0) continue;

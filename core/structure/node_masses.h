@@ -2,6 +2,7 @@
 #pragma once
 
 #include <array>
+#include <memory>
 #include <vector>
 
 #include "core/math/lanes.h"
@@ -16,16 +17,23 @@ using FourShapes = lanes::Pack<4>;
 inline double* Values(FourShapes* shapes) { return reinterpret_cast<double*>(shapes); }
 inline const double* Values(const FourShapes* shapes) { return reinterpret_cast<const double*>(shapes); }
 
-/// Shapes in fours: the values of the first four at all rows (two a node: deflection, rotation), then those of
-/// the next four.
-struct ShapeColumns {
-  std::size_t rows = 0;
-  std::vector<FourShapes> values;
+/// Shapes in fours: the values of the first four at all rows (two a node: deflection, rotation), then those
+/// of the next four.
+class ShapeColumns {
+ public:
+  /// Values are undefined until they are set.
+  ShapeColumns(std::size_t row_count, std::size_t four_count)
+      : rows(row_count),
+        fours(four_count),
+        values_(std::make_unique_for_overwrite<FourShapes[]>(row_count * four_count)) {}
 
-  ShapeColumns(std::size_t row_count, std::size_t fours) : rows(row_count), values(row_count * fours) {}
-  std::size_t fours() const { return values.size() / rows; }
-  const FourShapes* Four(std::size_t k) const { return values.data() + k * rows; }
-  FourShapes* Four(std::size_t k) { return values.data() + k * rows; }
+  const FourShapes* Four(std::size_t k) const { return values_.get() + k * rows; }
+  FourShapes* Four(std::size_t k) { return values_.get() + k * rows; }
+
+  std::size_t rows = 0, fours = 0;
+
+ private:
+  std::unique_ptr<FourShapes[]> values_;
 };
 
 /// The mass matrix of MassMatrix() (beam_elements.h) by its blocks: a node has mass of its own and is coupled

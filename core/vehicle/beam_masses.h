@@ -17,6 +17,11 @@ struct SpreadMass {
   Taper gyration2_m2;  ///< of a cross-section about its diameter, squared: (r_o² + r_i²) / 4 of a tube
   std::array<double, 3> scale = {1.0, 0.0, 0.0};
 
+  /// The same mass and radius of gyration everywhere: the values at the top.
+  bool IsUniform() const {
+    return mass_per_length_kg_m.top == mass_per_length_kg_m.bottom &&
+           gyration2_m2.top == gyration2_m2.bottom && scale == std::array<double, 3>{1.0, 0.0, 0.0};
+  }
   double MassPerLength(double station_m) const;
   double Gyration2(double station_m) const;
 };

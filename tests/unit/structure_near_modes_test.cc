@@ -100,12 +100,12 @@ TEST(NodeMasses, AreTheMassMatrix) {
         ShapeColumns unit(2 * stations.size(), 1);
         double worst = 0.0;
         for (std::size_t row = 0; row < unit.rows; ++row) {
-          std::fill(unit.values.begin(), unit.values.end(), FourShapes(0.0));
-          unit.values[row] = 1.0;
+          std::fill_n(unit.Four(0), unit.rows, FourShapes(0.0));
+          unit.Four(0)[row] = 1.0;
           const ShapeColumns column = masses.Times(unit);
           for (std::size_t other = 0; other < unit.rows; ++other) {
             const double exact = whole(static_cast<Eigen::Index>(other), static_cast<Eigen::Index>(row));
-            worst = std::max(worst, std::fabs(Values(&column.values[other])[0] - exact));
+            worst = std::max(worst, std::fabs(Values(column.Four(0) + other)[0] - exact));
           }
         }
         EXPECT_LT(worst, 1e-14 * largest) << fraction;
