@@ -4,9 +4,17 @@
 
 #include "core/dynamics/aero_grid.h"
 #include "core/math/lane_vector.h"
+#include "core/math/row_memory.h"
 
 namespace dispersa::lanes {
 inline namespace DISPERSA_ISA {
+
+/// The cell of its grid in which each lane is. A lane whose range of Mach number contains nothing is in none.
+template <class T>
+struct AeroRows {
+  RowRange<T> mach, incidence;
+  T body_axes[AeroGrid::kRowSize], wind_axes[AeroGrid::kRowSize];
+};
 
 /// The body of each lane: its grid, sizes, and the factors on its coefficients.
 template <class T>
@@ -20,6 +28,7 @@ struct BodyAerodynamicsLanes {
   T ca_factor, cn_factor, xcp_factor;
   T moment_reference_station_m;
   T minimum_airspeed_m_s;
+  mutable AeroRows<T> rows;
 };
 
 template <class T>
@@ -28,11 +37,38 @@ struct Coefficients {
   T cn_slope_1_rad;  ///< of cn over the incidence
 };
 
-DISPERSA_INLINE int CellAt(const AeroGrid::Axis& axis, int bucket, double x) {
+/// The cell that contains x, and its range.
+template <class T>
+DISPERSA_INLINE int CellAt(const AeroGrid::Axis& axis, int bucket, double x, int lane, RowRange<T>& range) {
   const double* edges = axis.edges.data();
   int cell = axis.bucket.data()[bucket];
   while (x >= edges[cell]) ++cell;
+  while (cell > 0 && x < edges[cell - 1]) --cell;  // rounding had put it into the next bucket
+  range.Set(lane, cell > 0 ? edges[cell - 1] : 0.0, edges[cell]);
   return cell;
+}
+
+/// Finds the cells of the lanes that `found` does not name.
+template <class T>
+DISPERSA_OUT_OF_LINE void FindCells(const BodyAerodynamicsLanes<T>& body, T mach, T incidence,
+                                    MaskOf<T> found) {
+  int at_mach[kWidth<T>], at_incidence[kWidth<T>];
+  Truncate(mach * body.mach_scale, at_mach);
+  Truncate(incidence * body.incidence_scale, at_incidence);
+  const unsigned known = Bits(found);
+  for (int lane = 0; lane < kWidth<T>; ++lane) {
+    if (known >> lane & 1u) continue;
+    const AeroGrid& grid = *body.grid[lane];
+    const int in_mach = CellAt(grid.mach, at_mach[lane], Lane(mach, lane), lane, body.rows.mach);
+    const int in_incidence =
+        CellAt(grid.incidence, at_incidence[lane], Lane(incidence, lane), lane, body.rows.incidence);
+    const int offset = AeroGrid::kRowSize * (in_mach * grid.incidence.cells + in_incidence);
+    const bool has_wind_axes = !grid.wind_axes.empty();
+    for (int i = 0; i < AeroGrid::kRowSize; ++i) {
+      Lane(body.rows.body_axes[i], lane) = grid.body_axes.data()[offset + i];
+      Lane(body.rows.wind_axes[i], lane) = has_wind_axes ? grid.wind_axes.data()[offset + i] : 0.0;
+    }
+  }
 }
 
 template <class T>
@@ -45,19 +81,9 @@ template <class T>
 DISPERSA_INLINE Coefficients<T> CoefficientsAt(const BodyAerodynamicsLanes<T>& body, T mach,
                                                T incidence_rad) {
   const T m = Clamp(mach, T(0.0), body.mach_top), i = Clamp(incidence_rad, T(0.0), body.incidence_top);
-  int at_mach[kWidth<T>], at_incidence[kWidth<T>], offset[kWidth<T>];
-  Truncate(m * body.mach_scale, at_mach);
-  Truncate(i * body.incidence_scale, at_incidence);
-  const double* row[kWidth<T>];
-  for (int lane = 0; lane < kWidth<T>; ++lane) {
-    const AeroGrid& grid = *body.grid[lane];
-    const int in_mach = CellAt(grid.mach, at_mach[lane], Lane(m, lane));
-    const int in_incidence = CellAt(grid.incidence, at_incidence[lane], Lane(i, lane));
-    offset[lane] = AeroGrid::kRowSize * (in_mach * grid.incidence.cells + in_incidence);
-    row[lane] = grid.body_axes.data() + offset[lane];
-  }
-  T c[16];
-  LoadRow(row, 4, c);
+  const auto found = body.rows.mach.Contains(m) & body.rows.incidence.Contains(i);
+  if (!All(found)) FindCells(body, m, i, found);
+  const T* c = body.rows.body_axes;
   Coefficients<T> o;
   o.ca = body.ca_factor * BilinearAt(c, m, i);
   o.cn = body.cn_factor * BilinearAt(c + 4, m, i);
@@ -68,12 +94,7 @@ DISPERSA_INLINE Coefficients<T> CoefficientsAt(const BodyAerodynamicsLanes<T>& b
   o.cd = o.cl = o.cm = T(0.0);
   o.cnr = o.cmq;
   if (body.has_wind_axes) {
-    alignas(32) static constexpr double kNone[AeroGrid::kRowSize] = {};
-    for (int lane = 0; lane < kWidth<T>; ++lane) {
-      const AlignedRows& rows = body.grid[lane]->wind_axes;
-      row[lane] = rows.empty() ? kNone : rows.data() + offset[lane];
-    }
-    LoadRow(row, 4, c);
+    c = body.rows.wind_axes;
     o.cd = BilinearAt(c, m, i);
     o.cl = BilinearAt(c + 4, m, i);
     o.cm = BilinearAt(c + 8, m, i);

@@ -22,6 +22,8 @@ DISPERSA_INLINE void SetLane(FlightWeatherLanes<T>& w, int lane, const FlightWea
   Lane(w.gust_north, lane) = from.gust_north;
   Lane(w.gust_east, lane) = from.gust_east;
   w.profile[lane] = from.profile.is_calm() ? nullptr : &from.profile;
+  w.air_rows.range.Forget(lane);
+  w.profile_rows.range.Forget(lane);
   w.has_profiles = w.has_updrafts = false;
   for (int i = 0; i < kWidth<T>; ++i) {
     w.has_profiles |= w.profile[i] != nullptr;
@@ -33,6 +35,7 @@ template <class T>
 DISPERSA_INLINE void SetLane(BodyAerodynamicsLanes<T>& b, int lane, const BodyAerodynamics& body,
                              const AeroGrid& grid) {
   b.grid[lane] = &grid;
+  b.rows.mach.Forget(lane);
   Lane(b.mach_top, lane) = grid.mach.top;
   Lane(b.mach_scale, lane) = grid.mach.scale;
   Lane(b.incidence_top, lane) = grid.incidence.top;

@@ -8,6 +8,7 @@
 #include "core/environment/weather_profile.h"
 #include "core/math/constants.h"
 #include "core/math/lane_vector.h"
+#include "core/math/row_memory.h"
 
 namespace dispersa::lanes {
 inline namespace DISPERSA_ISA {
@@ -61,29 +62,46 @@ template <class T>
 struct AirStateLanes {
   T pressure_pa, energy_j_kg;  ///< energy: pressure / density
 };
-/// The standard's air is within kAirTableTolerance of StandardAtmosphere1976.
+/// A row of an air table in each lane.
 template <class T>
-DISPERSA_INLINE AirStateLanes<T> AirAt(const AirTable& table, T altitude_m) {
-  const T z = Clamp(altitude_m, T(kAtmosphereBottom_m), T(kAtmosphereTop_m));
+using AirRows = RowMemory<T, AirTable::kRowSize>;
+
+/// Finds the rows of the lanes at `z` that `found` does not name.
+template <class T>
+DISPERSA_OUT_OF_LINE void FindAir(const AirTable& table, T z, MaskOf<T> found, AirRows<T>& rows) {
   const double* edges = table.edges.data();
-  const double* rows = table.rows.data();
-  const std::uint16_t* bucket = table.bucket.data();
-  const double* row[kWidth<T>];
+  const unsigned known = Bits(found);
   int at[kWidth<T>];
   Truncate((z - T(kAtmosphereBottom_m)) * T(table.buckets_per_m), at);
   for (int lane = 0; lane < kWidth<T>; ++lane) {
-    unsigned cell = bucket[at[lane]];
-    cell += Lane(z, lane) >= edges[cell + 1];
-    row[lane] = rows + AirTable::kRowSize * cell;
+    if (known >> lane & 1u) continue;
+    unsigned cell = table.bucket.data()[at[lane]];
+    while (Lane(z, lane) >= edges[cell + 1]) ++cell;
+    while (cell > 0 && Lane(z, lane) < edges[cell]) --cell;  // rounding had put it into the next bucket
+    rows.range.Set(lane, edges[cell], edges[cell + 1]);
+    rows.SetRow(lane, table.rows.data() + AirTable::kRowSize * cell);
   }
-  T c[16];
-  LoadRow(row, 4, c);
+}
+
+/// The standard's air is within kAirTableTolerance of StandardAtmosphere1976. `rows` belong to this table.
+template <class T>
+DISPERSA_INLINE AirStateLanes<T> AirAt(const AirTable& table, T altitude_m, AirRows<T>& rows) {
+  const T z = Clamp(altitude_m, T(kAtmosphereBottom_m), T(kAtmosphereTop_m));
+  const auto found = rows.range.Contains(z);
+  if (!All(found)) FindAir(table, z, found, rows);
+  const T* c = rows.c;
   const T u = (z - c[0]) * c[1];
   AirStateLanes<T> air;
   air.pressure_pa = Fma(u, Fma(u, Fma(u, Fma(u, Fma(u, Fma(u, c[8], c[7]), c[6]), c[5]), c[4]), c[3]), c[2]);
   air.energy_j_kg = Fma(u, Fma(u, Fma(u, Fma(u, Fma(u, c[14], c[13]), c[12]), c[11]), c[10]), c[9]);
   air.pressure_pa = Select(altitude_m > T(kAtmosphereTop_m), T(0.0), air.pressure_pa);
   return air;
+}
+template <class T>
+DISPERSA_INLINE AirStateLanes<T> AirAt(const AirTable& table, T altitude_m) {
+  AirRows<T> rows;
+  for (int lane = 0; lane < kWidth<T>; ++lane) rows.range.Forget(lane);
+  return AirAt(table, altitude_m, rows);
 }
 
 /// Wind and density of one flight each.
@@ -98,6 +116,8 @@ struct FlightWeatherLanes {
   T gust_north, gust_east;
   const WeatherProfile* profile[kWidth<T>];  ///< null: calm
   bool has_profiles, has_updrafts;
+  mutable AirRows<T> air_rows;  ///< of the flight's air, and
+  mutable RowMemory<T, WeatherProfile::kRowSize> profile_rows;
 };
 
 /// Speed of a JetStream.
@@ -115,18 +135,33 @@ DISPERSA_INLINE T GustSpeed(T altitude_m, T speed_m_s, T start_m, T inverse_leng
   return Select((x > T(0.0)) & (x < T(1.0)), T(0.5) * speed_m_s * (T(1.0) - Cos(T(kTwoPi) * within)), T(0.0));
 }
 
-/// The row of a profile at an altitude.
-DISPERSA_INLINE const double* RowAt(const WeatherProfile& profile, double altitude_m) {
-  const double* edges = profile.edges.data();
-  unsigned low = 0, high = static_cast<unsigned>(profile.edges.size());
-  while (low < high) {
-    const unsigned middle = (low + high) / 2;
-    if (altitude_m >= edges[middle])
-      low = middle + 1;
-    else
-      high = middle;
+/// Finds the rows of the lanes' profiles, of the lanes that `found` does not name.
+template <class T>
+DISPERSA_OUT_OF_LINE void FindProfiles(const FlightWeatherLanes<T>& weather, T altitude_m, MaskOf<T> found) {
+  static constexpr double kCalm[WeatherProfile::kRowSize] = {0.0, 0.0, 0.0, 0.0, 1.0, 0.0, 0.0, 0.0};
+  auto& rows = weather.profile_rows;
+  const unsigned known = Bits(found);
+  for (int lane = 0; lane < kWidth<T>; ++lane) {
+    if (known >> lane & 1u) continue;
+    if (weather.profile[lane] == nullptr) {
+      rows.range.Set(lane, -kNoEnd, kNoEnd);
+      rows.SetRow(lane, kCalm);
+      continue;
+    }
+    const WeatherProfile& profile = *weather.profile[lane];
+    const double* edges = profile.edges.data();
+    const unsigned count = static_cast<unsigned>(profile.edges.size());
+    unsigned low = 0, high = count;
+    while (low < high) {
+      const unsigned middle = (low + high) / 2;
+      if (Lane(altitude_m, lane) >= edges[middle])
+        low = middle + 1;
+      else
+        high = middle;
+    }
+    rows.range.Set(lane, low > 0 ? edges[low - 1] : -kNoEnd, low < count ? edges[low] : kNoEnd);
+    rows.SetRow(lane, profile.rows.data() + WeatherProfile::kRowSize * low);
   }
-  return profile.rows.data() + WeatherProfile::kRowSize * low;
 }
 
 template <class T>
@@ -142,22 +177,18 @@ struct Surroundings {
 template <class T>
 DISPERSA_INLINE Surroundings<T> SurroundingsAt(const Earth& earth, const AirTable& air_table,
                                                const FlightWeatherLanes<T>& weather, Vector<T> p) {
-  alignas(32) static constexpr double kCalm[WeatherProfile::kRowSize] = {0.0, 0.0, 0.0, 0.0,
-                                                                         1.0, 0.0, 0.0, 0.0};
   const Place<T> at = PlaceAt(earth, p);
   Surroundings<T> o;
   o.altitude_m = at.altitude_m;
   o.gravitation_m_s2 = GravitationAt(earth, p, at);
-  const AirStateLanes<T> air = AirAt(air_table, at.altitude_m);
+  const AirStateLanes<T> air = AirAt(air_table, at.altitude_m, weather.air_rows);
   const T inverse_energy = T(1.0) / air.energy_j_kg;
   T factor = weather.density_factor;
   T north(0.0), east(0.0), up(0.0);
   if (weather.has_profiles) {
-    const double* row[kWidth<T>];
-    for (int lane = 0; lane < kWidth<T>; ++lane)
-      row[lane] = weather.profile[lane] ? RowAt(*weather.profile[lane], Lane(at.altitude_m, lane)) : kCalm;
-    T c[8];
-    LoadRow(row, 2, c);
+    const auto found = weather.profile_rows.range.Contains(at.altitude_m);
+    if (!All(found)) FindProfiles(weather, at.altitude_m, found);
+    const T* c = weather.profile_rows.c;
     north = Fma(at.altitude_m, c[1], c[0]);
     east = Fma(at.altitude_m, c[3], c[2]);
     factor = factor * Fma(at.altitude_m, c[5], c[4]);
