@@ -98,9 +98,15 @@ Correction CorrectFirst(const GuidanceMission& mission, const PlanPrior& prior, 
                         const NavigatedState& from, const Plan& start, const CorrectorTask& task) {
   Correction best;
   best.plan = start;
-  const auto predict = [&](const Plan& plan) {
+  // The way of the last plan that was predicted; derivatives by values of the last burn share the best one's.
+  WayToLastBurn way;
+  bool has_way = false;
+  const auto predict = [&](const Plan& plan, bool keeps_way) {
     ++best.predictions;
-    return Predict(mission, prior, known, from, plan);
+    const Injection reached =
+        Predict(mission, prior, known, from, plan, {}, has_way ? &way : nullptr, keeps_way ? &way : nullptr);
+    has_way = has_way || keeps_way;
+    return reached;
   };
   const auto keep = [&](const Plan& plan, const Injection& reached, const Misses<misses>& miss) {
     best.plan = plan;
@@ -108,7 +114,7 @@ Correction CorrectFirst(const GuidanceMission& mission, const PlanPrior& prior, 
     best.reached = reached;
     best.prioritised_miss = miss.norm();
   };
-  const Injection at_start = predict(start);
+  const Injection at_start = predict(start, true);
   StepModel<count, misses> model;
   model.free = task.free;
   model.miss = Scaled<misses>(mission, at_start, task);
@@ -127,7 +133,8 @@ Correction CorrectFirst(const GuidanceMission& mission, const PlanPrior& prior, 
       Plan moved = best.plan;
       const double difference = model.high(i) > kDifference ? kDifference : -kDifference;
       moved.value[k] += difference * scale;
-      model.jacobian.col(i) = (Scaled<misses>(mission, predict(moved), task) - model.miss) / difference;
+      model.jacobian.col(i) =
+          (Scaled<misses>(mission, predict(moved, false), task) - model.miss) / difference;
     }
     const Unknowns<count> curvature = CurvatureOf(
         mission, known, prior, model,
@@ -152,7 +159,7 @@ Correction CorrectFirst(const GuidanceMission& mission, const PlanPrior& prior, 
           if (task.free[k])
             next.value[k] = Clamp(next.value[k] + step(i) * prior.scale[k], task.low[k], task.high[k]);
         }
-        const Injection reached = predict(next);
+        const Injection reached = predict(next, true);
         const Misses<misses> miss = Scaled<misses>(mission, reached, task);
         const double next_sum = miss.squaredNorm() + (model.departure + step).squaredNorm();
         is_still = (miss - model.miss).template lpNorm<Eigen::Infinity>() < kStill &&

@@ -1,7 +1,9 @@
 #include "core/guidance/predictor.h"
 
 #include <algorithm>
+#include <bit>
 #include <cmath>
+#include <cstdint>
 #include <initializer_list>
 #include <iterator>
 #include <vector>
@@ -261,26 +263,22 @@ std::optional<GuidedStage> FlyEarlierBurns(const GuidanceMission& mission, const
   return AfterBurn(below, known.last, state.time_s - ignition_s);
 }
 
-}  // namespace
-
-Arrival ArrivalOf(const Earth& earth, double time_s, const Vector3& p, const Vector3& v) {
-  Arrival arrival;
-  arrival.altitude_m = ToGeodetic(earth, InertialToEarth(earth, time_s, p)).altitude_m;
-  const Vector3 h = p.cross(v);
-  arrival.velocity_m_s = v.norm();
-  arrival.flight_path_angle_rad = Atan2(p.dot(v), h.norm());
-  arrival.inclination_rad = Atan2(Sqrt(h.x() * h.x() + h.y() * h.y()), h.z());
-  return arrival;
+// Whether plans have the same burns before the last one, to the bit.
+bool ShareBurns(const Plan& a, const Plan& b) {
+  for (const PlanUnknown unknown :
+       {kBelowPitch, kBelowYaw, kBelowCutOff, kEarlierPitch, kEarlierYaw, kEarlierCutOff})
+    if (std::bit_cast<std::uint64_t>(a.value[unknown]) != std::bit_cast<std::uint64_t>(b.value[unknown]))
+      return false;
+  return true;
 }
 
-Injection Predict(const GuidanceMission& mission, const PlanPrior& prior, const Knowledge& known,
-                  const NavigatedState& from, const Plan& plan, const PredictorSteps& steps) {
+// From the present state through all burns but the last one.
+void FlyBurnsBeforeLast(const GuidanceMission& mission, const Knowledge& known, const NavigatedState& from,
+                        const Plan& plan, const PredictorSteps& steps, WayToLastBurn& way) {
   NavigatedState state = from;
   Injection injection;
-  // Of an engine that burns again: what its burn before leaves.
-  std::optional<GuidedStage> restarted;
   if (known.phase == GuidancePhase::kEarlierBurns)
-    restarted = FlyEarlierBurns(mission, known, plan, steps, state, injection);
+    way.restarted = FlyEarlierBurns(mission, known, plan, steps, state, injection);
   if (known.phase == GuidancePhase::kBelowBurns) {
     const auto planned = [&](double time_s) {
       Direction along = mission.program.At(time_s);
@@ -295,7 +293,7 @@ Injection Predict(const GuidanceMission& mission, const PlanPrior& prior, const 
       BurnEngine(mission, known.below, known.burn_ignition_s, plan.value[kBelowCutOff], steps.engine_s,
                  known.thrust_offset_rad_I, direction, state);
       if (mission.is_restart)
-        restarted = AfterBurn(known.below, known.last, state.time_s - known.burn_ignition_s);
+        way.restarted = AfterBurn(known.below, known.last, state.time_s - known.burn_ignition_s);
     } else {
       Burn(mission, known.below, known.burn_ignition_s, steps.burn_s, known.thrust_offset_rad_I, {},
            direction, state);
@@ -303,14 +301,58 @@ Injection Predict(const GuidanceMission& mission, const PlanPrior& prior, const 
     injection.burn_end_speed_m_s = state.v_IC_I.norm();
     injection.burn_end_s = state.time_s;
   }
+  way.after_burns = state;
+  way.burn_end_speed_m_s = injection.burn_end_speed_m_s;
+  way.burn_end_s = injection.burn_end_s;
+}
+
+}  // namespace
+
+Arrival ArrivalOf(const Earth& earth, double time_s, const Vector3& p, const Vector3& v) {
+  Arrival arrival;
+  arrival.altitude_m = ToGeodetic(earth, InertialToEarth(earth, time_s, p)).altitude_m;
+  const Vector3 h = p.cross(v);
+  arrival.velocity_m_s = v.norm();
+  arrival.flight_path_angle_rad = Atan2(p.dot(v), h.norm());
+  arrival.inclination_rad = Atan2(Sqrt(h.x() * h.x() + h.y() * h.y()), h.z());
+  return arrival;
+}
+
+Injection Predict(const GuidanceMission& mission, const PlanPrior& prior, const Knowledge& known,
+                  const NavigatedState& from, const Plan& plan, const PredictorSteps& steps) {
+  return Predict(mission, prior, known, from, plan, steps, nullptr, nullptr);
+}
+
+Injection Predict(const GuidanceMission& mission, const PlanPrior& prior, const Knowledge& known,
+                  const NavigatedState& from, const Plan& plan, const PredictorSteps& steps,
+                  const WayToLastBurn* known_way, WayToLastBurn* way_out) {
+  const bool shares_burns = known_way != nullptr && ShareBurns(known_way->plan, plan);
+  const bool shares_coast = shares_burns && known_way->plan.ignition_s() == plan.ignition_s();
+  WayToLastBurn way;
+  if (shares_burns)
+    way = *known_way;
+  else
+    FlyBurnsBeforeLast(mission, known, from, plan, steps, way);
+  NavigatedState state = way.after_burns;
+  const std::optional<GuidedStage>& restarted = way.restarted;
+  Injection injection;
+  injection.burn_end_speed_m_s = way.burn_end_speed_m_s;
+  injection.burn_end_s = way.burn_end_s;
   const bool lit = known.phase == GuidancePhase::kLastBurns;
   double ignition_s = lit ? known.burn_ignition_s : plan.ignition_s();
   if (known.phase == GuidancePhase::kEarlierBurns) ignition_s = std::max(ignition_s, state.time_s);
   if (!lit && !mission.moves_ignition)
     ignition_s = state.time_s + (mission.last_ignition_s - mission.below_burnout_s);
-  if (!lit)
+  if (shares_coast)
+    state = way.at_ignition;
+  else if (!lit)
     Advance(
         mission.earth, ignition_s, steps.coast_s, [](double) { return Vector3(0.0, 0.0, 0.0); }, state);
+  if (way_out != nullptr) {
+    way.plan = plan;
+    way.at_ignition = state;
+    *way_out = way;
+  }
   const LastBurnAttitude burn(plan, prior);
   Lags lags;
   double brakes_s = 0.0;

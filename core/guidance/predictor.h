@@ -53,8 +53,22 @@ struct PredictorSteps {
   double engine_s = 6.0;  ///< in a burn that guidance cuts off
 };
 
+/// A predicted way up to the last burn. Plans that differ in their last burn alone share it, and plans that
+/// also differ in its ignition share the burns before it.
+struct WayToLastBurn {
+  Plan plan;
+  NavigatedState after_burns, at_ignition;
+  std::optional<GuidedStage> restarted;               ///< the last burn's stage, if an engine burns again
+  double burn_end_speed_m_s = 0.0, burn_end_s = 0.0;  ///< Injection's
+};
+
 Injection Predict(const GuidanceMission& mission, const PlanPrior& prior, const Knowledge& known,
                   const NavigatedState& from, const Plan& plan, const PredictorSteps& steps = {});
+/// The same. `known_way`: one of the same knowledge, state and steps, or null; what it shares with the plan
+/// is not predicted again, with the same bits. `way`: where to put the plan's, or null.
+Injection Predict(const GuidanceMission& mission, const PlanPrior& prior, const Knowledge& known,
+                  const NavigatedState& from, const Plan& plan, const PredictorSteps& steps,
+                  const WayToLastBurn* known_way, WayToLastBurn* way);
 
 /// Of a state: how it would be judged as an injection.
 Arrival ArrivalOf(const Earth& earth, double time_s, const Vector3& p_EoC_I, const Vector3& v_IC_I);

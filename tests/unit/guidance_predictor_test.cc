@@ -125,6 +125,39 @@ TEST(Predictor, ThrustThatPointsElsewhereByASmallRotationIsTurnedByIt) {
               0.02 * down_m_s / straight.velocity_m_s);
 }
 
+// Of a way that is known already only the part is taken that the plan has in common with it.
+TEST(Predictor, AKnownWayChangesNoBit) {
+  GuidanceMission mission = PlainMission();
+  mission.moves_ignition = true;
+  const PlanPrior prior = BuildPrior(mission);
+  for (const GuidancePhase phase : {GuidancePhase::kBelowBurns, GuidancePhase::kCoast}) {
+    Knowledge known;
+    known.phase = phase;
+    known.burn_ignition_s = CoastState().time_s;
+    known.below = mission.below;
+    known.last = mission.last;
+    Plan plan = prior.nominal;
+    plan.value[kIgnition] = CoastState().time_s + mission.below.burn.duration_s + 100.0;
+    WayToLastBurn way;
+    const Injection first = Predict(mission, prior, known, CoastState(), plan, {}, nullptr, &way);
+    EXPECT_EQ(first.p_EoC_I, Predict(mission, prior, known, CoastState(), plan).p_EoC_I);
+    for (int unknown = 0; unknown < kUncutUnknowns; ++unknown) {
+      Plan moved = plan;
+      moved.value[static_cast<std::size_t>(unknown)] += unknown == kIgnition ? 5.0 : 0.01;
+      const Injection anew = Predict(mission, prior, known, CoastState(), moved);
+      const Injection shared = Predict(mission, prior, known, CoastState(), moved, {}, &way, nullptr);
+      EXPECT_EQ(shared.p_EoC_I, anew.p_EoC_I) << unknown;
+      EXPECT_EQ(shared.v_IC_I, anew.v_IC_I) << unknown;
+      EXPECT_EQ(shared.time_s, anew.time_s) << unknown;
+      EXPECT_EQ(shared.burn_end_speed_m_s, anew.burn_end_speed_m_s) << unknown;
+      EXPECT_EQ(shared.burn_end_s, anew.burn_end_s) << unknown;
+      // In the coast nothing burns that the first two could turn.
+      const bool moves = phase == GuidancePhase::kBelowBurns || unknown >= kIgnition;
+      EXPECT_EQ(anew.p_EoC_I != first.p_EoC_I, moves) << unknown;
+    }
+  }
+}
+
 // The plan's offsets of the burn below are added to the program: a program that has them already needs none.
 TEST(Predictor, OffsetsOfTheBurnBelowAreThoseOfItsProgram) {
   const GuidanceMission mission = PlainMission();
