@@ -2,11 +2,12 @@
 tuner, campaigns in process and over DDS, memory and instructions.
 
 usage: table.py BUILD [OLD_BUILD]
-       table.py --instructions BUILD [--bending]
+       table.py --instructions BUILD
+       table.py --capabilities BUILD
 BUILD is a build folder with the benchmarks (target by_hand) and programs; OLD_BUILD, one of another commit, gives ratios. What is
 compared is measured in turn, so that a change of the machine's load meets both: medians of five turns, ratios with
-their least and greatest. Callgrind counts where valgrind is installed; --instructions counts and does nothing else,
-with --bending also flights that bend, without drawn masses and with them.
+their least and greatest. Callgrind counts where valgrind is installed; --instructions counts and does nothing else.
+--capabilities counts flights of shipped campaigns with and without guidance, bending and dispersed masses.
 """
 import json
 import os
@@ -22,11 +23,10 @@ import time
 
 ROOT = pathlib.Path(__file__).resolve().parents[2]
 TABLE3 = ROOT / "campaigns/table3.yaml"
-BENDING = {"bending": ROOT / "campaigns/table3_flexible.yaml",
-           "bending, drawn masses": ROOT / "tests/benchmarks/table3_flexible_masses.yaml"}
 TURNS = 5
 CASES = 400
 EVALUATIONS = 64  # the fewest that the tuner takes
+VERDICTS = (0, 3, 4, 7)  # exit codes of a campaign that has flown
 
 
 def output(*command):
@@ -104,9 +104,9 @@ def tuner(dispersa):
         return {"s": time.monotonic() - begin}
 
 
-def instructions(dispersa, flown=TABLE3):
-    """Millions a flight in process on one thread: what 12 cases take beyond 4. A build that cannot leave histories out
-    flies each case twice; both count as flights."""
+def instructions(dispersa, campaign_file=TABLE3, few=4, many=12):
+    """Millions a flight in process on one thread: what `many` cases take beyond `few`. A build that cannot leave
+    histories out flies each case twice; both count as flights."""
     told = output(dispersa, "run", "--help")
     options = [*(["--threads", "1"] if "--threads" in told else []),
                *(["--no-histories"] if "--no-histories" in told else [])]
@@ -114,12 +114,53 @@ def instructions(dispersa, flown=TABLE3):
     def count(cases):
         with tempfile.TemporaryDirectory() as folder:
             done = subprocess.run(["valgrind", "--tool=callgrind", f"--callgrind-out-file={folder}/profile", dispersa,
-                                   "run", flown, "--cases", str(cases), "--quiet", "--out", f"{folder}/out",
+                                   "run", campaign_file, "--cases", str(cases), "--quiet", "--out", f"{folder}/out",
                                    "--workers", "0", *options],
                                   text=True, capture_output=True, timeout=1800, check=False)
+            if done.returncode not in VERDICTS:
+                raise RuntimeError(f"{campaign_file}: {done.stderr}")
             return int(re.search(r"Collected : (\d+)", done.stderr).group(1))
-    flights = 8 if "--no-histories" in told else 16
-    return (count(12) - count(4)) / flights / 1e6
+    flights = (many - few) * (1 if "--no-histories" in told else 2)
+    return (count(many) - count(few)) / flights / 1e6
+
+
+# Three sigma of a new motor (structure_near_modes_test).
+DISPERSED_MASSES = """  dry_mass: {distribution: normal, three_sigma_percent: 3, per: stage}
+  propellant_load: {distribution: normal, three_sigma_percent: 1, per: stage}
+  payload_mass: {distribution: normal, three_sigma_kg: 20, element: payload and equipment}
+"""
+
+
+def capabilities(dispersa):
+    """What a flight with a capability takes beside one without it, of the same vehicle and dispersions. The campaigns
+    are edited in a copy."""
+    with tempfile.TemporaryDirectory() as folder:
+        campaigns = pathlib.Path(folder) / "campaigns"
+        shutil.copytree(ROOT / "campaigns", campaigns)
+
+        def compare(what, name, edit, of_with=None):
+            """`edit` makes of the campaign one without the capability, `of_with` one with it (none: it is one)."""
+            source = campaigns / name
+            text = source.read_text()
+            counted = []
+            for change in (edit, of_with or (lambda same: same)):
+                copy = source.with_name("measured_" + source.name)
+                copy.write_text(change(text))
+                counted.append(instructions(dispersa, copy, few=4, many=8))
+            without, having = counted
+            print(f"{what:<16} {name:<34} {without:>8.1f} M {having:>8.1f} M  x {having / without:.2f}", flush=True)
+
+        print(f"{'capability':<16} {'campaign':<34} {'without':>10} {'with':>10}")
+        for found in sorted(campaigns.rglob("*.yaml")):
+            text = found.read_text()
+            if "schema: dispersa/campaign/" in text and re.search(r"^guidance:.*closed_loop", text, re.M):
+                compare("guidance", str(found.relative_to(campaigns)),
+                        lambda text: re.sub(r"^guidance:.*\n", "", text, flags=re.M))
+        # With its own autopilot: the rigid vehicle has no rate gyros.
+        compare("bending", "table3_flexible.yaml", lambda text: TABLE3.read_text())
+        for name in ("table3.yaml", "table3_flexible.yaml"):
+            compare("dispersed masses", name, lambda text: text,
+                    lambda text: text.replace("dispersions:\n", "dispersions:\n" + DISPERSED_MASSES, 1))
 
 
 def label_of(name):
@@ -180,20 +221,15 @@ def main(build, old_build=None):
     if shutil.which("valgrind"):
         counted = instructions(dispersa)
         row("instructions a flight, in process", [counted], "M")
-        for what, flown in BENDING.items():
-            of_bending = instructions(dispersa, flown)
-            row(f"instructions, {what}", [of_bending], "M", f"x {of_bending / counted:.2f} of the rigid flight")
         if old_build:
             other = instructions(old_build / "bin/dispersa")
             row("instructions a flight, other build", [other], "M", f"x {other / counted:.2f} of this one")
 
 
 if __name__ == "__main__":
-    if sys.argv[1] == "--instructions":
-        rigid = instructions(pathlib.Path(sys.argv[2]) / "bin/dispersa")
-        print(f"instructions a flight: {rigid:.1f} M", flush=True)
-        for name, of_bending in BENDING.items() if "--bending" in sys.argv else ():
-            more = instructions(pathlib.Path(sys.argv[2]) / "bin/dispersa", of_bending)
-            print(f"instructions a flight, {name}: {more:.1f} M, {more / rigid:.2f} of it", flush=True)
+    if sys.argv[1] == "--capabilities":
+        capabilities(pathlib.Path(sys.argv[2]).resolve() / "bin/dispersa")
+    elif sys.argv[1] == "--instructions":
+        print(f"instructions a flight: {instructions(pathlib.Path(sys.argv[2]) / 'bin/dispersa'):.1f} M")
     else:
         main(*(pathlib.Path(argument).resolve() for argument in sys.argv[1:]))
