@@ -51,7 +51,8 @@ std::string ListPage(const CampaignIndex& index, const std::string& search, std:
   }
   std::string main =
       fmt::format("<h1>Campaigns</h1>\n<p class=\"soft\">{}</p>\n",
-                  search.empty() ? fmt::format("{} campaigns, the last launched first.", index.rows().size())
+                  search.empty() ? fmt::format("{} {}, the last launched first.", index.rows().size(),
+                                               index.rows().size() == 1 ? "campaign" : "campaigns")
                                  : fmt::format("{} of {} campaigns have “{}”. <a href=\"/\">Show all</a>",
                                                found.size(), index.rows().size(), HtmlText(search)));
   if (found.empty()) return Frame("Campaigns", main, search);
