@@ -1,15 +1,21 @@
-// A made-up campaign whose flights define every metric of a controlled flight.
+// A made-up campaign whose flights define every metric.
 #pragma once
 
 #include "core/campaign/campaign.h"
 
 namespace dispersa {
 
+/// From a rail, under an autopilot and then without it, to the ground; the target names all angles.
 inline void MeasureEverything(Campaign& campaign) {
   campaign.autopilot.pitch.law = ControlLaw::kAdaptiveFuzzy;
   TrajectoryProblem& problem = campaign.reference.problem;
   problem.target_apogee_m = 600e3;
   problem.target_node_rad = problem.target_argument_of_perigee_rad = problem.target_true_anomaly_rad = 0.1;
+  campaign.course.ends = FlightEnd::kImpact;
+  campaign.vehicle.rail = Rail{1.0, 0.0, 0.0, 0.0};
+  Stage free;
+  free.gimbal = FixedNozzle(1.0);
+  campaign.vehicle.stages.push_back(free);
 }
 
 }  // namespace dispersa

@@ -8,7 +8,7 @@
 
 #include "core/analysis/stopping_rule.h"
 #include "core/campaign/case_design.h"
-#include "core/campaign/free_flight.h"
+#include "core/campaign/case_result.h"
 #include "core/flight/step_limits.h"
 #include "core/flight/structural_limits.h"
 #include "core/results/metric_catalogue.h"
@@ -269,7 +269,7 @@ std::vector<std::string> KeyMetrics(const Campaign& campaign) {
   for (const Requirement& requirement : campaign.requirements)
     if (!requirement.by_default) add(requirement.metric);
   for (const OwnMetric& metric : campaign.own_metrics) add(metric.name);
-  for (const std::size_t i : ShownMetrics(campaign))
+  for (const std::size_t i : MeasuredMetrics(campaign))
     if (i < Metrics().size() && Metrics()[i].is_usual) add(Metrics()[i].name);
   return metrics;
 }
@@ -321,7 +321,7 @@ CampaignSummary BuildSummary(const ResultFolder& folder, const Campaign& campaig
   summary.lost_flights = cases.lost_flights;
   summary.metric_list = folder.metric_list();
   summary.own_metrics = campaign.own_metrics;
-  const std::vector<std::size_t> shown = ShownMetrics(campaign);
+  const std::vector<std::size_t> shown = MeasuredMetrics(campaign);
   for (const std::size_t i : folder.metrics()) {
     if (std::find(shown.begin(), shown.end(), i) == shown.end()) continue;
     const std::string& name = folder.metric_list().NameAt(i);

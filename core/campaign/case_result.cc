@@ -4,7 +4,6 @@
 #include <optional>
 #include <utility>
 
-#include "core/campaign/free_flight.h"
 #include "core/flight/flight_model.h"
 #include "core/input/read_value.h"
 
@@ -12,16 +11,13 @@ namespace dispersa {
 
 namespace {
 
-void SetTarget(const TrajectoryProblem& problem, FlightKind& kind) {
+FlightKind KindOf(const Campaign& campaign) {
+  FlightKind kind = dispersa::KindOf(campaign.vehicle, campaign.autopilot, campaign.course);
+  const TrajectoryProblem& problem = campaign.reference.problem;
   kind.has_node = problem.target_node_rad.has_value();
   kind.has_argument_of_perigee = problem.target_argument_of_perigee_rad.has_value();
   kind.has_true_anomaly =
       problem.target_true_anomaly_rad || (kind.has_argument_of_perigee && !problem.is_entered_anywhere);
-}
-
-FlightKind KindOf(const Campaign& campaign) {
-  FlightKind kind = dispersa::KindOf(campaign.vehicle, campaign.autopilot, campaign.course);
-  SetTarget(campaign.reference.problem, kind);
   return kind;
 }
 
@@ -30,6 +26,7 @@ FlightKind AnyUnder(ControlLaw law) {
   FlightKind any(law);
   any.has_free_stage = any.has_rail = true;
   any.ends = FlightEnd::kImpact;
+  any.has_node = any.has_argument_of_perigee = any.has_true_anomaly = true;
   return any;
 }
 
@@ -49,24 +46,11 @@ MetricList MetricsOf(const Campaign& campaign) {
 }
 
 std::vector<std::size_t> MeasuredMetrics(const Campaign& campaign) {
-  FlightKind any = AnyUnder(campaign.autopilot.pitch.law);
-  SetTarget(campaign.reference.problem, any);  // columns of its angles only if it names them
-  return MetricsOfKind(campaign, any);
+  return MetricsOfKind(campaign, KindOf(campaign));
 }
 
 std::vector<std::size_t> ResultMetrics(const Campaign& campaign) {
-  FlightKind any = AnyUnder(campaign.autopilot.pitch.law);
-  any.has_node = any.has_argument_of_perigee = any.has_true_anomaly = true;
-  return MetricsOfKind(campaign, any);
-}
-
-std::vector<std::size_t> ShownMetrics(const Campaign& campaign) {
-  std::vector<std::size_t> positions = MeasuredMetrics(campaign);
-  const FlightKind kind = KindOf(campaign);
-  std::erase_if(positions, [&](std::size_t i) {
-    return i < MetricCount(ColumnClass(campaign.vehicle)) && !HasMetric(Metrics()[i], kind);
-  });
-  return positions;
+  return MetricsOfKind(campaign, AnyUnder(campaign.autopilot.pitch.law));
 }
 
 std::string WhyNotMeasured(const Campaign& campaign, const std::string& metric) {

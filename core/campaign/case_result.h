@@ -28,9 +28,10 @@ struct CaseResult {
 
 /// The metrics of the campaign's vehicle, then its own.
 MetricList MetricsOf(const Campaign& campaign);
-/// Positions in MetricsOf of those that the campaign's flights have.
+/// Positions in MetricsOf of those that the campaign's flights have: under its law, to its end and target, of
+/// stages that it controls or not.
 std::vector<std::size_t> MeasuredMetrics(const Campaign& campaign);
-/// The same, with those of angles that its target does not name: what programs of others make results of.
+/// Of those that any flight under its law may have: what programs of others make results of.
 std::vector<std::size_t> ResultMetrics(const Campaign& campaign);
 /// Why the campaign's flights lack a metric: "is of flights whose law of pitch is ..."; empty if they have
 /// it.

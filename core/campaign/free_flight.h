@@ -9,10 +9,6 @@ namespace dispersa {
 /// Sets both. Precondition: a vehicle with a rail, and course.is_controlled is false.
 void SetFreeFlight(Campaign& campaign);
 
-/// Of MeasuredMetrics (case_result.h) those that the campaign's flights define: no attitude errors where
-/// nothing is controlled, no impact of flights that end before it.
-std::vector<std::size_t> ShownMetrics(const Campaign& campaign);
-
 /// Throws InputError for a campaign whose flights nothing controls. `what` names what needs an autopilot:
 /// "margins".
 void RequireControl(const Campaign& campaign, const char* what);

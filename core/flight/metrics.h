@@ -53,7 +53,6 @@ enum class MetricNeeds {
   kArgumentOfPerigee,
   kTrueAnomaly,
 };
-inline bool IsOfTarget(MetricNeeds needs) { return needs >= MetricNeeds::kNode; }
 /// What decides which metrics the flights of a campaign have.
 struct FlightKind {
   FlightKind(ControlLaw law) : pitch_law(law) {}

@@ -69,17 +69,22 @@ bool HasTable(Database& database, const std::string& name) {
   return select.Step();
 }
 
-/// A law's own metrics are there if it was flown, those of a target's angles if it names them. Of all others
-/// a folder must have a column.
+/// A law's own metrics are there if it was flown. Those that a kind of flight has are there together, or none
+/// of them is. Of all others a folder must have a column.
 Positions StoredMetrics(Database& database, const MetricList& list) {
   std::set<std::string> columns;
   Statement names = database.Prepare("SELECT name FROM pragma_table_info('cases')");
   while (names.Step()) columns.insert(names.Text(0));
+  const auto is_there = [&](std::size_t i) { return columns.count("metric_" + list.NameAt(i)) > 0; };
+  const std::size_t of_vehicle = MetricCount(list.stages());
+  std::set<MetricNeeds> met = {MetricNeeds::kNothing};
+  for (std::size_t i = 0; i < of_vehicle; ++i)
+    if (is_there(i)) met.insert(Metrics()[i].needs);
   Positions metrics;
   for (std::size_t i = 0; i < list.size(); ++i) {
-    const bool is_of_some =
-        i < MetricCount(list.stages()) && (Metrics()[i].of_law != nullptr || IsOfTarget(Metrics()[i].needs));
-    if (!is_of_some || columns.count("metric_" + list.NameAt(i)) > 0) metrics.push_back(i);
+    const bool must =
+        i >= of_vehicle || (Metrics()[i].of_law == nullptr && met.count(Metrics()[i].needs) > 0);
+    if (must || is_there(i)) metrics.push_back(i);
   }
   return metrics;
 }

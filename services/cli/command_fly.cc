@@ -6,7 +6,7 @@
 #include <optional>
 #include <string>
 
-#include "core/campaign/free_flight.h"
+#include "core/campaign/case_result.h"
 #include "core/campaign_yaml/load.h"
 #include "core/cases/campaign_flights.h"
 #include "core/pages/histories.h"
@@ -52,7 +52,7 @@ void PrintText(std::FILE* stream, const CaseResult& result, const Campaign& camp
     fmt::print(stream, "{:<44} {}\n", "input_" + InputColumns()[i].name, ShortestText(result.inputs[i]));
   }
   const MetricList metrics = MetricsOf(campaign);
-  for (const std::size_t i : ShownMetrics(campaign)) {
+  for (const std::size_t i : MeasuredMetrics(campaign)) {
     const std::string value = ShortestText(result.metrics[i]);
     fmt::print(stream, "{:<44} {}\n", "metric_" + metrics.NameAt(i), value.empty() ? "-" : value);
   }

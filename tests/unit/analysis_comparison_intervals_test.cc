@@ -65,6 +65,8 @@ TEST_P(ComparisonOfEveryMetric, HoldsItsEstimates) {
   const Comparison comparison = CompareAll(a, b);
   FlightKind kind(ControlLaw::kAdaptiveFuzzy);
   kind.has_node = kind.has_argument_of_perigee = kind.has_true_anomaly = true;
+  kind.has_free_stage = kind.has_rail = true;
+  kind.ends = FlightEnd::kImpact;
   ASSERT_EQ(comparison.metrics.size(), MetricsUnder(kUsualStages, kind).size());
   EXPECT_EQ(comparison.pairing.paired, std::string(GetParam().draws_of_b) == "a");
   for (const MetricComparison& metric : comparison.metrics) {

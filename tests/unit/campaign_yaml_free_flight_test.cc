@@ -53,7 +53,7 @@ TEST(FreeFlightCampaign, MeasuresNothingOfControl) {
   const InputFiles files;
   SetFree(files);
   const Campaign campaign = LoadCampaign(files.Path("campaign.yaml"));
-  for (const std::size_t position : ShownMetrics(campaign)) {
+  for (const std::size_t position : MeasuredMetrics(campaign)) {
     const MetricGroup group = Metrics()[position].group;
     EXPECT_NE(group, MetricGroup::kAttitude) << Metrics()[position].name;
     EXPECT_NE(group, MetricGroup::kControlEffort) << Metrics()[position].name;
@@ -62,6 +62,18 @@ TEST(FreeFlightCampaign, MeasuresNothingOfControl) {
             "is of flights with a stage that an autopilot controls");
   EXPECT_EQ(WhyNotMeasured(campaign, "impact_speed_m_s"), "");
   EXPECT_EQ(WhyNotMeasured(campaign, "rail_exit_speed_m_s"), "");
+}
+
+// No column is empty in every case by the kind of its flights.
+TEST(FreeFlightCampaign, FlightsToInjectionHaveNoColumnsOfOthers) {
+  const InputFiles files;
+  const Campaign campaign = LoadCampaign(files.Path("campaign.yaml"));
+  for (const std::size_t position : MeasuredMetrics(campaign))
+    EXPECT_EQ(NeedsOf(Metrics()[position]),
+              Metrics()[position].needs == MetricNeeds::kControl ? "a stage that an autopilot controls" : "")
+        << Metrics()[position].name;
+  // Twelve of rails, free stages, apogee and impact, and those of the angles of a target.
+  EXPECT_EQ(ResultMetrics(campaign).size() - MeasuredMetrics(campaign).size(), 12u + 3u);
 }
 
 TEST(FreeFlightCampaign, ControlledFlightsMayEndLater) {
