@@ -119,9 +119,12 @@ TEST(CliProgram, ModesShowsHowAVehicleBends) {
 // Stack 1 has its boosters first, at levels over their burn and one behind the separation; then it has none.
 TEST(CliProgram, ModesTellsAStackWithItsBoostersAndWithout) {
   const InputFiles files;
+  std::string flexible = ReadWholeFile(DISPERSA_CAMPAIGNS "/vehicles/slv4_flexible.yaml");
+  const std::string base = "based_on: slv4.yaml";
+  ASSERT_NE(flexible.find(base), std::string::npos);
+  flexible.replace(flexible.find(base), base.size(), "based_on: " DISPERSA_CAMPAIGNS "/vehicles/slv4.yaml");
   std::ofstream(files.Path("boosted.yaml"))
-      << "schema: dispersa/vehicle/1\nbased_on: " DISPERSA_CAMPAIGNS "/vehicles/slv4_flexible.yaml\n"
-      << "boosters:\n  count: 4\n  dry_mass_kg: 80\n  propellant_mass_kg: 270\n  radius_m: 0.97\n"
+      << flexible << "boosters:\n  count: 4\n  dry_mass_kg: 80\n  propellant_mass_kg: 270\n  radius_m: 0.97\n"
       << "  diameter_m: 0.62\n  top_station_m: 21\n  bottom_station_m: 26.5\n  nozzle_station_m: 26.4\n"
       << "  attachment_station_m: 23\n  separation_delay_s: 0.5\n"
       << "  motor: {thrust_kn: 25, burning_time_s: 30, ignition_rise_s: 0.2, tail_off_s: 0.4}\n"
