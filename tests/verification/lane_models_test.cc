@@ -3,6 +3,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <vector>
 
 #include "core/dynamics/actuators.h"
 #include "core/dynamics/air_data.h"
@@ -30,6 +31,24 @@ TEST(AirTable, IsWithinItsToleranceOfTheStandardEverywhere) {
   EXPECT_LT(density, kAirTableTolerance);
   // The root of an energy as exact as the density.
   EXPECT_LT(sound, 0.5 * kAirTableTolerance);
+}
+
+// The row that a lane has kept is the one that it would find: also next to its edges, from either side.
+TEST(AirTable, AKeptRowChangesNoBit) {
+  lanes::AirRows<double> kept;
+  kept.range.Forget(0);
+  std::vector<double> altitudes;
+  for (const double edge : StandardAir().edges)
+    for (const double z : {edge, std::nextafter(edge, -1e9), edge, std::nextafter(edge, 1e9)})
+      altitudes.push_back(z);
+  const std::vector<double> up = altitudes;
+  altitudes.insert(altitudes.end(), up.rbegin(), up.rend());
+  for (const double z : altitudes) {
+    const lanes::AirStateLanes<double> air = lanes::AirAt(StandardAir(), z, kept);
+    const lanes::AirStateLanes<double> anew = lanes::AirAt(StandardAir(), z);
+    EXPECT_EQ(air.pressure_pa, anew.pressure_pa) << z;
+    EXPECT_EQ(air.energy_j_kg, anew.energy_j_kg) << z;
+  }
 }
 
 TEST(AirTable, HoldsWhatTheStandardDoesOutside) {
