@@ -40,15 +40,17 @@ struct EffectivenessRows {
   std::vector<int> first;
   std::vector<double> row_end_s;  ///< of each row where there is `first`; the last one never ends
 
-  /// The row at a time in [0, end_s].
-  const double* RowAt(double since_ignition_s) const {
+  /// The index of the row at a time in [0, end_s].
+  int IndexAt(double since_ignition_s) const {
     int row = static_cast<int>(since_ignition_s * buckets_per_s);
     if (!first.empty()) {
       row = first.data()[row];
       while (since_ignition_s >= row_end_s.data()[row]) ++row;
+      while (row > 0 && since_ignition_s < row_end_s.data()[row - 1]) --row;  // rounding had put it one on
     }
-    return rows.data() + kRowSize * row;
+    return row;
   }
+  const double* Row(int index) const { return rows.data() + kRowSize * index; }
 };
 
 /// Shared by all flights.

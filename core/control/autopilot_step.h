@@ -5,6 +5,7 @@
 #include "core/control/autopilot.h"
 #include "core/control/axis_step.h"
 #include "core/math/lane_vector.h"
+#include "core/math/row_memory.h"
 
 namespace dispersa::lanes {
 inline namespace DISPERSA_ISA {
@@ -18,6 +19,9 @@ struct GimbalLoop {
   int stage[kWidth<T>];
   T limit_rad;
   const EffectivenessRows* effectiveness[kWidth<T>];
+  T effectiveness_end_s;
+  T buckets_per_s;  ///< of rows that are buckets, else 1: their range is in time
+  mutable RowMemory<T, EffectivenessRows::kRowSize> effectiveness_rows;
 };
 template <class T>
 DISPERSA_INLINE void SetLane(GimbalLoop<T>& loop, int lane, const AutopilotModel& model, int stage,
@@ -30,7 +34,11 @@ DISPERSA_INLINE void SetLane(GimbalLoop<T>& loop, int lane, const AutopilotModel
   Lane(loop.pn_rate_factor, lane) = pn_rate_factor;
   loop.stage[lane] = stage;
   Lane(loop.limit_rad, lane) = model.stages.data()[stage].limit_rad;
-  loop.effectiveness[lane] = model.effectiveness.data() + stage;
+  const EffectivenessRows* const table = model.effectiveness.data() + stage;
+  loop.effectiveness[lane] = table;
+  Lane(loop.effectiveness_end_s, lane) = table->end_s;
+  Lane(loop.buckets_per_s, lane) = table->first.empty() ? table->buckets_per_s : 1.0;
+  loop.effectiveness_rows.range.Forget(lane);
 }
 
 template <class T>
@@ -52,19 +60,30 @@ DISPERSA_INLINE void FollowSchedule(const AutopilotModel& model, T since_ignitio
   }
 }
 
+/// Finds the rows of effectiveness of the lanes that `found` does not name.
+template <class T>
+DISPERSA_OUT_OF_LINE void FindEffectiveness(const GimbalLoop<T>& loop, T since_ignition_s, MaskOf<T> found) {
+  const unsigned known = Bits(found);
+  for (int lane = 0; lane < kWidth<T>; ++lane) {
+    if (known >> lane & 1u) continue;
+    const EffectivenessRows& table = *loop.effectiveness[lane];
+    const int row = table.IndexAt(Lane(since_ignition_s, lane));
+    if (table.first.empty())
+      loop.effectiveness_rows.range.Set(lane, row, row + 1);
+    else
+      loop.effectiveness_rows.range.Set(lane, row > 0 ? table.row_end_s.data()[row - 1] : 0.0,
+                                        table.row_end_s.data()[row]);
+    loop.effectiveness_rows.SetRow(lane, table.Row(row));
+  }
+}
+
 /// Angular acceleration per radian of deflection now, about roll and about pitch and yaw, 1/s².
 template <class T>
 DISPERSA_INLINE void Effectiveness(const GimbalLoop<T>& loop, T since_ignition_s, T& of_roll, T& of_pitch) {
-  T since;
-  const double* row[kWidth<T>];
-  for (int lane = 0; lane < kWidth<T>; ++lane) {
-    const EffectivenessRows& table = *loop.effectiveness[lane];
-    const double t = Clamp(Lane(since_ignition_s, lane), 0.0, table.end_s);
-    Lane(since, lane) = t;
-    row[lane] = table.RowAt(t);
-  }
-  T c[4];
-  LoadFour(row, c);
+  const T since = Clamp(since_ignition_s, T(0.0), loop.effectiveness_end_s);
+  const auto found = loop.effectiveness_rows.range.Contains(since * loop.buckets_per_s);
+  if (!All(found)) FindEffectiveness(loop, since, found);
+  const T* c = loop.effectiveness_rows.c;
   of_pitch = Fma(since, c[1], c[0]);
   of_roll = Fma(since, c[3], c[2]);
 }

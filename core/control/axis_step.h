@@ -59,17 +59,19 @@ DISPERSA_INLINE T Filter(int count, const T (*sections)[5], MaskOf<T> acting, T 
 }
 
 /// One tick of the acting lanes. The other lanes keep their memory. `foreign_rad_s2`: the command of a
-/// plug-in or of Python, else null. `is_reported`: the learnt values are read afterwards.
+/// plug-in or of Python, else null. `is_reported`: V and what the law has learnt are read afterwards.
 template <bool kAll, class T>
 DISPERSA_INLINE void StepAxis(const AxisConfig& config, double tick_s, const StageLawLanes<T>& stage,
                               MaskOf<T> acting, T error, T rate, const T* foreign_rad_s2, bool is_reported,
                               AxisStateLanes<T>& memory, AxisOutput<T>& out) {
-  out.command_rad_s2 = out.departure_norm2 = out.frozen = T(0.0);
-  out.v =
-      T(0.5) * Fma(stage.p11 * error, error, Fma(T(2.0) * stage.p12 * error, rate, stage.p22 * rate * rate));
-  out.v_rate_sign =
-      Select(out.v > memory.previous_v, T(1.0), Select(out.v < memory.previous_v, T(-1.0), T(0.0)));
-  memory.previous_v = Kept<kAll>(acting, out.v, memory.previous_v);
+  out.command_rad_s2 = out.departure_norm2 = out.frozen = out.v = out.v_rate_sign = T(0.0);
+  if (is_reported || config.adaptation.supervisory_bound > 0.0) {
+    out.v = T(0.5) *
+            Fma(stage.p11 * error, error, Fma(T(2.0) * stage.p12 * error, rate, stage.p22 * rate * rate));
+    out.v_rate_sign =
+        Select(out.v > memory.previous_v, T(1.0), Select(out.v < memory.previous_v, T(-1.0), T(0.0)));
+    memory.previous_v = Kept<kAll>(acting, out.v, memory.previous_v);
+  }
   const LawInput<T> input{config, tick_s, stage, acting, error, rate, foreign_rad_s2, is_reported};
   WithLaw(
       config.law, [&](auto law) __attribute__((always_inline)) {

@@ -40,14 +40,17 @@ struct FuzzyLaw {
     T by_error[kFuzzySets], by_rate[kFuzzySets];
     Grades(at_error, by_error);
     Grades(at_rate, by_rate);
-    // Rule i * 5 + j has fired where set i of the error and set j of the rate have.
-    T rows(0.0), columns(0.0);
-    for (int i = 0; i < kFuzzySets; ++i) {
-      rows = OrBits(rows, Select(by_error[i] > T(0.0), T(OfBits(std::uint64_t{0x1f} << (5 * i))), T(0.0)));
-      columns = OrBits(columns, Select(by_rate[i] > T(0.0), T(OfBits(std::uint64_t{0x108421} << i)), T(0.0)));
+    if (in.is_reported) {
+      // Rule i * 5 + j has fired where set i of the error and set j of the rate have.
+      T rows(0.0), columns(0.0);
+      for (int i = 0; i < kFuzzySets; ++i) {
+        rows = OrBits(rows, Select(by_error[i] > T(0.0), T(OfBits(std::uint64_t{0x1f} << (5 * i))), T(0.0)));
+        columns =
+            OrBits(columns, Select(by_rate[i] > T(0.0), T(OfBits(std::uint64_t{0x108421} << i)), T(0.0)));
+      }
+      memory.rules_fired =
+          Kept<kAll>(in.acting, OrBits(memory.rules_fired, AndBits(rows, columns)), memory.rules_fired);
     }
-    memory.rules_fired =
-        Kept<kAll>(in.acting, OrBits(memory.rules_fired, AndBits(rows, columns)), memory.rules_fired);
 
     const T centre(0.5 * last);
     T u = Fma(in.stage.kp_1_s2 * T(0.5 * rules.error_range_rad), at_error - centre,
@@ -86,7 +89,7 @@ struct FuzzyLaw {
           Select(adapts, T(1.0 - in.tick_s * guards.leakage_1_s - in.tick_s * guards.spread_1_s), T(1.0));
       const T pull = Select(adapts, T(in.tick_s * guards.spread_1_s / kFuzzyRules) * sum, T(0.0));
       const T bound(guards.projection_bound_rad_s2 > 0.0 ? guards.projection_bound_rad_s2 : 1e300);
-      T learnt(0.0);
+      T learnt(0.0), norm2(0.0);
       Each<kFuzzySets>([&](int i) __attribute__((always_inline)) {
         T row(0.0);
         const T push = step * by_error[i];
@@ -94,14 +97,11 @@ struct FuzzyLaw {
           T& departure = memory.departure_rad_s2[kFuzzySets * i + j];
           row = Fma(by_rate[j], departure, row);
           departure = Clamp(Fma(push, by_rate[j], Fma(keep, departure, pull)), -bound, bound);
+          norm2 = Fma(departure, departure, norm2);
         });
         learnt = Fma(by_error[i], row, learnt);
       });
       if (in.is_reported) {
-        T norm2(0.0);
-        Each<kFuzzyRules>([&](int i) __attribute__((always_inline)) {
-          norm2 = Fma(memory.departure_rad_s2[i], memory.departure_rad_s2[i], norm2);
-        });
         out.departure_norm2 = norm2;
         out.frozen = Select(adapts & is_frozen, T(1.0), T(0.0));
       }

@@ -79,11 +79,16 @@ void Batch<T>::Step(M moving, T to) {
     for (int lane = 0; lane < kLanes; ++lane) step_.ReadLane(lane, before[lane]);
   const T from = time_s_;
   M failed = NoLane<T>();
-  for (int i = 1; i <= most_steps_; ++i) {
+  if (most_steps_ == 1) {
+    const M accepted = step_.Step(moving, All(moving | !live_), from, to);
+    failed = moving & !accepted;
+    time_s_ = Select(accepted, to, from);
+  }
+  for (int i = 1; most_steps_ > 1 && i <= most_steps_; ++i) {
     const T part(static_cast<double>(i));
     const M steps = moving & !failed & (part <= steps_a_tick_);
     const T end = Select(part >= steps_a_tick_, to, Fma(part / steps_a_tick_, to - from, from));
-    const M accepted = step_.Step(steps, most_steps_ == 1 && All(steps | !live_), time_s_, end);
+    const M accepted = step_.Step(steps, false, time_s_, end);
     failed = failed | (steps & !accepted);
     time_s_ = Select(accepted, end, time_s_);
   }

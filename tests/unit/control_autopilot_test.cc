@@ -186,7 +186,7 @@ TEST(BuildStageControl, HasTheCornersOfAThrustCurve) {
     const MassProperties m = stack.mass.At(stack.burn.Propellant(since));
     const double pitch = 0.5 * thrust * (19.5 - m.cg_station_m) / m.transverse_inertia_kg_m2;
     ASSERT_NEAR(control.pitch_effectiveness_1_s2(since), pitch, 1e-3 * pitch) << since;
-    const double* row = model.effectiveness[0].RowAt(since);
+    const double* row = model.effectiveness[0].Row(model.effectiveness[0].IndexAt(since));
     ASSERT_NEAR(row[0] + row[1] * since, control.pitch_effectiveness_1_s2(since), 1e-9) << since;
     ASSERT_NEAR(row[2] + row[3] * since, control.roll_effectiveness_1_s2(since), 1e-8) << since;
   }
