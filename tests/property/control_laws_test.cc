@@ -68,14 +68,15 @@ std::vector<Tick> AnyTicks(Random& random) {
 }
 
 // One tick of one lane, by the law itself.
-double StepAlone(const AxisLaw& law, int stage, const Tick& tick, AxisState& state) {
+double StepAlone(const AxisLaw& law, int stage, const Tick& tick, AxisState& state, bool is_reported = true) {
   lanes::StageLawLanes<double> of_stage;
   lanes::SetLane(of_stage, 0, law.stages[static_cast<std::size_t>(stage)], 1.0, 1.0);
   lanes::AxisStateLanes<double> memory;
   lanes::SetLane(memory, 0, state);
   memory.saturation = tick.saturation;
   const lanes::LawInput<double> input{
-      law.config, kTick_s, of_stage, true, tick.error_rad, tick.rate_rad_s, &tick.foreign_rad_s2, true};
+      law.config,           kTick_s,    of_stage, true, tick.error_rad, tick.rate_rad_s,
+      &tick.foreign_rad_s2, is_reported};
   lanes::AxisOutput<double> output{};
   output.v = 1e-7;
   lanes::WithLaw(law.config.law,
@@ -212,7 +213,7 @@ void FlyBesideOthers(const AxisLaw& law, Random& random) {
       lanes::SetLane(acting, lane, acts[lane]);
       if (acts[lane]) lanes::Lane(memory.saturation, lane) = tick.saturation;
     }
-    const bool is_reported = i % 2 == 0;  // what is reported changes nothing
+    const bool is_reported = i % 2 == 0;
     const lanes::LawInput<T> input{law.config, kTick_s, stage, acting, error, rate, &foreign, is_reported};
     lanes::AxisOutput<T> output{};
     output.v = T(1e-7);
@@ -226,7 +227,12 @@ void FlyBesideOthers(const AxisLaw& law, Random& random) {
     for (int lane = 0; lane < kLanes; ++lane) {
       AxisState beside;
       if (acts[lane]) {
-        const double expected = StepAlone(law, lane % 2, ticks[lane][i], alone[lane]);
+        AxisState reported = alone[lane];
+        const double expected = StepAlone(law, lane % 2, ticks[lane][i], alone[lane], is_reported);
+        // A report changes nothing but what it counts.
+        ASSERT_EQ(Bits(StepAlone(law, lane % 2, ticks[lane][i], reported)), Bits(expected));
+        reported.rules_fired = alone[lane].rules_fired;
+        ASSERT_TRUE(Same(reported, alone[lane]));
         ASSERT_EQ(Bits(lanes::Lane(output.command_rad_s2, lane)), Bits(expected))
             << "tick " << i << ", lane " << lane;
       }
