@@ -97,12 +97,13 @@ class ServiceTest(ServiceCase):
         self.assertEqual(subprocess.run([BINARIES / "dispersa-coordinator", "--health", *self.NETWORK]).returncode, 0)
 
     def test_another_coordinator_takes_over_on_a_backup(self):
-        cases = 300  # a second or more
+        cases = 600  # more than are stored at once
         reference = Run(self.root / "long", "--workers", 0, "--cases", cases).finish()
         coordinator = self.start_coordinator()
-        self.start_worker()
+        worker = self.start_worker()
         identity = self.dispersa("launch", CAMPAIGN, "--cases", cases).strip()
         wait_for(lambda: stored(self.data / identity / "results") > 0, "first results")
+        worker.send_signal(signal.SIGSTOP)  # the backup is of a campaign that has not ended, however long it takes
         backup = self.data.parent / "backup"
         self.assertEqual(self.dispersa("backup", backup), f"backup of 1 campaigns: {backup}\n")
         coordinator.kill()
@@ -112,6 +113,7 @@ class ServiceTest(ServiceCase):
         self.assertTrue(0 < flown_before < cases, flown_before)
         self.data = backup
         self.start_coordinator()
+        worker.send_signal(signal.SIGCONT)
         self.dispersa("watch", identity, code=reference.code)
         self.assert_same_folder(identity, reference)
         self.assertGreater(int((backup / "epoch").read_text()), int((lost / "epoch").read_text()))
