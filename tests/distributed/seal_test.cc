@@ -384,8 +384,9 @@ class RunProcess {
     const int log = open((folder / "log").c_str(), O_WRONLY | O_CREAT, 0600);
     dup2(log, 1);
     dup2(log, 2);
+    // As many cases as take seconds: until a stranger is there.
     execl(DISPERSA_BINARIES "/dispersa", "dispersa", "run", DISPERSA_CAMPAIGNS "/smoke.yaml", "--workers",
-          "1", "--cases", "500", "--no-histories", "--out", out_.c_str(), nullptr);
+          "1", "--cases", "1500", "--no-histories", "--out", out_.c_str(), nullptr);
     _exit(127);
   }
   ~RunProcess() {
