@@ -13,6 +13,7 @@
 #include "core/math/constants.h"
 #include "core/trajectory/ascent.h"
 #include "core/vehicle/mass.h"
+#include "tests/apart_boosters.h"
 #include "tests/flown_ticks.h"
 #include "tests/slv4_flight.h"
 #include "tests/unit/sample_vehicle.h"
@@ -66,21 +67,12 @@ LauncherPhase Boosting(std::size_t count) {
   return phase;
 }
 
-struct Bodies {
-  double mass_kg;
-  Vector3 cg;  // station, y, z
-  Matrix3 inertia;
-};
 // The bare vehicle and its boosters as tubes at their places, by Huygens and Steiner, at a time of the burn.
 Bodies ByHand(const FlightDefinition& definition, const LauncherPlant& plant, double since_s) {
   Vehicle core = definition.vehicle;
   core.stages[0].liftoff_mass_kg -= core.boosters.LiftOffMass();
   core.boosters = {};
   const MassProperties own = BuildStackMasses(core)[0].At(plant.stacks[0].burn.Propellant(since_s));
-  struct Part {
-    double kg, axial, across;
-    Vector3 place;
-  };
   std::vector<Part> parts = {{own.mass_kg, own.axial_inertia_kg_m2, own.transverse_inertia_kg_m2,
                               Vector3(own.cg_station_m, 0.0, 0.0)}};
   for (const EachBooster& one : plant.boosters->each) {
@@ -91,19 +83,7 @@ Bodies ByHand(const FlightDefinition& definition, const LauncherPlant& plant, do
     parts.push_back({kg, 0.5 * kg * (outer2 + inner2), kg * (0.25 * (outer2 + inner2) + 9.0 / 12.0),
                      Vector3(16.5, one.y_m, one.z_m)});
   }
-  Bodies all{0.0, Vector3::Zero(), Matrix3::Zero()};
-  for (const Part& part : parts) {
-    all.mass_kg += part.kg;
-    all.cg += part.kg * part.place;
-  }
-  all.cg /= all.mass_kg;
-  for (const Part& part : parts) {
-    Vector3 r = part.place - all.cg;
-    r.x() = -r.x();  // stations count aft
-    all.inertia += Matrix3(Vector3(part.axial, part.across, part.across).asDiagonal()) +
-                   part.kg * (r.squaredNorm() * Matrix3::Identity() - r * r.transpose());
-  }
-  return all;
+  return SumOf(parts);
 }
 
 TEST(ApartBoosters, MassesAreThoseOfTubesAtTheirPlaces) {
@@ -193,20 +173,7 @@ TEST(ApartBoosters, AllAlikeFlyAsOneMotorDoes) {
   FlightInputs inputs;
   inputs.thrust_misalignment_rad = AllStages(0.2 * kDeg);
   inputs.cg_offset_m[0] = 0.01;
-  const FlightDefinition apart = Boosted({0.0, 90.0, 180.0, 270.0});
-  FlightDefinition together = apart;
-  together.vehicle.boosters.angles_rad = {};
-  FlightResult one, many;
-  const auto a = TicksOf(together, inputs, &one), b = TicksOf(apart, inputs, &many);
-  ASSERT_EQ(one.outcome, Outcome::kCompleted) << one.reason;
-  ASSERT_EQ(a.size(), b.size());
-  double rates = 0.0, speeds = 0.0;
-  for (std::size_t i = 0; i < a.size(); ++i) {
-    rates = std::max(rates, (a[i].state.w_IB_B - b[i].state.w_IB_B).norm());
-    speeds = std::max(speeds, (a[i].state.v_IC_I - b[i].state.v_IC_I).norm());
-  }
-  EXPECT_LT(rates, 1e-7);
-  EXPECT_LT(speeds, 1e-5);
+  ExpectFliesAsAllAlike(Boosted({0.0, 90.0, 180.0, 270.0}), inputs);
 }
 
 // A burn rate of f: thrust and flow times f, time over f, the same impulse. Which one burns a history says;

@@ -17,6 +17,7 @@
 #include "core/vehicle/mass.h"
 #include "core/vehicle/plausibility.h"
 #include "core/vehicle/vehicle_figures.h"
+#include "tests/apart_boosters.h"
 #include "tests/flown_ticks.h"
 #include "tests/slv4_flight.h"
 #include "tests/unit/sample_vehicle.h"
@@ -61,30 +62,6 @@ Vehicle Bare(Vehicle vehicle) {
   return vehicle;
 }
 
-struct Bodies {
-  double mass_kg;
-  Vector3 cg;  // station, y, z
-  Matrix3 inertia;
-};
-struct Part {
-  double kg, axial, across;
-  Vector3 place;  // station, y, z
-};
-Bodies Sum(const std::vector<Part>& parts) {
-  Bodies all{0.0, Vector3::Zero(), Matrix3::Zero()};
-  for (const Part& part : parts) {
-    all.mass_kg += part.kg;
-    all.cg += part.kg * part.place;
-  }
-  all.cg /= all.mass_kg;
-  for (const Part& part : parts) {
-    Vector3 r = part.place - all.cg;
-    r.x() = -r.x();  // stations count aft
-    all.inertia += Matrix3(Vector3(part.axial, part.across, part.across).asDiagonal()) +
-                   part.kg * (r.squaredNorm() * Matrix3::Identity() - r * r.transpose());
-  }
-  return all;
-}
 // A thin tube, and liquids that stand on the bottoms of their tanks and do not turn about their axes.
 void AddBooster(const Boosters& b, double propellant_kg, double y_m, double z_m, std::vector<Part>& parts) {
   parts.push_back({kDry_kg, kDry_kg * 0.0625, kDry_kg * (0.5 * 0.0625 + 3.0), Vector3(16.0, y_m, z_m)});
@@ -106,7 +83,7 @@ Bodies ByHand(const FlightDefinition& definition, const LauncherPlant& plant, do
   for (int k = 0; k < b.count && plant.boosters->each.empty(); ++k)
     AddBooster(b, std::max(kRest_kg, kPropellant_kg - kFlow_kg_s * since_s), 0.0,
                k % 2 == 0 ? kRadius_m : -kRadius_m, parts);
-  return Sum(parts);
+  return SumOf(parts);
 }
 
 LauncherPhase Boosting(std::size_t count) {
@@ -330,7 +307,7 @@ TEST(LiquidBoosters, SeparationKeepsTheMomentumOfDifferentRests) {
   for (const EachBooster& one : each) {
     std::vector<Part> parts;
     AddBooster(definition.vehicle.boosters, one.burn.left_kg, one.y_m, one.z_m, parts);
-    const Bodies body = Sum(parts);
+    const Bodies body = SumOf(parts);
     const RigidBodyState spent =
         AtPoint(s, Vector3(all.cg.x() - body.cg.x(), body.cg.y() - all.cg.y(), body.cg.z() - all.cg.z()));
     left_kg -= body.mass_kg;
@@ -381,20 +358,7 @@ TEST(LiquidBoosters, FlyAsCvodeFliesThem) {
 TEST(LiquidBoosters, AllAlikeFlyAsOneEngineDoes) {
   FlightInputs inputs;
   inputs.thrust_misalignment_rad = AllStages(0.2 * kDeg);
-  const FlightDefinition apart = Boosted({0.0, 90.0, 180.0, 270.0});
-  FlightDefinition together = apart;
-  together.vehicle.boosters.angles_rad = {};
-  FlightResult one, many;
-  const auto a = TicksOf(together, inputs, &one), b = TicksOf(apart, inputs, &many);
-  ASSERT_EQ(one.outcome, Outcome::kCompleted) << one.reason;
-  ASSERT_EQ(a.size(), b.size());
-  double rates = 0.0, speeds = 0.0;
-  for (std::size_t i = 0; i < a.size(); ++i) {
-    rates = std::max(rates, (a[i].state.w_IB_B - b[i].state.w_IB_B).norm());
-    speeds = std::max(speeds, (a[i].state.v_IC_I - b[i].state.v_IC_I).norm());
-  }
-  EXPECT_LT(rates, 1e-7);
-  EXPECT_LT(speeds, 1e-5);
+  ExpectFliesAsAllAlike(Boosted({0.0, 90.0, 180.0, 270.0}), inputs);
 }
 
 // The optimiser's point mass carries their rests as the flight does.
