@@ -30,7 +30,7 @@ ExitCode Backup(const std::string& target, Session& session, const GlobalOptions
     const Json object = {{"schema", "dispersa/backup/1"}, {"directory", target}, {"campaigns", campaigns}};
     fmt::print("{}\n", object.dump(2));
   } else {
-    fmt::print("backup of {} campaigns: {}\n", campaigns, target);
+    fmt::print("backup of {} campaign{}: {}\n", campaigns, campaigns == 1 ? "" : "s", target);
   }
   return kExitDone;
 }

@@ -79,6 +79,18 @@ def stored(out):
         return 0
 
 
+def settled(out):
+    """Number of cases in the database of a result folder, once none has come for two seconds: results that wait in a
+    coordinator's sockets are stored in batches, after other messages that came later."""
+    number, since = stored(out), time.monotonic()
+    while time.monotonic() < since + 2:
+        time.sleep(0.05)
+        now = stored(out)
+        if now != number:
+            number, since = now, time.monotonic()
+    return number
+
+
 def content(folder, name):
     """A file's bytes; of the report without what differs from run to run."""
     data = (folder / name).read_bytes()

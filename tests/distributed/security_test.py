@@ -298,7 +298,7 @@ class SecurityTest(unittest.TestCase):
         self.as_client("eve", "fetch", identity, "--out", self.root / "of-ann")
         self.assertEqual(content(self.root / "of-ann", "cases.csv"), content(three.out, "cases.csv"))
         self.assertEqual(self.as_client("ops", "backup", self.root / "backup").strip(),
-                         f"backup of 1 campaigns: {self.root / 'backup'}")
+                         f"backup of 1 campaign: {self.root / 'backup'}")
         self.as_client("ann", "delete", identity)
 
     def test_a_worker_gives_no_orders(self):

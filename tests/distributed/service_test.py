@@ -105,7 +105,7 @@ class ServiceTest(ServiceCase):
         wait_for(lambda: stored(self.data / identity / "results") > 0, "first results")
         worker.send_signal(signal.SIGSTOP)  # the backup is of a campaign that has not ended, however long it takes
         backup = self.data.parent / "backup"
-        self.assertEqual(self.dispersa("backup", backup), f"backup of 1 campaigns: {backup}\n")
+        self.assertEqual(self.dispersa("backup", backup), f"backup of 1 campaign: {backup}\n")
         coordinator.kill()
         coordinator.wait()
         lost = self.data
