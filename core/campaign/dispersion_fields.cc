@@ -40,6 +40,7 @@ class DispersionFields {
         return OfStages(fields, row, name);
       case Draws::kBoosters:
       case Draws::kBoostersTemperature:
+      case Draws::kBoostersMixture:
       case Draws::kBoostersAside:
         return OfBoosters(fields, row, name);
       case Draws::kFixed:
@@ -340,9 +341,12 @@ class DispersionFields {
     if (is_sound_ && row.draws == Draws::kBoostersTemperature && vehicle_.boosters.is_liquid())
       return fields.Misplaced(row.key, {}, "the boosters are liquid: pumps or tank pressure set their flow",
                               "booster_burn_rate, or boosters with solid motors");
+    if (is_sound_ && row.draws == Draws::kBoostersMixture && vehicle_.boosters.tanks.size() < 2)
+      return fields.Misplaced(row.key, {}, "the boosters have no two tanks, whose flows could differ",
+                              "boosters with liquid engines of two propellants");
     bool is_there = false;
     fields.OptionalMap(row.key, is_there, row.meaning, [&](Fields& map) {
-      ScalarDistribution distribution = ReadScalar(map, row.scalar);
+      ScalarDistribution distribution = ReadScalar(map, Limited(row, {1}));
       if (row.draws == Draws::kBoostersTemperature) {
         double sensitivity_1_k = 0.0;
         map.Quantity("sensitivity", kPerTemperature, UpTo(0.02), sensitivity_1_k,

@@ -4,6 +4,7 @@
 
 #include "core/flight/dispersed_vehicle.h"
 #include "core/vehicle/mass.h"
+#include "core/vehicle/propulsion.h"
 
 namespace dispersa {
 namespace {
@@ -23,6 +24,9 @@ const Stage& StageAt(const Vehicle& vehicle, int stage) {
 // At most what the grain's case holds.
 Range LimitsOfPropellant(const Vehicle& vehicle, int stage) {
   return Inside(0.0, LargestPropellantFactor(StageAt(vehicle, stage)));
+}
+Range LimitsOfBoosterPropellant(const Vehicle& vehicle, int) {
+  return Inside(0.0, LargestPropellantFactor(AsStage(vehicle.boosters)));
 }
 
 // Half the least moment of inertia, about either axis, of the stack without its own propellant and without
@@ -257,6 +261,22 @@ std::vector<DispersionRow> MakeRows() {
        Draws::kBoostersAside,
        Any(kAngle),
        {"nozzle_misalignment_y_{further}_deg", "nozzle_misalignment_z_{further}_deg"}});
+  add({"booster_dry_mass",
+       "factor of a booster's shell",
+       Draws::kBoosters,
+       kPositiveFactor,
+       {"booster_dry_mass_factor_{further}"}});
+  add({"booster_propellant_load",
+       "factor of a booster's propellant",
+       Draws::kBoosters,
+       kPositiveFactor,
+       {"booster_propellant_factor_{further}"}})
+      .limits = LimitsOfBoosterPropellant;
+  add({"booster_mixture_ratio",
+       "factor of the first tank's flow over the others'",
+       Draws::kBoostersMixture,
+       kPositiveFactor,
+       {"booster_mixture_ratio_factor_{further}"}});
   add({"aerodynamic_uncertainty",
        "of the vehicle's aerodynamic tables, as they state it",
        Draws::kAeroUncertainty,

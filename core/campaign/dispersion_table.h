@@ -33,6 +33,7 @@ enum class Draws {
   kStuckNozzle,
   kBoosters,             ///< `per: booster`, or `vehicle`: one value for all
   kBoostersTemperature,  ///< the same of a temperature that sets the burn rate
+  kBoostersMixture,      ///< the same of engines with two tanks or more
   kBoostersAside,        ///< components towards body y and z, of each booster
   kAeroUncertainty,
 };
@@ -50,7 +51,7 @@ struct DispersionRow {
   std::optional<double> absent = {};             ///< the value in every case if the key is not there
   int first_stage = 1;
   int last_stages_without = 0;  ///< number of last stages that cannot be dispersed
-  /// Further limits of the draws, for a stage of a vehicle.
+  /// Further limits of the draws, for a stage of a vehicle, or its boosters.
   Range (*limits)(const Vehicle& vehicle, int stage) = nullptr;
 };
 

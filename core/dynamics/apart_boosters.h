@@ -24,7 +24,8 @@ inline namespace DISPERSA_ISA {
 template <class T>
 struct ApartBooster {
   MotorBurnLanes<T> burn;
-  T y_m, z_m;
+  T y_m, z_m, dry_kg;
+  BoosterTanks<T> tanks;
   Vector<T> along;          ///< its thrust undeflected: canted and misaligned, times its factor
   Vector<T> first, second;  ///< across it, where a positive angle turns the thrust about each hinge
   MaskOf<T> burning;
@@ -38,10 +39,9 @@ struct ApartBoosters {
   int count, first_bank;  ///< of further banks, those of their nozzles
   bool turn_nozzles;
   MaskOf<T> attached;  ///< lanes that carry them
-  T nozzle_station_m, dry_kg, dry_station_m;
+  T nozzle_station_m, dry_station_m;
   T grain_station_m, outer2_m2, inner_per_kg_m2, length2_m2, radius2_m2;
-  bool drains;            ///< tanks in place of grains: of the vehicle, the same in all lanes
-  BoosterTanks<T> tanks;  ///< of one
+  bool drains;  ///< tanks in place of grains: of the vehicle, the same in all lanes
   ApartBooster<T> each[kMaxBoosters];
   // Now, of all that are attached.
   T flow_kg_s;
@@ -56,11 +56,9 @@ DISPERSA_INLINE void SetLane(ApartBoosters<T>& a, int lane, const BoosterSet& se
   a.turn_nozzles = set.gimbal.limit_rad > 0.0;
   SetLane(a.attached, lane, are_attached);
   Lane(a.nozzle_station_m, lane) = set.nozzle_station_m;
-  Lane(a.dry_kg, lane) = set.empty.mass_kg / a.count;
   Lane(a.dry_station_m, lane) = set.empty.first_moment_kg_m / set.empty.mass_kg;
   const BoosterPropellant& g = set.propellant;
   a.drains = g.drains;
-  SetLane(a.tanks, lane, OfOneBooster(g, a.count).tanks);
   Lane(a.grain_station_m, lane) = g.station_m;
   Lane(a.outer2_m2, lane) = g.outer_radius_m * g.outer_radius_m;
   Lane(a.inner_per_kg_m2, lane) = g.drains ? 0.0 : a.count / g.kilograms_per_area_m2;
@@ -70,6 +68,8 @@ DISPERSA_INLINE void SetLane(ApartBoosters<T>& a, int lane, const BoosterSet& se
     ApartBooster<T>& one = a.each[k];
     const EachBooster& from = set.each.data()[k];
     SetLane(one.burn, lane, from.burn);
+    SetLane(one.tanks, lane, from.tanks);
+    Lane(one.dry_kg, lane) = from.dry_kg;
     Lane(one.y_m, lane) = from.y_m;
     Lane(one.z_m, lane) = from.z_m;
     const auto direction = [lane](Vector<T> & to, const Vector3& v) __attribute__((always_inline)) {
@@ -95,7 +95,7 @@ DISPERSA_INLINE T LieIn(const ApartBoosters<T>& a, ApartBooster<T>& b, T& first,
     b.source_across_m2 = Fma(T(0.5), b.source_axial_m2, a.length2_m2);
     return a.grain_station_m;
   }
-  const BoosterLiquids<T> liquids = LiquidsOf(a.tanks, b.kg);
+  const BoosterLiquids<T> liquids = LiquidsOf(b.tanks, b.kg);
   b.source_station_m = liquids.surface_m;
   b.source_axial_m2 = T(0.0);
   b.source_across_m2 = liquids.surface_gyration2_m2;
@@ -125,8 +125,8 @@ DISPERSA_OUT_OF_LINE MassPropertiesLanes<T> WithApart(ApartBoosters<T>& a, T sin
     a.flow_kg_s = a.flow_kg_s + b.flow_kg_s;
     beside_kg = beside_kg + b.kg;
     own_axial = own_axial + half * b.kg * Fma(-b.kg, a.inner_per_kg_m2, T(2.0) * a.outer2_m2);
-    const T all_kg = a.dry_kg + b.kg;
-    const T stations = Fma(b.kg, station_m, a.dry_kg * a.dry_station_m);
+    const T all_kg = b.dry_kg + b.kg;
+    const T stations = Fma(b.kg, station_m, b.dry_kg * a.dry_station_m);
     a.lateral_y_kg_m = Fma(all_kg, b.y_m, a.lateral_y_kg_m);
     a.lateral_z_kg_m = Fma(all_kg, b.z_m, a.lateral_z_kg_m);
     a.mean_station_y_kg_m2 = Fma(stations, b.y_m, a.mean_station_y_kg_m2);

@@ -28,9 +28,8 @@ Vector3 CgStep(const LauncherPlant& plant, const LauncherStack& from_stack, cons
 Vector3 LateralOf(const LauncherPlant& plant, int stack, unsigned leaving) {
   Vector3 sum = Vector3::Zero();
   if (stack > 0 || (leaving & kBoostersGone) == 0 || !plant.has_apart_boosters()) return sum;
-  const double dry_kg = plant.boosters->empty.mass_kg / static_cast<double>(plant.boosters->each.size());
   for (const EachBooster& one : plant.boosters->each)
-    sum += (dry_kg + one.burn.left_kg) * Vector3(0.0, one.y_m, one.z_m);
+    sum += (one.dry_kg + one.burn.left_kg) * Vector3(0.0, one.y_m, one.z_m);
   return sum;
 }
 
@@ -58,9 +57,10 @@ MassProperties MassesOn(const LauncherPlant& plant, int stack, unsigned jettison
   const BoosterSet& set = *plant.boosters;
   lanes::BesideStage<double> beside;
   if (set.propellant.drains && plant.has_apart_boosters()) {
-    // Each with its own burn: tanks cut off by time keep different masses.
-    const BoosterPropellant of_one = OfOneBooster(set.propellant, static_cast<int>(set.each.size()));
+    // Each with its own burn and tanks: they keep different masses.
+    BoosterPropellant of_one = set.propellant;
     for (const EachBooster& one : set.each) {
+      of_one.tanks = one.tanks;
       lanes::SetLane(beside, 0, one.burn, of_one);
       lanes::AddBeside(beside, one.burn.Propellant(since_ignition_s), 0.0, 0.0, m);
     }

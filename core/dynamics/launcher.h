@@ -109,6 +109,8 @@ struct BendingFactors {
 /// A booster that is a body of its own.
 struct EachBooster {
   MotorBurn burn;
+  double dry_kg = 0.0;
+  DrainingMass tanks;  ///< of liquid propellant, by its mass
   double y_m = 0.0, z_m = 0.0;
   /// Its thrust undeflected, canted and misaligned, times its factor; and where each hinge turns it.
   Vector3 along = Vector3::UnitX(), first = Vector3::Zero(), second = Vector3::Zero();
@@ -117,7 +119,7 @@ struct EachBooster {
 struct BoosterSet {
   MotorBurn burn;  ///< of all together
   BoosterPropellant propellant;
-  JettisonedMass empty;
+  JettisonedMass empty;  ///< of all together
   double nozzle_station_m = 0.0;
   double radius_m = 0.0;
   double separation_delay_s = 0.0;

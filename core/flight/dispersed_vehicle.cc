@@ -18,17 +18,51 @@ void AddToElement(std::size_t element, double added_kg, double& dry_kg, Stage& s
   dry_kg += added_kg;
 }
 
+// Of a stage, or of boosters, which have the same members.
+template <class Tanked>
+void Load(double factor, Tanked& loaded) {
+  loaded.propellant_mass_kg *= factor;
+  loaded.motor.burning_time_s *= factor;
+  for (Tank& tank : loaded.tanks) tank.propellant_mass_kg *= factor;
+  for (double& time_s : loaded.motor.thrust_curve.time_s) time_s *= factor;
+  // The density that its volume implies is to stay.
+  Grain& grain = loaded.grain;
+  const double web2 = Square(grain.outer_diameter_m) - Square(grain.inner_diameter_m);
+  const double bore2 = Square(grain.outer_diameter_m) - factor * web2;
+  grain.inner_diameter_m = bore2 > 0.0 ? Sqrt(bore2) : 0.0;
+}
+
+// Place of a booster among the further nozzles.
+std::size_t PlaceOf(const Vehicle& vehicle, std::size_t booster) {
+  return static_cast<std::size_t>(FurtherNozzlesBefore(vehicle, vehicle.stages.size())) + booster;
+}
+
+void LoadMean(const FlightInputs& in, Vehicle& vehicle) {
+  Boosters& boosters = vehicle.boosters;
+  if (!boosters.are_apart()) return;
+  double dry = 0.0, propellant = 0.0;
+  for (std::size_t k = 0; k < boosters.angles_rad.size(); ++k) {
+    dry += in.booster_dry_mass_factor[PlaceOf(vehicle, k)] - 1.0;
+    propellant += in.booster_propellant_factor[PlaceOf(vehicle, k)] - 1.0;
+  }
+  boosters.dry_mass_kg *= 1.0 + dry / boosters.count;
+  if (propellant != 0.0) Load(1.0 + propellant / boosters.count, boosters);
+}
+
 }  // namespace
 
 bool ChangesMasses(const FlightInputs& in) {
   for (std::size_t i = 0; i < kMaxStages; ++i)
     if (in.dry_mass_factor[i] != 1.0 || in.propellant_factor[i] != 1.0) return true;
+  for (std::size_t i = 0; i < kFurtherNozzles; ++i)
+    if (in.booster_dry_mass_factor[i] != 1.0 || in.booster_propellant_factor[i] != 1.0) return true;
   return in.payload_mass_kg != 0.0;
 }
 
 Vehicle WithDispersedMasses(const Vehicle& vehicle, const FlightInputs& in) {
   Vehicle dispersed = vehicle;
   if (!ChangesMasses(in)) return dispersed;
+  LoadMean(in, dispersed);
   double above_kg = 0.0;
   for (std::size_t i = vehicle.stages.size(); i-- > 0;) {
     Stage& stage = dispersed.stages[i];
@@ -46,24 +80,26 @@ Vehicle WithDispersedMasses(const Vehicle& vehicle, const FlightInputs& in) {
       stage.flown_mass.added_kg = dry_kg - nominal_dry_kg * in.dry_mass_factor[first];
       stage.flown_mass.element = static_cast<std::size_t>(std::max(element, 0));
     }
-    stage.propellant_mass_kg *= in.propellant_factor[first];
-    stage.motor.burning_time_s *= in.propellant_factor[first];
-    for (Tank& tank : stage.tanks) tank.propellant_mass_kg *= in.propellant_factor[first];
-    ThrustCurve& curve = stage.motor.thrust_curve;
-    for (double& time_s : curve.time_s) time_s *= in.propellant_factor[first];
-    // The density that its volume implies is to stay.
-    Grain& grain = stage.grain;
-    const double web2 = Square(grain.outer_diameter_m) - Square(grain.inner_diameter_m);
-    const double bore2 = Square(grain.outer_diameter_m) - in.propellant_factor[first] * web2;
-    grain.inner_diameter_m = bore2 > 0.0 ? Sqrt(bore2) : 0.0;
+    Load(in.propellant_factor[first], stage);
     double own_kg = dry_kg + stage.propellant_mass_kg;
     const Stage& at_last = vehicle.stages[static_cast<std::size_t>(LastBurn(vehicle, static_cast<int>(i)))];
     for (const Jettison& jettison : at_last.jettisoned) own_kg += jettison.mass_kg;
-    const Boosters& boosters = vehicle.boosters;
-    if (i == 0) own_kg += boosters.LiftOffMass();
+    if (i == 0) own_kg += dispersed.boosters.LiftOffMass();
     stage.liftoff_mass_kg = above_kg + own_kg;
     if (!stage.restarts) above_kg = stage.liftoff_mass_kg;
   }
+  return dispersed;
+}
+
+DispersedBooster BoosterOf(const Vehicle& nominal, const FlightInputs& in, std::size_t booster) {
+  const std::size_t k = PlaceOf(nominal, booster);
+  DispersedBooster dispersed{nominal.boosters, {}};
+  Boosters& one = dispersed.one;
+  one.dry_mass_kg *= in.booster_dry_mass_factor[k];
+  if (in.booster_propellant_factor[k] != 1.0) Load(in.booster_propellant_factor[k], one);
+  if (!one.is_liquid()) return dispersed;
+  dispersed.mixture = BuildMixture(one, in.booster_mixture_ratio_factor[k]);
+  one.motor.residual_mass_kg = dispersed.mixture.residual_kg;
   return dispersed;
 }
 

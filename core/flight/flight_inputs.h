@@ -158,6 +158,10 @@ struct FlightInputs {
   double table_cn_sigmas = 0.0;
   double table_xcp_sigmas = 0.0;
   double table_damping_sigmas = 0.0;
+  // Masses of boosters that are bodies of their own, at their places among the further nozzles.
+  PerFurtherNozzle booster_dry_mass_factor = AllFurtherNozzles(1.0);
+  PerFurtherNozzle booster_propellant_factor = AllFurtherNozzles(1.0);
+  PerFurtherNozzle booster_mixture_ratio_factor = AllFurtherNozzles(1.0);
 };
 
 /// The usual range of an input, in the unit of its column. `validate --strict` warns about values outside it.
@@ -236,6 +240,8 @@ inline constexpr UsualValues kUsualMotor = {0.8, 1.2, "1 to 5 % of motors"};
 inline constexpr UsualValues kUsualCoefficient = {0.4, 1.6, "10 to 20 %"};
 inline constexpr UsualValues kUsualCp = {0.4, 1.6, "of the distance from the nose"};
 inline constexpr UsualValues kUsualCg = {0.7, 1.3, "of the distance from the nose"};
+inline constexpr UsualValues kUsualDryMass = {0.8, 1.2, "1 to 5 %"};
+inline constexpr UsualValues kUsualLoad = {0.9, 1.1, "0.3 to 1 %"};
 inline constexpr UsualValues kUsualInertia = {0.5, 1.5, "2 to 10 %"};
 inline constexpr UsualValues kUsualBandwidth = {0.3, 2.0, "10 to 20 %"};
 inline constexpr UsualValues kUsualTipOff = {-5.0, 5.0, "0.1 to 2 deg/s of a separation"};
@@ -315,8 +321,8 @@ inline void DeclareInputs(InputDeclarations& inputs) {
       .Usually({-50.0, 50.0, "0.1 m/s aided by satellites, metres a second of a free unit"});
   inputs.One(&In::accelerometer_scale_factor, "accelerometer_scale_factor")
       .Usually({0.99, 1.01, "0.0001 to 0.001"});
-  inputs.EachStage(&In::dry_mass_factor, "dry_mass_factor").Usually({0.8, 1.2, "1 to 5 %"});
-  inputs.EachStage(&In::propellant_factor, "propellant_factor").Usually({0.9, 1.1, "0.3 to 1 %"});
+  inputs.EachStage(&In::dry_mass_factor, "dry_mass_factor").Usually(kUsualDryMass);
+  inputs.EachStage(&In::propellant_factor, "propellant_factor").Usually(kUsualLoad);
   inputs.One(&In::payload_mass_kg, "payload_mass_kg");
   inputs.One(&In::payload_element, "payload_element");
   inputs.EachStage(&In::product_of_inertia_xy_kg_m2, "product_of_inertia_xy", "_kg_m2");
@@ -373,6 +379,10 @@ inline void DeclareInputs(InputDeclarations& inputs) {
   inputs.One(&In::table_cn_sigmas, "table_cn_sigmas");
   inputs.One(&In::table_xcp_sigmas, "table_xcp_sigmas");
   inputs.One(&In::table_damping_sigmas, "table_damping_sigmas");
+  inputs.EachFurtherNozzle(&In::booster_dry_mass_factor, "booster_dry_mass_factor").Usually(kUsualDryMass);
+  inputs.EachFurtherNozzle(&In::booster_propellant_factor, "booster_propellant_factor").Usually(kUsualLoad);
+  inputs.EachFurtherNozzle(&In::booster_mixture_ratio_factor, "booster_mixture_ratio_factor")
+      .Usually({0.9, 1.1, "0.5 to 3 % of engines"});
 }
 
 /// All columns in their fixed order, names without the prefix `input_`.

@@ -33,11 +33,14 @@ struct BoosterDeparture {
   double thrust_factor = 1.0, flow_factor = 1.0;
   Matrix3 tilt = Matrix3::Identity();
 };
-EachBooster BuildEachBooster(const Boosters& boosters, std::size_t k, double thrust_factor,
+EachBooster BuildEachBooster(const DispersedBooster& dispersed, std::size_t k, double thrust_factor,
                              double flow_factor, const BoosterDeparture& departs) {
+  const Boosters& boosters = dispersed.one;
   EachBooster one;
   one.burn =
       BuildOneBoosterBurn(boosters, thrust_factor * departs.thrust_factor, flow_factor * departs.flow_factor);
+  one.dry_kg = boosters.dry_mass_kg;
+  one.tanks = dispersed.mixture.tanks;
   const SinCos at = SineCosine(boosters.angles_rad[k]);
   one.y_m = boosters.radius_m * at.cos;
   one.z_m = boosters.radius_m * at.sin;
@@ -127,7 +130,7 @@ LauncherPlant BuildNominalPlant(const Vehicle& vehicle) {
   if (const Boosters& boosters = vehicle.boosters; boosters.count > 0) {
     BoosterSet set = BuildBoosterSet(boosters, 1.0, 1.0);
     for (std::size_t k = 0; k < boosters.angles_rad.size(); ++k)
-      set.each.push_back(BuildEachBooster(boosters, k, 1.0, 1.0, {}));
+      set.each.push_back(BuildEachBooster(BoosterOf(vehicle, {}, k), k, 1.0, 1.0, {}));
     plant.boosters = std::make_shared<const BoosterSet>(set);
     if (boosters.turn_nozzles()) {
       set.layout = BuildBoostLayout(vehicle.stages[0].gimbal, boosters, GeometryOf(plant));
@@ -606,17 +609,18 @@ TurbulenceField TurbulenceOf(const FlightInputs& in, const TurbulencePath& path,
       {[&] { return along.Normal(); }, [&] { return across.Normal(); }, [&] { return normal.Normal(); }});
 }
 
-// Those of one flight. Differences of each are inputs of nozzles after those of all stages.
-std::shared_ptr<const BoosterSet> BoostersFor(const Vehicle& vehicle, const FlightInputs& in,
-                                              double thrust_factor, const BoosterSet& nominal) {
-  const Boosters& boosters = vehicle.boosters;
+// Those of one flight. Differences of each are inputs of nozzles after those of all stages. `boosters`: their
+// mean, of the vehicle with the flight's masses.
+std::shared_ptr<const BoosterSet> BoostersFor(const Vehicle& vehicle, const Boosters& boosters,
+                                              const FlightInputs& in, double thrust_factor,
+                                              const BoosterSet& nominal) {
   BoosterSet set = BuildBoosterSet(boosters, thrust_factor, in.mass_flow_factor[0]);
   set.layout = nominal.layout;
   set.gimbal.bandwidth_rad_s *= in.actuator_bandwidth_factor * in.stack_actuator_bandwidth_factor[0];
   std::size_t k = static_cast<std::size_t>(FurtherNozzlesBefore(vehicle, vehicle.stages.size()));
   for (std::size_t i = 0; i < boosters.angles_rad.size(); ++i, ++k)
     set.each.push_back(BuildEachBooster(
-        boosters, i, thrust_factor, in.mass_flow_factor[0],
+        BoosterOf(vehicle, in, i), i, thrust_factor, in.mass_flow_factor[0],
         {in.further_thrust_factor[k], in.further_flow_factor[k],
          ThrustTilt(AsideOf(in.further_misalignment_rad[k], in.further_misalignment_clock_rad[k],
                             in.further_misalignment_y_rad[k], in.further_misalignment_z_rad[k]))}));
@@ -663,7 +667,8 @@ LauncherPlant FlightModel::PlantFor(const FlightInputs& in, std::optional<std::u
     const double flow_factor = in.mass_flow_factor[i] * FlowFactor(stack.layout, in, i, further);
     stack.burn = dispersed ? BuildBurn(vehicle.stages[i], thrust_factor, flow_factor)
                            : BuildBurn(vehicle.stages[i], thrust_factor, flow_factor, stack.burn.curve);
-    if (i == 0 && plant.boosters) plant.boosters = BoostersFor(vehicle, in, thrust_factor, *plant.boosters);
+    if (i == 0 && plant.boosters)
+      plant.boosters = BoostersFor(definition_.vehicle, vehicle.boosters, in, thrust_factor, *plant.boosters);
     stack.gimbal.bandwidth_rad_s *= in.actuator_bandwidth_factor * in.stack_actuator_bandwidth_factor[i];
     stack.aerodynamics.ca.factor = in.drag_factor * in.stack_drag_factor[i];
     stack.aerodynamics.cn.factor = in.lift_factor * in.stack_lift_factor[i];

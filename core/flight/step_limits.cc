@@ -8,6 +8,7 @@
 #include "core/flight/dispersed_vehicle.h"
 #include "core/math/constants.h"
 #include "core/vehicle/mass.h"
+#include "core/vehicle/propulsion.h"
 
 namespace dispersa {
 namespace {
@@ -102,6 +103,16 @@ std::string RefusalOf(const Vehicle& vehicle, const FlightInputs& in, const Laun
       return (vehicle.stages[i].is_liquid() ? "a tank of " : "the grain of ") + stage + " does not hold " +
              Text(in.propellant_factor[i]) + " times its propellant";
     if (!IsInertia(plant, i)) return "the products of inertia of " + stage + " are no body's";
+  }
+  for (std::size_t k = 0; k < vehicle.boosters.angles_rad.size(); ++k) {
+    const std::size_t at = static_cast<std::size_t>(FurtherNozzlesBefore(vehicle, vehicle.stages.size())) + k;
+    const std::string booster = "booster " + std::to_string(k + 1);
+    if (!(in.booster_dry_mass_factor[at] > 0.0)) return "the dry mass of " + booster + " is not above 0";
+    if (!(in.booster_propellant_factor[at] > 0.0)) return "the propellant of " + booster + " is not above 0";
+    if (in.booster_propellant_factor[at] > LargestPropellantFactor(AsStage(vehicle.boosters)))
+      return booster + " does not hold " + Text(in.booster_propellant_factor[at]) + " times its propellant";
+    if (!(in.booster_mixture_ratio_factor[at] > 0.0))
+      return "the mixture ratio of " + booster + " is not above 0";
   }
   if (in.payload_mass_kg != 0.0) {
     const Vehicle dispersed = WithDispersedMasses(vehicle, in);

@@ -58,12 +58,14 @@ double TopStation(const Vehicle& vehicle, int stage) {
 }
 
 /// Centre of gravity of one that has burnt out, with what its tanks have left.
-double SpentStation(const Boosters& boosters, double left_kg) {
+double SpentStation(const Boosters& boosters, const EachBooster& one) {
   const double shell_m = 0.5 * (boosters.top_station_m + boosters.bottom_station_m);
+  const double left_kg = one.burn.left_kg;
   if (!(left_kg > 0.0)) return shell_m;
-  const DrainingMass tanks = OfOneBooster(BuildBoosterPropellant(boosters), boosters.count).tanks;
-  const double first_kg_m = left_kg * (tanks.first_per_kg_m + left_kg * tanks.first_per_kg2_m);
-  return (boosters.dry_mass_kg * shell_m + first_kg_m) / (boosters.dry_mass_kg + left_kg);
+  const DrainingMass& tanks = one.tanks;
+  const double first_kg_m =
+      tanks.first_kg_m + left_kg * (tanks.first_per_kg_m + left_kg * tanks.first_per_kg2_m);
+  return (one.dry_kg * shell_m + first_kg_m) / (one.dry_kg + left_kg);
 }
 
 /// Since lift-off, if the vehicle has boosters.
@@ -112,12 +114,14 @@ std::vector<ImpactPoint> ImpactPoints(const CampaignFlights& flights, const Case
     if (each.empty()) {
       each.resize(1);
       each[0].burn.left_kg = plant.boosters->burn.left_kg / boosters.count;
+      each[0].dry_kg = boosters.dry_mass_kg;
+      each[0].tanks = OfOneBooster(plant.boosters->propellant, boosters.count).tanks;
     }
     for (const EachBooster& one : each) {
       const FallingBody body = {
-          boosters.dry_mass_kg + one.burn.left_kg,
+          one.dry_kg + one.burn.left_kg,
           TumblingCylinderDragArea(boosters.bottom_station_m - boosters.top_station_m, boosters.diameter_m)};
-      const double ahead_m = mass.cg_station_m - SpentStation(boosters, one.burn.left_kg);
+      const double ahead_m = mass.cg_station_m - SpentStation(boosters, one);
       const RigidBodyState spent =
           AtPoint(left, Vector3(ahead_m, one.y_m - stack.lateral_moment_y_kg_m / mass.mass_kg,
                                 one.z_m - stack.lateral_moment_z_kg_m / mass.mass_kg));

@@ -210,6 +210,8 @@ DISPERSA_INLINE BurnState<T> BurnAt(const MotorBurnLanes<T>& b, T since_ignition
 template <class T>
 struct BoosterTanks {
   T first_per_kg_m, first_per_kg2_m, second_per_kg_m2, second_per_kg2_m2, second_per_kg3_m2;
+  T first_kg_m, second_kg_m2;
+  bool any_mixes;  ///< any lane has a mixture that is not its tanks'
 };
 template <class T>
 DISPERSA_INLINE void SetLane(BoosterTanks<T>& t, int lane, const DrainingMass& tanks) {
@@ -218,6 +220,10 @@ DISPERSA_INLINE void SetLane(BoosterTanks<T>& t, int lane, const DrainingMass& t
   Lane(t.second_per_kg_m2, lane) = tanks.second_per_kg_m2;
   Lane(t.second_per_kg2_m2, lane) = tanks.second_per_kg2_m2;
   Lane(t.second_per_kg3_m2, lane) = tanks.second_per_kg3_m2;
+  Lane(t.first_kg_m, lane) = tanks.first_kg_m;
+  Lane(t.second_kg_m2, lane) = tanks.second_kg_m2;
+  t.any_mixes = false;
+  for (int i = 0; i < kWidth<T>; ++i) t.any_mixes |= Lane(t.second_kg_m2, i) != 0.0;
 }
 /// Their liquids of a mass: the centre of gravity, and the square of the radius of gyration about it, across
 /// the axis. The kilogram that leaves next: its place at the surfaces, and the same square.
@@ -229,8 +235,14 @@ template <class T>
 DISPERSA_INLINE BoosterLiquids<T> LiquidsOf(const BoosterTanks<T>& t, T kg) {
   BoosterLiquids<T> o;
   o.station_m = Fma(kg, t.first_per_kg2_m, t.first_per_kg_m);
-  o.gyration2_m2 =
-      Fma(kg, Fma(kg, t.second_per_kg3_m2, t.second_per_kg2_m2), t.second_per_kg_m2) - Square(o.station_m);
+  T second_m2 = Fma(kg, Fma(kg, t.second_per_kg3_m2, t.second_per_kg2_m2), t.second_per_kg_m2);
+  if (t.any_mixes) {
+    // None is ever empty where there is something to divide.
+    const T per_kg = T(1.0) / Select(kg > T(0.0), kg, T(1.0));
+    o.station_m = Fma(t.first_kg_m, per_kg, o.station_m);
+    second_m2 = Fma(t.second_kg_m2, per_kg, second_m2);
+  }
+  o.gyration2_m2 = second_m2 - Square(o.station_m);
   o.surface_m = Fma(T(2.0) * kg, t.first_per_kg2_m, t.first_per_kg_m);
   o.surface_gyration2_m2 =
       Fma(kg, Fma(T(3.0) * kg, t.second_per_kg3_m2, T(2.0) * t.second_per_kg2_m2), t.second_per_kg_m2) -

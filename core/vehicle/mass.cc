@@ -1,5 +1,7 @@
 #include "core/vehicle/mass.h"
 
+#include <algorithm>
+
 #include "core/math/constants.h"
 #include "core/math/functions.h"
 #include "core/vehicle/burning_stack.h"
@@ -136,6 +138,38 @@ BoosterPropellant OfOneBooster(BoosterPropellant all, int count) {
   all.tanks.second_per_kg2_m2 *= count;
   all.tanks.second_per_kg3_m2 *= Square(count);
   return all;
+}
+
+MixtureOf BuildMixture(const Boosters& boosters, double factor) {
+  const double load_kg = boosters.propellant_mass_kg, rest_kg = boosters.motor.residual_mass_kg;
+  MixtureOf mixture{Draining(boosters.tanks, load_kg), rest_kg};
+  if (factor == 1.0) return mixture;
+  DrainingMass& sum = mixture.tanks = {};
+  const double first = boosters.tanks[0].propellant_mass_kg / load_kg;
+  const double drawn = factor * first / (1.0 - first + factor * first);
+  double lasts = 1.0;  // the part of the usable propellant that flows before a tank ends the burn
+  for (std::size_t k = 0; k < boosters.tanks.size(); ++k) {
+    const Tank& tank = boosters.tanks[k];
+    const double loaded = tank.propellant_mass_kg / load_kg;
+    const double share = k == 0 ? drawn : loaded * (1.0 - drawn) / (1.0 - first);
+    lasts = std::min(lasts, loaded / share);
+    const double kept_kg = tank.propellant_mass_kg - share * load_kg;
+    const double bottom = tank.bottom_station_m, radius2 = 0.25 * Square(tank.diameter_m);
+    const double height_per_kg = 1.0 / (tank.density_kg_m3 * kPi * radius2);
+    // Powers of kept + share m in the moments m_k (b - h/2) and m_k (b² - b h + h²/3 + r²/4).
+    const double one = bottom, two = -0.5 * height_per_kg;
+    const double square = Square(bottom) + 0.25 * radius2, less = -bottom * height_per_kg,
+                 cube = Square(height_per_kg) / 3.0;
+    sum.first_kg_m += kept_kg * (one + kept_kg * two);
+    sum.first_per_kg_m += share * (one + 2.0 * kept_kg * two);
+    sum.first_per_kg2_m += Square(share) * two;
+    sum.second_kg_m2 += kept_kg * (square + kept_kg * (less + kept_kg * cube));
+    sum.second_per_kg_m2 += share * (square + kept_kg * (2.0 * less + 3.0 * kept_kg * cube));
+    sum.second_per_kg2_m2 += Square(share) * (less + 3.0 * kept_kg * cube);
+    sum.second_per_kg3_m2 += Square(share) * share * cube;
+  }
+  mixture.residual_kg = load_kg - (load_kg - rest_kg) * lasts;
+  return mixture;
 }
 
 double PropellantDensity(const Stage& stage) {

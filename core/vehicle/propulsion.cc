@@ -45,12 +45,17 @@ MotorBurn BuildBurn(const Stage& stage, double thrust_factor, double flow_factor
                    curve.empty() ? nullptr : std::make_shared<const BurnCurve>(Prepare(curve)));
 }
 
-MotorBurn BuildOneBoosterBurn(const Boosters& boosters, double thrust_factor, double flow_factor) {
+Stage AsStage(const Boosters& boosters) {
   Stage one;
   one.propellant_mass_kg = boosters.propellant_mass_kg;
   one.motor = boosters.motor;
+  one.grain = boosters.grain;
   one.tanks = boosters.tanks;
-  return BuildBurn(one, thrust_factor, flow_factor);
+  return one;
+}
+
+MotorBurn BuildOneBoosterBurn(const Boosters& boosters, double thrust_factor, double flow_factor) {
+  return BuildBurn(AsStage(boosters), thrust_factor, flow_factor);
 }
 
 MotorBurn BuildBoosterBurn(const Boosters& boosters, double thrust_factor, double flow_factor) {

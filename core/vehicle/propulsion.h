@@ -50,6 +50,8 @@ void SetPropellant(const Motor& engine, double propellant_kg, MotorBurn& burn);
 /// Ends a throttled burn by command.
 void CutOffAt(double since_ignition_s, MotorBurn& burn);
 
+/// Propellant, motor, grain and tanks of one booster, as those of a stage.
+Stage AsStage(const Boosters& boosters);
 /// The burn of one booster, with the factors of its thrust and flow.
 MotorBurn BuildOneBoosterBurn(const Boosters& boosters, double thrust_factor, double flow_factor);
 /// The burn of all boosters together, with the first stage's factors. Thrust is that along the axis.

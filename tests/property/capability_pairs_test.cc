@@ -362,6 +362,13 @@ FlightInputs InputsOf(const Launcher& launcher, std::uint64_t index) {
     in.dry_mass_factor[stage] = 1.0 + 0.005 * draws.Normal();
     in.propellant_factor[stage] = 1.0 + 0.002 * draws.Normal();
   }
+  const Vehicle& vehicle = launcher.vehicle;
+  auto at = static_cast<std::size_t>(FurtherNozzlesBefore(vehicle, vehicle.stages.size()));
+  for (std::size_t k = 0; k < vehicle.boosters.angles_rad.size(); ++k, ++at) {
+    in.booster_dry_mass_factor[at] = 1.0 + 0.02 * draws.Normal();
+    in.booster_propellant_factor[at] = 1.0 + 0.002 * draws.Normal();
+    if (vehicle.boosters.is_liquid()) in.booster_mixture_ratio_factor[at] = 1.0 + 0.01 * draws.Normal();
+  }
   return in;
 }
 
@@ -383,7 +390,8 @@ class Bookkeeper {
     } else {
       const double step_s = now.time_s - time_s_;
       const bool is_event = step_s <= 0.0 || now.stack != stack_ || now.burning != burning_ ||
-                            now.boosting != boosting_ || now.jettisoned != jettisoned_;
+                            now.boosting != boosting_ || now.boosters_burning != boosters_burning_ ||
+                            now.jettisoned != jettisoned_;
       const double change_m_s = (now.state.v_IC_I - v_m_s_ - 0.5 * step_s * (acceleration + a_m_s2_)).norm();
       const double flown_kg = mass_kg_ - mass_kg;
       if (is_event) {
@@ -402,6 +410,7 @@ class Bookkeeper {
     stack_ = now.stack;
     burning_ = now.burning;
     boosting_ = now.boosting;
+    boosters_burning_ = now.boosters_burning;
     jettisoned_ = now.jettisoned;
     mass_kg_ = mass_kg;
     cg_station_m_ = now.instant.cg_station_m;
@@ -421,7 +430,7 @@ class Bookkeeper {
   double time_s_ = 0.0, mass_kg_ = 0.0, cg_station_m_ = 0.0, flow_kg_s_ = 0.0, expelled_kg_ = 0.0;
   int stack_ = 0;
   bool burning_ = false, boosting_ = false;
-  unsigned jettisoned_ = 0;
+  unsigned boosters_burning_ = 0, jettisoned_ = 0;
   Vector3 v_m_s_ = Vector3::Zero(), a_m_s2_ = Vector3::Zero();
 };
 
@@ -521,6 +530,18 @@ TEST(FreeFlights, HaveNoBoostersThatSteer) {
       ControlProblems(launcher.vehicle, {FlightEnd::kApogee, false, kFreeStep_s});
   ASSERT_EQ(problems.size(), 1u);
   EXPECT_EQ(problems[0].message, "the boosters of 'slv4' have a gimbal, which nothing would command");
+}
+
+// Of liquid boosters too, whose mixtures are drawn, beside a stage that bends: no pair has all of them.
+TEST(DrawnMasses, OfLiquidBoostersThatSteerFlyWhereTheBodyBends) {
+  const auto place_of = [](std::string_view name) {
+    const auto& all = Capabilities();
+    return static_cast<std::size_t>(
+        std::find_if(all.begin(), all.end(), [&](const Capability& each) { return each.name == name; }) -
+        all.begin());
+  };
+  ExpectFlies(With({place_of("boosters that steer"), place_of("liquid boosters"), place_of("bending"),
+                    place_of("drawn masses")}));
 }
 
 class Pair : public testing::TestWithParam<std::size_t> {};

@@ -4,6 +4,7 @@
 #include <string>
 
 #include "core/campaign/campaign.h"
+#include "core/campaign/case_design.h"
 #include "core/campaign_yaml/load.h"
 #include "core/flight/flight_inputs.h"
 #include "core/math/constants.h"
@@ -125,6 +126,41 @@ TEST(BoostersFile, OfLiquidsHaveNoTemperatureOfTheGrain) {
   EXPECT_EQ(files.Texts(CheckFile(files.Path("campaign.yaml")).errors),
             "campaign.yaml:11:24: dispersions.booster_temperature: the boosters are liquid: pumps or tank "
             "pressure set their flow, allowed: booster_burn_rate, or boosters with solid motors\n");
+}
+
+// Each its own, as the file says, and one for all.
+TEST(BoostersFile, ReadDispersionsOfTheirMasses) {
+  const InputFiles files;
+  MakeLiquid(files);
+  files.Edit("vehicle.yaml", "count: 2,", "angles_deg: [0, 120, 240],");
+  files.Edit("campaign.yaml", "  thrust: ",
+             "  booster_dry_mass: {distribution: normal, sigma_percent: 1}\n"
+             "  booster_propellant_load: {distribution: uniform, low_factor: 0.99, high_factor: 1.01}\n"
+             "  booster_mixture_ratio: {distribution: normal, sigma_percent: 1, per: vehicle}\n  thrust: ");
+  EXPECT_EQ(files.Texts(CheckFile(files.Path("campaign.yaml")).errors), "");
+  const FlightInputs in = CaseDesign(LoadCampaign(files.Path("campaign.yaml"))).Draw(3);
+  for (const auto* drawn : {&in.booster_dry_mass_factor, &in.booster_propellant_factor}) {
+    EXPECT_NE((*drawn)[0], 1.0);
+    EXPECT_NE((*drawn)[0], (*drawn)[1]);
+    EXPECT_NE((*drawn)[1], (*drawn)[2]);
+    EXPECT_EQ((*drawn)[3], 1.0);
+  }
+  EXPECT_NE(in.booster_mixture_ratio_factor[0], 1.0);
+  EXPECT_EQ(in.booster_mixture_ratio_factor[0], in.booster_mixture_ratio_factor[2]);
+  files.Edit("campaign.yaml", "high_factor: 1.01", "high_factor: 9");
+  EXPECT_NE(files.Texts(CheckFile(files.Path("campaign.yaml")).errors).find("a draw can be 9 (factor)"),
+            std::string::npos);
+}
+
+TEST(BoostersFile, OfSolidsHaveNoMixture) {
+  const InputFiles files;
+  files.Edit("vehicle.yaml", kAfter, kBoosters);
+  files.Edit("vehicle.yaml", "count: 2,", "angles_deg: [0, 120, 240],");
+  files.Edit("campaign.yaml",
+             "  thrust: ", "  booster_mixture_ratio: {distribution: normal, sigma_percent: 1}\n  thrust: ");
+  EXPECT_EQ(files.Texts(CheckFile(files.Path("campaign.yaml")).errors),
+            "campaign.yaml:11:26: dispersions.booster_mixture_ratio: the boosters have no two tanks, whose "
+            "flows could differ, allowed: boosters with liquid engines of two propellants\n");
 }
 
 // Each with its place, its nozzle's drives, and dispersions of its own.
