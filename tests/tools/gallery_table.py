@@ -17,7 +17,7 @@ import tempfile
 import yaml
 
 WITHIN = 0.02
-LAUNCHERS = ("vega", "electron", "scout", "falcon9", "falcon9_leo", "ariane5", "nike_apache")
+LAUNCHERS = ("vega", "electron", "scout", "falcon9", "falcon9_leo", "ariane5", "soyuz", "nike_apache")
 TITLES = {
     "lift_off": "lift-off",
     "mach_1": "Mach 1",

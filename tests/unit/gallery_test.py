@@ -10,9 +10,9 @@ import unittest
 BINARY = pathlib.Path(os.environ["DISPERSA_BINARIES"]) / "dispersa"
 GALLERY = pathlib.Path(os.environ["DISPERSA_CAMPAIGNS"]) / "gallery"
 TABLE = pathlib.Path(__file__).parent.parent / "tools" / "gallery_table.py"
-CONTROLLED = ("vega", "electron", "scout", "falcon9", "falcon9_leo", "ariane5")
+CONTROLLED = ("vega", "electron", "scout", "falcon9", "falcon9_leo", "ariane5", "soyuz")
 LAUNCHERS = (*CONTROLLED, "nike_apache")
-FURTHER = ("vega", "falcon9", "falcon9_leo", "ariane5")
+FURTHER = ("vega", "falcon9", "falcon9_leo", "ariane5", "soyuz")
 CASES = 4
 
 
