@@ -25,7 +25,7 @@ template <class T>
 struct ApartBooster {
   MotorBurnLanes<T> burn;
   T y_m, z_m, dry_kg;
-  BoosterTanks<T> tanks;
+  DrainingMassLanes<T> tanks;
   Vector<T> along;          ///< its thrust undeflected: canted and misaligned, times its factor
   Vector<T> first, second;  ///< across it, where a positive angle turns the thrust about each hinge
   MaskOf<T> burning;

@@ -10,6 +10,36 @@
 namespace dispersa::lanes {
 inline namespace DISPERSA_ISA {
 
+/// DrainingMass of each lane.
+template <class T>
+struct DrainingMassLanes {
+  T first_per_kg_m, first_per_kg2_m, second_per_kg_m2, second_per_kg2_m2, second_per_kg3_m2;
+  T first_kg_m, second_kg_m2;
+  bool any_mixes;  ///< any lane has a mixture that is not its tanks'
+};
+template <class T>
+DISPERSA_INLINE void SetLane(DrainingMassLanes<T>& t, int lane, const DrainingMass& tanks) {
+  Lane(t.first_per_kg_m, lane) = tanks.first_per_kg_m;
+  Lane(t.first_per_kg2_m, lane) = tanks.first_per_kg2_m;
+  Lane(t.second_per_kg_m2, lane) = tanks.second_per_kg_m2;
+  Lane(t.second_per_kg2_m2, lane) = tanks.second_per_kg2_m2;
+  Lane(t.second_per_kg3_m2, lane) = tanks.second_per_kg3_m2;
+  Lane(t.first_kg_m, lane) = tanks.first_kg_m;
+  Lane(t.second_kg_m2, lane) = tanks.second_kg_m2;
+  t.any_mixes = false;
+  for (int i = 0; i < kWidth<T>; ++i) t.any_mixes |= Lane(t.second_kg_m2, i) != 0.0;
+}
+/// Where the kilogram is that leaves next: the slope of the first moment over the mass.
+template <class T>
+DISPERSA_INLINE T SurfaceOf(const DrainingMassLanes<T>& t, T kg) {
+  return Fma(T(2.0) * kg, t.first_per_kg2_m, t.first_per_kg_m);
+}
+/// Its second moment: the slope of the second moment over the mass.
+template <class T>
+DISPERSA_INLINE T SecondPerKgOf(const DrainingMassLanes<T>& t, T kg) {
+  return Fma(kg, Fma(T(3.0) * kg, t.second_per_kg3_m2, T(2.0) * t.second_per_kg2_m2), t.second_per_kg_m2);
+}
+
 /// StackMass, prepared.
 template <class T>
 struct StackMassLanes {
@@ -20,7 +50,7 @@ struct StackMassLanes {
   T length2_m2;       ///< the grain's length squared, over 12
   bool any_drains;    ///< any lane has tanks or a table in place of the grain:
   T drains;           ///< 1 for liquid stages (DrainingMass), 2 for tables (MassRows), 0 for grains
-  T first_per_kg_m, first_per_kg2_m, second_per_kg_m2, second_per_kg2_m2, second_per_kg3_m2;
+  DrainingMassLanes<T> tanks;
   bool any_tables;
   const MassRows* table[kWidth<T>];  ///< null: none
 };
@@ -38,11 +68,7 @@ DISPERSA_INLINE void SetLane(StackMassLanes<T>& s, int lane, const StackMass& ma
   Lane(s.length2_m2, lane) = mass.grain_length_m * mass.grain_length_m / 12.0;
   s.table[lane] = mass.table;
   Lane(s.drains, lane) = s.table[lane] != nullptr ? 2.0 : mass.drains ? 1.0 : 0.0;
-  Lane(s.first_per_kg_m, lane) = mass.tanks.first_per_kg_m;
-  Lane(s.first_per_kg2_m, lane) = mass.tanks.first_per_kg2_m;
-  Lane(s.second_per_kg_m2, lane) = mass.tanks.second_per_kg_m2;
-  Lane(s.second_per_kg2_m2, lane) = mass.tanks.second_per_kg2_m2;
-  Lane(s.second_per_kg3_m2, lane) = mass.tanks.second_per_kg3_m2;
+  SetLane(s.tanks, lane, mass.tanks);
   s.any_drains = s.any_tables = false;
   for (int i = 0; i < kWidth<T>; ++i) {
     s.any_drains |= Lane(s.drains, i) > 0.0;
@@ -88,13 +114,13 @@ DISPERSA_INLINE MassPropertiesLanes<T> MassesAt(const StackMassLanes<T>& s, T pr
   m.source_station_m = s.grain_station_m;
   if (s.any_drains) {
     const auto drains = s.drains > T(0.0);
+    const DrainingMassLanes<T>& t = s.tanks;
     const T p = propellant_kg;
-    T first = Fma(p, Fma(p, s.first_per_kg2_m, s.first_per_kg_m), s.first_moment_kg_m);
-    T surface = Fma(T(2.0) * p, s.first_per_kg2_m, s.first_per_kg_m);  // of the first moment by mass
-    T second = Fma(p, Fma(p, Fma(p, s.second_per_kg3_m2, s.second_per_kg2_m2), s.second_per_kg_m2),
+    T first = Fma(p, Fma(p, t.first_per_kg2_m, t.first_per_kg_m), s.first_moment_kg_m);
+    T surface = SurfaceOf(t, p);
+    T second = Fma(p, Fma(p, Fma(p, t.second_per_kg3_m2, t.second_per_kg2_m2), t.second_per_kg_m2),
                    s.second_moment_kg_m2);
-    T second_per_kg =
-        Fma(p, Fma(T(3.0) * p, s.second_per_kg3_m2, T(2.0) * s.second_per_kg2_m2), s.second_per_kg_m2);
+    T second_per_kg = SecondPerKgOf(t, p);
     T axial = s.fixed_axial_kg_m2, axial_per_kg(0.0);
     if (s.any_tables) {
       const double* piece[kWidth<T>];
@@ -206,33 +232,14 @@ DISPERSA_INLINE BurnState<T> BurnAt(const MotorBurnLanes<T>& b, T since_ignition
   return state;
 }
 
-/// Tanks of boosters: moments over the mass that they have (DrainingMass).
-template <class T>
-struct BoosterTanks {
-  T first_per_kg_m, first_per_kg2_m, second_per_kg_m2, second_per_kg2_m2, second_per_kg3_m2;
-  T first_kg_m, second_kg_m2;
-  bool any_mixes;  ///< any lane has a mixture that is not its tanks'
-};
-template <class T>
-DISPERSA_INLINE void SetLane(BoosterTanks<T>& t, int lane, const DrainingMass& tanks) {
-  Lane(t.first_per_kg_m, lane) = tanks.first_per_kg_m;
-  Lane(t.first_per_kg2_m, lane) = tanks.first_per_kg2_m;
-  Lane(t.second_per_kg_m2, lane) = tanks.second_per_kg_m2;
-  Lane(t.second_per_kg2_m2, lane) = tanks.second_per_kg2_m2;
-  Lane(t.second_per_kg3_m2, lane) = tanks.second_per_kg3_m2;
-  Lane(t.first_kg_m, lane) = tanks.first_kg_m;
-  Lane(t.second_kg_m2, lane) = tanks.second_kg_m2;
-  t.any_mixes = false;
-  for (int i = 0; i < kWidth<T>; ++i) t.any_mixes |= Lane(t.second_kg_m2, i) != 0.0;
-}
-/// Their liquids of a mass: the centre of gravity, and the square of the radius of gyration about it, across
-/// the axis. The kilogram that leaves next: its place at the surfaces, and the same square.
+/// Liquids of boosters of a mass: the centre of gravity, and the square of the radius of gyration about it,
+/// across the axis. The kilogram that leaves next: its place at the surfaces, and the same square.
 template <class T>
 struct BoosterLiquids {
   T station_m, gyration2_m2, surface_m, surface_gyration2_m2;
 };
 template <class T>
-DISPERSA_INLINE BoosterLiquids<T> LiquidsOf(const BoosterTanks<T>& t, T kg) {
+DISPERSA_INLINE BoosterLiquids<T> LiquidsOf(const DrainingMassLanes<T>& t, T kg) {
   BoosterLiquids<T> o;
   o.station_m = Fma(kg, t.first_per_kg2_m, t.first_per_kg_m);
   T second_m2 = Fma(kg, Fma(kg, t.second_per_kg3_m2, t.second_per_kg2_m2), t.second_per_kg_m2);
@@ -243,10 +250,8 @@ DISPERSA_INLINE BoosterLiquids<T> LiquidsOf(const BoosterTanks<T>& t, T kg) {
     second_m2 = Fma(t.second_kg_m2, per_kg, second_m2);
   }
   o.gyration2_m2 = second_m2 - Square(o.station_m);
-  o.surface_m = Fma(T(2.0) * kg, t.first_per_kg2_m, t.first_per_kg_m);
-  o.surface_gyration2_m2 =
-      Fma(kg, Fma(T(3.0) * kg, t.second_per_kg3_m2, T(2.0) * t.second_per_kg2_m2), t.second_per_kg_m2) -
-      Square(o.surface_m);
+  o.surface_m = SurfaceOf(t, kg);
+  o.surface_gyration2_m2 = SecondPerKgOf(t, kg) - Square(o.surface_m);
   return o;
 }
 
@@ -256,7 +261,7 @@ struct BesideStage {
   MotorBurnLanes<T> burn;  ///< left_kg: what they still carry when it has ended
   T station_m, outer2_m2, inner_per_kg_m2, length2_m2, radius2_m2;
   bool drains;  ///< tanks in place of grains: of the vehicle, the same in all lanes
-  BoosterTanks<T> tanks;
+  DrainingMassLanes<T> tanks;
 };
 template <class T>
 DISPERSA_INLINE void SetLane(BesideStage<T>& b, int lane, const MotorBurn& burn,
