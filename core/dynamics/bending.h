@@ -27,10 +27,6 @@ struct ModeNow {
   T decay_1_s, damped_frequency_rad_s;  ///< of the free motion
   T inverse_mass_1_kg;
   T pivot_deflection, pivot_slope_1_m;
-  T unit_slope_1_m, gyro_slope_1_m[kRateGyros];
-  T shortening_1_m[kModes];
-  T straight_lift[2];                    ///< BendingTable::kStraightLift
-  T lift[kLiftCauses][kSectionEffects];  ///< BendingTable::kLiftAt
 };
 
 /// A column of one mode between two levels of propellant: `low` at the upper one, `rise` from there to the
@@ -38,6 +34,12 @@ struct ModeNow {
 template <class T>
 struct ModeRows {
   T low[BendingTable::kRowSize], rise[BendingTable::kRowSize];
+};
+
+/// A number of plane y and of plane z.
+template <class T>
+struct OfPlanes {
+  T y, z;
 };
 
 /// The bending of each lane's stack.
@@ -60,6 +62,18 @@ struct BendingTableLanes {
   DISPERSA_INLINE T ColumnAt(int plane, int mode, int column) const {
     const ModeRows<T>& of = rows[planes == 1 ? 0 : plane][mode];
     return Fma(within, of.rise[column], of.low[column]);
+  }
+  /// A column of both planes, looked up once where they are one.
+  DISPERSA_INLINE OfPlanes<T> ColumnsAt(int mode, int column) const {
+    const T y = ColumnAt(0, mode, column);
+    return {y, planes == 1 ? y : ColumnAt(1, mode, column)};
+  }
+  /// Slopes that sensors feel: of the inertial unit, and of each gyro.
+  DISPERSA_INLINE T UnitSlope(int plane, int mode) const {
+    return slope_factor * ColumnAt(plane, mode, BendingTable::kUnitSlope);
+  }
+  DISPERSA_INLINE T GyroSlope(int plane, int mode, int gyro) const {
+    return slope_factor * ColumnAt(plane, mode, BendingTable::kGyroSlope + gyro);
   }
 };
 /// The modes of another stack, or of one that has let go of a body (null: it is rigid).
@@ -128,7 +142,8 @@ DISPERSA_OUT_OF_LINE void ReadLevels(BendingTableLanes<T>& b, T propellant_kg) {
   }
 }
 
-/// Sets the values that depend on the lane's propellant.
+/// Sets the values that depend on the lane's propellant. Columns that a step needs once are looked up where
+/// they are needed.
 template <class T>
 DISPERSA_INLINE void ShapesAt(BendingTableLanes<T>& b, T propellant_kg) {
   if (Any(!((propellant_kg < b.from_kg) & (propellant_kg >= b.to_kg)))) ReadLevels(b, propellant_kg);
@@ -149,13 +164,6 @@ DISPERSA_INLINE void ShapesAt(BendingTableLanes<T>& b, T propellant_kg) {
       m.inverse_mass_1_kg = at(BendingTable::kInverseMass);
       m.pivot_deflection = at(BendingTable::kPivotDeflection);
       m.pivot_slope_1_m = at(BendingTable::kPivotSlope);
-      m.unit_slope_1_m = b.slope_factor * at(BendingTable::kUnitSlope);
-      for (int i = 0; i < kRateGyros; ++i)
-        m.gyro_slope_1_m[i] = b.slope_factor * at(BendingTable::kGyroSlope + i);
-      for (int i = 0; i < kModes; ++i) m.shortening_1_m[i] = at(BendingTable::kShortening + i);
-      for (int i = 0; i < 2; ++i) m.straight_lift[i] = at(BendingTable::kStraightLift + i);
-      for (int i = 0; i < kLiftCauses; ++i)
-        for (int k = 0; k < kSectionEffects; ++k) m.lift[i][k] = at(BendingTable::LiftColumn(i, k));
     }
   }
 }
@@ -196,8 +204,8 @@ template <class T>
 DISPERSA_INLINE Vector<T> UnitTurn(const BendingTableLanes<T>& b, const BendingState<T>& s) {
   Vector<T> turn = Zero<T>();
   for (int mode = 0; mode < b.modes; ++mode) {
-    turn.y = Fma(b.At(1, mode).unit_slope_1_m, s.q_m[1][mode], turn.y);
-    turn.z = Fma(-b.At(0, mode).unit_slope_1_m, s.q_m[0][mode], turn.z);
+    turn.y = Fma(b.UnitSlope(1, mode), s.q_m[1][mode], turn.y);
+    turn.z = Fma(-b.UnitSlope(0, mode), s.q_m[0][mode], turn.z);
   }
   return turn;
 }
@@ -206,9 +214,10 @@ template <class T>
 DISPERSA_INLINE Vector<T> TurnRate(const BendingTableLanes<T>& b, const BendingState<T>& s, int gyro) {
   Vector<T> rate = Zero<T>();
   for (int mode = 0; mode < b.modes; ++mode) {
-    const ModeNow<T>&y = b.At(0, mode), &z = b.At(1, mode);
-    rate.y = Fma(gyro < 0 ? z.unit_slope_1_m : z.gyro_slope_1_m[gyro], s.rate_m_s[1][mode], rate.y);
-    rate.z = Fma(gyro < 0 ? -y.unit_slope_1_m : -y.gyro_slope_1_m[gyro], s.rate_m_s[0][mode], rate.z);
+    const T y = gyro < 0 ? b.UnitSlope(0, mode) : b.GyroSlope(0, mode, gyro);
+    const T z = gyro < 0 ? b.UnitSlope(1, mode) : b.GyroSlope(1, mode, gyro);
+    rate.y = Fma(z, s.rate_m_s[1][mode], rate.y);
+    rate.z = Fma(-y, s.rate_m_s[0][mode], rate.z);
   }
   return rate;
 }
@@ -257,9 +266,21 @@ struct LiftNow {
 };
 /// `aft_m`: of the centre of pressure behind that of slender-body theory.
 template <class T>
-DISPERSA_INLINE LiftNow<T> LiftOf(const ModeNow<T>& mode, int effect, T aft_m) {
-  return {Fma(aft_m, mode.lift[kSlopeShift][effect], mode.lift[kSlopeSlender][effect]),
-          Fma(aft_m, mode.lift[kRateShift][effect], mode.lift[kRateSlender][effect])};
+DISPERSA_INLINE LiftNow<T> LiftOf(const BendingTableLanes<T>& b, int plane, int mode, int effect, T aft_m) {
+  const auto by = [&](LiftCause cause) __attribute__((always_inline)) {
+    return b.ColumnAt(plane, mode, BendingTable::LiftColumn(cause, effect));
+  };
+  return {Fma(aft_m, by(kSlopeShift), by(kSlopeSlender)), Fma(aft_m, by(kRateShift), by(kRateSlender))};
+}
+/// The effects of a mode's motion in both planes: `slope_n` and `rate_n` are the normal forces per radian
+/// times q and q' / V.
+template <class T>
+DISPERSA_INLINE void AddLift(const BendingTableLanes<T>& b, int mode, int effect, T aft_m,
+                             const OfPlanes<T>& slope_n, const OfPlanes<T>& rate_n, T& y, T& z) {
+  const LiftNow<T> of_y = LiftOf(b, 0, mode, effect, aft_m);
+  const LiftNow<T> of_z = b.planes == 1 ? of_y : LiftOf(b, 1, mode, effect, aft_m);
+  y = Fma(slope_n.y, of_y.by_slope, Fma(rate_n.y, of_y.by_rate, y));
+  z = Fma(slope_n.z, of_z.by_slope, Fma(rate_n.z, of_z.by_rate, z));
 }
 
 /// The additional effects of the flow on a body that bends. Added to the body's force, to its moment about C,
@@ -273,51 +294,51 @@ DISPERSA_INLINE void BendFlow(const BendingTableLanes<T>& b, const BendingState<
   const T straight_n[kPlanes] = {-(air.normal_n * air.across_y), -(air.normal_n * air.across_z)};
   const T by_rate_n = -(air.slope_n / Max(air.airspeed_m_s, T(1e-30)));
   T force_n[kPlanes] = {T(0.0), T(0.0)}, first_n_m[kPlanes] = {T(0.0), T(0.0)};
-  for (int plane = 0; plane < kPlanes; ++plane)
-    for (int mode = 0; mode < b.modes; ++mode) {
-      const ModeNow<T>& m = b.At(plane, mode);
-      const T slope_n = -(air.slope_n * s.q_m[plane][mode]), rate_n = by_rate_n * s.rate_m_s[plane][mode];
-      const auto add = [&](int effect, T& sum) {
-        const LiftNow<T> lift = LiftOf(m, effect, aft_m);
-        sum = Fma(slope_n, lift.by_slope, Fma(rate_n, lift.by_rate, sum));
-      };
-      add(kForceEffect, force_n[plane]);
-      add(kFirstEffect, first_n_m[plane]);
-      T* const drive = o.drive_m_s2[plane];
-      for (int other = 0; other < b.modes; ++other) add(kWorkEffects + other, drive[other]);
-      drive[mode] = Fma(straight_n[plane], Fma(aft_m, m.straight_lift[1], m.straight_lift[0]), drive[mode]);
-    }
+  T *const of_y = o.drive_m_s2[0], *const of_z = o.drive_m_s2[1];
+  for (int mode = 0; mode < b.modes; ++mode) {
+    const OfPlanes<T> slope_n{-(air.slope_n * s.q_m[0][mode]), -(air.slope_n * s.q_m[1][mode])};
+    const OfPlanes<T> rate_n{by_rate_n * s.rate_m_s[0][mode], by_rate_n * s.rate_m_s[1][mode]};
+    AddLift(b, mode, kForceEffect, aft_m, slope_n, rate_n, force_n[0], force_n[1]);
+    AddLift(b, mode, kFirstEffect, aft_m, slope_n, rate_n, first_n_m[0], first_n_m[1]);
+    for (int other = 0; other < b.modes; ++other)
+      AddLift(b, mode, kWorkEffects + other, aft_m, slope_n, rate_n, of_y[other], of_z[other]);
+    const OfPlanes<T> slender = b.ColumnsAt(mode, BendingTable::kStraightLift);
+    const OfPlanes<T> shift = b.ColumnsAt(mode, BendingTable::kStraightLift + 1);
+    of_y[mode] = Fma(straight_n[0], Fma(aft_m, shift.y, slender.y), of_y[mode]);
+    of_z[mode] = Fma(straight_n[1], Fma(aft_m, shift.z, slender.z), of_z[mode]);
+  }
   flow.force_n.y = flow.force_n.y + force_n[0];
   flow.force_n.z = flow.force_n.z + force_n[1];
   flow.moment_n_m.y = flow.moment_n_m.y + Fma(-cg_station_m, force_n[1], first_n_m[1]);
   flow.moment_n_m.z = flow.moment_n_m.z - Fma(-cg_station_m, force_n[0], first_n_m[0]);
 }
 
-/// Adds bending's part to the sections' moments: `drive` is Q / m.
+/// Adds bending's part to the sections' moments: `drive` is Q / m. A function of its own: rigid vehicles do
+/// not need it.
 template <class T>
-DISPERSA_INLINE SectionMoments<T> MomentsByBending(const BendingTableLanes<T>& b, const BendingState<T>& s,
-                                                   const ModalForce<T>& drive, const LoadTableLanes<T>& body,
-                                                   const NormalForce<T>& air) {
+DISPERSA_OUT_OF_LINE SectionMoments<T> MomentsByBending(const BendingTableLanes<T>& b,
+                                                        const BendingState<T>& s, const ModalForce<T>& drive,
+                                                        const LoadTableLanes<T>& body,
+                                                        const NormalForce<T>& air) {
   SectionMoments<T> o;
   for (int i = 0; i < kLoadStations; ++i) o.y_n_m[i] = o.z_n_m[i] = T(0.0);
   const T aft_m = air.xcp_station_m - body.slender_station_m;
   const T by_rate_n = air.slope_n / Max(air.airspeed_m_s, T(1e-30));
-  for (int plane = 0; plane < kPlanes; ++plane) {
-    T* const moment_n_m = plane == 0 ? o.y_n_m : o.z_n_m;
-    for (int mode = 0; mode < b.modes; ++mode) {
+  for (int mode = 0; mode < b.modes; ++mode) {
+    const auto acceleration = [&](int plane) __attribute__((always_inline)) {
       const ModeNow<T>& m = b.At(plane, mode);
-      const T acceleration = drive.drive_m_s2[plane][mode] - Fma(m.damping_1_s, s.rate_m_s[plane][mode],
-                                                                 m.stiffness_1_s2 * s.q_m[plane][mode]);
-      const T slope_n = air.slope_n * s.q_m[plane][mode], rate_n = by_rate_n * s.rate_m_s[plane][mode];
-      for (int i = 0; i < kLoadStations; ++i) {
-        const auto by = [&](LiftCause cause) __attribute__((always_inline)) {
-          return b.ColumnAt(plane, mode, BendingTable::LiftColumn(cause, kSectionEffects + i));
-        };
-        const LiftNow<T> lift = {Fma(aft_m, by(kSlopeShift), by(kSlopeSlender)),
-                                 Fma(aft_m, by(kRateShift), by(kRateSlender))};
-        moment_n_m[i] = Fma(acceleration, b.ColumnAt(plane, mode, BendingTable::kMomentAt + i),
-                            Fma(slope_n, lift.by_slope, Fma(rate_n, lift.by_rate, moment_n_m[i])));
-      }
+      return drive.drive_m_s2[plane][mode] -
+             Fma(m.damping_1_s, s.rate_m_s[plane][mode], m.stiffness_1_s2 * s.q_m[plane][mode]);
+    };
+    const OfPlanes<T> moved{acceleration(0), acceleration(1)};
+    const OfPlanes<T> slope_n{air.slope_n * s.q_m[0][mode], air.slope_n * s.q_m[1][mode]};
+    const OfPlanes<T> rate_n{by_rate_n * s.rate_m_s[0][mode], by_rate_n * s.rate_m_s[1][mode]};
+    for (int i = 0; i < kLoadStations; ++i) {
+      T &y_n_m = o.y_n_m[i], &z_n_m = o.z_n_m[i];
+      AddLift(b, mode, kSectionEffects + i, aft_m, slope_n, rate_n, y_n_m, z_n_m);
+      const OfPlanes<T> inertia = b.ColumnsAt(mode, BendingTable::kMomentAt + i);
+      y_n_m = Fma(moved.y, inertia.y, y_n_m);
+      z_n_m = Fma(moved.z, inertia.z, z_n_m);
     }
   }
   return o;
@@ -327,14 +348,17 @@ DISPERSA_INLINE SectionMoments<T> MomentsByBending(const BendingTableLanes<T>& b
 template <class T>
 DISPERSA_INLINE void FinishDrive(const BendingTableLanes<T>& b, const BendingState<T>& s, T axial_n,
                                  ModalForce<T>& o) {
-  for (int plane = 0; plane < kPlanes; ++plane)
-    for (int mode = 0; mode < b.modes; ++mode) {
-      const ModeNow<T>& m = b.At(plane, mode);
-      T shortened(0.0);
-      for (int other = 0; other < b.modes; ++other)
-        shortened = Fma(m.shortening_1_m[other], s.q_m[plane][other], shortened);
-      o.drive_m_s2[plane][mode] = m.inverse_mass_1_kg * Fma(axial_n, shortened, o.drive_m_s2[plane][mode]);
+  for (int mode = 0; mode < b.modes; ++mode) {
+    T shortened_y(0.0), shortened_z(0.0);
+    for (int other = 0; other < b.modes; ++other) {
+      const OfPlanes<T> with = b.ColumnsAt(mode, BendingTable::kShortening + other);
+      shortened_y = Fma(with.y, s.q_m[0][other], shortened_y);
+      shortened_z = Fma(with.z, s.q_m[1][other], shortened_z);
     }
+    T &of_y = o.drive_m_s2[0][mode], &of_z = o.drive_m_s2[1][mode];
+    of_y = b.At(0, mode).inverse_mass_1_kg * Fma(axial_n, shortened_y, of_y);
+    of_z = b.At(1, mode).inverse_mass_1_kg * Fma(axial_n, shortened_z, of_z);
+  }
 }
 
 /// A time over which every mode swings freely, exactly.

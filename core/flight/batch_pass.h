@@ -178,9 +178,8 @@ Vector<T> Batch<T>::GyroRates(Vector<T> unit_rad_s) {
     const GyroModel& gyro = model_.sensors().gyros.data()[g];
     Vector<T> rate = step_.motion().w;
     if (step_.bending().modes > 0) rate = rate + TurnRate(step_.bending(), step_.bending_state(), g);
-    M sampled = NoLane<T>();
-    for (int lane = 0; lane < kLanes; ++lane)
-      SetLane(sampled, lane, static_cast<long>(Lane(tick_, lane)) % gyro.sample_ticks == 0);
+    const T period(static_cast<double>(gyro.sample_ticks)), last = period * Nearest(tick_ / period);
+    const M sampled = (last >= tick_) & (last <= tick_);
     StepGyro(gyro, burning, burning & gyros_fresh_, sampled, rate, gyros_[g]);
     blend = Along(blend, gyro_weight_[g], gyros_[g].output_rad_s);
   }

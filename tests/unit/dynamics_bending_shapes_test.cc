@@ -53,19 +53,21 @@ void ExpectColumns(const lanes::BendingTableLanes<double>& bending, int plane, i
   EXPECT_NEAR(now.inverse_mass_1_kg, column(BendingTable::kInverseMass), kRounding);
   EXPECT_NEAR(now.pivot_deflection, column(BendingTable::kPivotDeflection), kRounding);
   EXPECT_NEAR(now.pivot_slope_1_m, column(BendingTable::kPivotSlope), kRounding);
-  EXPECT_NEAR(now.unit_slope_1_m, column(BendingTable::kUnitSlope), kRounding);
+  EXPECT_NEAR(bending.UnitSlope(plane, mode), column(BendingTable::kUnitSlope), kRounding);
   for (int i = 0; i < kRateGyros; ++i)
-    EXPECT_NEAR(now.gyro_slope_1_m[i], column(BendingTable::kGyroSlope + i), kRounding) << i;
-  for (int i = 0; i < kModes; ++i)
-    EXPECT_NEAR(now.shortening_1_m[i], column(BendingTable::kShortening + i), kRounding) << i;
-  for (int i = 0; i < 2; ++i)
-    EXPECT_NEAR(now.straight_lift[i], column(BendingTable::kStraightLift + i), kRounding) << i;
-  for (int cause = 0; cause < kLiftCauses; ++cause)
-    for (int effect = 0; effect < kSectionEffects; ++effect)
-      EXPECT_NEAR(now.lift[cause][effect], column(BendingTable::LiftColumn(cause, effect)), kRounding)
-          << cause << ", " << effect;
-  for (int of_sections = BendingTable::kSectionsAt; of_sections < BendingTable::kUpperTurn; ++of_sections)
-    EXPECT_NEAR(bending.ColumnAt(plane, mode, of_sections), column(of_sections), kRounding) << of_sections;
+    EXPECT_NEAR(bending.GyroSlope(plane, mode, i), column(BendingTable::kGyroSlope + i), kRounding) << i;
+  for (int i = BendingTable::kShortening; i < BendingTable::kUpperTurn; ++i) {
+    EXPECT_NEAR(bending.ColumnAt(plane, mode, i), column(i), kRounding) << i;
+    const lanes::OfPlanes<double> both = bending.ColumnsAt(mode, i);
+    EXPECT_EQ(plane == 0 ? both.y : both.z, bending.ColumnAt(plane, mode, i)) << i;
+  }
+  constexpr double kAft_m = 0.4;
+  for (int effect = 0; effect < kLiftEffects; ++effect) {
+    const auto by = [&](int cause) { return column(BendingTable::LiftColumn(cause, effect)); };
+    const lanes::LiftNow<double> lift = lanes::LiftOf(bending, plane, mode, effect, kAft_m);
+    EXPECT_NEAR(lift.by_slope, by(kSlopeSlender) + kAft_m * by(kSlopeShift), 2.0 * kRounding) << effect;
+    EXPECT_NEAR(lift.by_rate, by(kRateSlender) + kAft_m * by(kRateShift), 2.0 * kRounding) << effect;
+  }
 }
 
 TEST(BendingShapes, AreLinearBetweenLevelsAndHeldBeyond) {
@@ -196,6 +198,11 @@ TEST(BendingShapes, OfALaneAreThoseOfItsStackAlone) {
         const double* one = &alone.At(plane, mode).stiffness_1_s2;
         for (std::size_t i = 0; i < sizeof(lanes::ModeNow<double>) / sizeof(double); ++i)
           EXPECT_EQ(lanes::Lane(packed[i], lane), one[i]) << "lane " << lane << ", number " << i;
+        for (int column = 0; column < BendingTable::kRowSize; ++column)
+          EXPECT_EQ(lanes::Lane(together.ColumnAt(plane, mode, column), lane),
+                    alone.ColumnAt(plane, mode, column))
+              << "lane " << lane << ", column " << column;
+        EXPECT_EQ(lanes::Lane(together.UnitSlope(plane, mode), lane), alone.UnitSlope(plane, mode));
       }
   }
 }
