@@ -4,6 +4,7 @@
 
 #include "core/control/autopilot.h"
 #include "core/control/axis_step.h"
+#include "core/control/law_schedule.h"
 #include "core/math/lane_vector.h"
 #include "core/math/row_memory.h"
 
@@ -14,7 +15,8 @@ inline namespace DISPERSA_ISA {
 template <class T>
 struct GimbalLoop {
   StageLawLanes<T> axes[kAxes];
-  T gain;  ///< of every command
+  LawPieceLanes<T> pieces[kAxes];  ///< of axes with a schedule
+  T gain;                          ///< of every command
   T pn_error_factor, pn_rate_factor;
   int stage[kWidth<T>];
   T limit_rad;
@@ -29,6 +31,7 @@ DISPERSA_INLINE void SetLane(GimbalLoop<T>& loop, int lane, const AutopilotModel
   for (int axis = 0; axis < kAxes; ++axis)
     SetLane(loop.axes[axis], lane, model.laws.data()[axis].stages.data()[stage], pn_error_factor,
             pn_rate_factor);
+  for (LawPieceLanes<T>& piece : loop.pieces) piece.range.Forget(lane);
   Lane(loop.gain, lane) = gain;
   Lane(loop.pn_error_factor, lane) = pn_error_factor;
   Lane(loop.pn_rate_factor, lane) = pn_rate_factor;
@@ -47,16 +50,29 @@ struct GimbalOutput {
   AxisOutput<T> axes[kAxes];
 };
 
+/// Finds the pieces of a law that the lanes are in which `found` does not name.
+template <class T>
+DISPERSA_OUT_OF_LINE void FindPieces(const AxisLaw& law, const int* stage, T since_ignition_s,
+                                     MaskOf<T> found, LawPieceLanes<T>& pieces) {
+  const unsigned known = Bits(found);
+  for (int lane = 0; lane < kWidth<T>; ++lane)
+    if (!(known >> lane & 1u)) SetLane(pieces, lane, law, stage[lane], Lane(since_ignition_s, lane));
+}
+
 /// Brings the laws that change within a stage to the lanes' times.
 template <class T>
-DISPERSA_INLINE void FollowSchedule(const AutopilotModel& model, T since_ignition_s, GimbalLoop<T>& loop) {
-  for (int lane = 0; lane < kWidth<T>; ++lane) {
-    for (int axis = 0; axis < kAxes; ++axis) {
-      const AxisLaw& law = model.laws.data()[axis];
-      if (law.pieces.data()[loop.stage[lane]].empty()) continue;
-      SetLane(loop.axes[axis], lane, LawAtTime(law, loop.stage[lane], Lane(since_ignition_s, lane)),
-              Lane(loop.pn_error_factor, lane), Lane(loop.pn_rate_factor, lane));
-    }
+DISPERSA_OUT_OF_LINE void FollowSchedule(const AutopilotModel& model, T since_ignition_s,
+                                         GimbalLoop<T>& loop) {
+  for (int axis = 0; axis < kAxes; ++axis) {
+    const AxisLaw& law = model.laws.data()[axis];
+    if (law.config.schedule.empty()) continue;
+    LawPieceLanes<T>& pieces = loop.pieces[axis];
+    const auto found = pieces.range.Contains(since_ignition_s);
+    if (!All(found)) FindPieces(law, loop.stage, since_ignition_s, found, pieces);
+    StageLawLanes<T>& now = loop.axes[axis];
+    SetLaw(pieces, static_cast<int>(law.config.filters.size()), since_ignition_s, now);
+    now.pn_error = now.pn_error * loop.pn_error_factor;
+    now.pn_rate = now.pn_rate * loop.pn_rate_factor;
   }
 }
 
@@ -93,7 +109,7 @@ DISPERSA_INLINE void Effectiveness(const GimbalLoop<T>& loop, T since_ignition_s
 /// learnt values only pitch's are reported.
 template <bool kAll, class T>
 DISPERSA_INLINE void StepGimbals(const AutopilotModel& model, GimbalLoop<T>& loop, MaskOf<T> acting,
-                                 T since_ignition_s, Vector<T> angle_rad, Vector<T> rate_rad_s,
+                                 T since_ignition_s, const Vector<T>& angle_rad, const Vector<T>& rate_rad_s,
                                  const T* program_rad_s2, const T* foreign_rad_s2, AxisStateLanes<T>* memory,
                                  GimbalOutput<T>& out) {
   if (model.is_scheduled) FollowSchedule(model, since_ignition_s, loop);

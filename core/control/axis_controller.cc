@@ -3,6 +3,7 @@
 #include <cstring>
 
 #include "core/control/axis_step.h"
+#include "core/control/law_schedule.h"
 #include "core/control/lyapunov.h"
 
 namespace dispersa {

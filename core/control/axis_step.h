@@ -7,24 +7,6 @@
 namespace dispersa::lanes {
 inline namespace DISPERSA_ISA {
 
-/// The law in a stage at a time since its ignition: the same source for a flight's ticks and its margins.
-DISPERSA_INLINE StageLaw LawAtTime(const AxisLaw& law, int stage, double since_ignition_s) {
-  const std::vector<LawPiece>& pieces = law.pieces.data()[stage];
-  const LawPiece* piece = pieces.data();
-  const LawPiece* const end = piece + pieces.size();
-  if (piece == end) return law.stages.data()[stage];
-  while (piece + 1 != end && since_ignition_s >= piece[1].from_s) ++piece;
-  constexpr unsigned kNumbers = sizeof(StageLaw) / sizeof(double);
-  double at[kNumbers], rate[kNumbers];
-  __builtin_memcpy(at, &piece->at, sizeof at);
-  __builtin_memcpy(rate, &piece->rate, sizeof rate);
-  const double since = since_ignition_s - piece->from_s;
-  for (unsigned i = 0; i < kNumbers; ++i) at[i] = Fma(since, rate[i], at[i]);
-  StageLaw now;
-  __builtin_memcpy(static_cast<void*>(&now), at, sizeof now);
-  return now;
-}
-
 template <class T>
 DISPERSA_INLINE AxisTelemetry TelemetryOf(const AxisConfig& config, const AxisOutput<T>& o,
                                           const AxisStateLanes<T>& m, int lane) {

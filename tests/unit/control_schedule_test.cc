@@ -121,7 +121,8 @@ TEST(StepGimbals, OfEqualEntriesHasTheBitsOfNone) {
   }
 }
 
-// Lanes at other times and in other stages, one of them scheduled in one axis alone.
+// Lanes at other times and in other stages, one of them scheduled in one axis alone. A lane goes to the other
+// stage and back.
 template <class T>
 void ExpectLanesAsAlone() {
   const AutopilotModel model = Model(Scheduled(), SampleAxis(ControlLaw::kPd));
@@ -129,13 +130,17 @@ void ExpectLanesAsAlone() {
   lanes::GimbalLoop<T> loop;
   lanes::AxisStateLanes<T> memory[kAxes];
   AutopilotState alone[kLanes];
-  for (int lane = 0; lane < kLanes; ++lane) {
-    const int stage = lane == 2 ? 1 : 0;
+  int stage_of[kLanes];
+  const auto enter = [&](int lane, int stage) {
+    stage_of[lane] = stage;
     lanes::SetLane(loop, lane, model, stage, 1.0, 1.0, 1.0);
     StartStage(model, stage, alone[lane]);
     for (int axis = 0; axis < kAxes; ++axis) lanes::SetLane(memory[axis], lane, alone[lane].axes[axis]);
-  }
+  };
+  for (int lane = 0; lane < kLanes; ++lane) enter(lane, lane == 2 ? 1 : 0);
   for (int tick = 0; tick < 1500; ++tick) {
+    if (tick == 800) enter(1, 1);
+    if (tick == 1000) enter(1, 0);
     T since;
     lanes::Vector<T> angle, rate;
     for (int lane = 0; lane < kLanes; ++lane) {
@@ -148,8 +153,8 @@ void ExpectLanesAsAlone() {
     lanes::StepGimbals<true>(model, loop, since > T(-1.0), since, angle, rate, static_cast<const T*>(nullptr),
                              static_cast<const T*>(nullptr), memory, out);
     for (int lane = 0; lane < kLanes; ++lane) {
-      const GimbalCommand c = StepGimbals(model, lane == 2 ? 1 : 0, lanes::Lane(since, lane),
-                                          Error(tick, lane), Vector2::Ones(), 1.0, alone[lane]);
+      const GimbalCommand c = StepGimbals(model, stage_of[lane], lanes::Lane(since, lane), Error(tick, lane),
+                                          Vector2::Ones(), 1.0, alone[lane]);
       ASSERT_EQ(lanes::Lane(out.deflection_rad[kPitch], lane), c.pitch_rad) << tick << " lane " << lane;
       ASSERT_EQ(lanes::Lane(out.deflection_rad[kYaw], lane), c.yaw_rad) << tick << " lane " << lane;
     }

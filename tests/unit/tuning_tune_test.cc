@@ -14,7 +14,8 @@
 #include "core/margins/flight_margins.h"
 #include "core/tuning/regulator.h"
 #include "core/tuning/stage_design.h"
-#include "tests/unit/sample_vehicle.h"
+#include "core/tuning/tuned_plant.h"
+#include "tests/unit/flexible_sample.h"
 
 namespace dispersa::tuning_tune_test {
 namespace {
@@ -126,6 +127,65 @@ TEST(ApplyDesign, GivesAScheduledStageADesignAtEachOfPitchsTimes) {
   EXPECT_EQ(autopilot.pitch.schedule[1].gains.kp_1_s2, 3.0) << "another stage's stays";
   EXPECT_EQ(autopilot.yaw.schedule.size(), 1u);
   EXPECT_EQ(Problems(autopilot, 2).size(), 0u);
+}
+
+// SampleCampaign that bends, with boosters at the end of the first stage until 15.5 s after lift-off.
+Campaign BoostedCampaign() {
+  Campaign campaign = SampleCampaign();
+  Vehicle& vehicle = campaign.vehicle;
+  vehicle.profile = {{ProfileShape::kTangentOgive, 2.0, 1.0}, {ProfileShape::kCylinder, 18.0, 1.0}};
+  vehicle.structure_beam = FlexibleSample().structure_beam;
+  vehicle.structure_beam->flown_modes = vehicle.structure_beam->modes = 1;
+  vehicle.structure_beam->elements = 10;
+  vehicle.structure_beam->propellant_levels = 3;
+  vehicle.stages[0].motor.burning_time_s = 25.0;  // so that the test is short
+  vehicle.stages[1].motor.burning_time_s = 5.0;
+  Boosters& b = vehicle.boosters;
+  b = {4, 100.0, 300.0, 0.9, 0.5, 14.5, 18.5, 18.6, {}, {15.0, 18.0, 0.48, 0.2}, 0.5};
+  b.motor.thrust_n = 40e3;
+  b.motor.burning_time_s = 15.0;
+  b.attachment_station_m = 18.0;
+  vehicle.stages[0].liftoff_mass_kg += b.LiftOffMass();
+  EXPECT_TRUE(Problems(vehicle).empty());
+  campaign.autopilot = AllPd();
+  campaign.autopilot.pitch.schedule = {{1, 20.0, {1.0, 1.0}, 0.0, {}}};
+  return campaign;
+}
+
+// Designs suit the stack that flies: margins hold with the boosters and without them, and filters follow the
+// first mode of each.
+TEST(Tune, KnowsWhenBoostersHaveLeftAVehicleThatBends) {
+  const Campaign campaign = BoostedCampaign();
+  const CampaignFlights flights(campaign);
+  const FlightModel& model = flights.model();
+  const LauncherStack& stack = model.nominal_plant().stacks[0];
+  const auto first_mode = [&](unsigned gone, double at_s) {
+    return stack.BendingWithout(gone)->At(0, 0, BendingTable::kFrequency, stack.burn.Propellant(at_s));
+  };
+  const TunedPlant plant{campaign, model};
+  EXPECT_EQ(plant.FirstMode(0, 0.0), first_mode(0, 0.0));
+  EXPECT_EQ(plant.FirstMode(0, 20.0), first_mode(kBoostersGone, 20.0));
+  EXPECT_NE(first_mode(kBoostersGone, 20.0), first_mode(0, 20.0));
+  EXPECT_GT(first_mode(kBoostersGone, 20.0), 1.05 * first_mode(0, 0.0));
+
+  TuningOptions options = Small();
+  options.evaluations = 4 * kTuningPopulation;
+  const TuningResult result = Tune(campaign, campaign.autopilot, options);
+  ASSERT_TRUE(result.feasible);
+  Campaign tuned = campaign;
+  tuned.autopilot = result.autopilot;
+  int with = 0, without = 0;
+  for (const ComputedMargins& m : ComputeMargins(CampaignFlights(tuned).model())) {
+    EXPECT_TRUE(PassesGates(m.frozen)) << m.time_s;
+    ++(m.time_s < 15.0 ? with : without);
+  }
+  EXPECT_GT(with, 1);
+  EXPECT_GT(without, 1);
+  const AxisConfig& pitch = result.autopilot.pitch;
+  ASSERT_EQ(pitch.schedule.size(), 1u);
+  // Of numbers to three digits.
+  EXPECT_NEAR(pitch.schedule[0].filters[0].poles_rad_s / pitch.filters[0].poles_rad_s,
+              first_mode(kBoostersGone, 20.0) / first_mode(0, 0.0), 0.02);
 }
 
 TEST(Tune, HoldsDispersedPlantsWithAScheduledStage) {
