@@ -165,16 +165,9 @@ void CheckGuidance(Fields& fields, const GuidanceConfig& guidance, const Vehicle
         "last_burn",
         "no coast precedes the last burn of " + name + ", so nothing can be planned before its ignition",
         "steered");
-  else if (!is_cut_off && vehicle.boosters.count > 0 && vehicle.stages.size() < 3)
-    fields.Refuse(
-        "mode",
-        "guidance would steer the stage of " + name + " that has boosters, whose thrust it does not know",
-        "open_loop, or a vehicle of three stages or more");
-  else if (guidance.burns > 2 && static_cast<std::size_t>(guidance.burns) >= vehicle.stages.size())
-    fields.Refuse("burns",
-                  name + " has " + std::to_string(vehicle.stages.size()) +
-                      " burns, and the first of them begins in the air",
-                  "up to " + std::to_string(std::max<std::size_t>(vehicle.stages.size() - 1, 2)));
+  else if (static_cast<std::size_t>(guidance.burns) > vehicle.stages.size())
+    fields.Refuse("burns", name + " has " + std::to_string(vehicle.stages.size()) + " burns",
+                  "up to " + std::to_string(vehicle.stages.size()));
 }
 
 // A value of the campaign that may be a file of its own.
@@ -259,11 +252,6 @@ class CampaignDescription {
 
   void WarnOfGuidance() {
     if (!flies() || !campaign_.guidance.closed_loop) return;
-    if (campaign_.vehicle.stages.size() == 2 && SteersBelow(campaign_.vehicle))
-      WarnOf({root_, ""}, "guidance.mode",
-             "guidance steers the stage of '" + campaign_.vehicle.name +
-                 "' that lifts off, and its prediction has no air: incidence is whatever the orbit asks for",
-             "open_loop, or a vehicle whose last two burns are above the air");
     const GuidedAuthority authority = AuthorityOf(campaign_.vehicle, campaign_.autopilot, campaign_.guidance);
     // The place along the orbit is a fourth condition in its plane, beside energy and path.
     const TrajectoryProblem& problem = campaign_.reference.problem;

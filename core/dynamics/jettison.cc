@@ -4,6 +4,7 @@
 
 #include "core/math/functions.h"
 #include "core/vehicle/burning_stack.h"
+#include "core/vehicle/heat_flux.h"
 
 namespace dispersa {
 
@@ -72,10 +73,6 @@ MassProperties MassesOn(const LauncherPlant& plant, int stack, unsigned jettison
           m.transverse_kg_m2, m.axial_per_kg_m2, m.transverse_per_kg_m2};
 }
 
-double HeatFlux(const JettisonSight& sight) {
-  return 0.5 * sight.density_kg_m3 * sight.ground_speed_m_s * Square(sight.ground_speed_m_s);
-}
-
 unsigned DueJettisons(const LauncherPlant& plant, int stack, unsigned jettisoned,
                       const JettisonSight& sight) {
   const auto is_due = [&](const Jettison& jettison) {
@@ -85,7 +82,8 @@ unsigned DueJettisons(const LauncherPlant& plant, int stack, unsigned jettisoned
       case JettisonTrigger::kAtAltitude:
         return sight.altitude_m >= jettison.threshold;
       case JettisonTrigger::kAtHeatFlux:
-        return sight.altitude_m >= kFreeMolecularAltitude_m && HeatFlux(sight) <= jettison.threshold;
+        return sight.altitude_m >= kFreeMolecularAltitude_m &&
+               HeatFlux(sight.density_kg_m3, sight.ground_speed_m_s) <= jettison.threshold;
     }
     return false;
   };

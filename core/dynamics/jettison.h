@@ -21,14 +21,6 @@ struct JettisonSight {
   double ground_speed_m_s = 0.0;  ///< over the rotating Earth
 };
 
-/// Below this altitude a heat flux is no free-molecular one: it is not looked at.
-inline constexpr double kFreeMolecularAltitude_m = 80e3;
-
-/// Free-molecular heating of a surface normal to the flow, rho v³ / 2, W/m², with an accommodation
-/// coefficient of 1. User's manuals limit it after the fairing's jettison (1135 W/m² for Ariane 5, Vega and
-/// others).
-double HeatFlux(const JettisonSight& sight);
-
 /// The jettisons that are due, as bits. Earlier ones, and those that the stack no longer carries, are left
 /// out.
 unsigned DueJettisons(const LauncherPlant& plant, int stack, unsigned jettisoned, const JettisonSight& sight);

@@ -403,46 +403,52 @@ GuidanceMission BuildMission(const FlightDefinition& definition, const LauncherP
   mission.config = definition.guidance;
   mission.limits = GuidanceLimitsOf(definition);
   mission.earth = plant.environment.earth;
+  mission.air = plant.environment.air;
   mission.R_IL = frame.R_IL;
   const InjectionTarget& target = definition.target;
   mission.target = {target.altitude_m, target.velocity_m_s, target.flight_path_angle_rad,
                     target.inclination_rad};
   mission.orbit = target.orbit;
   mission.node_rad = target.node_rad;
+  const std::size_t last = plant.stacks.size() - 1;
   const auto stage = [&](std::size_t i) {
     const LauncherStack& stack = plant.stacks[i];
-    // One mass for all of the burn: what leaves during it is gone, or not, by its middle.
-    const unsigned gone = GoneAt(definition.jettison_s, 0.5 * (times[i].ignition_s + times[i].burnout_s));
-    const double fixed_kg = MassOf(plant, static_cast<int>(i), gone).fixed_mass_kg;
-    bool loses_mass = false;
-    for (std::size_t k = 0; k < definition.jettison_s.size(); ++k)
-      loses_mass |= plant.jettisoned_masses[k].stage >= static_cast<int>(i) &&
-                    definition.jettison_s[k] > times[i].ignition_s &&
-                    definition.jettison_s[k] <= times[i].burnout_s;
-    GuidedStage guided{stack.burn, fixed_kg + stack.burn.propellant_mass_kg, loses_mass};
+    const double from_s = times[i].ignition_s, to_s = times[i].burnout_s;
+    GuidedStage guided;
+    guided.burn = stack.burn;
     const Stage& of_vehicle = definition.vehicle.stages[i];
-    if (!of_vehicle.is_liquid() || !EndsInFlight(of_vehicle.motor)) return guided;
-    guided.levels.emplace(of_vehicle.motor.throttle);
-    guided.ends_by_time = of_vehicle.motor.cut_off == CutOff::kByGuidance;
-    guided.usable_kg = stack.burn.propellant_mass_kg - of_vehicle.motor.residual_mass_kg;
-    // Bodies that leave at an altitude are there until the flight computer lets go of them.
-    unsigned before = GoneAt(definition.jettison_s, times[i].ignition_s);
+    const bool ends_in_flight = EndsInFlight(of_vehicle.motor);
+    const bool runs_dry = of_vehicle.motor.cut_off == CutOff::kAtDepletion;
+    if (of_vehicle.is_liquid() && (ends_in_flight || runs_dry)) {
+      guided.levels.emplace(of_vehicle.motor.throttle);
+      guided.runs_dry = runs_dry;
+      guided.ends_by_time = of_vehicle.motor.cut_off == CutOff::kByGuidance;
+      guided.usable_kg = stack.burn.propellant_mass_kg - of_vehicle.motor.residual_mass_kg;
+    }
+    // Guidance begins after the boosters. Bodies with a criterion are there until the flight computer lets go
+    // of them.
+    unsigned before = GoneAt(definition.jettison_s, from_s);
+    if (i == 0 && plant.boosters) before |= kBoostersGone;
     for (std::size_t k = 0; k < definition.jettison_s.size(); ++k) {
       if (plant.jettisoned_masses[k].stage < static_cast<int>(i)) continue;
       const Jettison& body = plant.jettisons[k];
-      const double mass_kg = plant.jettisoned_masses[k].mass_kg;
-      if (body.trigger == JettisonTrigger::kAtAltitude) {
+      const double mass_kg = plant.jettisoned_masses[k].mass_kg, leaves_s = definition.jettison_s[k];
+      const bool is_in_burn = leaves_s > from_s && leaves_s <= to_s;
+      guided.loses_mass |= is_in_burn;
+      if (body.trigger != JettisonTrigger::kAtTime) {
         before &= ~(1u << k);
-        guided.drops.push_back({HUGE_VAL, mass_kg, body.threshold, 1u << k});
-      } else if (definition.jettison_s[k] > times[i].ignition_s && definition.jettison_s[k] < HUGE_VAL) {
-        guided.drops.push_back({definition.jettison_s[k], mass_kg});
+        guided.drops.push_back({HUGE_VAL, mass_kg, body.trigger, body.threshold, 1u << k});
+      } else if (is_in_burn || (guided.is_engine() && leaves_s > from_s && leaves_s < HUGE_VAL)) {
+        guided.drops.push_back({leaves_s, mass_kg});
+      } else {
+        continue;
       }
+      if (!guided.is_cut_off() && leaves_s <= 0.5 * (from_s + to_s)) guided.early_kg += mass_kg;
     }
     guided.ignition_mass_kg =
         MassOf(plant, static_cast<int>(i), before).fixed_mass_kg + stack.burn.propellant_mass_kg;
     return guided;
   };
-  const std::size_t last = plant.stacks.size() - 1;
   const auto start_of = [&](std::size_t i) {
     return BurnStart{definition.vehicle.stages[i].ignition == IgnitionTrigger::kTimer, times[i].ignition_s,
                      i > 0 ? times[i].ignition_s - times[i - 1].burnout_s : 0.0,

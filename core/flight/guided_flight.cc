@@ -1,5 +1,6 @@
 #include "core/flight/guided_flight.h"
 
+#include "core/guidance/air.h"
 #include "core/guidance/closed_loop.h"
 
 namespace dispersa {
@@ -39,7 +40,10 @@ bool GuidedFlight::See(const LaneSight& sight) {
   const bool is_below = sight.stack == last - 1 && mission.steers_below, is_last = sight.stack == last;
   const int earlier = sight.stack - (last - 1 - static_cast<int>(mission.earlier.size()));
   const bool is_earlier = !is_below && !is_last && earlier >= 0 && !mission.earlier.empty();
-  if (!(is_below && sight.burning) && !is_last && !(is_earlier && sight.burning)) {
+  seen.state = {sight.time_s, Vector3(sight.p_EoC_I) + position_error_I_,
+                Vector3(sight.v_IC_I) + velocity_error_I_};
+  const bool waits = sight.stack == 0 && (is_below || is_earlier) && !SteersFirstStage(sight, seen.state);
+  if (waits || (!(is_below && sight.burning) && !is_last && !(is_earlier && sight.burning))) {
     guidance_->Wait();
     next_tick_ += 1.0 / tick_s;
     return false;
@@ -50,8 +54,6 @@ bool GuidedFlight::See(const LaneSight& sight) {
                                : GuidancePhase::kCoast;
   if (is_earlier) seen.earlier = static_cast<std::size_t>(earlier);
   seen.jettisoned = sight.jettisoned;
-  seen.state = {sight.time_s, Vector3(sight.p_EoC_I) + position_error_I_,
-                Vector3(sight.v_IC_I) + velocity_error_I_};
   seen.burn_ignition_s = sight.ignition_s;
   seen.specific_force_m_s2 = accelerometer_factor_ * sight.specific_force_m_s2;
   seen.expelled_kg = sight.expelled_kg;
@@ -61,6 +63,15 @@ bool GuidedFlight::See(const LaneSight& sight) {
   steers_ = guidance_->steers();
   next_tick_ = guidance_->next_call_s() / tick_s;
   return moves;
+}
+
+bool GuidedFlight::SteersFirstStage(const LaneSight& sight, const NavigatedState& state) {
+  if (!first_stage_ready_s_) {
+    if (model_.nominal_plant().boosters && (sight.jettisoned & kBoostersGone) == 0u) return false;
+    if (DynamicPressure(*model_.guidance_mission(), state) > kThinAir_pa) return false;
+    first_stage_ready_s_ = sight.time_s;
+  }
+  return sight.time_s >= *first_stage_ready_s_ + kTakeOver_s;
 }
 
 const double* GuidedFlight::RowAt(double tick) {

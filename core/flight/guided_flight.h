@@ -6,6 +6,7 @@
 #pragma once
 
 #include <memory>
+#include <optional>
 
 #include "core/flight/attitude_program.h"
 #include "core/flight/flight_inputs.h"
@@ -15,6 +16,7 @@
 namespace dispersa {
 
 class ClosedLoopGuidance;
+struct NavigatedState;
 
 /// A lane at a tick, as it is.
 struct LaneSight {
@@ -58,12 +60,17 @@ class GuidedFlight {
   const GuidanceOutcome& outcome() const;
 
  private:
+  /// Whether guidance may steer the stage that lifts off: above the air that matters, and some seconds after
+  /// its boosters have left.
+  bool SteersFirstStage(const LaneSight& sight, const NavigatedState& state);
+
   const FlightModel& model_;
   const Vector3 position_error_I_, velocity_error_I_;
   const double accelerometer_factor_;
   const std::unique_ptr<ClosedLoopGuidance> guidance_;
   double next_tick_ = 0.0;
   bool steers_ = false;
+  std::optional<double> first_stage_ready_s_;  ///< when both came true
   alignas(64) double row_[ReferenceRows::kRowSize] = {};
   alignas(64) double feed_forward_row_[FeedForwardRows::kRowSize] = {};
 };

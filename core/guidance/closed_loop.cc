@@ -17,6 +17,8 @@ constexpr double kNearIgnition_s = 25.0;
 constexpr double kLastPlan_s = 2.0;
 constexpr double kPostpone_s = 2.0;
 constexpr double kLongestPostponement_s = 60.0;
+// Of the coast's rate, what a command comes about on its way to another attitude.
+constexpr double kOfCoastRate = 0.5;
 // What is left of the last burn when altitude and plane are let go, and when the plan is.
 constexpr double kOnlyVelocity_s = 10.0;
 constexpr double kHold_s = 1.5;
@@ -44,6 +46,17 @@ void FreeCutOff(CorrectorTask& task) {
   task.free[kCutOff] = task.free[kYawHalf] = true;
 }
 
+// Of a burn with a planned end, if guidance cuts it off.
+double DurationOf(const GuidedStage& stage, double planned_s) {
+  if (!stage.is_engine()) return stage.burn.duration_s;
+  return stage.is_cut_off() ? std::min(planned_s, stage.Depletes()) : stage.Depletes();
+}
+
+// Between two directions that are near to each other.
+double Apart_rad(const Direction& a, const Direction& b) {
+  return Sqrt(Square(a.pitch_rad - b.pitch_rad) + Square(a.yaw_rad - b.yaw_rad));
+}
+
 constexpr int kFirstIterations = 8;
 constexpr int kIterations = 2;
 
@@ -57,8 +70,8 @@ ClosedLoopGuidance::ClosedLoopGuidance(const GuidanceMission& mission)
       below_(mission.below),
       last_(mission.last) {
   if (!mission.earlier.empty()) phase_ = GuidancePhase::kEarlierBurns;
-  if (mission.below.is_cut_off()) below_engine_.emplace(mission.below);
-  if (mission.last.is_cut_off()) last_engine_.emplace(mission.last);
+  if (mission.below.is_engine()) below_engine_.emplace(mission.below);
+  if (mission.last.is_engine()) last_engine_.emplace(mission.last);
 }
 
 CorrectorTask ClosedLoopGuidance::Task(std::initializer_list<PlanUnknown> free, const Plan& prior,
@@ -91,6 +104,9 @@ bool ClosedLoopGuidance::See(const GuidanceSight& sight) {
     jettisoned_ = sight.jettisoned;
     for (std::optional<EngineEstimate>* engine : {&earlier_engine_, &below_engine_, &last_engine_})
       if (*engine) (*engine)->SeeLeft(jettisoned_, sight.state.time_s);
+    if (earlier_motor_) earlier_motor_->SeeLeft(jettisoned_, sight.state.time_s);
+    below_.SeeLeft(jettisoned_, sight.state.time_s);
+    last_.SeeLeft(jettisoned_, sight.state.time_s);
   }
   if (sight.phase != phase_) {
     if (phase_ == GuidancePhase::kEarlierBurns) {
@@ -227,7 +243,8 @@ void ClosedLoopGuidance::BeginEarlierBurn(std::size_t index) {
   earlier_ = index;
   earlier_motor_.emplace(burn.stage);
   earlier_engine_.reset();
-  if (burn.stage.is_cut_off()) {
+  earlier_motor_->SeeLeft(jettisoned_, mission_.program.start_s);
+  if (burn.stage.is_engine()) {
     earlier_engine_.emplace(burn.stage);
     if (left) earlier_engine_->Begin(left->ignition_mass_kg, left->usable_kg);
     earlier_engine_->SeeLeft(jettisoned_, mission_.program.start_s);
@@ -259,17 +276,15 @@ void ClosedLoopGuidance::SeeEarlierBurn(const GuidanceSight& sight) {
   known.last = last_engine_ ? last_engine_->Stage(sight.expelled_kg) : last_.Stage(sight.expelled_kg);
   known.thrust_offset_rad_I = thrust_offset_rad_I_;
   known.commanded = command_.direction();
-  const double burn_s = earlier_engine_ ? std::min(plan_.value[kEarlierCutOff], known.below.Depletes())
-                                        : known.below.burn.duration_s;
-  if (sight.burn_ignition_s + burn_s - time_s < kHold_s) return;
+  if (sight.burn_ignition_s + DurationOf(known.below, plan_.value[kEarlierCutOff]) - time_s < kHold_s) return;
   CorrectorTask task = Task({kEarlierPitch, kEarlierYaw, kBelowPitch, kBelowYaw, kIgnition, kPitchMiddle,
                              kPitchHalf, kYawMiddle, kWaste},
                             prior_.nominal, outcome_.acted ? kIterations : kFirstIterations);
-  if (last_engine_) FreeCutOff(task);
-  task.free[kBelowCutOff] = below_engine_.has_value();
+  if (mission_.last.is_cut_off()) FreeCutOff(task);
+  task.free[kBelowCutOff] = mission_.below.is_cut_off();
   task.free[kIgnition] = mission_.moves_ignition;
   task.keeps_solved = true;
-  if (earlier_engine_) {
+  if (known.below.is_cut_off()) {
     task.free[kEarlierCutOff] = true;
     task.high[kEarlierCutOff] = std::max(known.below.Depletes(), since_s);
     task.low[kEarlierCutOff] =
@@ -280,7 +295,7 @@ void ClosedLoopGuidance::SeeEarlierBurn(const GuidanceSight& sight) {
   const Correction found = Correct(mission_, prior_, known, sight.state, plan_, task);
   plan_ = found.plan;
   outcome_.acted = true;
-  if (earlier_engine_) {
+  if (known.below.is_cut_off()) {
     SetCutOff(found);
     if (cut_off_) cut_off_->ignition_s = sight.burn_ignition_s;
   }
@@ -302,24 +317,21 @@ void ClosedLoopGuidance::SeeBelowBurn(const GuidanceSight& sight) {
   known.phase = sight.phase;
   known.burn_ignition_s = sight.burn_ignition_s;
   known.below = below_engine_ ? below_engine_->Stage(sight.expelled_kg) : below_.Stage(0.0);
-  known.last = last_engine_ ? last_engine_->Stage(sight.expelled_kg) : mission_.last;
+  known.last = last_engine_ ? last_engine_->Stage(sight.expelled_kg) : last_.Stage(0.0);
   known.thrust_offset_rad_I = thrust_offset_rad_I_;
   known.commanded = command_.direction();
-  double left_s = sight.burn_ignition_s + known.below.burn.duration_s - time_s;
-  if (below_engine_)
-    left_s = sight.burn_ignition_s + std::min(plan_.value[kBelowCutOff], known.below.Depletes()) - time_s;
-  if (left_s < kHold_s) return;
+  if (sight.burn_ignition_s + DurationOf(known.below, plan_.value[kBelowCutOff]) - time_s < kHold_s) return;
   CorrectorTask task = Task({kBelowPitch, kBelowYaw, kIgnition, kPitchMiddle, kPitchHalf, kYawMiddle, kWaste},
                             prior_.nominal, outcome_.acted ? kIterations : kFirstIterations);
-  if (below_engine_) task.free[kBelowCutOff] = true;
-  if (last_engine_) FreeCutOff(task);
+  task.free[kBelowCutOff] = known.below.is_cut_off();
+  if (mission_.last.is_cut_off()) FreeCutOff(task);
   task.free[kIgnition] = mission_.moves_ignition;
   BoundCutOffs(known, time_s, task);
   const Correction found = Correct(mission_, prior_, known, sight.state, plan_, task);
   plan_ = found.plan;
   outcome_.acted = true;
   if (!below_engine_) return;
-  SetCutOff(found);
+  if (known.below.is_cut_off()) SetCutOff(found);
   SetEnginePeriod(since_s, found.reached.burn_end_s - time_s);
 }
 
@@ -340,9 +352,7 @@ bool ClosedLoopGuidance::SeeCoast(const GuidanceSight& sight) {
     const bool settled = sight.attitude_error_rad <= mission_.limits.settled_angle_rad &&
                          sight.rate_error_rad_s <= mission_.limits.settled_rate_rad_s;
     const Direction wanted = LastBurnAttitude(plan_, prior_).At(0.0);
-    const Direction at = command_.direction();
-    const bool there = Square(wanted.pitch_rad - at.pitch_rad) + Square(wanted.yaw_rad - at.yaw_rad) <=
-                       Square(mission_.limits.settled_angle_rad);
+    const bool there = Apart_rad(wanted, command_.direction()) <= mission_.limits.settled_angle_rad;
     if ((settled && there) || outcome_.postponed_s >= kLongestPostponement_s) {
       next_call_s_ = ignition_s + kTakeOver_s;
       return false;
@@ -353,25 +363,36 @@ bool ClosedLoopGuidance::SeeCoast(const GuidanceSight& sight) {
   Knowledge known;
   known.phase = sight.phase;
   known.last = last_engine_ ? last_engine_->Stage(sight.expelled_kg) : last_.Stage(sight.expelled_kg);
-  // Near ignition the plan stays near itself: the attitude that the burn begins with takes its time.
+  // Near ignition plans stay near the last one before: the attitude that the burn begins with takes its time.
+  // Not each near the one before it, which could walk away.
   const bool is_near = outcome_.acted && left_s <= kCoastPeriod_s + kNearIgnition_s;
+  if (is_near && !before_near_) before_near_ = plan_;
   CorrectorTask task =
-      Task({kIgnition, kPitchMiddle, kPitchHalf, kYawMiddle, kWaste}, is_near ? plan_ : prior_.nominal,
-           outcome_.acted ? kIterations + 1 : kFirstIterations);
+      Task({kIgnition, kPitchMiddle, kPitchHalf, kYawMiddle, kWaste},
+           is_near ? *before_near_ : prior_.nominal, outcome_.acted ? kIterations + 1 : kFirstIterations);
   if (task.low[kIgnition] < earliest_s) task.low[kIgnition] = earliest_s;
   if (task.high[kIgnition] < earliest_s) task.high[kIgnition] = earliest_s;
   ignition_s = Clamp(ignition_s, task.low[kIgnition], task.high[kIgnition]);
-  if (last_engine_) {
+  if (mission_.last.is_cut_off()) {
     FreeCutOff(task);
     BoundCutOffs(known, time_s, task);
   }
   const Correction found = Correct(mission_, prior_, known, sight.state, plan_, task);
-  plan_ = found.plan;
   outcome_.acted = true;
+  // A plan that begins with an attitude which the command does not come to would have to wait, and the next
+  // one again. The last burn can still turn.
+  const auto way_rad = [&](const Plan& plan) {
+    return Apart_rad(LastBurnAttitude(plan, prior_).At(0.0), command_.direction());
+  };
+  const double nearest_rad = mission_.limits.settled_angle_rad +
+                             kOfCoastRate * mission_.limits.coast_rate_rad_s * std::max(left_s, 0.0);
+  const bool is_held = is_near && mission_.config.steers_last_burn &&
+                       way_rad(found.plan) > std::max(nearest_rad, way_rad(plan_));
+  if (!is_held) plan_ = found.plan;
   outcome_.arrives = found.arrives;
   outcome_.ignition_shift_s = ignition_s - mission_.last_ignition_s;
   outcome_.excess_m_s = plan_.value[kWaste] * IdealVelocity(known.last);
-  if (last_engine_) SetCutOff(found);
+  if (mission_.last.is_cut_off()) SetCutOff(found);
   const double until_s = ignition_s - time_s;
   next_call_s_ =
       time_s + (until_s > kCoastPeriod_s + kNearIgnition_s ? kCoastPeriod_s : mission_.config.period_s);
@@ -398,8 +419,8 @@ void ClosedLoopGuidance::SeeLastBurn(const GuidanceSight& sight) {
   known.last = last_engine_ ? last_engine_->Stage(sight.expelled_kg) : last_.Stage(sight.expelled_kg);
   known.thrust_offset_rad_I = thrust_offset_rad_I_;
   known.commanded = command_.direction();
-  if (last_engine_) return SteerToCutOff(known, sight.state);
-  const double left_s = sight.burn_ignition_s + known.last.burn.duration_s - time_s;
+  if (mission_.last.is_cut_off()) return SteerToCutOff(known, sight.state);
+  const double left_s = sight.burn_ignition_s + DurationOf(known.last, 0.0) - time_s;
   if (left_s < kHold_s) return;
   const bool all = left_s > kOnlyVelocity_s;
   CorrectorTask task = all ? Task({kPitchMiddle, kPitchHalf, kYawMiddle, kWaste}, at_ignition_, kIterations)
@@ -409,6 +430,7 @@ void ClosedLoopGuidance::SeeLastBurn(const GuidanceSight& sight) {
   plan_ = found.plan;
   if (all) met_all_ = found.arrives;
   outcome_.arrives = met_all_ && found.arrives;
+  if (last_engine_ && left_s > 2.0 * kOnlyCutOff_s) SetEnginePeriod(since_s, left_s);
 }
 
 void ClosedLoopGuidance::SteerToCutOff(const Knowledge& known, const NavigatedState& state) {

@@ -70,14 +70,15 @@ class ClosedLoopGuidance {
   const GuidanceMission& mission_;
   PlanPrior prior_;
   Plan plan_;
-  bool met_all_ = false;  ///< the last plan that had to meet altitude and plane too did so
-  Plan at_ignition_;      ///< what the last burn's plans depart from as little as they can
+  bool met_all_ = false;             ///< the last plan that had to meet altitude and plane too did so
+  std::optional<Plan> before_near_;  ///< the plan with which the coast's last seconds began
+  Plan at_ignition_;                 ///< what the last burn's plans depart from as little as they can
   AttitudeCommand command_;
   bool steers_ = false;
   GuidancePhase phase_ = GuidancePhase::kBelowBurns;
   double next_call_s_ = 0.0;
   MotorEstimate below_, last_;
-  std::optional<EngineEstimate> below_engine_, last_engine_;  ///< in their place, if guidance cuts them off
+  std::optional<EngineEstimate> below_engine_, last_engine_;  ///< in their place, of engines
   std::optional<std::size_t> earlier_;                        ///< the earlier burn that burns, or did last
   std::optional<MotorEstimate> earlier_motor_;
   std::optional<EngineEstimate> earlier_engine_;

@@ -15,11 +15,11 @@ namespace {
 // that lacks 10 m/s of energy. Then node and place.
 constexpr double kTolerance[kAllMisses] = {1e-2, 3e-2, 3e-2, 1.0, 1.0, 10.0};
 // Differences for derivatives: small against the curvature, large against the rounding of a prediction.
-constexpr double kDifference = 1e-3;  // of a scale
+constexpr double kDifference = 3e-4;  // of a scale
 // A step that moves no miss by more, in tolerances, needs no further one.
 constexpr double kStill = 0.005;
 // Beyond this a step's straight lines say little.
-constexpr double kLongestStep = 1.5;  // scales
+constexpr double kLongestStep = 0.5;  // scales
 // The share of the predicted decrease that a step must bring, and what follows one that does not: damping,
 // first of what the misses leave open, where 1 halves a step, in the end of all.
 constexpr double kEnoughDecrease = 1e-3;
@@ -93,6 +93,13 @@ bool Arrives(const Arrival& miss, bool meets_altitude, bool meets_plane) {
 
 namespace {
 
+// A step to a bound ends at the bound, without rounding.
+double AfterStep(double value, double step, double scale, double low, double high) {
+  if (step == (low - value) / scale) return low;
+  if (step == (high - value) / scale) return high;
+  return Clamp(value + step * scale, low, high);
+}
+
 template <int count, int misses>
 Correction CorrectFirst(const GuidanceMission& mission, const PlanPrior& prior, const Knowledge& known,
                         const NavigatedState& from, const Plan& start, const CorrectorTask& task) {
@@ -157,7 +164,7 @@ Correction CorrectFirst(const GuidanceMission& mission, const PlanPrior& prior, 
         for (int i = 0; i < count; ++i) {
           const auto k = static_cast<std::size_t>(i);
           if (task.free[k])
-            next.value[k] = Clamp(next.value[k] + step(i) * prior.scale[k], task.low[k], task.high[k]);
+            next.value[k] = AfterStep(next.value[k], step(i), prior.scale[k], task.low[k], task.high[k]);
         }
         const Injection reached = predict(next, true);
         const Misses<misses> miss = Scaled<misses>(mission, reached, task);

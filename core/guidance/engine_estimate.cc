@@ -19,11 +19,6 @@ void EngineEstimate::Begin(double ignition_mass_kg, double usable_kg) {
   nominal_.usable_kg = usable_kg;
 }
 
-void EngineEstimate::SeeLeft(unsigned bodies, double time_s) {
-  for (MassDrop& drop : nominal_.drops)
-    if (drop.waits() && (bodies & drop.body) != 0u) drop.time_s = time_s;
-}
-
 void EngineEstimate::Add(double time_s, double since_ignition_s, double specific_force_m_s2,
                          double expelled_kg) {
   const double level = nominal_.levels->At(since_ignition_s);

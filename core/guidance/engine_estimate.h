@@ -1,4 +1,4 @@
-// Thrust and flow of a burning engine that guidance cuts off, estimated from its sensed acceleration.
+// Thrust and flow of a burning engine, estimated from its sensed acceleration.
 //
 // At the commanded level f the acceleration is a = T P f / (M - F q X): P and q are the nominal full thrust
 // and flow, X is the integral of f, M the mass without what has burnt. T and F are the factors sought. So
@@ -21,8 +21,8 @@ class EngineEstimate {
 
   /// For a burn that begins with these: after another burn of the same engine.
   void Begin(double ignition_mass_kg, double usable_kg);
-  /// Bodies that have left by a time, as bits. The flight computer lets go of them.
-  void SeeLeft(unsigned bodies, double time_s);
+  /// GuidedStage's.
+  void SeeLeft(unsigned bodies, double time_s) { nominal_.SeeLeft(bodies, time_s); }
   /// A reading of the accelerometer. `time_s` since lift-off, `expelled_kg` by the reaction control.
   void Add(double time_s, double since_ignition_s, double specific_force_m_s2, double expelled_kg);
   /// The stage as it burns. Thrust and flow stay within 15 % of nominal.

@@ -32,7 +32,7 @@ inline void Describe(Fields& fields, GuidanceConfig& guidance) {
                       guidance.steers_last_burn);
   fields.Quantity("period", kTime, Between(0.1, 10.0), guidance.period_s,
                   "between two solutions under thrust", guidance.period_s);
-  fields.Integer("burns", 2, kMaxStages - 1, guidance.burns, "guided ones, counted from the last", 2);
+  fields.Integer("burns", 2, kMaxStages, guidance.burns, "guided ones, counted from the last", 2);
   // A launcher's attitude loops follow some degrees a second. A faster turn would be a loss of control.
   constexpr Range kRate = UpTo(20.0 * kRadPerDeg);
   fields.OptionalQuantity(

@@ -35,7 +35,11 @@ GuidedAuthority AuthorityOf(const Vehicle& vehicle, const AutopilotConfig& autop
   for (std::size_t i = FirstGuided(vehicle, config); i <= last; ++i) {
     const Stage& stage = vehicle.stages[i];
     if (!stage.is_controlled()) continue;  // it is pointed before its ignition
-    const MassProperties full = stacks[i].At(stacks[i].propellant_mass_kg);
+    // The first stage is guided after its boosters have left.
+    const bool had_boosters = i == 0 && vehicle.boosters.count > 0;
+    const StackMass stack =
+        had_boosters ? Without(stacks[i], 0, {BuildBoosterMass(vehicle.boosters)}, 1u) : stacks[i];
+    const MassProperties full = stack.At(stack.propellant_mass_kg);
     const double share = stage.gimbal.nozzles.empty() ? 0.5 : BuildNozzleLayout(stage.gimbal).pitch_share;
     const double effectiveness_1_s2 = share * BuildBurn(stage, 1.0, 1.0).vacuum_thrust_n *
                                       (stage.gimbal.pivot_station_m - full.cg_station_m) /

@@ -53,6 +53,16 @@ double GuidedStage::DroppedBy(double time_s) const {
   return dropped_kg;
 }
 
+bool GuidedStage::SeeLeft(unsigned bodies, double at_s) {
+  bool any = false;
+  for (MassDrop& drop : drops) {
+    if (!drop.waits() || (bodies & drop.body) == 0u) continue;
+    drop.time_s = at_s;
+    any = true;
+  }
+  return any;
+}
+
 GuidedStage AfterBurn(const GuidedStage& below, GuidedStage last, double duration_s) {
   const double burnt_kg = below.Burnt(duration_s);
   double dropped_kg = 0.0;  // also between the burns
@@ -64,9 +74,9 @@ GuidedStage AfterBurn(const GuidedStage& below, GuidedStage last, double duratio
 }
 
 double IdealVelocity(const GuidedStage& stage) {
+  const double mass_kg = stage.ignition_mass_kg - stage.early_kg;
   return stage.burn.ExhaustVelocity() *
-         Log(stage.ignition_mass_kg /
-             (stage.ignition_mass_kg - stage.burn.propellant_mass_kg + stage.burn.left_kg));
+         Log(mass_kg / (mass_kg - stage.burn.propellant_mass_kg + stage.burn.left_kg));
 }
 
 bool IsCutOffByGuidance(const Stage& stage) {
@@ -80,7 +90,8 @@ std::size_t FirstGuided(const Vehicle& vehicle, const GuidanceConfig& config) {
 }
 
 bool SteersBelow(const Vehicle& vehicle) {
-  return vehicle.stages.size() > 2 || !IsCutOffByGuidance(vehicle.stages.back());
+  return vehicle.stages.size() > 2 || vehicle.boosters.count > 0 ||
+         !IsCutOffByGuidance(vehicle.stages.back());
 }
 
 }  // namespace dispersa

@@ -4,14 +4,17 @@
 
 #include <cmath>
 #include <cstddef>
+#include <memory>
 #include <optional>
 #include <vector>
 
+#include "core/environment/air_table.h"
 #include "core/environment/earth.h"
 #include "core/guidance/engine_levels.h"
 #include "core/guidance/guidance_config.h"
 #include "core/guidance/guidance_limits.h"
 #include "core/math/linear.h"
+#include "core/vehicle/bodies.h"
 #include "core/vehicle/propulsion.h"
 
 namespace dispersa {
@@ -50,15 +53,16 @@ struct DirectionTable {
   Direction RateAt(double time_s) const;
 };
 
-/// A body that leaves after a burn's ignition.
+/// A body that leaves after a burn's ignition: at the reference's time, or as soon as the flight meets a
+/// criterion.
 struct MassDrop {
-  double time_s =
-      0.0;  ///< since lift-off, of the reference. Of one with an altitude: never, until it has left
+  double time_s = 0.0;  ///< since lift-off. Of one with a criterion: never, until it has left
   double mass_kg = 0.0;
-  std::optional<double> altitude_m = {};  ///< geodetic, at which the flight computer lets go of it
-  unsigned body = 0;                      ///< its bit of those that have left
+  JettisonTrigger trigger = JettisonTrigger::kAtTime;
+  double threshold = 0.0;  ///< of the criterion: Jettison's
+  unsigned body = 0;       ///< its bit of those that have left
 
-  bool waits() const { return altitude_m && !(time_s < HUGE_VAL); }
+  bool waits() const { return trigger != JettisonTrigger::kAtTime && !(time_s < HUGE_VAL); }
 };
 
 /// A stack with its motor as the documents give them.
@@ -66,17 +70,25 @@ struct GuidedStage {
   MotorBurn burn;
   double ignition_mass_kg = 0.0;  ///< with everything above
   bool loses_mass = false;        ///< the reference lets go of something while it burns
-  // Of an engine that guidance cuts off. The reference's burn ends after burn.duration_s.
+  // Of an engine that guidance cuts off, or that uses up its propellant. The reference's burn ends after
+  // burn.duration_s.
   std::optional<EngineLevels> levels = {};
+  bool runs_dry = false;             ///< only its propellant ends its burn
   bool ends_by_time = false;         ///< by a timer, and not at a speed
   double usable_kg = 0.0;            ///< propellant at ignition without the residual
   std::vector<MassDrop> drops = {};  ///< after the reference's ignition
+  double early_kg =
+      0.0;  ///< of the drops, what the reference lets go of by the middle of a burn that ends by itself
 
-  bool is_cut_off() const { return levels.has_value(); }
+  bool is_engine() const { return levels.has_value(); }
+  bool is_cut_off() const { return is_engine() && !runs_dry; }
   double DroppedBy(double time_s) const;
-  /// Duration of a burn that uses up the propellant. Precondition of both: is_cut_off().
+  /// Bodies with a criterion that have left, as bits. The flight computer lets go of them. Whether there were
+  /// any.
+  bool SeeLeft(unsigned bodies, double at_s);
+  /// Duration of a burn that uses up the propellant. Precondition of both: is_engine().
   double Depletes() const { return levels->TimeOf(usable_kg / burn.full_flow_kg_s); }
-  /// Propellant burnt by an engine that guidance cuts off, kg.
+  /// Propellant burnt by an engine, kg.
   double Burnt(double duration_s) const { return burn.full_flow_kg_s * levels->Sum(duration_s); }
 };
 
@@ -97,6 +109,7 @@ struct GuidanceMission {
   GuidanceConfig config;
   GuidanceLimits limits;
   Earth earth = Wgs84();
+  std::shared_ptr<const AirTable> air = {};  ///< measured (null: the standard's)
   Matrix3 R_IL = Matrix3::Identity();
   Arrival target;
   std::optional<TargetOrbit> orbit = {};  ///< then only its inclination and speed count of `target`
@@ -125,8 +138,8 @@ double IdealVelocity(const GuidedStage& stage);
 bool IsCutOffByGuidance(const Stage& stage);
 /// The first of the burns that the settings let guidance plan, as an index of the vehicle's stages.
 std::size_t FirstGuided(const Vehicle& vehicle, const GuidanceConfig& config);
-/// Whether it steers the last stage but one. A stage that lifts off is steered by the reference, if the last
-/// stage's engine can be cut off.
+/// Whether it steers the last stage but one. A stage that lifts off without boosters is steered by the
+/// reference, if the last stage's engine can be cut off: little of its burn is above the air.
 bool SteersBelow(const Vehicle& vehicle);
 
 }  // namespace dispersa

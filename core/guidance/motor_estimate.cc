@@ -21,9 +21,14 @@ bool HasLine(const GuidedStage& stage) { return !stage.burn.curve && !stage.lose
 }  // namespace
 
 double StandsAfter(const GuidedStage& nominal, double first_s, double period_s) {
+  if (nominal.is_engine()) return first_s + kLongEnough_s;  // by its own estimate
   if (!HasLine(nominal)) return 0.0;
   return std::fmax(first_s, nominal.burn.rise_s + kClear_s) +
          std::fmax(kLongEnough_s, (kEnough - 1.0) * period_s);
+}
+
+void MotorEstimate::SeeLeft(unsigned bodies, double time_s) {
+  if (nominal_.SeeLeft(bodies, time_s)) count_ = sum_t_ = sum_y_ = sum_tt_ = sum_ty_ = 0.0;
 }
 
 void MotorEstimate::Add(double since_ignition_s, double specific_force_m_s2) {
@@ -52,14 +57,19 @@ GuidedStage MotorEstimate::Stage(double expelled_kg) const {
   const double at_start = mean_y - slope * mean_t;
   if (!(slope < 0.0) || !(at_start > 0.0)) return stage;
   const double exhaust_m_s = -1.0 / slope;
-  const double flow_kg_s = stage.ignition_mass_kg / (exhaust_m_s * at_start);
+  // A stage with a line loses bodies with a criterion alone, and all that have left are in it.
+  double mass_kg = stage.ignition_mass_kg;
+  for (const MassDrop& drop : stage.drops)
+    if (!drop.waits()) mass_kg -= drop.mass_kg;
+  const double flow_kg_s = mass_kg / (exhaust_m_s * at_start);
   MotorBurn& burn = stage.burn;
   const double flow_factor = Clamp(flow_kg_s / burn.full_flow_kg_s, 1.0 - kFarthest, 1.0 + kFarthest);
   const double thrust_factor =
       Clamp(exhaust_m_s * flow_kg_s / burn.vacuum_thrust_n, 1.0 - kFarthest, 1.0 + kFarthest);
   burn.full_flow_kg_s *= flow_factor;
   burn.vacuum_thrust_n *= thrust_factor;
-  burn.duration_s = burn.propellant_mass_kg / burn.full_flow_kg_s + 0.5 * (burn.rise_s + burn.tail_s);
+  burn.duration_s =
+      (burn.propellant_mass_kg - burn.left_kg) / burn.full_flow_kg_s + 0.5 * (burn.rise_s + burn.tail_s);
   return stage;
 }
 

@@ -15,6 +15,8 @@ class MotorEstimate {
  public:
   explicit MotorEstimate(const GuidedStage& nominal) : nominal_(nominal) {}
 
+  /// GuidedStage's. The line of the lighter stage begins anew.
+  void SeeLeft(unsigned bodies, double time_s);
   /// Adds a reading of the accelerometer. Readings outside full thrust are left out.
   void Add(double since_ignition_s, double specific_force_m_s2);
   /// The stage as it burns. Thrust and flow stay within 15 % of nominal. `expelled_kg`: what its mass has

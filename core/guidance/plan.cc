@@ -14,7 +14,7 @@ namespace {
 constexpr double kOfTurnRate = 0.7;
 
 // A burn's duration: its scale, and its shortest.
-constexpr double kOfBurn = 0.05, kShortestOfBurn = 0.2;
+constexpr double kOfBurn = 0.15, kShortestOfBurn = 0.2;
 
 // 0 before, the time since after, by a parabola within `round_s` of it; and its slope.
 double Ramp(double since_s, double round_s) {
@@ -42,8 +42,8 @@ TurnCourse CourseOf(const GuidanceMission& mission) {
   double sum = 0.0, late = 0.0, early = 0.0, late_late = 0.0, late_early = 0.0, early_early = 0.0;
   for (int i = 0; i < kPieces; ++i) {
     const double time_s = (i + 0.5) / kPieces * burn.duration_s;
-    const double weight = burn.Fraction(time_s) /
-                          (mission.last.ignition_mass_kg - burn.propellant_mass_kg + burn.Propellant(time_s));
+    const double weight = burn.Fraction(time_s) / (mission.last.ignition_mass_kg - mission.last.early_kg -
+                                                   burn.propellant_mass_kg + burn.Propellant(time_s));
     const double at_late = course.Late(time_s), at_early = course.Early(time_s);
     sum += weight;
     late += weight * at_late;
@@ -81,7 +81,7 @@ double TurnCourse::EarlyRate(double since_ignition_s) const {
 }
 
 LastBurnAttitude::LastBurnAttitude(const Plan& plan, const PlanPrior& prior) : plan_(plan), prior_(prior) {
-  if (prior.departs_from != nullptr) return;
+  if (prior.mission->last.is_cut_off()) return;
   const TurnCourse& course = prior.turn;
   const double waste = plan.value[kWaste], way_s = course.end_s - course.from_s;
   // The late course has slopes of 3 turns over the way, the early one of 2.
@@ -99,26 +99,29 @@ LastBurnAttitude::LastBurnAttitude(const Plan& plan, const PlanPrior& prior) : p
 Direction LastBurnAttitude::At(double since_ignition_s) const {
   const double since = since_ignition_s > 0.0 ? since_ignition_s : 0.0;
   const double s = 2.0 * since / prior_.last_duration_s - 1.0;
-  if (const GuidanceMission* mission = prior_.departs_from) {
-    const Direction at = mission->program.At(mission->last_ignition_s + since);
+  const GuidanceMission& mission = *prior_.mission;
+  const Direction at = mission.program.At(mission.last_ignition_s + since);
+  if (mission.last.is_cut_off())
     return {at.pitch_rad + plan_.value[kPitchMiddle] + s * plan_.value[kPitchHalf],
             at.yaw_rad + plan_.value[kYawMiddle] + s * plan_.value[kYawHalf]};
-  }
   const double turned = (1.0 - early_) * prior_.turn.Late(since) + early_ * prior_.turn.Early(since) - mean_;
-  return {plan_.value[kPitchMiddle] + s * plan_.value[kPitchHalf],
-          plan_.value[kYawMiddle] + s * prior_.yaw_half_rad + turn_rad_ * turned};
+  const Direction bend{at.pitch_rad - (prior_.middle.pitch_rad + s * prior_.half.pitch_rad),
+                       at.yaw_rad - (prior_.middle.yaw_rad + s * prior_.half.yaw_rad)};
+  return {bend.pitch_rad + plan_.value[kPitchMiddle] + s * plan_.value[kPitchHalf],
+          bend.yaw_rad + plan_.value[kYawMiddle] + s * prior_.yaw_half_rad + turn_rad_ * turned};
 }
 
 Direction LastBurnAttitude::RateAt(double since_ignition_s) const {
   const double slope = 2.0 / prior_.last_duration_s;
-  if (const GuidanceMission* mission = prior_.departs_from) {
-    const Direction rate = mission->program.RateAt(mission->last_ignition_s + since_ignition_s);
+  const GuidanceMission& mission = *prior_.mission;
+  const Direction rate = mission.program.RateAt(mission.last_ignition_s + since_ignition_s);
+  if (mission.last.is_cut_off())
     return {rate.pitch_rad + slope * plan_.value[kPitchHalf], rate.yaw_rad + slope * plan_.value[kYawHalf]};
-  }
   const TurnCourse& course = prior_.turn;
   const double turning =
       (1.0 - early_) * course.LateRate(since_ignition_s) + early_ * course.EarlyRate(since_ignition_s);
-  return {slope * plan_.value[kPitchHalf], slope * prior_.yaw_half_rad + turn_rad_ * turning};
+  return {rate.pitch_rad + slope * (plan_.value[kPitchHalf] - prior_.half.pitch_rad),
+          rate.yaw_rad + slope * (prior_.yaw_half_rad - prior_.half.yaw_rad) + turn_rad_ * turning};
 }
 
 namespace {
@@ -130,8 +133,9 @@ void SetReach(const GuidanceMission& mission, PlanPrior& prior) {
   const auto& value = prior.nominal.value;
   const double below_s = value[kBelowCutOff], last_s = value[kCutOff];
   const auto scale_s = [](double burn_s) { return burn_s > 0.0 ? kOfBurn * burn_s : 1.0; };
-  prior.scale = {2.0 * kDeg,       1.0 * kDeg,      20.0,       5.0 * kDeg, 5.0 * kDeg, 3.0 * kDeg, 0.03,
-                 scale_s(below_s), scale_s(last_s), 3.0 * kDeg, 2.0 * kDeg, 1.0 * kDeg, 1.0};
+  // So wide that departures of a few scales cost less than a miss of a tolerance.
+  prior.scale = {6.0 * kDeg,       3.0 * kDeg,      60.0,       15.0 * kDeg, 15.0 * kDeg, 9.0 * kDeg, 0.09,
+                 scale_s(below_s), scale_s(last_s), 9.0 * kDeg, 6.0 * kDeg,  3.0 * kDeg,  1.0};
   const double late_s = (1.0 - kShortestOfBurn);
   const std::array<double, kPlanUnknowns> reach = {
       10.0 * kDeg,      5.0 * kDeg,      120.0,       25.0 * kDeg, 25.0 * kDeg, 25.0 * kDeg, 0.0,
@@ -149,6 +153,7 @@ void SetReach(const GuidanceMission& mission, PlanPrior& prior) {
 
 PlanPrior BuildPrior(const GuidanceMission& mission) {
   PlanPrior prior;
+  prior.mission = &mission;
   prior.last_duration_s = mission.last.burn.duration_s;
   const double burnout_s = mission.last_ignition_s + prior.last_duration_s;
   const Direction from = mission.program.At(mission.last_ignition_s), to = mission.program.At(burnout_s);
@@ -157,15 +162,16 @@ PlanPrior BuildPrior(const GuidanceMission& mission) {
   if (mission.below.is_cut_off()) value[kBelowCutOff] = mission.below.burn.duration_s;
   if (mission.last.is_cut_off()) {
     value[kCutOff] = mission.last.burn.duration_s;
-    prior.departs_from = &mission;
     SetReach(mission, prior);
     return prior;
   }
-  value[kPitchMiddle] = 0.5 * (from.pitch_rad + to.pitch_rad);
-  value[kPitchHalf] = 0.5 * (to.pitch_rad - from.pitch_rad);
-  value[kYawMiddle] = 0.5 * (from.yaw_rad + to.yaw_rad);
+  prior.middle = {0.5 * (from.pitch_rad + to.pitch_rad), 0.5 * (from.yaw_rad + to.yaw_rad)};
+  prior.half = {0.5 * (to.pitch_rad - from.pitch_rad), 0.5 * (to.yaw_rad - from.yaw_rad)};
+  value[kPitchMiddle] = prior.middle.pitch_rad;
+  value[kPitchHalf] = prior.half.pitch_rad;
+  value[kYawMiddle] = prior.middle.yaw_rad;
   value[kWaste] = mission.velocity_reserve_m_s / IdealVelocity(mission.last);
-  prior.yaw_half_rad = 0.5 * (to.yaw_rad - from.yaw_rad);
+  prior.yaw_half_rad = prior.half.yaw_rad;
   prior.turn = CourseOf(mission);
   SetReach(mission, prior);
   // From no turn, of which nothing is left to give, to an early one of 45 degrees either way.

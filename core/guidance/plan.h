@@ -54,10 +54,11 @@ struct TurnCourse {
 struct PlanPrior {
   Plan nominal;
   double last_duration_s = 0.0;  ///< nominal, of the last burn
-  double yaw_half_rad = 0.0;     ///< of the reference's last burn
+  /// Of the reference's last burn: its attitude halfway between begin and end, and half of the way.
+  Direction middle, half;
+  double yaw_half_rad = 0.0;  ///< of plans, if the last burn ends by itself
   TurnCourse turn;
-  /// Of a last stage that guidance cuts off: its attitudes are the reference's and a departure. Else null.
-  const GuidanceMission* departs_from = nullptr;
+  const GuidanceMission* mission = nullptr;   ///< the prior's
   std::array<double, kPlanUnknowns> scale{};  ///< a departure that costs 1
   std::array<double, kPlanUnknowns> low{}, high{};
 };
@@ -65,10 +66,10 @@ PlanPrior BuildPrior(const GuidanceMission& mission);
 /// For plans in a burn before the last two, which begins with this stage.
 void SetEarlier(const GuidedStage& stage, PlanPrior& prior);
 
-/// Direction of the last burn's thrust by a plan: pitch and yaw linear in time, plus the turn in yaw about
-/// its mean. The turn takes a²/2 of the course's variance from the ideal velocity; kWaste stands for it. It
-/// begins as late as the command can follow. If guidance cuts the burn off: the reference's direction, plus a
-/// departure linear in time.
+/// Direction of the last burn's thrust by a plan: the reference's plus a departure linear in time. If the
+/// burn ends by itself, the plan has pitch and yaw of the line between the burn's ends, and a turn in yaw
+/// about its mean is added. The turn takes a²/2 of the course's variance from the ideal velocity; kWaste
+/// stands for it. It begins as late as the command can follow.
 class LastBurnAttitude {
  public:
   LastBurnAttitude(const Plan& plan, const PlanPrior& prior);

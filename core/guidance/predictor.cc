@@ -8,6 +8,7 @@
 #include <iterator>
 #include <vector>
 
+#include "core/guidance/air.h"
 #include "core/math/constants.h"
 #include "core/math/functions.h"
 #include "core/vehicle/prepared_burn.h"
@@ -44,23 +45,96 @@ void Advance(const Earth& earth, double to_s, double longest_s, const ThrustAt& 
   state.time_s = to_s;
 }
 
-// Through the rest of a burn. Steps end where the thrust has kinks, and its direction, `bends` since
-// ignition; on either side of one the burn is smooth, so the fraction is taken just inside the piece.
+// Bodies of a burn that wait for their criteria. They leave where the prediction meets these.
+class WaitingBodies {
+ public:
+  WaitingBodies(const GuidanceMission& mission, const GuidedStage& stage) : mission_(mission) {
+    std::copy_if(stage.drops.begin(), stage.drops.end(), std::back_inserter(waiting_),
+                 [](const MassDrop& drop) { return drop.waits(); });
+  }
+
+  /// Advances a state. `mass_kg` is the thrust's mass, which does not know who has left. A step ends where a
+  /// body leaves, so that the end of the way changes smoothly with the plan.
+  template <class ThrustAt>
+  void Advance(double to_s, double longest_s, const ThrustAt& thrust, double& mass_kg,
+               NavigatedState& state) {
+    mass_kg -= left_kg_;
+    while (state.time_s < to_s && !waiting_.empty()) {
+      const NavigatedState from = state;
+      const auto is_due = [&](const MassDrop& drop) { return BeyondCriterion(mission_, drop, from) >= 0.0; };
+      if (const auto due = std::find_if(waiting_.begin(), waiting_.end(), is_due); due != waiting_.end()) {
+        LetGo(due, mass_kg);
+        continue;
+      }
+      dispersa::Advance(mission_.earth, std::min(to_s, from.time_s + longest_s), longest_s, thrust, state);
+      const NavigatedState end = state;
+      auto first = waiting_.end();
+      for (auto drop = waiting_.begin(); drop != waiting_.end(); ++drop) {
+        if (!(BeyondCriterion(mission_, *drop, end) >= 0.0)) continue;
+        const NavigatedState due = WhereDue(*drop, from, end, longest_s, thrust);
+        if (first != waiting_.end() && due.time_s >= state.time_s) continue;
+        state = due;
+        first = drop;
+      }
+      if (first != waiting_.end()) LetGo(first, mass_kg);
+    }
+    dispersa::Advance(mission_.earth, to_s, longest_s, thrust, state);
+  }
+
+ private:
+  void LetGo(std::vector<MassDrop>::iterator drop, double& mass_kg) {
+    left_kg_ += drop->mass_kg;
+    mass_kg -= drop->mass_kg;
+    waiting_.erase(drop);
+  }
+  // Within a step, at whose end the body is due. The secant's steps from the end: the criterion is almost
+  // straight.
+  template <class ThrustAt>
+  NavigatedState WhereDue(const MassDrop& drop, const NavigatedState& from, const NavigatedState& end,
+                          double longest_s, const ThrustAt& thrust) const {
+    NavigatedState at = end;
+    double before_s = from.time_s, before = BeyondCriterion(mission_, drop, from),
+           beyond = BeyondCriterion(mission_, drop, end);
+    constexpr int kSteps = 5;
+    for (int step = 0; step < kSteps && beyond != before; ++step) {
+      const double then_s = std::clamp(at.time_s - beyond * (at.time_s - before_s) / (beyond - before),
+                                       from.time_s, end.time_s);
+      before_s = at.time_s;
+      before = beyond;
+      at = from;
+      dispersa::Advance(mission_.earth, then_s, longest_s, thrust, at);
+      beyond = BeyondCriterion(mission_, drop, at);
+    }
+    return at;
+  }
+
+  const GuidanceMission& mission_;
+  std::vector<MassDrop> waiting_;
+  double left_kg_ = 0.0;
+};
+
+// Through the rest of a burn. Steps end where the thrust has kinks, its direction, `bends` since
+// ignition, and where a body leaves. On either side of one the burn is smooth, so the fraction is taken just
+// inside the piece.
 template <class DirectionAt>
 void Burn(const GuidanceMission& mission, const GuidedStage& stage, double ignition_s, double longest_s,
           const Vector3& offset_rad_I, std::initializer_list<double> bends, const DirectionAt& direction_at,
           NavigatedState& state) {
   const MotorBurn& burn = stage.burn;
   const PreparedBurn prepared(burn);
-  const double empty_kg = stage.ignition_mass_kg - burn.propellant_mass_kg;
   std::vector<double> ends = burn.Kinks(0.0);
   for (const double bend : bends)
     if (bend < burn.duration_s) ends.push_back(bend);
+  for (const MassDrop& drop : stage.drops)
+    if (drop.time_s - ignition_s < burn.duration_s) ends.push_back(drop.time_s - ignition_s);
   ends.push_back(burn.duration_s);
   std::sort(ends.begin(), ends.end());
+  WaitingBodies waiting(mission, stage);
   for (const double end : ends) {
     const double begin = state.time_s - ignition_s;
     if (!(end > begin)) continue;
+    double empty_kg =
+        stage.ignition_mass_kg - burn.propellant_mass_kg - stage.DroppedBy(0.5 * (begin + end) + ignition_s);
     // Both ends of a piece belong to it.
     constexpr double kInside = 1e-9;
     const auto thrust = [&](double time_s) -> Vector3 {
@@ -70,74 +144,23 @@ void Burn(const GuidanceMission& mission, const GuidedStage& stage, double ignit
       const Vector3 along = mission.R_IL * UnitVector(direction_at(time_s));
       return acceleration * (along + offset_rad_I.cross(along));
     };
-    Advance(mission.earth, ignition_s + end, longest_s, thrust, state);
+    waiting.Advance(ignition_s + end, longest_s, thrust, empty_kg, state);
   }
 }
 
-double AltitudeOf(const Earth& earth, const NavigatedState& state) {
-  return ToGeodetic(earth, InertialToEarth(earth, state.time_s, state.p_EoC_I)).altitude_m;
-}
-
-// The same as Advance, with bodies that leave at an altitude. `waiting`: those that are still there.
-// `left_kg`: mass of those that have left, which `mass_kg` does not know. A step ends where a body leaves, so
-// that the end of the way changes smoothly with the plan.
-template <class ThrustAt>
-void AdvanceAndLetGo(const Earth& earth, double to_s, double longest_s, const ThrustAt& thrust,
-                     std::vector<MassDrop>& waiting, double& left_kg, double& mass_kg,
-                     NavigatedState& state) {
-  mass_kg -= left_kg;
-  const auto lower = [](const MassDrop& a, const MassDrop& b) { return *a.altitude_m < *b.altitude_m; };
-  const auto let_go = [&](std::vector<MassDrop>::iterator drop) {
-    left_kg += drop->mass_kg;
-    mass_kg -= drop->mass_kg;
-    waiting.erase(drop);
-  };
-  while (state.time_s < to_s && !waiting.empty()) {
-    const auto next = std::min_element(waiting.begin(), waiting.end(), lower);
-    const double above_m = *next->altitude_m;
-    const NavigatedState from = state;
-    const double from_m = AltitudeOf(earth, from);
-    if (from_m >= above_m) {
-      let_go(next);
-      continue;
-    }
-    const double end_s = std::min(to_s, from.time_s + longest_s);
-    Advance(earth, end_s, longest_s, thrust, state);
-    double end_m = AltitudeOf(earth, state);
-    if (end_m < above_m) continue;
-    // The secant's steps from the end: the altitude is almost straight within a step.
-    double before_s = from.time_s, before_m = from_m, at_s = end_s;
-    constexpr int kSteps = 5;
-    for (int step = 0; step < kSteps && end_m != before_m; ++step) {
-      const double then_s =
-          std::clamp(at_s - (end_m - above_m) * (at_s - before_s) / (end_m - before_m), from.time_s, end_s);
-      before_s = at_s;
-      before_m = end_m;
-      at_s = then_s;
-      state = from;
-      Advance(earth, at_s, longest_s, thrust, state);
-      end_m = AltitudeOf(earth, state);
-    }
-    let_go(next);
-  }
-  Advance(earth, to_s, longest_s, thrust, state);
-}
-
-// An engine's burn until guidance cuts it off after `duration_s`, or the propellant is used up. Steps end
-// where the level bends and where a body leaves.
+// An engine's burn until guidance cuts it off after `duration_s`, if it does, or the propellant is used up.
+// Steps end where the level and the direction (`bends`) have kinks, and where a body leaves.
 template <class DirectionAt>
 void BurnEngine(const GuidanceMission& mission, const GuidedStage& stage, double ignition_s,
                 double duration_s, double longest_s, const Vector3& offset_rad_I,
-                const DirectionAt& direction_at, NavigatedState& state) {
-  const double end_s = std::min(duration_s, stage.Depletes());
+                std::initializer_list<double> bends, const DirectionAt& direction_at, NavigatedState& state) {
+  const double end_s = stage.runs_dry ? stage.Depletes() : std::min(duration_s, stage.Depletes());
   std::vector<double> ends = stage.levels->bends_s();
+  ends.insert(ends.end(), bends);
   for (const MassDrop& drop : stage.drops) ends.push_back(drop.time_s - ignition_s);
   ends.push_back(end_s);
   std::sort(ends.begin(), ends.end());
-  std::vector<MassDrop> waiting;
-  std::copy_if(stage.drops.begin(), stage.drops.end(), std::back_inserter(waiting),
-               [](const MassDrop& drop) { return drop.waits(); });
-  double left_kg = 0.0;
+  WaitingBodies waiting(mission, stage);
   for (const double end : ends) {
     if (end > end_s) break;
     const double begin = state.time_s - ignition_s;
@@ -150,10 +173,7 @@ void BurnEngine(const GuidanceMission& mission, const GuidedStage& stage, double
       const Vector3 along = mission.R_IL * UnitVector(direction_at(time_s));
       return acceleration * (along + offset_rad_I.cross(along));
     };
-    if (waiting.empty() && left_kg == 0.0)
-      Advance(mission.earth, ignition_s + end, longest_s, thrust, state);
-    else
-      AdvanceAndLetGo(mission.earth, ignition_s + end, longest_s, thrust, waiting, left_kg, mass_kg, state);
+    waiting.Advance(ignition_s + end, longest_s, thrust, mass_kg, state);
   }
 }
 
@@ -223,8 +243,8 @@ std::optional<GuidedStage> FlyEarlierBurns(const GuidanceMission& mission, const
   };
   const auto fly = [&](const GuidedStage& stage, double ignition_s, double duration_s, const Vector3& offset,
                        const auto& direction) {
-    if (stage.is_cut_off())
-      BurnEngine(mission, stage, ignition_s, duration_s, steps.engine_s, offset, direction, state);
+    if (stage.is_engine())
+      BurnEngine(mission, stage, ignition_s, duration_s, steps.engine_s, offset, {}, direction, state);
     else
       Burn(mission, stage, ignition_s, steps.burn_s, offset, {}, direction, state);
   };
@@ -289,9 +309,9 @@ void FlyBurnsBeforeLast(const GuidanceMission& mission, const Knowledge& known, 
     const Lags lags =
         LagsOf(mission.limits, known, planned(from.time_s), mission.program.RateAt(from.time_s));
     const auto direction = [&](double time_s) { return lags.Of(planned(time_s), time_s - from.time_s); };
-    if (known.below.is_cut_off()) {
+    if (known.below.is_engine()) {
       BurnEngine(mission, known.below, known.burn_ignition_s, plan.value[kBelowCutOff], steps.engine_s,
-                 known.thrust_offset_rad_I, direction, state);
+                 known.thrust_offset_rad_I, {}, direction, state);
       if (mission.is_restart)
         way.restarted = AfterBurn(known.below, known.last, state.time_s - known.burn_ignition_s);
     } else {
@@ -368,7 +388,12 @@ Injection Predict(const GuidanceMission& mission, const PlanPrior& prior, const 
   const Vector3 offset = lit ? known.thrust_offset_rad_I : Vector3(0.0, 0.0, 0.0);
   if (known.last.is_cut_off())
     BurnEngine(mission, restarted ? *restarted : known.last, ignition_s, plan.value[kCutOff], steps.engine_s,
-               offset, direction, state);
+               offset, {}, direction, state);
+  else if (known.last.is_engine())
+    BurnEngine(mission, known.last, ignition_s, HUGE_VAL, steps.engine_s, offset,
+               {turn.from_s - turn.round_s, turn.from_s + turn.round_s, turn.back_s - turn.round_s,
+                turn.back_s + turn.round_s, brakes_s},
+               direction, state);
   else
     Burn(mission, known.last, ignition_s, steps.burn_s, offset,
          {turn.from_s - turn.round_s, turn.from_s + turn.round_s, turn.back_s - turn.round_s,

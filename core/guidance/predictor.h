@@ -50,7 +50,7 @@ struct Injection {
 struct PredictorSteps {
   double burn_s = 2.5;
   double coast_s = 40.0;
-  double engine_s = 6.0;  ///< in a burn that guidance cuts off
+  double engine_s = 6.0;  ///< in an engine's burn
 };
 
 /// A predicted way up to the last burn. Plans that differ in their last burn alone share it, and plans that

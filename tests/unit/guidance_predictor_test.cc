@@ -210,7 +210,8 @@ TEST(DirectionTable, HasItsSlopeFromItsFirstPointOnAndNoneOutside) {
 }
 
 TEST(BuildPrior, TurnsTheLastBurnByFortyFiveDegreesAtMost) {
-  PlanPrior prior = BuildPrior(PlainMission());
+  const GuidanceMission mission = PlainMission();
+  PlanPrior prior = BuildPrior(mission);
   EXPECT_EQ(prior.low[kWaste], 0.0);
   prior.nominal.value[kWaste] = prior.high[kWaste];
   EXPECT_NEAR(LastBurnAttitude(prior.nominal, prior).turn_rad(), 45.0 * kDeg, 1e-12);
@@ -247,7 +248,8 @@ TEST(LastBurnAttitude, TurnsOnlyOnceTheMotorIsKnown) {
 }
 
 TEST(LastBurnAttitude, TurnsNoFasterThanTheCommandCan) {
-  PlanPrior prior = BuildPrior(PlainMission());
+  const GuidanceMission mission = PlainMission();
+  PlanPrior prior = BuildPrior(mission);
   prior.yaw_half_rad = 0.0;
   Plan plan = prior.nominal;
   for (int i = 0; i <= 100; ++i) {

@@ -196,6 +196,32 @@ TEST_P(GuidedToANode, TurnsThePlane) {
 INSTANTIATE_TEST_SUITE_P(Gallery, GuidedToANode, testing::Values("electron", "vega", "falcon9"),
                          [](const auto& launcher) { return std::string(launcher.param); });
 
+// A node so far away that the burn before the last one turns at its bound, and the last one by 25 degrees.
+// Plans of the coast's last seconds stay near each other: ignition does not walk away, nor wait for an
+// attitude that each plan moves.
+TEST(GuidedToAFarNode, WaitsForNoAttitudeThatPlansMove) {
+  for (const double off_deg : {0.15, -0.15}) {
+    Launched launched("vega");
+    const double wanted_rad = launched.nominal.ascending_node_rad + off_deg * kDeg;
+    launched.definition.target.node_rad = wanted_rad;
+    const FlightModel model(launched.definition);
+    for (std::uint64_t index = 0; index < 3; ++index) {
+      SCOPED_TRACE(std::to_string(off_deg) + " deg, case " + std::to_string(index));
+      const FlightResult flight = Fly(model, launched.Drawn(index));
+      const double apart_deg = Apart_deg(Launched::OrbitOf(flight).ascending_node_rad, wanted_rad);
+      std::printf(
+          "node %+.2f deg off, case %d: missed by %8.5f deg, inclination %8.5f deg, postponed %g s, "
+          "converged %g\n",
+          off_deg, static_cast<int>(index), apart_deg, MetricOf(flight, "inclination_error_deg"),
+          MetricOf(flight, "guidance_postponement_s"), MetricOf(flight, "guidance_converged"));
+      EXPECT_EQ(MetricOf(flight, "guidance_converged"), 1.0);
+      EXPECT_NEAR(apart_deg, 0.0, 0.012);
+      EXPECT_NEAR(MetricOf(flight, "inclination_error_deg"), 0.0, 0.003);
+      EXPECT_LT(MetricOf(flight, "guidance_postponement_s"), 20.0);
+    }
+  }
+}
+
 // Falcon 9's transfer orbit, with the true anomaly of the injection. With an argument of perigee the coast
 // moves; without one the last burn turns the ellipse.
 TEST(GuidedToAPlace, ByTheCoastOrByTheEllipsesTurn) {

@@ -1,0 +1,22 @@
+// The air as guidance knows it: the standard's, or the campaign's measured one, at rest over the rotating
+// Earth.
+#pragma once
+
+#include "core/guidance/predictor.h"
+
+namespace dispersa {
+
+/// Dynamic pressure, Pa.
+double DynamicPressure(const GuidanceMission& mission, const NavigatedState& state);
+
+/// From this dynamic pressure on (Pa) a stage that lifted off may be guided. Predictions have no air: at 1
+/// kPa its force is 1 % of the thrust of a large core. Ten degrees of incidence are 0.17 kPa rad, a tenth of
+/// what launchers bear.
+inline constexpr double kThinAir_pa = 1e3;
+
+/// How far a flight is beyond the criterion of a body that waits: 0 or more where the body is due. In m of
+/// altitude, or the logarithm of the criterion's heat flux over the flight's. Both are almost straight over a
+/// few seconds.
+double BeyondCriterion(const GuidanceMission& mission, const MassDrop& drop, const NavigatedState& state);
+
+}  // namespace dispersa
