@@ -90,8 +90,7 @@ std::size_t FirstGuided(const Vehicle& vehicle, const GuidanceConfig& config) {
 }
 
 bool SteersBelow(const Vehicle& vehicle) {
-  return vehicle.stages.size() > 2 || vehicle.boosters.count > 0 ||
-         !IsCutOffByGuidance(vehicle.stages.back());
+  return vehicle.stages.size() > 2 || !IsCutOffByGuidance(vehicle.stages.back());
 }
 
 }  // namespace dispersa
