@@ -138,7 +138,7 @@ double IdealVelocity(const GuidedStage& stage);
 bool IsCutOffByGuidance(const Stage& stage);
 /// The first of the burns that the settings let guidance plan, as an index of the vehicle's stages.
 std::size_t FirstGuided(const Vehicle& vehicle, const GuidanceConfig& config);
-/// Whether it steers the last stage but one. A stage that lifts off without boosters is steered by the
+/// Whether it steers the last stage but one. A stage that lifts off is steered by the
 /// reference, if the last stage's engine can be cut off: little of its burn is above the air.
 bool SteersBelow(const Vehicle& vehicle);
 
