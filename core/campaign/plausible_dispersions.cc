@@ -76,6 +76,20 @@ void CheckAir(const WeatherTable& table, const Add& add) {
                      std::exp(kAirPart), StandardAtmosphere1976(table.altitude_m[level]).density_kg_m3)});
 }
 
+bool DrawsTailOffOfNone(const Campaign& campaign) {
+  bool draws = false;
+  for (const Dispersion& dispersion : campaign.dispersions)
+    for (const int input : dispersion.inputs)
+      for (std::size_t i = 0; i < campaign.vehicle.stages.size(); ++i) {
+        if (InputColumns()[static_cast<std::size_t>(input)].name !=
+            "tail_off_factor_stage" + std::to_string(i + 1))
+          continue;
+        if (campaign.vehicle.stages[i].motor.tail_off_s > 0.0) return false;
+        draws = true;
+      }
+  return draws;
+}
+
 }  // namespace
 
 std::vector<UnusualDispersion> UnusualDispersions(const Campaign& campaign) {
@@ -105,6 +119,9 @@ std::vector<UnusualDispersion> UnusualDispersions(const Campaign& campaign) {
            fmt::format("{:g} to {:g} ({})", usual.low, usual.high, usual.source)});
     }
   }
+  if (DrawsTailOffOfNone(campaign))
+    add({"tail_off", "nothing uses it: no stage that it draws for has a tail_off_*",
+         "tail_off_* of the stages' motors, or no tail_off"});
   const auto draws_tables = [](const Dispersion& dispersion) {
     return dispersion.name.starts_with("aerodynamic_uncertainty/");
   };

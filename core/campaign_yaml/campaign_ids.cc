@@ -38,14 +38,19 @@ std::string VehicleSha256(const InputNode& vehicle) {
     return member.key == "structure_beam" || member.key == "sensors" || member.key == "nozzles" ||
            member.key == "limits" || member.key == "loss_of_control" || member.key == "descent";
   });
-  // Nor does a point mass know what its actuators lack, or what its structure bears.
+  // Nor does a point mass know what its actuators lack, what its structure bears, or how an engine tails off.
   if (InputNode* stages = rigid.Find("stages"))
-    for (InputNode& stage : stages->items)
+    for (InputNode& stage : stages->items) {
+      if (InputNode* motor = stage.Find("motor"))
+        if (InputNode* liquid = motor->Find("liquid"))
+          std::erase_if(liquid->members,
+                        [](const InputMember& member) { return member.key.starts_with("tail_off_"); });
       if (InputNode* gimbal = stage.Find("gimbal"))
         std::erase_if(gimbal->members, [](const InputMember& member) {
           return member.key.starts_with("dead_zone_") || member.key.starts_with("friction_") ||
                  member.key.starts_with("resolution_");
         });
+    }
   if (InputNode* boosters = rigid.Find("boosters"))
     std::erase_if(boosters->members,
                   [](const InputMember& member) { return member.key.starts_with("attachment_station_"); });

@@ -45,6 +45,7 @@ class Batch {
     unsigned jettisoned = 0;  ///< LauncherPhase's
     int stuck_nozzle = -1;
     bool past_last_burn = false;
+    bool tails_off = false;     ///< the cut-off has been commanded, and the thrust decays
     int whole_delay = 0;        ///< ticks between command and actuator, and
     double part_delay_s = 0.0;  ///< a part of one
     double switch_s = 0.0;      ///< when, within a tick, the next command gets through
@@ -93,7 +94,7 @@ class Batch {
   void FlyThrusters();
   void LetGo();
   void CutOff();
-  void CutOffByGuidance(int lane);
+  void CutOffByGuidance(int lane, double lead_s, double growing_m_s2);
   void CutOffAt(int lane, double at_s);
   void Guide();
   void Meter(M powered);

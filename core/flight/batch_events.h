@@ -295,6 +295,7 @@ void Batch<T>::Ignite(int lane, int stage) {
 template <class T>
 void Batch<T>::BurnOut(int lane, int stage) {
   FlightRecord& record = *slot_[lane].record;
+  slot_[lane].tails_off = false;
   StateValues y;
   step_.ReadLane(lane, y);
   // Loads peak here, between ticks.

@@ -58,27 +58,35 @@ void Batch<T>::LetGo() {
 
 /// Engines that are cut off at an inertial speed, or by guidance. The flight computer extrapolates the speed
 /// over the next tick at its present growth. It commands the cut-off for the instant at which the speed is
-/// reached.
+/// reached, or CutOffLead() earlier. The growth is then the mean of that time: the acceleration by thrust
+/// grows by its square over the exhaust velocity.
 template <class T>
 void Batch<T>::CutOff() {
   const unsigned burning = Bits(live_ & step_.phase().burning);
   for (int lane = 0; lane < kLanes; ++lane) {
-    if (!(burning >> lane & 1u)) continue;
     Slot& slot = slot_[lane];
-    if (const GuidedFlight* const guided = slot.record->guided; guided != nullptr && guided->cuts_off()) {
-      CutOffByGuidance(lane);
-      continue;
-    }
+    if (!(burning >> lane & 1u) || slot.tails_off) continue;
     const Motor* const engine = slot.record->CutOffEngine(slot.stack);
     if (engine == nullptr) continue;
+    const double lead_s = CutOffLead(*engine);
+    const Vector<double> force_n = LaneOf(step_.now().force_n, lane);
+    const double mass_kg = Lane(step_.now().mass_kg, lane);
+    const double growing_m_s2 = lead_s > 0.0
+                                    ? 0.5 * lead_s * Dot(force_n, force_n) /
+                                          (Square(mass_kg) * engine->specific_impulse_s * kStandardGravity)
+                                    : 0.0;
+    if (const GuidedFlight* const guided = slot.record->guided; guided != nullptr && guided->cuts_off()) {
+      CutOffByGuidance(lane, lead_s, growing_m_s2);
+      continue;
+    }
     if (engine->cut_off == CutOff::kByGuidance) {  // which has no plan
-      const double end_s = Lane(step_.phase().ignition_s, lane) + engine->cut_off_s;
+      const double end_s = Lane(step_.phase().ignition_s, lane) + engine->cut_off_s - lead_s;
       if (end_s - Lane(time_s_, lane) <= tick_s_) CutOffAt(lane, Max(end_s, Lane(time_s_, lane)));
       continue;
     }
     const Vector<double> v = LaneOf(step_.motion().v, lane);
     const double speed_m_s = Sqrt(Dot(v, v));
-    double rate_m_s2 = Dot(v, LaneOf(step_.acceleration_m_s2(), lane)) / speed_m_s;
+    double rate_m_s2 = Dot(v, LaneOf(step_.acceleration_m_s2(), lane)) / speed_m_s + growing_m_s2;
     double wanted_m_s = engine->cut_off_velocity_m_s;
     if (engine->cut_off == CutOff::kAtTarget) {
       const Vector<double> p = LaneOf(step_.motion().p, lane);
@@ -87,35 +95,39 @@ void Batch<T>::CutOff() {
       rate_m_s2 -= CutOffSpeedRate(*engine, radius_m, altitude_m, Dot(p, v) / radius_m);
     }
     const double lacking_m_s = wanted_m_s - speed_m_s;
-    if (lacking_m_s > rate_m_s2 * tick_s_) continue;
-    CutOffAt(lane, Lane(time_s_, lane) + (lacking_m_s > 0.0 ? lacking_m_s / rate_m_s2 : 0.0));
+    if (lacking_m_s > rate_m_s2 * (tick_s_ + lead_s)) continue;
+    CutOffAt(lane,
+             Lane(time_s_, lane) + (lacking_m_s > 0.0 ? Max(lacking_m_s / rate_m_s2 - lead_s, 0.0) : 0.0));
   }
 }
 
 /// The same at a speed or a time that guidance has planned, by measured values.
 template <class T>
-void Batch<T>::CutOffByGuidance(int lane) {
+void Batch<T>::CutOffByGuidance(int lane, double lead_s, double growing_m_s2) {
   const auto vector_of = [lane](const Vector<T>& v) {
     return Vector3(Lane(v.x, lane), Lane(v.y, lane), Lane(v.z, lane));
   };
   const Instant<T>& now = step_.now();
   const double time_s = Lane(time_s_, lane);
   const double in_s = slot_[lane].record->guided->CutOffIn(
-      time_s, Lane(step_.phase().ignition_s, lane), vector_of(step_.motion().v),
-      vector_of(step_.acceleration_m_s2()), vector_of(now.force_n).norm() / Lane(now.mass_kg, lane));
+                          time_s, Lane(step_.phase().ignition_s, lane), vector_of(step_.motion().v),
+                          vector_of(step_.acceleration_m_s2()), growing_m_s2,
+                          vector_of(now.force_n).norm() / Lane(now.mass_kg, lane)) -
+                      lead_s;
   if (!(in_s <= tick_s_)) return;
   CutOffAt(lane, time_s + (in_s > 0.0 ? in_s : 0.0));
 }
 
 template <class T>
 void Batch<T>::CutOffAt(int lane, double at_s) {
-  const Slot& slot = slot_[lane];
+  Slot& slot = slot_[lane];
   FlightRecord& record = *slot.record;
   // By then it has burnt out.
   if (at_s >= Lane(step_.phase().ignition_s, lane) + record.plant.stacks.data()[slot.stack].burn.duration_s)
     return;
   record.CutOff(slot.stack, at_s);
   step_.ShortenBurn(lane, record.plant.stacks.data()[slot.stack].burn);
+  slot.tails_off = record.plant.stacks.data()[slot.stack].burn.tail_s > 0.0;
   SetStop(lane);
 }
 
@@ -434,7 +446,7 @@ template <class T>
 void Batch<T>::Guide() {
   for (int lane = 0; lane < kLanes; ++lane) {
     FlightRecord* const record = slot_[lane].record;
-    if (record == nullptr || slot_[lane].past_last_burn) continue;
+    if (record == nullptr || slot_[lane].past_last_burn || slot_[lane].tails_off) continue;
     if (Lane(tick_, lane) < record->guided->next_tick()) continue;
     StateValues y;
     step_.ReadLane(lane, y);

@@ -162,6 +162,7 @@ struct FlightInputs {
   PerFurtherNozzle booster_dry_mass_factor = AllFurtherNozzles(1.0);
   PerFurtherNozzle booster_propellant_factor = AllFurtherNozzles(1.0);
   PerFurtherNozzle booster_mixture_ratio_factor = AllFurtherNozzles(1.0);
+  PerStage tail_off_factor = AllStages(1.0);  ///< of the duration of a motor's tail-off
 };
 
 /// The usual range of an input, in the unit of its column. `validate --strict` warns about values outside it.
@@ -383,6 +384,10 @@ inline void DeclareInputs(InputDeclarations& inputs) {
   inputs.EachFurtherNozzle(&In::booster_propellant_factor, "booster_propellant_factor").Usually(kUsualLoad);
   inputs.EachFurtherNozzle(&In::booster_mixture_ratio_factor, "booster_mixture_ratio_factor")
       .Usually({0.9, 1.1, "0.5 to 3 % of engines"});
+  inputs
+      .EachStage(&In::tail_off_factor, "tail_off_factor", "", 1.0,
+                 {"tail_off", "factor of the duration of tail_off_*; by a cut-off the impulse goes with it"})
+      .Usually({0.4, 1.6, "5 to 20 %"});
 }
 
 /// All columns in their fixed order, names without the prefix `input_`.

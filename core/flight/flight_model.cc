@@ -198,9 +198,9 @@ void SetMasses(const Vehicle& vehicle, LauncherPlant& plant) {
   SetBending(vehicle, modes, plant);
 }
 
-void CutOffStage(const Vehicle& vehicle, int stage, double since_ignition_s, LauncherPlant& plant) {
+void CommandCutOffOf(const Vehicle& vehicle, int stage, double since_ignition_s, LauncherPlant& plant) {
   const std::size_t i = static_cast<std::size_t>(stage);
-  CutOffAt(since_ignition_s, plant.stacks[i].burn);
+  CommandCutOff(vehicle.stages[i].motor, since_ignition_s, plant.stacks[i].burn);
   PassOnPropellant(vehicle, i, plant);
 }
 
@@ -515,8 +515,11 @@ FlightModel::FlightModel(FlightDefinition definition)
   }
   LauncherPlant planned = nominal_;
   for (std::size_t i = 0; i < planned.stacks.size(); ++i)
-    if (EndsInFlight(definition_.vehicle.stages[i].motor))
-      CutOffStage(definition_.vehicle, static_cast<int>(i), definition_.cut_off_s[i], planned);
+    if (EndsInFlight(definition_.vehicle.stages[i].motor)) {
+      // At once: a flight's own decay comes at another time, and must not raise the commands of others.
+      CutOffAt(definition_.cut_off_s[i], planned.stacks[i].burn);
+      PassOnPropellant(definition_.vehicle, i, planned);
+    }
   std::vector<MotorBurn> burns;
   for (const LauncherStack& stack : planned.stacks) burns.push_back(stack.burn);
   const std::vector<StageTimes> times =
@@ -673,6 +676,7 @@ LauncherPlant FlightModel::PlantFor(const FlightInputs& in, std::optional<std::u
     const double flow_factor = in.mass_flow_factor[i] * FlowFactor(stack.layout, in, i, further);
     stack.burn = dispersed ? BuildBurn(vehicle.stages[i], thrust_factor, flow_factor)
                            : BuildBurn(vehicle.stages[i], thrust_factor, flow_factor, stack.burn.curve);
+    if (in.tail_off_factor[i] != 1.0) SetTailOff(in.tail_off_factor[i], vehicle.stages[i], stack.burn);
     if (i == 0 && plant.boosters)
       plant.boosters = BoostersFor(definition_.vehicle, vehicle.boosters, in, thrust_factor, *plant.boosters);
     stack.gimbal.bandwidth_rad_s *= in.actuator_bandwidth_factor * in.stack_actuator_bandwidth_factor[i];

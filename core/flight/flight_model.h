@@ -62,9 +62,9 @@ struct FlightDefinition {
   FlightCourse course = {};
 };
 
-/// Ends a stage's burn by command. The remaining propellant belongs to the next stage if that stage restarts
-/// the same engine.
-void CutOffStage(const Vehicle& vehicle, int stage, double since_ignition_s, LauncherPlant& plant);
+/// Commands the end of a stage's burn. The remaining propellant belongs to the next stage if that stage
+/// restarts the same engine.
+void CommandCutOffOf(const Vehicle& vehicle, int stage, double since_ignition_s, LauncherPlant& plant);
 
 /// The reference attitude at the autopilot's ticks, for flights that are flown side by side. A row has 8
 /// doubles: q_IR (w, x, y, z), w_LR_R (x, y, z), unused. The last row holds for all later ticks.

@@ -113,7 +113,7 @@ class FlightRecord {
   const BendingTable* BendingWithout(int stack, unsigned jettisoned) const;
   /// A stage's engine, if a speed ends its burn; else null.
   const Motor* CutOffEngine(int stage) const;
-  /// Its engine will be cut off at `time_s`, by command: events from there on are new.
+  /// Its engine gets the command of its cut-off at `time_s`: events from there on are new.
   void CutOff(int stage, double time_s);
   /// The boosters leave, and with them the state of their nozzles.
   void LetGoOfBoosters(unsigned jettisoned, double time_s, double propellant_kg, double* y);

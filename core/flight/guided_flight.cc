@@ -23,10 +23,12 @@ double GuidedFlight::ignition_s() const { return guidance_->ignition_s(); }
 bool GuidedFlight::cuts_off() const { return guidance_->cuts_off(); }
 
 double GuidedFlight::CutOffIn(double time_s, double ignition_s, const Vector3& v_IC_I,
-                              const Vector3& acceleration_m_s2_I, double specific_force_m_s2) const {
+                              const Vector3& acceleration_m_s2_I, double growing_m_s2,
+                              double specific_force_m_s2) const {
   const Vector3 seen = v_IC_I + velocity_error_I_;
   const double speed_m_s = seen.norm();
-  return guidance_->CutOffIn(time_s, ignition_s, speed_m_s, seen.dot(acceleration_m_s2_I) / speed_m_s,
+  return guidance_->CutOffIn(time_s, ignition_s, speed_m_s,
+                             seen.dot(acceleration_m_s2_I) / speed_m_s + growing_m_s2,
                              accelerometer_factor_ * specific_force_m_s2);
 }
 

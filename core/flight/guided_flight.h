@@ -45,9 +45,10 @@ class GuidedFlight {
   double ignition_s() const;
   /// Whether guidance decides when the present burn ends.
   bool cuts_off() const;
-  /// Then: the time from now until it is to end, s. The arguments are true values.
+  /// Then: the time from now until it is to end, s. The arguments are true values. The speed's growth is that
+  /// of the acceleration, and `growing_m_s2` beyond it.
   double CutOffIn(double time_s, double ignition_s, const Vector3& v_IC_I, const Vector3& acceleration_m_s2_I,
-                  double specific_force_m_s2) const;
+                  double growing_m_s2, double specific_force_m_s2) const;
 
   /// Whether the lane's reference is its own.
   bool steers() const { return steers_; }

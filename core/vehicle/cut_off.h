@@ -16,6 +16,11 @@ inline bool EndsInFlight(const Motor& motor) {
   return EndsAtSpeed(motor) || motor.cut_off == CutOff::kByGuidance;
 }
 
+/// By how much the flight computer commands a cut-off before the instant at which the burn should end. The
+/// thrust decays linearly in `tail_off_s` after the command, so the burn has the impulse of one that ends at
+/// that instant at once. It knows the nominal decay only.
+inline double CutOffLead(const Motor& motor) { return 0.5 * motor.tail_off_s; }
+
 /// The inertial speed (m/s) at which the engine is cut off, at a distance from the Earth's centre and a
 /// geodetic altitude. For `at: target` it is that of an orbit with the target's energy about a point mass.
 /// Infinite if no target has been given (core/trajectory/aim.h). Precondition: EndsAtSpeed(motor).

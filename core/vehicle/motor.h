@@ -62,7 +62,7 @@ struct Motor {
       0.0;  ///< all nozzles together (the paper's 4P), in vacuum, for a curve its greatest value
   double burning_time_s = 0.0;  ///< propellant_mass / burning_time is the flow at full thrust
   double ignition_rise_s = 0.0;
-  double tail_off_s = 0.0;
+  double tail_off_s = 0.0;  ///< of a liquid stage: after a cut-off (CutOffLead)
   double nozzle_exit_area_m2 = 0.0;
   double published_mass_flow_kg_s = 0.0;
   ThrustCurve thrust_curve = {};  ///< replaces ramps, thrust_n and burning_time_s (empty: no curve)
@@ -108,7 +108,15 @@ inline void DescribeLiquid(Fields& fields, Motor& motor) {
   fields.Quantity("specific_impulse", kTime, kPositive, motor.specific_impulse_s, "in vacuum");
   fields.Quantity("residual_mass", kMass, kNonNegative, motor.residual_mass_kg,
                   "propellant that stays in the tanks", 0.0);
+  fields.Quantity("tail_off", kTime, Between(0.0, 2.0), motor.tail_off_s,
+                  "linear decay of the thrust by a cut-off, which is commanded half of it earlier", 0.0);
   DescribeCommands(fields, motor);
+  fields.Check([&] {
+    if (motor.cut_off == CutOff::kAtTime && motor.cut_off_s < 0.5 * motor.tail_off_s)
+      fields.Refuse("tail_off",
+                    "is more than twice cut_off.after_*: its command would be before the ignition",
+                    "at most twice cut_off.after_*");
+  });
 }
 
 inline void DescribeThrustCurve(Fields& fields, Motor& motor) {

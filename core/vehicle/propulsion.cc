@@ -3,6 +3,7 @@
 #include <algorithm>
 
 #include "core/math/functions.h"
+#include "core/vehicle/cut_off.h"
 #include "core/vehicle/prepared_burn.h"
 #include "core/vehicle/throttled_burn.h"
 
@@ -94,18 +95,44 @@ MotorBurn BuildBurn(const Stage& stage, double thrust_factor, double flow_factor
   return burn;
 }
 
-void SetPropellant(const Motor& engine, double propellant_kg, MotorBurn& burn) {
-  const ThrottledBurn throttled = Throttled(engine, propellant_kg, burn.full_flow_kg_s);
+namespace {
+
+void SetThrottled(const Motor& engine, double propellant_kg, const CutOffCommand& command, MotorBurn& burn) {
+  const ThrottledBurn throttled = Throttled(engine, propellant_kg, burn.full_flow_kg_s, command);
   burn.propellant_mass_kg = propellant_kg;
   burn.duration_s = throttled.curve.end_s;
   burn.left_kg = throttled.left_kg;
   burn.curve = std::make_shared<const BurnCurve>(throttled.curve);
 }
 
+}  // namespace
+
+void SetPropellant(const Motor& engine, double propellant_kg, MotorBurn& burn) {
+  CutOffCommand command{HUGE_VAL, burn.tail_s};
+  if (engine.cut_off == CutOff::kAtTime) command.at_s = std::max(engine.cut_off_s - CutOffLead(engine), 0.0);
+  SetThrottled(engine, propellant_kg, command, burn);
+}
+
+void SetTailOff(double factor, const Stage& stage, MotorBurn& burn) {
+  if (burn.curve && !stage.is_liquid()) return;
+  const double longer_s = (factor - 1.0) * burn.tail_s;
+  burn.tail_s += longer_s;
+  if (stage.is_liquid())
+    SetPropellant(stage.motor, burn.propellant_mass_kg, burn);
+  else
+    burn.duration_s += 0.5 * longer_s;
+}
+
 void CutOffAt(double since_ignition_s, MotorBurn& burn) {
   if (since_ignition_s >= burn.duration_s) return;
   burn.left_kg = burn.Propellant(since_ignition_s);
   burn.duration_s = since_ignition_s;
+}
+
+void CommandCutOff(const Motor& engine, double since_ignition_s, MotorBurn& burn) {
+  if (burn.tail_s == 0.0) return CutOffAt(since_ignition_s, burn);
+  if (since_ignition_s < burn.duration_s)
+    SetThrottled(engine, burn.propellant_mass_kg, {since_ignition_s, burn.tail_s}, burn);
 }
 
 }  // namespace dispersa

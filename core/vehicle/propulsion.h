@@ -47,8 +47,13 @@ MotorBurn BuildBurn(const Stage& stage, double thrust_factor, double flow_factor
 
 /// Gives a restarted engine's burn the propellant that its burn before left.
 void SetPropellant(const Motor& engine, double propellant_kg, MotorBurn& burn);
-/// Ends a throttled burn by command.
+/// Gives a burn a tail-off of another duration. A solid motor burns its propellant all the same; after a
+/// cut-off the propellant of the decay changes. A thrust curve has its own tail-off.
+void SetTailOff(double factor, const Stage& stage, MotorBurn& burn);
+/// Ends a throttled burn at once.
 void CutOffAt(double since_ignition_s, MotorBurn& burn);
+/// Ends it by a command, after which its thrust decays in burn.tail_s.
+void CommandCutOff(const Motor& engine, double since_ignition_s, MotorBurn& burn);
 
 /// Propellant, motor, grain and tanks of one booster, as those of a stage.
 Stage AsStage(const Boosters& boosters);

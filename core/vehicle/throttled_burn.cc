@@ -38,22 +38,34 @@ double TimeToBurn(const Piece& piece, double wanted_s) {
   return 2.0 * wanted_s / (piece.level + std::sqrt(std::max(root2, 0.0)));
 }
 
+// Up to a command, and the decay after it.
+void Cut(const CutOffCommand& command, std::vector<Piece>& pieces) {
+  while (pieces.size() > 1 && pieces.back().begin_s >= command.at_s) pieces.pop_back();
+  Piece& last = pieces.back();
+  if (command.at_s >= last.end_s) return;
+  last.end_s = command.at_s;
+  const double level = last.level + last.slope_1_s * (last.end_s - last.begin_s);
+  if (command.tail_off_s > 0.0 && level > 0.0)
+    pieces.push_back({command.at_s, level, -level / command.tail_off_s, command.at_s + command.tail_off_s});
+}
+
 }  // namespace
 
-ThrottledBurn Throttled(const Motor& engine, double propellant_kg, double full_flow_kg_s) {
+ThrottledBurn Throttled(const Motor& engine, double propellant_kg, double full_flow_kg_s,
+                        const CutOffCommand& command) {
   const double usable_s = std::max(propellant_kg - engine.residual_mass_kg, 0.0) / full_flow_kg_s;
-  const double cut_s = engine.cut_off == CutOff::kAtTime ? engine.cut_off_s : kNever_s;
   ThrottledBurn burn;
   double burnt_s = 0.0;  // at full flow
   bool ended = false;
-  const std::vector<Piece> pieces = PiecesOf(engine.throttle);
+  std::vector<Piece> pieces = PiecesOf(engine.throttle);
+  Cut(command, pieces);
   for (std::size_t i = 0; i < pieces.size() && !ended; ++i) {
     const Piece& piece = pieces[i];
-    double end_s = std::min(piece.end_s, cut_s);
+    double end_s = piece.end_s;
     const double rest_s = usable_s - burnt_s;
     const bool depletes = end_s == kNever_s || BurntBy(piece, end_s - piece.begin_s) >= rest_s;
     if (depletes) end_s = piece.begin_s + TimeToBurn(piece, rest_s);
-    ended = depletes || end_s == cut_s || i + 1 == pieces.size();
+    ended = depletes || i + 1 == pieces.size();
     const double length_s = end_s - piece.begin_s;
     const double burnt_then_s = burnt_s + BurntBy(piece, length_s);
     if (ended) {

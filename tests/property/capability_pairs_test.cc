@@ -101,6 +101,7 @@ void MakeLastStageLiquid(Launcher& launcher) {
 void AddRestart(Launcher& launcher) {
   Vehicle& vehicle = launcher.vehicle;
   MakeLastStageLiquid(launcher);
+  vehicle.stages.back().motor.tail_off_s = 0.5;
   vehicle.stages.push_back(vehicle.stages.back());
   Stage &first = *(vehicle.stages.end() - 2), &again = vehicle.stages.back();
   again.restarts = true;
@@ -120,6 +121,7 @@ void CutOffAtVelocity(Launcher& launcher) {
   Motor& engine = launcher.vehicle.stages.back().motor;
   engine.cut_off = CutOff::kAtVelocity;
   engine.cut_off_velocity_m_s = 7300.0;
+  engine.tail_off_s = 0.6;
 }
 void Throttle(Launcher& launcher) {
   Stage& stage = launcher.vehicle.stages[1];
@@ -353,6 +355,7 @@ FlightInputs InputsOf(const Launcher& launcher, std::uint64_t index) {
   Stream draws(3, index, "pairs");
   FlightInputs in = Table3Inputs();
   for (double& factor : in.thrust_factor) factor = 1.0 + 0.002 * draws.Normal();
+  in.tail_off_factor = AllStages(1.2);
   // What is left of the wind after a rail was set for it.
   in.wind_max_speed_m_s = (launcher.course.is_controlled ? 30.0 : 3.0) * draws.Uniform();
   if (launcher.is_turbulent) in.turbulence_exceedance = 1e-1;

@@ -70,6 +70,18 @@ TEST(UnusualDispersions, AreErrorsOfNavigationThatNothingUses) {
   EXPECT_THAT(Texts(campaign), testing::IsEmpty());
 }
 
+TEST(UnusualDispersions, AreTailOffsThatNoStageHas) {
+  Campaign campaign;
+  campaign.vehicle.stages.resize(2);
+  campaign.dispersions = {Normal("tail_off_factor_stage1", 1.0, 0.1),
+                          Normal("tail_off_factor_stage2", 1.0, 0.1)};
+  EXPECT_THAT(Texts(campaign),
+              testing::ElementsAre("tail_off nothing uses it: no stage that it draws for has a tail_off_* | "
+                                   "tail_off_* of the stages' motors, or no tail_off"));
+  campaign.vehicle.stages[1].motor.tail_off_s = 0.3;
+  EXPECT_THAT(Texts(campaign), testing::IsEmpty());
+}
+
 TEST(UnusualDispersions, AreWindsOfAnotherUnit) {
   Campaign campaign;
   campaign.wind_table = WeatherTable{WindTable{{0.0, 20.0}, {0.0, 3000.0}, {0.0, 4000.0}}};

@@ -187,6 +187,22 @@ TEST(LiquidFile, UnusualLiquidsAreWarnedAbout) {
       "(solid propellants: Sutton and Biblarz, table 12-1)\n");
 }
 
+TEST(LiquidFile, HasATailOffThatItsCommandPrecedes) {
+  const InputFiles files;
+  MakeLiquid(files,
+             "motor: {liquid: {thrust_kn: 75, specific_impulse_s: 290, tail_off_s: 0.5, cut_off: {at: time, "
+             "after_s: 50}}}");
+  EXPECT_EQ(StageOf(files).motor.tail_off_s, 0.5);
+  files.Edit("vehicle.yaml", "after_s: 50", "after_s: 0.2");
+  EXPECT_EQ(files.Texts(CheckFile(files.Path("vehicle.yaml")).errors),
+            "vehicle.yaml:11:74: stages[0].motor.liquid.tail_off_s: is more than twice cut_off.after_*: its "
+            "command would be before the ignition, allowed: at most twice cut_off.after_*\n");
+  files.Edit("vehicle.yaml", "tail_off_s: 0.5", "tail_off_s: 2.5");
+  EXPECT_EQ(files.Texts(CheckFile(files.Path("vehicle.yaml")).errors),
+            "vehicle.yaml:11:74: stages[0].motor.liquid.tail_off_s: 2.5 is out of range, allowed: a number "
+            "from 0 to 2\n");
+}
+
 // Above the last stage's tanks stand payload and fairing, which are no part of what the tanks are measured
 // against.
 TEST(LiquidFile, TanksOfTheLastStageAreMeasuredFromTheirTopOn) {

@@ -28,8 +28,9 @@ TEST(LiquidFlight, GainsTheRocketEquationsSpeedWhateverTheThrottle) {
   const double exhaust_m_s = stage.motor.thrust_n * stage.motor.burning_time_s / stage.propellant_mass_kg;
   const Throttle throttles[] = {{}, {{0.0, 1.3, 30.0, 33.3, 60.0}, {0.2, 1.0, 1.0, 0.55, 0.7}}};
   for (const Throttle& throttle : throttles) {
-    for (const bool cut : {false, true}) {
+    for (const auto& [cut, tail_off_s] : {std::pair{false, 0.0}, {true, 0.0}, {true, 1.9}}) {
       stage.motor.throttle = throttle;
+      stage.motor.tail_off_s = tail_off_s;
       stage.motor.cut_off = cut ? CutOff::kAtTime : CutOff::kAtDepletion;
       stage.motor.cut_off_s = 51.7;
       for (const auto& [thrust, flow] : {std::pair{1.0, 1.0}, {1.02, 0.97}}) {
