@@ -1,5 +1,5 @@
-// Tail-offs of engines that are cut off: the orbit is that of a burn that ends at once, and a decay of another
-// duration than the flight computer knows changes the speed by its impulse.
+// Tail-offs of engines that are cut off: the orbit is that of a burn that ends at once, and a decay of
+// another duration than the flight computer knows changes the speed by its impulse.
 #include <gtest/gtest.h>
 
 #include <cmath>
@@ -108,8 +108,8 @@ TEST_P(Launchers, ReachTheOrbitOfABurnThatEndsAtOnce) {
     longer.tail_off_factor = AllStages(1.0);
     longer.tail_off_factor[decays.nominal_plant().stacks.size() - 1] = 1.2;
     const FlightResult drawn = Fly(decays, longer);
-    const double gained_m_s = MetricOf(drawn, "injection_velocity_m_s") -
-                              MetricOf(nominal, "injection_velocity_m_s"),
+    const double gained_m_s =
+                     MetricOf(drawn, "injection_velocity_m_s") - MetricOf(nominal, "injection_velocity_m_s"),
                  expected_m_s = 0.5 * 0.2 * kTail_s * AccelerationAtTheEnd(sharp);
     std::printf("%s %s: axis %.4f km and %.4f m/s by the decay; 20 %% longer: %.4f m/s, expected %.4f\n",
                 GetParam(), closed ? "closed" : "open", axis_km, speed_m_s, gained_m_s, expected_m_s);
