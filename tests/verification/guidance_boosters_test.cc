@@ -6,23 +6,15 @@
 #include <string>
 
 #include "core/campaign/flight_definition.h"
-#include "core/campaign_yaml/load.h"
-#include "core/cases/campaign_flights.h"
 #include "core/flight/tick_sample.h"
 #include "core/guidance/air.h"
+#include "tests/gallery_launcher.h"
 #include "tests/slv4_flight.h"
 
 namespace dispersa::guidance_boosters_test {
 namespace {
 
-Campaign Ariane5() { return LoadCampaign(DISPERSA_CAMPAIGNS "/gallery/ariane5/campaign.yaml"); }
-
-FlightInputs Drawn(const CampaignFlights& flights, std::uint64_t index) {
-  FlightInputs inputs = flights.Draw(index);
-  inputs.navigation_position_error_m = inputs.navigation_velocity_error_m_s = {};
-  inputs.accelerometer_scale_factor = 1.0;
-  return inputs;
-}
+Campaign Ariane5() { return GalleryLauncher(DISPERSA_CAMPAIGNS, "ariane5"); }
 
 // Boosters and two burns, of which the last one uses up its propellant after a timer. By how much the
 // reference's flight then exceeds the target's energy is the reserve.
@@ -47,7 +39,7 @@ TEST(GuidedCore, IsSteeredBelowALastBurnThatEndsByItself) {
   const CampaignFlights flights(Ariane5());
   for (std::uint64_t index = 0; index < 2; ++index) {
     SCOPED_TRACE(index);
-    const FlightInputs inputs = Drawn(flights, index);
+    const FlightInputs inputs = DrawnWithoutErrorsOfTheComputer(flights, index);
     double left_s = 0.0, first_s = 0.0, pressure_pa = 0.0;
     FlightOptions options;
     options.observe = [&](const TickSample& sample) {

@@ -8,10 +8,9 @@
 #include <vector>
 
 #include "core/campaign/flight_definition.h"
-#include "core/campaign_yaml/load.h"
-#include "core/cases/campaign_flights.h"
 #include "core/flight/tick_sample.h"
 #include "core/guidance/corrector.h"
+#include "tests/gallery_launcher.h"
 #include "tests/guidance_mission.h"
 #include "tests/liquid_stage.h"
 #include "tests/slv4_flight.h"
@@ -19,17 +18,6 @@
 namespace dispersa::guidance_cut_off_test {
 namespace {
 
-Campaign Shipped(const std::string& launcher) {
-  return LoadCampaign(DISPERSA_CAMPAIGNS "/gallery/" + launcher + "/campaign.yaml");
-}
-
-// A case's inputs, with navigation that does not err.
-FlightInputs Drawn(const CampaignFlights& flights, std::uint64_t index) {
-  FlightInputs inputs = flights.Draw(index);
-  inputs.navigation_position_error_m = inputs.navigation_velocity_error_m_s = {};
-  inputs.accelerometer_scale_factor = 1.0;
-  return inputs;
-}
 
 struct Orbit {
   double axis_error_m, inclination_error_deg, altitude_error_m, perigee_km, axis_km;
@@ -47,7 +35,7 @@ Orbit OrbitOf(const FlightResult& flight) {
 
 class GuidedLauncher : public testing::TestWithParam<std::string> {
  protected:
-  GuidedLauncher() : campaign_(Shipped(GetParam())), flights_(campaign_) {
+  GuidedLauncher() : campaign_(GalleryLauncher(DISPERSA_CAMPAIGNS, GetParam())), flights_(campaign_) {
     FlightDefinition definition = DefinitionOf(campaign_);
     closed_ = std::make_unique<FlightModel>(definition);
     definition.guidance.closed_loop = false;
@@ -65,7 +53,7 @@ TEST_P(GuidedFromAVelocity, ArrivesWithinAMetreWhereOpenLoopMissesByKilometres) 
   double farthest_m = 0.0;
   for (std::uint64_t index = 0; index < 6; ++index) {
     SCOPED_TRACE(index);
-    const FlightInputs inputs = Drawn(flights_, index);
+    const FlightInputs inputs = DrawnWithoutErrorsOfTheComputer(flights_, index);
     const Orbit open = OrbitOf(Fly(*open_, inputs)), closed = OrbitOf(Fly(*closed_, inputs));
     std::printf("%s %2d: axis %9.1f m open loop, %7.3f m closed; inclination %8.4f, %8.5f deg\n",
                 GetParam().c_str(), static_cast<int>(index), open.axis_error_m, closed.axis_error_m,
@@ -89,7 +77,7 @@ TEST_P(GuidedFromAnEnergy, MeetsThePerigeeThatOpenLoopMissesByKilometres) {
   double farthest_km = 0.0;
   for (std::uint64_t index = 0; index < 6; ++index) {
     SCOPED_TRACE(index);
-    const FlightInputs inputs = Drawn(flights_, index);
+    const FlightInputs inputs = DrawnWithoutErrorsOfTheComputer(flights_, index);
     const FlightResult open = Fly(*open_, inputs), closed = Fly(*closed_, inputs);
     ASSERT_EQ(closed.outcome, Outcome::kCompleted);
     std::printf("%s %2d: perigee %9.3f km open loop, %9.4f km closed, apogee %.4f km\n", GetParam().c_str(),
@@ -228,7 +216,7 @@ void ExpectPredicted(const Injection& predicted, const FlightResult& flown, doub
 // The predictor against the engine's rigid body under the reference's program. Burns last as long as those
 // that the engine flew: cut off at a velocity. In Electron's a battery leaves and the engine throttles.
 TEST(EnginePrediction, IsTheEnginesFlightOfAThrottledBurn) {
-  FlightDefinition definition = DefinitionOf(Shipped("electron"));
+  FlightDefinition definition = DefinitionOf(GalleryLauncherWithoutTailOff(DISPERSA_CAMPAIGNS, "electron"));
   const FlightModel closed(definition);
   definition.guidance.closed_loop = false;
   Seen seen;
@@ -248,7 +236,7 @@ TEST(EnginePrediction, IsTheEnginesFlightOfAThrottledBurn) {
 }
 
 TEST(EnginePrediction, IsTheEnginesFlightThroughARestart) {
-  FlightDefinition definition = DefinitionOf(Shipped("vega"));
+  FlightDefinition definition = DefinitionOf(GalleryLauncherWithoutTailOff(DISPERSA_CAMPAIGNS, "vega"));
   const FlightModel closed(definition);
   definition.guidance.closed_loop = false;
   Seen seen, second;

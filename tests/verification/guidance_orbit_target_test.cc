@@ -13,6 +13,7 @@
 #include "core/math/constants.h"
 #include "core/trajectory/aim.h"
 #include "core/trajectory/optimize.h"
+#include "tests/gallery_launcher.h"
 #include "tests/slv4_flight.h"
 
 namespace dispersa::guidance_orbit_target_test {
@@ -138,7 +139,7 @@ struct Launched {
   OrbitElements nominal;  ///< of the open loop
 
   explicit Launched(const std::string& launcher)
-      : campaign(LoadCampaign(DISPERSA_CAMPAIGNS "/gallery/" + launcher + "/campaign.yaml")),
+      : campaign(GalleryLauncher(DISPERSA_CAMPAIGNS, launcher)),
         flights(campaign),
         definition(DefinitionOf(campaign)) {
     FlightDefinition open = definition;
@@ -150,10 +151,7 @@ struct Launched {
     return ElementsOf(Wgs84(), flight.end_state.p_EoC_I, flight.end_state.v_IC_I);
   }
   FlightInputs Drawn(std::uint64_t index) const {
-    FlightInputs inputs = flights.Draw(index);
-    inputs.navigation_position_error_m = inputs.navigation_velocity_error_m_s = {};
-    inputs.accelerometer_scale_factor = 1.0;
-    return inputs;
+    return DrawnWithoutErrorsOfTheComputer(flights, index);
   }
 };
 

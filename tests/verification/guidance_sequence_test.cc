@@ -6,20 +6,16 @@
 #include <string>
 
 #include "core/campaign/flight_definition.h"
-#include "core/campaign_yaml/load.h"
 #include "core/environment/atmosphere.h"
 #include "core/environment/earth.h"
 #include "core/flight/tick_sample.h"
 #include "core/guidance/predictor.h"
+#include "tests/gallery_launcher.h"
 #include "tests/guidance_mission.h"
 #include "tests/slv4_flight.h"
 
 namespace dispersa::guidance_sequence_test {
 namespace {
-
-Campaign Shipped(const std::string& launcher) {
-  return LoadCampaign(DISPERSA_CAMPAIGNS "/gallery/" + launcher + "/campaign.yaml");
-}
 
 // A burn of an open-loop flight: its first sample after `since_s`, and how long it lasts.
 struct Burn {
@@ -42,7 +38,7 @@ class CriterionDrop : public testing::TestWithParam<JettisonTrigger> {};
 // Electron's fairing leaves at an altitude or a heat flux. A weak first stage comes there later than the
 // reference.
 TEST_P(CriterionDrop, IsPredictedWhereTheFlightMeetsIt) {
-  FlightDefinition definition = DefinitionOf(Shipped("electron"));
+  FlightDefinition definition = DefinitionOf(GalleryLauncherWithoutTailOff(DISPERSA_CAMPAIGNS, "electron"));
   Jettison& fairing = definition.vehicle.stages[1].jettisoned.front();
   FlightOptions options;
   double at_m = 0.0, flux_w_m2 = 0.0;
@@ -119,7 +115,7 @@ INSTANTIATE_TEST_SUITE_P(Electron, CriterionDrop,
 
 // Vega from its third burn on: through that, a coast, the fourth, a long coast and the fifth.
 TEST(ThreeBurns, ArePredictedAsTheEngineFliesThem) {
-  FlightDefinition definition = DefinitionOf(Shipped("vega"));
+  FlightDefinition definition = DefinitionOf(GalleryLauncherWithoutTailOff(DISPERSA_CAMPAIGNS, "vega"));
   definition.guidance.burns = 3;
   const FlightModel closed(definition);
   definition.guidance.closed_loop = false;
@@ -162,7 +158,7 @@ class MoreBurns : public testing::TestWithParam<int> {};
 
 // Whatever a stage lacks, with two burns guided or more: no worse than open loop, and not worse with more.
 TEST_P(MoreBurns, AreNoWorseThanOpenLoop) {
-  FlightDefinition definition = DefinitionOf(Shipped("vega"));
+  FlightDefinition definition = DefinitionOf(GalleryLauncher(DISPERSA_CAMPAIGNS, "vega"));
   const FlightModel two(definition);
   definition.guidance.burns = GetParam();
   const FlightModel more(definition);

@@ -8,6 +8,7 @@
 #include "core/campaign_yaml/load.h"
 #include "core/cases/campaign_flights.h"
 #include "core/flight/tick_sample.h"
+#include "tests/gallery_launcher.h"
 #include "tests/slv4_flight.h"
 
 namespace dispersa::guidance_timer_test {
@@ -28,14 +29,11 @@ FlightDefinition WithTimers(const Campaign& campaign) {
 class GuidedTimers : public testing::TestWithParam<const char*> {
  protected:
   GuidedTimers()
-      : campaign_(LoadCampaign(DISPERSA_CAMPAIGNS "/gallery/" + std::string(GetParam()) + "/campaign.yaml")),
+      : campaign_(GalleryLauncher(DISPERSA_CAMPAIGNS, GetParam())),
         flights_(campaign_),
         definition_(WithTimers(campaign_)) {}
   FlightInputs Drawn(std::uint64_t index) const {
-    FlightInputs inputs = flights_.Draw(index);
-    inputs.navigation_position_error_m = inputs.navigation_velocity_error_m_s = {};
-    inputs.accelerometer_scale_factor = 1.0;
-    return inputs;
+    return DrawnWithoutErrorsOfTheComputer(flights_, index);
   }
   const Campaign campaign_;
   const CampaignFlights flights_;

@@ -6,9 +6,9 @@
 #include <string>
 
 #include "core/campaign/flight_definition.h"
-#include "core/campaign_yaml/load.h"
 #include "core/flight/history.h"
 #include "core/math/constants.h"
+#include "tests/gallery_launcher.h"
 #include "tests/liquid_stage.h"
 #include "tests/slv4_flight.h"
 
@@ -18,7 +18,7 @@ namespace {
 constexpr double kTail_s = 0.8;
 
 Campaign Launcher(const std::string& name, double tail_off_s, bool closed_loop) {
-  Campaign campaign = LoadCampaign(DISPERSA_CAMPAIGNS "/gallery/" + name + "/campaign.yaml");
+  Campaign campaign = GalleryLauncher(DISPERSA_CAMPAIGNS, name);
   campaign.guidance.closed_loop = closed_loop;
   for (Stage& stage : campaign.vehicle.stages)
     if (stage.is_liquid()) stage.motor.tail_off_s = tail_off_s;
