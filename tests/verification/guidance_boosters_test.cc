@@ -39,7 +39,7 @@ TEST(GuidedCore, IsSteeredBelowALastBurnThatEndsByItself) {
   const CampaignFlights flights(Ariane5());
   for (std::uint64_t index = 0; index < 2; ++index) {
     SCOPED_TRACE(index);
-    const FlightInputs inputs = DrawnWithoutErrorsOfTheComputer(flights, index);
+    const FlightInputs inputs = DrawnWithoutErrorsOfTheVehicle(flights, index);
     double left_s = 0.0, first_s = 0.0, pressure_pa = 0.0;
     FlightOptions options;
     options.observe = [&](const TickSample& sample) {

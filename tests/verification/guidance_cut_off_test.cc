@@ -18,7 +18,6 @@
 namespace dispersa::guidance_cut_off_test {
 namespace {
 
-
 struct Orbit {
   double axis_error_m, inclination_error_deg, altitude_error_m, perigee_km, axis_km;
   bool converged;

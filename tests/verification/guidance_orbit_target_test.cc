@@ -150,9 +150,7 @@ struct Launched {
     EXPECT_EQ(flight.outcome, Outcome::kCompleted) << flight.reason;
     return ElementsOf(Wgs84(), flight.end_state.p_EoC_I, flight.end_state.v_IC_I);
   }
-  FlightInputs Drawn(std::uint64_t index) const {
-    return DrawnWithoutErrorsOfTheComputer(flights, index);
-  }
+  FlightInputs Drawn(std::uint64_t index) const { return DrawnWithoutErrorsOfTheVehicle(flights, index); }
 };
 
 double Apart_deg(double a_rad, double b_rad) { return std::remainder(a_rad - b_rad, kTwoPi) / kDeg; }

@@ -32,9 +32,7 @@ class GuidedTimers : public testing::TestWithParam<const char*> {
       : campaign_(GalleryLauncher(DISPERSA_CAMPAIGNS, GetParam())),
         flights_(campaign_),
         definition_(WithTimers(campaign_)) {}
-  FlightInputs Drawn(std::uint64_t index) const {
-    return DrawnWithoutErrorsOfTheComputer(flights_, index);
-  }
+  FlightInputs Drawn(std::uint64_t index) const { return DrawnWithoutErrorsOfTheComputer(flights_, index); }
   const Campaign campaign_;
   const CampaignFlights flights_;
   FlightDefinition definition_;
@@ -93,8 +91,8 @@ TEST_P(GuidedTimers, EndABurnByTheFilesDurationWithoutAPlan) {
     if (sample.stack == burn && sample.burning) since_s = sample.since_ignition_s;
   };
   Fly(model, inputs, options);
-  EXPECT_NEAR(since_s, definition_.vehicle.stages[static_cast<std::size_t>(burn)].motor.cut_off_s,
-              definition_.autopilot.tick_s);
+  const Motor& engine = definition_.vehicle.stages[static_cast<std::size_t>(burn)].motor;
+  EXPECT_NEAR(since_s, engine.cut_off_s + 0.5 * engine.tail_off_s, definition_.autopilot.tick_s);
 }
 
 INSTANTIATE_TEST_SUITE_P(Gallery, GuidedTimers, testing::Values("vega", "falcon9"),
