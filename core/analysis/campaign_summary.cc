@@ -22,12 +22,32 @@ constexpr std::size_t kWorstCases = 5;
 /// Of them lost flights: all of those have their own list, and they shall not hide what limits the others.
 constexpr std::size_t kLostAmongWorst = 1;
 
-WorstCases FindWorst(const std::string& metric, Worse worse, const CaseColumns& cases) {
+/// Between all limits that requirements set for a metric; none: no requirement does.
+std::optional<Limits> AllLimits(const std::vector<Requirement>& requirements, const std::string& metric) {
+  std::optional<Limits> all;
+  for (const Requirement& requirement : requirements) {
+    if (requirement.metric != metric) continue;
+    const Limits limits = LimitsOf(requirement);
+    if (!all) all.emplace();
+    all->low = std::max(all->low, limits.low);
+    all->high = std::min(all->high, limits.high);
+  }
+  return all;
+}
+
+/// Worse is what has the smaller margin to the metric's limits. Without limits the metric's own sense
+/// decides.
+WorstCases FindWorst(const std::string& metric, const std::optional<Limits>& limits,
+                     const CaseColumns& cases) {
   const std::vector<double> values = MeasuredValues(cases, metric);
+  const Worse sense = DescribeMetric(metric).worse;
+  const auto is_worse_value = [&](double a, double b) {
+    if (!std::isfinite(a) || !std::isfinite(b)) return std::isfinite(b) && !std::isfinite(a);
+    return limits ? limits->IsWorse(a, b) : Badness(sense, a) > Badness(sense, b);
+  };
   const auto is_worse = [&](std::size_t a, std::size_t b) {
-    const double badness_a = std::isfinite(values[a]) ? Badness(worse, values[a]) : HUGE_VAL;
-    const double badness_b = std::isfinite(values[b]) ? Badness(worse, values[b]) : HUGE_VAL;
-    return badness_a != badness_b ? badness_a > badness_b : a < b;
+    if (is_worse_value(values[a], values[b])) return true;
+    return !is_worse_value(values[b], values[a]) && a < b;
   };
   // The worst of some rows, in order.
   const auto add = [&](std::vector<std::size_t> rows, std::size_t count, WorstCases* result) {
@@ -338,13 +358,8 @@ CampaignSummary BuildSummary(const ResultFolder& folder, const Campaign& campaig
   }
   if (summary.holm) summary.any_risk = summary.overall_risk;
   summary.any_risk = std::min(summary.any_risk, 1.0);
-  for (const std::string& metric : KeyMetrics(campaign)) {
-    Worse worse = DescribeMetric(metric).worse;
-    for (const Requirement& requirement : campaign.requirements) {
-      if (requirement.metric == metric) worse = requirement.above ? Worse::kSmaller : Worse::kLarger;
-    }
-    summary.worst_cases.push_back(FindWorst(metric, worse, cases));
-  }
+  for (const std::string& metric : KeyMetrics(campaign))
+    summary.worst_cases.push_back(FindWorst(metric, AllLimits(campaign.requirements, metric), cases));
   summary.injection = SummarizeInjection(cases);
   summary.dispersions = SummarizeDispersions(campaign, cases);
   summary.drivers = FindDrivers(campaign, KeyMetrics(campaign), cases);

@@ -68,13 +68,24 @@ void SetBound(const Limits& limits, std::vector<double> values, std::int64_t acc
   const std::int64_t rank = accept - missing;
   if (rank < 0 || rank >= std::ssize(values)) return;
   // A lost flight is worse than any value.
-  const auto badness = [&](double value) { return std::isfinite(value) ? -limits.Margin(value) : HUGE_VAL; };
+  const auto is_worse = [&](double a, double b) {
+    if (!std::isfinite(a) || !std::isfinite(b)) return std::isfinite(b) && !std::isfinite(a);
+    return limits.IsWorse(a, b);
+  };
   const auto nth = values.begin() + rank;
-  std::nth_element(values.begin(), nth, values.end(),
-                   [&](double a, double b) { return badness(a) > badness(b); });
+  std::nth_element(values.begin(), nth, values.end(), is_worse);
   if (!std::isfinite(*nth)) return;
   summary.bound = *nth;
   summary.margin = limits.Margin(*nth);
+}
+
+void SetWorst(const Limits& limits, const std::vector<double>& values, const CaseColumns& cases,
+              RequirementSummary& summary) {
+  for (std::size_t i = 0; i < values.size(); ++i) {
+    if (cases.outcome[i] != Outcome::kCompleted || !std::isfinite(values[i])) continue;
+    if (!summary.worst_completed || limits.IsWorse(values[i], summary.worst_completed->value))
+      summary.worst_completed = {cases.index[i], values[i]};
+  }
 }
 
 void SetPassChances(RequirementSummary& summary) {
@@ -291,7 +302,9 @@ std::vector<RequirementSummary> JudgeAll(const std::vector<Requirement>& require
     summary.consumer_risk = requirement.consumer_risk;
     summary.plan = requirement.plan;
     summary.planned = context.planned;
-    tallies.push_back(TallyOf(limits, ValuesOf(requirement, cases), cases, context.cases));
+    const std::vector<double> values = ValuesOf(requirement, cases);
+    tallies.push_back(TallyOf(limits, values, cases, context.cases));
+    SetWorst(limits, values, cases, summary);
     summary.n = std::ssize(cases.index);
     summary.failures = std::ssize(tallies.back().failed);
     if (LossFails(requirement)) summary.lost_flights = static_cast<std::int64_t>(LostCount(cases));

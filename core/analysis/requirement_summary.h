@@ -55,6 +55,13 @@ struct RequirementSummary {
   /// many lost flights.
   std::optional<double> bound;
   std::optional<double> margin;  ///< from `bound` to the limit, positive if met, in the metric's unit
+  struct Worst {
+    std::uint64_t case_index = 0;
+    double value = 0.0;
+  };
+  /// The completed flight farthest outside the limits, or nearest to one if all are inside. It is no bound of
+  /// anything, but says where the sample ends. None if no completed flight defines the metric.
+  std::optional<Worst> worst_completed;
   /// Probability that a new campaign of `cases` cases with one look passes (PassProbability()).
   struct PassChance {
     std::int64_t cases = 0;

@@ -82,6 +82,10 @@ Json RequirementJson(const RequirementSummary& requirement) {
   json["success_upper"] = OrNull(requirement.success_upper);
   json["bound"] = OrNull(requirement.bound);
   json["margin"] = OrNull(requirement.margin);
+  if (const auto& worst = requirement.worst_completed)
+    json["worst_completed"] = {{"case_index", worst->case_index}, {"value", Number(worst->value)}};
+  else
+    json["worst_completed"] = nullptr;
   json["verdict"] = requirement.verdict;
   json["attained_risk"] = OrNull(requirement.attained_risk);
   json["accepts"] = OrNull(requirement.accepts);

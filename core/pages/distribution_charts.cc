@@ -196,6 +196,7 @@ std::string DistributionFigures(const std::string& metric, const CampaignSummary
   tail.Line(x, share, "line-0", "cases");
   for (const RequirementSummary* requirement : requirements) {
     bars.VerticalLimit(requirement->limit, "limit: " + LimitWords(*requirement, info.unit));
+    if (requirement->low_limit) bars.VerticalLimit(*requirement->low_limit, "limit");
     tail.VerticalLimit(requirement->limit, "limit");
     if (!requirement->every_case)
       tail.HorizontalLimit(1.0 - requirement->probability,

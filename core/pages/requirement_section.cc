@@ -39,18 +39,14 @@ std::string PlanWords(const RequirementSummary& requirement) {
   return "";
 }
 
-/// The worst of the completed flights, which is no bound of anything but says where the sample ends.
-std::string WorstWords(const RequirementSummary& requirement, const CampaignSummary& summary,
-                       const std::string& unit) {
-  for (const WorstCases& worst : summary.worst_cases) {
-    if (worst.metric != requirement.metric) continue;
-    for (const WorstCase& one : worst.cases) {
-      if (one.outcome == Outcome::kCompleted && one.value)
-        return fmt::format("{}{} (case {})", RoundedText(*one.value, Rounding::kNearest, requirement.limit),
-                           unit.empty() ? "" : " " + unit, one.case_index);
-    }
-  }
-  return "–";
+std::string WorstWords(const RequirementSummary& requirement, const std::string& unit) {
+  if (!requirement.worst_completed) return "–";
+  const auto& [case_index, value] = *requirement.worst_completed;
+  // Of a range the limit that it is nearer to tells how many digits matter.
+  const double low = requirement.low_limit.value_or(requirement.limit);
+  const double limit = value - low < requirement.limit - value ? low : requirement.limit;
+  return fmt::format("{}{} (case {})", RoundedText(value, Rounding::kNearest, limit),
+                     unit.empty() ? "" : " " + unit, case_index);
 }
 
 std::string LooksTable(const RequirementSummary& requirement) {
@@ -184,7 +180,7 @@ std::string ConvergenceFigures(const CampaignSummary& summary) {
       figures);
 }
 
-std::string Card(const RequirementSummary& requirement, const CampaignSummary& summary) {
+std::string Card(const RequirementSummary& requirement) {
   const MetricInfo info = DescribeMetric(requirement.metric);
   const double observed = requirement.n == 0 ? std::nan("")
                                              : static_cast<double>(requirement.n - requirement.failures) /
@@ -213,7 +209,7 @@ std::string Card(const RequirementSummary& requirement, const CampaignSummary& s
   html += Fact("failures", std::to_string(requirement.failures));
   html += Fact("lost flights", std::to_string(requirement.lost_flights));
   html += Fact("observed", ShareText(observed));
-  html += Fact("worst completed flight", HtmlText(WorstWords(requirement, summary, info.unit)));
+  html += Fact("worst completed flight", HtmlText(WorstWords(requirement, info.unit)));
   html += Fact("confidence bounds",
                requirement.success_lower
                    ? fmt::format("≥ {}, ≤ {}", ShareText(*requirement.success_lower, Rounding::kDown),
@@ -241,7 +237,7 @@ std::string RequirementsSection(const CampaignSummary& summary) {
       std::any_of(summary.requirements.begin(), summary.requirements.end(),
                   [](const RequirementSummary& requirement) { return requirement.by_default; });
   html += "<div class=\"cards\">\n";
-  for (const RequirementSummary& requirement : summary.requirements) html += Card(requirement, summary);
+  for (const RequirementSummary& requirement : summary.requirements) html += Card(requirement);
   html += "</div>\n";
   if (!IsIndependent(summary.sampling)) {
     return html +

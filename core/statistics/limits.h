@@ -14,6 +14,13 @@ struct Limits {
   bool Meets(double value) const { return low < value && value < high; }
   /// Distance to the nearer limit, in the metric's unit: positive inside, negative outside, 0 at a limit.
   double Margin(double value) const { return std::min(value - low, high - value); }
+  /// Whether one value is worse than another: its margin is smaller. Of a single limit the values are
+  /// compared themselves, because margins to a limit far away round to the same number.
+  bool IsWorse(double one, double other) const {
+    if (high == std::numeric_limits<double>::infinity()) return one < other;
+    if (low == -std::numeric_limits<double>::infinity()) return one > other;
+    return Margin(one) < Margin(other);
+  }
 };
 
 }  // namespace dispersa

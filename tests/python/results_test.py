@@ -117,6 +117,28 @@ class Runs(unittest.TestCase):
             self.assertEqual([cells(value) for value in table[i]], expected)
             self.assertEqual([cells(value) for value in self.ours.cases.iloc[i]], expected)
 
+    def test_the_worst_case_is_worst_by_the_requirements(self):
+        heights = self.ours.metrics["injection_altitude_km"]
+        order = numpy.argsort(heights)
+        with self.assertRaises(dispersa.BadInput) as caught:
+            self.ours.worst("injection_altitude_km")
+        self.assertEqual(str(caught.exception), "worst: no direction of 'injection_altitude_km' is worse, allowed: a metric that has "
+                                                "a worse direction, or a requirement of the campaign")
+        tree = dispersa.read(SMOKE)
+        rule = {"metric": "injection_altitude_km", "probability": 0.5, "consumer_risk": 0.4}
+        for name, limits, worst in (("within", [{"within": [heights[order[1]], heights[order[-1]] + 50]}], [order[0], order[1]]),
+                                    ("above", [{"above": 0}], [order[0], order[1]]), ("below", [{"below": 1e4}], [order[-1], order[-2]]),
+                                    ("both", [{"above": 0}, {"below": heights[order[-1]] + 1}], [order[-1], order[-2]])):
+            tree["requirements"] = [dict(rule, **{key: [float(x) for x in value] if key == "within" else float(value)
+                                                  for key, value in each.items()}) for each in limits]
+            results = dispersa.run(tree, self.folder / name, workers=0, histories=False)
+            numpy.testing.assert_array_equal(results.metrics["injection_altitude_km"], heights)
+            self.assertEqual(results.worst("injection_altitude_km", 2), [int(case) for case in worst], name)
+            self.assertEqual([case["case_index"] for case in results.summary["worst_cases"]
+                              if case["metric"] == "injection_altitude_km"][:2], [int(case) for case in worst], name)
+            last = results.requirements[-1]["worst_completed"]
+            self.assertEqual(last, {"case_index": int(worst[0]), "value": heights[worst[0]]}, name)
+
     def test_verdict_is_a_value(self):
         said = json.loads((self.theirs / "summary.json").read_text())
         self.assertEqual((self.ours.verdict, self.ours.exit_code, self.ours.requirements),

@@ -308,6 +308,53 @@ TEST_F(FiveCases, RanksByTheSideOfTheRequirement) {
   EXPECT_THAT(order, ElementsAre(2, 3, 0, 4, 1));
 }
 
+// Peaks 2 4 lost 1 3 of cases 0 to 4. Within 1.8 and 10 case 3 is outside, and 0 comes nearest of the others.
+TEST_F(FiveCases, OfTwoLimitsTheWorstIsFarthestOutsideOrNearestToOne) {
+  Requirement within = PeakBelow(10.0, 0.5, 0.1);
+  within.below.reset();
+  within.within = {{1.8, 10.0}};
+  campaign_.requirements = {within};
+  CampaignSummary summary = BuildSummary(folder_, campaign_);
+  const auto order = [&] {
+    std::vector<std::uint64_t> cases;
+    for (const WorstCase& worst : summary.worst_cases[0].cases) cases.push_back(worst.case_index);
+    return cases;
+  };
+  EXPECT_THAT(order(), ElementsAre(2, 3, 0, 4, 1));
+  EXPECT_EQ(summary.requirements[0].worst_completed->case_index, 3u);
+  EXPECT_EQ(summary.requirements[0].worst_completed->value, 1.0);
+  const auto json = nlohmann::json::parse(SummaryJson(summary))["requirements"][0]["worst_completed"];
+  EXPECT_EQ(json, (nlohmann::json{{"case_index", 3}, {"value", 1.0}}));
+
+  campaign_.requirements[0].within = {{0.0, 4.5}};  // all inside: 4 comes nearest, then 1 and 3, 2 is best
+  summary = BuildSummary(folder_, campaign_);
+  EXPECT_THAT(order(), ElementsAre(2, 1, 3, 4, 0));
+  EXPECT_EQ(summary.requirements[0].worst_completed->case_index, 1u);
+
+  // The same limits as two requirements: each has its own worst, and the list holds what both mean.
+  campaign_.requirements = {PeakBelow(4.5, 0.5, 0.1), PeakBelow(4.5, 0.5, 0.1)};
+  campaign_.requirements[1].below.reset();
+  campaign_.requirements[1].above = 0.0;
+  summary = BuildSummary(folder_, campaign_);
+  EXPECT_THAT(order(), ElementsAre(2, 1, 3, 4, 0));
+  EXPECT_EQ(summary.requirements[0].worst_completed->case_index, 1u);
+  EXPECT_EQ(summary.requirements[1].worst_completed->case_index, 3u);
+
+  // Of values whose margins to a limit far away are equal numbers, the larger one is worse all the same.
+  campaign_.requirements = {PeakBelow(1e30, 0.5, 0.1)};
+  summary = BuildSummary(folder_, campaign_);
+  EXPECT_THAT(order(), ElementsAre(2, 1, 4, 0, 3));
+  EXPECT_EQ(summary.requirements[0].worst_completed->case_index, 1u);
+}
+
+TEST(Judge, NoFlightIsTheWorstOfNone) {
+  CaseColumns cases = Columns(2, 0);
+  cases.outcome[0] = Outcome::kImpact;
+  cases.metrics[MetricColumn(kPeak)][1] = kNaN;
+  EXPECT_FALSE(
+      Judge(PeakBelow(0.5, 0.9, 0.1), SamplingMethod::kMonteCarlo, cases, 0).worst_completed.has_value());
+}
+
 TEST_F(FiveCases, TheVerdict) {
   EXPECT_EQ(BuildSummary(folder_, campaign_).verdict, CampaignVerdict::kNothingJudged);
   EXPECT_EQ(BuildSummary(folder_, campaign_).standing.verdict, StandingVerdict::kNothingJudged);

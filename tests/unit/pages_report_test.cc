@@ -156,6 +156,18 @@ TEST_F(ReportPageTest, NamesMetricAndValueOfEachRequirement) {
                         RoundedText(*requirement.bound, Rounding::kUp, 12.5) + " ° (limit 12.5 °).</p>"));
 }
 
+TEST_F(ReportPageTest, ShowsTheWorstFlightByTheLimitsOfTheRequirement) {
+  Build(40, 40);
+  RequirementSummary& one = summary_.requirements[0];
+  one.low_limit = 11.9;
+  one.worst_completed = {7, 11.8999};
+  const std::string section = RequirementsSection(summary_);
+  EXPECT_THAT(section, HasSubstr("<dt>worst completed flight</dt><dd>11.8999 ° (case 7)</dd>"))
+      << "with the digits that show on which side of its limit it is";
+  one.worst_completed.reset();
+  EXPECT_THAT(RequirementsSection(summary_), HasSubstr("<dt>worst completed flight</dt><dd>–</dd>"));
+}
+
 TEST_F(ReportPageTest, SaysWhichFlightsTheEnvelopeHolds) {
   Build(40, 40);
   EXPECT_THAT(page_, HasSubstr("Pointwise percentiles over the first 1 of 40 flown cases"));

@@ -92,15 +92,22 @@ class Results:
 
     def worst(self, metric, count=1):
         """Indices of the worst cases in a metric, a list of at most `count`, the worst first. As in the report, lost flights
-        come before all others, which are ordered by the metric. Raises BadInput for an unknown metric."""
+        come before all others. These are ordered by their margin to the limits of the campaign's requirements on the metric;
+        without any, by the metric's own sense. Raises BadInput for an unknown metric."""
         if metric not in self.metrics.dtype.names:
             raise refuse(f"worst: '{metric}' is not a metric of these flights{did_you_mean(metric, self.metrics.dtype.names)}",
                          "a name of Results.metrics.dtype.names")
-        worse = _core.describe(metric)[3]
-        if worse == "neither":
-            raise refuse(f"worst: no direction of '{metric}' is worse", "a metric that has a worse direction")
         values = self.metrics[metric]
-        badness = {"larger": values, "smaller": -values, "farther_from_zero": numpy.abs(values)}[worse]
+        limits = [each for each in self.requirements if each["metric"] == metric]
+        low = max((each["limit"] if each["side"] == "above" else each["low_limit"] for each in limits if each["side"] != "below"),
+                  default=None)
+        high = min((each["limit"] for each in limits if each["side"] != "above"), default=None)
+        worse = _core.describe(metric)[3] if not limits else "larger" if low is None else "smaller" if high is None else "outside"
+        if worse == "neither":
+            raise refuse(f"worst: no direction of '{metric}' is worse",
+                         "a metric that has a worse direction, or a requirement of the campaign")
+        badness = {"larger": lambda: values, "smaller": lambda: -values, "farther_from_zero": lambda: numpy.abs(values),
+                   "outside": lambda: numpy.maximum(low - values, values - high)}[worse]()
         completed = numpy.array([outcome == "completed" for outcome in self.outcome], dtype=bool)
         badness = numpy.where(completed, badness, numpy.inf)
         order = [i for i in numpy.argsort(-badness, kind="stable") if not numpy.isnan(badness[i])]
