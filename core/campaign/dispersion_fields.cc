@@ -40,7 +40,6 @@ class DispersionFields {
         return OfStages(fields, row, name);
       case Draws::kBoosters:
       case Draws::kBoostersTemperature:
-      case Draws::kBoostersMixture:
       case Draws::kBoostersAside:
         return OfBoosters(fields, row, name);
       case Draws::kFixed:
@@ -335,17 +334,14 @@ class DispersionFields {
 
   // One draw a booster, or one for all of them.
   void OfBoosters(Fields& fields, const DispersionRow& row, const std::string& name) {
-    if (is_sound_ && !vehicle_.boosters.are_apart())
-      return fields.Misplaced(row.key, {}, "the vehicle has no boosters, or such that are all alike",
-                              "boosters with angles_deg in place of count");
-    if (is_sound_ && row.draws == Draws::kBoostersTemperature && vehicle_.boosters.is_liquid())
-      return fields.Misplaced(row.key, {}, "the boosters are liquid: pumps or tank pressure set their flow",
-                              "booster_burn_rate, or boosters with solid motors");
-    if (is_sound_ && row.draws == Draws::kBoostersMixture && vehicle_.boosters.tanks.size() < 2)
-      return fields.Misplaced(row.key, {}, "the boosters have no two tanks, whose flows could differ",
-                              "boosters with liquid engines of two propellants");
+    if (is_sound_ && vehicle_.boosters.count == 0)
+      return fields.Misplaced(row.key, {}, "the vehicle has no boosters", "a vehicle with boosters");
+    if (is_sound_ && row.unfit != nullptr)
+      if (const std::optional<Unfit> unfit = row.unfit(vehicle_.boosters))
+        return fields.Misplaced(row.key, {}, unfit->what, unfit->allowed);
     bool is_there = false;
     fields.OptionalMap(row.key, is_there, row.meaning, [&](Fields& map) {
+      if (is_sound_) Spread(campaign_.vehicle.boosters);
       ScalarDistribution distribution = ReadScalar(map, Limited(row, {1}));
       if (row.draws == Draws::kBoostersTemperature) {
         double sensitivity_1_k = 0.0;

@@ -6,8 +6,9 @@
 
 namespace dispersa {
 
-/// Fills dispersions, wind_statistics and wind_table. The campaign has its vehicle, or one without stages if
-/// it is unknown. Nothing is checked against a vehicle that is not `is_sound`.
+/// Fills dispersions, wind_statistics and wind_table. Spreads boosters of which each draws its own values.
+/// The campaign has its vehicle, or one without stages if it is unknown. Nothing is checked against a vehicle
+/// that is not `is_sound`.
 void DescribeDispersions(Fields& fields, bool is_sound, Campaign& campaign);
 
 }  // namespace dispersa

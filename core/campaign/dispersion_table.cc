@@ -29,6 +29,17 @@ Range LimitsOfBoosterPropellant(const Vehicle& vehicle, int) {
   return Inside(0.0, LargestPropellantFactor(AsStage(vehicle.boosters)));
 }
 
+std::optional<Unfit> UnfitForTemperature(const Boosters& boosters) {
+  if (!boosters.is_liquid()) return std::nullopt;
+  return Unfit{"the boosters are liquid: pumps or tank pressure set their flow",
+               "booster_burn_rate, or boosters with solid motors"};
+}
+std::optional<Unfit> UnfitForMixture(const Boosters& boosters) {
+  if (boosters.tanks.size() >= 2) return std::nullopt;
+  return Unfit{"the boosters have no two tanks, whose flows could differ",
+               "boosters with liquid engines of two propellants"};
+}
+
 // Half the least moment of inertia, about either axis, of the stack without its own propellant and without
 // masses that may leave. With three such products the tensor is still that of a body.
 Range LimitsOfProduct(const Vehicle& vehicle, int stage) {
@@ -255,7 +266,8 @@ std::vector<DispersionRow> MakeRows() {
        "difference to the nominal temperature of a booster's propellant; sets its burn rate",
        Draws::kBoostersTemperature,
        {kTemperatureDifference, Between(-200.0, 200.0), kOfTemperature},
-       of_booster});
+       of_booster})
+      .unfit = UnfitForTemperature;
   add({"booster_misalignment",
        "of a booster's thrust off its nozzle's axis: components towards body y and z",
        Draws::kBoostersAside,
@@ -274,9 +286,10 @@ std::vector<DispersionRow> MakeRows() {
       .limits = LimitsOfBoosterPropellant;
   add({"booster_mixture_ratio",
        "factor of the first tank's flow over the others'",
-       Draws::kBoostersMixture,
+       Draws::kBoosters,
        kPositiveFactor,
-       {"booster_mixture_ratio_factor_{further}"}});
+       {"booster_mixture_ratio_factor_{further}"}})
+      .unfit = UnfitForMixture;
   add({"aerodynamic_uncertainty",
        "of the vehicle's aerodynamic tables, as they state it",
        Draws::kAeroUncertainty,

@@ -33,9 +33,14 @@ enum class Draws {
   kStuckNozzle,
   kBoosters,             ///< `per: booster`, or `vehicle`: one value for all
   kBoostersTemperature,  ///< the same of a temperature that sets the burn rate
-  kBoostersMixture,      ///< the same of engines with two tanks or more
   kBoostersAside,        ///< components towards body y and z, of each booster
   kAeroUncertainty,
+};
+
+/// Why nothing of a vehicle takes a key's values, and what would.
+struct Unfit {
+  const char* what;
+  const char* allowed;
 };
 
 struct DispersionRow {
@@ -53,6 +58,8 @@ struct DispersionRow {
   int last_stages_without = 0;  ///< number of last stages that cannot be dispersed
   /// Further limits of the draws, for a stage of a vehicle, or its boosters.
   Range (*limits)(const Vehicle& vehicle, int stage) = nullptr;
+  /// Of boosters: none, if they take the values.
+  std::optional<Unfit> (*unfit)(const Boosters& boosters) = nullptr;
 };
 
 /// In the order of the draws.

@@ -35,8 +35,23 @@ std::string MeantInput(const std::string& word, const std::vector<std::string>& 
   return DidYouMean(word, names);
 }
 
+// Boosters that are all alike fly as bodies of their own if the list has columns of such.
+void SpreadForList(const InputNode& table, Vehicle& vehicle) {
+  if (vehicle.boosters.count == 0 || vehicle.boosters.are_apart()) return;
+  Vehicle spread = vehicle;
+  Spread(spread.boosters);
+  const std::size_t first = std::max(InputCount(kMaxStages), InputCount(ColumnClass(vehicle)));
+  const std::size_t end = InputCount(ColumnClass(spread));
+  for (const InputMember& member : table.members) {
+    const int input = FindInput(member.key);
+    if (input >= 0 && static_cast<std::size_t>(input) >= first && static_cast<std::size_t>(input) < end)
+      vehicle.boosters = spread.boosters;
+  }
+}
+
 // The columns of a list's table, each an input by its name in cases.csv without the prefix.
 void DescribeListTable(Fields& fields, const InputNode& table, Campaign& campaign) {
+  SpreadForList(table, campaign.vehicle);
   std::vector<std::string> names;
   const std::size_t count = InputCount(ColumnClass(campaign.vehicle));
   for (std::size_t i = 0; i < count; ++i) names.push_back(InputColumns()[i].name);

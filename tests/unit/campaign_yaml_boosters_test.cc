@@ -201,15 +201,63 @@ TEST(BoostersFile, ReadBodiesOfTheirOwn) {
             "booster_misalignment/z/booster3: nozzle_misalignment_z_nozzle7_deg\n");
 }
 
-TEST(BoostersFile, HaveDifferencesOnlyWhereTheyHavePlaces) {
+TEST(BoostersFile, HaveNoDifferencesWhereThereAreNone) {
+  const InputFiles files;
+  files.Edit("campaign.yaml",
+             "  thrust: ", "  booster_dry_mass: {distribution: normal, sigma_percent: 1}\n  thrust: ");
+  EXPECT_EQ(files.Texts(CheckFile(files.Path("campaign.yaml")).errors),
+            "campaign.yaml:11:21: dispersions.booster_dry_mass: the vehicle has no boosters, allowed: a "
+            "vehicle with boosters\n");
+}
+
+// Boosters that are all alike fly as one motor, until a campaign draws values of each. The file stays.
+TEST(BoostersFile, OfSomeAlikeDrawEachItsOwn) {
   const InputFiles files;
   files.Edit("vehicle.yaml", kAfter, kBoosters);
-  files.Edit("campaign.yaml",
-             "  thrust: ", "  booster_burn_rate: {distribution: normal, sigma_percent: 1}\n  thrust: ");
-  const std::string texts = files.Texts(CheckFile(files.Path("campaign.yaml")).errors);
-  EXPECT_NE(texts.find("the vehicle has no boosters, or such that are all alike"), std::string::npos)
-      << texts;
-  EXPECT_NE(texts.find("boosters with angles_deg in place of count"), std::string::npos) << texts;
+  const Campaign without = LoadCampaign(files.Path("campaign.yaml"));
+  EXPECT_FALSE(without.vehicle.boosters.are_apart());
+  files.Edit("campaign.yaml", "  thrust: ",
+             "  booster_dry_mass: {distribution: normal, sigma_percent: 1}\n"
+             "  booster_propellant_load: {distribution: normal, sigma_percent: 1}\n  thrust: ");
+  const Campaign campaign = LoadCampaign(files.Path("campaign.yaml"));
+  const Boosters& b = campaign.vehicle.boosters;
+  EXPECT_EQ(b.count, 2);
+  ASSERT_EQ(b.angles_rad.size(), 2u);
+  EXPECT_EQ(b.angles_rad[0], 0.0);
+  EXPECT_NEAR(b.angles_rad[1], kPi, 1e-15);
+  const FlightInputs in = CaseDesign(campaign).Draw(3);
+  for (const auto* drawn : {&in.booster_dry_mass_factor, &in.booster_propellant_factor}) {
+    EXPECT_NE((*drawn)[0], 1.0);
+    EXPECT_NE((*drawn)[1], 1.0);
+    EXPECT_NE((*drawn)[0], (*drawn)[1]);
+    EXPECT_EQ((*drawn)[2], 1.0);
+  }
+  EXPECT_NE(campaign.canonical_yaml.find("count: 2"), std::string::npos);
+  EXPECT_EQ(campaign.canonical_yaml.find("angles_deg"), std::string::npos);
+  files.Write("kept.yaml", campaign.canonical_yaml);
+  const Campaign kept = LoadCampaign(files.Path("kept.yaml"));
+  EXPECT_EQ(kept.flight_id, campaign.flight_id);
+  EXPECT_EQ(kept.vehicle.boosters.angles_rad, b.angles_rad);
+}
+
+TEST(BoostersFile, OfSomeAlikeStandInAListOfCases) {
+  const InputFiles files;
+  files.Edit("vehicle.yaml", kAfter, kBoosters);
+  files.Write("runs.csv",
+              "booster_dry_mass_factor_nozzle5,booster_dry_mass_factor_nozzle6\n1,1.1\n1.2,0.9\n");
+  files.Edit("campaign.yaml", "method: monte_carlo, cases: 100, seed: 20260101",
+             "method: list, cases: 2, seed: 1, table: runs.csv");
+  const Campaign campaign = LoadCampaign(files.Path("campaign.yaml"));
+  EXPECT_TRUE(campaign.vehicle.boosters.are_apart());
+  const FlightInputs in = CaseDesign(campaign).Draw(1);
+  EXPECT_EQ(in.booster_dry_mass_factor[0], 1.2);
+  EXPECT_EQ(in.booster_dry_mass_factor[1], 0.9);
+  files.Write("runs.csv",
+              "booster_dry_mass_factor_nozzle5,booster_dry_mass_factor_nozzle7\n1,1.1\n1.2,0.9\n");
+  EXPECT_NE(files.Texts(CheckFile(files.Path("campaign.yaml")).errors)
+                .find("'booster_dry_mass_factor_nozzle7' is not an input"),
+            std::string::npos)
+      << "there are two";
 }
 
 class BadBoostersTest : public testing::TestWithParam<BadInput> {};

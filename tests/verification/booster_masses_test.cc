@@ -25,14 +25,18 @@ constexpr double kThrust_n = 20e3, kFlow_kg_s = 25.0, kDry_kg = 100.0, kOxygen_k
                  kKerosene_kg = 150.0, kLoad_kg = kOxygen_kg + kKerosene_kg, kRest_kg = 10.0, kRadius_m = 0.9,
                  kCore_n = 200e3, kPivot_m = 19.5;
 
-// The sample vehicle, which flies in almost no air, with a pair of boosters.
-FlightDefinition Pair(bool liquid) {
+// The sample vehicle, which flies in almost no air, with a pair of boosters. `spread`: all alike in the file,
+// where a campaign draws values of each.
+FlightDefinition Pair(bool liquid, bool spread = false) {
   FlightDefinition definition = HighDefinition();
   Boosters& b = definition.vehicle.boosters;
   b = {2, kDry_kg, kLoad_kg, kRadius_m, 0.5, 13.0, 19.0, 19.2, {}, {15.0, 18.0, 0.48, 0.2}, 0.5};
   b.motor.thrust_n = kThrust_n;
   b.motor.burning_time_s = kLoad_kg / kFlow_kg_s;
-  b.angles_rad = {0.0, 180.0 * kDeg};
+  if (spread)
+    Spread(b);
+  else
+    b.angles_rad = {0.0, 180.0 * kDeg};
   if (liquid) {
     b.grain = {};
     b.tanks = {{"oxygen", 13.2, 15.8, 0.4, kOxygen_kg, 1141.0},
@@ -113,11 +117,15 @@ Bodies ByHand(const FlightDefinition& definition, const LauncherPlant& plant, co
   return SumOf(parts);
 }
 
-TEST(BoosterMasses, AreThoseOfShellsGrainsAndTanksByHand) {
+class EitherPair : public testing::TestWithParam<bool> {};
+INSTANTIATE_TEST_SUITE_P(BoosterMasses, EitherPair, testing::Bool(),
+                         [](const auto& info) { return info.param ? "OfSomeAlike" : "AtTheirPlaces"; });
+
+TEST_P(EitherPair, WeighsWhatShellsGrainsAndTanksDoByHand) {
   for (const bool liquid : {false, true}) {
     Drawn drawn = kAll;
     if (!liquid) drawn.ratio[0] = drawn.ratio[1] = 1.0;
-    const FlightDefinition definition = Pair(liquid);
+    const FlightDefinition definition = Pair(liquid, GetParam());
     const LauncherPlant plant = FlightModel(definition).PlantFor(drawn.Inputs());
     RigidBodyState s;
     s.p_EoC_I = {Wgs84().equatorial_radius_m + 2e6, 0.0, 0.0};
@@ -165,11 +173,11 @@ TEST(BoosterMasses, AMixtureEndsTheBurnWithTheFirstTank) {
 }
 
 // Every kilogram from lift-off to the core's burnout, and the jump as they leave.
-TEST(BoosterMasses, MassIsWhatHasNotFlownNorLeft) {
+TEST_P(EitherPair, HasTheMassThatHasNotFlownNorLeft) {
   for (const bool liquid : {false, true}) {
     Drawn drawn = kAll;
     if (!liquid) drawn.ratio[0] = drawn.ratio[1] = 1.0;
-    const FlightDefinition definition = Pair(liquid);
+    const FlightDefinition definition = Pair(liquid, GetParam());
     const double bare_kg =
         definition.vehicle.stages[0].liftoff_mass_kg - definition.vehicle.boosters.LiftOffMass();
     const double core_kg_s =
@@ -198,10 +206,10 @@ TEST(BoosterMasses, MassIsWhatHasNotFlownNorLeft) {
 }
 
 // Shells and rests that differ: all parts keep their momentum and their common centre.
-TEST(BoosterMasses, SeparationKeepsTheMomentumOfDifferentBodies) {
+TEST_P(EitherPair, KeepsTheMomentumOfDifferentBodiesAtSeparation) {
   Drawn drawn = kAll;
   drawn.dry[0] = 1.3;
-  const FlightDefinition definition = Pair(true);
+  const FlightDefinition definition = Pair(true, GetParam());
   const LauncherPlant plant = FlightModel(definition).PlantFor(drawn.Inputs());
   const double since_s = 21.0;
   const Bodies all = ByHand(definition, plant, drawn, since_s);
