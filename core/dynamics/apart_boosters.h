@@ -15,6 +15,7 @@
 #pragma once
 
 #include "core/dynamics/launcher.h"
+#include "core/dynamics/off_axis.h"
 #include "core/math/lane_vector.h"
 #include "core/vehicle/burning_stack.h"
 
@@ -45,9 +46,7 @@ struct ApartBoosters {
   ApartBooster<T> each[kMaxBoosters];
   // Now, of all that are attached.
   T flow_kg_s;
-  T lateral_y_kg_m, lateral_z_kg_m;              ///< sums of mass times place
-  T mean_station_y_kg_m2, mean_station_z_kg_m2;  ///< sums of mass times station times place
-  T about_y_kg_m2, yz_kg_m2;  ///< what I_y has more than the mean of I_y and I_z; sum of m y z
+  OffAxis<T> off;
 };
 
 template <class T>
@@ -112,8 +111,9 @@ DISPERSA_OUT_OF_LINE MassPropertiesLanes<T> WithApart(ApartBoosters<T>& a, T sin
                                                       MassPropertiesLanes<T> m) {
   const T none(0.0), half(0.5), one(1.0);
   T beside_kg(0.0), own_axial(0.0), first(0.0), second(0.0), surfaces(0.0);
-  a.flow_kg_s = a.lateral_y_kg_m = a.lateral_z_kg_m = none;
-  a.mean_station_y_kg_m2 = a.mean_station_z_kg_m2 = a.about_y_kg_m2 = a.yz_kg_m2 = none;
+  a.flow_kg_s = none;
+  OffAxis<T>& off = a.off;
+  off = {none, none, none, none, none, none};
   for (int k = 0; k < a.count; ++k) {
     ApartBooster<T>& b = a.each[k];
     const BurnState<T> burn = BurnAt(b.burn, since_ignition_s);
@@ -127,15 +127,15 @@ DISPERSA_OUT_OF_LINE MassPropertiesLanes<T> WithApart(ApartBoosters<T>& a, T sin
     own_axial = own_axial + half * b.kg * Fma(-b.kg, a.inner_per_kg_m2, T(2.0) * a.outer2_m2);
     const T all_kg = b.dry_kg + b.kg;
     const T stations = Fma(b.kg, station_m, b.dry_kg * a.dry_station_m);
-    a.lateral_y_kg_m = Fma(all_kg, b.y_m, a.lateral_y_kg_m);
-    a.lateral_z_kg_m = Fma(all_kg, b.z_m, a.lateral_z_kg_m);
-    a.mean_station_y_kg_m2 = Fma(stations, b.y_m, a.mean_station_y_kg_m2);
-    a.mean_station_z_kg_m2 = Fma(stations, b.z_m, a.mean_station_z_kg_m2);
-    a.about_y_kg_m2 = Fma(half * all_kg, b.z_m * b.z_m - b.y_m * b.y_m, a.about_y_kg_m2);
-    a.yz_kg_m2 = Fma(all_kg, b.y_m * b.z_m, a.yz_kg_m2);
+    off.y_kg_m = Fma(all_kg, b.y_m, off.y_kg_m);
+    off.z_kg_m = Fma(all_kg, b.z_m, off.z_kg_m);
+    off.station_y_kg_m2 = Fma(stations, b.y_m, off.station_y_kg_m2);
+    off.station_z_kg_m2 = Fma(stations, b.z_m, off.station_z_kg_m2);
+    off.about_y_kg_m2 = Fma(half * all_kg, b.z_m * b.z_m - b.y_m * b.y_m, off.about_y_kg_m2);
+    off.yz_kg_m2 = Fma(all_kg, b.y_m * b.z_m, off.yz_kg_m2);
   }
-  for (T* sum : {&a.lateral_y_kg_m, &a.lateral_z_kg_m, &a.mean_station_y_kg_m2, &a.mean_station_z_kg_m2,
-                 &a.about_y_kg_m2, &a.yz_kg_m2})
+  for (T* sum : {&off.y_kg_m, &off.z_kg_m, &off.station_y_kg_m2, &off.station_z_kg_m2, &off.about_y_kg_m2,
+                 &off.yz_kg_m2})
     *sum = Select(a.attached, *sum, none);
   const T old_cg = m.cg_station_m;
   T station_m = a.grain_station_m, length2_m2 = a.length2_m2, source_m = a.grain_station_m;
@@ -195,42 +195,6 @@ DISPERSA_OUT_OF_LINE ApartLoads<T> LoadsOfApart(const ApartBoosters<T>& a, const
     o.moment_n_m = o.moment_n_m + b.flow_kg_s * (spin - taken);
   }
   return o;
-}
-
-/// The tensor of inertia about C.
-template <class T>
-struct Tensor {
-  T xx, yy, zz;
-  T xy, xz, yz;  ///< integrals of the products: the off-diagonal elements are their negatives
-};
-/// Of axial and transverse moments of a body whose boosters count as spread about the axis. `factor`: by
-/// which the flight's moments of inertia differ.
-template <class T>
-DISPERSA_INLINE Tensor<T> TensorOf(const ApartBoosters<T>& a, T axial_kg_m2, T transverse_kg_m2, T mass_kg,
-                                   T cg_station_m, T factor) {
-  const T y = a.lateral_y_kg_m / mass_kg, z = a.lateral_z_kg_m / mass_kg;
-  const T yy = a.lateral_y_kg_m * y, zz = a.lateral_z_kg_m * z;
-  return {axial_kg_m2 - factor * (yy + zz),
-          transverse_kg_m2 + factor * (a.about_y_kg_m2 - zz),
-          transverse_kg_m2 - factor * (a.about_y_kg_m2 + yy),
-          factor * Fma(cg_station_m, a.lateral_y_kg_m, -a.mean_station_y_kg_m2),
-          factor * Fma(cg_station_m, a.lateral_z_kg_m, -a.mean_station_z_kg_m2),
-          factor * Fma(-a.lateral_y_kg_m, z, a.yz_kg_m2)};
-}
-
-/// dw/dt of I dw/dt = `moment` - w x I w, by cofactors of I.
-template <class T>
-DISPERSA_INLINE Vector<T> TurnedUnder(const Tensor<T>& i, const Vector<T>& moment, const Vector<T>& w) {
-  const Vector<T> spin{i.xx * w.x - (i.xy * w.y + i.xz * w.z), i.yy * w.y - (i.xy * w.x + i.yz * w.z),
-                       i.zz * w.z - (i.xz * w.x + i.yz * w.y)};
-  const Vector<T> m = moment - Cross(w, spin);
-  const T c_xx = i.yy * i.zz - i.yz * i.yz, c_yy = i.xx * i.zz - i.xz * i.xz,
-          c_zz = i.xx * i.yy - i.xy * i.xy;
-  const T c_xy = i.xy * i.zz + i.xz * i.yz, c_xz = i.xz * i.yy + i.xy * i.yz,
-          c_yz = i.xx * i.yz + i.xy * i.xz;
-  const T inverse = T(1.0) / (i.xx * c_xx - (i.xy * c_xy + i.xz * c_xz));
-  return inverse * Vector<T>{c_xx * m.x + c_xy * m.y + c_xz * m.z, c_xy * m.x + c_yy * m.y + c_yz * m.z,
-                             c_xz * m.x + c_yz * m.y + c_zz * m.z};
 }
 
 }  // namespace DISPERSA_ISA

@@ -10,18 +10,19 @@ namespace dispersa {
 
 namespace {
 
-// From the centre of gravity of one stack to that of another, in the body: lateral moments stay with what is
-// left, whose mass has changed.
-Vector3 CgStep(const LauncherPlant& plant, const LauncherStack& from_stack, const MassProperties& from,
-               const LauncherStack& to_stack, const MassProperties& to,
-               const Vector3& of_boosters_kg_m = Vector3::Zero()) {
-  const auto aside = [&](double LauncherStack::*moment, double boosters_kg_m) {
-    return to_stack.*moment / to.mass_kg - (from_stack.*moment + boosters_kg_m) / from.mass_kg;
-  };
-  const double ahead_m = from.cg_station_m * from_stack.cg_factor - to.cg_station_m * to_stack.cg_factor;
-  return Vector3(ahead_m * plant.cg_factor,
-                 aside(&LauncherStack::lateral_moment_y_kg_m, of_boosters_kg_m.y()),
-                 aside(&LauncherStack::lateral_moment_z_kg_m, of_boosters_kg_m.z()));
+// A stack with its masses, and the sum of its masses times their places across the axis.
+struct Balance {
+  const LauncherStack& stack;
+  MassProperties mass;
+  Vector3 lateral_kg_m;
+};
+
+// From the centre of gravity of one stack to that of another, in the body.
+Vector3 CgStep(const LauncherPlant& plant, const Balance& from, const Balance& to) {
+  const double ahead_m =
+      from.mass.cg_station_m * from.stack.cg_factor - to.mass.cg_station_m * to.stack.cg_factor;
+  const Vector3 aside = to.lateral_kg_m / to.mass.mass_kg - from.lateral_kg_m / from.mass.mass_kg;
+  return Vector3(ahead_m * plant.cg_factor, aside.y(), aside.z());
 }
 
 // Sums of mass times place across the axis of boosters that leave: their shells, which are bodies of their
@@ -94,21 +95,32 @@ unsigned DueJettisons(const LauncherPlant& plant, int stack, unsigned jettisoned
   return due;
 }
 
+Vector3 LateralMoment(const LauncherStack& stack, double propellant_kg) {
+  const SideSums sides = stack.mass.SidesAt(propellant_kg);
+  return Vector3(0.0, stack.lateral_moment_y_kg_m + sides[kSideY],
+                 stack.lateral_moment_z_kg_m + sides[kSideZ]);
+}
+
 RigidBodyState AfterJettison(const LauncherPlant& plant, int stack, unsigned before, unsigned after,
                              double propellant_kg, double since_ignition_s, const RigidBodyState& state) {
+  // Lateral moments stay with what is left, whose mass has changed.
   const LauncherStack& same = StackOf(plant, stack);
-  const MassProperties whole = MassesOn(plant, stack, before, propellant_kg, since_ignition_s);
-  return AtPoint(
-      state, CgStep(plant, same, whole, same, MassesOn(plant, stack, after, propellant_kg, since_ignition_s),
-                    LateralOf(plant, stack, after & ~before)));
+  const Vector3 lateral_kg_m = LateralMoment(same, propellant_kg);
+  const Balance whole{same, MassesOn(plant, stack, before, propellant_kg, since_ignition_s),
+                      lateral_kg_m + LateralOf(plant, stack, after & ~before)};
+  const Balance left{same, MassesOn(plant, stack, after, propellant_kg, since_ignition_s), lateral_kg_m};
+  return AtPoint(state, CgStep(plant, whole, left));
 }
 
 RigidBodyState AfterSeparation(const LauncherPlant& plant, int below, unsigned jettisoned,
                                const RigidBodyState& state, std::optional<double> left_kg) {
-  const LauncherStack &burnt = StackOf(plant, below), &above = StackOf(plant, below + 1);
-  return AtPoint(
-      state, CgStep(plant, burnt, MassOf(plant, below, jettisoned).At(left_kg.value_or(burnt.burn.left_kg)),
-                    above, MassOf(plant, below + 1, jettisoned).At(above.burn.propellant_mass_kg)));
+  const auto balance = [&](int index, double propellant_kg) {
+    const LauncherStack& stack = StackOf(plant, index);
+    return Balance{stack, MassOf(plant, index, jettisoned).At(propellant_kg),
+                   LateralMoment(stack, propellant_kg)};
+  };
+  return AtPoint(state, CgStep(plant, balance(below, left_kg.value_or(StackOf(plant, below).burn.left_kg)),
+                               balance(below + 1, StackOf(plant, below + 1).burn.propellant_mass_kg)));
 }
 
 namespace {

@@ -13,6 +13,9 @@ StackMass MassOf(const LauncherPlant& plant, int stack, unsigned jettisoned);
 MassProperties MassesOn(const LauncherPlant& plant, int stack, unsigned jettisoned, double propellant_kg,
                         double since_ignition_s);
 
+/// Mass times place across the body's axis, of a stack with so much propellant and without boosters.
+Vector3 LateralMoment(const LauncherStack& stack, double propellant_kg);
+
 /// Values on which jettisons depend.
 struct JettisonSight {
   double time_s = 0.0;  ///< since lift-off

@@ -21,8 +21,10 @@ struct LauncherModel::Prepared {
         stack.aero_grid = std::make_shared<const AeroGrid>(BuildAeroGrid(stack.aerodynamics));
     stacks.resize(plant.stacks.size());
     apart.resize(plant.has_apart_boosters() ? stacks.size() : 0);
+    sides.resize(plant.has_side_masses() ? stacks.size() : 0);
     for (std::size_t i = 0; i < stacks.size(); ++i) {
       if (!apart.empty()) stacks[i].apart = &apart[i];
+      if (!sides.empty()) stacks[i].sides = &sides[i];
       lanes::SetLane(stacks[i], 0, plant, static_cast<int>(i));
       lanes::SetLane(stacks[i].weather, 0, weather);
     }
@@ -32,6 +34,7 @@ struct LauncherModel::Prepared {
   FlightWeather weather;
   std::vector<lanes::LauncherPlantLanes<double>> stacks;
   std::vector<lanes::ApartBoosters<double>> apart;
+  std::vector<lanes::SideMasses<double>> sides;
 };
 
 const AeroVariant* LauncherStack::AeroAfter(unsigned jettisoned, bool burning) const {
@@ -54,7 +57,7 @@ struct OneLane {
   OneLane(const LauncherPlant& from, const lanes::LauncherPlantLanes<double>& stack, const LauncherPhase& now,
           double time_s, const double* y)
       : earth(from.environment.earth),
-        lighter(Without(from, stack, now, apart)),
+        lighter(Without(from, stack, now, apart, sides)),
         plant(lighter ? *lighter : stack),
         phase{now.burning,          now.burnt,
               now.boosting,         now.ignition_s,
@@ -94,13 +97,18 @@ struct OneLane {
     }
   }
 
-  // Boosters that are bodies of their own have values of the instant: `apart` is theirs.
+  // Masses off the axis have values of the instant: `apart` is that of boosters, `sides` that of tables.
   static std::optional<lanes::LauncherPlantLanes<double>> Without(
       const LauncherPlant& from, const lanes::LauncherPlantLanes<double>& stack, const LauncherPhase& now,
-      lanes::ApartBoosters<double>& apart) {
+      lanes::ApartBoosters<double>& apart, lanes::SideMasses<double>& sides) {
     const LauncherStack& of = from.stacks[static_cast<std::size_t>(now.stack)];
-    if (now.jettisoned == 0 && stack.apart == nullptr && !of.aero_variants) return std::nullopt;
+    if (now.jettisoned == 0 && stack.apart == nullptr && stack.sides == nullptr && !of.aero_variants)
+      return std::nullopt;
     lanes::LauncherPlantLanes<double> lighter = stack;
+    if (stack.sides != nullptr) {
+      sides = *stack.sides;
+      lighter.sides = &sides;
+    }
     if (now.jettisoned != 0) lanes::SetLane(lighter.stack, 0, MassOf(from, now.stack, now.jettisoned));
     if (now.jettisoned & kBoostersGone) lighter.beside.burn.left_kg = 0.0;
     lanes::SetShape(lighter.aero, 0, of, of.AeroAfter(now.jettisoned, now.burning));
@@ -128,6 +136,7 @@ struct OneLane {
 
   const Earth& earth;
   lanes::ApartBoosters<double> apart;                        ///< unset unless there are such boosters
+  lanes::SideMasses<double> sides;                           ///< unset unless there are masses off the axis
   std::optional<lanes::LauncherPlantLanes<double>> lighter;  ///< the stack without bodies that have left
   const lanes::LauncherPlantLanes<double>& plant;
   lanes::LauncherPhaseLanes<double> phase;
@@ -194,8 +203,8 @@ LauncherInstant LauncherModel::Evaluate(const LauncherPhase& phase, double time_
   inertia(0, 1) = inertia(1, 0) = -one.plant.product_xy_kg_m2;
   inertia(0, 2) = inertia(2, 0) = -one.plant.product_xz_kg_m2;
   inertia(1, 2) = inertia(2, 1) = -one.plant.product_yz_kg_m2;
-  if (one.plant.apart) {
-    const lanes::Tensor<double> i = lanes::TensorWithBoosters(one.plant, masses);
+  if (one.plant.apart || one.plant.sides) {
+    const lanes::Tensor<double> i = lanes::TensorOffAxis(one.plant, masses);
     inertia << i.xx, -i.xy, -i.xz, -i.xy, i.yy, -i.yz, -i.xz, -i.yz, i.zz;
   }
   now.loads.inertia_rate_kg_m2_s =
@@ -263,6 +272,10 @@ bool LauncherPlant::nozzles_have_mass() const {
 }
 
 bool LauncherPlant::has_apart_boosters() const { return boosters && !boosters->each.empty(); }
+
+bool LauncherPlant::has_side_masses() const {
+  return std::any_of(stacks.begin(), stacks.end(), [](const LauncherStack& s) { return s.mass.HasSides(); });
+}
 
 bool LauncherPlant::boosters_steer() const { return boosters && boosters->gimbal.limit_rad > 0.0; }
 

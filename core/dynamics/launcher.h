@@ -148,6 +148,7 @@ struct LauncherPlant {
       const;  ///< Whether any stage has a list of nozzles. Then a cross is treated as a list too.
   int nozzle_banks() const;  ///< 1 unless a stage has more than four nozzles, or boosters that turn theirs
   bool has_apart_boosters() const;  ///< that are bodies of their own
+  bool has_side_masses() const;     ///< tables of stages with masses off the axis
   bool boosters_steer() const;      ///< with nozzles that turn
   /// Of a stack's nozzles, while its boosters burn or not.
   const NozzleLayout& LayoutOf(int stack, bool boosting) const;

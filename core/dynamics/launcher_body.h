@@ -7,6 +7,7 @@
 #include "core/dynamics/bending.h"
 #include "core/dynamics/body_flow.h"
 #include "core/dynamics/launcher.h"
+#include "core/dynamics/off_axis.h"
 #include "core/environment/surroundings.h"
 #include "core/math/lane_vector.h"
 #include "core/vehicle/burning_stack.h"
@@ -66,6 +67,7 @@ struct LauncherPlantLanes {
   MaskOf<T> has_products;
   T product_xy_kg_m2, product_xz_kg_m2, product_yz_kg_m2;
   ApartBoosters<T>* apart;  ///< null: the vehicle has no boosters, or has such that are all alike
+  SideMasses<T>* sides;     ///< null: no table of a stage knows masses off the axis
   int further_banks;        ///< that any lane's stage has
   NozzleBank<T> further[kBanks - 1];
 };
@@ -123,10 +125,15 @@ DISPERSA_INLINE TimedMasses<T> MassesAt(const LauncherPlantLanes<T>& plant,
   T lateral_y_kg_m = plant.lateral_moment_y_kg_m, lateral_z_kg_m = plant.lateral_moment_z_kg_m;
   if (plant.apart) {
     m = WithApart(*plant.apart, time_s - phase.ignition_s, flow_kg_s, m);
-    lateral_y_kg_m = lateral_y_kg_m + plant.apart->lateral_y_kg_m;
-    lateral_z_kg_m = lateral_z_kg_m + plant.apart->lateral_z_kg_m;
+    lateral_y_kg_m = lateral_y_kg_m + plant.apart->off.y_kg_m;
+    lateral_z_kg_m = lateral_z_kg_m + plant.apart->off.z_kg_m;
     o.beside_flow_kg_s = plant.apart->flow_kg_s;
     flow_kg_s = flow_kg_s + o.beside_flow_kg_s;
+  }
+  if (plant.sides) {
+    m = WithSides(*plant.sides, o.propellant_kg, m);
+    lateral_y_kg_m = lateral_y_kg_m + plant.sides->now.y_kg_m;
+    lateral_z_kg_m = lateral_z_kg_m + plant.sides->now.z_kg_m;
   }
   o.mass_kg = m.mass_kg - phase.expelled_kg;
   o.inverse_mass_1_kg = T(1.0) / o.mass_kg;
@@ -568,11 +575,20 @@ DISPERSA_INLINE Vector<T> TurnedUnderProducts(const LauncherPlantLanes<T>& plant
                              c_xz * m.x + c_yz * m.y + c_zz * m.z};
 }
 
-/// Of a vehicle whose boosters are bodies of their own.
+/// Of a vehicle with masses off the axis: boosters that are bodies of their own, or in tables of its stages.
 template <class T>
-DISPERSA_INLINE Tensor<T> TensorWithBoosters(const LauncherPlantLanes<T>& plant,
-                                             const TimedMasses<T>& masses) {
-  Tensor<T> i = TensorOf(*plant.apart, masses.axial_kg_m2, masses.transverse_kg_m2, masses.mass_kg,
+DISPERSA_INLINE Tensor<T> TensorOffAxis(const LauncherPlantLanes<T>& plant, const TimedMasses<T>& masses) {
+  OffAxis<T> off = plant.apart ? plant.apart->off : plant.sides->now;
+  if (plant.apart && plant.sides) {
+    const OffAxis<T>& more = plant.sides->now;
+    off = {off.y_kg_m + more.y_kg_m,
+           off.z_kg_m + more.z_kg_m,
+           off.station_y_kg_m2 + more.station_y_kg_m2,
+           off.station_z_kg_m2 + more.station_z_kg_m2,
+           off.about_y_kg_m2 + more.about_y_kg_m2,
+           off.yz_kg_m2 + more.yz_kg_m2};
+  }
+  Tensor<T> i = TensorOf(off, masses.axial_kg_m2, masses.transverse_kg_m2, masses.mass_kg,
                          masses.cg_station_m, plant.inertia_factor);
   i.xy = i.xy + plant.product_xy_kg_m2;
   i.xz = i.xz + plant.product_xz_kg_m2;
@@ -616,10 +632,10 @@ DISPERSA_INLINE Rates<T> RatesOf(double earth_rate_rad_s, const LauncherPlantLan
                          Fma(-transverse_loss, s.w.z, moment.z)};
     o.dw = Select(plant.has_products, TurnedUnderProducts(plant, masses, left, s.w), o.dw);
   }
-  if (plant.apart) {
+  if (plant.apart || plant.sides) {
     const Vector<T> left{Fma(-axial_loss, s.w.x, moment.x), Fma(-transverse_loss, s.w.y, moment.y),
                          Fma(-transverse_loss, s.w.z, moment.z)};
-    o.dw = TurnedUnder(TensorWithBoosters(plant, masses), left, s.w);
+    o.dw = TurnedUnder(TensorOffAxis(plant, masses), left, s.w);
   }
   if (instant)
     *instant = {around.altitude_m, loads.flow.qbar_pa, loads.flow.mach, loads.flow.incidence_rad,

@@ -124,7 +124,8 @@ DISPERSA_INLINE void SetFurtherBanks(LauncherPlantLanes<T>& p, int lane, const L
 }
 
 /// The plant of a lane on its stack with nothing jettisoned. `p.apart` points to values of its own where the
-/// plant's boosters are bodies of their own. Its weather is set separately, once a flight.
+/// plant's boosters are bodies of their own, and `p.sides` where it has masses off the axis. Its weather is
+/// set separately, once a flight.
 template <class T>
 DISPERSA_INLINE void SetLane(LauncherPlantLanes<T>& p, int lane, const LauncherPlant& plant, int stack) {
   const LauncherStack& s = plant.stacks.data()[stack];
@@ -163,6 +164,7 @@ DISPERSA_INLINE void SetLane(LauncherPlantLanes<T>& p, int lane, const LauncherP
     p.apart->first_bank = plant.stacks.data()[0].layout.banks() - 1;
     SetLane(*p.apart, lane, *boosters, stack == 0);
   }
+  if (p.sides) SetLane(p.sides->masses, lane, s.mass);  // what is jettisoned is on the axis
   SetFurtherBanks(p, lane, s, plant.nozzle_banks() - 1);
   SetLane(p.departs, lane, departs);
   p.any_departs = Any(p.departs);

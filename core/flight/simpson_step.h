@@ -67,6 +67,7 @@ class StepState {
     tick_s_ = tick_s;
     most_further_ = nominal.nozzle_banks() - 1;
     if (nominal.has_apart_boosters()) plant_.apart = &apart_;
+    if (nominal.has_side_masses()) plant_.sides = &sides_;
     start_ = &points_[0];
     middle_ = &points_[1];
     end_ = &points_[2];
@@ -539,6 +540,7 @@ class StepState {
   mutable BankNozzles<T> further_nozzles_[kBanks - 1];  ///< of the present evaluation
   Transition<T> further_over_half_[kBanks - 1];
   ApartBoosters<T> apart_;  ///< unset unless the vehicle has such boosters
+  SideMasses<T> sides_;     ///< unset unless the vehicle has masses off the axis
 };
 
 /// Steps within this of a tick take the tick's transition of the actuators: it moves a deflection by less

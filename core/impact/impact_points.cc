@@ -110,6 +110,7 @@ std::vector<ImpactPoint> ImpactPoints(const CampaignFlights& flights, const Case
     const double since_s = *boosters_left_s + vehicle.hold_down_s;
     const LauncherStack& stack = plant.stacks[0];
     const MassProperties mass = MassesOn(plant, 0, kBoostersGone, stack.burn.Propellant(since_s), since_s);
+    const Vector3 aside_m = LateralMoment(stack, stack.burn.Propellant(since_s)) / mass.mass_kg;
     std::vector<EachBooster> each = plant.boosters->each;
     if (each.empty()) {
       each.resize(1);
@@ -123,8 +124,7 @@ std::vector<ImpactPoint> ImpactPoints(const CampaignFlights& flights, const Case
           TumblingCylinderDragArea(boosters.bottom_station_m - boosters.top_station_m, boosters.diameter_m)};
       const double ahead_m = mass.cg_station_m - SpentStation(boosters, one);
       const RigidBodyState spent =
-          AtPoint(left, Vector3(ahead_m, one.y_m - stack.lateral_moment_y_kg_m / mass.mass_kg,
-                                one.z_m - stack.lateral_moment_z_kg_m / mass.mass_kg));
+          AtPoint(left, Vector3(ahead_m, one.y_m - aside_m.y(), one.z_m - aside_m.z()));
       fall({.stage = 0, .lost = false}, body, {*boosters_left_s, spent.p_EoC_I, spent.v_IC_I});
     }
     break;

@@ -77,16 +77,47 @@ DISPERSA_INLINE void SetLane(StackMassLanes<T>& s, int lane, const StackMass& ma
 }
 
 /// The row of a table that a mass of propellant falls into.
-alignas(32) inline constexpr double kNoMassRow[MassRows::kRowSize] = {};
-DISPERSA_INLINE const double* MassRowAt(const MassRows* table, double propellant_kg) {
-  if (table == nullptr) return kNoMassRow;
-  const double* begin_kg = table->begin_kg.data();
-  int low = 0, high = static_cast<int>(table->begin_kg.size());
+alignas(32) inline constexpr double kNoMassRow[MassRows::kSideRowSize] = {};
+DISPERSA_INLINE int MassPieceAt(const MassRows& table, double propellant_kg) {
+  const double* begin_kg = table.begin_kg.data();
+  int low = 0, high = static_cast<int>(table.begin_kg.size());
   while (high - low > 1) {
     const int middle = (low + high) / 2;
     (propellant_kg < begin_kg[middle] ? high : low) = middle;
   }
-  return table->rows.data() + MassRows::kRowSize * low;
+  return low;
+}
+DISPERSA_INLINE const double* MassRowAt(const MassRows* table, double propellant_kg) {
+  if (table == nullptr) return kNoMassRow;
+  return table->rows.data() + MassRows::kRowSize * MassPieceAt(*table, propellant_kg);
+}
+
+/// Sums over masses off the axis (SideSums) of each lane's stack, prepared.
+template <class T>
+struct SideMassLanes {
+  T fixed[kSideSums];                ///< of all but the burning propellant
+  const MassRows* table[kWidth<T>];  ///< null: none has side rows
+};
+template <class T>
+DISPERSA_INLINE void SetLane(SideMassLanes<T>& s, int lane, const StackMass& mass) {
+  const double* const sums = mass.sides.data();
+  for (int k = 0; k < kSideSums; ++k) Lane(s.fixed[k], lane) = sums[k];
+  s.table[lane] = mass.table != nullptr && mass.table->side_rows.size() > 0 ? mass.table : nullptr;
+}
+template <class T>
+DISPERSA_INLINE void SidesAt(const SideMassLanes<T>& s, T propellant_kg, T* sums) {
+  const double* piece[kWidth<T>];
+  for (int lane = 0; lane < kWidth<T>; ++lane) {
+    const MassRows* const table = s.table[lane];
+    piece[lane] = table == nullptr
+                      ? kNoMassRow
+                      : table->side_rows.data() +
+                            MassRows::kSideRowSize * MassPieceAt(*table, Lane(propellant_kg, lane));
+  }
+  T row[MassRows::kSideRowSize];
+  LoadRow(piece, MassRows::kSideRowSize / 4, row);
+  const T from = propellant_kg - row[0];
+  for (int k = 0; k < kSideSums; ++k) sums[k] = s.fixed[k] + Fma(from, row[2 + 2 * k], row[1 + 2 * k]);
 }
 
 /// MassProperties of StackMass::At.

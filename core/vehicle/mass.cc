@@ -51,6 +51,7 @@ void AddTable(const Stage& stage, double dry_kg, StackMass& stack) {
   stack.fixed_first_moment_kg_m += flown.dry_factor * flown.rows->first_moment_kg_m;
   stack.fixed_second_moment_kg_m2 += flown.dry_factor * flown.rows->second_moment_kg_m2;
   stack.fixed_axial_inertia_kg_m2 += flown.dry_factor * flown.rows->axial_inertia_kg_m2;
+  for (std::size_t k = 0; k < kSideSums; ++k) stack.sides[k] += flown.dry_factor * flown.rows->sides[k];
   if (flown.added_kg == 0.0) return;
   const MassElement& e = stage.structure[flown.element];
   Add(Tube{flown.added_kg, e.top_station_m, e.bottom_station_m, 0.5 * e.outer_diameter_m,
@@ -138,6 +139,19 @@ BoosterPropellant OfOneBooster(BoosterPropellant all, int count) {
   all.tanks.second_per_kg2_m2 *= count;
   all.tanks.second_per_kg3_m2 *= Square(count);
   return all;
+}
+
+SideSums StackMass::SidesAt(double propellant_kg) const {
+  SideSums sums = sides;
+  if (table == nullptr) return sums;
+  const SideSums burning = table->SidesOfPropellant(propellant_kg);
+  for (std::size_t k = 0; k < kSideSums; ++k) sums[k] += burning[k];
+  return sums;
+}
+
+bool StackMass::HasSides() const {
+  return (table != nullptr && !table->side_rows.empty()) ||
+         std::any_of(sides.begin(), sides.end(), [](double sum) { return sum != 0.0; });
 }
 
 MixtureOf BuildMixture(const Boosters& boosters, double factor) {
@@ -241,6 +255,8 @@ std::vector<StackMass> BuildStackMasses(const Vehicle& vehicle) {
         stack.fixed_first_moment_kg_m += sums.first_moment_kg_m;
         stack.fixed_second_moment_kg_m2 += sums.second_moment_kg_m2;
         stack.fixed_axial_inertia_kg_m2 += sums.axial_inertia_kg_m2;
+        const SideSums sides = stage.flown_mass.rows->SidesOfPropellant(stage.propellant_mass_kg);
+        for (std::size_t k = 0; k < kSideSums; ++k) stack.sides[k] += sides[k];
         continue;
       }
       for (const Tank& tank : stage.tanks)

@@ -52,8 +52,13 @@ struct StackMass {
   bool drains = false;              ///< tanks in place of the grain
   DrainingMass tanks;
   const MassRows* table = nullptr;  ///< in place of grain or tanks (null: none), the stage's own
+  SideSums sides{};                 ///< of all but the burning propellant, by tables of its stages
 
+  /// About the centre of gravity of the masses as if all were on the axis.
   MassProperties At(double propellant_kg) const;
+  SideSums SidesAt(double propellant_kg) const;
+  /// Whether a table knows masses off the axis.
+  bool HasSides() const;
 };
 
 /// Jettisoned bodies as part of a stack's sums. They are numbered in the order of the stages and, within a

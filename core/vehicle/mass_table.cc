@@ -9,6 +9,27 @@
 
 namespace dispersa {
 
+namespace {
+
+double ValueAt(const std::vector<double>& column, std::size_t row) {
+  return column.empty() ? 0.0 : column[row];
+}
+
+// The stem of the product by which a row's tensor is not positive definite (Sylvester), the first in the
+// order of the columns; null: it is.
+const char* BadProduct(const MassTable& table, std::size_t row) {
+  const double a = table.axial_inertia_kg_m2[row], t = table.transverse_inertia_kg_m2[row];
+  const double xy = ValueAt(table.product_xy_kg_m2, row), xz = ValueAt(table.product_xz_kg_m2, row),
+               yz = ValueAt(table.product_yz_kg_m2, row);
+  if (!(a * t > xy * xy)) return "product_xy";
+  if (!(a * t > xz * xz)) return "product_xz";
+  if (!(t * t > yz * yz)) return "product_yz";
+  if (a * (t * t - yz * yz) - xy * (xy * t + xz * yz) - xz * (xz * t + xy * yz) > 0.0) return nullptr;
+  return xy != 0.0 ? "product_xy" : "product_xz";
+}
+
+}  // namespace
+
 void Describe(Fields& fields, MassTable& table) {
   constexpr std::size_t kMost = 2000;
   fields.OptionalQuantities("propellant_left", kMass, kNonNegative, 2, kMost, table.propellant_kg,
@@ -23,14 +44,23 @@ void Describe(Fields& fields, MassTable& table) {
                     "about the axis");
   fields.Quantities("transverse_inertia", kInertia, kPositive, 2, kMost, table.transverse_inertia_kg_m2,
                     "across the axis, about the centre of gravity");
+  fields.OptionalQuantities("cg_y", kLength, kAnyNumber, 2, kMost, table.cg_y_m,
+                            "of it off the axis, towards body y (right); default: 0");
+  fields.OptionalQuantities("cg_z", kLength, kAnyNumber, 2, kMost, table.cg_z_m,
+                            "the same towards body z (down)");
+  fields.OptionalQuantities("product_xy", kInertia, kAnyNumber, 2, kMost, table.product_xy_kg_m2,
+                            "integral of x y dm about it, x forward; default: 0");
+  fields.OptionalQuantities("product_xz", kInertia, kAnyNumber, 2, kMost, table.product_xz_kg_m2, "of x z");
+  fields.OptionalQuantities("product_yz", kInertia, kAnyNumber, 2, kMost, table.product_yz_kg_m2, "of y z");
   fields.Check([&fields, &table] {
     const std::size_t count = table.cg_station_m.size();
-    for (const auto* column : {&table.propellant_kg, &table.time_s, &table.mass_kg,
-                               &table.axial_inertia_kg_m2, &table.transverse_inertia_kg_m2}) {
-      const bool may_miss = column != &table.axial_inertia_kg_m2 && column != &table.transverse_inertia_kg_m2;
-      if (column->size() == count || (may_miss && column->empty())) continue;
+    std::vector<const std::vector<double>*> optional = {&table.propellant_kg, &table.time_s, &table.mass_kg};
+    for (const auto* column : table.Sides()) optional.push_back(column);
+    bool are_even =
+        table.axial_inertia_kg_m2.size() == count && table.transverse_inertia_kg_m2.size() == count;
+    for (const auto* column : optional) are_even &= column->empty() || column->size() == count;
+    if (!are_even)
       return fields.Refuse("", "the columns have different lengths", "one value a row in each column");
-    }
     if (table.propellant_kg.empty() == table.time_s.empty())
       return fields.Refuse("",
                            table.time_s.empty() ? "missing column 'propellant_left_kg' or 'time_s'"
@@ -51,6 +81,11 @@ void Describe(Fields& fields, MassTable& table) {
         return fields.Refuse("transverse_inertia[" + std::to_string(i) + "]",
                              "is that of no body: it is below half the axial inertia",
                              "half the axial inertia or more");
+    for (std::size_t i = 0; i < count; ++i)
+      if (const char* product = BadProduct(table, i))
+        return fields.Refuse(product + ("[" + std::to_string(i) + "]"),
+                             "is that of no body, with the other products and the inertias",
+                             "products of which the tensor has positive moments about every axis");
   });
 }
 
@@ -68,14 +103,50 @@ void PutOverPropellant(const MotorBurn& burn, MassTable& table) {
     return table.propellant_kg[b] - table.propellant_kg[a] <= same_kg;
   };
   order.erase(std::unique(order.begin(), order.end(), is_same), order.end());
-  for (auto* column : {&table.mass_kg, &table.cg_station_m, &table.axial_inertia_kg_m2,
-                       &table.transverse_inertia_kg_m2, &table.propellant_kg}) {
+  std::vector<std::vector<double>*> columns = {&table.mass_kg, &table.cg_station_m,
+                                               &table.axial_inertia_kg_m2, &table.transverse_inertia_kg_m2,
+                                               &table.propellant_kg};
+  for (auto* column : table.Sides()) columns.push_back(column);
+  for (auto* column : columns) {
     if (column->empty()) continue;
     std::vector<double> sorted;
     for (std::size_t i : order) sorted.push_back((*column)[i]);
     *column = std::move(sorted);
   }
 }
+
+namespace {
+
+// With x = -station the integral of x y about the centre is the sum of m (station_cg - station) y.
+SideSums SidesAt(const MassTable& table, double dry_kg, std::size_t row) {
+  const double mass_kg = dry_kg + table.propellant_kg[row], station_m = table.cg_station_m[row];
+  const double y_m = ValueAt(table.cg_y_m, row), z_m = ValueAt(table.cg_z_m, row);
+  SideSums sums;
+  sums[kSideY] = mass_kg * y_m;
+  sums[kSideZ] = mass_kg * z_m;
+  sums[kSideStationY] = mass_kg * station_m * y_m - ValueAt(table.product_xy_kg_m2, row);
+  sums[kSideStationZ] = mass_kg * station_m * z_m - ValueAt(table.product_xz_kg_m2, row);
+  sums[kSideAboutY] = 0.5 * mass_kg * (Square(z_m) - Square(y_m));
+  sums[kSideYz] = mass_kg * y_m * z_m + ValueAt(table.product_yz_kg_m2, row);
+  sums[kSideSquare] = mass_kg * (Square(y_m) + Square(z_m));
+  return sums;
+}
+
+void AddSides(const MassTable& table, double dry_kg, MassRows& built) {
+  for (std::size_t i = 0; i + 1 < table.propellant_kg.size(); ++i) {
+    const SideSums low = SidesAt(table, dry_kg, i), high = SidesAt(table, dry_kg, i + 1);
+    const double from_kg = table.propellant_kg[i], width_kg = table.propellant_kg[i + 1] - from_kg;
+    built.side_rows.push_back(from_kg);
+    for (std::size_t k = 0; k < kSideSums; ++k) {
+      const double slope = (high[k] - low[k]) / width_kg;
+      if (i == 0) built.sides[k] = low[k] - slope * from_kg;
+      built.side_rows.insert(built.side_rows.end(), {low[k] - built.sides[k], slope});
+    }
+    built.side_rows.push_back(0.0);
+  }
+}
+
+}  // namespace
 
 MassRows BuildMassRows(const MassTable& table, double dry_kg) {
   const std::size_t count = table.propellant_kg.size();
@@ -101,13 +172,27 @@ MassRows BuildMassRows(const MassTable& table, double dry_kg) {
                                          low.second_moment_kg_m2 - built.second_moment_kg_m2, second,
                                          low.axial_inertia_kg_m2 - built.axial_inertia_kg_m2, axial, 0.0});
   }
+  if (table.has_sides()) AddSides(table, dry_kg, built);
   return built;
 }
 
-MassRows::Sums MassRows::OfPropellant(double propellant_kg) const {
+std::size_t MassRows::PieceAt(double propellant_kg) const {
   std::size_t piece = 0;
   while (piece + 1 < begin_kg.size() && propellant_kg >= begin_kg[piece + 1]) ++piece;
-  const double* row = rows.data() + static_cast<std::size_t>(kRowSize) * piece;
+  return piece;
+}
+
+SideSums MassRows::SidesOfPropellant(double propellant_kg) const {
+  SideSums sums{};
+  if (side_rows.empty()) return sums;
+  const double* row = side_rows.data() + static_cast<std::size_t>(kSideRowSize) * PieceAt(propellant_kg);
+  for (std::size_t k = 0; k < kSideSums; ++k)
+    sums[k] = row[1 + 2 * k] + (propellant_kg - row[0]) * row[2 + 2 * k];
+  return sums;
+}
+
+MassRows::Sums MassRows::OfPropellant(double propellant_kg) const {
+  const double* row = rows.data() + static_cast<std::size_t>(kRowSize) * PieceAt(propellant_kg);
   const double from = propellant_kg - row[0];
   return {row[1] + from * row[2], row[3] + from * row[4], row[5] + from * row[6]};
 }

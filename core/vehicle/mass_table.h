@@ -1,6 +1,7 @@
 // Mass properties of a stage as CAD gives them, over the propellant that is left.
 #pragma once
 
+#include <array>
 #include <memory>
 #include <vector>
 
@@ -12,8 +13,9 @@ class Fields;
 struct MotorBurn;
 
 /// The stage alone: its dry mass and its propellant, without boosters, jettisoned bodies and stages above.
-/// Centre of gravity on the axis. Inertias are about it, along and across the axis. Replaces the tubes of
-/// structure, grain and tanks in flight. Its dry and propellant masses are the stage's own keys.
+/// Inertias are about its centre of gravity, along and across the axis (the mean of y and z). Replaces the
+/// tubes of structure, grain and tanks in flight. Its dry and propellant masses are the stage's own keys.
+/// Axes of the body: x forward, y right, z down. Stations count aft.
 struct MassTable {
   std::vector<double> time_s;         ///< since ignition (empty: the rows are over propellant)
   std::vector<double> propellant_kg;  ///< left
@@ -21,13 +23,32 @@ struct MassTable {
   std::vector<double> cg_station_m;
   std::vector<double> axial_inertia_kg_m2;
   std::vector<double> transverse_inertia_kg_m2;
+  /// Of the centre of gravity off the axis, towards body y and z (empty: on it).
+  std::vector<double> cg_y_m, cg_z_m;
+  /// Integrals of x y, x z and y z over the mass about the centre of gravity (empty: 0). The tensor's
+  /// elements off the diagonal are their negatives.
+  std::vector<double> product_xy_kg_m2, product_xz_kg_m2, product_yz_kg_m2;
 
+  /// Columns that need not be there.
+  std::array<std::vector<double>*, 5> Sides() {
+    return {&cg_y_m, &cg_z_m, &product_xy_kg_m2, &product_xz_kg_m2, &product_yz_kg_m2};
+  }
+  /// Whether any of them is.
+  bool has_sides() const {
+    return !cg_y_m.empty() || !cg_z_m.empty() || !product_xy_kg_m2.empty() || !product_xz_kg_m2.empty() ||
+           !product_yz_kg_m2.empty();
+  }
   bool empty() const { return cg_station_m.empty(); }
 };
 void Describe(Fields& fields, MassTable& table);
 
 /// Replaces the times by the propellant that the burn leaves at them, and sorts the rows by it.
 void PutOverPropellant(const MotorBurn& burn, MassTable& table);
+
+/// Sums over masses off the axis: of mass times place across the axis, of mass times station times place, of
+/// half of m (z² - y²), of m y z, and of m (y² + z²). Products of inertia are among them.
+enum SideSum { kSideY, kSideZ, kSideStationY, kSideStationZ, kSideAboutY, kSideYz, kSideSquare, kSideSums };
+using SideSums = std::array<double, kSideSums>;
 
 /// Sums of the stage over its propellant m: the first and the second (transverse) moment about station 0,
 /// and the axial inertia. They are linear between the rows and beyond them. So mass, centre of gravity and
@@ -46,6 +67,15 @@ struct MassRows {
   };
   /// Of the propellant: to be added to those without.
   Sums OfPropellant(double propellant_kg) const;
+
+  /// The same of the masses off the axis: m at the row, then value and slope of each sum (empty: none is).
+  static constexpr int kSideRowSize = 16;
+  AlignedRows side_rows;
+  SideSums sides{};  ///< without propellant
+  SideSums SidesOfPropellant(double propellant_kg) const;
+
+  /// The piece that a mass of propellant falls into.
+  std::size_t PieceAt(double propellant_kg) const;
 };
 /// Precondition: two rows or more, over propellant.
 MassRows BuildMassRows(const MassTable& table, double dry_kg);

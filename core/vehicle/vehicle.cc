@@ -113,11 +113,18 @@ void CheckMassTable(const Stage& stage, double dry_kg, const std::string& path, 
                     "the stage alone, within 0.5 %: without stages above, boosters and jettisoned bodies");
       return;
     }
-    if (table.cg_station_m[i] < stage.bottom_station_m) continue;
-    check.Require(false, at + ".cg_station_m",
-                  "is " + std::to_string(table.cg_station_m[i]) + ", aft of the stage",
-                  "less than bottom_station_m of the stage");
-    return;
+    if (table.cg_station_m[i] >= stage.bottom_station_m) {
+      check.Require(false, at + ".cg_station_m",
+                    "is " + std::to_string(table.cg_station_m[i]) + ", aft of the stage",
+                    "less than bottom_station_m of the stage");
+      return;
+    }
+    for (const auto& [key, column] : {std::pair{".cg_y_m", &table.cg_y_m}, {".cg_z_m", &table.cg_z_m}}) {
+      if (column->empty() || std::fabs((*column)[i]) < 0.5 * stage.diameter_m) continue;
+      check.Require(false, at + key, "is " + std::to_string((*column)[i]) + ", beside the stage",
+                    "less than half of diameter_m of the stage");
+      return;
+    }
   }
 }
 

@@ -329,6 +329,47 @@ TEST(MassTableFile, OverTimeIsThatOfTheNominalBurn) {
   EXPECT_THAT(table.cg_station_m, ElementsAre(7.2, 6.9, 7.0));
 }
 
+// Off the axis, in the columns that need not be there. What a campaign's folder keeps is read again as it
+// was.
+TEST(MassTableFile, MayHaveMassesOffTheAxis) {
+  const InputFiles files;
+  Weigh(
+      files,
+      "propellant_left_kg,cg_station_m,axial_inertia_kg_m2,transverse_inertia_kg_m2,cg_z_m,product_xz_kg_m2\n"
+      "1500,7,180,1900,0.01,-8\n0,7.2,70,1000,0.04,-5\n");
+  const Campaign campaign = LoadCampaign(files.Path("campaign.yaml"));
+  const auto expect = [](const Vehicle& vehicle) {
+    const SideSums full = BuildStackMasses(vehicle)[0].SidesAt(1500.0),
+                   dry = BuildStackMasses(vehicle)[0].SidesAt(0.0);
+    EXPECT_NEAR(full[kSideZ], 2000.0 * 0.01, 1e-9);
+    EXPECT_NEAR(dry[kSideZ], 500.0 * 0.04, 1e-9);
+    // Mass times station times place: the station counts aft, x forward.
+    EXPECT_NEAR(full[kSideStationZ], 2000.0 * 7.0 * 0.01 + 8.0, 1e-9);
+    EXPECT_NEAR(dry[kSideStationZ], 500.0 * 7.2 * 0.04 + 5.0, 1e-9);
+    EXPECT_NEAR(full[kSideSquare], 2000.0 * 1e-4, 1e-9);
+    for (const SideSum none : {kSideY, kSideStationY, kSideYz}) EXPECT_NEAR(full[none], 0.0, 1e-12);
+    EXPECT_TRUE(BuildStackMasses(vehicle)[0].HasSides());
+    EXPECT_FALSE(BuildStackMasses(vehicle)[1].HasSides());
+  };
+  expect(campaign.vehicle);
+  const Campaign again = ParseCampaign(campaign.canonical_yaml, "canonical");
+  expect(again.vehicle);
+  EXPECT_EQ(again.flight_id, campaign.flight_id);
+}
+
+TEST(MassTableFile, MistakesOffTheAxisAreReportedInFull) {
+  const std::string head =
+      "propellant_left_kg,cg_station_m,axial_inertia_kg_m2,transverse_inertia_kg_m2,cg_y_m,product_xy_kg_"
+      "m2\n";
+  EXPECT_EQ(MassProblems(head + "1500,7,180,1900,0.01,3\n0,7,70,1000,0.7,3\n"),
+            "masses.csv:1:74: stages[0].mass_table.cg_y_m: is 0.700000, beside the stage, allowed: less than "
+            "half of diameter_m of the stage\n");
+  EXPECT_EQ(MassProblems(head + "1500,7,180,1900,0.01,3\n0,7,70,1000,0.01,300\n"),
+            "masses.csv:3:19: product_xy_kg_m2[1]: is that of no body, with the other products and the "
+            "inertias, allowed: products of which the tensor has positive moments about every axis\n");
+  EXPECT_EQ(MassProblems(head + "1500,7,180,1900,x,3\n0,7,70,1000,0.01,3\n"), "?");
+}
+
 TEST(MassTableFile, MistakesAreReportedInFull) {
   const std::string head = "propellant_left_kg,cg_station_m,axial_inertia_kg_m2,transverse_inertia_kg_m2\n";
   EXPECT_EQ(

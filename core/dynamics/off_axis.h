@@ -1,0 +1,76 @@
+// Masses off the vehicle's axis, of W vehicles side by side (core/math/lanes.h): boosters that are bodies of
+// their own, and stages whose mass tables say so. Frames and signs as in launcher_body.h.
+#pragma once
+
+#include "core/math/lane_vector.h"
+#include "core/vehicle/burning_stack.h"
+
+namespace dispersa::lanes {
+inline namespace DISPERSA_ISA {
+
+/// Sums over bodies off the axis; stations count aft.
+template <class T>
+struct OffAxis {
+  T y_kg_m, z_kg_m;                    ///< of mass times place
+  T station_y_kg_m2, station_z_kg_m2;  ///< of mass times station times place
+  T about_y_kg_m2, yz_kg_m2;           ///< what I_y has more than the mean of I_y and I_z; sum of m y z
+};
+
+/// Stages with tables that know masses off the axis.
+template <class T>
+struct SideMasses {
+  SideMassLanes<T> masses;
+  OffAxis<T> now;
+};
+/// `m` with what they weigh off the axis, and that in `now`. By value: a reference would keep `m` in memory
+/// for other vehicles too.
+template <class T>
+DISPERSA_OUT_OF_LINE MassPropertiesLanes<T> WithSides(SideMasses<T>& sides, T propellant_kg,
+                                                      MassPropertiesLanes<T> m) {
+  T sums[kSideSums];
+  SidesAt(sides.masses, propellant_kg, sums);
+  sides.now = {sums[kSideY],        sums[kSideZ],      sums[kSideStationY],
+               sums[kSideStationZ], sums[kSideAboutY], sums[kSideYz]};
+  m.axial_kg_m2 = m.axial_kg_m2 + sums[kSideSquare];
+  m.transverse_kg_m2 = Fma(T(0.5), sums[kSideSquare], m.transverse_kg_m2);
+  return m;
+}
+
+/// The tensor of inertia about C.
+template <class T>
+struct Tensor {
+  T xx, yy, zz;
+  T xy, xz, yz;  ///< integrals of the products: the off-diagonal elements are their negatives
+};
+/// Of axial and transverse moments of a body of which the masses off the axis count as spread about it.
+/// `factor`: by which the flight's moments of inertia differ.
+template <class T>
+DISPERSA_INLINE Tensor<T> TensorOf(const OffAxis<T>& off, T axial_kg_m2, T transverse_kg_m2, T mass_kg,
+                                   T cg_station_m, T factor) {
+  const T y = off.y_kg_m / mass_kg, z = off.z_kg_m / mass_kg;
+  const T yy = off.y_kg_m * y, zz = off.z_kg_m * z;
+  return {axial_kg_m2 - factor * (yy + zz),
+          transverse_kg_m2 + factor * (off.about_y_kg_m2 - zz),
+          transverse_kg_m2 - factor * (off.about_y_kg_m2 + yy),
+          factor * Fma(cg_station_m, off.y_kg_m, -off.station_y_kg_m2),
+          factor * Fma(cg_station_m, off.z_kg_m, -off.station_z_kg_m2),
+          factor * Fma(-off.y_kg_m, z, off.yz_kg_m2)};
+}
+
+/// dw/dt of I dw/dt = `moment` - w x I w, by cofactors of I.
+template <class T>
+DISPERSA_INLINE Vector<T> TurnedUnder(const Tensor<T>& i, const Vector<T>& moment, const Vector<T>& w) {
+  const Vector<T> spin{i.xx * w.x - (i.xy * w.y + i.xz * w.z), i.yy * w.y - (i.xy * w.x + i.yz * w.z),
+                       i.zz * w.z - (i.xz * w.x + i.yz * w.y)};
+  const Vector<T> m = moment - Cross(w, spin);
+  const T c_xx = i.yy * i.zz - i.yz * i.yz, c_yy = i.xx * i.zz - i.xz * i.xz,
+          c_zz = i.xx * i.yy - i.xy * i.xy;
+  const T c_xy = i.xy * i.zz + i.xz * i.yz, c_xz = i.xz * i.yy + i.xy * i.yz,
+          c_yz = i.xx * i.yz + i.xy * i.xz;
+  const T inverse = T(1.0) / (i.xx * c_xx - (i.xy * c_xy + i.xz * c_xz));
+  return inverse * Vector<T>{c_xx * m.x + c_xy * m.y + c_xz * m.z, c_xy * m.x + c_yy * m.y + c_yz * m.z,
+                             c_xz * m.x + c_yz * m.y + c_zz * m.z};
+}
+
+}  // namespace DISPERSA_ISA
+}  // namespace dispersa::lanes
