@@ -162,6 +162,10 @@ class DispersionFields {
                    "each stage in one of the list");
         break;
       }
+      for (const int stage : of.stages)
+        if (const std::optional<Unfit> unfit =
+                is_sound_ && row.unfit != nullptr ? row.unfit(vehicle_, stage) : std::nullopt)
+          map.Refuse("", unfit->what, unfit->allowed);
       const ScalarDistribution distribution = ReadScalar(map, Limited(row, of.stages));
       if (row.draws == Draws::kOffAxis) return OffAxis(map, row, name, of, distribution);
       if (row.draws == Draws::kThrust) return Thrust(map, row, name, of, distribution);
@@ -313,9 +317,6 @@ class DispersionFields {
     map.Quantity("sensitivity", kPerTemperature, UpTo(0.02), sensitivity_1_k,
                  "growth of the burn rate, pi_K");
     of.per = PerWhat(map, row);
-    for (const int stage : of.stages)
-      if (is_sound_ && vehicle_.stages[static_cast<std::size_t>(stage) - 1].is_liquid())
-        map.Refuse("", "stage " + std::to_string(stage) + " is liquid", "stage: those with solid motors");
     AddStages(name, of, RateOf(rate, sensitivity_1_k), row.columns);
   }
   static ScalarDistribution RateOf(ScalarDistribution rate, double sensitivity_1_k) {
@@ -337,8 +338,8 @@ class DispersionFields {
     if (is_sound_ && vehicle_.boosters.count == 0)
       return fields.Misplaced(row.key, {}, "the vehicle has no boosters", "a vehicle with boosters");
     if (is_sound_ && row.unfit != nullptr)
-      if (const std::optional<Unfit> unfit = row.unfit(vehicle_.boosters))
-        return fields.Misplaced(row.key, {}, unfit->what, unfit->allowed);
+      if (const std::optional<Unfit> unfit = row.unfit(vehicle_, 1))
+        return fields.Misplaced(row.key, {}, unfit->what.c_str(), unfit->allowed);
     bool is_there = false;
     fields.OptionalMap(row.key, is_there, row.meaning, [&](Fields& map) {
       if (is_sound_) Spread(campaign_.vehicle.boosters);

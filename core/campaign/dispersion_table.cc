@@ -29,13 +29,24 @@ Range LimitsOfBoosterPropellant(const Vehicle& vehicle, int) {
   return Inside(0.0, LargestPropellantFactor(AsStage(vehicle.boosters)));
 }
 
-std::optional<Unfit> UnfitForTemperature(const Boosters& boosters) {
-  if (!boosters.is_liquid()) return std::nullopt;
+// ---- what takes no values ----
+
+std::optional<Unfit> LiquidStage(const Vehicle& vehicle, int stage) {
+  if (!StageAt(vehicle, stage).is_liquid()) return std::nullopt;
+  return Unfit{"stage " + std::to_string(stage) + " is liquid", "stage: those with solid motors"};
+}
+std::optional<Unfit> LiquidBoosters(const Vehicle& vehicle, int) {
+  if (!vehicle.boosters.is_liquid()) return std::nullopt;
   return Unfit{"the boosters are liquid: pumps or tank pressure set their flow",
                "booster_burn_rate, or boosters with solid motors"};
 }
-std::optional<Unfit> UnfitForMixture(const Boosters& boosters) {
-  if (boosters.tanks.size() >= 2) return std::nullopt;
+std::optional<Unfit> StageWithoutMixture(const Vehicle& vehicle, int stage) {
+  if (StageAt(vehicle, stage).tanks.size() >= 2) return std::nullopt;
+  return Unfit{"stage " + std::to_string(stage) + " has no two tanks, whose flows could differ",
+               "stage: those with liquid engines of two propellants"};
+}
+std::optional<Unfit> BoostersWithoutMixture(const Vehicle& vehicle, int) {
+  if (vehicle.boosters.tanks.size() >= 2) return std::nullopt;
   return Unfit{"the boosters have no two tanks, whose flows could differ",
                "boosters with liquid engines of two propellants"};
 }
@@ -119,7 +130,8 @@ std::vector<DispersionRow> MakeRows() {
        "difference to the nominal temperature of a solid propellant; sets the burn rate",
        Draws::kPropellantTemperature,
        {kTemperatureDifference, Between(-200.0, 200.0), kOfTemperature},
-       {"thrust_factor_{stage}", "mass_flow_factor_{stage}"}});
+       {"thrust_factor_{stage}", "mass_flow_factor_{stage}"}})
+      .unfit = LiquidStage;
   add(stages("specific_impulse", {"specific_impulse_factor_{stage}"},
              "factor of the thrust at the same flow"));
   add(stages("dry_mass", {"dry_mass_factor_{stage}"},
@@ -267,7 +279,7 @@ std::vector<DispersionRow> MakeRows() {
        Draws::kBoostersTemperature,
        {kTemperatureDifference, Between(-200.0, 200.0), kOfTemperature},
        of_booster})
-      .unfit = UnfitForTemperature;
+      .unfit = LiquidBoosters;
   add({"booster_misalignment",
        "of a booster's thrust off its nozzle's axis: components towards body y and z",
        Draws::kBoostersAside,
@@ -289,7 +301,10 @@ std::vector<DispersionRow> MakeRows() {
        Draws::kBoosters,
        kPositiveFactor,
        {"booster_mixture_ratio_factor_{further}"}})
-      .unfit = UnfitForMixture;
+      .unfit = BoostersWithoutMixture;
+  add(stages("mixture_ratio", {"mixture_ratio_factor_{stage}"},
+             "factor of the first tank's flow over the others', of liquid stages"))
+      .unfit = StageWithoutMixture;
   add({"aerodynamic_uncertainty",
        "of the vehicle's aerodynamic tables, as they state it",
        Draws::kAeroUncertainty,

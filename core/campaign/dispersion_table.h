@@ -39,7 +39,7 @@ enum class Draws {
 
 /// Why nothing of a vehicle takes a key's values, and what would.
 struct Unfit {
-  const char* what;
+  std::string what;
   const char* allowed;
 };
 
@@ -58,8 +58,8 @@ struct DispersionRow {
   int last_stages_without = 0;  ///< number of last stages that cannot be dispersed
   /// Further limits of the draws, for a stage of a vehicle, or its boosters.
   Range (*limits)(const Vehicle& vehicle, int stage) = nullptr;
-  /// Of boosters: none, if they take the values.
-  std::optional<Unfit> (*unfit)(const Boosters& boosters) = nullptr;
+  /// Of a stage of a vehicle, or its boosters: none, if it takes the values.
+  std::optional<Unfit> (*unfit)(const Vehicle& vehicle, int stage) = nullptr;
 };
 
 /// In the order of the draws.

@@ -32,6 +32,16 @@ void Load(double factor, Tanked& loaded) {
   grain.inner_diameter_m = bore2 > 0.0 ? Sqrt(bore2) : 0.0;
 }
 
+// `at_first`: its first burn, with its nominal load. A restart has what that one has left in its tanks.
+void Mix(Stage at_first, double load, double factor, Stage& stage) {
+  if (factor == 1.0 || stage.tanks.size() < 2) return;
+  Load(load, at_first);
+  stage.mixture_ratio_factor = factor;
+  stage.motor.residual_mass_kg =
+      BuildMixture(at_first.tanks, at_first.propellant_mass_kg, stage.motor.residual_mass_kg, factor)
+          .residual_kg;
+}
+
 // Place of a booster among the further nozzles.
 std::size_t PlaceOf(const Vehicle& vehicle, std::size_t booster) {
   return static_cast<std::size_t>(FurtherNozzlesBefore(vehicle, vehicle.stages.size())) + booster;
@@ -53,7 +63,8 @@ void LoadMean(const FlightInputs& in, Vehicle& vehicle) {
 
 bool ChangesMasses(const FlightInputs& in) {
   for (std::size_t i = 0; i < kMaxStages; ++i)
-    if (in.dry_mass_factor[i] != 1.0 || in.propellant_factor[i] != 1.0) return true;
+    if (in.dry_mass_factor[i] != 1.0 || in.propellant_factor[i] != 1.0 || in.mixture_ratio_factor[i] != 1.0)
+      return true;
   for (std::size_t i = 0; i < kFurtherNozzles; ++i)
     if (in.booster_dry_mass_factor[i] != 1.0 || in.booster_propellant_factor[i] != 1.0) return true;
   return in.payload_mass_kg != 0.0;
@@ -81,6 +92,7 @@ Vehicle WithDispersedMasses(const Vehicle& vehicle, const FlightInputs& in) {
       stage.flown_mass.element = static_cast<std::size_t>(std::max(element, 0));
     }
     Load(in.propellant_factor[first], stage);
+    Mix(vehicle.stages[first], in.propellant_factor[first], in.mixture_ratio_factor[first], stage);
     double own_kg = dry_kg + stage.propellant_mass_kg;
     const Stage& at_last = vehicle.stages[static_cast<std::size_t>(LastBurn(vehicle, static_cast<int>(i)))];
     for (const Jettison& jettison : at_last.jettisoned) own_kg += jettison.mass_kg;
@@ -98,7 +110,8 @@ DispersedBooster BoosterOf(const Vehicle& nominal, const FlightInputs& in, std::
   one.dry_mass_kg *= in.booster_dry_mass_factor[k];
   if (in.booster_propellant_factor[k] != 1.0) Load(in.booster_propellant_factor[k], one);
   if (!one.is_liquid()) return dispersed;
-  dispersed.mixture = BuildMixture(one, in.booster_mixture_ratio_factor[k]);
+  dispersed.mixture = BuildMixture(one.tanks, one.propellant_mass_kg, one.motor.residual_mass_kg,
+                                   in.booster_mixture_ratio_factor[k]);
   one.motor.residual_mass_kg = dispersed.mixture.residual_kg;
   return dispersed;
 }

@@ -162,7 +162,8 @@ struct FlightInputs {
   PerFurtherNozzle booster_dry_mass_factor = AllFurtherNozzles(1.0);
   PerFurtherNozzle booster_propellant_factor = AllFurtherNozzles(1.0);
   PerFurtherNozzle booster_mixture_ratio_factor = AllFurtherNozzles(1.0);
-  PerStage tail_off_factor = AllStages(1.0);  ///< of the duration of a motor's tail-off
+  PerStage tail_off_factor = AllStages(1.0);       ///< of the duration of a motor's tail-off
+  PerStage mixture_ratio_factor = AllStages(1.0);  ///< of the first tank's flow over the others'
 };
 
 /// The usual range of an input, in the unit of its column. `validate --strict` warns about values outside it.
@@ -382,12 +383,14 @@ inline void DeclareInputs(InputDeclarations& inputs) {
   inputs.One(&In::table_damping_sigmas, "table_damping_sigmas");
   inputs.EachFurtherNozzle(&In::booster_dry_mass_factor, "booster_dry_mass_factor").Usually(kUsualDryMass);
   inputs.EachFurtherNozzle(&In::booster_propellant_factor, "booster_propellant_factor").Usually(kUsualLoad);
+  constexpr UsualValues kUsualMixture = {0.9, 1.1, "0.5 to 3 % of engines"};
   inputs.EachFurtherNozzle(&In::booster_mixture_ratio_factor, "booster_mixture_ratio_factor")
-      .Usually({0.9, 1.1, "0.5 to 3 % of engines"});
+      .Usually(kUsualMixture);
   inputs
       .EachStage(&In::tail_off_factor, "tail_off_factor", "", 1.0,
                  {"tail_off", "factor of the duration of tail_off_*; by a cut-off the impulse goes with it"})
       .Usually({0.4, 1.6, "5 to 20 %"});
+  inputs.EachStage(&In::mixture_ratio_factor, "mixture_ratio_factor").Usually(kUsualMixture);
 }
 
 /// All columns in their fixed order, names without the prefix `input_`.

@@ -102,6 +102,7 @@ std::string RefusalOf(const Vehicle& vehicle, const FlightInputs& in, const Laun
     if (in.propellant_factor[i] > LargestPropellantFactor(vehicle.stages[i]))
       return (vehicle.stages[i].is_liquid() ? "a tank of " : "the grain of ") + stage + " does not hold " +
              Text(in.propellant_factor[i]) + " times its propellant";
+    if (!(in.mixture_ratio_factor[i] > 0.0)) return "the mixture ratio of " + stage + " is not above 0";
     if (!IsInertia(plant, i)) return "the products of inertia of " + stage + " are no body's";
   }
   for (std::size_t k = 0; k < vehicle.boosters.angles_rad.size(); ++k) {

@@ -1,6 +1,7 @@
 #include "core/vehicle/mass.h"
 
 #include <algorithm>
+#include <utility>
 
 #include "core/math/constants.h"
 #include "core/math/functions.h"
@@ -154,16 +155,15 @@ bool StackMass::HasSides() const {
          std::any_of(sides.begin(), sides.end(), [](double sum) { return sum != 0.0; });
 }
 
-MixtureOf BuildMixture(const Boosters& boosters, double factor) {
-  const double load_kg = boosters.propellant_mass_kg, rest_kg = boosters.motor.residual_mass_kg;
-  MixtureOf mixture{Draining(boosters.tanks, load_kg), rest_kg};
+MixtureOf BuildMixture(const std::vector<Tank>& tanks, double load_kg, double residual_kg, double factor) {
+  MixtureOf mixture{Draining(tanks, load_kg), residual_kg};
   if (factor == 1.0) return mixture;
   DrainingMass& sum = mixture.tanks = {};
-  const double first = boosters.tanks[0].propellant_mass_kg / load_kg;
+  const double first = tanks[0].propellant_mass_kg / load_kg;
   const double drawn = factor * first / (1.0 - first + factor * first);
   double lasts = 1.0;  // the part of the usable propellant that flows before a tank ends the burn
-  for (std::size_t k = 0; k < boosters.tanks.size(); ++k) {
-    const Tank& tank = boosters.tanks[k];
+  for (std::size_t k = 0; k < tanks.size(); ++k) {
+    const Tank& tank = tanks[k];
     const double loaded = tank.propellant_mass_kg / load_kg;
     const double share = k == 0 ? drawn : loaded * (1.0 - drawn) / (1.0 - first);
     lasts = std::min(lasts, loaded / share);
@@ -182,7 +182,7 @@ MixtureOf BuildMixture(const Boosters& boosters, double factor) {
     sum.second_per_kg2_m2 += Square(share) * (less + 3.0 * kept_kg * cube);
     sum.second_per_kg3_m2 += Square(share) * share * cube;
   }
-  mixture.residual_kg = load_kg - (load_kg - rest_kg) * lasts;
+  mixture.residual_kg = load_kg - (load_kg - residual_kg) * lasts;
   return mixture;
 }
 
@@ -274,7 +274,11 @@ std::vector<StackMass> BuildStackMasses(const Vehicle& vehicle) {
     }
     if (burning.is_liquid()) {
       stack.drains = true;
-      stack.tanks = Draining(burning.tanks, burning.propellant_mass_kg);
+      stack.tanks = BuildMixture(burning.tanks, burning.propellant_mass_kg, burning.motor.residual_mass_kg,
+                                 burning.mixture_ratio_factor)
+                        .tanks;
+      stack.fixed_first_moment_kg_m += std::exchange(stack.tanks.first_kg_m, 0.0);
+      stack.fixed_second_moment_kg_m2 += std::exchange(stack.tanks.second_kg_m2, 0.0);
       continue;
     }
     stack.grain_station_m = 0.5 * (burning.grain.top_station_m + burning.grain.bottom_station_m);

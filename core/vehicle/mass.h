@@ -30,7 +30,7 @@ struct DrainingMass {
   double first_per_kg_m = 0.0, first_per_kg2_m = 0.0;  ///< first moment m (a + b m)
   /// Second moment m (a + b m + c m²).
   double second_per_kg_m2 = 0.0, second_per_kg2_m2 = 0.0, second_per_kg3_m2 = 0.0;
-  /// Of a booster whose mixture differs from its tanks' loads: what both have besides (MixtureOf).
+  /// Of a mixture that differs from the tanks' loads: what both moments have besides (MixtureOf).
   double first_kg_m = 0.0, second_kg_m2 = 0.0;
 };
 
@@ -98,17 +98,18 @@ BoosterPropellant BuildBoosterPropellant(const Boosters& boosters);
 /// That of one of `count` boosters.
 BoosterPropellant OfOneBooster(BoosterPropellant all, int count);
 
-/// The flow of a booster's tanks by a mixture ratio that is `factor` times the one in which they are loaded.
+/// The flow of an engine's tanks by a mixture ratio that is `factor` times the one in which they are loaded.
 ///
 /// The ratio R is the flow from the first tank over that from the others, which keep theirs: the first one's
 /// share becomes f R / (1 + f R). With shares s_k of the flow and loads M_k of all M, m_k = M_k - s_k (M -
 /// m). Thrust, flow and specific impulse stay. The burn ends when the first tank has only its part of the
 /// residual left, so the residual grows. The definition is our own.
 struct MixtureOf {
-  DrainingMass tanks;      ///< by the mass in the booster
+  DrainingMass tanks;      ///< by the mass in all of them
   double residual_kg = 0;  ///< that stays
 };
-MixtureOf BuildMixture(const Boosters& boosters, double factor);
+/// Of full tanks with `load_kg` in all. `residual_kg` stays in the mixture of their loads.
+MixtureOf BuildMixture(const std::vector<Tank>& tanks, double load_kg, double residual_kg, double factor);
 
 /// Dry mass of a stage, for any of its burns: its lift-off mass less the stages above, its propellant, its
 /// jettisoned bodies and boosters.

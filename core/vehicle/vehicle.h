@@ -54,6 +54,8 @@ struct Stage {
   std::vector<FinSet> fins;   ///< they leave with the stage
   MassTable mass_table;       ///< as its file gives it (empty: the tubes above)
   StageMassTable flown_mass;  ///< the same as it flies
+  /// As it flies: of the first tank's flow over the others', against the ratio of their loads (MixtureOf).
+  double mixture_ratio_factor = 1.0;
   Gimbal gimbal;
   std::optional<SpinMotors> spin_motors;  ///< of a stage without gimbal
   IgnitionTrigger ignition = IgnitionTrigger::kLiftOff;

@@ -234,6 +234,7 @@ void UseMassTables(Launcher& launcher) {
     }
     stage.mass_table = TableOfTubes(vehicle, i, 41);
     for (double& inertia : stage.mass_table.transverse_inertia_kg_m2) inertia *= 1.03;
+    if (i == 0) stage.mass_table.cg_y_m.assign(41, 0.002);
     stage.flown_mass.rows = std::make_shared<const MassRows>(
         BuildMassRows(stage.mass_table, DryMass(vehicle, static_cast<int>(i))));
   }
@@ -367,8 +368,10 @@ FlightInputs InputsOf(const Launcher& launcher, std::uint64_t index) {
     in.propellant_factor[stage] = 1.0 + 0.002 * draws.Normal();
   }
   const Vehicle& vehicle = launcher.vehicle;
+  for (std::size_t stage = 0; stage < vehicle.stages.size(); ++stage)
+    if (vehicle.stages[stage].is_liquid()) in.mixture_ratio_factor[stage] = 1.0 + 0.01 * draws.Normal();
   auto at = static_cast<std::size_t>(FurtherNozzlesBefore(vehicle, vehicle.stages.size()));
-  for (std::size_t k = 0; k < vehicle.boosters.angles_rad.size(); ++k, ++at) {
+  for (int k = 0; k < vehicle.boosters.count; ++k, ++at) {
     in.booster_dry_mass_factor[at] = 1.0 + 0.02 * draws.Normal();
     in.booster_propellant_factor[at] = 1.0 + 0.002 * draws.Normal();
     if (vehicle.boosters.is_liquid()) in.booster_mixture_ratio_factor[at] = 1.0 + 0.01 * draws.Normal();

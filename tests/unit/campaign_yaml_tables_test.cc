@@ -362,12 +362,13 @@ TEST(MassTableFile, MistakesOffTheAxisAreReportedInFull) {
       "propellant_left_kg,cg_station_m,axial_inertia_kg_m2,transverse_inertia_kg_m2,cg_y_m,product_xy_kg_"
       "m2\n";
   EXPECT_EQ(MassProblems(head + "1500,7,180,1900,0.01,3\n0,7,70,1000,0.7,3\n"),
-            "masses.csv:1:74: stages[0].mass_table.cg_y_m: is 0.700000, beside the stage, allowed: less than "
+            "masses.csv:1:78: stages[0].mass_table.cg_y_m: is 0.700000, beside the stage, allowed: less than "
             "half of diameter_m of the stage\n");
   EXPECT_EQ(MassProblems(head + "1500,7,180,1900,0.01,3\n0,7,70,1000,0.01,300\n"),
-            "masses.csv:3:19: product_xy_kg_m2[1]: is that of no body, with the other products and the "
+            "masses.csv:3:18: product_xy_kg_m2[1]: is that of no body, with the other products and the "
             "inertias, allowed: products of which the tensor has positive moments about every axis\n");
-  EXPECT_EQ(MassProblems(head + "1500,7,180,1900,x,3\n0,7,70,1000,0.01,3\n"), "?");
+  EXPECT_EQ(MassProblems(head + "1500,7,180,1900,x,3\n0,7,70,1000,0.01,3\n"),
+            "masses.csv:2:17: cg_y_m[0]: 'x' is not a number, allowed: a number\n");
 }
 
 TEST(MassTableFile, MistakesAreReportedInFull) {

@@ -117,15 +117,17 @@ Bodies ByHand(const FlightDefinition& definition, const LauncherPlant& plant, co
   return SumOf(parts);
 }
 
-class EitherPair : public testing::TestWithParam<bool> {};
-INSTANTIATE_TEST_SUITE_P(BoosterMasses, EitherPair, testing::Bool(),
-                         [](const auto& info) { return info.param ? "OfSomeAlike" : "AtTheirPlaces"; });
+// A pair at its places, and one of boosters that are all alike in the file.
+struct Kind {
+  bool liquid, spread;
+};
+constexpr Kind kKinds[] = {{false, false}, {false, true}, {true, false}, {true, true}};
 
-TEST_P(EitherPair, WeighsWhatShellsGrainsAndTanksDoByHand) {
-  for (const bool liquid : {false, true}) {
+TEST(BoosterMasses, AreThoseOfShellsGrainsAndTanksByHand) {
+  for (const auto& [liquid, spread] : kKinds) {
     Drawn drawn = kAll;
     if (!liquid) drawn.ratio[0] = drawn.ratio[1] = 1.0;
-    const FlightDefinition definition = Pair(liquid, GetParam());
+    const FlightDefinition definition = Pair(liquid, spread);
     const LauncherPlant plant = FlightModel(definition).PlantFor(drawn.Inputs());
     RigidBodyState s;
     s.p_EoC_I = {Wgs84().equatorial_radius_m + 2e6, 0.0, 0.0};
@@ -173,11 +175,11 @@ TEST(BoosterMasses, AMixtureEndsTheBurnWithTheFirstTank) {
 }
 
 // Every kilogram from lift-off to the core's burnout, and the jump as they leave.
-TEST_P(EitherPair, HasTheMassThatHasNotFlownNorLeft) {
-  for (const bool liquid : {false, true}) {
+TEST(BoosterMasses, MassIsWhatHasNotFlownNorLeft) {
+  for (const auto& [liquid, spread] : kKinds) {
     Drawn drawn = kAll;
     if (!liquid) drawn.ratio[0] = drawn.ratio[1] = 1.0;
-    const FlightDefinition definition = Pair(liquid, GetParam());
+    const FlightDefinition definition = Pair(liquid, spread);
     const double bare_kg =
         definition.vehicle.stages[0].liftoff_mass_kg - definition.vehicle.boosters.LiftOffMass();
     const double core_kg_s =
@@ -206,10 +208,10 @@ TEST_P(EitherPair, HasTheMassThatHasNotFlownNorLeft) {
 }
 
 // Shells and rests that differ: all parts keep their momentum and their common centre.
-TEST_P(EitherPair, KeepsTheMomentumOfDifferentBodiesAtSeparation) {
+TEST(BoosterMasses, SeparationKeepsTheMomentumOfDifferentBodies) {
   Drawn drawn = kAll;
   drawn.dry[0] = 1.3;
-  const FlightDefinition definition = Pair(true, GetParam());
+  const FlightDefinition definition = Pair(true, true);
   const LauncherPlant plant = FlightModel(definition).PlantFor(drawn.Inputs());
   const double since_s = 21.0;
   const Bodies all = ByHand(definition, plant, drawn, since_s);

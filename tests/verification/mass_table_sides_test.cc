@@ -69,8 +69,7 @@ Bodies ByHand(const FlightDefinition& definition, double propellant_kg, double d
   return SumOf({Dry(dry_factor), GrainOf(propellant_kg), Above(definition)});
 }
 
-void ExpectMasses(const LauncherPlant& plant, const LauncherPhase& phase, double since_s,
-                  const Bodies& all) {
+void ExpectMasses(const LauncherPlant& plant, const LauncherPhase& phase, double since_s, const Bodies& all) {
   RigidBodyState s;
   s.p_EoC_I = {Wgs84().equatorial_radius_m + 2e6, 0.0, 0.0};
   std::array<double, kLauncherSize> y{};
@@ -129,8 +128,8 @@ TEST(MassTableSides, TurnAsTheirTensorSays) {
   EXPECT_GT((without - expected).norm(), 1e-3 * expected.norm()) << "the products count";
 }
 
-// The autopilot does not know the offset. The nozzles trim the moment of the thrust about the centre, as of the
-// same offset as a dispersion of the centre of gravity without the burning propellant: 180 kg m of 9 t.
+// The autopilot does not know the offset. The nozzles trim the moment of the thrust about the centre, as of
+// the same offset as a dispersion of the centre of gravity without the burning propellant: 180 kg m of 9 t.
 TEST(MassTableSides, AreTrimmedAsADispersedOffsetIs) {
   const FlightDefinition definition = WithTable();
   FlightDefinition on_axis = definition;

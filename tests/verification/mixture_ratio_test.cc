@@ -1,0 +1,165 @@
+// Liquid stages whose engines draw another mixture than their tanks hold: masses by hand, the end of the burn
+// with the first tank, every kilogram of a flight, and a burn again.
+#include <gtest/gtest.h>
+
+#include <algorithm>
+#include <array>
+#include <cmath>
+#include <vector>
+
+#include "core/flight/dispersed_vehicle.h"
+#include "core/flight/flight.h"
+#include "core/flight/step_limits.h"
+#include "core/math/constants.h"
+#include "core/vehicle/mass.h"
+#include "tests/apart_boosters.h"
+#include "tests/flown_ticks.h"
+#include "tests/unit/sample_vehicle.h"
+
+namespace dispersa::mixture_ratio_test {
+namespace {
+
+constexpr double kOxygen_kg = 2800.0, kKerosene_kg = 1200.0, kLoad_kg = kOxygen_kg + kKerosene_kg,
+                 kRest_kg = 40.0, kThrust_n = 200e3, kFlow_kg_s = 100.0;
+
+// The sample vehicle with two tanks in its first stage.
+FlightDefinition Liquid() {
+  FlightDefinition definition = HighDefinition();
+  Stage& stage = definition.vehicle.stages[0];
+  stage.grain = {};
+  stage.tanks = {{"oxygen", 12.0, 15.2, 1.1, kOxygen_kg, 1141.0},
+                 {"kerosene", 15.3, 17.4, 1.1, kKerosene_kg, 810.0}};
+  stage.motor.specific_impulse_s = kThrust_n / kFlow_kg_s / kStandardGravity;
+  stage.motor.residual_mass_kg = kRest_kg;
+  EXPECT_TRUE(Problems(definition.vehicle).empty());
+  return definition;
+}
+
+struct Liquids {
+  double oxygen_kg, kerosene_kg;
+};
+Liquids LiquidsOf(double load, double ratio, double flown_kg) {
+  const double r = ratio * kOxygen_kg / kKerosene_kg;
+  return {load * kOxygen_kg - flown_kg * r / (1.0 + r), load * kKerosene_kg - flown_kg / (1.0 + r)};
+}
+// The residual counts of each by its load. The burn ends when the first of them has only that left.
+double Usable(double load, double ratio) {
+  const double part = 1.0 - kRest_kg / (load * kLoad_kg), r = ratio * kOxygen_kg / kKerosene_kg;
+  return part * load * std::min(kOxygen_kg * (1.0 + r) / r, kKerosene_kg * (1.0 + r));
+}
+
+FlightInputs Drawn(double load, double ratio) {
+  FlightInputs in;
+  in.propellant_factor[0] = load;
+  in.mixture_ratio_factor[0] = ratio;
+  return in;
+}
+
+// The dry stage with the stack above, and the liquids as cylinders that have no moment about the axis.
+Bodies ByHand(const FlightDefinition& definition, double load, double ratio, double flown_kg) {
+  const MassProperties dry = BuildStackMasses(definition.vehicle)[0].At(0.0);
+  std::vector<Part> parts = {{dry.mass_kg, dry.axial_inertia_kg_m2, dry.transverse_inertia_kg_m2,
+                              Vector3(dry.cg_station_m, 0.0, 0.0)}};
+  const Liquids has = LiquidsOf(load, ratio, flown_kg);
+  for (const auto& [kg, density, bottom_m] :
+       {std::array{has.oxygen_kg, 1141.0, 15.2}, {has.kerosene_kg, 810.0, 17.4}}) {
+    const double height_m = kg / density / (0.25 * kPi * 1.21);
+    parts.push_back({kg, 0.0, kg * (1.21 / 16.0 + height_m * height_m / 12.0),
+                     Vector3(bottom_m - 0.5 * height_m, 0.0, 0.0)});
+  }
+  return SumOf(parts);
+}
+
+TEST(MixtureRatio, MassesAreThoseOfTheTanksByHand) {
+  const FlightDefinition definition = Liquid();
+  RigidBodyState s;
+  s.p_EoC_I = {Wgs84().equatorial_radius_m + 2e6, 0.0, 0.0};
+  std::array<double, kLauncherSize> y{};
+  WriteState(s, y.data());
+  LauncherPhase phase;
+  phase.burning = true;
+  for (const auto& [load, ratio] : {std::pair{1.0, 1.0}, {1.0, 1.03}, {0.98, 0.95}}) {
+    const LauncherPlant plant = FlightModel(definition).PlantFor(Drawn(load, ratio));
+    for (const double since_s : {0.0, 10.0, 36.0}) {
+      const Bodies all = ByHand(definition, load, ratio, kFlow_kg_s * since_s);
+      const LauncherInstant now = LauncherModel(plant).Evaluate(phase, since_s, y.data());
+      EXPECT_NEAR(now.loads.mass_kg, all.mass_kg, 1e-9 * all.mass_kg) << ratio << " " << since_s;
+      EXPECT_NEAR(now.cg_station_m, all.cg.x(), 1e-10 * all.cg.x()) << ratio << " " << since_s;
+      EXPECT_NEAR((now.loads.inertia_kg_m2 - all.inertia).norm(), 0.0, 1e-9 * all.inertia.norm())
+          << ratio << " " << since_s;
+    }
+  }
+}
+
+TEST(MixtureRatio, EndsTheBurnWithTheFirstTank) {
+  const FlightModel model(Liquid());
+  EXPECT_NEAR(Usable(1.0, 1.0), kLoad_kg - kRest_kg, 1e-9);
+  for (const double ratio : {0.9, 0.999, 1.0, 1.001, 1.1}) {
+    const MotorBurn& burn = model.PlantFor(Drawn(0.98, ratio)).stacks[0].burn;
+    const double usable_kg = Usable(0.98, ratio);
+    EXPECT_NEAR(burn.duration_s, usable_kg / kFlow_kg_s, 1e-9) << ratio;
+    EXPECT_NEAR(burn.left_kg, 0.98 * kLoad_kg - usable_kg, 1e-8) << ratio;
+    EXPECT_EQ(burn.vacuum_thrust_n, kThrust_n);
+    const Liquids left = LiquidsOf(0.98, ratio, usable_kg);
+    EXPECT_NEAR(ratio > 1.0 ? left.oxygen_kg / (0.98 * kOxygen_kg) : left.kerosene_kg / (0.98 * kKerosene_kg),
+                kRest_kg / (0.98 * kLoad_kg), 1e-9);
+  }
+}
+
+// Every kilogram of the first burn, and what falls with the stage.
+TEST(MixtureRatio, MassIsWhatHasNotFlown) {
+  const FlightDefinition definition = Liquid();
+  const double ratio = 1.05, whole_kg = definition.vehicle.stages[0].liftoff_mass_kg;
+  FlightResult result;
+  const auto ticks = TicksOf(definition, Drawn(1.0, ratio), &result);
+  ASSERT_EQ(result.outcome, Outcome::kCompleted) << result.reason;
+  int seen = 0;
+  for (const TickSample& s : ticks) {
+    if (s.stack != 0) continue;
+    const double flown_kg = std::min(kFlow_kg_s * s.time_s, Usable(1.0, ratio));
+    ASSERT_NEAR(s.instant.loads.mass_kg, whole_kg - flown_kg, 1e-6) << s.time_s;
+    ++seen;
+  }
+  EXPECT_GT(seen, 3700);
+  EXPECT_GT(kLoad_kg - Usable(1.0, ratio), kRest_kg + 50.0) << "5 % of the smaller tank's flow stays";
+}
+
+// Burns of the same tanks: the mixture goes on, and the second one ends with the first tank.
+TEST(MixtureRatio, GoesOnInABurnAgain) {
+  FlightDefinition definition = Liquid();
+  std::vector<Stage>& stages = definition.vehicle.stages;
+  Stage again = stages[0];
+  stages[0].motor.cut_off = CutOff::kAtTime;
+  stages[0].motor.cut_off_s = 15.0;
+  again.restarts = true;
+  again.ignition = IgnitionTrigger::kBurnoutDetection;
+  again.ignition_delay_s = 2.0;
+  const double left = 1.0 - 15.0 * kFlow_kg_s / kLoad_kg;
+  again.liftoff_mass_kg -= (1.0 - left) * kLoad_kg;
+  again.propellant_mass_kg *= left;
+  for (Tank& tank : again.tanks) tank.propellant_mass_kg *= left;
+  stages.insert(stages.begin() + 1, again);
+  const double ratio = 0.95;
+  const LauncherPlant plant =
+      BuildNominalPlant(WithDispersedMasses(definition.vehicle, Drawn(1.0, ratio)));
+  const MotorBurn& burn = plant.stacks[1].burn;
+  EXPECT_NEAR(burn.propellant_mass_kg, kLoad_kg - 1500.0, 1e-8);
+  EXPECT_NEAR(burn.left_kg, kLoad_kg - Usable(1.0, ratio), 1e-8);
+  EXPECT_NEAR(burn.duration_s, (Usable(1.0, ratio) - 1500.0) / kFlow_kg_s, 1e-9);
+  const Bodies all = ByHand(definition, 1.0, ratio, 2000.0);
+  const MassProperties at = plant.stacks[1].mass.At(kLoad_kg - 2000.0);
+  EXPECT_NEAR(at.mass_kg, all.mass_kg, 1e-9 * all.mass_kg);
+  EXPECT_NEAR(at.cg_station_m, all.cg.x(), 1e-10 * all.cg.x());
+  EXPECT_NEAR(at.transverse_inertia_kg_m2, all.inertia(1, 1), 1e-9 * all.inertia(1, 1));
+}
+
+TEST(MixtureRatio, IsRefusedWhereItIsNone) {
+  const FlightDefinition definition = Liquid();
+  const FlightModel model(definition);
+  const FlightInputs none = Drawn(1.0, 0.0);
+  EXPECT_EQ(RefusalOf(definition.vehicle, none, model.PlantFor(none), 0.01),
+            "the mixture ratio of stage 1 is not above 0");
+}
+
+}  // namespace
+}  // namespace dispersa::mixture_ratio_test
