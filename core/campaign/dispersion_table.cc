@@ -303,7 +303,7 @@ std::vector<DispersionRow> MakeRows() {
        {"booster_mixture_ratio_factor_{further}"}})
       .unfit = BoostersWithoutMixture;
   add(stages("mixture_ratio", {"mixture_ratio_factor_{stage}"},
-             "factor of the first tank's flow over the others', of liquid stages"))
+             "factor of the first tank's flow over the others'"))
       .unfit = StageWithoutMixture;
   add({"aerodynamic_uncertainty",
        "of the vehicle's aerodynamic tables, as they state it",

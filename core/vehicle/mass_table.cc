@@ -21,11 +21,11 @@ const char* BadProduct(const MassTable& table, std::size_t row) {
   const double a = table.axial_inertia_kg_m2[row], t = table.transverse_inertia_kg_m2[row];
   const double xy = ValueAt(table.product_xy_kg_m2, row), xz = ValueAt(table.product_xz_kg_m2, row),
                yz = ValueAt(table.product_yz_kg_m2, row);
-  if (!(a * t > xy * xy)) return "product_xy";
-  if (!(a * t > xz * xz)) return "product_xz";
-  if (!(t * t > yz * yz)) return "product_yz";
+  if (!(a * t > xy * xy)) return "product_xy_kg_m2";
+  if (!(a * t > xz * xz)) return "product_xz_kg_m2";
+  if (!(t * t > yz * yz)) return "product_yz_kg_m2";
   if (a * (t * t - yz * yz) - xy * (xy * t + xz * yz) - xz * (xz * t + xy * yz) > 0.0) return nullptr;
-  return xy != 0.0 ? "product_xy" : "product_xz";
+  return xy != 0.0 ? "product_xy_kg_m2" : "product_xz_kg_m2";
 }
 
 }  // namespace
@@ -33,25 +33,23 @@ const char* BadProduct(const MassTable& table, std::size_t row) {
 void Describe(Fields& fields, MassTable& table) {
   constexpr std::size_t kMost = 2000;
   fields.OptionalQuantities("propellant_left", kMass, kNonNegative, 2, kMost, table.propellant_kg,
-                            "of the stage, increasing or decreasing; or time");
+                            "increasing or decreasing; or time");
   fields.OptionalQuantities("time", kTime, kNonNegative, 2, kMost, table.time_s,
                             "since ignition, of the nominal burn; increasing");
   fields.OptionalQuantities("mass", kMass, kPositive, 2, kMost, table.mass_kg,
-                            "of the stage with its propellant; checked");
+                            "with its propellant; checked");
   fields.Quantities("cg_station", kLength, kNonNegative, 2, kMost, table.cg_station_m,
                     "centre of gravity of the stage alone");
   fields.Quantities("axial_inertia", kInertia, kPositive, 2, kMost, table.axial_inertia_kg_m2,
                     "about the axis");
   fields.Quantities("transverse_inertia", kInertia, kPositive, 2, kMost, table.transverse_inertia_kg_m2,
                     "across the axis, about the centre of gravity");
-  fields.OptionalQuantities("cg_y", kLength, kAnyNumber, 2, kMost, table.cg_y_m,
-                            "of it off the axis, towards body y (right); default: 0");
-  fields.OptionalQuantities("cg_z", kLength, kAnyNumber, 2, kMost, table.cg_z_m,
-                            "the same towards body z (down)");
-  fields.OptionalQuantities("product_xy", kInertia, kAnyNumber, 2, kMost, table.product_xy_kg_m2,
-                            "integral of x y dm about it, x forward; default: 0");
-  fields.OptionalQuantities("product_xz", kInertia, kAnyNumber, 2, kMost, table.product_xz_kg_m2, "of x z");
-  fields.OptionalQuantities("product_yz", kInertia, kAnyNumber, 2, kMost, table.product_yz_kg_m2, "of y z");
+  // Keys with one unit keep the schema short.
+  fields.OptionalNumbers("cg_y_m", kAnyNumber, 2, kMost, table.cg_y_m, "towards body y");
+  fields.OptionalNumbers("cg_z_m", kAnyNumber, 2, kMost, table.cg_z_m, "towards body z");
+  fields.OptionalNumbers("product_xy_kg_m2", kAnyNumber, 2, kMost, table.product_xy_kg_m2, "of x y dm");
+  fields.OptionalNumbers("product_xz_kg_m2", kAnyNumber, 2, kMost, table.product_xz_kg_m2, "of x z dm");
+  fields.OptionalNumbers("product_yz_kg_m2", kAnyNumber, 2, kMost, table.product_yz_kg_m2, "of y z dm");
   fields.Check([&fields, &table] {
     const std::size_t count = table.cg_station_m.size();
     std::vector<const std::vector<double>*> optional = {&table.propellant_kg, &table.time_s, &table.mass_kg};

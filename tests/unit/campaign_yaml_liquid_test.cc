@@ -68,18 +68,20 @@ TEST(LiquidFile, ReadsDrawsOfTheMixture) {
   const InputFiles files;
   files.Edit("campaign.yaml", "  thrust: ",
              "  mixture_ratio: {distribution: normal, sigma_percent: 1, per: stage, stage: 1}\n  thrust: ");
-  EXPECT_EQ(files.Texts(CheckFile(files.Path("campaign.yaml")).errors),
-            "campaign.yaml:11:18: dispersions.mixture_ratio: stage 1 has no two tanks, whose flows could differ, "
-            "allowed: stage: those with liquid engines of two propellants\n");
+  EXPECT_EQ(
+      files.Texts(CheckFile(files.Path("campaign.yaml")).errors),
+      "campaign.yaml:11:18: dispersions.mixture_ratio: stage 1 has no two tanks, whose flows could differ, "
+      "allowed: stage: those with liquid engines of two propellants\n");
   MakeLiquid(files);
   const Campaign campaign = LoadCampaign(files.Path("campaign.yaml"));
   const FlightInputs in = CaseDesign(campaign).Draw(3);
   EXPECT_NE(in.mixture_ratio_factor[0], 1.0);
   EXPECT_EQ(in.mixture_ratio_factor[1], 1.0);
   files.Edit("campaign.yaml", "per: stage, stage: 1", "per: stage");
-  EXPECT_EQ(files.Texts(CheckFile(files.Path("campaign.yaml")).errors),
-            "campaign.yaml:11:18: dispersions.mixture_ratio: stage 2 has no two tanks, whose flows could differ, "
-            "allowed: stage: those with liquid engines of two propellants\n");
+  EXPECT_EQ(
+      files.Texts(CheckFile(files.Path("campaign.yaml")).errors),
+      "campaign.yaml:11:18: dispersions.mixture_ratio: stage 2 has no two tanks, whose flows could differ, "
+      "allowed: stage: those with liquid engines of two propellants\n");
 }
 
 TEST(LiquidFile, TakesTheThrottleFromACsv) {

@@ -137,11 +137,13 @@ TEST(MixtureRatio, GoesOnInABurnAgain) {
   const double left = 1.0 - 15.0 * kFlow_kg_s / kLoad_kg;
   again.liftoff_mass_kg -= (1.0 - left) * kLoad_kg;
   again.propellant_mass_kg *= left;
+  again.motor.burning_time_s *= left;
   for (Tank& tank : again.tanks) tank.propellant_mass_kg *= left;
   stages.insert(stages.begin() + 1, again);
+  std::vector<AeroTable>& tables = definition.vehicle.aerodynamics;
+  tables.insert(tables.begin(), tables.front());
   const double ratio = 0.95;
-  const LauncherPlant plant =
-      BuildNominalPlant(WithDispersedMasses(definition.vehicle, Drawn(1.0, ratio)));
+  const LauncherPlant plant = BuildNominalPlant(WithDispersedMasses(definition.vehicle, Drawn(1.0, ratio)));
   const MotorBurn& burn = plant.stacks[1].burn;
   EXPECT_NEAR(burn.propellant_mass_kg, kLoad_kg - 1500.0, 1e-8);
   EXPECT_NEAR(burn.left_kg, kLoad_kg - Usable(1.0, ratio), 1e-8);
