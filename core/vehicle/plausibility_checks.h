@@ -1,0 +1,90 @@
+// The rows of the checks in plausibility.h, by what they look at.
+#pragma once
+
+#include <algorithm>
+#include <limits>
+#include <span>
+#include <vector>
+
+#include "core/vehicle/vehicle.h"
+#include "core/vehicle/vehicle_figures.h"
+
+namespace dispersa::plausibility {
+
+inline constexpr double kAny = std::numeric_limits<double>::infinity();
+inline constexpr double kNothing = std::numeric_limits<double>::quiet_NaN();
+
+struct Span {
+  double low = -kAny;
+  double high = kAny;
+  bool Holds(double value) const { return value >= low && value <= high; }
+};
+inline constexpr Span kAnything{};
+
+/// The subject of a check: the vehicle, and one of its stages, nozzles or gyros, or a tank of its boosters.
+struct Subject {
+  const Vehicle& vehicle;
+  const std::vector<StageFigures>& figures;
+  std::size_t index = 0;
+  std::size_t part = 0;  ///< tank or jettisoned body of the stage, lighter table (from 1)
+  bool is_booster = false;
+
+  const Tank& tank() const { return (is_booster ? vehicle.boosters.tanks : stage().tanks)[part]; }
+  const Jettison& jettison() const { return stage().jettisoned[part]; }
+  /// Of the stack, or a lighter one's.
+  const AeroTable& table() const {
+    const AeroTable& whole = vehicle.aerodynamics[index];
+    return part == 0 ? whole : whole.lighter[part - 1].table;
+  }
+  const Stage& stage() const { return vehicle.stages[index]; }
+  const StageFigures& figure() const { return figures[index]; }
+  std::size_t last_burn() const {
+    return static_cast<std::size_t>(LastBurn(vehicle, static_cast<int>(index)));
+  }
+  bool has_coast_control() const {
+    return vehicle.stages.size() > 1 && std::any_of(vehicle.stages.begin(), vehicle.stages.end(),
+                                                    [](const Stage& one) { return one.is_controlled(); });
+  }
+  bool is_last() const { return last_burn() + 1 == vehicle.stages.size(); }
+  double length_m() const { return vehicle.stages[0].bottom_station_m; }
+};
+
+struct Check {
+  const char* field;    ///< of the value that most probably is wrong
+  const char* implies;  ///< "implies a specific impulse of"
+  const char* unit;
+  Span possible;  ///< beyond: no such thing can exist
+  Span usual;     ///< beyond: none is known
+  const char* source;
+  double (*value)(const Subject&);  ///< NaN: does not apply
+};
+
+/// Of engines of stages and of boosters.
+struct Known {
+  Span possible, usual;
+  const char* source;
+};
+inline constexpr Known kLiquidImpulse = {
+    {0.0, 1000.0},
+    {200.0, 470.0},
+    "in vacuum 220 to 240 s of hydrazine alone, 280 to 330 s of storable pairs, 300 to 360 s of oxygen with "
+    "kerosene, to 465 s with hydrogen; combustion never gave more than 550 s, reactors 900 s"};
+inline constexpr Known kResidual = {
+    kAnything, {0.0, 0.05}, "0.5 to 3 % of a liquid stage's propellant stays in tanks and lines"};
+
+/// The widest diameter of the mould line between two stations.
+double WidestDiameter(const Vehicle& vehicle, double top_m, double bottom_m);
+
+// Of each stage that is no restart (plausibility_stage.cc).
+std::span<const Check> StageChecks();
+std::span<const Check> JettisonChecks();
+std::span<const Check> TankChecks();
+std::span<const Check> TankInStageChecks();
+std::span<const Check> NozzleChecks();
+/// Of the aerodynamic table of each stack (plausibility_air.cc).
+std::span<const Check> AeroChecks();
+// Of the whole vehicle (plausibility_vehicle.cc).
+std::span<const Check> GyroChecks();
+std::span<const Check> VehicleChecks();
+
+}  // namespace dispersa::plausibility
