@@ -155,9 +155,155 @@ int ModesBelow(const Vehicle& vehicle, const StackModes& stack, double highest_r
   return modes;
 }
 
+namespace {
+
+// The parts of a plane at which its modes are read, the same at every level of propellant.
+struct PlaneParts {
+  const PlanePlaces& places;
+  const Boosters* boosters;     // null: it carries none
+  const FreeBody* upper;        // null: nothing is above
+  BeamPlace pivot, unit, link;  // link: the boosters'
+  std::vector<BeamPlace> gyros;
+  std::deque<MassPlace> found;  // that `places` did not know
+  std::vector<const MassPlace*> at_upper;
+};
+PlaneParts PartsOf(const Vehicle& vehicle, const StackModes& stack, std::size_t plane,
+                   const PlanePlaces& places, const FreeBody* upper) {
+  const auto place_at = [&](double station_m) { return PlaceAt(stack, kBeamPlanes[plane], station_m); };
+  const bool has_boosters = CarriedBy(vehicle, stack.stage) & ~stack.gone & kBoostersGone;
+  const Stage& stage = vehicle.stages[static_cast<std::size_t>(stack.stage)];
+  PlaneParts parts{places,
+                   has_boosters ? &vehicle.boosters : nullptr,
+                   upper,
+                   place_at(stage.gimbal.pivot_station_m),
+                   place_at(vehicle.sensors.inertial_unit_station_m),
+                   {},
+                   {},
+                   {},
+                   {}};
+  for (const RateGyro& gyro : vehicle.sensors.rate_gyros) parts.gyros.push_back(place_at(gyro.station_m));
+  if (has_boosters) parts.link = place_at(vehicle.boosters.attachment_station_m);
+  if (upper) parts.at_upper = places.Of(upper->points, stack, parts.found);
+  return parts;
+}
+
+// The masses of a level, and its modes where they are read, four side by side.
+struct LevelShapes {
+  std::vector<MassPoint> points;
+  std::vector<const MassPlace*> at_points;
+  ShapeColumns shapes;
+  std::vector<std::unique_ptr<FourShapes[]>> slopes;  // at the middles of the pieces
+  std::vector<LiftShapes> lifts;
+};
+LevelShapes ShapesOf(const Vehicle& vehicle, const StackModes& stack, const LoadTable& loads,
+                     const BendingLevel& level, std::size_t count, PlaneParts& parts) {
+  const PlanePlaces& places = parts.places;
+  std::vector<MassPoint> points =
+      MassPointsOf(BuildBeamMasses(vehicle, stack.stage, level.propellant_kg, stack.gone), places.cuts_m());
+  std::vector<const MassPlace*> at_points = places.Of(points, stack, parts.found);
+  LevelShapes of{std::move(points), std::move(at_points), SideBySide(level, count), {}, {}};
+  for (std::size_t four = 0; four < of.shapes.fours; ++four) {
+    of.slopes.push_back(std::make_unique_for_overwrite<FourShapes[]>(kShorteningPieces));
+    for (std::size_t i = 0; i < kShorteningPieces; ++i)
+      of.slopes[four][i] = FourAt(places.pieces()[i], of.shapes.Four(four)).slope_1_m;
+    of.lifts.emplace_back(loads, places, of.shapes.Four(four));
+  }
+  return of;
+}
+
+void SetStations(const PlaneParts& parts, const FourShapes* modes, FourColumns& columns) {
+  const FourStations at_pivot = FourAt(parts.pivot, modes);
+  columns[BendingTable::kPivotDeflection] = at_pivot.deflection;
+  columns[BendingTable::kPivotSlope] = at_pivot.slope_1_m;
+  columns[BendingTable::kUnitSlope] = FourAt(parts.unit, modes).slope_1_m;
+  for (std::size_t g = 0; g < parts.gyros.size(); ++g)
+    columns[BendingTable::kGyroSlope + g] = FourAt(parts.gyros[g], modes).slope_1_m;
+}
+
+// By each of all modes, with these four.
+void SetShortening(const PlaneParts& parts, const LevelShapes& level, std::size_t four, std::size_t count,
+                   FourColumns& columns) {
+  for (std::size_t j = 0; j < count; ++j) {
+    const SlopesBehind behind(parts.places.piece_m(), Values(level.slopes[j / 4].get()) + j % 4,
+                              level.slopes[four].get());
+    columns[BendingTable::kShortening + j] = behind.ByMass(level.points, level.at_points);
+    if (parts.boosters)
+      columns[BendingTable::kBehindBoosters + j] =
+          behind.At(parts.places.EdgeBefore(parts.boosters->attachment_station_m));
+  }
+}
+
+// The nozzles of boosters, on a rigid link.
+void SetBoosters(const PlaneParts& parts, const FourShapes* modes, FourColumns& columns) {
+  const FourStations at_link = FourAt(parts.link, modes);
+  const double behind_m = parts.boosters->nozzle_station_m - parts.boosters->attachment_station_m;
+  columns[BendingTable::kBoosterDeflection] = at_link.deflection + at_link.slope_1_m * behind_m;
+  columns[BendingTable::kBoosterSlope] = at_link.slope_1_m;
+}
+
+// The work of the straight body's lift.
+void AddStraightLift(const LoadTable& loads, const LiftShapes& four, FourColumns& columns) {
+  for (std::size_t i = 0; i < loads.lift.pieces.size(); ++i) {
+    const LiftPiece& piece = loads.lift.pieces[i];
+    const FourShapes deflection = four.at[PlanePlaces::MiddleOf(i)].deflection;
+    FourShapes* const lift = &columns[BendingTable::kStraightLift];
+    lift[0] = lift[0] + (piece.area_to - piece.area_from) * deflection;
+    lift[1] = lift[1] + piece.shift_1_m * deflection;
+  }
+}
+
+// The mean motion of the stages above.
+void SetUpper(const PlaneParts& parts, const FourShapes* modes, FourColumns& columns) {
+  const FourStations mean = parts.upper->MeanOf(
+      [&](const MassPoint&, std::size_t i) { return FourAt(parts.at_upper[i]->place, modes); });
+  columns[BendingTable::kUpperShift] = mean.deflection;
+  columns[BendingTable::kUpperTurn] = mean.slope_1_m;
+}
+
+// Bending moments by the inertia of the modes.
+void SetMoments(const LoadTable& loads, const LevelShapes& level, const FourShapes* modes,
+                FourColumns& columns) {
+  const std::size_t points = level.points.size();
+  const auto of_points = std::make_unique_for_overwrite<FourStations[]>(points);
+  for (std::size_t i = 0; i < points; ++i) of_points[i] = FourAt(level.at_points[i]->place, modes);
+  const auto at_point = [&](const MassPoint&, std::size_t i) { return of_points[i]; };
+  for (std::size_t i = 0; i < kLoadStations && loads.station_m[i] > 0.0; ++i)
+    columns[BendingTable::kMomentAt + i] = InertiaMoment(level.points, loads.station_m[i], at_point);
+}
+
+// The rows of these four modes, or of those of them that fly.
+void AppendRows(const BendingLevel& level, std::size_t four, std::size_t count, const FourColumns& columns,
+                BendingTable& table) {
+  for (std::size_t mode = 4 * four; mode < std::min(count, 4 * four + 4); ++mode) {
+    const std::size_t row = table.rows.size();
+    const double* const lane = Values(columns.data()) + mode % 4;
+    for (std::size_t column = 0; column < columns.size(); ++column) table.rows.push_back(lane[4 * column]);
+    table.rows[row + BendingTable::kFrequency] = level.modes[mode].frequency_rad_s;
+    table.rows[row + BendingTable::kInverseMass] = 1.0 / level.modes[mode].generalized_mass_kg;
+  }
+}
+
+void AppendLevel(const LoadTable& loads, const BendingLevel& level, const PlaneParts& parts,
+                 const LevelShapes& of, std::size_t count, BendingTable& table) {
+  for (std::size_t four = 0; four < of.shapes.fours; ++four) {
+    const FourShapes* const modes = of.shapes.Four(four);
+    FourColumns columns;
+    columns.fill(0.0);
+    SetStations(parts, modes, columns);
+    SetShortening(parts, of, four, count, columns);
+    if (parts.boosters) SetBoosters(parts, modes, columns);
+    AddStraightLift(loads, of.lifts[four], columns);
+    AddLift(loads, of.lifts[four], of.lifts, count, columns);
+    if (parts.upper) SetUpper(parts, modes, columns);
+    SetMoments(loads, of, modes, columns);
+    AppendRows(level, four, count, columns, table);
+  }
+}
+
+}  // namespace
+
 BendingTable BuildBendingTable(const Vehicle& vehicle, const StackModes& stack, const LoadTable& loads,
                                int modes, const BendingTable* near) {
-  const Stage& stage = vehicle.stages[static_cast<std::size_t>(stack.stage)];
   BendingTable table;
   table.modes = modes;
   table.planes = stack.axisymmetric ? 1 : 2;
@@ -169,89 +315,12 @@ BendingTable BuildBendingTable(const Vehicle& vehicle, const StackModes& stack, 
     table.places = std::make_shared<const BendingPlaces>(stack, loads);
 
   const std::optional<FreeBody> upper = UpperOf(vehicle, stack);
-  const bool has_boosters = CarriedBy(vehicle, stack.stage) & ~stack.gone & kBoostersGone;
-  const Boosters* const boosters = has_boosters ? &vehicle.boosters : nullptr;
   const std::size_t count = static_cast<std::size_t>(modes);
   for (std::size_t p = 0; p < static_cast<std::size_t>(table.planes); ++p) {
-    const PlanePlaces& places = table.places->Of(p);
-    const auto place_at = [&](double station_m) { return PlaceAt(stack, kBeamPlanes[p], station_m); };
-    const BeamPlace pivot = place_at(stage.gimbal.pivot_station_m),
-                    unit = place_at(vehicle.sensors.inertial_unit_station_m);
-    std::vector<BeamPlace> gyros;
-    for (const RateGyro& gyro : vehicle.sensors.rate_gyros) gyros.push_back(place_at(gyro.station_m));
-    BeamPlace link;
-    if (boosters) link = place_at(boosters->attachment_station_m);
-    std::deque<MassPlace> found;
-    std::vector<const MassPlace*> at_upper;
-    if (upper) at_upper = places.Of(upper->points, stack, found);
+    PlaneParts parts = PartsOf(vehicle, stack, p, table.places->Of(p), upper ? &*upper : nullptr);
     table.rows.reserve(table.planes * stack.levels[p].size() * count * BendingTable::kRowSize);
-    for (const BendingLevel& level : stack.levels[p]) {
-      const std::vector<MassPoint> points = MassPointsOf(
-          BuildBeamMasses(vehicle, stack.stage, level.propellant_kg, stack.gone), places.cuts_m());
-      const std::vector<const MassPlace*> at_points = places.Of(points, stack, found);
-      const ShapeColumns shapes = SideBySide(level, count);
-      std::vector<std::unique_ptr<FourShapes[]>> slopes;
-      std::vector<LiftShapes> lifts;
-      for (std::size_t four = 0; four < shapes.fours; ++four) {
-        slopes.push_back(std::make_unique_for_overwrite<FourShapes[]>(kShorteningPieces));
-        for (std::size_t i = 0; i < kShorteningPieces; ++i)
-          slopes[four][i] = FourAt(places.pieces()[i], shapes.Four(four)).slope_1_m;
-        lifts.emplace_back(loads, places, shapes.Four(four));
-      }
-      for (std::size_t four = 0; four < shapes.fours; ++four) {
-        const auto at = [&](const BeamPlace& place) { return FourAt(place, shapes.Four(four)); };
-        FourColumns columns;
-        columns.fill(0.0);
-        const FourStations at_pivot = at(pivot);
-        columns[BendingTable::kPivotDeflection] = at_pivot.deflection;
-        columns[BendingTable::kPivotSlope] = at_pivot.slope_1_m;
-        columns[BendingTable::kUnitSlope] = at(unit).slope_1_m;
-        for (std::size_t g = 0; g < gyros.size(); ++g)
-          columns[BendingTable::kGyroSlope + g] = at(gyros[g]).slope_1_m;
-        for (std::size_t j = 0; j < count; ++j) {
-          const SlopesBehind behind(places.piece_m(), Values(slopes[j / 4].get()) + j % 4,
-                                    slopes[four].get());
-          columns[BendingTable::kShortening + j] = behind.ByMass(points, at_points);
-          if (boosters)
-            columns[BendingTable::kBehindBoosters + j] =
-                behind.At(places.EdgeBefore(boosters->attachment_station_m));
-        }
-        if (boosters) {
-          const FourStations at_link = at(link);
-          columns[BendingTable::kBoosterDeflection] =
-              at_link.deflection +
-              at_link.slope_1_m * (boosters->nozzle_station_m - boosters->attachment_station_m);
-          columns[BendingTable::kBoosterSlope] = at_link.slope_1_m;
-        }
-        for (std::size_t i = 0; i < loads.lift.pieces.size(); ++i) {
-          const LiftPiece& piece = loads.lift.pieces[i];
-          const FourShapes deflection = lifts[four].at[PlanePlaces::MiddleOf(i)].deflection;
-          FourShapes* const lift = &columns[BendingTable::kStraightLift];
-          lift[0] = lift[0] + (piece.area_to - piece.area_from) * deflection;
-          lift[1] = lift[1] + piece.shift_1_m * deflection;
-        }
-        AddLift(loads, lifts[four], lifts, count, columns);
-        if (upper) {
-          const FourStations mean =
-              upper->MeanOf([&](const MassPoint&, std::size_t i) { return at(at_upper[i]->place); });
-          columns[BendingTable::kUpperShift] = mean.deflection;
-          columns[BendingTable::kUpperTurn] = mean.slope_1_m;
-        }
-        const auto of_points = std::make_unique_for_overwrite<FourStations[]>(points.size());
-        for (std::size_t i = 0; i < points.size(); ++i) of_points[i] = at(at_points[i]->place);
-        const auto at_point = [&](const MassPoint&, std::size_t i) { return of_points[i]; };
-        for (std::size_t i = 0; i < kLoadStations && loads.station_m[i] > 0.0; ++i)
-          columns[BendingTable::kMomentAt + i] = InertiaMoment(points, loads.station_m[i], at_point);
-        for (std::size_t mode = 4 * four; mode < std::min(count, 4 * four + 4); ++mode) {
-          const std::size_t row = table.rows.size();
-          const double* const lane = Values(columns.data()) + mode % 4;
-          for (std::size_t column = 0; column < columns.size(); ++column)
-            table.rows.push_back(lane[4 * column]);
-          table.rows[row + BendingTable::kFrequency] = level.modes[mode].frequency_rad_s;
-          table.rows[row + BendingTable::kInverseMass] = 1.0 / level.modes[mode].generalized_mass_kg;
-        }
-      }
-    }
+    for (const BendingLevel& level : stack.levels[p])
+      AppendLevel(loads, level, parts, ShapesOf(vehicle, stack, loads, level, count, parts), count, table);
   }
   return table;
 }
