@@ -52,7 +52,8 @@ TEST(BoostersFile, AreGoneWhenTheFirstStageBurnsAgain) {
       "electron.yaml", "\nreaction_control:",
       "\nboosters: {count: 2, dry_mass_kg: 100, propellant_mass_kg: 800, radius_m: 0.9, diameter_m: 0.6, "
       "top_station_m: 11, bottom_station_m: 16, nozzle_station_m: 15.9, attachment_station_m: 15, "
-      "motor: {thrust_kn: 60, burning_time_s: 35}, grain: {top_station_m: 12, bottom_station_m: 14.5, outer_diameter_m: 0.58, "
+      "motor: {thrust_kn: 60, burning_time_s: 35}, grain: {top_station_m: 12, bottom_station_m: 14.5, "
+      "outer_diameter_m: 0.58, "
       "inner_diameter_m: 0.1}}\nreaction_control:");
   const std::string nozzle = "  - {mass_kg: 79, cg_aft_of_pivot_m: 0.25, inertia_about_hinge_kg_m2: 8.2}\n";
   files.Edit("electron.yaml", nozzle, nozzle + nozzle);
