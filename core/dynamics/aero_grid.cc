@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <iterator>
 #include <limits>
 
 namespace dispersa {
@@ -11,8 +12,9 @@ namespace {
 constexpr double kMostBuckets = 4096.0;
 
 const Coefficient* Coefficients(const BodyAerodynamics& b, int i) {
-  const Coefficient* all[] = {&b.ca, &b.cn, &b.xcp_station_m, &b.cmq, &b.clp, &b.cd, &b.cl, &b.cm, &b.cnr};
-  return i < 9 ? all[i] : nullptr;
+  const Coefficient* all[] = {&b.ca, &b.cn, &b.xcp_station_m, &b.cmq,    &b.clp,    &b.cd,
+                              &b.cl, &b.cm, &b.cnr,           &b.ca_yaw, &b.cn_yaw, &b.xcp_yaw_station_m};
+  return i < static_cast<int>(std::size(all)) ? all[i] : nullptr;
 }
 
 // Breakpoints from 0 up: the values below hold there too.
@@ -89,8 +91,8 @@ AeroGrid BuildAeroGrid(const BodyAerodynamics& body) {
   AeroGrid grid;
   grid.mach = MakeAxis(mach);
   grid.incidence = MakeAxis(incidence);
-  const bool in_wind_axes =
-      !body.cd.empty() || !body.cl.empty() || !body.cm.empty() || !IsSame(body.cnr, body.cmq);
+  const bool in_wind_axes = !body.cd.empty() || !body.cl.empty() || !body.cm.empty() ||
+                            (!IsSame(body.cnr, body.cmq) && !body.has_yaw_plane());
   for (std::size_t m = 1; m < mach.size(); ++m) {
     for (std::size_t i = 1; i < incidence.size(); ++i) {
       const Cell cell(mach[m - 1], mach[m], incidence[i - 1], incidence[i]);
@@ -99,6 +101,13 @@ AeroGrid BuildAeroGrid(const BodyAerodynamics& body) {
       cell.Bilinear(body.xcp_station_m, grid.body_axes);
       cell.Linear(body.cmq, grid.body_axes);
       cell.Linear(body.clp, grid.body_axes);
+      if (body.has_yaw_plane()) {
+        cell.Bilinear(body.ca_yaw, grid.yaw_plane);
+        cell.Bilinear(body.cn_yaw, grid.yaw_plane);
+        cell.Bilinear(body.xcp_yaw_station_m, grid.yaw_plane);
+        cell.Linear(body.cnr, grid.yaw_plane);
+        grid.yaw_plane.insert(grid.yaw_plane.end(), 2, 0.0);
+      }
       if (!in_wind_axes) continue;
       cell.Bilinear(body.cd, grid.wind_axes);
       cell.Bilinear(body.cl, grid.wind_axes);

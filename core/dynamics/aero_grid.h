@@ -28,6 +28,8 @@ struct AeroGrid {
   AlignedRows body_axes;  ///< cell by cell, incidence fastest: ca (4), cn (4), xcp (4), cmq (2), clp (2)
   AlignedRows wind_axes;  ///< in the same form: cd (4), cl (4), cm (4), cnr less cmq (2), unused (2); empty
                           ///< without wind-axis tables
+  AlignedRows yaw_plane;  ///< of a body with two planes of symmetry, in the same form: ca (4), cn (4), xcp
+                          ///< (4), cnr (2), unused (2); else empty
 };
 
 AeroGrid BuildAeroGrid(const BodyAerodynamics& body);

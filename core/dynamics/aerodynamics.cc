@@ -40,6 +40,12 @@ BodyAerodynamics FromTable(const AeroTable& table) {
   body.cmq.table = {table.mach, any_incidence, doubled(table.cmq_per_rad)};
   body.cnr = body.cmq;
   body.clp.table = {table.mach, any_incidence, doubled(table.clp_per_rad)};
+  if (table.yaw_plane.empty()) return body;
+  const AeroTable& yaw = table.yaw_plane.front();
+  body.ca_yaw.table = {yaw.mach, yaw.incidence_rad, yaw.ca};
+  body.cn_yaw.table = {yaw.mach, yaw.incidence_rad, yaw.cn};
+  body.xcp_yaw_station_m.table = {yaw.mach, yaw.incidence_rad, yaw.xcp_station_m};
+  body.cnr.table = {yaw.mach, any_incidence, doubled(yaw.cmq_per_rad)};
   return body;
 }
 

@@ -17,8 +17,8 @@ struct Coefficient {
   bool empty() const { return table.z.empty(); }
 };
 
-/// Coefficients of a body that is symmetric about its x axis. They may be given in body axes, in wind axes,
-/// or in both, which add:
+/// Coefficients of a body, as a rule one that is symmetric about its x axis. They may be given in body axes,
+/// in wind axes, or in both, which add:
 ///
 ///   F = -q S (ca x + cn n) - q S cd v + q S cl l
 ///
@@ -26,17 +26,27 @@ struct Coefficient {
 /// plane of incidence. Moments are about the centre of gravity. The normal force acts at xcp. cm (at the
 /// moment reference) turns the nose up in the plane of incidence. clp, cmq and cnr damp p b / (2 V), q c / (2
 /// V) and r b / (2 V). The grid is the range of validity. Outside it the end value holds.
+///
+/// A body with two planes of symmetry (aero_table.h) has coefficients in body axes alone, with n = (0, n_y,
+/// n_z): those above are of the pitch plane, and
+///
+///   F = -q S ((ca n_z² + ca_yaw n_y²) x + cn_yaw n_y y + cn n_z z)
+///
+/// cn_yaw acts at its own xcp. Each is a function of the total incidence. The factors are the pitch plane's.
 struct BodyAerodynamics {
   double area_m2 = 0.0;
   double length_m = 0.0;  ///< c: of cm and cmq
   double span_m = 0.0;    ///< b: of clp and cnr
   Coefficient ca, cn, cd, cl, cm;
-  Coefficient xcp_station_m;                ///< with cn
-  double moment_reference_station_m = 0.0;  ///< with cm, cd, cl
-  Coefficient clp, cmq, cnr;                ///< over Mach, one incidence
+  Coefficient xcp_station_m;                      ///< with cn
+  Coefficient ca_yaw, cn_yaw, xcp_yaw_station_m;  ///< without tables: the body is symmetric about its axis
+  double moment_reference_station_m = 0.0;        ///< with cm, cd, cl
+  Coefficient clp, cmq, cnr;                      ///< over Mach, one incidence
   double twist_rad_m = 0.0;           ///< by which canted fins turn the body on each metre of its way: clp
                                       ///< damps the roll rate less this times V
   double minimum_airspeed_m_s = 0.0;  ///< floor of V in the damping terms
+
+  bool has_yaw_plane() const { return !cn_yaw.empty(); }
 };
 
 struct ForceAndMoment {

@@ -272,40 +272,56 @@ DISPERSA_INLINE LiftNow<T> LiftOf(const BendingTableLanes<T>& b, int plane, int 
   };
   return {Fma(aft_m, by(kSlopeShift), by(kSlopeSlender)), Fma(aft_m, by(kRateShift), by(kRateSlender))};
 }
+/// Where the air of both planes presses, and whether modes and air are the same in both.
+template <class T>
+struct LiftPlanes {
+  OfPlanes<T> aft_m;
+  bool are_one;
+};
+/// `side`: of the yaw plane (null: as the pitch plane).
+template <class T>
+DISPERSA_INLINE LiftPlanes<T> LiftPlanesOf(const BendingTableLanes<T>& b, const LoadTableLanes<T>& body,
+                                           const NormalForce<T>& air, const SideForce<T>* side) {
+  const T aft_m = air.xcp_station_m - body.slender_station_m;
+  if (side == nullptr) return {{aft_m, aft_m}, b.planes == 1};
+  return {{side->xcp_station_m - body.slender_station_m, aft_m}, false};
+}
 /// The effects of a mode's motion in both planes: `slope_n` and `rate_n` are the normal forces per radian
 /// times q and q' / V.
 template <class T>
-DISPERSA_INLINE void AddLift(const BendingTableLanes<T>& b, int mode, int effect, T aft_m,
+DISPERSA_INLINE void AddLift(const BendingTableLanes<T>& b, int mode, int effect, const LiftPlanes<T>& planes,
                              const OfPlanes<T>& slope_n, const OfPlanes<T>& rate_n, T& y, T& z) {
-  const LiftNow<T> of_y = LiftOf(b, 0, mode, effect, aft_m);
-  const LiftNow<T> of_z = b.planes == 1 ? of_y : LiftOf(b, 1, mode, effect, aft_m);
+  const LiftNow<T> of_y = LiftOf(b, 0, mode, effect, planes.aft_m.y);
+  const LiftNow<T> of_z = planes.are_one ? of_y : LiftOf(b, 1, mode, effect, planes.aft_m.z);
   y = Fma(slope_n.y, of_y.by_slope, Fma(rate_n.y, of_y.by_rate, y));
   z = Fma(slope_n.z, of_z.by_slope, Fma(rate_n.z, of_z.by_rate, z));
 }
 
 /// The additional effects of the flow on a body that bends. Added to the body's force, to its moment about C,
-/// and to the modes.
+/// and to the modes. `side`: of the yaw plane (null: as the pitch plane).
 template <class T>
 DISPERSA_INLINE void BendFlow(const BendingTableLanes<T>& b, const BendingState<T>& s,
-                              const LoadTableLanes<T>& body, T cg_station_m, FlowForce<T>& flow,
-                              ModalForce<T>& o) {
+                              const LoadTableLanes<T>& body, T cg_station_m, const SideForce<T>* side,
+                              FlowForce<T>& flow, ModalForce<T>& o) {
   const NormalForce<T>& air = flow.normal;
-  const T aft_m = air.xcp_station_m - body.slender_station_m;
-  const T straight_n[kPlanes] = {-(air.normal_n * air.across_y), -(air.normal_n * air.across_z)};
+  const LiftPlanes<T> planes = LiftPlanesOf(b, body, air, side);
+  const T side_n = side ? side->normal_n : air.normal_n, side_slope_n = side ? side->slope_n : air.slope_n;
+  const T straight_n[kPlanes] = {-(side_n * air.across_y), -(air.normal_n * air.across_z)};
   const T by_rate_n = -(air.slope_n / Max(air.airspeed_m_s, T(1e-30)));
+  const T side_by_rate_n = side ? -(side_slope_n / Max(air.airspeed_m_s, T(1e-30))) : by_rate_n;
   T force_n[kPlanes] = {T(0.0), T(0.0)}, first_n_m[kPlanes] = {T(0.0), T(0.0)};
   T *const of_y = o.drive_m_s2[0], *const of_z = o.drive_m_s2[1];
   for (int mode = 0; mode < b.modes; ++mode) {
-    const OfPlanes<T> slope_n{-(air.slope_n * s.q_m[0][mode]), -(air.slope_n * s.q_m[1][mode])};
-    const OfPlanes<T> rate_n{by_rate_n * s.rate_m_s[0][mode], by_rate_n * s.rate_m_s[1][mode]};
-    AddLift(b, mode, kForceEffect, aft_m, slope_n, rate_n, force_n[0], force_n[1]);
-    AddLift(b, mode, kFirstEffect, aft_m, slope_n, rate_n, first_n_m[0], first_n_m[1]);
+    const OfPlanes<T> slope_n{-(side_slope_n * s.q_m[0][mode]), -(air.slope_n * s.q_m[1][mode])};
+    const OfPlanes<T> rate_n{side_by_rate_n * s.rate_m_s[0][mode], by_rate_n * s.rate_m_s[1][mode]};
+    AddLift(b, mode, kForceEffect, planes, slope_n, rate_n, force_n[0], force_n[1]);
+    AddLift(b, mode, kFirstEffect, planes, slope_n, rate_n, first_n_m[0], first_n_m[1]);
     for (int other = 0; other < b.modes; ++other)
-      AddLift(b, mode, kWorkEffects + other, aft_m, slope_n, rate_n, of_y[other], of_z[other]);
+      AddLift(b, mode, kWorkEffects + other, planes, slope_n, rate_n, of_y[other], of_z[other]);
     const OfPlanes<T> slender = b.ColumnsAt(mode, BendingTable::kStraightLift);
     const OfPlanes<T> shift = b.ColumnsAt(mode, BendingTable::kStraightLift + 1);
-    of_y[mode] = Fma(straight_n[0], Fma(aft_m, shift.y, slender.y), of_y[mode]);
-    of_z[mode] = Fma(straight_n[1], Fma(aft_m, shift.z, slender.z), of_z[mode]);
+    of_y[mode] = Fma(straight_n[0], Fma(planes.aft_m.y, shift.y, slender.y), of_y[mode]);
+    of_z[mode] = Fma(straight_n[1], Fma(planes.aft_m.z, shift.z, slender.z), of_z[mode]);
   }
   flow.force_n.y = flow.force_n.y + force_n[0];
   flow.force_n.z = flow.force_n.z + force_n[1];
@@ -313,17 +329,19 @@ DISPERSA_INLINE void BendFlow(const BendingTableLanes<T>& b, const BendingState<
   flow.moment_n_m.z = flow.moment_n_m.z - Fma(-cg_station_m, force_n[0], first_n_m[0]);
 }
 
-/// Adds bending's part to the sections' moments: `drive` is Q / m. A function of its own: rigid vehicles do
-/// not need it.
+/// Adds bending's part to the sections' moments: `drive` is Q / m, `side` as in BendFlow. A function of its
+/// own: rigid vehicles do not need it.
 template <class T>
 DISPERSA_OUT_OF_LINE SectionMoments<T> MomentsByBending(const BendingTableLanes<T>& b,
                                                         const BendingState<T>& s, const ModalForce<T>& drive,
                                                         const LoadTableLanes<T>& body,
-                                                        const NormalForce<T>& air) {
+                                                        const NormalForce<T>& air, const SideForce<T>* side) {
   SectionMoments<T> o;
   for (int i = 0; i < kLoadStations; ++i) o.y_n_m[i] = o.z_n_m[i] = T(0.0);
-  const T aft_m = air.xcp_station_m - body.slender_station_m;
+  const LiftPlanes<T> planes = LiftPlanesOf(b, body, air, side);
   const T by_rate_n = air.slope_n / Max(air.airspeed_m_s, T(1e-30));
+  const T side_slope_n = side ? side->slope_n : air.slope_n;
+  const T side_by_rate_n = side ? side_slope_n / Max(air.airspeed_m_s, T(1e-30)) : by_rate_n;
   for (int mode = 0; mode < b.modes; ++mode) {
     const auto acceleration = [&](int plane) __attribute__((always_inline)) {
       const ModeNow<T>& m = b.At(plane, mode);
@@ -331,11 +349,11 @@ DISPERSA_OUT_OF_LINE SectionMoments<T> MomentsByBending(const BendingTableLanes<
              Fma(m.damping_1_s, s.rate_m_s[plane][mode], m.stiffness_1_s2 * s.q_m[plane][mode]);
     };
     const OfPlanes<T> moved{acceleration(0), acceleration(1)};
-    const OfPlanes<T> slope_n{air.slope_n * s.q_m[0][mode], air.slope_n * s.q_m[1][mode]};
-    const OfPlanes<T> rate_n{by_rate_n * s.rate_m_s[0][mode], by_rate_n * s.rate_m_s[1][mode]};
+    const OfPlanes<T> slope_n{side_slope_n * s.q_m[0][mode], air.slope_n * s.q_m[1][mode]};
+    const OfPlanes<T> rate_n{side_by_rate_n * s.rate_m_s[0][mode], by_rate_n * s.rate_m_s[1][mode]};
     for (int i = 0; i < kLoadStations; ++i) {
       T &y_n_m = o.y_n_m[i], &z_n_m = o.z_n_m[i];
-      AddLift(b, mode, kSectionEffects + i, aft_m, slope_n, rate_n, y_n_m, z_n_m);
+      AddLift(b, mode, kSectionEffects + i, planes, slope_n, rate_n, y_n_m, z_n_m);
       const OfPlanes<T> inertia = b.ColumnsAt(mode, BendingTable::kMomentAt + i);
       y_n_m = Fma(moved.y, inertia.y, y_n_m);
       z_n_m = Fma(moved.z, inertia.z, z_n_m);

@@ -13,7 +13,8 @@ inline namespace DISPERSA_ISA {
 template <class T>
 struct AeroRows {
   RowRange<T> mach, incidence;
-  T body_axes[AeroGrid::kRowSize], wind_axes[AeroGrid::kRowSize];
+  T body_axes[AeroGrid::kRowSize];
+  T wind_axes[AeroGrid::kRowSize], yaw_plane[AeroGrid::kRowSize];  ///< unset if no lane has such
 };
 
 /// The body of each lane: its grid, sizes, and the factors on its coefficients.
@@ -22,6 +23,8 @@ struct BodyAerodynamicsLanes {
   const AeroGrid* grid[kWidth<T>];
   T mach_top, mach_scale, incidence_top, incidence_scale;  ///< AeroGrid::Axis
   bool has_wind_axes;                                      ///< any lane's grid has coefficients in wind axes
+  bool has_yaw_plane;                                      ///< any lane's body has two planes of symmetry
+  bool has_more;                                           ///< either; never both
   bool has_airspeed_floor;                                 ///< minimum_airspeed_m_s counts
   bool has_twist;                                          ///< twist_rad_m counts
   T area_m2, length_m, span_m, twist_rad_m;
@@ -63,10 +66,15 @@ DISPERSA_OUT_OF_LINE void FindCells(const BodyAerodynamicsLanes<T>& body, T mach
     const int in_incidence =
         CellAt(grid.incidence, at_incidence[lane], Lane(incidence, lane), lane, body.rows.incidence);
     const int offset = AeroGrid::kRowSize * (in_mach * grid.incidence.cells + in_incidence);
-    const bool has_wind_axes = !grid.wind_axes.empty();
-    for (int i = 0; i < AeroGrid::kRowSize; ++i) {
+    for (int i = 0; i < AeroGrid::kRowSize; ++i)
       Lane(body.rows.body_axes[i], lane) = grid.body_axes.data()[offset + i];
+    if (!body.has_more) continue;
+    const bool has_wind_axes = !grid.wind_axes.empty();
+    // Both planes of a body that is symmetric about its axis are the same.
+    const AlignedRows& yaw_plane = grid.yaw_plane.empty() ? grid.body_axes : grid.yaw_plane;
+    for (int i = 0; i < AeroGrid::kRowSize; ++i) {
       Lane(body.rows.wind_axes[i], lane) = has_wind_axes ? grid.wind_axes.data()[offset + i] : 0.0;
+      Lane(body.rows.yaw_plane[i], lane) = yaw_plane.data()[offset + i];
     }
   }
 }
@@ -125,12 +133,34 @@ struct NormalForce {
   T airspeed_m_s;
 };
 
+/// Of a body with two planes of symmetry, NormalForce is of the pitch plane, and this of the yaw plane. Each
+/// is to be multiplied by its component of the direction across.
+template <class T>
+struct SideForce {
+  T normal_n, slope_n, xcp_station_m;
+};
+
 template <class T>
 struct FlowForce {
   Vector<T> force_n, moment_n_m;
   T qbar_pa, mach, incidence_rad;
   NormalForce<T> normal;
+  SideForce<T> side;  ///< unset if no lane's body has two planes
 };
+
+/// The yaw plane of bodies with two planes of symmetry, in the cells that CoefficientsAt has found.
+template <class T>
+struct YawPlane {
+  T ca, cn, cn_slope_1_rad, xcp_station_m, cnr;
+};
+template <class T>
+DISPERSA_INLINE YawPlane<T> YawPlaneAt(const BodyAerodynamicsLanes<T>& body, T mach, T incidence_rad) {
+  const T m = Clamp(mach, T(0.0), body.mach_top), i = Clamp(incidence_rad, T(0.0), body.incidence_top);
+  const T* c = body.rows.yaw_plane;
+  return {body.ca_factor * BilinearAt(c, m, i), body.cn_factor * BilinearAt(c + 4, m, i),
+          body.cn_factor * Fma(m, c[7], c[5]), body.xcp_factor * BilinearAt(c + 8, m, i),
+          Fma(m, c[13], c[12])};
+}
 
 /// v: velocity through the air (m/s), w: angular velocity (rad/s) that the damping derivatives see, both in
 /// body axes. At rest there is neither force nor moment.
@@ -166,6 +196,17 @@ DISPERSA_INLINE FlowForce<T> ForceOfFlow(const BodyAerodynamicsLanes<T>& body, V
   const T about_z = damping * body.span_m * body.span_m * c.cnr;
   const T roll_rate = body.has_twist ? Fma(-body.twist_rad_m, airspeed, w.x) : w.x;
   o.moment_n_m = {about_x * roll_rate, Fma(about_y, w.y, turning * nz), Fma(about_z, w.z, -(turning * ny))};
+  if (!body.has_more) return o;
+  if (body.has_yaw_plane) {
+    const YawPlane<T> yaw = YawPlaneAt(body, o.mach, o.incidence_rad);
+    const T side = qs * yaw.cn;
+    const T side_turning = side * (cg_station_m - yaw.xcp_station_m);
+    const T about_z_yaw = damping * body.span_m * body.span_m * yaw.cnr;
+    o.side = {side, qs * yaw.cn_slope_1_rad, yaw.xcp_station_m};
+    o.force_n.x = -(qs * Fma(ny * ny, yaw.ca - c.ca, c.ca));
+    o.force_n.y = -(side * ny);
+    o.moment_n_m.z = Fma(about_z_yaw, w.z, -(side_turning * ny));
+  }
   if (body.has_wind_axes) {
     const T inverse_airspeed = T(1.0) / Max(airspeed, T(1e-30));
     const T cosine = v.x * inverse_airspeed, sine = across * inverse_airspeed;

@@ -51,13 +51,19 @@ struct LargestMoment {
 /// Bending moments at all load stations. A section carries the force for the acceleration of the mass ahead,
 /// minus the flow's force there, plus `further` (force summation: R. L. Bisplinghoff, H. Ashley, R. L.
 /// Halfman, "Aeroelasticity", 1955). Left out: the flow's damping moment, forces of the propellant flow, and
-/// the axial force on the bent axis.
-template <class T, class... Further>
-DISPERSA_INLINE LargestMoment<T> LargestOf(const LoadTableLanes<T>& body, const NormalForce<T>& air,
-                                           const BodyMotion<T>& m, const Further&... further) {
+/// the axial force on the bent axis. `side`: of the yaw plane, with kTwoPlanes.
+template <class T, bool kTwoPlanes, class... Further>
+DISPERSA_INLINE LargestMoment<T> LargestOfPlanes(const LoadTableLanes<T>& body, const NormalForce<T>& air,
+                                                 const SideForce<T>* side, const BodyMotion<T>& m,
+                                                 const Further&... further) {
   T largest2(0.0), station(0.0);
   const T aft = air.xcp_station_m - body.slender_station_m;
-  const T y_n = air.normal_n * air.across_y, z_n = air.normal_n * air.across_z;
+  T side_n = air.normal_n, side_aft = aft;
+  if constexpr (kTwoPlanes) {
+    side_n = side->normal_n;
+    side_aft = side->xcp_station_m - body.slender_station_m;
+  }
+  const T y_n = side_n * air.across_y, z_n = air.normal_n * air.across_z;
   for (int i = 0; i < kLoadStations; ++i) {
     const T* f = body.first_kg_m[i];
     const T* s = body.second_kg_m2[i];
@@ -65,7 +71,9 @@ DISPERSA_INLINE LargestMoment<T> LargestOf(const LoadTableLanes<T>& body, const 
     const T turned =
         Fma(m.cg_station_m, first, -Fma(m.propellant_kg, Fma(m.propellant_kg, s[2], s[1]), s[0]));
     const T arm = Fma(aft, body.shift_arm[i], body.slender_arm_m[i]);
-    T y = Fma(m.lateral_y_m_s2, first, Fma(m.turn_z_1_s2, turned, y_n * arm));
+    T side_arm = arm;
+    if constexpr (kTwoPlanes) side_arm = Fma(side_aft, body.shift_arm[i], body.slender_arm_m[i]);
+    T y = Fma(m.lateral_y_m_s2, first, Fma(m.turn_z_1_s2, turned, y_n * side_arm));
     T z = Fma(m.lateral_z_m_s2, first, Fma(-m.turn_y_1_s2, turned, z_n * arm));
     ((y = y + further.y_n_m[i], z = z + further.z_n_m[i]), ...);
     const T size2 = Fma(y, y, z * z);
@@ -74,6 +82,15 @@ DISPERSA_INLINE LargestMoment<T> LargestOf(const LoadTableLanes<T>& body, const 
     station = Select(is_larger, body.station_m[i], station);
   }
   return {Sqrt(largest2), station};
+}
+
+/// `side`: of the yaw plane (null: as the pitch plane).
+template <class T, class... Further>
+DISPERSA_INLINE LargestMoment<T> LargestOf(const LoadTableLanes<T>& body, const NormalForce<T>& air,
+                                           const SideForce<T>* side, const BodyMotion<T>& m,
+                                           const Further&... further) {
+  return side ? LargestOfPlanes<T, true>(body, air, side, m, further...)
+              : LargestOfPlanes<T, false>(body, air, side, m, further...);
 }
 
 }  // namespace DISPERSA_ISA

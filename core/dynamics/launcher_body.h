@@ -190,6 +190,7 @@ struct Instant {
   T altitude_m, qbar_pa, mach, incidence_rad, mass_kg, thrust_n;
   Vector<T> force_n;  ///< all but gravitation, body axes
   NormalForce<T> normal;
+  SideForce<T> side;  ///< unset unless the plant's lanes have a yaw plane
 };
 
 /// Accelerations of a body: of C in I, and of the rotation in B.
@@ -498,7 +499,8 @@ DISPERSA_INLINE LoadsOf<T> LoadsAt(double earth_rate_rad_s, const LauncherPlantL
   if constexpr (Body::kBends) {
     for (int plane = 0; plane < kPlanes; ++plane)
       for (int mode = 0; mode < kModes; ++mode) body.modal->drive_m_s2[plane][mode] = none;
-    BendFlow(*body.bending, *body.state, plant.sections, masses.cg_station_m, o.flow, *body.modal);
+    BendFlow(*body.bending, *body.state, plant.sections, masses.cg_station_m,
+             plant.aero.has_yaw_plane ? &o.flow.side : nullptr, o.flow, *body.modal);
   }
   o.force_n = o.flow.force_n;
   // The flow acts about the axis, from which C may be off.
@@ -637,9 +639,17 @@ DISPERSA_INLINE Rates<T> RatesOf(double earth_rate_rad_s, const LauncherPlantLan
                          Fma(-transverse_loss, s.w.z, moment.z)};
     o.dw = TurnedUnder(TensorOffAxis(plant, masses), left, s.w);
   }
-  if (instant)
-    *instant = {around.altitude_m, loads.flow.qbar_pa, loads.flow.mach, loads.flow.incidence_rad,
-                masses.mass_kg,    loads.thrust_n,     loads.force_n,   loads.flow.normal};
+  if (instant) {
+    instant->altitude_m = around.altitude_m;
+    instant->qbar_pa = loads.flow.qbar_pa;
+    instant->mach = loads.flow.mach;
+    instant->incidence_rad = loads.flow.incidence_rad;
+    instant->mass_kg = masses.mass_kg;
+    instant->thrust_n = loads.thrust_n;
+    instant->force_n = loads.force_n;
+    instant->normal = loads.flow.normal;
+    if (plant.aero.has_yaw_plane) instant->side = loads.flow.side;
+  }
   return o;
 }
 

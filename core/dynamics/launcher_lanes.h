@@ -49,12 +49,16 @@ DISPERSA_INLINE void SetLane(BodyAerodynamicsLanes<T>& b, int lane, const BodyAe
   Lane(b.moment_reference_station_m, lane) = body.moment_reference_station_m;
   Lane(b.minimum_airspeed_m_s, lane) = body.minimum_airspeed_m_s;
   Lane(b.twist_rad_m, lane) = body.twist_rad_m;
-  b.has_wind_axes = b.has_airspeed_floor = b.has_twist = false;
+  b.has_wind_axes = b.has_yaw_plane = b.has_airspeed_floor = b.has_twist = false;
   for (int i = 0; i < kWidth<T>; ++i) {
     b.has_wind_axes |= b.grid[i] && b.grid[i]->wind_axes.data() != nullptr;
+    b.has_yaw_plane |= b.grid[i] && b.grid[i]->yaw_plane.data() != nullptr;
     b.has_airspeed_floor |= Lane(b.minimum_airspeed_m_s, i) > 0.0;
     b.has_twist |= Lane(b.twist_rad_m, i) != 0.0;
   }
+  b.has_more = b.has_wind_axes || b.has_yaw_plane;
+  // Rows that other lanes have kept may lack what counts from now on.
+  for (int i = 0; b.has_more && i < kWidth<T>; ++i) b.rows.mach.Forget(i);
 }
 
 /// The aerodynamics of a lane's stack in another state (null: those of the whole stack, motor burning).

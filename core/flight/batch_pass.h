@@ -560,7 +560,10 @@ void Batch<T>::MeterFree() {
       Select(free, Max(roll_rate_peak_rad_s_, Abs(step_.motion().w.x)), roll_rate_peak_rad_s_);
   const Instant<T>& now = step_.now();
   const M felt = free & (now.qbar_pa >= T(kIncidenceFloor_pa));
-  const T margin = (now.normal.xcp_station_m - step_.cg_station_m()) / step_.plant().aero.span_m;
+  const BodyAerodynamicsLanes<T>& aero = step_.plant().aero;
+  T foremost_m = now.normal.xcp_station_m;
+  if (aero.has_yaw_plane) foremost_m = Min(foremost_m, now.side.xcp_station_m);
+  const T margin = (foremost_m - step_.cg_station_m()) / aero.span_m;
   least_static_margin_ = Select(felt & (margin < least_static_margin_), margin, least_static_margin_);
 }
 

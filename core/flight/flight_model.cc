@@ -89,7 +89,10 @@ unsigned BitsOf(const Vehicle& vehicle, const AeroConfiguration& configuration) 
 
 AeroVariant VariantOf(const AeroTable& table, unsigned without, bool power_off) {
   AeroVariant variant{without, power_off, FromTable(table), nullptr};
-  if (power_off) variant.body.ca.table.z = table.ca_power_off;
+  if (power_off) {
+    variant.body.ca.table.z = table.ca_power_off;
+    if (variant.body.has_yaw_plane()) variant.body.ca_yaw.table.z = table.yaw_plane.front().ca_power_off;
+  }
   variant.grid = std::make_shared<const AeroGrid>(BuildAeroGrid(variant.body));
   return variant;
 }

@@ -263,10 +263,11 @@ class StepState {
     const BodyMotion<T> moved{now.masses.propellant_kg,       now.masses.cg_station_m,
                               per_kg * now.instant.force_n.y, per_kg * now.instant.force_n.z,
                               Fma(-w.x, w.z, dw.y),           Fma(w.x, w.y, dw.z)};
-    if (bending_.modes == 0) return LargestOf(plant_.sections, now.instant.normal, moved);
-    return LargestOf(
-        plant_.sections, now.instant.normal, moved,
-        MomentsByBending(bending_, bending_state_, now.modal, plant_.sections, now.instant.normal));
+    const NormalForce<T>& air = now.instant.normal;
+    const SideForce<T>* const side = plant_.aero.has_yaw_plane ? &now.instant.side : nullptr;
+    if (bending_.modes == 0) return LargestOf(plant_.sections, air, side, moved);
+    return LargestOf(plant_.sections, air, side, moved,
+                     MomentsByBending(bending_, bending_state_, now.modal, plant_.sections, air, side));
   }
 
   /// Of one lane at its time, evaluated anew.

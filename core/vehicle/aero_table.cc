@@ -19,12 +19,25 @@ struct AeroRows {
   std::vector<double> mach, incidence_rad, alpha_rad, beta_rad, ca, cn, cy, xcp_station_m, cm, cmq_per_rad,
       clp_per_rad, ca_power_off;
   std::vector<double> ca_uncertainty, cn_uncertainty, xcp_uncertainty_m;
+  std::vector<double> xcp_side_station_m, cln, cnr_per_rad;
   std::vector<std::size_t> file_row;  // of a row, where some were taken out
+  bool of_yaw_plane = false;
+  bool has_own_damping = false;  // of the yaw plane
 
+  bool has_yaw_plane() const { return !xcp_side_station_m.empty() || !cln.empty(); }
   std::string Index(std::size_t row) const {
     return "[" + std::to_string(file_row.empty() ? row : file_row[row]) + "]";
   }
-  const char* angle() const { return alpha_rad.empty() ? "incidence" : "alpha"; }
+  const char* angle() const { return of_yaw_plane ? "beta" : alpha_rad.empty() ? "incidence" : "alpha"; }
+  // Columns that have another name in the yaw plane.
+  const char* normal() const { return of_yaw_plane ? "cy" : "cn"; }
+  const char* place() const { return of_yaw_plane ? "xcp_side_station" : "xcp_station"; }
+  const char* moment() const { return of_yaw_plane ? "cln" : "cm"; }
+};
+
+// A table's rows, and those of its planes.
+struct AeroFile {
+  AeroRows all, pitch, yaw;
 };
 
 // The uncertainties of all rows.
@@ -45,6 +58,11 @@ void Describe(Fields& fields, AeroRows& rows) {
   fields.OptionalQuantities("beta", kAngle, Between(-kQuarterTurn, kQuarterTurn), 4, SIZE_MAX, rows.beta_rad,
                             "angle of sideslip; rows of 0 are needed, others are checked");
   fields.OptionalNumbers("cy", kAnyNumber, 4, SIZE_MAX, rows.cy, "side force, to the right");
+  fields.OptionalQuantities("xcp_side_station", kLength, kAnyNumber, 4, SIZE_MAX, rows.xcp_side_station_m,
+                            "where cy acts: with it, or cln, rows of alpha 0 are a plane of their own");
+  fields.OptionalNumbers("cln", kAnyNumber, 4, SIZE_MAX, rows.cln, "yawing moment, nose right, as cm");
+  fields.OptionalNumbers("cnr_per_rad", kAnyNumber, 4, SIZE_MAX, rows.cnr_per_rad,
+                         "yaw damping; default: cmq_per_rad");
   fields.Numbers("ca", kAnyNumber, 4, SIZE_MAX, rows.ca, "axial force coefficient, motor burning");
   fields.Numbers("cn", kAnyNumber, 4, SIZE_MAX, rows.cn, "normal force");
   fields.OptionalQuantities("xcp_station", kLength, kAnyNumber, 4, SIZE_MAX, rows.xcp_station_m,
@@ -68,15 +86,16 @@ void Describe(Fields& fields, AeroRows& rows) {
                             kOfCoefficient);
 }
 
-// Part of the greatest coefficient of a Mach number by which rows with sideslip may differ from the same
-// total incidence, mostly the error of interpolation.
-constexpr double kSideslipTolerance = 0.05;
+// Which rows of a table over alpha and beta make a table over the incidence.
+enum class AeroPlane { kPitch, kYaw };
 
-// Alpha and beta with cn and cy in body axes in place of the incidence: the rows without sideslip make the
-// table. Those with sideslip are checked against it: the engine's bodies are symmetric about their axis.
-bool TakeMiddle(Fields& fields, const AeroRows& all, AeroRows& rows) {
-  const std::size_t count = all.mach.size();
-  if (all.alpha_rad.empty() && all.beta_rad.empty() && all.cy.empty()) {
+bool AnglesGoTogether(Fields& fields, const AeroRows& all) {
+  if (all.alpha_rad.empty() && all.beta_rad.empty() && all.cy.empty() && !all.has_yaw_plane()) {
+    if (!all.cnr_per_rad.empty()) {
+      fields.Refuse("cnr_per_rad", "is not that of a body of revolution",
+                    "cmq_per_rad, or beside it cy with xcp_side_station_* or cln");
+      return false;
+    }
     if (!all.incidence_rad.empty()) return true;
     fields.Refuse("", "missing column 'incidence_deg', or 'alpha_deg' with 'beta_deg' and 'cy'",
                   "total incidence, or angles of attack and of sideslip with the side force");
@@ -86,67 +105,132 @@ bool TakeMiddle(Fields& fields, const AeroRows& all, AeroRows& rows) {
     fields.Refuse("", "the angles do not go together", "incidence_*; or alpha_* with beta_* and cy");
     return false;
   }
+  if (all.cnr_per_rad.empty() || all.has_yaw_plane()) return true;
+  fields.Refuse("cnr_per_rad", "is not that of a body of revolution",
+                "cmq_per_rad, or beside it cy with xcp_side_station_* or cln");
+  return false;
+}
+
+// Alpha and beta with cn and cy in body axes in place of the incidence: the rows without sideslip make the
+// table of the pitch plane, those without an angle of attack the one of the yaw plane. There -cy is the
+// normal force.
+bool TakePlane(Fields& fields, const AeroRows& all, AeroPlane plane, AeroRows& rows) {
+  if (all.alpha_rad.empty()) {
+    rows = all;
+    return true;
+  }
+  const std::size_t count = all.mach.size();
+  const bool of_yaw = plane == AeroPlane::kYaw;
+  rows = {};
+  rows.of_yaw_plane = of_yaw;
+  rows.alpha_rad = all.alpha_rad;  // says which columns the file has
+  const std::vector<double>& across = of_yaw ? all.alpha_rad : all.beta_rad;
   struct Column {
     const std::vector<double>& from;
     std::vector<double>& to;
+    double sign;
   };
-  const Column columns[] = {{all.mach, rows.mach},
-                            {all.alpha_rad, rows.alpha_rad},
-                            {all.ca, rows.ca},
-                            {all.cn, rows.cn},
-                            {all.xcp_station_m, rows.xcp_station_m},
-                            {all.cm, rows.cm},
-                            {all.cmq_per_rad, rows.cmq_per_rad},
-                            {all.clp_per_rad, rows.clp_per_rad},
-                            {all.ca_power_off, rows.ca_power_off},
-                            {all.ca_uncertainty, rows.ca_uncertainty},
-                            {all.cn_uncertainty, rows.cn_uncertainty},
-                            {all.xcp_uncertainty_m, rows.xcp_uncertainty_m}};
+  rows.has_own_damping = of_yaw && !all.cnr_per_rad.empty();
+  const Column columns[] = {{all.mach, rows.mach, 1.0},
+                            {of_yaw ? all.beta_rad : all.alpha_rad, rows.incidence_rad, 1.0},
+                            {all.ca, rows.ca, 1.0},
+                            {of_yaw ? all.cy : all.cn, rows.cn, of_yaw ? -1.0 : 1.0},
+                            {of_yaw ? all.xcp_side_station_m : all.xcp_station_m, rows.xcp_station_m, 1.0},
+                            {of_yaw ? all.cln : all.cm, rows.cm, of_yaw ? -1.0 : 1.0},
+                            {rows.has_own_damping ? all.cnr_per_rad : all.cmq_per_rad, rows.cmq_per_rad, 1.0},
+                            {all.clp_per_rad, rows.clp_per_rad, 1.0},
+                            {all.ca_power_off, rows.ca_power_off, 1.0},
+                            {all.ca_uncertainty, rows.ca_uncertainty, 1.0},
+                            {all.cn_uncertainty, rows.cn_uncertainty, 1.0},
+                            {all.xcp_uncertainty_m, rows.xcp_uncertainty_m, 1.0}};
   for (const Column& column : columns) {
-    column.to.clear();
     if (column.from.empty()) continue;
-    if (column.from.size() != count || all.beta_rad.size() != count || all.cy.size() != count) {
+    if (column.from.size() != count || all.beta_rad.size() != count || all.alpha_rad.size() != count ||
+        all.cy.size() != count) {
       fields.Refuse("", "the columns have different lengths", "one value a row in each column");
       return false;
     }
     for (std::size_t row = 0; row < count; ++row)
-      if (all.beta_rad[row] == 0.0) column.to.push_back(column.from[row]);
+      if (across[row] == 0.0) column.to.push_back(column.sign * column.from[row]);
   }
-  rows.incidence_rad = rows.alpha_rad;
   for (std::size_t row = 0; row < count; ++row)
-    if (all.beta_rad[row] == 0.0) rows.file_row.push_back(row);
+    if (across[row] == 0.0) rows.file_row.push_back(row);
   if (rows.mach.size() >= 4) return true;
-  fields.Refuse("beta", "has fewer than four rows without sideslip", "beta of 0 beside the others");
+  if (of_yaw)
+    fields.Refuse("alpha", "has fewer than four rows without an angle of attack",
+                  "alpha of 0 beside the others: the yaw plane");
+  else
+    fields.Refuse("beta", "has fewer than four rows without sideslip", "beta of 0 beside the others");
   return false;
 }
 
-// Rows with sideslip against the table: a body of revolution knows the total incidence alone. With u, v, w
-// the direction of flight in body axes, cn is towards -z and cy towards y.
-void CheckSideslip(Fields& fields, const AeroRows& all, const AeroTable& table) {
-  const Table2D ca{table.mach, table.incidence_rad, table.ca}, cn{table.mach, table.incidence_rad, table.cn};
+// A coefficient of a plane, and the greatest of its Mach number.
+struct PlaneTable {
+  Table2D ca, cn, xcp_station_m;
+  const std::vector<double>& incidence_rad;
+
+  explicit PlaneTable(const AeroTable& of)
+      : ca{of.mach, of.incidence_rad, of.ca},
+        cn{of.mach, of.incidence_rad, of.cn},
+        xcp_station_m{of.mach, of.incidence_rad, of.xcp_station_m},
+        incidence_rad(of.incidence_rad) {}
+  double Greatest(const Table2D& of, double mach) const {
+    double greatest = 0.0;
+    for (double at : incidence_rad) greatest = std::max(greatest, std::fabs(of(mach, at)));
+    return greatest;
+  }
+};
+
+// Rows with both angles against the tables of the planes: with u, v, w the direction of flight in body axes,
+// cn is towards -z and cy towards y. `prefix`: of the columns' path. `reference_m`: of cm and cln.
+void CheckSideslip(Fields& fields, const std::string& prefix, const AeroRows& all, double reference_m,
+                   const AeroTable& table) {
+  const bool is_round = table.yaw_plane.empty();
+  const PlaneTable pitch(table), yaw(is_round ? table : table.yaw_plane.front());
   for (std::size_t row = 0; row < all.beta_rad.size(); ++row) {
-    if (all.beta_rad[row] == 0.0) continue;
+    if (all.beta_rad[row] == 0.0 || (!is_round && all.alpha_rad[row] == 0.0)) continue;
     const SinCos a = SineCosine(all.alpha_rad[row]), b = SineCosine(all.beta_rad[row]);
     const double u = a.cos * b.cos, v = b.sin, w = a.sin * b.cos;
     const double across = Sqrt(v * v + w * w), incidence = Atan2(across, u);
-    if (incidence > table.incidence_rad.back()) continue;  // nothing to compare with
-    const double mach = all.mach[row], normal = cn(mach, incidence);
-    double greatest_ca = 0.0, greatest_cn = 0.0;
-    for (double other : table.incidence_rad) {
-      greatest_ca = std::max(greatest_ca, std::fabs(ca(mach, other)));
-      greatest_cn = std::max(greatest_cn, std::fabs(cn(mach, other)));
-    }
-    const auto differs = [&](double given, double expected, double greatest) {
+    // Beyond the rows of a plane there is nothing to compare with.
+    const bool in_pitch = incidence <= pitch.incidence_rad.back(),
+               in_yaw = incidence <= yaw.incidence_rad.back();
+    const double mach = all.mach[row], n_y = v / across, n_z = w / across;
+    const double axial = pitch.ca(mach, incidence) * n_z * n_z + yaw.ca(mach, incidence) * n_y * n_y;
+    const double greatest_ca = std::max(pitch.Greatest(pitch.ca, mach), yaw.Greatest(yaw.ca, mach));
+    const double greatest_cn = pitch.Greatest(pitch.cn, mach), greatest_cy = yaw.Greatest(yaw.cn, mach);
+    const auto differs = [](double given, double expected, double greatest) {
       return std::fabs(given - expected) > kSideslipTolerance * greatest;
     };
-    const char* column = differs(all.ca[row], ca(mach, incidence), greatest_ca)    ? "ca"
-                         : differs(all.cn[row], normal * w / across, greatest_cn)  ? "cn"
-                         : differs(all.cy[row], -normal * v / across, greatest_cn) ? "cy"
-                                                                                   : nullptr;
+    // By the force of the row itself: its error has been looked at.
+    const auto displaced = [&](const std::vector<double>& places_m, const std::vector<double>& moments,
+                               double normal, const PlaneTable& plane, double greatest) {
+      if (is_round) return false;
+      const double expected_m = plane.xcp_station_m(mach, incidence);
+      const double sign = &plane == &yaw ? -1.0 : 1.0;  // cln and cy have opposite signs to cm and cn
+      const double moment_m = places_m.empty() ? sign * moments[row] * table.reference_length_m
+                                               : normal * (reference_m - places_m[row]);
+      return differs(moment_m, normal * (reference_m - expected_m), greatest * table.reference_length_m);
+    };
+    const double normal = all.cn[row], side = all.cy[row];
+    // The first column that differs.
+    const char* column = in_pitch && in_yaw && differs(all.ca[row], axial, greatest_ca)              ? "ca"
+                         : in_pitch && differs(normal, pitch.cn(mach, incidence) * n_z, greatest_cn) ? "cn"
+                         : in_yaw && differs(side, -yaw.cn(mach, incidence) * n_y, greatest_cy)      ? "cy"
+                         : in_pitch && displaced(all.xcp_station_m, all.cm, normal, pitch, greatest_cn)
+                             ? (all.cm.empty() ? "xcp_station" : "cm")
+                         : in_yaw && displaced(all.xcp_side_station_m, all.cln, -side, yaw, greatest_cy)
+                             ? (all.cln.empty() ? "xcp_side_station" : "cln")
+                             : nullptr;
     if (column == nullptr) continue;
-    return fields.Refuse(column + ("[" + std::to_string(row) + "]"),
-                         "is not that of the same total incidence without sideslip",
-                         "a body of revolution: within 5 % of the greatest of the Mach number");
+    const std::string path = prefix + column + "[" + std::to_string(row) + "]";
+    if (is_round)
+      return fields.Refuse(path, "is not that of the same total incidence without sideslip",
+                           "a body of revolution: within 5 % of the greatest of the Mach number; or "
+                           "xcp_side_station_* or cln, of a body with two planes of symmetry");
+    return fields.Refuse(path, "is not what the rows of the pitch plane and of the yaw plane give together",
+                         "a body with two planes of symmetry: within 5 % of the greatest of the Mach number; "
+                         "or rows of the planes alone");
   }
 }
 
@@ -162,10 +246,13 @@ bool FillGrid(Fields& fields, const AeroRows& rows, AeroTable& table) {
     return false;
   }
   if (rows.xcp_station_m.empty() == rows.cm.empty()) {
-    fields.Refuse(
-        "",
-        rows.cm.empty() ? "missing column 'xcp_station_m' or 'cm'" : "'xcp_station' and 'cm' are both given",
-        "the centre of pressure, or cm about the table's moment_reference_station_*");
+    fields.Refuse("",
+                  rows.of_yaw_plane ? "the places of cn and cy do not go together"
+                  : rows.cm.empty() ? "missing column 'xcp_station_m' or 'cm'"
+                                    : "'xcp_station' and 'cm' are both given",
+                  rows.of_yaw_plane
+                      ? "xcp_station_* with xcp_side_station_*, or cm with cln"
+                      : "the centre of pressure, or cm about the table's moment_reference_station_*");
     return false;
   }
   const std::size_t incidences =
@@ -194,7 +281,10 @@ bool FillGrid(Fields& fields, const AeroRows& rows, AeroTable& table) {
       return false;
     }
     if (!starts_mach && (changes(rows.cmq_per_rad, row) || changes(rows.clp_per_rad, row))) {
-      fields.Refuse((rows.cmq_per_rad.empty() ? "clp_per_rad" : "cmq_per_rad") + index,
+      fields.Refuse((changes(rows.clp_per_rad, row) ? "clp_per_rad"
+                     : rows.has_own_damping         ? "cnr_per_rad"
+                                                    : "cmq_per_rad") +
+                        index,
                     "the rate damping changes with incidence",
                     "the same cmq_per_rad and clp_per_rad in all rows of a mach number");
       return false;
@@ -248,9 +338,9 @@ bool Fold(Fields& fields, AeroRows& rows, AeroTable& table) {
   };
   // Where the force acts is even where it is given itself.
   Column columns[] = {{&table.ca, 1.0, "ca"},
-                      {&table.cn, -1.0, "cn"},
-                      {&table.xcp_station_m, 1.0, "xcp_station"},
-                      {&rows.cm, -1.0, "cm"},
+                      {&table.cn, -1.0, rows.normal()},
+                      {&table.xcp_station_m, 1.0, rows.place()},
+                      {&rows.cm, -1.0, rows.moment()},
                       {&table.ca_power_off, 1.0, "ca_power_off"},
                       {&table.uncertainty.ca, 1.0, "ca_uncertainty"},
                       {&table.uncertainty.cn, 1.0, "cn_uncertainty"},
@@ -275,13 +365,19 @@ bool Fold(Fields& fields, AeroRows& rows, AeroTable& table) {
     }
   }
   table.incidence_rad.assign(all.begin() + static_cast<std::ptrdiff_t>(first), all.end());
+  std::vector<std::size_t> file_row;
+  for (std::size_t m = 0; m < table.mach.size(); ++m)
+    for (std::size_t i = first; i < count; ++i)
+      file_row.push_back(rows.file_row.empty() ? m * count + i : rows.file_row[m * count + i]);
+  rows.file_row = file_row;
   if (table.incidence_rad.size() >= 2) return true;
   fields.Refuse(rows.angle(), "has fewer than two from 0 on", "two or more incidences from 0 on");
   return false;
 }
 
 // The centre of pressure of a table by moments.
-void PlaceForce(Fields& fields, const std::vector<double>& cm, double reference_m, AeroTable& table) {
+void PlaceForce(Fields& fields, const AeroRows& rows, double reference_m, AeroTable& table) {
+  const std::vector<double>& cm = rows.cm;
   constexpr double kNoForce = 1e-6, kNoMoment = 1e-3;
   const std::size_t incidences = table.incidence_rad.size();
   table.xcp_station_m.assign(cm.size(), 0.0);
@@ -301,8 +397,10 @@ void PlaceForce(Fields& fields, const std::vector<double>& cm, double reference_
       if (has_force(i)) {
         nearest = reference_m - table.reference_length_m * cm[row] / table.cn[row];
       } else if (std::fabs(cm[row]) > least_cm) {
-        fields.Refuse("table.cm[" + std::to_string(row) + "]", "is a moment without a normal force",
-                      "0 where cn is 0 (at an incidence of 0 a body of revolution has neither)");
+        fields.Refuse(std::string("table.") + rows.moment() + rows.Index(row),
+                      "is a moment without a normal force",
+                      "0 where " + std::string(rows.normal()) +
+                          " is 0 (at an incidence of 0 a body of revolution has neither)");
         return;
       }
       table.xcp_station_m[row] = nearest.value_or(reference_m);
@@ -312,6 +410,25 @@ void PlaceForce(Fields& fields, const std::vector<double>& cm, double reference_
 
 void Spread(const std::optional<double>& same, std::size_t count, std::vector<double>& values) {
   if (same && values.empty()) values.assign(count, *same);
+}
+
+// In standard deviations. `is_of_three`: they are given as three.
+void SetUncertainty(const SameUncertainty& same, bool is_of_three, AeroTable& table) {
+  AeroUncertainty& uncertainty = table.uncertainty;
+  Spread(same.ca, table.ca.size(), uncertainty.ca);
+  Spread(same.cn, table.ca.size(), uncertainty.cn);
+  Spread(same.xcp_m, table.ca.size(), uncertainty.xcp_m);
+  Spread(same.damping, table.mach.size(), uncertainty.damping);
+  if (!is_of_three) return;
+  for (auto* values : {&uncertainty.ca, &uncertainty.cn, &uncertainty.xcp_m, &uncertainty.damping})
+    for (double& value : *values) value /= 3.0;
+}
+
+void AddBaseDrag(double base_area_m2, AeroTable& table) {
+  for (std::size_t m = 0; m < table.mach.size(); ++m)
+    for (std::size_t i = 0; i < table.incidence_rad.size(); ++i)
+      table.ca_power_off.push_back(table.ca[table.RowOf(m, i)] +
+                                   BaseDrag(table.mach[m]) * base_area_m2 / table.reference_area_m2);
 }
 
 // What is not in the columns of one table.
@@ -332,46 +449,52 @@ void DescribeOne(Fields& fields, AeroTable& table) {
   std::size_t is_of = 0;
   fields.Choice<std::size_t>("uncertainty_is", {{"none", 0}, {"sigma", 1}, {"three_sigma", 2}}, is_of,
                              "the uncertainties are one standard deviation, or three", 0);
-  const auto rows = std::make_shared<AeroRows>();  // a Check outlives this function
+  const auto rows = std::make_shared<AeroFile>();  // a Check outlives this function
   fields.Table("table", "a CSV file", "a CSV file: a full grid, Mach by Mach", [&](Fields& columns) {
-    Describe(columns, *rows);
+    Describe(columns, rows->all);
     columns.Check([&] {
-      const AeroRows all = *rows;
-      if (!TakeMiddle(columns, all, *rows) || !FillGrid(columns, *rows, table)) return;
-      if (Fold(columns, *rows, table)) CheckSideslip(columns, all, table);
+      if (!AnglesGoTogether(columns, rows->all)) return;
+      const auto read = [&](AeroPlane plane, AeroRows& of, AeroTable& to) {
+        return TakePlane(columns, rows->all, plane, of) && FillGrid(columns, of, to) && Fold(columns, of, to);
+      };
+      if (!read(AeroPlane::kPitch, rows->pitch, table)) return;
+      if (rows->all.has_yaw_plane() && !read(AeroPlane::kYaw, rows->yaw, table.yaw_plane.emplace_back()))
+        return;
+      // Of moments about a reference the place is still to come.
+      if (table.yaw_plane.empty() || rows->all.cm.empty()) CheckSideslip(columns, "", rows->all, 0.0, table);
     });
   });
   fields.Check([&fields, &table, rows, reference_m, base_area_m2, same, is_of] {
-    AeroUncertainty& uncertainty = table.uncertainty;
-    if ((same.ca && !uncertainty.ca.empty()) || (same.cn && !uncertainty.cn.empty()) ||
-        (same.xcp_m && !uncertainty.xcp_m.empty()))
+    const AeroUncertainty& own = table.uncertainty;
+    if ((same.ca && !own.ca.empty()) || (same.cn && !own.cn.empty()) || (same.xcp_m && !own.xcp_m.empty()))
       fields.Refuse("table", "has the column of an uncertainty that is also given for all rows",
                     "one of the two");
-    Spread(same.ca, table.ca.size(), uncertainty.ca);
-    Spread(same.cn, table.ca.size(), uncertainty.cn);
-    Spread(same.xcp_m, table.ca.size(), uncertainty.xcp_m);
-    Spread(same.damping, table.mach.size(), uncertainty.damping);
-    if (uncertainty.empty() != (is_of == 0))
+    SetUncertainty(same, is_of == 2, table);
+    for (AeroTable& yaw : table.yaw_plane) SetUncertainty(same, is_of == 2, yaw);
+    if (own.empty() != (is_of == 0))
       fields.Refuse(is_of == 0 ? "" : "uncertainty_is",
                     is_of == 0 ? "missing key 'uncertainty_is'" : "there is no uncertainty",
                     is_of == 0 ? "sigma, or three_sigma" : "none, or an uncertainty of the table");
-    if (is_of == 2)
-      for (auto* values : {&uncertainty.ca, &uncertainty.cn, &uncertainty.xcp_m, &uncertainty.damping})
-        for (double& value : *values) value /= 3.0;
-    table.is_by_moment = !rows->cm.empty();
+    table.is_by_moment = !rows->all.cm.empty();
     if (table.is_by_moment != reference_m.has_value())
       fields.Refuse(
           table.is_by_moment ? "" : "moment_reference_station",
           table.is_by_moment ? "missing key 'moment_reference_station_m'" : "the table has no column cm",
           table.is_by_moment ? "the station about which the table's cm is" : "a table with cm");
-    if (table.is_by_moment) PlaceForce(fields, rows->cm, reference_m.value_or(0.0), table);
+    if (table.is_by_moment) PlaceForce(fields, rows->pitch, reference_m.value_or(0.0), table);
+    for (AeroTable& yaw : table.yaw_plane) {
+      yaw.reference_area_m2 = table.reference_area_m2;
+      yaw.reference_length_m = table.reference_length_m;
+      yaw.is_by_moment = table.is_by_moment;
+      if (!yaw.is_by_moment) continue;
+      PlaceForce(fields, rows->yaw, reference_m.value_or(0.0), yaw);
+      CheckSideslip(fields, "table.", rows->all, reference_m.value_or(0.0), table);
+    }
     if (!base_area_m2) return;
     if (!table.ca_power_off.empty())
       return fields.Refuse("base_area", "is given beside the table's ca_power_off", "one of the two");
-    for (std::size_t m = 0; m < table.mach.size(); ++m)
-      for (std::size_t i = 0; i < table.incidence_rad.size(); ++i)
-        table.ca_power_off.push_back(table.ca[table.RowOf(m, i)] +
-                                     BaseDrag(table.mach[m]) * *base_area_m2 / table.reference_area_m2);
+    AddBaseDrag(*base_area_m2, table);
+    for (AeroTable& yaw : table.yaw_plane) AddBaseDrag(*base_area_m2, yaw);
   });
 }
 
@@ -400,6 +523,7 @@ AeroTable Drawn(const AeroTable& table, const AeroSigmas& sigmas) {
   scale(uncertainty.damping, sigmas.damping, drawn.clp_per_rad);
   for (std::size_t i = 0; i < uncertainty.xcp_m.size(); ++i)
     drawn.xcp_station_m[i] += sigmas.xcp * uncertainty.xcp_m[i];
+  for (AeroTable& yaw : drawn.yaw_plane) yaw = Drawn(yaw, sigmas);
   for (AeroConfiguration& lighter : drawn.lighter) lighter.table = Drawn(lighter.table, sigmas);
   return drawn;
 }

@@ -22,6 +22,19 @@ struct AeroConfiguration;
 /// Aerodynamic coefficients of one stack (the stages still attached) over Mach number and total incidence, in
 /// body axes: F = -q S (CA x + CN n), n the direction of the cross-flow. Outside the grid the end value
 /// holds.
+///
+/// A body with two planes of symmetry (with boosters at its sides, for one) has a table of the pitch plane
+/// xz, and one of the yaw plane xy whose incidence is the sideslip. With n = (0, n_y, n_z), i the total
+/// incidence and Mach number M:
+///
+///   F = -q S ((CA_z(M, i) n_z² + CA_y(M, i) n_y²) x + CN_y(M, i) n_y y + CN_z(M, i) n_z z)
+///
+/// CN_y = -C_Y and CN_z act at centres of pressure of their own. In both planes this is the table. Between
+/// them it is the lowest order that the mirror symmetries leave: F_y is odd in the cross-velocity along y and
+/// even in the one along z, F_z the reverse, F_x even in both (C. G. Maple, J. L. Synge, "Aerodynamic
+/// symmetry of projectiles", Quarterly of Applied Mathematics 6, 1949). It is exact where the forces are
+/// linear in the cross-velocities, at small incidence. The roll moment, odd in both, is 0 in the planes and
+/// is neglected between them.
 struct AeroTable {
   double reference_area_m2 = 0.0;
   double reference_length_m = 0.0;  ///< the diameter
@@ -35,7 +48,9 @@ struct AeroTable {
   // cmq and clp may be empty: then those built up from the profile hold (aerodynamics_build_up.h).
   std::vector<double> ca_power_off = {};  ///< shape (mach, incidence), with the motor out (empty: as ca)
   AeroUncertainty uncertainty = {};
-  bool is_by_moment = false;               ///< its file gives cm in place of the centre of pressure
+  bool is_by_moment = false;  ///< its file gives cm in place of the centre of pressure
+  /// None of a body of revolution. Else one, of the yaw plane: cn is -C_Y, cmq damps yaw, clp does not count.
+  std::vector<AeroTable> yaw_plane;
   std::vector<AeroConfiguration> lighter;  ///< the same stack after bodies have left
 
   std::size_t RowOf(std::size_t at_mach, std::size_t at_incidence) const {
@@ -55,6 +70,11 @@ inline constexpr const char* kBoostersName = "boosters";
 /// - The place of the normal force: xcp_station_*, or cm about moment_reference_station_*, nose up on q S d.
 ///   Then xcp = reference - d cm / cn in each row. Where cn is 0 (at incidence 0, for one) the neighbouring
 ///   row's holds: a moment without a force is refused.
+/// - Angles of attack and sideslip with the side force, body axes: u, v, w = V (cos a cos b, sin b, sin a cos
+///   b), cn towards -z, cy towards y, cln turns the nose to the right. The rows of b = 0 are the pitch plane.
+///   With the place of the side force (xcp_side_station_*, or cln) the rows of a = 0 are the yaw plane, else
+///   the body is one of revolution. Other rows are compared with the body's force: beyond kSideslipTolerance
+///   they are refused.
 /// - Incidence from 0, or signed. A signed table is folded: ca is even, cn and cm are odd. Rows that differ
 ///   from their mirror images by more than kFoldTolerance are refused.
 /// - Power off: ca_power_off, or base_area_*, to whose base drag (drag.h) ca is then increased.
@@ -63,6 +83,11 @@ void Describe(Fields& fields, AeroTable& table);
 
 /// Part of the greatest coefficient of a Mach number by which mirrored rows may differ.
 inline constexpr double kFoldTolerance = 0.02;
+
+/// Part of the greatest coefficient of a Mach number by which a row with both angles may differ from what the
+/// rows of the planes say: the model, and an error of interpolation. Moments: of the greatest force times the
+/// reference length.
+inline constexpr double kSideslipTolerance = 0.05;
 
 /// Draws of a flight, in standard deviations of the tables' uncertainties. The same for all tables.
 struct AeroSigmas {

@@ -212,6 +212,7 @@ namespace {
 
 bool LacksDamping(const AeroTable& table) {
   return table.cmq_per_rad.empty() || table.clp_per_rad.empty() ||
+         std::any_of(table.yaw_plane.begin(), table.yaw_plane.end(), LacksDamping) ||
          std::any_of(table.lighter.begin(), table.lighter.end(),
                      [](const AeroConfiguration& lighter) { return LacksDamping(lighter.table); });
 }
@@ -227,7 +228,21 @@ void AddDamping(const AeroTable& built, AeroTable& table) {
   };
   fill(built.cmq_per_rad, table.cmq_per_rad);
   fill(built.clp_per_rad, table.clp_per_rad);
+  for (AeroTable& yaw : table.yaw_plane) AddDamping(built, yaw);
   for (AeroConfiguration& lighter : table.lighter) AddDamping(built, lighter.table);
+}
+
+bool HasYawPlane(const AeroTable& table) {
+  return !table.yaw_plane.empty() ||
+         std::any_of(table.lighter.begin(), table.lighter.end(),
+                     [](const AeroConfiguration& lighter) { return HasYawPlane(lighter.table); });
+}
+void AddYawPlane(AeroTable& table) {
+  for (AeroConfiguration& lighter : table.lighter) AddYawPlane(lighter.table);
+  if (!table.yaw_plane.empty()) return;
+  AeroTable same = table;
+  same.lighter.clear();
+  table.yaw_plane.push_back(std::move(same));
 }
 
 }  // namespace
@@ -240,9 +255,12 @@ bool NeedsProfile(const Vehicle& vehicle) {
 std::vector<AeroTable> AerodynamicsOf(const Vehicle& vehicle) {
   if (vehicle.aerodynamics.empty()) return BuildAerodynamics(vehicle);
   std::vector<AeroTable> tables = vehicle.aerodynamics;
-  if (!NeedsProfile(vehicle)) return tables;
-  const std::vector<AeroTable> built = BuildAerodynamics(vehicle);
-  for (std::size_t i = 0; i < tables.size(); ++i) AddDamping(built[i], tables[i]);
+  if (NeedsProfile(vehicle)) {
+    const std::vector<AeroTable> built = BuildAerodynamics(vehicle);
+    for (std::size_t i = 0; i < tables.size(); ++i) AddDamping(built[i], tables[i]);
+  }
+  if (std::any_of(tables.begin(), tables.end(), HasYawPlane))
+    for (AeroTable& table : tables) AddYawPlane(table);
   return tables;
 }
 

@@ -40,7 +40,8 @@ namespace dispersa {
 std::vector<AeroTable> BuildAerodynamics(const Vehicle& vehicle);
 
 /// The vehicle's tables, or those built up. Dampings that a table lacks are those of the build-up, on the
-/// table's reference area and length.
+/// table's reference area and length. If a table of the vehicle has two planes, all have: a body of
+/// revolution has the same in both.
 std::vector<AeroTable> AerodynamicsOf(const Vehicle& vehicle);
 /// Whether AerodynamicsOf needs the profile.
 bool NeedsProfile(const Vehicle& vehicle);

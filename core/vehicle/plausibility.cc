@@ -40,9 +40,25 @@ std::string SpanText(const Span& span, const std::string& unit) {
   return Readable(span.low) + " to " + Readable(span.high) + end;
 }
 
+// A column of an aerodynamic table, and its name in the yaw plane.
+struct ColumnOfPlanes {
+  const char* field;
+  const char* in_yaw_plane;
+};
+constexpr ColumnOfPlanes kColumnsOfPlanes[] = {
+    {"table.incidence_deg", "table.beta_deg"},           {"table.ca", "table.ca"},
+    {"table.ca_power_off", "table.ca_power_off"},        {"table.cn", "table.cy"},
+    {"table.xcp_station_m", "table.xcp_side_station_m"}, {"table.cmq_per_rad", "table.cnr_per_rad"}};
+const char* InYawPlane(const Check& check) {
+  for (const ColumnOfPlanes& column : kColumnsOfPlanes)
+    if (std::string(column.field) == check.field) return column.in_yaw_plane;
+  return nullptr;
+}
+
 // A thrust curve or an engine replaces the key of the thrust.
 std::string PathOf(const Check& check, const Subject& subject) {
-  const std::string field = check.field;
+  const std::string field = subject.of_yaw_plane ? InYawPlane(check) : check.field;
+  if (field == "table.xcp_side_station_m" && subject.table().is_by_moment) return "table.cln";
   if (field == "table.xcp_station_m" && subject.table().is_by_moment) return "table.cm";
   if (field != "motor.thrust_n") return field;
   if (subject.stage().is_liquid()) return "motor.liquid.thrust_n";
@@ -52,6 +68,7 @@ std::string PathOf(const Check& check, const Subject& subject) {
 void Apply(std::span<const Check> checks, const Subject& subject, const std::string& prefix,
            std::vector<PlausibilityFinding>& findings) {
   for (const Check& check : checks) {
+    if (subject.of_yaw_plane && InYawPlane(check) == nullptr) continue;  // the same as of the pitch plane
     const double value = check.value(subject);
     if (std::isnan(value)) continue;
     const bool beyond = !check.possible.Holds(value);
@@ -89,11 +106,14 @@ std::vector<PlausibilityFinding> Plausibility(const Vehicle& vehicle) {
       Apply(NozzleChecks(), {vehicle, figures, i}, "nozzles" + index, findings);
   }
   for (std::size_t i = 0; i < vehicle.aerodynamics.size(); ++i)
-    for (std::size_t k = 0; k <= vehicle.aerodynamics[i].lighter.size(); ++k)
-      Apply(AeroChecks(), {vehicle, figures, i, k},
-            "aerodynamics.tables[" + std::to_string(i) + "]." +
-                (k == 0 ? "" : "lighter[" + std::to_string(k - 1) + "]."),
-            findings);
+    for (std::size_t k = 0; k <= vehicle.aerodynamics[i].lighter.size(); ++k) {
+      const Subject pitch{vehicle, figures, i, k};
+      const std::string prefix = "aerodynamics.tables[" + std::to_string(i) + "]." +
+                                 (k == 0 ? "" : "lighter[" + std::to_string(k - 1) + "].");
+      Apply(AeroChecks(), pitch, prefix, findings);
+      if (!pitch.table().yaw_plane.empty())
+        Apply(AeroChecks(), {vehicle, figures, i, k, false, true}, prefix, findings);
+    }
   for (std::size_t i = 0; i < vehicle.sensors.rate_gyros.size(); ++i)
     Apply(GyroChecks(), {vehicle, figures, i}, "sensors.rate_gyros[" + std::to_string(i) + "].", findings);
   for (std::size_t k = 0; k < vehicle.boosters.tanks.size(); ++k)

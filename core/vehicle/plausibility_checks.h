@@ -28,13 +28,15 @@ struct Subject {
   std::size_t index = 0;
   std::size_t part = 0;  ///< tank or jettisoned body of the stage, lighter table (from 1)
   bool is_booster = false;
+  bool of_yaw_plane = false;
 
   const Tank& tank() const { return (is_booster ? vehicle.boosters.tanks : stage().tanks)[part]; }
   const Jettison& jettison() const { return stage().jettisoned[part]; }
   /// Of the stack, or a lighter one's.
   const AeroTable& table() const {
     const AeroTable& whole = vehicle.aerodynamics[index];
-    return part == 0 ? whole : whole.lighter[part - 1].table;
+    const AeroTable& one = part == 0 ? whole : whole.lighter[part - 1].table;
+    return of_yaw_plane ? one.yaw_plane.front() : one;
   }
   const Stage& stage() const { return vehicle.stages[index]; }
   const StageFigures& figure() const { return figures[index]; }

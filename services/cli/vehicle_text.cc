@@ -77,6 +77,10 @@ std::string VehicleText(const Vehicle& vehicle) {
   if (vehicle.boosters.count > 0)
     text += BoosterText(vehicle) + ThinnedText("the boosters", vehicle.boosters.motor.thrust_curve);
   for (const Stage& stage : vehicle.stages) text += ThinnedText(stage.name, stage.motor.thrust_curve);
+  for (std::size_t i = 0; i < vehicle.aerodynamics.size() && i < vehicle.stages.size(); ++i)
+    if (!vehicle.aerodynamics[i].yaw_plane.empty())
+      text += fmt::format("aerodynamics from {} on: two planes of symmetry, each with a table of its own\n",
+                          vehicle.stages[i].name);
   for (const Stage& stage : vehicle.stages)
     for (const Jettison& jettison : stage.jettisoned) text += JettisonText(stage, jettison);
   std::string limits;

@@ -223,6 +223,24 @@ void UseAeroTables(Launcher& launcher) {
   if (vehicle.boosters.count > 0) leaves(kBoostersName, tables[0]);
   vehicle.aerodynamics = std::move(tables);
 }
+// The same tables, or those computed, of a body that is wider in yaw: two planes until boosters have left.
+void UseYawPlane(Launcher& launcher) {
+  std::vector<AeroTable> tables = AerodynamicsOf(launcher.vehicle);
+  for (AeroTable& table : tables) {
+    AeroTable yaw = table;
+    yaw.lighter.clear();
+    for (double& cn : yaw.cn) cn *= 1.2;
+    for (double& xcp_m : yaw.xcp_station_m) xcp_m += 0.1;
+    for (double& cmq : yaw.cmq_per_rad) cmq *= 1.1;
+    table.yaw_plane = {yaw};
+  }
+  if (launcher.vehicle.boosters.count > 0 && tables[0].lighter.empty()) {
+    AeroTable round = tables[0];
+    round.yaw_plane.clear();
+    tables[0].lighter = {{{kBoostersName}, round}};
+  }
+  launcher.vehicle.aerodynamics = std::move(tables);
+}
 // A little more than the tubes: CAD knows better.
 void UseMassTables(Launcher& launcher) {
   Vehicle& vehicle = launcher.vehicle;
@@ -280,6 +298,7 @@ const std::vector<Capability>& Capabilities() {
       {"no control", LetFree},
       {"spun last stage", SpinLastStage},
       {"tables of aerodynamics", UseAeroTables},
+      {"aerodynamics of two planes", UseYawPlane},
       {"mass tables", UseMassTables},
       {"rate gyros", AddGyros},
       {"closed loop", [](Launcher& launcher) { launcher.is_guided = true; }},

@@ -80,6 +80,14 @@ FlightDefinition Definition(const std::string& law, bool with_winds, bool guided
     AeroTable lighter = tables[0];
     for (double& xcp_m : lighter.xcp_station_m) xcp_m -= 0.2;
     tables[0].lighter = {{{"skirt"}, lighter}};
+    // Two planes of symmetry until the skirt has left, and again in the third stack.
+    for (const std::size_t stack : {0u, 2u}) {
+      AeroTable yaw = tables[stack];
+      yaw.lighter.clear();
+      for (double& cn : yaw.cn) cn *= 1.3;
+      for (double& xcp_m : yaw.xcp_station_m) xcp_m += 0.3;
+      tables[stack].yaw_plane = {yaw};
+    }
     definition.vehicle.aerodynamics = tables;
     // Masses by tables beside grains.
     for (const std::size_t stage : {0u, 2u}) TabulateMasses(definition.vehicle, stage, 9);

@@ -99,7 +99,136 @@ TEST(AeroTableFile, OverAlphaAndBetaIsThatOfTheTotalIncidence) {
   EXPECT_EQ(
       ErrorsOf("", OfTwoAngles(0.03)),
       "first.csv:13:33: cy[11]: is not that of the same total incidence without sideslip, allowed: a body "
-      "of revolution: within 5 % of the greatest of the Mach number\n");
+      "of revolution: within 5 % of the greatest of the Mach number; or xcp_side_station_* or cln, of a body "
+      "with two planes of symmetry\n");
+}
+
+// A value of a row of the table of OfTwoPlanes, and what is added to it.
+struct Changed {
+  std::string column;
+  double alpha_deg = 4.0, beta_deg = 4.0;
+  double by = 0.0;
+};
+// A body with two planes of symmetry: cn = 3 sin(incidence) at station 4 in the pitch plane, 2 at 2.5 in the
+// yaw plane, an axial force of 0.3 and 0.4. Moments are about station 6, where `by_moment`.
+std::string OfTwoPlanes(bool by_moment, const Changed& changed = {}, bool planes_alone = false) {
+  std::string text = by_moment ? "mach,alpha_deg,beta_deg,ca,cn,cy,cm,cln,cmq_per_rad,cnr_per_rad\n"
+                               : "mach,alpha_deg,beta_deg,ca,cn,cy,xcp_station_m,xcp_side_station_m,"
+                                 "cmq_per_rad,cnr_per_rad\n";
+  for (const double mach : {0.5, 2.0})
+    for (const double alpha : {-8.0, -4.0, 0.0, 4.0, 8.0})
+      for (const double beta : {-6.0, -4.0, 0.0, 4.0, 6.0}) {
+        if (planes_alone && alpha != 0.0 && beta != 0.0) continue;
+        const double v = std::sin(beta * kRadPerDeg),
+                     w = std::sin(alpha * kRadPerDeg) * std::cos(beta * kRadPerDeg);
+        const double across2 = v * v + w * w;
+        const double ca = across2 == 0.0 ? 0.3 : (0.3 * w * w + 0.4 * v * v) / across2;
+        const double cn = 3.0 * w, cy = -2.0 * v;
+        const auto add = [&](const char* column, double value) {
+          const bool changes = column == changed.column && alpha == changed.alpha_deg &&
+                               beta == changed.beta_deg && mach == 2.0;
+          text += FormatNumber(value + (changes ? changed.by : 0.0)) + ",";
+        };
+        for (const double value : {mach, alpha, beta}) text += FormatNumber(value) + ",";
+        add("ca", ca);
+        add("cn", cn);
+        add("cy", cy);
+        add("place", by_moment ? cn * (6.0 - 4.0) : 4.0);
+        add("side place", by_moment ? cy * (6.0 - 2.5) : 2.5);
+        add("cmq", -200.0);
+        add("cnr", -150.0);
+        text.back() = '\n';
+      }
+  return text;
+}
+
+TEST(AeroTableFile, OfTwoPlanesHasATableOfEach) {
+  const std::string about_6 = ", moment_reference_station_m: 6";
+  for (const AeroTable& table :
+       {FirstTable("", OfTwoPlanes(false)), FirstTable(about_6, OfTwoPlanes(true)),
+        FirstTable("", OfTwoPlanes(false, {}, true)), FirstTable(about_6, OfTwoPlanes(true, {}, true))}) {
+    ASSERT_EQ(table.yaw_plane.size(), 1u);
+    const AeroTable& yaw = table.yaw_plane[0];
+    EXPECT_THAT(yaw.incidence_rad, ElementsAre(0.0, 4.0 * kRadPerDeg, 6.0 * kRadPerDeg));
+    EXPECT_EQ(yaw.reference_area_m2, table.reference_area_m2);
+    EXPECT_EQ(yaw.reference_length_m, table.reference_length_m);
+    EXPECT_EQ(yaw.is_by_moment, table.is_by_moment);
+    for (std::size_t row = 0; row < 6; ++row) {
+      EXPECT_NEAR(table.cn[row], 3.0 * std::sin(table.incidence_rad[row % 3]), 1e-15);
+      EXPECT_NEAR(yaw.cn[row], 2.0 * std::sin(yaw.incidence_rad[row % 3]), 1e-15);
+      EXPECT_NEAR(table.xcp_station_m[row], 4.0, 1e-12);
+      EXPECT_NEAR(yaw.xcp_station_m[row], 2.5, 1e-12);
+      EXPECT_NEAR(table.ca[row], 0.3, 1e-15);
+      EXPECT_NEAR(yaw.ca[row], row % 3 == 0 ? 0.3 : 0.4, 1e-15);
+    }
+    EXPECT_THAT(table.cmq_per_rad, ElementsAre(-200.0, -200.0));
+    EXPECT_THAT(yaw.cmq_per_rad, ElementsAre(-150.0, -150.0));
+  }
+}
+
+// The uncertainties and the base drag of a table are those of both planes.
+TEST(AeroTableFile, OfTwoPlanesHasOneUncertainty) {
+  const AeroTable table = FirstTable(
+      ", base_area_m2: 0.157, cn_uncertainty_percent: 6, xcp_uncertainty_m: 0.3, uncertainty_is: three_sigma",
+      OfTwoPlanes(false));
+  const AeroTable& yaw = table.yaw_plane.at(0);
+  for (std::size_t row = 0; row < 6; ++row) {
+    EXPECT_NEAR(yaw.uncertainty.cn[row], 0.02, 1e-15);
+    EXPECT_NEAR(yaw.ca_power_off[row] - yaw.ca[row], table.ca_power_off[row] - table.ca[row], 1e-15);
+  }
+  const AeroTable drawn = Drawn(table, {0.0, 2.0, -1.0, 0.0});
+  for (std::size_t row = 0; row < 6; ++row) {
+    EXPECT_NEAR(drawn.yaw_plane[0].cn[row], 1.04 * yaw.cn[row], 1e-15);
+    EXPECT_NEAR(drawn.yaw_plane[0].xcp_station_m[row], 2.4, 1e-12);
+  }
+}
+
+TEST(AeroTableFile, OfTwoPlanesRefusesRowsThatAreNotOfThem) {
+  const std::string together =
+      ": is not what the rows of the pitch plane and of the yaw plane give together, allowed: a body with "
+      "two "
+      "planes of symmetry: within 5 % of the greatest of the Mach number; or rows of the planes alone\n";
+  // Of 0.4, 0.42 and 0.21; of a moment of the force at that row over one diameter.
+  EXPECT_EQ(ErrorsOf("", OfTwoPlanes(false, {"ca", 4.0, 4.0, 0.019})), "");
+  EXPECT_THAT(ErrorsOf("", OfTwoPlanes(false, {"ca", 4.0, 4.0, 0.022})),
+              testing::AllOf(testing::StartsWith("first.csv:45:"), HasSubstr(": ca[43]" + together)));
+  EXPECT_THAT(ErrorsOf("", OfTwoPlanes(false, {"cn", 4.0, 4.0, -0.022})), HasSubstr(": cn[43]" + together));
+  EXPECT_THAT(ErrorsOf("", OfTwoPlanes(false, {"cy", 4.0, -4.0, 0.012})), HasSubstr(": cy[41]" + together));
+  EXPECT_THAT(ErrorsOf("", OfTwoPlanes(false, {"place", 4.0, 4.0, 0.11})),
+              HasSubstr(": xcp_station_m[43]" + together));
+  EXPECT_EQ(ErrorsOf("", OfTwoPlanes(false, {"place", 4.0, 4.0, 0.09})), "");
+  EXPECT_THAT(ErrorsOf("", OfTwoPlanes(false, {"side place", 4.0, 4.0, -0.09})),
+              HasSubstr(": xcp_side_station_m[43]" + together));
+  const std::string about_6 = ", moment_reference_station_m: 6";
+  EXPECT_THAT(ErrorsOf(about_6, OfTwoPlanes(true, {"place", 4.0, 4.0, 0.022})),
+              testing::AllOf(testing::StartsWith("first.csv:45:"), HasSubstr("table.cm[43]" + together)));
+  EXPECT_THAT(ErrorsOf(about_6, OfTwoPlanes(true, {"side place", 4.0, 4.0, -0.012})),
+              HasSubstr("table.cln[43]" + together));
+  // A yaw plane that does not mirror, and one whose damping changes.
+  EXPECT_THAT(ErrorsOf("", OfTwoPlanes(false, {"cy", 0.0, 4.0, 0.02})),
+              HasSubstr(": cy[38]: is not that of the opposite incidence"));
+  EXPECT_THAT(ErrorsOf("", OfTwoPlanes(false, {"cnr", 0.0, 4.0, 1.0})),
+              HasSubstr(": cnr_per_rad[38]: the rate damping changes with incidence"));
+}
+
+TEST(AeroTableFile, OfTwoPlanesNeedsItsColumns) {
+  EXPECT_EQ(
+      ErrorsOf("",
+               "mach,incidence_deg,ca,cn,xcp_station_m,cnr_per_rad\n0.5,0,0.3,0,4,-1\n"
+               "0.5,10,0.3,0.5,4,-1\n2,0,0.3,0,3,-1\n2,10,0.3,0.6,3,-1\n"),
+      "first.csv:1:1: cnr_per_rad: is not that of a body of revolution, allowed: cmq_per_rad, or beside "
+      "it cy with xcp_side_station_* or cln\n");
+  std::string mixed = OfTwoPlanes(false);
+  mixed.replace(mixed.find("xcp_side_station_m"), 18, "cln");
+  EXPECT_EQ(ErrorsOf("", mixed),
+            "first.csv:1:1: the places of cn and cy do not go together, allowed: xcp_station_* with "
+            "xcp_side_station_*, or cm with cln\n");
+  EXPECT_EQ(ErrorsOf("",
+                     "mach,alpha_deg,beta_deg,ca,cn,cy,xcp_station_m,xcp_side_station_m\n"
+                     "0.5,0,0,0.3,0,0,4,3\n0.5,10,0,0.3,0.5,0,4,3\n2,0,0,0.3,0,0,3,3\n"
+                     "2,10,0,0.3,0.6,0,3,3\n"),
+            "first.csv:1:1: alpha: has fewer than four rows without an angle of attack, allowed: alpha of 0 "
+            "beside the others: the yaw plane\n");
 }
 
 TEST(AeroTableFile, WithoutPowerHasTheBaseDragOfAnArea) {

@@ -65,7 +65,7 @@ TEST(BendingFlow, OfARigidMotionIsTheFlowOfTheMovedBody) {
   const Incidence moved{straight.y + 3.0 / kSpeed_m_s + 0.01, straight.z - 2.0 / kSpeed_m_s - 0.02};
   FlowForce<double> flow = LinearAir(straight);
   ModalForce<double> driven{};
-  lanes::BendFlow(bending, s, BodySections(), kCg_m, flow, driven);
+  lanes::BendFlow(bending, s, BodySections(), kCg_m, nullptr, flow, driven);
   const FlowForce<double> expected = LinearAir(moved);
   EXPECT_EQ(flow.force_n.x, -1e4);
   EXPECT_NEAR(flow.force_n.y, expected.force_n.y, kSmall_n);
@@ -109,7 +109,7 @@ TEST(BendingFlow, OfATurningBodyIsThatOfEachPlacesSpeed) {
     s.rate_m_s[plane][1] = 0.3;
     FlowForce<double> flow = LinearAir({0.0, 0.0});
     ModalForce<double> driven{};
-    lanes::BendFlow(bending, s, BodySections(), kCg_m, flow, driven);
+    lanes::BendFlow(bending, s, BodySections(), kCg_m, nullptr, flow, driven);
     double force = 0.0, moment = 0.0, shares = 0.0;
     for (const LiftPiece& strip : loads.lift.pieces) {
       const double grown = strip.area_to - strip.area_from, middle_m = strip.Middle() - kCg_m;
@@ -144,7 +144,7 @@ TEST(BendingFlow, DrivesEachModeByTheWorkOfItsStrips) {
   FlowForce<double> flow = LinearAir(straight);
   ModalForce<double> driven{};
   driven.drive_m_s2[1][1] = 1e3;  // is added to
-  lanes::BendFlow(bending, s, body, kCg_m, flow, driven);
+  lanes::BendFlow(bending, s, body, kCg_m, nullptr, flow, driven);
   const LoadTable loads = MadeUpLoads();
   const double aft_m = kXcp_m - loads.lift.slender_station_m;
   double force[kPlanes] = {}, work[kPlanes][2] = {};
@@ -178,7 +178,7 @@ TEST(BendingFlow, InVacuumIsNothingHoweverTheBodyRings) {
     FlowForce<double> flow{};
     flow.normal.airspeed_m_s = airspeed_m_s;
     ModalForce<double> driven{};
-    lanes::BendFlow(bending, s, BodySections(), kCg_m, flow, driven);
+    lanes::BendFlow(bending, s, BodySections(), kCg_m, nullptr, flow, driven);
     for (const double value :
          {flow.force_n.y, flow.force_n.z, flow.moment_n_m.y, flow.moment_n_m.z, driven.drive_m_s2[0][0],
           driven.drive_m_s2[0][1], driven.drive_m_s2[1][0], driven.drive_m_s2[1][1]})
@@ -204,7 +204,8 @@ TEST(BendingSections, CarryTheMassesAheadLessTheirAir) {
   for (const bool in_air : {false, true}) {
     NormalForce<double> air{};
     if (in_air) air = LinearAir({0.02, -0.01}).normal;
-    const lanes::SectionMoments<double> moments = lanes::MomentsByBending(bending, s, driven, body, air);
+    const lanes::SectionMoments<double> moments =
+        lanes::MomentsByBending(bending, s, driven, body, air, nullptr);
     for (std::size_t plane = 0; plane < kPlanes; ++plane) {
       const auto forces = ForcesByBending(TwoPlanes()[plane], s, static_cast<int>(plane));
       double acceleration[2];
@@ -232,6 +233,63 @@ TEST(BendingSections, CarryTheMassesAheadLessTheirAir) {
   }
 }
 
+// A body whose air has two planes of symmetry: each plane is that of a body of revolution in that plane's
+// air.
+TEST(BendingFlow, OfTwoPlanesIsThatOfEach) {
+  const BendingTable one = MadeUpTable({TwoPlanes()[0]}), two = MadeUpTable(TwoPlanes());
+  const LoadTableLanes<double> body = BodySections();
+  for (const BendingTable* table : {&one, &two}) {
+    const BendingTableLanes<double> bending = BendingOf(*table, 0.0);
+    BendingState<double> s{};
+    for (int plane = 0; plane < kPlanes; ++plane)
+      for (int mode = 0; mode < 2; ++mode) {
+        s.q_m[plane][mode] = 0.01 * (1 + mode) - 0.007 * plane;
+        s.rate_m_s[plane][mode] = 0.3 - 0.4 * mode + 0.2 * plane;
+      }
+    FlowForce<double> along_z = LinearAir({0.02, -0.03}), along_y = along_z;
+    along_y.normal.normal_n *= 1.4;
+    along_y.normal.slope_n *= 1.3;
+    along_y.normal.xcp_station_m += 2.5;
+    const lanes::SideForce<double> side{along_y.normal.normal_n, along_y.normal.slope_n,
+                                        along_y.normal.xcp_station_m};
+    FlowForce<double> both = along_z;
+    ModalForce<double> drive_z{}, drive_y{}, drive{};
+    lanes::BendFlow(bending, s, body, kCg_m, nullptr, along_z, drive_z);
+    lanes::BendFlow(bending, s, body, kCg_m, nullptr, along_y, drive_y);
+    lanes::BendFlow(bending, s, body, kCg_m, &side, both, drive);
+    EXPECT_EQ(both.force_n.y, along_y.force_n.y);
+    EXPECT_EQ(both.force_n.z, along_z.force_n.z);
+    EXPECT_EQ(both.moment_n_m.y, along_z.moment_n_m.y);
+    EXPECT_EQ(both.moment_n_m.z, along_y.moment_n_m.z);
+    EXPECT_NE(along_y.force_n.y, along_z.force_n.y);
+    for (int mode = 0; mode < 2; ++mode) {
+      EXPECT_EQ(drive.drive_m_s2[0][mode], drive_y.drive_m_s2[0][mode]);
+      EXPECT_EQ(drive.drive_m_s2[1][mode], drive_z.drive_m_s2[1][mode]);
+    }
+    const auto moments = [&](const NormalForce<double>& air, const lanes::SideForce<double>* of_yaw) {
+      return lanes::MomentsByBending(bending, s, ModalForce<double>{}, body, air, of_yaw);
+    };
+    const lanes::SectionMoments<double> of_both = moments(both.normal, &side),
+                                        of_y = moments(along_y.normal, nullptr),
+                                        of_z = moments(along_z.normal, nullptr);
+    for (int station = 0; station < kLoadStations; ++station) {
+      EXPECT_EQ(of_both.y_n_m[station], of_y.y_n_m[station]);
+      EXPECT_EQ(of_both.z_n_m[station], of_z.z_n_m[station]);
+    }
+    // The air on the straight body, in one plane at a time.
+    const lanes::BodyMotion<double> still{0.0, kCg_m, 0.0, 0.0, 0.0, 0.0};
+    NormalForce<double> in_y = both.normal, in_z = both.normal, of_yaw = along_y.normal;
+    in_y.across_y = of_yaw.across_y = in_z.across_z = 1.0;
+    in_y.across_z = of_yaw.across_z = in_z.across_y = 0.0;
+    const auto largest = [&](const NormalForce<double>& air, const lanes::SideForce<double>* of_side) {
+      return lanes::LargestOf(body, air, of_side, still).moment_n_m;
+    };
+    EXPECT_EQ(largest(in_y, &side), largest(of_yaw, nullptr));
+    EXPECT_EQ(largest(in_z, &side), largest(in_z, nullptr));
+    EXPECT_NE(largest(in_y, &side), largest(in_y, nullptr));
+  }
+}
+
 // All that bending says of a body, in body axes.
 struct Everything {
   lanes::Bent<double> pivot;
@@ -250,10 +308,10 @@ Everything Of(const BendingTableLanes<double>& b, const BendingState<double>& s,
   o.unit_rate = lanes::TurnRate(b, s, -1);
   o.gyro_rate = lanes::TurnRate(b, s, 1);
   o.flow = LinearAir(at);
-  lanes::BendFlow(b, s, body, kCg_m, o.flow, o.drive);
+  lanes::BendFlow(b, s, body, kCg_m, nullptr, o.flow, o.drive);
   lanes::DriveAtPivot(b, force, couple, o.drive);
   lanes::FinishDrive(b, s, 2e5, o.drive);
-  o.sections = lanes::MomentsByBending(b, s, o.drive, body, LinearAir(at).normal);
+  o.sections = lanes::MomentsByBending(b, s, o.drive, body, LinearAir(at).normal, nullptr);
   o.later = lanes::Swung(b, lanes::SwingOver(b, 0.02), s, o.drive, {}, {});
   return o;
 }

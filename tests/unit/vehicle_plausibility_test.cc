@@ -334,6 +334,16 @@ INSTANTIATE_TEST_SUITE_P(
              {"impossible aerodynamics.tables[0].table.xcp_station_m lies, as part of the stack's length, at "
               "most "
               "130, which cannot be | up to 2 (the air presses on the body)"}},
+        Slip{"PressureKilometresAftInYaw",
+             [](Vehicle& v) {
+               AeroTable yaw = v.aerodynamics[0];
+               yaw.xcp_station_m = {4.0, 4.0, 2600.0, 4.0};
+               v.aerodynamics[0].yaw_plane = {yaw};
+             },
+             {"impossible aerodynamics.tables[0].table.xcp_side_station_m lies, as part of the stack's "
+              "length, "
+              "at most "
+              "130, which cannot be | up to 2 (the air presses on the body)"}},
         Slip{"DampingThatDrives",
              [](Vehicle& v) {
                v.aerodynamics[0].cmq_per_rad = {-40.0, 40.0};

@@ -101,12 +101,12 @@ void ExpectBalance(const Vehicle& vehicle, const std::vector<double>& parts) {
       const lanes::LoadTableLanes<double> body = Only(table, station);
       const lanes::NormalForce<double> along_y{normal_n, 0.0, xcp_m, 1.0, 0.0, 500.0},
           along_z{normal_n, 0.0, xcp_m, 0.0, 1.0, 500.0};
-      const double y = lanes::LargestOf(body, along_y,
+      const double y = lanes::LargestOf(body, along_y, nullptr,
                                         lanes::BodyMotion<double>{propellant, mass.cg_station_m, acceleration,
                                                                   0.0, 0.0, turn})
                            .moment_n_m;
       // Turning about -y moves what lies ahead along z.
-      const double z = lanes::LargestOf(body, along_z,
+      const double z = lanes::LargestOf(body, along_z, nullptr,
                                         lanes::BodyMotion<double>{propellant, mass.cg_station_m, 0.0,
                                                                   acceleration, -turn, 0.0})
                            .moment_n_m;
