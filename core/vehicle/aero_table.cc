@@ -105,7 +105,14 @@ bool AnglesGoTogether(Fields& fields, const AeroRows& all) {
     fields.Refuse("", "the angles do not go together", "incidence_*; or alpha_* with beta_* and cy");
     return false;
   }
-  if (all.cnr_per_rad.empty() || all.has_yaw_plane()) return true;
+  if (all.has_yaw_plane()) {
+    if (all.xcp_station_m.empty() == all.xcp_side_station_m.empty() && all.cm.empty() == all.cln.empty())
+      return true;
+    fields.Refuse("", "the places of cn and cy do not go together",
+                  "xcp_station_* with xcp_side_station_*, or cm with cln");
+    return false;
+  }
+  if (all.cnr_per_rad.empty()) return true;
   fields.Refuse("cnr_per_rad", "is not that of a body of revolution",
                 "cmq_per_rad, or beside it cy with xcp_side_station_* or cln");
   return false;
@@ -246,13 +253,10 @@ bool FillGrid(Fields& fields, const AeroRows& rows, AeroTable& table) {
     return false;
   }
   if (rows.xcp_station_m.empty() == rows.cm.empty()) {
-    fields.Refuse("",
-                  rows.of_yaw_plane ? "the places of cn and cy do not go together"
-                  : rows.cm.empty() ? "missing column 'xcp_station_m' or 'cm'"
-                                    : "'xcp_station' and 'cm' are both given",
-                  rows.of_yaw_plane
-                      ? "xcp_station_* with xcp_side_station_*, or cm with cln"
-                      : "the centre of pressure, or cm about the table's moment_reference_station_*");
+    fields.Refuse(
+        "",
+        rows.cm.empty() ? "missing column 'xcp_station_m' or 'cm'" : "'xcp_station' and 'cm' are both given",
+        "the centre of pressure, or cm about the table's moment_reference_station_*");
     return false;
   }
   const std::size_t incidences =

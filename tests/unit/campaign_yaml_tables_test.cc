@@ -216,19 +216,20 @@ TEST(AeroTableFile, OfTwoPlanesNeedsItsColumns) {
       ErrorsOf("",
                "mach,incidence_deg,ca,cn,xcp_station_m,cnr_per_rad\n0.5,0,0.3,0,4,-1\n"
                "0.5,10,0.3,0.5,4,-1\n2,0,0.3,0,3,-1\n2,10,0.3,0.6,3,-1\n"),
-      "first.csv:1:1: cnr_per_rad: is not that of a body of revolution, allowed: cmq_per_rad, or beside "
+      "first.csv:1:40: cnr_per_rad: is not that of a body of revolution, allowed: cmq_per_rad, or beside "
       "it cy with xcp_side_station_* or cln\n");
   std::string mixed = OfTwoPlanes(false);
   mixed.replace(mixed.find("xcp_side_station_m"), 18, "cln");
   EXPECT_EQ(ErrorsOf("", mixed),
             "first.csv:1:1: the places of cn and cy do not go together, allowed: xcp_station_* with "
             "xcp_side_station_*, or cm with cln\n");
-  EXPECT_EQ(ErrorsOf("",
-                     "mach,alpha_deg,beta_deg,ca,cn,cy,xcp_station_m,xcp_side_station_m\n"
-                     "0.5,0,0,0.3,0,0,4,3\n0.5,10,0,0.3,0.5,0,4,3\n2,0,0,0.3,0,0,3,3\n"
-                     "2,10,0,0.3,0.6,0,3,3\n"),
-            "first.csv:1:1: alpha: has fewer than four rows without an angle of attack, allowed: alpha of 0 "
-            "beside the others: the yaw plane\n");
+  EXPECT_EQ(
+      ErrorsOf("",
+               "mach,alpha_deg,beta_deg,ca,cn,cy,xcp_station_m,xcp_side_station_m\n"
+               "0.5,0,0,0.3,0,0,4,3\n0.5,10,0,0.3,0.5,0,4,3\n2,0,0,0.3,0,0,3,3\n"
+               "2,10,0,0.3,0.6,0,3,3\n"),
+      "first.csv:1:6: alpha_deg: has fewer than four rows without an angle of attack, allowed: alpha of 0 "
+      "beside the others: the yaw plane\n");
 }
 
 TEST(AeroTableFile, WithoutPowerHasTheBaseDragOfAnArea) {

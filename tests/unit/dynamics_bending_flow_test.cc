@@ -16,6 +16,7 @@ using lanes::LoadTableLanes;
 using lanes::ModalForce;
 using lanes::NormalForce;
 
+constexpr const lanes::SideForce<double>* kRound = nullptr;  // both planes have the same air
 constexpr double kCg_m = 11.0, kXcp_m = 8.0, kSpeed_m_s = 400.0, kSlope_n = 6e5;
 
 // The body's incidence: the flow across it over the flow along it, along y and along z.
@@ -65,7 +66,7 @@ TEST(BendingFlow, OfARigidMotionIsTheFlowOfTheMovedBody) {
   const Incidence moved{straight.y + 3.0 / kSpeed_m_s + 0.01, straight.z - 2.0 / kSpeed_m_s - 0.02};
   FlowForce<double> flow = LinearAir(straight);
   ModalForce<double> driven{};
-  lanes::BendFlow(bending, s, BodySections(), kCg_m, nullptr, flow, driven);
+  lanes::BendFlow(bending, s, BodySections(), kCg_m, kRound, flow, driven);
   const FlowForce<double> expected = LinearAir(moved);
   EXPECT_EQ(flow.force_n.x, -1e4);
   EXPECT_NEAR(flow.force_n.y, expected.force_n.y, kSmall_n);
@@ -109,7 +110,7 @@ TEST(BendingFlow, OfATurningBodyIsThatOfEachPlacesSpeed) {
     s.rate_m_s[plane][1] = 0.3;
     FlowForce<double> flow = LinearAir({0.0, 0.0});
     ModalForce<double> driven{};
-    lanes::BendFlow(bending, s, BodySections(), kCg_m, nullptr, flow, driven);
+    lanes::BendFlow(bending, s, BodySections(), kCg_m, kRound, flow, driven);
     double force = 0.0, moment = 0.0, shares = 0.0;
     for (const LiftPiece& strip : loads.lift.pieces) {
       const double grown = strip.area_to - strip.area_from, middle_m = strip.Middle() - kCg_m;
@@ -144,7 +145,7 @@ TEST(BendingFlow, DrivesEachModeByTheWorkOfItsStrips) {
   FlowForce<double> flow = LinearAir(straight);
   ModalForce<double> driven{};
   driven.drive_m_s2[1][1] = 1e3;  // is added to
-  lanes::BendFlow(bending, s, body, kCg_m, nullptr, flow, driven);
+  lanes::BendFlow(bending, s, body, kCg_m, kRound, flow, driven);
   const LoadTable loads = MadeUpLoads();
   const double aft_m = kXcp_m - loads.lift.slender_station_m;
   double force[kPlanes] = {}, work[kPlanes][2] = {};
@@ -178,7 +179,7 @@ TEST(BendingFlow, InVacuumIsNothingHoweverTheBodyRings) {
     FlowForce<double> flow{};
     flow.normal.airspeed_m_s = airspeed_m_s;
     ModalForce<double> driven{};
-    lanes::BendFlow(bending, s, BodySections(), kCg_m, nullptr, flow, driven);
+    lanes::BendFlow(bending, s, BodySections(), kCg_m, kRound, flow, driven);
     for (const double value :
          {flow.force_n.y, flow.force_n.z, flow.moment_n_m.y, flow.moment_n_m.z, driven.drive_m_s2[0][0],
           driven.drive_m_s2[0][1], driven.drive_m_s2[1][0], driven.drive_m_s2[1][1]})
@@ -205,7 +206,7 @@ TEST(BendingSections, CarryTheMassesAheadLessTheirAir) {
     NormalForce<double> air{};
     if (in_air) air = LinearAir({0.02, -0.01}).normal;
     const lanes::SectionMoments<double> moments =
-        lanes::MomentsByBending(bending, s, driven, body, air, nullptr);
+        lanes::MomentsByBending(bending, s, driven, body, air, kRound);
     for (std::size_t plane = 0; plane < kPlanes; ++plane) {
       const auto forces = ForcesByBending(TwoPlanes()[plane], s, static_cast<int>(plane));
       double acceleration[2];
@@ -254,8 +255,8 @@ TEST(BendingFlow, OfTwoPlanesIsThatOfEach) {
                                         along_y.normal.xcp_station_m};
     FlowForce<double> both = along_z;
     ModalForce<double> drive_z{}, drive_y{}, drive{};
-    lanes::BendFlow(bending, s, body, kCg_m, nullptr, along_z, drive_z);
-    lanes::BendFlow(bending, s, body, kCg_m, nullptr, along_y, drive_y);
+    lanes::BendFlow(bending, s, body, kCg_m, kRound, along_z, drive_z);
+    lanes::BendFlow(bending, s, body, kCg_m, kRound, along_y, drive_y);
     lanes::BendFlow(bending, s, body, kCg_m, &side, both, drive);
     EXPECT_EQ(both.force_n.y, along_y.force_n.y);
     EXPECT_EQ(both.force_n.z, along_z.force_n.z);
@@ -270,23 +271,12 @@ TEST(BendingFlow, OfTwoPlanesIsThatOfEach) {
       return lanes::MomentsByBending(bending, s, ModalForce<double>{}, body, air, of_yaw);
     };
     const lanes::SectionMoments<double> of_both = moments(both.normal, &side),
-                                        of_y = moments(along_y.normal, nullptr),
-                                        of_z = moments(along_z.normal, nullptr);
+                                        of_y = moments(along_y.normal, kRound),
+                                        of_z = moments(along_z.normal, kRound);
     for (int station = 0; station < kLoadStations; ++station) {
       EXPECT_EQ(of_both.y_n_m[station], of_y.y_n_m[station]);
       EXPECT_EQ(of_both.z_n_m[station], of_z.z_n_m[station]);
     }
-    // The air on the straight body, in one plane at a time.
-    const lanes::BodyMotion<double> still{0.0, kCg_m, 0.0, 0.0, 0.0, 0.0};
-    NormalForce<double> in_y = both.normal, in_z = both.normal, of_yaw = along_y.normal;
-    in_y.across_y = of_yaw.across_y = in_z.across_z = 1.0;
-    in_y.across_z = of_yaw.across_z = in_z.across_y = 0.0;
-    const auto largest = [&](const NormalForce<double>& air, const lanes::SideForce<double>* of_side) {
-      return lanes::LargestOf(body, air, of_side, still).moment_n_m;
-    };
-    EXPECT_EQ(largest(in_y, &side), largest(of_yaw, nullptr));
-    EXPECT_EQ(largest(in_z, &side), largest(in_z, nullptr));
-    EXPECT_NE(largest(in_y, &side), largest(in_y, nullptr));
   }
 }
 
@@ -308,10 +298,10 @@ Everything Of(const BendingTableLanes<double>& b, const BendingState<double>& s,
   o.unit_rate = lanes::TurnRate(b, s, -1);
   o.gyro_rate = lanes::TurnRate(b, s, 1);
   o.flow = LinearAir(at);
-  lanes::BendFlow(b, s, body, kCg_m, nullptr, o.flow, o.drive);
+  lanes::BendFlow(b, s, body, kCg_m, kRound, o.flow, o.drive);
   lanes::DriveAtPivot(b, force, couple, o.drive);
   lanes::FinishDrive(b, s, 2e5, o.drive);
-  o.sections = lanes::MomentsByBending(b, s, o.drive, body, LinearAir(at).normal, nullptr);
+  o.sections = lanes::MomentsByBending(b, s, o.drive, body, LinearAir(at).normal, kRound);
   o.later = lanes::Swung(b, lanes::SwingOver(b, 0.02), s, o.drive, {}, {});
   return o;
 }

@@ -101,12 +101,21 @@ void ExpectBalance(const Vehicle& vehicle, const std::vector<double>& parts) {
       const lanes::LoadTableLanes<double> body = Only(table, station);
       const lanes::NormalForce<double> along_y{normal_n, 0.0, xcp_m, 1.0, 0.0, 500.0},
           along_z{normal_n, 0.0, xcp_m, 0.0, 1.0, 500.0};
-      const double y = lanes::LargestOf(body, along_y, nullptr,
+      const lanes::SideForce<double>* const round = nullptr;
+      const double y = lanes::LargestOf(body, along_y, round,
                                         lanes::BodyMotion<double>{propellant, mass.cg_station_m, acceleration,
                                                                   0.0, 0.0, turn})
                            .moment_n_m;
+      // The yaw plane's air is its own.
+      const lanes::SideForce<double> side{normal_n, 0.0, xcp_m};
+      const lanes::NormalForce<double> other{2.0 * normal_n, 0.0, xcp_m + 1.0, 1.0, 0.0, 500.0};
+      EXPECT_EQ(lanes::LargestOf(
+                    body, other, &side,
+                    lanes::BodyMotion<double>{propellant, mass.cg_station_m, acceleration, 0.0, 0.0, turn})
+                    .moment_n_m,
+                y);
       // Turning about -y moves what lies ahead along z.
-      const double z = lanes::LargestOf(body, along_z, nullptr,
+      const double z = lanes::LargestOf(body, along_z, round,
                                         lanes::BodyMotion<double>{propellant, mass.cg_station_m, 0.0,
                                                                   acceleration, -turn, 0.0})
                            .moment_n_m;
