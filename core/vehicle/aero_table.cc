@@ -59,8 +59,8 @@ void Describe(Fields& fields, AeroRows& rows) {
                             "angle of sideslip; rows of 0 are needed, others are checked");
   fields.OptionalNumbers("cy", kAnyNumber, 4, SIZE_MAX, rows.cy, "side force, to the right");
   fields.OptionalQuantities("xcp_side_station", kLength, kAnyNumber, 4, SIZE_MAX, rows.xcp_side_station_m,
-                            "where cy acts: with it, or cln, rows of alpha 0 are a plane of their own");
-  fields.OptionalNumbers("cln", kAnyNumber, 4, SIZE_MAX, rows.cln, "yawing moment, nose right, as cm");
+                            "where cy acts: a yaw plane of its own");
+  fields.OptionalNumbers("cln", kAnyNumber, 4, SIZE_MAX, rows.cln, "yawing moment, nose right");
   fields.OptionalNumbers("cnr_per_rad", kAnyNumber, 4, SIZE_MAX, rows.cnr_per_rad,
                          "yaw damping; default: cmq_per_rad");
   fields.Numbers("ca", kAnyNumber, 4, SIZE_MAX, rows.ca, "axial force coefficient, motor burning");

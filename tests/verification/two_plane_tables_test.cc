@@ -1,5 +1,5 @@
-// Aerodynamic tables of bodies with two planes of symmetry: against the tables themselves, closed forms, CVODE,
-// and bodies that are turned about their axis by a right angle.
+// Aerodynamic tables of bodies with two planes of symmetry: against the tables themselves, closed forms,
+// CVODE, and bodies that are turned about their axis by a right angle.
 #include <gtest/gtest.h>
 
 #include <algorithm>
@@ -23,8 +23,8 @@
 namespace dispersa::two_plane_tables_test {
 namespace {
 
-// A table with a yaw plane: the normal force `by` times the pitch plane's, farther aft by `aft_m`, more drag at
-// incidence and more damping.
+// A table with a yaw plane: the normal force `by` times the pitch plane's, farther aft by `aft_m`, more drag
+// at incidence and more damping.
 AeroTable WithYawPlane(const AeroTable& pitch, double by, double aft_m) {
   AeroTable table = pitch, yaw = pitch;
   yaw.lighter.clear();
@@ -111,7 +111,8 @@ TEST(TwoPlanes, TurnedByARightAngleTurnTheirForce) {
   const BodyAerodynamics body = FromTable(table), other = FromTable(Turned(table));
   const AeroGrid grid = BuildAeroGrid(body), other_grid = BuildAeroGrid(other);
   const auto turned = [](const Vector3& of) { return Vector3(of.x(), -of.z(), of.y()); };
-  for (const Vector3& v : {Vector3(700.0, 20.0, -55.0), Vector3(300.0, 0.0, 9.0), Vector3(500.0, -30.0, 0.0)}) {
+  for (const Vector3& v :
+       {Vector3(700.0, 20.0, -55.0), Vector3(300.0, 0.0, 9.0), Vector3(500.0, -30.0, 0.0)}) {
     const Vector3 w(0.1, -0.02, 0.05);
     const ForceAndMoment a = AerodynamicForce(body, grid, v, w, 0.7, 310.0, 14.0),
                          b = AerodynamicForce(other, other_grid, turned(v), turned(w), 0.7, 310.0, 14.0);
@@ -132,10 +133,9 @@ std::string CsvOf(const AeroTable& table) {
   for (std::size_t m = 0; m < table.mach.size(); ++m) {
     const auto add = [&](double alpha, double beta, std::size_t i) {
       const std::size_t row = table.RowOf(m, i);
-      for (const double value :
-           {table.mach[m], alpha, beta, table.ca[row], beta == 0.0 ? table.cn[row] : 0.0,
-            beta == 0.0 ? 0.0 : -table.cn[row], table.xcp_station_m[row], table.xcp_station_m[row],
-            table.cmq_per_rad[m], table.clp_per_rad[m]})
+      for (const double value : {table.mach[m], alpha, beta, table.ca[row], beta == 0.0 ? table.cn[row] : 0.0,
+                                 beta == 0.0 ? 0.0 : -table.cn[row], table.xcp_station_m[row],
+                                 table.xcp_station_m[row], table.cmq_per_rad[m], table.clp_per_rad[m]})
         text += FormatNumber(value) + ",";
       text.back() = '\n';
     };
@@ -155,7 +155,8 @@ TEST(TwoPlaneFlight, OfABodyOfRevolutionIsThatOfItsTableOverTheIncidence) {
     const std::string name = "aero" + std::to_string(i) + ".csv";
     files.Write(name, CsvOf(tables[i]));
     text += "    - {reference_area_m2: " + FormatNumber(tables[i].reference_area_m2) +
-            ", reference_length_m: " + FormatNumber(tables[i].reference_length_m) + ", table: " + name + "}\n";
+            ", reference_length_m: " + FormatNumber(tables[i].reference_length_m) + ", table: " + name +
+            "}\n";
   }
   files.Write("vehicle.yaml", text);
   definition.vehicle = LoadVehicle(files.Path("vehicle.yaml"));
@@ -175,7 +176,8 @@ TEST(TwoPlaneFlight, IsThatOfCvode) {
   ASSERT_EQ(exact.result.outcome, Outcome::kCompleted) << exact.result.reason;
   for (const char* column : {"pitch_error_deg", "yaw_error_deg", "alpha_deg", "beta_deg"})
     EXPECT_LT(Apart(engine, exact, column, kBeforeCoast_s), 1e-4) << column;  // as flight_convergence_test
-  const Flown round = FlyWith(FlightModel(Slv4Definition(DISPERSA_CAMPAIGNS)), Table3Inputs(), Scheme::kSimpson, 1);
+  const Flown round =
+      FlyWith(FlightModel(Slv4Definition(DISPERSA_CAMPAIGNS)), Table3Inputs(), Scheme::kSimpson, 1);
   EXPECT_GT(Apart(engine, round, "beta_deg", kBeforeCoast_s), 0.05);
 }
 
@@ -213,7 +215,8 @@ FlightDefinition FreeDefinition(double azimuth_rad, double elevation_rad) {
   vehicle.reaction_control = {};
   vehicle.rail = Rail{0.0, 0.0, azimuth_rad, elevation_rad};
   definition.program.launch_azimuth_rad = azimuth_rad;
-  definition.program.knots = {{.time_s = 0.0, .pitch = elevation_rad}, {.time_s = 1.0, .pitch = elevation_rad}};
+  definition.program.knots = {{.time_s = 0.0, .pitch = elevation_rad},
+                              {.time_s = 1.0, .pitch = elevation_rad}};
   definition.last_ignition_s = 0.0;
   definition.course = {FlightEnd::kApogee, false, kFreeStep_s};
   definition.autopilot = {};
@@ -231,7 +234,8 @@ std::vector<TickSample> Samples(const FlightDefinition& definition, const Flight
   return samples;
 }
 
-// The largest error of a swing's duration in one of the planes, against omega² = q S CN_alpha (x_cp - x_cg) / I.
+// The largest error of a swing's duration in one of the planes, against omega² = q S CN_alpha (x_cp - x_cg) /
+// I.
 double WorstSwing(bool in_yaw, int swings) {
   FlightDefinition definition = FreeDefinition(0.5 * kPi, 60.0 * kRadPerDeg);
   definition.vehicle.stages[0].motor.thrust_n = 1.5e6;
@@ -245,9 +249,8 @@ double WorstSwing(bool in_yaw, int swings) {
   int crossings = 0;
   for (const TickSample& s : Samples(definition, inputs)) {
     if (s.stack != 1 || s.burning) continue;
-    const double omega =
-        std::sqrt(s.instant.air.qbar_pa * table.reference_area_m2 * slope * (xcp_m - s.instant.cg_station_m) /
-                  s.instant.loads.inertia_kg_m2(1, 1));
+    const double omega = std::sqrt(s.instant.air.qbar_pa * table.reference_area_m2 * slope *
+                                   (xcp_m - s.instant.cg_station_m) / s.instant.loads.inertia_kg_m2(1, 1));
     const double across = in_yaw ? s.instant.v_AB_B.y() : s.instant.v_AB_B.z();
     const double angle = std::atan2(across, s.instant.v_AB_B.x());
     if (before_s > 0.0) {
@@ -273,8 +276,8 @@ TEST(TwoPlaneFlight, SwingsInEachPlaneAtItsOwnFrequency) {
   EXPECT_LT(WorstSwing(true, 12), 0.05);
 }
 
-// A vertical rail: the azimuth turns the body about its axis, and nothing else. With the planes exchanged it is
-// the same vehicle in the same wind, but for the roll angle.
+// A vertical rail: the azimuth turns the body about its axis, and nothing else. With the planes exchanged it
+// is the same vehicle in the same wind, but for the roll angle.
 TEST(TwoPlaneFlight, TurnedByARightAngleFliesTheSameWay) {
   FlightInputs inputs;
   inputs.wind_max_speed_m_s = 8.0;
