@@ -462,7 +462,7 @@ GuidanceMission BuildMission(const FlightDefinition& definition, const LauncherP
   mission.below_start = start_of(last - 1);
   mission.below = stage(last - 1);
   mission.last = stage(last);
-  mission.steers_below = SteersBelow(definition.vehicle);
+  mission.steers_below = SteersBelow(definition.vehicle, definition.guidance);
   mission.moves_ignition = definition.vehicle.stages.back().ignition == IgnitionTrigger::kTimer;
   mission.is_restart = definition.vehicle.stages.back().restarts;
   mission.below_burnout_s = times[last - 1].burnout_s;

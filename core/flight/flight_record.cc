@@ -437,6 +437,7 @@ void FlightRecord::Inject(double altitude_m, const double* y) {
   sums.injected = true;
   sums.injection_altitude_m = altitude_m;
   sums.orbit = ElementsOf(plant.environment.earth, s.p_EoC_I, s.v_IC_I);
+  if (guided) guided->Inject(altitude_m, s.p_EoC_I, s.v_IC_I);
 }
 
 unsigned FlightRecord::LetGo(int stack, unsigned jettisoned, double time_s, double altitude_m,
@@ -462,6 +463,7 @@ const Motor* FlightRecord::CutOffEngine(int stage) const {
 void FlightRecord::CutOff(int stage, double time_s) {
   const auto ignition = std::find_if(events.begin(), events.end(),
                                      [&](const FlightEvent& event) { return event.stage == stage; });
+  if (guided) guided->NoteCutOff(stage);
   CommandCutOffOf(model_.definition().vehicle, stage, time_s - ignition->time_s, plant);
   events = EventsOf(model_, plant, inputs,
                     guided ? guided->ignition_s() : model_.definition().last_ignition_s, rail_exit_s_);

@@ -32,6 +32,13 @@ double GuidedFlight::CutOffIn(double time_s, double ignition_s, const Vector3& v
                              accelerometer_factor_ * specific_force_m_s2);
 }
 
+void GuidedFlight::Inject(double altitude_m, const Vector3& p_EoC_I, const Vector3& v_IC_I) {
+  const int last = static_cast<int>(model_.nominal_plant().stacks.size()) - 1;
+  if (cut_off_stack_ == last) return;
+  guidance_->RunDry(altitude_m + position_error_I_.dot(p_EoC_I) / p_EoC_I.norm(), p_EoC_I + position_error_I_,
+                    v_IC_I + velocity_error_I_);
+}
+
 const GuidanceOutcome& GuidedFlight::outcome() const { return guidance_->outcome(); }
 
 bool GuidedFlight::See(const LaneSight& sight) {
@@ -69,8 +76,11 @@ bool GuidedFlight::See(const LaneSight& sight) {
 
 bool GuidedFlight::SteersFirstStage(const LaneSight& sight, const NavigatedState& state) {
   if (!first_stage_ready_s_) {
+    // On the pad the pressure is low, too.
+    const bool is_thin = DynamicPressure(*model_.guidance_mission(), state) <= kThinAir_pa;
+    first_stage_met_air_ = first_stage_met_air_ || !is_thin;
     if (model_.nominal_plant().boosters && (sight.jettisoned & kBoostersGone) == 0u) return false;
-    if (DynamicPressure(*model_.guidance_mission(), state) > kThinAir_pa) return false;
+    if (!is_thin || !first_stage_met_air_) return false;
     first_stage_ready_s_ = sight.time_s;
   }
   return sight.time_s >= *first_stage_ready_s_ + kTakeOver_s;

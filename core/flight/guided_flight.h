@@ -58,6 +58,10 @@ class GuidedFlight {
   /// For times near the last tick. Does not change the state.
   ReferenceAttitude ReferenceAt(double time_s) const;
 
+  /// A command has ended the burn of a stage.
+  void NoteCutOff(int stack) { cut_off_stack_ = stack; }
+  /// The injection. The arguments are true values.
+  void Inject(double altitude_m, const Vector3& p_EoC_I, const Vector3& v_IC_I);
   const GuidanceOutcome& outcome() const;
 
  private:
@@ -71,6 +75,8 @@ class GuidedFlight {
   const std::unique_ptr<ClosedLoopGuidance> guidance_;
   double next_tick_ = 0.0;
   bool steers_ = false;
+  int cut_off_stack_ = -1;                     ///< the last one whose burn a command ended
+  bool first_stage_met_air_ = false;           ///< its dynamic pressure has been above kThinAir_pa
   std::optional<double> first_stage_ready_s_;  ///< when both came true
   alignas(64) double row_[ReferenceRows::kRowSize] = {};
   alignas(64) double feed_forward_row_[FeedForwardRows::kRowSize] = {};

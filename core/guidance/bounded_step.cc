@@ -53,10 +53,9 @@ int BestToRelease(const StepModel<count, misses>& model, const Unknowns<count>& 
   return best;
 }
 
-}  // namespace
-
+// The step where no departure is dear on one side only.
 template <int count, int misses>
-Unknowns<count> BoundedStep(const StepModel<count, misses>& model, const Unknowns<count>& weight) {
+Unknowns<count> EvenStep(const StepModel<count, misses>& model, const Unknowns<count>& weight) {
   // More changes than unknowns are rare; rounding must not make it go round for ever.
   constexpr int kMostChanges = 4 * count;
   Which moves = model.free;
@@ -85,6 +84,31 @@ Unknowns<count> BoundedStep(const StepModel<count, misses>& model, const Unknown
     const int released = BestToRelease(model, weight, moves, step);
     if (released < 0) break;
     moves[Index(released)] = true;
+  }
+  return step;
+}
+
+}  // namespace
+
+template <int count, int misses>
+Unknowns<count> BoundedStep(const StepModel<count, misses>& model, const Unknowns<count>& weight) {
+  // Two departures can be dear.
+  constexpr int kSides = 4;
+  Unknowns<count> step = Unknowns<count>::Zero();
+  for (int trial = 0; trial < kSides; ++trial) {
+    StepModel<count, misses> even = model;
+    Unknowns<count> even_weight = weight;
+    const Unknowns<count> side = model.departure + step;
+    for (int i = 0; i < count; ++i) {
+      if (!(side(i) > 0.0)) continue;
+      even.departure(i) += model.dearer(i) * model.departure(i);
+      even_weight(i) += model.dearer(i);
+    }
+    step = EvenStep(even, even_weight);
+    bool stays = true;
+    for (int i = 0; i < count; ++i)
+      stays = stays && (model.dearer(i) == 0.0 || (model.departure(i) + step(i) > 0.0) == (side(i) > 0.0));
+    if (stays) break;
   }
   return step;
 }

@@ -17,24 +17,30 @@ using Misses = Eigen::Matrix<double, misses, 1>;
 template <int count>
 using Unknowns = Eigen::Matrix<double, count, 1>;
 
-/// Model of the sum of squares |miss + J s|² + |y + s|², all without units. `low` is not above 0, `high` not
-/// below.
+/// Model of the sum of squares |miss + J s|² + |y + s|² + max(y + s, 0)' D max(y + s, 0), all without units.
+/// `low` is not above 0, `high` not below.
 template <int count, int misses = kMisses>
 struct StepModel {
   Eigen::Matrix<double, misses, count> jacobian = Eigen::Matrix<double, misses, count>::Zero();
   Misses<misses> miss = Misses<misses>::Zero();
   Unknowns<count> departure = Unknowns<count>::Zero();  ///< y
   Unknowns<count> low = Unknowns<count>::Zero(), high = Unknowns<count>::Zero();
+  Unknowns<count> dearer = Unknowns<count>::Zero();  ///< the diagonal D, not below 0
   std::array<bool, kPlanUnknowns> free{};
 
   double At(const Unknowns<count>& step) const {
-    return (miss + jacobian * step).squaredNorm() + (departure + step).squaredNorm();
+    return (miss + jacobian * step).squaredNorm() + CostOf(departure + step);
+  }
+  /// The departures' part of the sum.
+  double CostOf(const Unknowns<count>& departures) const {
+    return departures.squaredNorm() + dearer.dot(departures.cwiseMax(0.0).cwiseAbs2());
   }
 };
 
-/// The step s within the bounds with the least |miss + J s|² + |y + s|² + s' (W - 1) s. W is the diagonal
+/// The step s within the bounds with the least sum of the model and s' (W - 1) s. W is the diagonal
 /// `weight`, 1 or more. The sum is never larger than without a step. By an active set (J. Nocedal and S. J.
-/// Wright, Numerical Optimization, 2006, section 16.5).
+/// Wright, Numerical Optimization, 2006, section 16.5). The sides on which departures are dear are found by
+/// trying, since the sum is convex and has no kinks.
 template <int count, int misses>
 Unknowns<count> BoundedStep(const StepModel<count, misses>& model, const Unknowns<count>& weight);
 

@@ -32,7 +32,8 @@ constexpr double kOfSince = 0.2, kOfLeft = 0.05, kLongestPeriod_s = 10.0;
 constexpr double kArmed_s = 3.0, kArmedOfBurn = 0.25;
 // Where the speed grows by less than this part of the specific force, time ends the burn.
 constexpr double kAlong = 0.2;
-// A timer does not end a burn that lacks more than this of the target's energy: the propellant does.
+// A timer does not end a burn that lacks more than this of the target's energy: the propellant does. A flight
+// that lacks it when the propellant has ended has not arrived.
 constexpr double kLacking_m_s = 1.0;
 // Between a burn's end and the ignition of the next, at least: separation and settling.
 constexpr double kApart_s = 10.0;
@@ -450,6 +451,18 @@ void ClosedLoopGuidance::SteerToCutOff(const Knowledge& known, const NavigatedSt
   outcome_.arrives = met_all_ && found.arrives;
   SetCutOff(found);
   SetEnginePeriod(since_s, found.reached.burn_end_s - state.time_s);
+}
+
+void ClosedLoopGuidance::RunDry(double altitude_m, const Vector3& p_EoC_I, const Vector3& v_IC_I) {
+  if (!mission_.last.is_cut_off()) return;
+  Injection reached;
+  reached.at = ArrivalOf(mission_.earth, 0.0, p_EoC_I, v_IC_I);
+  reached.at.altitude_m = altitude_m;
+  reached.radius_m = p_EoC_I.norm();
+  reached.p_EoC_I = p_EoC_I;
+  reached.v_IC_I = v_IC_I;
+  // A number that is none has not arrived.
+  if (!(OrbitMissOf(mission_, reached).energy_m_s > -kLacking_m_s)) outcome_.arrives = false;
 }
 
 void ClosedLoopGuidance::Command(double time_s) {

@@ -48,6 +48,8 @@ class ClosedLoopGuidance {
   void Command(double time_s);
   const AttitudeCommand& command() const { return command_; }
   const Plan& plan() const { return plan_; }
+  /// The injection, measured, of a flight whose last burn no command has ended.
+  void RunDry(double altitude_m, const Vector3& p_EoC_I, const Vector3& v_IC_I);
   const GuidanceOutcome& outcome() const { return outcome_; }
 
  private:

@@ -18,6 +18,8 @@ constexpr double kTolerance[kAllMisses] = {1e-2, 3e-2, 3e-2, 1.0, 1.0, 10.0};
 constexpr double kDifference = 3e-4;  // of a scale
 // A step that moves no miss by more, in tolerances, needs no further one.
 constexpr double kStill = 0.005;
+// A turn of the perigee that costs a step 1.
+constexpr double kTurn_rad = 0.3;
 // Beyond this a step's straight lines say little.
 constexpr double kLongestStep = 0.5;  // scales
 // The share of the predicted decrease that a step must bring, and what follows one that does not: damping,
@@ -31,13 +33,24 @@ Arrival Less(const Arrival& a, const Arrival& b) {
           a.flight_path_angle_rad - b.flight_path_angle_rad, a.inclination_rad - b.inclination_rad};
 }
 
+// In tolerances. If the perigee `turns`, a step should turn it little, for the misses are straight lines only
+// then: in place of the second miss, the turn since the injection `before`. The sum of squares is the same.
 template <int misses>
-Misses<misses> Scaled(const GuidanceMission& mission, const Injection& reached, const CorrectorTask& task) {
+Misses<misses> Scaled(const GuidanceMission& mission, const Injection& reached, const Injection& before,
+                      const CorrectorTask& task, bool turns) {
   const OrbitMiss miss = OrbitMissOf(mission, reached);
   Misses<misses> m;
   m(0) = miss.energy_m_s / kTolerance[0];
-  m(1) = miss.radial_m_s / kTolerance[1];
-  m(2) = task.meets_altitude ? miss.shape_m_s / kTolerance[2] : 0.0;
+  if (turns && task.meets_altitude && miss.size_m_s) {
+    const OrbitMiss at = OrbitMissOf(mission, before);
+    const double turn_rad = (miss.across * at.along - miss.along * at.across) /
+                            (Sqrt(Square(at.along) + Square(at.across)) * mission.orbit->eccentricity);
+    m(1) = turn_rad / kTurn_rad;
+    m(2) = *miss.size_m_s / kTolerance[2];
+  } else {
+    m(1) = miss.radial_m_s / kTolerance[1];
+    m(2) = task.meets_altitude ? miss.shape_m_s / kTolerance[2] : 0.0;
+  }
   m(3) = task.meets_plane ? miss.plane_m_s / kTolerance[3] : 0.0;
   if constexpr (misses > kMisses) {
     m(4) = task.meets_plane ? miss.node_m_s / kTolerance[4] : 0.0;
@@ -48,13 +61,20 @@ Misses<misses> Scaled(const GuidanceMission& mission, const Injection& reached, 
 
 // Thrust at an angle to the velocity loses 1 - cos of its energy: the second derivative that a miss of energy
 // has in the angles, in units of scales. Only what would be missing of the energy if no more were wasted, or
-// if the engine burnt on, holds a step back. `spent`: departures of waste and cut-off that could be had back.
+// if the engine burnt on, holds a step back, and what energy costs the reserve. `spent`: departures of waste
+// and cut-off that could be had back.
 template <int count, int misses>
 Unknowns<count> CurvatureOf(const GuidanceMission& mission, const Knowledge& known, const PlanPrior& prior,
                             const StepModel<count, misses>& model, double spent, double unburnt) {
   Unknowns<count> curvature = Unknowns<count>::Zero();
   double missing = -(model.miss(0) - spent * model.jacobian(0, kWaste));
-  if constexpr (count > kCutOff) missing -= unburnt * model.jacobian(0, kCutOff);
+  if constexpr (count > kCutOff) {
+    missing -= unburnt * model.jacobian(0, kCutOff);
+    // What energy costs the reserve, as a miss of energy with the same slope.
+    if (model.departure(kCutOff) > 0.0 && model.dearer(kCutOff) > 0.0 && model.jacobian(0, kCutOff) > 0.0)
+      missing = std::fmax(
+          missing, (1.0 + model.dearer(kCutOff)) * model.departure(kCutOff) / model.jacobian(0, kCutOff));
+  }
   if (!(missing > 0.0)) return curvature;
   const double last = missing * IdealVelocity(mission.last) / kTolerance[0];
   curvature(kPitchMiddle) = curvature(kYawMiddle) = last;
@@ -102,7 +122,8 @@ double AfterStep(double value, double step, double scale, double low, double hig
 
 template <int count, int misses>
 Correction CorrectFirst(const GuidanceMission& mission, const PlanPrior& prior, const Knowledge& known,
-                        const NavigatedState& from, const Plan& start, const CorrectorTask& task) {
+                        const NavigatedState& from, const Plan& start, const CorrectorTask& task,
+                        bool turns) {
   Correction best;
   best.plan = start;
   // The way of the last plan that was predicted; derivatives by values of the last burn share the best one's.
@@ -124,7 +145,7 @@ Correction CorrectFirst(const GuidanceMission& mission, const PlanPrior& prior, 
   const Injection at_start = predict(start, true);
   StepModel<count, misses> model;
   model.free = task.free;
-  model.miss = Scaled<misses>(mission, at_start, task);
+  model.miss = Scaled<misses>(mission, at_start, at_start, task, turns);
   keep(start, at_start, model.miss);
   best.start_prioritised_miss = best.prioritised_miss;
   double damping = 0.0;
@@ -135,13 +156,15 @@ Correction CorrectFirst(const GuidanceMission& mission, const PlanPrior& prior, 
       if (!task.free[k]) continue;
       const double scale = prior.scale[k], value = best.plan.value[k];
       model.departure(i) = (value - task.prior.value[k]) / scale;
+      model.dearer(i) = prior.dearer[k];
       model.low(i) = Clamp((task.low[k] - value) / scale, -kLongestStep, 0.0);
       model.high(i) = Clamp((task.high[k] - value) / scale, 0.0, kLongestStep);
       Plan moved = best.plan;
       const double difference = model.high(i) > kDifference ? kDifference : -kDifference;
       moved.value[k] += difference * scale;
       model.jacobian.col(i) =
-          (Scaled<misses>(mission, predict(moved, false), task) - model.miss) / difference;
+          (Scaled<misses>(mission, predict(moved, false), best.reached, task, turns) - model.miss) /
+          difference;
     }
     const Unknowns<count> curvature = CurvatureOf(
         mission, known, prior, model,
@@ -167,8 +190,8 @@ Correction CorrectFirst(const GuidanceMission& mission, const PlanPrior& prior, 
             next.value[k] = AfterStep(next.value[k], step(i), prior.scale[k], task.low[k], task.high[k]);
         }
         const Injection reached = predict(next, true);
-        const Misses<misses> miss = Scaled<misses>(mission, reached, task);
-        const double next_sum = miss.squaredNorm() + (model.departure + step).squaredNorm();
+        const Misses<misses> miss = Scaled<misses>(mission, reached, reached, task, turns);
+        const double next_sum = miss.squaredNorm() + model.CostOf(model.departure + step);
         is_still = (miss - model.miss).template lpNorm<Eigen::Infinity>() < kStill &&
                    step.template lpNorm<Eigen::Infinity>() < kDifference;
         // A prediction that is no number is no decrease.
@@ -213,9 +236,18 @@ Correction CorrectFirst(const GuidanceMission& mission, const PlanPrior& prior, 
 Correction Correct(const GuidanceMission& mission, const PlanPrior& prior, const Knowledge& known,
                    const NavigatedState& from, const Plan& start, const CorrectorTask& task) {
   const auto correct = [&]<int count>(std::integral_constant<int, count>) {
-    return NamesNodeOrPlace(mission)
-               ? CorrectFirst<count, kAllMisses>(mission, prior, known, from, start, task)
-               : CorrectFirst<count, kMisses>(mission, prior, known, from, start, task);
+    const auto by = [&](bool turns) {
+      return NamesNodeOrPlace(mission)
+                 ? CorrectFirst<count, kAllMisses>(mission, prior, known, from, start, task, turns)
+                 : CorrectFirst<count, kMisses>(mission, prior, known, from, start, task, turns);
+    };
+    Correction found = by(true);
+    if (found.arrives || !task.meets_altitude || !OrbitMissOf(mission, found.reached).size_m_s) return found;
+    // Each way arrives from where the other one does not.
+    const int predictions = found.predictions;
+    if (const Correction held = by(false); held.prioritised_miss < found.prioritised_miss) found = held;
+    found.predictions += predictions;
+    return found;
   };
   if (known.phase == GuidancePhase::kEarlierBurns)
     return correct(std::integral_constant<int, kPlanUnknowns>{});

@@ -85,12 +85,18 @@ bool IsCutOffByGuidance(const Stage& stage) {
 
 std::size_t FirstGuided(const Vehicle& vehicle, const GuidanceConfig& config) {
   const std::size_t burns = vehicle.stages.size();
-  if (!SteersBelow(vehicle)) return burns - 1;
-  return burns - std::min(burns, static_cast<std::size_t>(config.burns));
+  std::size_t first = burns - std::min(burns, static_cast<std::size_t>(config.burns));
+  for (std::size_t i = first; i + 1 < burns; ++i)
+    if (!vehicle.stages[i].is_controlled()) first = i + 1;
+  return first;
 }
 
-bool SteersBelow(const Vehicle& vehicle) {
-  return vehicle.stages.size() > 2 || !IsCutOffByGuidance(vehicle.stages.back());
+bool SteersBelow(const Vehicle& vehicle, const GuidanceConfig& config) {
+  return FirstGuided(vehicle, config) + 1 < vehicle.stages.size();
+}
+
+bool PlansBelow(const Vehicle& vehicle, const GuidanceConfig& config) {
+  return SteersBelow(vehicle, config) && (vehicle.stages.size() > 2 || vehicle.boosters.count > 0);
 }
 
 }  // namespace dispersa

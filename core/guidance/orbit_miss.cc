@@ -11,6 +11,8 @@ namespace {
 
 // From this eccentricity on the perigee is kept when energy is missing; below, in proportion.
 constexpr double kElliptic = 0.01;
+// Below this eccentricity the eccentricity vector has no direction to speak of.
+constexpr double kTurns = 0.001;
 
 // Energy a unit of mass, and the eccentricity vector along the radius and against the path.
 struct Shape {
@@ -54,6 +56,7 @@ OrbitMiss MissOfOrbit(const GuidanceMission& mission, const Injection& reached) 
   const double eccentricity =
       orbit.eccentricity * KeepsPerigee(orbit.eccentricity, missing / std::fabs(energy_m2_s2));
   double along = eccentricity, across = 0.0, place_rad = 0.0;
+  std::optional<double> size_m_s;
   if (orbit.argument_of_perigee_rad) {
     const double from_perigee_rad =
         ArgumentOfLatitude(reached.p_EoC_I, reached.v_IC_I) - *orbit.argument_of_perigee_rad;
@@ -64,12 +67,16 @@ OrbitMiss MissOfOrbit(const GuidanceMission& mission, const Injection& reached) 
   } else if (const double size = Sqrt(Square(is.along) + Square(is.across)); size > 0.0) {
     along = eccentricity * is.along / size;
     across = eccentricity * is.across / size;
+    if (eccentricity > kTurns) size_m_s = speed * (size - eccentricity);
     if (orbit.true_anomaly_rad)
       place_rad = orbit.eccentricity * Wrapped(Atan2(is.across, is.along) - *orbit.true_anomaly_rad);
   }
   return {missing / speed,
           speed * (is.across - across),
           speed * (is.along - along),
+          size_m_s,
+          is.along,
+          is.across,
           speed * (reached.at.inclination_rad - mission.target.inclination_rad),
           NodeMiss(mission, reached),
           speed * place_rad};
@@ -94,8 +101,13 @@ OrbitMiss OrbitMissOf(const GuidanceMission& mission, const Injection& reached) 
   // Of a (1 - e) with a in proportion to the energy, over e.
   const double keeps_perigee = (1.0 - eccentricity) / std::fmax(eccentricity, kElliptic);
   const double size = 1.0 + keeps_perigee * missing / std::fabs(wanted.energy_m2_s2);
-  return {missing / speed, speed * (is.across - size * wanted.across),
-          speed * (is.along - size * wanted.along), speed * (at.inclination_rad - target.inclination_rad),
+  return {missing / speed,
+          speed * (is.across - size * wanted.across),
+          speed * (is.along - size * wanted.along),
+          {},
+          is.along,
+          is.across,
+          speed * (at.inclination_rad - target.inclination_rad),
           NodeMiss(mission, reached)};
 }
 

@@ -1,6 +1,8 @@
 // By how much an injection misses its target, in the order in which it matters: energy, path, plane, place.
 #pragma once
 
+#include <optional>
+
 #include "core/guidance/predictor.h"
 
 namespace dispersa {
@@ -10,7 +12,10 @@ struct OrbitMiss {
   double energy_m_s = 0.0;  ///< orbital energy over speed: 1 m/s is 1.8 km of semi-major axis at 500 km
   double radial_m_s = 0.0;  ///< of the eccentricity vector, e sin(true anomaly): of the vertical speed
   double shape_m_s = 0.0;   ///< and e cos(true anomaly)
-  double plane_m_s = 0.0;   ///< inclination
+  /// Where the perigee may turn in its plane, both are one: the length of the eccentricity vector.
+  std::optional<double> size_m_s = {};
+  double along = 0.0, across = 0.0;  ///< the vector that is reached
+  double plane_m_s = 0.0;            ///< inclination
   // Of targets that name a node or a true anomaly.
   double node_m_s = 0.0;   ///< the plane's turn about the Earth's axis, times sine of inclination
   double place_m_s = 0.0;  ///< along the orbit

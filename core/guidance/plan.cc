@@ -15,6 +15,9 @@ constexpr double kOfTurnRate = 0.7;
 
 // A burn's duration: its scale, and its shortest.
 constexpr double kOfBurn = 0.15, kShortestOfBurn = 0.2;
+// A longer burn of the last engine uses up the reserve of propellant: this part of the reserve costs 1. The
+// reserve counts as this part of the burn at least.
+constexpr double kOfReserve = 1.0 / 3.0, kLeastReserveOfBurn = 1e-3;
 
 // 0 before, the time since after, by a parabola within `round_s` of it; and its slope.
 double Ramp(double since_s, double round_s) {
@@ -146,7 +149,14 @@ void SetReach(const GuidanceMission& mission, PlanPrior& prior) {
     prior.high[k] = value[k] + reach[k];
   }
   if (mission.below.is_cut_off()) prior.high[kBelowCutOff] = mission.below.Depletes();
-  if (mission.last.is_cut_off()) prior.high[kCutOff] = mission.last.Depletes();
+  if (!mission.last.is_cut_off()) return;
+  prior.high[kCutOff] = mission.last.Depletes();
+  const double reserve_s = std::max(mission.last.Depletes() - last_s, kLeastReserveOfBurn * last_s);
+  const auto dearer = [&](PlanUnknown burn) {
+    return std::max(Square(prior.scale[burn] / (kOfReserve * reserve_s)) - 1.0, 0.0);
+  };
+  prior.dearer[kCutOff] = dearer(kCutOff);
+  if (mission.is_restart && mission.below.is_cut_off()) prior.dearer[kBelowCutOff] = dearer(kBelowCutOff);
 }
 
 }  // namespace

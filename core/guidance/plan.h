@@ -60,6 +60,9 @@ struct PlanPrior {
   TurnCourse turn;
   const GuidanceMission* mission = nullptr;   ///< the prior's
   std::array<double, kPlanUnknowns> scale{};  ///< a departure that costs 1
+  /// By how much more the square of a departure above the nominal plan costs than of one below: burns that
+  /// use up the reserve.
+  std::array<double, kPlanUnknowns> dearer{};
   std::array<double, kPlanUnknowns> low{}, high{};
 };
 PlanPrior BuildPrior(const GuidanceMission& mission);

@@ -83,6 +83,31 @@ TEST(Corrector, ASecondLookAtTheSamePlanNeedsNoMore) {
   }
 }
 
+// Into an ellipse of the size of Soyuz' first orbit, whose perigee may turn in its plane. Many states would
+// lead below its perigee, where no direction of the eccentricity vector has the wanted length. Misses along
+// both axes of the vector hold its direction there, and no step leads out.
+TEST(Corrector, ArrivesInAnEllipseThatMayTurn) {
+  GuidanceMission mission = PlainMission();
+  const PlanPrior prior = BuildPrior(mission);
+  Knowledge known;
+  known.last = mission.last;
+  // Fast enough for a low orbit.
+  NavigatedState coast = CoastState();
+  coast.v_IC_I *= 1.16;
+  const Injection nominal = Predict(mission, prior, known, coast, prior.nominal);
+  mission.target = nominal.at;
+  const double mu = mission.earth.mu_m3_s2, speed_m_s = nominal.at.velocity_m_s;
+  const double axis_m = 1.0 / (2.0 / nominal.radius_m - speed_m_s * speed_m_s / mu);
+  mission.orbit = TargetOrbit{axis_m, 0.004};
+  mission.orbit->semi_major_axis_m = nominal.radius_m / (1.0 - 0.004);
+  for (std::uint64_t draw = 0; draw < 200; ++draw) {
+    NavigatedState from = Disturbed(draw, 0.5);
+    from.v_IC_I += coast.v_IC_I - CoastState().v_IC_I;
+    const Correction found = FromCoast(mission, from, 12);
+    EXPECT_TRUE(found.arrives) << "state " << draw << ": prioritised miss " << found.prioritised_miss;
+  }
+}
+
 // 300 m/s that nobody has: the turn in yaw is given up, what can be met is met as well as possible, and it is
 // said.
 TEST(Corrector, SaysThatATargetIsOutOfReach) {
@@ -255,6 +280,9 @@ void ExpectLeastWithinBounds() {
       model.high(i) = 0.5 * std::fabs(random.Normal());
       weight(i) = 1.0 + std::fabs(random.Normal());
     }
+    // Departures that are dear on one side.
+    for (const int i : {kCutOff, kBelowCutOff})
+      if (i < count) model.dearer(i) = 100.0 * std::fabs(random.Normal());
     for (int m = 0; m < misses; ++m) model.miss(m) = 100.0 * random.Normal();
     const auto value = [&](const Unknowns<count>& s) {
       return model.At(s) + s.cwiseProduct(weight - Unknowns<count>::Ones()).dot(s);

@@ -221,7 +221,6 @@ TEST(EnginePrediction, IsTheEnginesFlightOfAThrottledBurn) {
   Seen seen;
   const FlightResult flown = FlyAndSee(FlightModel(definition), 1, 60.0, seen);
   const GuidanceMission& mission = *closed.guidance_mission();
-  ASSERT_FALSE(mission.steers_below);
   ASSERT_EQ(mission.last.drops.size(), 2u);
   const PlanPrior prior = BuildPrior(mission);
   const Knowledge known = KnowledgeInLastBurn(mission, seen.ignition_s, seen.expelled_kg);
