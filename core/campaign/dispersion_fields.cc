@@ -342,7 +342,7 @@ class DispersionFields {
         return fields.Misplaced(row.key, {}, unfit->what.c_str(), unfit->allowed);
     bool is_there = false;
     fields.OptionalMap(row.key, is_there, row.meaning, [&](Fields& map) {
-      if (is_sound_) Spread(campaign_.vehicle.boosters);
+      if (is_sound_) SpreadOut(campaign_.vehicle.boosters);
       ScalarDistribution distribution = ReadScalar(map, Limited(row, {1}));
       if (row.draws == Draws::kBoostersTemperature) {
         double sensitivity_1_k = 0.0;

@@ -39,7 +39,7 @@ std::string MeantInput(const std::string& word, const std::vector<std::string>& 
 void SpreadForList(const InputNode& table, Vehicle& vehicle) {
   if (vehicle.boosters.count == 0 || vehicle.boosters.are_apart()) return;
   Vehicle spread = vehicle;
-  Spread(spread.boosters);
+  SpreadOut(spread.boosters);
   const std::size_t first = std::max(InputCount(kMaxStages), InputCount(ColumnClass(vehicle)));
   const std::size_t end = InputCount(ColumnClass(spread));
   for (const InputMember& member : table.members) {

@@ -21,7 +21,7 @@ inline constexpr int kMaxBoosters = 8;
 /// Without a list of angles they stand at equal angles and are all alike: one motor and one grain or set of
 /// tanks stand for them, and their nozzles are fixed along the axis. With it each is a body of its own: it
 /// has its place, its burn, its nozzle, and a centre of gravity off the vehicle's axis. A campaign that draws
-/// values of each flies those that are all alike in the file as such bodies (Spread()).
+/// values of each flies those that are all alike in the file as such bodies (SpreadOut()).
 struct Boosters {
   int count = 0;                    ///< 0: none
   double dry_mass_kg = 0.0;         ///< of one, a thin tube from top to bottom station
@@ -41,7 +41,7 @@ struct Boosters {
   bool steer_alone = false;              ///< the stage's own nozzles stay centred while they burn
   double attachment_station_m = 0.0;     ///< of a beam, which carries them there (0: not given)
   std::vector<Tank> tanks = {};          ///< of one, about its own axis, of a liquid engine, else empty
-  bool are_spread = false;               ///< the angles are not the file's: Spread() has set them
+  bool are_spread = false;               ///< the angles are not the file's: SpreadOut() has set them
 
   /// Each is a body of its own.
   bool are_apart() const { return !angles_rad.empty(); }
@@ -52,7 +52,7 @@ struct Boosters {
 };
 
 /// Makes each of boosters that are all alike a body of its own: at equal angles, the first one at body y.
-inline void Spread(Boosters& boosters) {
+inline void SpreadOut(Boosters& boosters) {
   if (boosters.are_apart()) return;
   for (int k = 0; k < boosters.count; ++k) boosters.angles_rad.push_back(2.0 * kPi * k / boosters.count);
   boosters.are_spread = true;

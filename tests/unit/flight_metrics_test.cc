@@ -104,8 +104,15 @@ class MetricsRecorder {
  private:
   static lanes::Instant<double> InstantOf(const LauncherInstant& now) {
     const Vector3& f = now.loads.force_n;
-    return {now.air.place.altitude_m, now.air.qbar_pa, now.air.mach,          TotalIncidence(now.v_AB_B),
-            now.loads.mass_kg,        now.thrust_n,    {f.x(), f.y(), f.z()}, {}};
+    return {now.air.place.altitude_m,
+            now.air.qbar_pa,
+            now.air.mach,
+            TotalIncidence(now.v_AB_B),
+            now.loads.mass_kg,
+            now.thrust_n,
+            {f.x(), f.y(), f.z()},
+            {},
+            {}};
   }
   void EndStage() {
     metrics_.EndStage(0, stage_, sums_);

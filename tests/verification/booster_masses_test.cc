@@ -34,7 +34,7 @@ FlightDefinition Pair(bool liquid, bool spread = false) {
   b.motor.thrust_n = kThrust_n;
   b.motor.burning_time_s = kLoad_kg / kFlow_kg_s;
   if (spread)
-    Spread(b);
+    SpreadOut(b);
   else
     b.angles_rad = {0.0, 180.0 * kDeg};
   if (liquid) {
