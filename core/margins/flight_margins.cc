@@ -346,6 +346,11 @@ LoopMargins MarginsAt(const LauncherPlant& plant, const SensorModel& sensors, co
 }
 
 std::vector<MeasuredMargins> MeasureMargins(const FlightModel& model, const FlightInputs& inputs) {
+  if (model.definition().guidance.closed_loop) {
+    FlightDefinition reference = model.definition();
+    reference.guidance.closed_loop = false;
+    return MeasureMargins(FlightModel(std::move(reference)), inputs);
+  }
   const int stages = static_cast<int>(model.definition().vehicle.stages.size());
   std::vector<Bisection> searches;  // three a stage: gain up, gain down, delay
   for (int stage = 0; stage < stages; ++stage) {

@@ -135,7 +135,8 @@ DispersedMargins ComputeDispersedMargins(const FlightModel& model, const FlightO
 /// thrust misalignment of 0.25° in every stage keeps the adaptation at work. A loop counts as lost in three
 /// cases: the flight loses control, a deflection oscillates by more than 0.2° peak to peak over any second
 /// after the start-up transient, or pitch or yaw leave the rules' range of 5°. The flights have `inputs`,
-/// except for the misalignment and the loop's gain and delay.
+/// except for the misalignment and the loop's gain and delay. They follow the reference: deflections of
+/// guidance's turns would count as oscillation.
 std::vector<MeasuredMargins> MeasureMargins(const FlightModel& model, const FlightInputs& inputs = {});
 
 /// Whether a margin set passes the gates.

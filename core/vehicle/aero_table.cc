@@ -31,7 +31,7 @@ struct AeroRows {
   const char* angle() const { return of_yaw_plane ? "beta" : alpha_rad.empty() ? "incidence" : "alpha"; }
   // Columns that have another name in the yaw plane.
   const char* normal() const { return of_yaw_plane ? "cy" : "cn"; }
-  const char* place() const { return of_yaw_plane ? "xcp_side_station" : "xcp_station"; }
+  const char* place() const { return of_yaw_plane ? "xcp_side_station_m" : "xcp_station"; }
   const char* moment() const { return of_yaw_plane ? "cln" : "cm"; }
 };
 
@@ -58,8 +58,8 @@ void Describe(Fields& fields, AeroRows& rows) {
   fields.OptionalQuantities("beta", kAngle, Between(-kQuarterTurn, kQuarterTurn), 4, SIZE_MAX, rows.beta_rad,
                             "angle of sideslip; rows of 0 are needed, others are checked");
   fields.OptionalNumbers("cy", kAnyNumber, 4, SIZE_MAX, rows.cy, "side force, to the right");
-  fields.OptionalQuantities("xcp_side_station", kLength, kAnyNumber, 4, SIZE_MAX, rows.xcp_side_station_m,
-                            "where cy acts: a yaw plane of its own");
+  fields.OptionalNumbers("xcp_side_station_m", kAnyNumber, 4, SIZE_MAX, rows.xcp_side_station_m,
+                         "where cy acts: a yaw plane of its own");
   fields.OptionalNumbers("cln", kAnyNumber, 4, SIZE_MAX, rows.cln, "yawing moment, nose right");
   fields.OptionalNumbers("cnr_per_rad", kAnyNumber, 4, SIZE_MAX, rows.cnr_per_rad,
                          "yaw damping; default: cmq_per_rad");
@@ -93,7 +93,7 @@ bool AnglesGoTogether(Fields& fields, const AeroRows& all) {
   if (all.alpha_rad.empty() && all.beta_rad.empty() && all.cy.empty() && !all.has_yaw_plane()) {
     if (!all.cnr_per_rad.empty()) {
       fields.Refuse("cnr_per_rad", "is not that of a body of revolution",
-                    "cmq_per_rad, or beside it cy with xcp_side_station_* or cln");
+                    "cmq_per_rad, or beside it cy with xcp_side_station_m or cln");
       return false;
     }
     if (!all.incidence_rad.empty()) return true;
@@ -109,12 +109,12 @@ bool AnglesGoTogether(Fields& fields, const AeroRows& all) {
     if (all.xcp_station_m.empty() == all.xcp_side_station_m.empty() && all.cm.empty() == all.cln.empty())
       return true;
     fields.Refuse("", "the places of cn and cy do not go together",
-                  "xcp_station_* with xcp_side_station_*, or cm with cln");
+                  "xcp_station_* with xcp_side_station_m, or cm with cln");
     return false;
   }
   if (all.cnr_per_rad.empty()) return true;
   fields.Refuse("cnr_per_rad", "is not that of a body of revolution",
-                "cmq_per_rad, or beside it cy with xcp_side_station_* or cln");
+                "cmq_per_rad, or beside it cy with xcp_side_station_m or cln");
   return false;
 }
 
@@ -227,14 +227,14 @@ void CheckSideslip(Fields& fields, const std::string& prefix, const AeroRows& al
                          : in_pitch && displaced(all.xcp_station_m, all.cm, normal, pitch, greatest_cn)
                              ? (all.cm.empty() ? "xcp_station" : "cm")
                          : in_yaw && displaced(all.xcp_side_station_m, all.cln, -side, yaw, greatest_cy)
-                             ? (all.cln.empty() ? "xcp_side_station" : "cln")
+                             ? (all.cln.empty() ? "xcp_side_station_m" : "cln")
                              : nullptr;
     if (column == nullptr) continue;
     const std::string path = prefix + column + "[" + std::to_string(row) + "]";
     if (is_round)
       return fields.Refuse(path, "is not that of the same total incidence without sideslip",
                            "a body of revolution: within 5 % of the greatest of the Mach number; or "
-                           "xcp_side_station_* or cln, of a body with two planes of symmetry");
+                           "xcp_side_station_m or cln, of a body with two planes of symmetry");
     return fields.Refuse(path, "is not what the rows of the pitch plane and of the yaw plane give together",
                          "a body with two planes of symmetry: within 5 % of the greatest of the Mach number; "
                          "or rows of the planes alone");

@@ -72,7 +72,7 @@ inline constexpr const char* kBoostersName = "boosters";
 ///   row's holds: a moment without a force is refused.
 /// - Angles of attack and sideslip with the side force, body axes: u, v, w = V (cos a cos b, sin b, sin a cos
 ///   b), cn towards -z, cy towards y, cln turns the nose to the right. The rows of b = 0 are the pitch plane.
-///   With the place of the side force (xcp_side_station_*, or cln) the rows of a = 0 are the yaw plane, else
+///   With the place of the side force (xcp_side_station_m, or cln) the rows of a = 0 are the yaw plane, else
 ///   the body is one of revolution. Other rows are compared with the body's force: beyond kSideslipTolerance
 ///   they are refused.
 /// - Incidence from 0, or signed. A signed table is folded: ca is even, cn and cm are odd. Rows that differ
