@@ -219,8 +219,8 @@ void Describe(Fields& fields, Verdicts& verdicts, VerdictPlan& plan, Sampling& s
     fields.Refuse("stop", "a design study decides nothing", "method: monte_carlo");
   fields.Integer(
       "attempts", 1, kMaxAttempts, verdicts.attempts,
-      "number of campaigns of one design that share each requirement's risk evenly; later ones are "
-      "judged by all cases together",
+      "campaigns of one design that share each requirement's risk evenly; later ones are judged by all cases "
+      "together",
       1);
   fields.When(Has("max_cases"), [&] {
     fields.Integer("max_cases", 1, kMaxCases, sampling.cases,

@@ -248,12 +248,12 @@ std::vector<DispersionRow> MakeRows() {
   add(BodyAxes("gyro_bias", Draws::kOnce, kAngularRate, "gyro_bias_{body}_deg_s", "of the rate gyros"));
   add(once("gyro_noise", {kAngularRate, kNonNegative}, "gyro_noise_deg_s", "standard deviation of a sample"));
   add({"navigation_position_error",
-       "constant navigation error of closed-loop guidance",
+       "constant error of guidance's navigation",
        Draws::kEachAxis,
        Any(kLength),
        {"navigation_position_error_{axis}_m"}});
   add({"navigation_velocity_error",
-       "constant navigation error of closed-loop guidance",
+       "constant error of guidance's navigation",
        Draws::kEachAxis,
        Any(kSpeed),
        {"navigation_velocity_error_{axis}_m_s"}});

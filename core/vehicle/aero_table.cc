@@ -54,12 +54,12 @@ void Describe(Fields& fields, AeroRows& rows) {
                             rows.incidence_rad,
                             "increasing, the same for each Mach number; a signed table is folded");
   fields.OptionalQuantities("alpha", kAngle, Between(-kHalfTurn, kHalfTurn), 4, SIZE_MAX, rows.alpha_rad,
-                            "angle of attack, with beta and cy, in place of the incidence");
+                            "angle of attack, with beta and cy, in place of incidence");
   fields.OptionalQuantities("beta", kAngle, Between(-kQuarterTurn, kQuarterTurn), 4, SIZE_MAX, rows.beta_rad,
-                            "angle of sideslip; rows of 0 are needed, others are checked");
+                            "sideslip; rows of 0 are needed");
   fields.OptionalNumbers("cy", kAnyNumber, 4, SIZE_MAX, rows.cy, "side force, to the right");
   fields.OptionalNumbers("xcp_side_station_m", kAnyNumber, 4, SIZE_MAX, rows.xcp_side_station_m,
-                         "where cy acts: a yaw plane of its own");
+                         "where cy acts");
   fields.OptionalNumbers("cln", kAnyNumber, 4, SIZE_MAX, rows.cln, "yawing moment, nose right");
   fields.OptionalNumbers("cnr_per_rad", kAnyNumber, 4, SIZE_MAX, rows.cnr_per_rad,
                          "yaw damping; default: cmq_per_rad");
@@ -69,13 +69,11 @@ void Describe(Fields& fields, AeroRows& rows) {
                             "where the normal force acts; or cm in its place");
   fields.OptionalNumbers("cm", kAnyNumber, 4, SIZE_MAX, rows.cm,
                          "pitching moment, nose up, about moment_reference_station_*");
-  fields.OptionalNumbers(
-      "cmq_per_rad", kAnyNumber, 4, SIZE_MAX, rows.cmq_per_rad,
-      "pitch and yaw damping about the centre of gravity, on q d / (2 V); one value per Mach number; "
-      "default: computed from the profile");
-  fields.OptionalNumbers(
-      "clp_per_rad", kAnyNumber, 4, SIZE_MAX, rows.clp_per_rad,
-      "roll damping, on p d / (2 V); one value per Mach number; default: computed from the profile");
+  fields.OptionalNumbers("cmq_per_rad", kAnyNumber, 4, SIZE_MAX, rows.cmq_per_rad,
+                         "pitch and yaw damping about the centre of gravity, on q d / (2 V), by Mach number; "
+                         "default: from the profile");
+  fields.OptionalNumbers("clp_per_rad", kAnyNumber, 4, SIZE_MAX, rows.clp_per_rad,
+                         "roll damping, on p d / (2 V), by Mach number; default: from the profile");
   fields.OptionalNumbers("ca_power_off", kAnyNumber, 4, SIZE_MAX, rows.ca_power_off,
                          "axial force, motor out; default: ca");
   fields.OptionalQuantities("ca_uncertainty", kShare, kNonNegative, 4, SIZE_MAX, rows.ca_uncertainty,

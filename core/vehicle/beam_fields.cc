@@ -65,7 +65,7 @@ void Describe(Fields& fields, LumpedMass& lump) {
 
 void Describe(Fields& fields, BeamStage& stage, bool timoshenko) {
   fields.List("sections", 1, 50, stage.sections,
-              "they cover a stack without gaps and carry all its mass; where they overlap, stiffnesses add",
+              "they carry all of a stack's mass; where they overlap, stiffnesses add",
               [&](Fields& section, BeamSection& value) { Describe(section, value, timoshenko); });
   const auto with_mass = static_cast<std::size_t>(
       std::count_if(stage.sections.begin(), stage.sections.end(),
@@ -251,7 +251,7 @@ void Describe(Fields& fields, BeamSection& section, bool timoshenko) {
                 "stiffness of plane z over plane y, in bending and shear", 1.0);
   fields.Ends("mass_per_length", kMassPerLength, kMassesPerLength, section.mass_per_length_kg_m.top,
               section.mass_per_length_kg_m.bottom, false,
-              "dry; in all sections of a stage, or in none: its structure then gives the mass");
+              "dry; in all sections of a stage, or in none: its structure gives it");
 }
 
 void Describe(Fields& fields, StructureBeam& beam, std::size_t stages, std::size_t bodies) {
@@ -259,10 +259,9 @@ void Describe(Fields& fields, StructureBeam& beam, std::size_t stages, std::size
               "further places with deflection and slope; the nozzle pivot is always shown");
   fields.Flag("rotary_inertia", beam.rotary_inertia, true,
               "of the cross-sections; false: the beam has less inertia than the vehicle");
-  fields.Integer("flown_modes", 0, kMostFlownModes, beam.flown_modes,
-                 "modes flown per plane; 0: rigid vehicle. Modes from the first above half the autopilot's "
-                 "sampling frequency on do not fly",
-                 3);
+  fields.Integer(
+      "flown_modes", 0, kMostFlownModes, beam.flown_modes,
+      "modes flown per plane; 0: rigid. Those from half the autopilot's sampling frequency on do not fly", 3);
   fields.Number("damping_ratio", Between(0.0, 0.5), beam.damping_ratio, "of every mode in flight", 0.01);
   ModeRows rows;
   fields.Either({{Has("modes_table"),
@@ -284,8 +283,7 @@ void Describe(Fields& fields, StructureBeam& beam, std::size_t stages, std::size
                     fields.List(
                         "stages", std::max<std::size_t>(bodies, 1), bodies > 0 ? bodies : kMaxStages,
                         beam.stages,
-                        "one entry per stage of the vehicle, none for a restart; its sections fly while the "
-                        "stage is attached",
+                        "one per stage, none for a restart; its sections fly while the stage is attached",
                         [&](Fields& stage, BeamStage& value) { Describe(stage, value, beam.timoshenko); });
                   }}});
 }

@@ -46,10 +46,11 @@ void Describe(Fields& fields, Vehicle& vehicle) {
   fields.List("stages", 1, kMaxStages, vehicle.stages, "in the order of flight");
   CheckRestarts(fields, vehicle.stages);
   bool has_boosters = vehicle.boosters.count > 0;
-  fields.OptionalMap("boosters", has_boosters,
-                     "beside the first stage, ignited with it, in its lift-off mass; each has its motor and "
-                     "propellant about an axis of its own; computed aerodynamics leave them out",
-                     [&](Fields& boosters) { Describe(boosters, vehicle.boosters); });
+  fields.OptionalMap(
+      "boosters", has_boosters,
+      "beside the first stage, in its lift-off mass; each has a motor and propellant about an axis "
+      "of its own; computed aerodynamics leave them out",
+      [&](Fields& boosters) { Describe(boosters, vehicle.boosters); });
   fields.List("profile", 1, SIZE_MAX, vehicle.profile, "outer mould line, from the nose aft");
   bool has_tables = !vehicle.aerodynamics.empty();
   fields.OptionalMap("aerodynamics", has_tables, "replaces coefficients computed from the profile",
