@@ -41,9 +41,9 @@ WorstCases FindWorst(const std::string& metric, const std::optional<Limits>& lim
                      const CaseColumns& cases) {
   const std::vector<double> values = MeasuredValues(cases, metric);
   const Worse sense = DescribeMetric(metric).worse;
+  constexpr Limits kBadness = {.high = 0.0};  // larger is worse
   const auto is_worse_value = [&](double a, double b) {
-    if (!std::isfinite(a) || !std::isfinite(b)) return std::isfinite(b) && !std::isfinite(a);
-    return limits ? limits->IsWorse(a, b) : Badness(sense, a) > Badness(sense, b);
+    return limits ? limits->IsWorse(a, b) : kBadness.IsWorse(Badness(sense, a), Badness(sense, b));
   };
   const auto is_worse = [&](std::size_t a, std::size_t b) {
     if (is_worse_value(values[a], values[b])) return true;

@@ -67,13 +67,9 @@ void SetBound(const Limits& limits, std::vector<double> values, std::int64_t acc
               RequirementSummary& summary) {
   const std::int64_t rank = accept - missing;
   if (rank < 0 || rank >= std::ssize(values)) return;
-  // A lost flight is worse than any value.
-  const auto is_worse = [&](double a, double b) {
-    if (!std::isfinite(a) || !std::isfinite(b)) return std::isfinite(b) && !std::isfinite(a);
-    return limits.IsWorse(a, b);
-  };
   const auto nth = values.begin() + rank;
-  std::nth_element(values.begin(), nth, values.end(), is_worse);
+  std::nth_element(values.begin(), nth, values.end(),
+                   [&](double a, double b) { return limits.IsWorse(a, b); });
   if (!std::isfinite(*nth)) return;
   summary.bound = *nth;
   summary.margin = limits.Margin(*nth);

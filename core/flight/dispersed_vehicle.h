@@ -9,17 +9,16 @@
 //                         Thrust, flow at full thrust and specific impulse stay, so the burn lasts longer in
 //                         proportion. A heavier charge that burns in the same time is propellant_load and
 //                         burn_rate together: correlate the two.
-//   mixture ratio         Of the first tank's flow to the others' (core/vehicle/mass.h). The burn ends with
-//   the
-//                         first tank that has only its part of the residual left. The residual grows.
+//   mixture ratio         Of the first tank's flow to the others' (core/vehicle/mass.h). The burn
+//                         ends with the first tank that has only its part of the residual left. The residual
+//                         grows.
 //   payload mass          The difference is added to one element of the last stage's structure, at its place
 //                         and with its shape.
-//   boosters              Shell, propellant and mixture of each that is a body of its own, as those of a
-//   stage.
+//   boosters              Shell, propellant and mixture of each that is a body of its own, as those of
+//                         a stage.
 // Masses above a stage, centre of gravity, inertia, section loads and bending follow. A beam carries all
 // boosters as their mean, and liquids in the mixture of their loads. So does a table of a stage's masses.
-// Control laws, their schedules and guidance keep the
-// nominal values.
+// Control laws, their schedules and guidance keep the nominal values.
 #pragma once
 
 #include "core/flight/flight_inputs.h"

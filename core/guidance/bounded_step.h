@@ -38,9 +38,9 @@ struct StepModel {
 };
 
 /// The step s within the bounds with the least sum of the model and s' (W - 1) s. W is the diagonal
-/// `weight`, 1 or more. The sum is never larger than without a step. By an active set (J. Nocedal and S. J.
-/// Wright, Numerical Optimization, 2006, section 16.5). The sides on which departures are dear are found by
-/// trying, since the sum is convex and has no kinks.
+/// `weight`, 1 or more. The sum is not larger than without a step, if the sides are found. By an active set
+/// (J. Nocedal and S. J. Wright, Numerical Optimization, 2006, section 16.5). The sides on which departures
+/// are dear are sought by trying, a few times: the sum is convex and has no kinks.
 template <int count, int misses>
 Unknowns<count> BoundedStep(const StepModel<count, misses>& model, const Unknowns<count>& weight);
 

@@ -34,18 +34,20 @@ Arrival Less(const Arrival& a, const Arrival& b) {
 }
 
 // In tolerances. If the perigee `turns`, a step should turn it little, for the misses are straight lines only
-// then: in place of the second miss, the turn since the injection `before`. The sum of squares is the same.
+// then: in place of the second miss, the turn since the injection before, whose miss is `before` (null:
+// none).
 template <int misses>
-Misses<misses> Scaled(const GuidanceMission& mission, const Injection& reached, const Injection& before,
+Misses<misses> Scaled(const GuidanceMission& mission, const Injection& reached, const OrbitMiss* before,
                       const CorrectorTask& task, bool turns) {
   const OrbitMiss miss = OrbitMissOf(mission, reached);
   Misses<misses> m;
   m(0) = miss.energy_m_s / kTolerance[0];
   if (turns && task.meets_altitude && miss.size_m_s) {
-    const OrbitMiss at = OrbitMissOf(mission, before);
-    const double turn_rad = (miss.across * at.along - miss.along * at.across) /
-                            (Sqrt(Square(at.along) + Square(at.across)) * mission.orbit->eccentricity);
-    m(1) = turn_rad / kTurn_rad;
+    m(1) = before != nullptr
+               ? (miss.across * before->along - miss.along * before->across) /
+                     (Sqrt(Square(before->along) + Square(before->across)) * mission.orbit->eccentricity) /
+                     kTurn_rad
+               : 0.0;
     m(2) = *miss.size_m_s / kTolerance[2];
   } else {
     m(1) = miss.radial_m_s / kTolerance[1];
@@ -145,12 +147,13 @@ Correction CorrectFirst(const GuidanceMission& mission, const PlanPrior& prior, 
   const Injection at_start = predict(start, true);
   StepModel<count, misses> model;
   model.free = task.free;
-  model.miss = Scaled<misses>(mission, at_start, at_start, task, turns);
+  model.miss = Scaled<misses>(mission, at_start, nullptr, task, turns);
   keep(start, at_start, model.miss);
   best.start_prioritised_miss = best.prioritised_miss;
   double damping = 0.0;
   const bool is_kept = task.keeps_solved && best.prioritised_miss <= kSolvedMiss;
   for (int iteration = 0; iteration < task.iterations && !is_kept; ++iteration) {
+    const OrbitMiss before_step = OrbitMissOf(mission, best.reached);
     for (int i = 0; i < count; ++i) {
       const auto k = static_cast<std::size_t>(i);
       if (!task.free[k]) continue;
@@ -163,7 +166,7 @@ Correction CorrectFirst(const GuidanceMission& mission, const PlanPrior& prior, 
       const double difference = model.high(i) > kDifference ? kDifference : -kDifference;
       moved.value[k] += difference * scale;
       model.jacobian.col(i) =
-          (Scaled<misses>(mission, predict(moved, false), best.reached, task, turns) - model.miss) /
+          (Scaled<misses>(mission, predict(moved, false), &before_step, task, turns) - model.miss) /
           difference;
     }
     const Unknowns<count> curvature = CurvatureOf(
@@ -190,7 +193,7 @@ Correction CorrectFirst(const GuidanceMission& mission, const PlanPrior& prior, 
             next.value[k] = AfterStep(next.value[k], step(i), prior.scale[k], task.low[k], task.high[k]);
         }
         const Injection reached = predict(next, true);
-        const Misses<misses> miss = Scaled<misses>(mission, reached, reached, task, turns);
+        const Misses<misses> miss = Scaled<misses>(mission, reached, nullptr, task, turns);
         const double next_sum = miss.squaredNorm() + model.CostOf(model.departure + step);
         is_still = (miss - model.miss).template lpNorm<Eigen::Infinity>() < kStill &&
                    step.template lpNorm<Eigen::Infinity>() < kDifference;

@@ -15,6 +15,7 @@
 #include "core/vehicle/mass.h"
 #include "tests/apart_boosters.h"
 #include "tests/flown_ticks.h"
+#include "tests/two_liquids.h"
 #include "tests/unit/sample_vehicle.h"
 
 namespace dispersa::booster_masses_test {
@@ -65,22 +66,9 @@ struct Drawn {
 };
 constexpr Drawn kAll = {{1.08, 0.95}, {1.02, 0.97}, {1.04, 0.93}};
 
-// Oxygen and kerosene of one, by what has flown of both.
-struct Liquids {
-  double oxygen_kg, kerosene_kg;
-};
-Liquids LiquidsOf(double load, double ratio, double flown_kg) {
-  const double r = ratio * kOxygen_kg / kKerosene_kg;
-  return {load * kOxygen_kg - flown_kg * r / (1.0 + r), load * kKerosene_kg - flown_kg / (1.0 + r)};
-}
-// The residual counts of each by its load. The burn ends when the first of them has only that left.
-double Usable(double load, double ratio) {
-  const double whole_kg = load * kLoad_kg, part = 1.0 - kRest_kg / whole_kg;
-  const double r = ratio * kOxygen_kg / kKerosene_kg;
-  return part * load * std::min(kOxygen_kg * (1.0 + r) / r, kKerosene_kg * (1.0 + r));
-}
+constexpr TwoLiquids kLiquids{kOxygen_kg, kKerosene_kg, kRest_kg};
 double FlownBy(const Drawn& drawn, std::size_t k, bool liquid, double since_s) {
-  const double most_kg = liquid ? Usable(drawn.load[k], drawn.ratio[k]) : drawn.load[k] * kLoad_kg;
+  const double most_kg = liquid ? kLiquids.Usable(drawn.load[k], drawn.ratio[k]) : drawn.load[k] * kLoad_kg;
   return std::min(kFlow_kg_s * since_s, most_kg);
 }
 
@@ -95,14 +83,14 @@ void AddBooster(const Drawn& drawn, std::size_t k, bool liquid, double since_s, 
                      Vector3(16.5, y_m, 0.0)});
     return;
   }
-  const Liquids has = LiquidsOf(drawn.load[k], drawn.ratio[k], flown_kg);
+  const TwoLiquids::Left has = kLiquids.After(flown_kg, drawn.load[k], drawn.ratio[k]);
   const auto add = [&](double kg, double density, double diameter_m, double bottom_m) {
     const double height_m = kg / density / (0.25 * kPi * diameter_m * diameter_m);
     parts.push_back({kg, 0.0, kg * (diameter_m * diameter_m / 16.0 + height_m * height_m / 12.0),
                      Vector3(bottom_m - 0.5 * height_m, y_m, 0.0)});
   };
-  add(has.oxygen_kg, 1141.0, 0.4, 15.8);
-  add(has.kerosene_kg, 810.0, 0.42, 17.6);
+  add(has.first_kg, 1141.0, 0.4, 15.8);
+  add(has.second_kg, 810.0, 0.42, 17.6);
 }
 Bodies ByHand(const FlightDefinition& definition, const LauncherPlant& plant, const Drawn& drawn,
               double since_s) {
@@ -161,17 +149,17 @@ TEST(BoosterMasses, AMixtureEndsTheBurnWithTheFirstTank) {
     drawn.ratio[0] = ratio;
     const LauncherPlant plant = model.PlantFor(drawn.Inputs());
     const MotorBurn& burn = plant.boosters->each[0].burn;
-    const double usable_kg = Usable(0.98, ratio);
+    const double usable_kg = kLiquids.Usable(0.98, ratio);
     EXPECT_NEAR(burn.duration_s, usable_kg / kFlow_kg_s, 1e-9) << ratio;
     EXPECT_NEAR(burn.left_kg, 0.98 * kLoad_kg - usable_kg, 1e-8) << ratio;
     EXPECT_EQ(burn.vacuum_thrust_n, kThrust_n);
-    const Liquids left = LiquidsOf(0.98, ratio, usable_kg);
+    const TwoLiquids::Left left = kLiquids.After(usable_kg, 0.98, ratio);
     const double part = kRest_kg / (0.98 * kLoad_kg);
-    EXPECT_NEAR(ratio > 1.0 ? left.oxygen_kg / (0.98 * kOxygen_kg) : left.kerosene_kg / (0.98 * kKerosene_kg),
+    EXPECT_NEAR(ratio > 1.0 ? left.first_kg / (0.98 * kOxygen_kg) : left.second_kg / (0.98 * kKerosene_kg),
                 part, 1e-9);
-    EXPECT_GE(std::min(left.oxygen_kg, left.kerosene_kg), 0.0);
+    EXPECT_GE(std::min(left.first_kg, left.second_kg), 0.0);
   }
-  EXPECT_NEAR(Usable(1.0, 1.0), kLoad_kg - kRest_kg, 1e-9);
+  EXPECT_NEAR(kLiquids.Usable(1.0, 1.0), kLoad_kg - kRest_kg, 1e-9);
 }
 
 // Every kilogram from lift-off to the core's burnout, and the jump as they leave.

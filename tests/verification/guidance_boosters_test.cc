@@ -16,6 +16,28 @@ namespace {
 
 Campaign Ariane5() { return GalleryLauncher(DISPERSA_CAMPAIGNS, "ariane5"); }
 
+// Where guidance departs from the reference while the first stage burns.
+struct Steering {
+  double left_s = 0.0;   ///< when boosters leave
+  double first_s = 0.0;  ///< when it departs
+  double pressure_pa = 0.0, farthest_deg = 0.0;
+
+  void See(const FlightModel& model, const TickSample& sample) {
+    if (sample.stack != 0) return;
+    if (left_s == 0.0 && (sample.jettisoned & kBoostersGone) != 0u) left_s = sample.time_s;
+    const ReferenceAttitude at = model.definition().program.At(sample.time_s);
+    const double apart_deg = std::hypot(sample.reference.angles.pitch - at.angles.pitch,
+                                        sample.reference.angles.yaw - at.angles.yaw) /
+                             kRadPerDeg;
+    if (first_s == 0.0 && apart_deg > 1e-3) {
+      first_s = sample.time_s;
+      pressure_pa = DynamicPressure(*model.guidance_mission(),
+                                    {sample.time_s, sample.state.p_EoC_I, sample.state.v_IC_I});
+    }
+    farthest_deg = std::fmax(farthest_deg, apart_deg);
+  }
+};
+
 // The reference's attitude is flown until the air is thin, and until some seconds after boosters have left.
 // At lift-off the dynamic pressure is low too.
 TEST(GuidedCore, IsSteeredAboveTheAir) {
@@ -24,31 +46,34 @@ TEST(GuidedCore, IsSteeredAboveTheAir) {
     const Campaign campaign = GalleryLauncher(DISPERSA_CAMPAIGNS, name);
     const FlightModel model(DefinitionOf(campaign));
     ASSERT_TRUE(model.guidance_mission()->steers_below);
-    double left_s = 0.0, first_s = 0.0, farthest_deg = 0.0, pressure_pa = 0.0;
+    Steering seen;
     FlightOptions options;
-    options.observe = [&](const TickSample& sample) {
-      if (sample.stack != 0) return;
-      if (left_s == 0.0 && (sample.jettisoned & kBoostersGone) != 0u) left_s = sample.time_s;
-      const ReferenceAttitude at = model.definition().program.At(sample.time_s);
-      const double apart_deg = std::hypot(sample.reference.angles.pitch - at.angles.pitch,
-                                          sample.reference.angles.yaw - at.angles.yaw) /
-                               kRadPerDeg;
-      if (first_s == 0.0 && apart_deg > 1e-3) {
-        first_s = sample.time_s;
-        pressure_pa = DynamicPressure(*model.guidance_mission(),
-                                      {sample.time_s, sample.state.p_EoC_I, sample.state.v_IC_I});
-      }
-      farthest_deg = std::fmax(farthest_deg, apart_deg);
-    };
+    options.observe = [&](const TickSample& sample) { seen.See(model, sample); };
     Fly(model, DrawnWithoutErrorsOfTheComputer(CampaignFlights(campaign), 1), options);
     std::printf("%s: boosters leave at %.2f s; steered from %.2f s on, at %.0f Pa; %.2f deg at most\n", name,
-                left_s, first_s, pressure_pa, farthest_deg);
-    ASSERT_GT(left_s, 0.0);
-    EXPECT_GT(first_s, left_s + 2.9);
-    EXPECT_GT(first_s, 60.0);
-    EXPECT_LT(pressure_pa, kThinAir_pa);
-    EXPECT_GT(farthest_deg, 0.05);
+                seen.left_s, seen.first_s, seen.pressure_pa, seen.farthest_deg);
+    ASSERT_GT(seen.left_s, 0.0);
+    EXPECT_GT(seen.first_s, seen.left_s + 2.9);
+    EXPECT_GT(seen.first_s, 60.0);
+    EXPECT_LT(seen.pressure_pa, kThinAir_pa);
+    EXPECT_GT(seen.farthest_deg, 0.05);
   }
+}
+
+// A first stage without boosters below a last burn that ends by itself.
+TEST(GuidedCore, IsNotSteeredOnThePad) {
+  FlightDefinition definition = DefinitionOf(GalleryLauncher(DISPERSA_CAMPAIGNS, "electron"));
+  Stage& last = definition.vehicle.stages.back();
+  last.motor.cut_off = CutOff::kAtDepletion;
+  last.ignition = IgnitionTrigger::kTimer;
+  const FlightModel model(definition);
+  ASSERT_TRUE(model.guidance_mission()->steers_below);
+  Steering seen;
+  FlightOptions options;
+  options.observe = [&](const TickSample& sample) { seen.See(model, sample); };
+  Fly(model, {}, options);
+  EXPECT_GT(seen.first_s, 60.0);
+  EXPECT_LT(seen.pressure_pa, kThinAir_pa);
 }
 
 // From 20 s after the boosters have left: the core until it is empty, with the fairing that leaves, and the
@@ -161,25 +186,15 @@ TEST(GuidedCore, IsSteeredBelowALastBurnThatEndsByItself) {
   for (std::uint64_t index = 0; index < 2; ++index) {
     SCOPED_TRACE(index);
     const FlightInputs inputs = DrawnWithoutErrorsOfTheVehicle(flights, index);
-    double left_s = 0.0, first_s = 0.0, pressure_pa = 0.0;
+    Steering seen;
     FlightOptions options;
-    options.observe = [&](const TickSample& sample) {
-      if (sample.stack != 0) return;
-      if (left_s == 0.0 && (sample.jettisoned & kBoostersGone) != 0u) left_s = sample.time_s;
-      const ReferenceAttitude at = definition.program.At(sample.time_s);
-      if (first_s != 0.0 || std::hypot(sample.reference.angles.pitch - at.angles.pitch,
-                                       sample.reference.angles.yaw - at.angles.yaw) < 1e-3 * kRadPerDeg)
-        return;
-      first_s = sample.time_s;
-      pressure_pa = DynamicPressure(*model.guidance_mission(),
-                                    {sample.time_s, sample.state.p_EoC_I, sample.state.v_IC_I});
-    };
+    options.observe = [&](const TickSample& sample) { seen.See(model, sample); };
     const FlightResult open = Fly(open_loop, inputs), flown = Fly(model, inputs, options);
     // The reference's attitude is flown until the boosters have left, and the air is thin.
-    EXPECT_GT(left_s, 0.0);
-    EXPECT_GT(first_s, left_s + 2.9);
-    EXPECT_LT(first_s, left_s + 60.0);
-    EXPECT_LT(pressure_pa, kThinAir_pa);
+    EXPECT_GT(seen.left_s, 0.0);
+    EXPECT_GT(seen.first_s, seen.left_s + 2.9);
+    EXPECT_LT(seen.first_s, seen.left_s + 60.0);
+    EXPECT_LT(seen.pressure_pa, kThinAir_pa);
     ASSERT_EQ(flown.outcome, Outcome::kCompleted) << flown.reason;
     std::printf(
         "a last burn that ends by itself, case %d: axis %.3f km (%.1f open loop), inclination %.5f deg, "

@@ -14,6 +14,7 @@
 #include "core/vehicle/mass.h"
 #include "tests/apart_boosters.h"
 #include "tests/flown_ticks.h"
+#include "tests/two_liquids.h"
 #include "tests/unit/sample_vehicle.h"
 
 namespace dispersa::mixture_ratio_test {
@@ -35,18 +36,7 @@ FlightDefinition Liquid() {
   return definition;
 }
 
-struct Liquids {
-  double oxygen_kg, kerosene_kg;
-};
-Liquids LiquidsOf(double load, double ratio, double flown_kg) {
-  const double r = ratio * kOxygen_kg / kKerosene_kg;
-  return {load * kOxygen_kg - flown_kg * r / (1.0 + r), load * kKerosene_kg - flown_kg / (1.0 + r)};
-}
-// The residual counts of each by its load. The burn ends when the first of them has only that left.
-double Usable(double load, double ratio) {
-  const double part = 1.0 - kRest_kg / (load * kLoad_kg), r = ratio * kOxygen_kg / kKerosene_kg;
-  return part * load * std::min(kOxygen_kg * (1.0 + r) / r, kKerosene_kg * (1.0 + r));
-}
+constexpr TwoLiquids kLiquids{kOxygen_kg, kKerosene_kg, kRest_kg};
 
 FlightInputs Drawn(double load, double ratio) {
   FlightInputs in;
@@ -60,9 +50,9 @@ Bodies ByHand(const FlightDefinition& definition, double load, double ratio, dou
   const MassProperties dry = BuildStackMasses(definition.vehicle)[0].At(0.0);
   std::vector<Part> parts = {{dry.mass_kg, dry.axial_inertia_kg_m2, dry.transverse_inertia_kg_m2,
                               Vector3(dry.cg_station_m, 0.0, 0.0)}};
-  const Liquids has = LiquidsOf(load, ratio, flown_kg);
+  const TwoLiquids::Left has = kLiquids.After(flown_kg, load, ratio);
   for (const auto& [kg, density, bottom_m] :
-       {std::array{has.oxygen_kg, 1141.0, 15.2}, {has.kerosene_kg, 810.0, 17.4}}) {
+       {std::array{has.first_kg, 1141.0, 15.2}, {has.second_kg, 810.0, 17.4}}) {
     const double height_m = kg / density / (0.25 * kPi * 1.21);
     parts.push_back({kg, 0.0, kg * (1.21 / 16.0 + height_m * height_m / 12.0),
                      Vector3(bottom_m - 0.5 * height_m, 0.0, 0.0)});
@@ -93,15 +83,15 @@ TEST(MixtureRatio, MassesAreThoseOfTheTanksByHand) {
 
 TEST(MixtureRatio, EndsTheBurnWithTheFirstTank) {
   const FlightModel model(Liquid());
-  EXPECT_NEAR(Usable(1.0, 1.0), kLoad_kg - kRest_kg, 1e-9);
+  EXPECT_NEAR(kLiquids.Usable(1.0, 1.0), kLoad_kg - kRest_kg, 1e-9);
   for (const double ratio : {0.9, 0.999, 1.0, 1.001, 1.1}) {
     const MotorBurn& burn = model.PlantFor(Drawn(0.98, ratio)).stacks[0].burn;
-    const double usable_kg = Usable(0.98, ratio);
+    const double usable_kg = kLiquids.Usable(0.98, ratio);
     EXPECT_NEAR(burn.duration_s, usable_kg / kFlow_kg_s, 1e-9) << ratio;
     EXPECT_NEAR(burn.left_kg, 0.98 * kLoad_kg - usable_kg, 1e-8) << ratio;
     EXPECT_EQ(burn.vacuum_thrust_n, kThrust_n);
-    const Liquids left = LiquidsOf(0.98, ratio, usable_kg);
-    EXPECT_NEAR(ratio > 1.0 ? left.oxygen_kg / (0.98 * kOxygen_kg) : left.kerosene_kg / (0.98 * kKerosene_kg),
+    const TwoLiquids::Left left = kLiquids.After(usable_kg, 0.98, ratio);
+    EXPECT_NEAR(ratio > 1.0 ? left.first_kg / (0.98 * kOxygen_kg) : left.second_kg / (0.98 * kKerosene_kg),
                 kRest_kg / (0.98 * kLoad_kg), 1e-9);
   }
 }
@@ -116,12 +106,13 @@ TEST(MixtureRatio, MassIsWhatHasNotFlown) {
   int seen = 0;
   for (const TickSample& s : ticks) {
     if (s.stack != 0) continue;
-    const double flown_kg = std::min(kFlow_kg_s * s.time_s, Usable(1.0, ratio));
+    const double flown_kg = std::min(kFlow_kg_s * s.time_s, kLiquids.Usable(1.0, ratio));
     ASSERT_NEAR(s.instant.loads.mass_kg, whole_kg - flown_kg, 1e-6) << s.time_s;
     ++seen;
   }
   EXPECT_GT(seen, 3700);
-  EXPECT_GT(kLoad_kg - Usable(1.0, ratio), kRest_kg + 50.0) << "5 % of the smaller tank's flow stays";
+  EXPECT_GT(kLoad_kg - kLiquids.Usable(1.0, ratio), kRest_kg + 50.0)
+      << "5 % of the smaller tank's flow stays";
 }
 
 // Burns of the same tanks: the mixture goes on, and the second one ends with the first tank.
@@ -146,8 +137,8 @@ TEST(MixtureRatio, GoesOnInABurnAgain) {
   const LauncherPlant plant = BuildNominalPlant(WithDispersedMasses(definition.vehicle, Drawn(1.0, ratio)));
   const MotorBurn& burn = plant.stacks[1].burn;
   EXPECT_NEAR(burn.propellant_mass_kg, kLoad_kg - 1500.0, 1e-8);
-  EXPECT_NEAR(burn.left_kg, kLoad_kg - Usable(1.0, ratio), 1e-8);
-  EXPECT_NEAR(burn.duration_s, (Usable(1.0, ratio) - 1500.0) / kFlow_kg_s, 1e-9);
+  EXPECT_NEAR(burn.left_kg, kLoad_kg - kLiquids.Usable(1.0, ratio), 1e-8);
+  EXPECT_NEAR(burn.duration_s, (kLiquids.Usable(1.0, ratio) - 1500.0) / kFlow_kg_s, 1e-9);
   const Bodies all = ByHand(definition, 1.0, ratio, 2000.0);
   const MassProperties at = plant.stacks[1].mass.At(kLoad_kg - 2000.0);
   EXPECT_NEAR(at.mass_kg, all.mass_kg, 1e-9 * all.mass_kg);
