@@ -191,7 +191,7 @@ void LetFree(Launcher& launcher) {
     if (stage.gimbal.nozzles.empty()) stage.gimbal = FixedNozzle(stage.gimbal.pivot_station_m);
     const double root_m = 2.0 * stage.diameter_m;
     stage.fins = {Fins(stage.bottom_station_m - root_m, root_m, 0.6 * root_m, 1.2 * stage.diameter_m)};
-    stage.fins[0].cant_rad = (i == 0 ? 0.3 : i == 1 ? 0.05 : 0.0) * kRadPerDeg;
+    stage.fins[0].cant_rad = (i == 0 ? 0.2 : i == 1 ? 0.04 : 0.0) * kRadPerDeg;
   }
 }
 // The last stage, in each of its burns: held by thrusters in the coast, by its spin while it burns. Where
