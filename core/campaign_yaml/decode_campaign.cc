@@ -175,7 +175,7 @@ void CheckGuidance(Fields& fields, const GuidanceConfig& guidance, const Vehicle
   else if (!last.is_controlled() && guidance.steers_last_burn)
     fields.Refuse("last_burn", "the last stage of " + name + " has no gimbal by which it could be steered",
                   "as_planned: it is pointed before its ignition");
-  else if (is_cut_off && !is_timed && !guidance.steers_last_burn && !SteersBelow(vehicle, guidance))
+  else if (is_cut_off && !is_timed && !guidance.steers_last_burn && !PlansBelow(vehicle, guidance))
     fields.Refuse(
         "last_burn",
         "no coast precedes the last burn of " + name + ", so nothing can be planned before its ignition",
@@ -272,7 +272,7 @@ class CampaignDescription {
     const TrajectoryProblem& problem = campaign_.reference.problem;
     const bool is_timed = campaign_.vehicle.stages.back().ignition == IgnitionTrigger::kTimer;
     if (problem.target_argument_of_perigee_rad && !problem.is_entered_anywhere && !is_timed &&
-        !SteersBelow(campaign_.vehicle, campaign_.guidance))
+        !PlansBelow(campaign_.vehicle, campaign_.guidance))
       WarnOf(reference_, "problem.target.argument_of_perigee_deg",
              "with a true anomaly (at the perigee: 0) it is a place along the orbit, which only a coast of "
              "another duration can move, and no timer ignites the last burn of '" +

@@ -85,7 +85,6 @@ bool IsCutOffByGuidance(const Stage& stage) {
 
 std::size_t FirstGuided(const Vehicle& vehicle, const GuidanceConfig& config) {
   const std::size_t burns = vehicle.stages.size();
-  if (burns == 2 && vehicle.boosters.count == 0 && IsCutOffByGuidance(vehicle.stages.back())) return 1;
   std::size_t first = burns - std::min(burns, static_cast<std::size_t>(config.burns));
   for (std::size_t i = first; i + 1 < burns; ++i)
     if (!vehicle.stages[i].is_controlled()) first = i + 1;
@@ -94,6 +93,11 @@ std::size_t FirstGuided(const Vehicle& vehicle, const GuidanceConfig& config) {
 
 bool SteersBelow(const Vehicle& vehicle, const GuidanceConfig& config) {
   return FirstGuided(vehicle, config) + 1 < vehicle.stages.size();
+}
+
+bool PlansBelow(const Vehicle& vehicle, const GuidanceConfig& config) {
+  const bool leaves_air_late = vehicle.stages.size() == 2 && vehicle.boosters.count == 0;
+  return SteersBelow(vehicle, config) && !leaves_air_late;
 }
 
 }  // namespace dispersa

@@ -137,11 +137,12 @@ double IdealVelocity(const GuidedStage& stage);
 /// Whether guidance decides when the burn of a stage ends.
 bool IsCutOffByGuidance(const Stage& stage);
 /// The first of the burns that guidance plans, as an index of the vehicle's stages: as many as the settings
-/// let it plan, after the last one that nothing steers. The last burn at the latest. Of two burns without
-/// boosters it is the second one, if guidance decides when that one ends: little of the first is above the
-/// air.
+/// let it plan, after the last one that nothing steers. The last burn at the latest.
 std::size_t FirstGuided(const Vehicle& vehicle, const GuidanceConfig& config);
 /// Whether it steers the last stage but one.
 bool SteersBelow(const Vehicle& vehicle, const GuidanceConfig& config);
+/// Whether that one is above the air for long enough to plan the last burn. A first stage without boosters
+/// leaves the air in its last seconds, if at all.
+bool PlansBelow(const Vehicle& vehicle, const GuidanceConfig& config);
 
 }  // namespace dispersa
