@@ -84,12 +84,20 @@ DISPERSA_INLINE LargestMoment<T> LargestOfPlanes(const LoadTableLanes<T>& body, 
   return {Sqrt(largest2), station};
 }
 
+/// Out of line: most bodies have one plane, and pay nothing.
+template <class T, class... Further>
+DISPERSA_OUT_OF_LINE LargestMoment<T> LargestOfTwoPlanes(const LoadTableLanes<T>& body,
+                                                         const NormalForce<T>& air, const SideForce<T>& side,
+                                                         const BodyMotion<T>& m, const Further&... further) {
+  return LargestOfPlanes<T, true>(body, air, &side, m, further...);
+}
+
 /// `side`: of the yaw plane (null: as the pitch plane).
 template <class T, class... Further>
 DISPERSA_INLINE LargestMoment<T> LargestOf(const LoadTableLanes<T>& body, const NormalForce<T>& air,
                                            const SideForce<T>* side, const BodyMotion<T>& m,
                                            const Further&... further) {
-  return side ? LargestOfPlanes<T, true>(body, air, side, m, further...)
+  return side ? LargestOfTwoPlanes(body, air, *side, m, further...)
               : LargestOfPlanes<T, false>(body, air, side, m, further...);
 }
 
