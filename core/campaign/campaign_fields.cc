@@ -217,11 +217,10 @@ void Describe(Fields& fields, Verdicts& verdicts, VerdictPlan& plan, Sampling& s
                       "at a look at which every requirement is decided, or after all cases", false);
   if (verdicts.stop_when_decided && sampling.method != SamplingMethod::kMonteCarlo)
     fields.Refuse("stop", "a design study decides nothing", "method: monte_carlo");
-  fields.Integer(
-      "attempts", 1, kMaxAttempts, verdicts.attempts,
-      "campaigns of one design that share each requirement's risk evenly; later ones are judged by all cases "
-      "together",
-      1);
+  fields.Integer("attempts", 1, kMaxAttempts, verdicts.attempts,
+                 "campaigns of one design that share each risk; later ones are judged by all cases "
+                 "together",
+                 1);
   fields.When(Has("max_cases"), [&] {
     fields.Integer("max_cases", 1, kMaxCases, sampling.cases,
                    "of a campaign that stops when decided, in place of cases");

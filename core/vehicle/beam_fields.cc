@@ -259,9 +259,8 @@ void Describe(Fields& fields, StructureBeam& beam, std::size_t stages, std::size
               "further places with deflection and slope; the nozzle pivot is always shown");
   fields.Flag("rotary_inertia", beam.rotary_inertia, true,
               "of the cross-sections; false: the beam has less inertia than the vehicle");
-  fields.Integer(
-      "flown_modes", 0, kMostFlownModes, beam.flown_modes,
-      "modes flown per plane; 0: rigid. Those from half the autopilot's sampling frequency on do not fly", 3);
+  fields.Integer("flown_modes", 0, kMostFlownModes, beam.flown_modes,
+                 "modes flown per plane; 0: rigid; none from half the autopilot's sampling frequency on", 3);
   fields.Number("damping_ratio", Between(0.0, 0.5), beam.damping_ratio, "of every mode in flight", 0.01);
   ModeRows rows;
   fields.Either({{Has("modes_table"),

@@ -15,16 +15,30 @@ double ValueAt(const std::vector<double>& column, std::size_t row) {
   return column.empty() ? 0.0 : column[row];
 }
 
+// Of a row: about body y and z.
+double PitchInertia(const MassTable& table, std::size_t row) { return table.transverse_inertia_kg_m2[row]; }
+double YawInertia(const MassTable& table, std::size_t row) {
+  return table.yaw_inertia_kg_m2.empty() ? PitchInertia(table, row) : table.yaw_inertia_kg_m2[row];
+}
+
+// The stem of the moment of inertia that is more than both others together, as that of no body is; null:
+// none. Of two that are equal the axial one is too large, so they are too small.
+const char* BadMoment(const MassTable& table, std::size_t row) {
+  const double x = table.axial_inertia_kg_m2[row], y = PitchInertia(table, row), z = YawInertia(table, row);
+  if (!(x <= y + z) || !(y <= x + z)) return "transverse_inertia";
+  return z <= x + y ? nullptr : "yaw_inertia_kg_m2";
+}
+
 // The stem of the product by which a row's tensor is not positive definite (Sylvester), the first in the
 // order of the columns; null: it is.
 const char* BadProduct(const MassTable& table, std::size_t row) {
-  const double a = table.axial_inertia_kg_m2[row], t = table.transverse_inertia_kg_m2[row];
+  const double x = table.axial_inertia_kg_m2[row], y = PitchInertia(table, row), z = YawInertia(table, row);
   const double xy = ValueAt(table.product_xy_kg_m2, row), xz = ValueAt(table.product_xz_kg_m2, row),
                yz = ValueAt(table.product_yz_kg_m2, row);
-  if (!(a * t > xy * xy)) return "product_xy_kg_m2";
-  if (!(a * t > xz * xz)) return "product_xz_kg_m2";
-  if (!(t * t > yz * yz)) return "product_yz_kg_m2";
-  if (a * (t * t - yz * yz) - xy * (xy * t + xz * yz) - xz * (xz * t + xy * yz) > 0.0) return nullptr;
+  if (!(x * y > xy * xy)) return "product_xy_kg_m2";
+  if (!(x * z > xz * xz)) return "product_xz_kg_m2";
+  if (!(y * z > yz * yz)) return "product_yz_kg_m2";
+  if (x * (y * z - yz * yz) - xy * (xy * z + xz * yz) - xz * (xz * y + xy * yz) > 0.0) return nullptr;
   return xy != 0.0 ? "product_xy_kg_m2" : "product_xz_kg_m2";
 }
 
@@ -43,8 +57,9 @@ void Describe(Fields& fields, MassTable& table) {
   fields.Quantities("axial_inertia", kInertia, kPositive, 2, kMost, table.axial_inertia_kg_m2,
                     "about the axis");
   fields.Quantities("transverse_inertia", kInertia, kPositive, 2, kMost, table.transverse_inertia_kg_m2,
-                    "across the axis, about the centre of gravity");
+                    "about its centre, body y (and z)");
   // Keys with one unit keep the schema short.
+  fields.OptionalNumbers("yaw_inertia_kg_m2", kPositive, 2, kMost, table.yaw_inertia_kg_m2, "about body z");
   fields.OptionalNumbers("cg_y_m", kAnyNumber, 2, kMost, table.cg_y_m, "towards body y");
   fields.OptionalNumbers("cg_z_m", kAnyNumber, 2, kMost, table.cg_z_m, "towards body z");
   fields.OptionalNumbers("product_xy_kg_m2", kAnyNumber, 2, kMost, table.product_xy_kg_m2, "of x y dm");
@@ -75,10 +90,10 @@ void Describe(Fields& fields, MassTable& table) {
                                "values that all increase, or all decrease");
     }
     for (std::size_t i = 0; i < count; ++i)
-      if (!(table.transverse_inertia_kg_m2[i] >= 0.5 * table.axial_inertia_kg_m2[i]))
-        return fields.Refuse("transverse_inertia[" + std::to_string(i) + "]",
-                             "is that of no body: it is below half the axial inertia",
-                             "half the axial inertia or more");
+      if (const char* moment = BadMoment(table, i))
+        return fields.Refuse(moment + ("[" + std::to_string(i) + "]"),
+                             "is that of no body: one moment of inertia is more than both others together",
+                             "moments of which none is more than the others' sum");
     for (std::size_t i = 0; i < count; ++i)
       if (const char* product = BadProduct(table, i))
         return fields.Refuse(product + ("[" + std::to_string(i) + "]"),
@@ -124,7 +139,8 @@ SideSums SidesAt(const MassTable& table, double dry_kg, std::size_t row) {
   sums[kSideZ] = mass_kg * z_m;
   sums[kSideStationY] = mass_kg * station_m * y_m - ValueAt(table.product_xy_kg_m2, row);
   sums[kSideStationZ] = mass_kg * station_m * z_m - ValueAt(table.product_xz_kg_m2, row);
-  sums[kSideAboutY] = 0.5 * mass_kg * (Square(z_m) - Square(y_m));
+  sums[kSideAboutY] =
+      0.5 * mass_kg * (Square(z_m) - Square(y_m)) + 0.5 * (PitchInertia(table, row) - YawInertia(table, row));
   sums[kSideYz] = mass_kg * y_m * z_m + ValueAt(table.product_yz_kg_m2, row);
   sums[kSideSquare] = mass_kg * (Square(y_m) + Square(z_m));
   return sums;
@@ -150,7 +166,8 @@ MassRows BuildMassRows(const MassTable& table, double dry_kg) {
   const std::size_t count = table.propellant_kg.size();
   const auto sums_at = [&](std::size_t i) {
     const double mass_kg = dry_kg + table.propellant_kg[i], cg_m = table.cg_station_m[i];
-    return MassRows::Sums{mass_kg * cg_m, table.transverse_inertia_kg_m2[i] + mass_kg * Square(cg_m),
+    const double transverse_kg_m2 = 0.5 * (PitchInertia(table, i) + YawInertia(table, i));
+    return MassRows::Sums{mass_kg * cg_m, transverse_kg_m2 + mass_kg * Square(cg_m),
                           table.axial_inertia_kg_m2[i]};
   };
   MassRows built;

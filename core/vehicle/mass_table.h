@@ -13,8 +13,8 @@ class Fields;
 struct MotorBurn;
 
 /// The stage alone: its dry mass and its propellant, without boosters, jettisoned bodies and stages above.
-/// Inertias are about its centre of gravity, along and across the axis (the mean of y and z). Replaces the
-/// tubes of structure, grain and tanks in flight. Its dry and propellant masses are the stage's own keys.
+/// Inertias are about its centre of gravity. Replaces the tubes of structure, grain and tanks in flight. Its
+/// dry and propellant masses are the stage's own keys.
 /// Axes of the body: x forward, y right, z down. Stations count aft.
 struct MassTable {
   std::vector<double> time_s;         ///< since ignition (empty: the rows are over propellant)
@@ -22,7 +22,8 @@ struct MassTable {
   std::vector<double> mass_kg;        ///< of the stage, checked (empty: not given)
   std::vector<double> cg_station_m;
   std::vector<double> axial_inertia_kg_m2;
-  std::vector<double> transverse_inertia_kg_m2;
+  std::vector<double> transverse_inertia_kg_m2;  ///< about y, and about z without a column of it
+  std::vector<double> yaw_inertia_kg_m2;         ///< about z (empty: as about y)
   /// Of the centre of gravity off the axis, towards body y and z (empty: on it).
   std::vector<double> cg_y_m, cg_z_m;
   /// Integrals of x y, x z and y z over the mass about the centre of gravity (empty: 0). The tensor's
@@ -30,13 +31,13 @@ struct MassTable {
   std::vector<double> product_xy_kg_m2, product_xz_kg_m2, product_yz_kg_m2;
 
   /// Columns that need not be there.
-  std::array<std::vector<double>*, 5> Sides() {
-    return {&cg_y_m, &cg_z_m, &product_xy_kg_m2, &product_xz_kg_m2, &product_yz_kg_m2};
+  std::array<std::vector<double>*, 6> Sides() {
+    return {&yaw_inertia_kg_m2, &cg_y_m, &cg_z_m, &product_xy_kg_m2, &product_xz_kg_m2, &product_yz_kg_m2};
   }
   /// Whether any of them is.
   bool has_sides() const {
-    return !cg_y_m.empty() || !cg_z_m.empty() || !product_xy_kg_m2.empty() || !product_xz_kg_m2.empty() ||
-           !product_yz_kg_m2.empty();
+    return !yaw_inertia_kg_m2.empty() || !cg_y_m.empty() || !cg_z_m.empty() || !product_xy_kg_m2.empty() ||
+           !product_xz_kg_m2.empty() || !product_yz_kg_m2.empty();
   }
   bool empty() const { return cg_station_m.empty(); }
 };
@@ -46,7 +47,8 @@ void Describe(Fields& fields, MassTable& table);
 void PutOverPropellant(const MotorBurn& burn, MassTable& table);
 
 /// Sums over masses off the axis: of mass times place across the axis, of mass times station times place, of
-/// half of m (z² - y²), of m y z, and of m (y² + z²). Products of inertia are among them.
+/// half of m (z² - y²), of m y z, and of m (y² + z²). Products of inertia and what I_y and I_z differ by are
+/// among them.
 enum SideSum { kSideY, kSideZ, kSideStationY, kSideStationZ, kSideAboutY, kSideYz, kSideSquare, kSideSums };
 using SideSums = std::array<double, kSideSums>;
 

@@ -87,9 +87,9 @@ inline void DescribeIgnition(Fields& fields, Stage& stage) {
 }
 
 inline void Describe(Fields& fields, Stage& stage) {
-  fields.Flag("restarts", stage.restarts, false,
-              "the liquid stage before burns again: the same body, with the propellant left. Its jettisoned "
-              "masses may leave in any of its burns");
+  fields.Flag(
+      "restarts", stage.restarts, false,
+      "the liquid stage before burns again, with what is left. Its jettisoned masses may leave in any burn");
   fields.Text("name", stage.name, "name of the stage");
   fields.Either(
       {{Is("restarts", {"true"}), [&] { DescribeCommands(fields, stage.motor); }},

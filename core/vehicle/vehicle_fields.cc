@@ -48,8 +48,8 @@ void Describe(Fields& fields, Vehicle& vehicle) {
   bool has_boosters = vehicle.boosters.count > 0;
   fields.OptionalMap(
       "boosters", has_boosters,
-      "beside the first stage, in its lift-off mass; each has a motor and propellant about an axis "
-      "of its own; computed aerodynamics leave them out",
+      "beside the first stage, in its lift-off mass; each with its own motor and propellant; computed "
+      "aerodynamics leave them out",
       [&](Fields& boosters) { Describe(boosters, vehicle.boosters); });
   fields.List("profile", 1, SIZE_MAX, vehicle.profile, "outer mould line, from the nose aft");
   bool has_tables = !vehicle.aerodynamics.empty();

@@ -459,6 +459,26 @@ TEST(MassTableFile, OverTimeIsThatOfTheNominalBurn) {
   EXPECT_THAT(table.cg_station_m, ElementsAre(7.2, 6.9, 7.0));
 }
 
+// A body that is not the same about y and z. Without the column it is.
+TEST(MassTableFile, MayHaveAMomentAboutZ) {
+  const std::string head = "propellant_left_kg,cg_station_m,axial_inertia_kg_m2,transverse_inertia_kg_m2";
+  const auto weighed = [](const std::string& csv) {
+    const InputFiles files;
+    Weigh(files, csv);
+    return LoadVehicle(files.Path("vehicle.yaml"));
+  };
+  const Vehicle vehicle = weighed(head + ",yaw_inertia_kg_m2\n1500,7,180,1900,1800\n0,7.2,70,1000,960\n"),
+                same = weighed(head + "\n1500,7,180,1850\n0,7.2,70,980\n");
+  const StackMass stack = BuildStackMasses(vehicle)[0], mean = BuildStackMasses(same)[0];
+  EXPECT_NEAR(stack.SidesAt(1500.0)[kSideAboutY], 50.0, 1e-9);
+  EXPECT_NEAR(stack.SidesAt(0.0)[kSideAboutY], 20.0, 1e-9);
+  EXPECT_FALSE(mean.HasSides());
+  EXPECT_NEAR(stack.At(900.0).transverse_inertia_kg_m2, mean.At(900.0).transverse_inertia_kg_m2, 1e-9);
+  EXPECT_EQ(MassProblems(head + ",yaw_inertia_kg_m2\n1500,7,180,1900,1800\n0,7,70,1000,1100\n"),
+            "masses.csv:3:13: yaw_inertia_kg_m2[1]: is that of no body: one moment of inertia is more than "
+            "both others together, allowed: moments of which none is more than the others' sum\n");
+}
+
 // Off the axis, in the columns that need not be there. What a campaign's folder keeps is read again as it
 // was.
 TEST(MassTableFile, MayHaveMassesOffTheAxis) {
@@ -512,8 +532,8 @@ TEST(MassTableFile, MistakesAreReportedInFull) {
       "masses.csv:4:1: propellant_left_kg[2]: does not continue from the one before, allowed: values that "
       "all increase, or all decrease\n");
   EXPECT_EQ(MassProblems(head + "1500,7,180,1900\n0,7,180,80\n"),
-            "masses.csv:3:9: transverse_inertia_kg_m2[1]: is that of no body: it is below half the axial "
-            "inertia, allowed: half the axial inertia or more\n");
+            "masses.csv:3:9: transverse_inertia_kg_m2[1]: is that of no body: one moment of inertia is more "
+            "than both others together, allowed: moments of which none is more than the others' sum\n");
   EXPECT_EQ(
       MassProblems(head + "1500,7,180,1900\n200,7,180,1900\n"),
       "masses.csv:1:1: stages[0].mass_table: covers 200.000000 to 1500.000000 kg of propellant, allowed: "
