@@ -253,6 +253,8 @@ void UseMassTables(Launcher& launcher) {
     stage.mass_table = TableOfTubes(vehicle, i, 41);
     for (double& inertia : stage.mass_table.transverse_inertia_kg_m2) inertia *= 1.03;
     if (i == 0) stage.mass_table.cg_y_m.assign(41, 0.002);
+    stage.mass_table.yaw_inertia_kg_m2 = stage.mass_table.transverse_inertia_kg_m2;
+    for (double& inertia : stage.mass_table.yaw_inertia_kg_m2) inertia *= 1.02;
     stage.flown_mass.rows = std::make_shared<const MassRows>(
         BuildMassRows(stage.mass_table, DryMass(vehicle, static_cast<int>(i))));
   }
