@@ -244,7 +244,7 @@ inline constexpr UsualValues kUsualCp = {0.4, 1.6, "of the distance from the nos
 inline constexpr UsualValues kUsualCg = {0.7, 1.3, "of the distance from the nose"};
 inline constexpr UsualValues kUsualDryMass = {0.8, 1.2, "1 to 5 %"};
 inline constexpr UsualValues kUsualLoad = {0.9, 1.1, "0.3 to 1 %"};
-inline constexpr UsualValues kUsualInertia = {0.5, 1.5, "2 to 10 %"};
+inline constexpr UsualValues kUsualInertia = {0.7, 1.3, "2 to 10 %"};
 inline constexpr UsualValues kUsualBandwidth = {0.3, 2.0, "10 to 20 %"};
 inline constexpr UsualValues kUsualTipOff = {-5.0, 5.0, "0.1 to 2 deg/s of a separation"};
 inline constexpr UsualValues kUsualGyroBias = {-0.1, 0.1, "0.0001 to 0.01 deg/s of inertial units"};
@@ -291,7 +291,7 @@ inline void DeclareInputs(InputDeclarations& inputs) {
   inputs.One(&In::lift_factor, "lift_factor").Usually(kUsualCoefficient);
   inputs.One(&In::cg_factor, "cg_factor").Usually(kUsualCg);
   inputs.One(&In::cp_factor, "cp_factor").Usually(kUsualCp);
-  inputs.One(&In::density_factor, "density_factor").Usually({0.4, 1.6, "5 to 30 % by altitude and season"});
+  inputs.One(&In::density_factor, "density_factor").Usually({0.6, 1.4, "5 to 30 % by altitude and season"});
   inputs.One(&In::inertia_factor, "inertia_factor").Usually(kUsualInertia);
   inputs.One(&In::actuator_bandwidth_factor, "actuator_bandwidth_factor").Usually(kUsualBandwidth);
   inputs.EachMode(&In::bending_frequency_factor, "bending_frequency_factor").Usually({0.6, 1.5, "5 to 15 %"});
@@ -312,10 +312,14 @@ inline void DeclareInputs(InputDeclarations& inputs) {
              {"pn_error", "factor of P_n's first component, for studies; no limits", {}, kAnyNumber});
   inputs.One(&In::pn_rate_factor, "pn_rate_factor", 1.0,
              {"pn_rate", "factor of P_n's second component, for studies; no limits", {}, kAnyNumber});
-  inputs.One(&In::loop_gain_factor, "loop_gain_factor", 1.0,
-             {"loop_gain", "factor of the commanded deflections", {}, kPositive});
-  inputs.One(&In::loop_delay_s, "loop_delay_s", 1.0,
-             {"loop_delay", "additional delay of the commands", kTime, kNonNegative});
+  inputs
+      .One(&In::loop_gain_factor, "loop_gain_factor", 1.0,
+           {"loop_gain", "factor of the commanded deflections", {}, kPositive})
+      .Usually({0.25, 4.0, "a few % of sensors and actuators, a factor of 2 at a gain margin"});
+  inputs
+      .One(&In::loop_delay_s, "loop_delay_s", 1.0,
+           {"loop_delay", "additional delay of the commands", kTime, kNonNegative})
+      .Usually({0.0, 0.25, "milliseconds to some ten of a computer and its bus"});
   inputs.One(&In::loop_stage, "loop_stage");
   inputs.EachLaunchAxis(&In::navigation_position_error_m, "navigation_position_error", "_m")
       .Usually({-20000.0, 20000.0, "10 m aided by satellites, kilometres of a free unit"});

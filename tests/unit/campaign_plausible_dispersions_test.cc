@@ -48,6 +48,19 @@ TEST(UnusualDispersions, AreThoseBeyondWhatIsKnown) {
                            "cases | -0.1 to 0.1 (0.0001 to 0.01 deg/s of inertial units)"));
 }
 
+TEST(UnusualDispersions, AreThoseOfTheWholeVehicleToo) {
+  Campaign campaign;
+  campaign.dispersions = {Normal("density_factor", 1.0, 0.15), Normal("inertia_factor", 1.0, 0.15),
+                          Normal("loop_delay_s", 0.2, 0.1), Normal("loop_gain_factor", 1.0, 0.3)};
+  const auto begins = [](const char* text) { return testing::StartsWith(text); };
+  EXPECT_THAT(Texts(campaign), testing::ElementsAre(begins("density draws from 0.55 to 1.45"),
+                                                    begins("inertia draws from 0.55"),
+                                                    begins("loop_delay draws from -0.1 to 0.5"),
+                                                    begins("loop_gain draws from 0.1 to 1.9")));
+  for (Dispersion& dispersion : campaign.dispersions) dispersion.distribution.sigma /= 10.0;
+  EXPECT_THAT(Texts(campaign), testing::IsEmpty());
+}
+
 TEST(UnusualDispersions, AreThoseOfOneNozzleAsOfAStage) {
   Campaign campaign;
   campaign.dispersions = {Normal("nozzle_misalignment_stage1_left_deg", 0.0, 1.0 * kRadPerDeg)};
