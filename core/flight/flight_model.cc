@@ -464,6 +464,7 @@ GuidanceMission BuildMission(const FlightDefinition& definition, const LauncherP
   mission.last = stage(last);
   mission.steers_below = SteersBelow(definition.vehicle, definition.guidance);
   mission.moves_ignition = definition.vehicle.stages.back().ignition == IgnitionTrigger::kTimer;
+  mission.holds_last = !definition.vehicle.stages.back().is_controlled();
   mission.is_restart = definition.vehicle.stages.back().restarts;
   mission.below_burnout_s = times[last - 1].burnout_s;
   mission.last_ignition_s = mission.moves_ignition ? definition.last_ignition_s : times[last].ignition_s;

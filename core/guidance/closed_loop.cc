@@ -42,9 +42,10 @@ constexpr double kOffsetGain = 0.3;
 constexpr double kLargestOffset_rad = 3.0 * kRadPerDeg;
 
 // What an engine that can be stopped has in place of a turn in yaw.
-void FreeCutOff(CorrectorTask& task) {
+void FreeCutOff(bool turns_in_burn, CorrectorTask& task) {
   task.free[kWaste] = false;
-  task.free[kCutOff] = task.free[kYawHalf] = true;
+  task.free[kCutOff] = true;
+  task.free[kYawHalf] = turns_in_burn;
 }
 
 // Of a burn with a planned end, if guidance cuts it off.
@@ -79,6 +80,7 @@ CorrectorTask ClosedLoopGuidance::Task(std::initializer_list<PlanUnknown> free, 
                                        int iterations) const {
   CorrectorTask task;
   for (const PlanUnknown unknown : free) task.free[unknown] = true;
+  if (mission_.holds_last) task.free[kPitchHalf] = task.free[kWaste] = false;
   task.prior = prior;
   task.low = prior_.low;
   task.high = prior_.high;
@@ -281,7 +283,7 @@ void ClosedLoopGuidance::SeeEarlierBurn(const GuidanceSight& sight) {
   CorrectorTask task = Task({kEarlierPitch, kEarlierYaw, kBelowPitch, kBelowYaw, kIgnition, kPitchMiddle,
                              kPitchHalf, kYawMiddle, kWaste},
                             prior_.nominal, outcome_.acted ? kIterations : kFirstIterations);
-  if (mission_.last.is_cut_off()) FreeCutOff(task);
+  if (mission_.last.is_cut_off()) FreeCutOff(!mission_.holds_last, task);
   task.free[kBelowCutOff] = mission_.below.is_cut_off();
   task.free[kIgnition] = mission_.moves_ignition;
   task.keeps_solved = true;
@@ -325,7 +327,7 @@ void ClosedLoopGuidance::SeeBelowBurn(const GuidanceSight& sight) {
   CorrectorTask task = Task({kBelowPitch, kBelowYaw, kIgnition, kPitchMiddle, kPitchHalf, kYawMiddle, kWaste},
                             prior_.nominal, outcome_.acted ? kIterations : kFirstIterations);
   task.free[kBelowCutOff] = known.below.is_cut_off();
-  if (mission_.last.is_cut_off()) FreeCutOff(task);
+  if (mission_.last.is_cut_off()) FreeCutOff(!mission_.holds_last, task);
   task.free[kIgnition] = mission_.moves_ignition;
   BoundCutOffs(known, time_s, task);
   const Correction found = Correct(mission_, prior_, known, sight.state, plan_, task);
@@ -375,7 +377,7 @@ bool ClosedLoopGuidance::SeeCoast(const GuidanceSight& sight) {
   if (task.high[kIgnition] < earliest_s) task.high[kIgnition] = earliest_s;
   ignition_s = Clamp(ignition_s, task.low[kIgnition], task.high[kIgnition]);
   if (mission_.last.is_cut_off()) {
-    FreeCutOff(task);
+    FreeCutOff(!mission_.holds_last, task);
     BoundCutOffs(known, time_s, task);
   }
   const Correction found = Correct(mission_, prior_, known, sight.state, plan_, task);

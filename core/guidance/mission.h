@@ -120,6 +120,7 @@ struct GuidanceMission {
   GuidedStage last;
   bool steers_below = true;           ///< else guidance begins with the last stage
   bool moves_ignition = true;         ///< the last stage ignites on the timer
+  bool holds_last = false;            ///< nothing steers the last stage: it keeps its attitude by its spin
   bool is_restart = false;            ///< the last burn is another one of the engine before
   double below_burnout_s = 0.0;       ///< of the reference
   double last_ignition_s = 0.0;       ///< of the reference

@@ -84,7 +84,7 @@ double TurnCourse::EarlyRate(double since_ignition_s) const {
 }
 
 LastBurnAttitude::LastBurnAttitude(const Plan& plan, const PlanPrior& prior) : plan_(plan), prior_(prior) {
-  if (prior.mission->last.is_cut_off()) return;
+  if (prior.mission->last.is_cut_off() || prior.mission->holds_last) return;
   const TurnCourse& course = prior.turn;
   const double waste = plan.value[kWaste], way_s = course.end_s - course.from_s;
   // The late course has slopes of 3 turns over the way, the early one of 2.
@@ -103,6 +103,9 @@ Direction LastBurnAttitude::At(double since_ignition_s) const {
   const double since = since_ignition_s > 0.0 ? since_ignition_s : 0.0;
   const double s = 2.0 * since / prior_.last_duration_s - 1.0;
   const GuidanceMission& mission = *prior_.mission;
+  if (mission.holds_last)
+    return {prior_.middle.pitch_rad + plan_.value[kPitchMiddle],
+            prior_.middle.yaw_rad + plan_.value[kYawMiddle]};
   const Direction at = mission.program.At(mission.last_ignition_s + since);
   if (mission.last.is_cut_off())
     return {at.pitch_rad + plan_.value[kPitchMiddle] + s * plan_.value[kPitchHalf],
@@ -117,6 +120,7 @@ Direction LastBurnAttitude::At(double since_ignition_s) const {
 Direction LastBurnAttitude::RateAt(double since_ignition_s) const {
   const double slope = 2.0 / prior_.last_duration_s;
   const GuidanceMission& mission = *prior_.mission;
+  if (mission.holds_last) return {};
   const Direction rate = mission.program.RateAt(mission.last_ignition_s + since_ignition_s);
   if (mission.last.is_cut_off())
     return {rate.pitch_rad + slope * plan_.value[kPitchHalf], rate.yaw_rad + slope * plan_.value[kYawHalf]};
@@ -170,8 +174,9 @@ PlanPrior BuildPrior(const GuidanceMission& mission) {
   auto& value = prior.nominal.value;
   value[kIgnition] = mission.last_ignition_s;
   if (mission.below.is_cut_off()) value[kBelowCutOff] = mission.below.burn.duration_s;
-  if (mission.last.is_cut_off()) {
-    value[kCutOff] = mission.last.burn.duration_s;
+  if (mission.last.is_cut_off()) value[kCutOff] = mission.last.burn.duration_s;
+  if (mission.holds_last) prior.middle = from;
+  if (mission.last.is_cut_off() || mission.holds_last) {
     SetReach(mission, prior);
     return prior;
   }

@@ -11,7 +11,8 @@ enum PlanUnknown {
   kBelowPitch,  ///< offset to the reference's attitude while the stage before the last burns, rad
   kBelowYaw,
   kIgnition,  ///< of the last stage, s since lift-off
-  // Of the last burn. If guidance cuts it off, these are added to the reference's attitude.
+  // Of the last burn. If guidance cuts it off, these are added to the reference's attitude; if nothing steers
+  // it, the middle ones are added to that of its ignition.
   kPitchMiddle,  ///< pitch in L at half its nominal duration, rad
   kPitchHalf,    ///< by how much pitch is greater at its nominal end, rad
   kYawMiddle,
@@ -54,7 +55,8 @@ struct TurnCourse {
 struct PlanPrior {
   Plan nominal;
   double last_duration_s = 0.0;  ///< nominal, of the last burn
-  /// Of the reference's last burn: its attitude halfway between begin and end, and half of the way.
+  /// Of the reference's last burn: its attitude halfway between begin and end, and half of the way. Of one
+  /// that nothing steers: its attitude at ignition, and none.
   Direction middle, half;
   double yaw_half_rad = 0.0;  ///< of plans, if the last burn ends by itself
   TurnCourse turn;
@@ -69,10 +71,11 @@ PlanPrior BuildPrior(const GuidanceMission& mission);
 /// For plans in a burn before the last two, which begins with this stage.
 void SetEarlier(const GuidedStage& stage, PlanPrior& prior);
 
-/// Direction of the last burn's thrust by a plan: the reference's plus a departure linear in time. If the
-/// burn ends by itself, the plan has pitch and yaw of the line between the burn's ends, and a turn in yaw
-/// about its mean is added. The turn takes a²/2 of the course's variance from the ideal velocity; kWaste
-/// stands for it. It begins as late as the command can follow.
+/// Direction of the last burn's thrust by a plan: the reference's plus a departure linear in time. A burn
+/// that nothing steers keeps one direction. If a steered burn ends by itself, the plan has pitch and yaw of
+/// the line between the burn's ends, and a turn in yaw about its mean is added. The turn takes a²/2 of the
+/// course's variance from the ideal velocity; kWaste stands for it. It begins as late as the command can
+/// follow.
 class LastBurnAttitude {
  public:
   LastBurnAttitude(const Plan& plan, const PlanPrior& prior);
