@@ -264,7 +264,7 @@ void ClosedLoopGuidance::BeginEarlierBurn(std::size_t index) {
 void ClosedLoopGuidance::SeeEarlierBurn(const GuidanceSight& sight) {
   if (earlier_ != sight.earlier) BeginEarlierBurn(sight.earlier);
   const double time_s = sight.state.time_s, since_s = time_s - sight.burn_ignition_s;
-  if (!earlier_engine_) earlier_motor_->Add(since_s, sight.specific_force_m_s2);
+  if (!earlier_engine_) earlier_motor_->Add(since_s, sight.specific_force_m_s2, sight.expelled_kg);
   if (since_s < kTakeOver_s) return;
   TakeOver(time_s);
   if (earlier_engine_) earlier_engine_->Add(time_s, since_s, sight.specific_force_m_s2, sight.expelled_kg);
@@ -307,7 +307,7 @@ void ClosedLoopGuidance::SeeEarlierBurn(const GuidanceSight& sight) {
 
 void ClosedLoopGuidance::SeeBelowBurn(const GuidanceSight& sight) {
   const double since_s = sight.state.time_s - sight.burn_ignition_s;
-  if (!below_engine_) below_.Add(since_s, sight.specific_force_m_s2);
+  if (!below_engine_) below_.Add(since_s, sight.specific_force_m_s2, sight.expelled_kg);
   if (since_s < kTakeOver_s) return;
   const double time_s = sight.state.time_s;
   if (!steers_) {
@@ -413,7 +413,7 @@ void ClosedLoopGuidance::SeeLastBurn(const GuidanceSight& sight) {
     TakeOver(time_s);
     last_engine_->Add(time_s, since_s, sight.specific_force_m_s2, sight.expelled_kg);
   } else {
-    last_.Add(since_s, sight.specific_force_m_s2);
+    last_.Add(since_s, sight.specific_force_m_s2, sight.expelled_kg);
   }
   MeasureThrust(sight);
   Knowledge known;

@@ -17,22 +17,26 @@ constexpr double kFarthest = 0.15;
 
 // Never at full thrust for long, or lighter at once: no line.
 bool HasLine(const GuidedStage& stage) { return !stage.burn.curve && !stage.loses_mass; }
+bool HasCurve(const GuidedStage& stage) { return stage.burn.curve && !stage.loses_mass; }
 
 }  // namespace
 
 double StandsAfter(const GuidedStage& nominal, double first_s, double period_s) {
-  if (nominal.is_engine()) return first_s + kLongEnough_s;  // by its own estimate
+  if (nominal.is_engine() || HasCurve(nominal)) return first_s + kLongEnough_s;  // by their own estimates
   if (!HasLine(nominal)) return 0.0;
   return std::fmax(first_s, nominal.burn.rise_s + kClear_s) +
          std::fmax(kLongEnough_s, (kEnough - 1.0) * period_s);
 }
 
 void MotorEstimate::SeeLeft(unsigned bodies, double time_s) {
-  if (nominal_.SeeLeft(bodies, time_s)) count_ = sum_t_ = sum_y_ = sum_tt_ = sum_ty_ = 0.0;
+  if (!nominal_.SeeLeft(bodies, time_s)) return;
+  count_ = sum_t_ = sum_y_ = sum_tt_ = sum_ty_ = 0.0;
+  by_curve_.BeginAnew();
 }
 
-void MotorEstimate::Add(double since_ignition_s, double specific_force_m_s2) {
+void MotorEstimate::Add(double since_ignition_s, double specific_force_m_s2, double expelled_kg) {
   const MotorBurn& burn = nominal_.burn;
+  if (HasCurve(nominal_)) by_curve_.Add(nominal_, since_ignition_s, specific_force_m_s2, expelled_kg);
   if (!HasLine(nominal_)) return;
   const double full_until_s = (1.0 - kFarthest) * burn.duration_s - burn.tail_s;
   if (since_ignition_s < burn.rise_s + kClear_s || since_ignition_s > full_until_s ||
@@ -51,6 +55,7 @@ void MotorEstimate::Add(double since_ignition_s, double specific_force_m_s2) {
 GuidedStage MotorEstimate::Stage(double expelled_kg) const {
   GuidedStage stage = nominal_;
   stage.ignition_mass_kg -= expelled_kg;
+  if (HasCurve(nominal_)) by_curve_.Apply(stage.burn);
   if (count_ < kEnough || last_s_ - first_s_ < kLongEnough_s) return stage;
   const double mean_t = sum_t_ / count_, mean_y = sum_y_ / count_;
   const double slope = (sum_ty_ / count_ - mean_t * mean_y) / (sum_tt_ / count_ - mean_t * mean_t);

@@ -59,8 +59,8 @@ TEST(GuidedSpin, IsPredictedAsTheEngineFliesIt) {
   EXPECT_LT(std::fabs(plan.value[kYawMiddle]), 1.0 * kRadPerDeg);
   const Injection predicted = Predict(mission, prior, known, seen, plan);
   const double speed_m_s = predicted.at.velocity_m_s - MetricOf(flown, "injection_velocity_m_s");
-  const double path_deg = predicted.at.flight_path_angle_rad / kRadPerDeg -
-                          MetricOf(flown, "injection_flight_path_angle_deg");
+  const double path_deg =
+      predicted.at.flight_path_angle_rad / kRadPerDeg - MetricOf(flown, "injection_flight_path_angle_deg");
   std::printf("%.0f s ahead, predicted less flown: %.4f m/s, %.5f deg; held %.2f and %.2f deg off\n",
               flown.end_time_s - seen.time_s, speed_m_s, path_deg, plan.value[kPitchMiddle] / kRadPerDeg,
               plan.value[kYawMiddle] / kRadPerDeg);
@@ -91,10 +91,11 @@ TEST(GuidedSpin, IsNoWorseThanOpenLoop) {
       FlightInputs inputs;
       inputs.specific_impulse_factor[stage] = 1.0 + 0.01 * percent;
       const Orbit with = OrbitOf(closed, inputs), without = OrbitOf(open, inputs);
-      std::printf("stage %zu %+.1f %%: axis %7.1f km, perigee %6.1f km, inclination %6.3f deg open loop; "
-                  "%7.1f km, %6.1f km, %6.3f deg closed\n",
-                  stage + 1, percent, without.axis_km, without.perigee_km, without.inclination_deg,
-                  with.axis_km, with.perigee_km, with.inclination_deg);
+      std::printf(
+          "stage %zu %+.1f %%: axis %7.1f km, perigee %6.1f km, inclination %6.3f deg open loop; "
+          "%7.1f km, %6.1f km, %6.3f deg closed\n",
+          stage + 1, percent, without.axis_km, without.perigee_km, without.inclination_deg, with.axis_km,
+          with.perigee_km, with.inclination_deg);
       EXPECT_GT(with.axis_km, std::fmin(without.axis_km, 0.0) - 5.0);
       EXPECT_GT(with.perigee_km, std::fmin(without.perigee_km, nominal.perigee_km) - 5.0);
       EXPECT_LT(std::fabs(with.inclination_deg), without.axis_km > 0.0 ? 0.25 : 3.0);
