@@ -302,7 +302,7 @@ void ClosedLoopGuidance::SeeEarlierBurn(const GuidanceSight& sight) {
     SetCutOff(found);
     if (cut_off_) cut_off_->ignition_s = sight.burn_ignition_s;
   }
-  SetEnginePeriod(since_s, found.reached.burn_end_s - time_s);
+  SetPeriod(since_s, found.reached.burn_end_s - time_s);
 }
 
 void ClosedLoopGuidance::SeeBelowBurn(const GuidanceSight& sight) {
@@ -333,12 +333,11 @@ void ClosedLoopGuidance::SeeBelowBurn(const GuidanceSight& sight) {
   const Correction found = Correct(mission_, prior_, known, sight.state, plan_, task);
   plan_ = found.plan;
   outcome_.acted = true;
-  if (!below_engine_) return;
   if (known.below.is_cut_off()) SetCutOff(found);
-  SetEnginePeriod(since_s, found.reached.burn_end_s - time_s);
+  SetPeriod(since_s, found.reached.burn_end_s - time_s);
 }
 
-void ClosedLoopGuidance::SetEnginePeriod(double since_s, double left_s) {
+void ClosedLoopGuidance::SetPeriod(double since_s, double left_s) {
   const double period_s = mission_.config.period_s;
   const double longer_s = std::min({kOfSince * since_s, kOfLeft * left_s, kLongestPeriod_s});
   if (longer_s > period_s) next_call_s_ += longer_s - period_s;
@@ -397,8 +396,9 @@ bool ClosedLoopGuidance::SeeCoast(const GuidanceSight& sight) {
   outcome_.excess_m_s = plan_.value[kWaste] * IdealVelocity(known.last);
   if (mission_.last.is_cut_off()) SetCutOff(found);
   const double until_s = ignition_s - time_s;
-  next_call_s_ =
-      time_s + (until_s > kCoastPeriod_s + kNearIgnition_s ? kCoastPeriod_s : mission_.config.period_s);
+  next_call_s_ = time_s + (until_s > kCoastPeriod_s + kNearIgnition_s
+                               ? kCoastPeriod_s
+                               : std::max(mission_.config.period_s, kOfLeft * until_s));
   if (last_engine_ && until_s > kCoastPeriod_s + kNearIgnition_s)
     next_call_s_ = time_s + std::max(kCoastPeriod_s, kOfLeft * until_s);
   return true;
@@ -433,7 +433,7 @@ void ClosedLoopGuidance::SeeLastBurn(const GuidanceSight& sight) {
   plan_ = found.plan;
   if (all) met_all_ = found.arrives;
   outcome_.arrives = met_all_ && found.arrives;
-  if (last_engine_ && left_s > 2.0 * kOnlyCutOff_s) SetEnginePeriod(since_s, left_s);
+  if (last_engine_ && left_s > 2.0 * kOnlyCutOff_s) SetPeriod(since_s, left_s);
 }
 
 void ClosedLoopGuidance::SteerToCutOff(const Knowledge& known, const NavigatedState& state) {
@@ -452,7 +452,7 @@ void ClosedLoopGuidance::SteerToCutOff(const Knowledge& known, const NavigatedSt
   if (all) met_all_ = found.arrives;
   outcome_.arrives = met_all_ && found.arrives;
   SetCutOff(found);
-  SetEnginePeriod(since_s, found.reached.burn_end_s - state.time_s);
+  SetPeriod(since_s, found.reached.burn_end_s - state.time_s);
 }
 
 void ClosedLoopGuidance::RunDry(double altitude_m, const Vector3& p_EoC_I, const Vector3& v_IC_I) {

@@ -66,7 +66,7 @@ class ClosedLoopGuidance {
   void BoundCutOffs(const Knowledge& known, double time_s, CorrectorTask& task);
   void SteerToCutOff(const Knowledge& known, const NavigatedState& state);
   void SetCutOff(const Correction& found);
-  void SetEnginePeriod(double since_s, double left_s);
+  void SetPeriod(double since_s, double left_s);
   CorrectorTask Task(std::initializer_list<PlanUnknown> free, const Plan& prior, int iterations) const;
 
   const GuidanceMission& mission_;

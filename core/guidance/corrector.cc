@@ -19,8 +19,10 @@ constexpr double kTolerance[kAllMisses] = {1e-2, 3e-2, 3e-2, 1.0, 1.0, 10.0};
 constexpr double kTolerableExcess_m_s = 1.0;
 // Differences for derivatives: small against the curvature, large against the rounding of a prediction.
 constexpr double kDifference = 3e-4;  // of a scale
-// A step that moves no miss by more, in tolerances, needs no further one.
+// A step that moves no miss by more, in tolerances, needs no further one. Nor does a short one, in scales,
+// that leaves so little: the next plan is made from it.
 constexpr double kStill = 0.005;
+constexpr double kShortStep = 0.01, kFoundMiss = 0.02;
 // A turn of the perigee that costs a step 1.
 constexpr double kTurn_rad = 0.3;
 // Beyond this a step's straight lines say little.
@@ -208,7 +210,8 @@ Correction CorrectFirst(const GuidanceMission& mission, const PlanPrior& prior, 
         if (taken) {
           keep(next, reached, miss);
           model.miss = miss;
-          is_found = is_still && !is_damped;
+          is_found = !is_damped && (is_still || (miss.norm() <= kFoundMiss &&
+                                                 step.template lpNorm<Eigen::Infinity>() <= kShortStep));
         }
         if (!(miss.norm() < before)) break;
         before = miss.norm();

@@ -1,11 +1,12 @@
-// Burn rate and exhaust velocity of a solid motor with a thrust curve, estimated from its sensed acceleration.
+// Burn rate and exhaust velocity of a solid motor with a thrust curve, estimated from its sensed
+// acceleration.
 //
-// With the factors k of the burn rate and c of the exhaust velocity, a(t) = c k P f(k t) / (m0 - b(k t)): P is
-// the nominal full thrust, f the curve, b the propellant burnt, m0 the mass at ignition. Each reading is taken
-// as linear in ln k and ln c about the estimate before it. Both are the least squares over the readings and
-// over the nominal values: burn rate within 3 %, exhaust velocity within 1 %. So the estimate is usable from
-// the first reading on. Readings where the curve is steep are left out: there the burn rate shows as an error
-// of time.
+// With the factors k of the burn rate and c of the exhaust velocity, a(t) = c k P f(k t) / (m0 - b(k t)): P
+// is the nominal full thrust, f the curve, b the propellant burnt, m0 the mass at ignition. Each reading is
+// taken as linear in ln k and ln c about the estimate before it. Both are the least squares over the readings
+// and over the nominal values: burn rate within 3 %, exhaust velocity within 1 %. So the estimate is usable
+// from the first reading on. Readings where the curve is steep are left out: there the burn rate shows as an
+// error of time.
 #pragma once
 
 #include "core/guidance/mission.h"

@@ -20,7 +20,8 @@ Stage LastStage() {
   double impulse_s = 0.0;
   for (std::size_t i = 0; i + 1 < curve.time_s.size(); ++i)
     impulse_s += 0.5 * (curve.thrust_n[i] + curve.thrust_n[i + 1]) * (curve.time_s[i + 1] - curve.time_s[i]);
-  for (double& thrust_n : curve.thrust_n) thrust_n *= last.motor.thrust_n * last.motor.burning_time_s / impulse_s;
+  for (double& thrust_n : curve.thrust_n)
+    thrust_n *= last.motor.thrust_n * last.motor.burning_time_s / impulse_s;
   SetThrustCurve(curve, last.motor);
   return last;
 }
@@ -39,7 +40,8 @@ TEST(GuidedCurve, FindsBurnRateAndExhaustVelocity) {
   };
   const auto off = [&] {
     const MotorBurn found = estimate.Stage(0.0).burn;
-    return std::array{found.vacuum_thrust_n / burn.vacuum_thrust_n - 1.0, found.duration_s / burn.duration_s - 1.0};
+    return std::array{found.vacuum_thrust_n / burn.vacuum_thrust_n - 1.0,
+                      found.duration_s / burn.duration_s - 1.0};
   };
   add(3.0);
   // At once most of it counts as burn rate, whose scatter is wider.
