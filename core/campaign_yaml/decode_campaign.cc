@@ -243,8 +243,10 @@ class CampaignDescription {
       warnings_->back().unusual = true;
     }
     WarnOfGuidance();
-    if (decoded_.optimize) WarnOfInclination(*decoded_.optimize);
+    if (decoded_.optimize)
+      WarnOfInclination(decoded_.optimize->target_inclination_rad, optimize_, "target.inclination_deg");
     if (reference_.node == nullptr) return;
+    WarnOfInclination(campaign_.reference.orbit.inclination_rad, reference_, "orbit.inclination_deg");
     if (!campaign_.reference.target_missed.empty())
       WarnOf(reference_, "target_missed",
              "the reference misses its own target: " + campaign_.reference.target_missed,
@@ -283,13 +285,13 @@ class CampaignDescription {
   }
 
   // A launch due east has the inclination of its latitude.
-  void WarnOfInclination(const TrajectoryProblem& problem) {
+  void WarnOfInclination(std::optional<double> inclination_rad, const Part& part, const std::string& key) {
     const double latitude_rad = std::fabs(campaign_.vehicle.site.latitude_rad);
-    if (!problem.target_inclination_rad) return;
-    const double least_rad = std::min(*problem.target_inclination_rad, kPi - *problem.target_inclination_rad);
+    if (!inclination_rad) return;
+    const double least_rad = std::min(*inclination_rad, kPi - *inclination_rad);
     constexpr double kTurned_rad = 0.5 * kRadPerDeg;
     if (least_rad >= latitude_rad - kTurned_rad) return;
-    WarnOf(optimize_, "target.inclination_deg",
+    WarnOf(part, key,
            "no launch from a latitude of " + FormatRounded(latitude_rad * kDegPerRad) +
                " deg comes to this inclination without turning its plane",
            "from " + FormatRounded(latitude_rad * kDegPerRad) + " to " +

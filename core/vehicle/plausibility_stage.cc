@@ -281,6 +281,19 @@ constexpr Check kStageChecks[] = {
        if (!s.stage().gimbal.nozzles.empty() || !s.stage().is_controlled()) return kNothing;
        return s.stage().gimbal.radius_m / (0.5 * s.stage().diameter_m);
      }},
+    {"gimbal.nozzles",
+     "are, as part of half the stage's diameter_m, off the axis by up to",
+     "",
+     kAnything,
+     {0.0, 1.5},
+     "engines stand in the base, verniers beside it",
+     [](const Subject& s) {
+       double farthest_m = kNothing;
+       for (const Nozzle& nozzle : s.stage().gimbal.nozzles)
+         farthest_m =
+             std::fmax(farthest_m, std::fmax(nozzle.ring.radius_m, std::hypot(nozzle.y_m, nozzle.z_m)));
+       return farthest_m / (0.5 * s.stage().diameter_m);
+     }},
 };
 
 // Checks of jettisoned masses.
@@ -289,7 +302,7 @@ constexpr Check kJettisonChecks[] = {
      "comes",
      "s after lift-off",
      kAnything,
-     {60.0, 1000.0},
+     {90.0, 1000.0},
      "fairings leave 150 to 300 s after lift-off, above 100 km; sooner the payload meets the air",
      [](const Subject& s) {
        return s.jettison().trigger == JettisonTrigger::kAtTime ? s.jettison().threshold : kNothing;
