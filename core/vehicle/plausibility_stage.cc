@@ -290,8 +290,8 @@ constexpr Check kStageChecks[] = {
      [](const Subject& s) {
        double farthest_m = kNothing;
        for (const Nozzle& nozzle : s.stage().gimbal.nozzles)
-         farthest_m =
-             std::fmax(farthest_m, std::fmax(nozzle.ring.radius_m, std::hypot(nozzle.y_m, nozzle.z_m)));
+         farthest_m = std::fmax(
+             farthest_m, std::fmax(nozzle.ring.radius_m, Sqrt(Square(nozzle.y_m) + Square(nozzle.z_m))));
        return farthest_m / (0.5 * s.stage().diameter_m);
      }},
 };
