@@ -455,8 +455,7 @@ void ClosedLoopGuidance::SteerToCutOff(const Knowledge& known, const NavigatedSt
   SetPeriod(since_s, found.reached.burn_end_s - state.time_s);
 }
 
-void ClosedLoopGuidance::RunDry(double altitude_m, const Vector3& p_EoC_I, const Vector3& v_IC_I) {
-  if (!mission_.last.is_cut_off()) return;
+void ClosedLoopGuidance::BurnOut(double altitude_m, const Vector3& p_EoC_I, const Vector3& v_IC_I) {
   Injection reached;
   reached.at = ArrivalOf(mission_.earth, 0.0, p_EoC_I, v_IC_I);
   reached.at.altitude_m = altitude_m;
@@ -464,7 +463,7 @@ void ClosedLoopGuidance::RunDry(double altitude_m, const Vector3& p_EoC_I, const
   reached.p_EoC_I = p_EoC_I;
   reached.v_IC_I = v_IC_I;
   // A number that is none has not arrived.
-  if (!(OrbitMissOf(mission_, reached).energy_m_s > -kLacking_m_s)) outcome_.arrives = false;
+  if (!(std::fabs(OrbitMissOf(mission_, reached).energy_m_s) <= kLacking_m_s)) outcome_.arrives = false;
 }
 
 void ClosedLoopGuidance::Command(double time_s) {

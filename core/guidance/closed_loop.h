@@ -49,7 +49,7 @@ class ClosedLoopGuidance {
   const AttitudeCommand& command() const { return command_; }
   const Plan& plan() const { return plan_; }
   /// The injection, measured, of a flight whose last burn no command has ended.
-  void RunDry(double altitude_m, const Vector3& p_EoC_I, const Vector3& v_IC_I);
+  void BurnOut(double altitude_m, const Vector3& p_EoC_I, const Vector3& v_IC_I);
   const GuidanceOutcome& outcome() const { return outcome_; }
 
  private:
