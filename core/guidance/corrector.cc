@@ -14,9 +14,6 @@ namespace {
 // Energy, path, path, plane, m/s. A degree of plane, 130 m/s, then asks for less than 0.1 degree of a thrust
 // that lacks 10 m/s of energy. Then node and place.
 constexpr double kTolerance[kAllMisses] = {1e-2, 3e-2, 3e-2, 1.0, 1.0, 10.0};
-// Excess of a last burn that keeps its attitude and ends by itself. Only a thrust off the plane would take it
-// away, at a cost of 300 m/s of plane for 20 m/s: it stays.
-constexpr double kTolerableExcess_m_s = 1.0;
 // Differences for derivatives: small against the curvature, large against the rounding of a prediction.
 constexpr double kDifference = 3e-4;  // of a scale
 // A step that moves no miss by more, in tolerances, needs no further one. Nor does a short one, in scales,
@@ -46,8 +43,7 @@ Misses<misses> Scaled(const GuidanceMission& mission, const Injection& reached, 
                       const CorrectorTask& task, bool turns) {
   const OrbitMiss miss = OrbitMissOf(mission, reached);
   Misses<misses> m;
-  const bool keeps_excess = mission.holds_last && !mission.last.is_cut_off() && miss.energy_m_s > 0.0;
-  m(0) = miss.energy_m_s / (keeps_excess ? kTolerableExcess_m_s : kTolerance[0]);
+  m(0) = miss.energy_m_s / kTolerance[0];
   if (turns && task.meets_altitude && miss.size_m_s) {
     m(1) = before != nullptr
                ? (miss.across * before->along - miss.along * before->across) /
