@@ -319,7 +319,7 @@ inline void DeclareInputs(InputDeclarations& inputs) {
   inputs
       .One(&In::loop_delay_s, "loop_delay_s", 1.0,
            {"loop_delay", "additional delay of the commands", kTime, kNonNegative})
-      .Usually({0.0, 0.25, "milliseconds to some ten of a computer and its bus"});
+      .Usually({0.0, 0.25, "up to some tens of milliseconds of a computer and its bus"});
   inputs.One(&In::loop_stage, "loop_stage");
   inputs.EachLaunchAxis(&In::navigation_position_error_m, "navigation_position_error", "_m")
       .Usually({-20000.0, 20000.0, "10 m aided by satellites, kilometres of a free unit"});

@@ -33,7 +33,7 @@ constexpr double kArmed_s = 3.0, kArmedOfBurn = 0.25;
 // Where the speed grows by less than this part of the specific force, time ends the burn.
 constexpr double kAlong = 0.2;
 // A timer does not end a burn that lacks more than this of the target's energy: the propellant does. A flight
-// that lacks it when the propellant has ended has not arrived.
+// whose last burn no command has ended has not arrived if its energy is farther off, either way.
 constexpr double kLacking_m_s = 1.0;
 // Between a burn's end and the ignition of the next, at least: separation and settling.
 constexpr double kApart_s = 10.0;

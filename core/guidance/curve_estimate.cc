@@ -32,10 +32,7 @@ void CurveEstimate::Add(const GuidedStage& nominal, double since_ignition_s, dou
                after = burn.Fraction((1.0 + kBurnRate) * since_ignition_s);
   if (!(before > 0.0) || !(after > 0.0) || !(specific_force_m_s2 > 0.0)) return;
   if (std::fabs(Log(after / before)) > kSteep) return;
-  // Bodies with a criterion alone leave in such a burn, and all that have left are in it.
-  double mass_kg = nominal.ignition_mass_kg - expelled_kg;
-  for (const MassDrop& drop : nominal.drops)
-    if (!drop.waits()) mass_kg -= drop.mass_kg;
+  const double mass_kg = nominal.LessDropped(nominal.ignition_mass_kg - expelled_kg);
   const double log_rate = Found().rate, rate = Exp(log_rate);
   const double faster = LogAcceleration(nominal, mass_kg, (1.0 + kRateStep) * rate, since_ignition_s),
                slower = LogAcceleration(nominal, mass_kg, (1.0 - kRateStep) * rate, since_ignition_s);

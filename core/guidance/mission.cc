@@ -53,6 +53,12 @@ double GuidedStage::DroppedBy(double time_s) const {
   return dropped_kg;
 }
 
+double GuidedStage::LessDropped(double mass_kg) const {
+  for (const MassDrop& drop : drops)
+    if (!drop.waits()) mass_kg -= drop.mass_kg;
+  return mass_kg;
+}
+
 bool GuidedStage::SeeLeft(unsigned bodies, double at_s) {
   bool any = false;
   for (MassDrop& drop : drops) {

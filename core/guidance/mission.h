@@ -83,6 +83,9 @@ struct GuidedStage {
   bool is_engine() const { return levels.has_value(); }
   bool is_cut_off() const { return is_engine() && !runs_dry; }
   double DroppedBy(double time_s) const;
+  /// A mass without the bodies that do not wait for a criterion: of a stage whose bodies have one, those that
+  /// have left.
+  double LessDropped(double mass_kg) const;
   /// Bodies with a criterion that have left, as bits. The flight computer lets go of them. Whether there were
   /// any.
   bool SeeLeft(unsigned bodies, double at_s);

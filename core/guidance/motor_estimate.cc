@@ -15,7 +15,7 @@ constexpr double kLongEnough_s = 3.0;
 constexpr double kClear_s = 0.2;
 constexpr double kFarthest = 0.15;
 
-// Never at full thrust for long, or lighter at once: no line.
+// A stage that becomes lighter at once has neither. One with either loses bodies with a criterion alone.
 bool HasLine(const GuidedStage& stage) { return !stage.burn.curve && !stage.loses_mass; }
 bool HasCurve(const GuidedStage& stage) { return stage.burn.curve && !stage.loses_mass; }
 
@@ -62,10 +62,7 @@ GuidedStage MotorEstimate::Stage(double expelled_kg) const {
   const double at_start = mean_y - slope * mean_t;
   if (!(slope < 0.0) || !(at_start > 0.0)) return stage;
   const double exhaust_m_s = -1.0 / slope;
-  // A stage with a line loses bodies with a criterion alone, and all that have left are in it.
-  double mass_kg = stage.ignition_mass_kg;
-  for (const MassDrop& drop : stage.drops)
-    if (!drop.waits()) mass_kg -= drop.mass_kg;
+  const double mass_kg = stage.LessDropped(stage.ignition_mass_kg);
   const double flow_kg_s = mass_kg / (exhaust_m_s * at_start);
   MotorBurn& burn = stage.burn;
   const double flow_factor = Clamp(flow_kg_s / burn.full_flow_kg_s, 1.0 - kFarthest, 1.0 + kFarthest);

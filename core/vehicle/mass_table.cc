@@ -21,8 +21,8 @@ double YawInertia(const MassTable& table, std::size_t row) {
   return table.yaw_inertia_kg_m2.empty() ? PitchInertia(table, row) : table.yaw_inertia_kg_m2[row];
 }
 
-// The stem of the moment of inertia that is more than both others together, as that of no body is; null:
-// none. Of two that are equal the axial one is too large, so they are too small.
+// The stem of the column to blame where a moment of inertia is more than both others together, as that of no
+// body is; null: none is. An axial one that is too large is told as a transverse one that is too small.
 const char* BadMoment(const MassTable& table, std::size_t row) {
   const double x = table.axial_inertia_kg_m2[row], y = PitchInertia(table, row), z = YawInertia(table, row);
   if (!(x <= y + z) || !(y <= x + z)) return "transverse_inertia";
