@@ -16,8 +16,8 @@ import time
 import unittest
 
 from hosts import Hosts
-from processes import (BINARIES, CAMPAIGN, PATIENCE_S, Run, content, end, main, shared_memory_segments, stored,
-                       wait_for)
+from processes import (BINARIES, CAMPAIGN, HALF_WAY_CASES, PATIENCE_S, Run, content, end, main, shared_memory_segments,
+                       stored, wait_for)
 
 TROUBLES = int(os.environ.get("DISPERSA_TROUBLES", "3"))
 SEED = int(os.environ.get("DISPERSA_SEED", random.SystemRandom().randrange(10**6)))
@@ -129,12 +129,14 @@ class ChaosTest(unittest.TestCase):
 
     def start_again_without(self, *packets):
         """A coordinator that gets none of these packets while it flies starts again, and the bytes are the same."""
-        self.cases = CASES // 4
+        self.cases = HALF_WAY_CASES
         self.coordinator = self.start_coordinator()
         self.workers = [self.start_worker(1)]
         self.keep_busy(campaigns=1)
         wait_for(lambda: sum(self.stored().values()) > 0, "first results")
+        self.workers[0].send_signal(signal.SIGSTOP)  # it has not flown all, however long the next line takes
         self.hosts[0].drop("in", 100, *packets)
+        self.workers[0].send_signal(signal.SIGCONT)
         wait_for(lambda: "the coordinator restarts" in (self.root / "log").read_text(), "a new start")
         self.hosts[0].heal()
         self.assert_same_bytes()

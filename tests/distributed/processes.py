@@ -19,7 +19,10 @@ import unittest
 BINARIES = pathlib.Path(os.environ["DISPERSA_BINARIES"])
 CAMPAIGN = os.environ.get("DISPERSA_TEST_CAMPAIGN", str(pathlib.Path(os.environ["DISPERSA_CAMPAIGNS"], "smoke.yaml")))
 ISOLATED = "DISPERSA_TEST_ISOLATED"
-PATIENCE_S = int(os.environ.get("DISPERSA_PATIENCE_S", "60"))  # for what takes seconds on an idle machine
+PATIENCE_S = int(os.environ.get("DISPERSA_PATIENCE_S", "180"))  # for what takes seconds on an idle machine
+# Cases of a campaign in which something is to happen half-way: more than a worker of one slot may hold (9 assignments of 64 at
+# most) and fly between two transactions (0.5 s), so that they cannot all be stored at once, however long the disk takes.
+HALF_WAY_CASES = 1200
 
 
 def _isolate():

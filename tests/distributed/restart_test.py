@@ -14,12 +14,12 @@ import tempfile
 import time
 import unittest
 
-from processes import BINARIES, CAMPAIGN, Run, end, main, shared_memory_segments, stored
+from processes import BINARIES, CAMPAIGN, PATIENCE_S, Run, end, main, shared_memory_segments, stored
 
 RESTARTS = int(os.environ.get("DISPERSA_RESTARTS", "15"))
 CASES = 400
 # Seconds in which a resumed coordinator ends: a worker finds it within 2 s, or makes its connection anew within 30 s.
-LIMIT_S = 60
+LIMIT_S = PATIENCE_S
 NETWORK = ["--domain", "37", "--address", "127.0.0.1"]
 
 
@@ -76,7 +76,7 @@ class RestartTest(unittest.TestCase):
                     break
                 # SIGTERM too: it must not send the workers home.
                 coordinator.send_signal(draws.choice([signal.SIGKILL, signal.SIGKILL, signal.SIGTERM]))
-                coordinator.wait(timeout=30)
+                coordinator.wait(timeout=PATIENCE_S)
                 restarts += 1
                 coordinator = self.start(*arguments)
             begun = time.monotonic()

@@ -17,7 +17,7 @@ import unittest
 from processes import (BINARIES, CAMPAIGN, ISOLATED, PATIENCE_S, Run, is_running, main, parent_and_name,
                        shared_memory_segments, stored, wait_for)
 
-FLYING_S = 2.0   # of one core for a campaign of these tests: long enough to be killed half-way
+FLYING_S = 4.0   # of one core for a campaign of these tests: long enough to be killed half-way
 
 
 class RunTest(unittest.TestCase):
@@ -27,7 +27,7 @@ class RunTest(unittest.TestCase):
         cls.root = pathlib.Path(tempfile.mkdtemp(prefix="dispersa-run-"))
         probe = Run(cls.root / "probe", "--workers", 0, "--cases", 10).finish()
         per_case_s = probe.execution()["flying_s"] / 10
-        cls.cases = min(max(int(FLYING_S / per_case_s), 300), 2000)  # a busy machine makes the probe slow
+        cls.cases = min(max(int(FLYING_S / per_case_s), 600), 2000)  # a busy machine makes the probe slow
         cls.reference = Run(cls.root / "reference", "--workers", 0, "--cases", cls.cases, "--no-histories").finish()
         if cls.reference.code not in (0, 3, 4):
             raise AssertionError(f"reference: exit code {cls.reference.code}\n{cls.reference.stderr}")

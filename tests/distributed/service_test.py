@@ -11,7 +11,7 @@ import subprocess
 import time
 
 from restart_test import write_tiny_campaign
-from processes import BINARIES, CAMPAIGN, PATIENCE_S, Run, main, stored, wait_for
+from processes import BINARIES, CAMPAIGN, HALF_WAY_CASES, PATIENCE_S, Run, main, stored, wait_for
 from service_case import ServiceCase
 
 CASES = 60
@@ -55,7 +55,7 @@ class ServiceTest(ServiceCase):
         for how in (signal.SIGKILL, signal.SIGTERM, signal.SIGKILL):
             time.sleep(1.0)
             coordinator.send_signal(how)
-            self.assertEqual(coordinator.wait(timeout=30), 0 if how == signal.SIGTERM else -how)
+            self.assertEqual(coordinator.wait(timeout=PATIENCE_S), 0 if how == signal.SIGTERM else -how)
             coordinator = self.start_coordinator()
         worker.kill()
         self.start_worker("--slots", 2)
@@ -97,7 +97,7 @@ class ServiceTest(ServiceCase):
         self.assertEqual(subprocess.run([BINARIES / "dispersa-coordinator", "--health", *self.NETWORK]).returncode, 0)
 
     def test_another_coordinator_takes_over_on_a_backup(self):
-        cases = 600  # more than are stored at once
+        cases = HALF_WAY_CASES
         reference = Run(self.root / "long", "--workers", 0, "--cases", cases).finish()
         coordinator = self.start_coordinator()
         worker = self.start_worker()

@@ -9,7 +9,7 @@ import sqlite3
 import subprocess
 import unittest
 
-from processes import BINARIES, CAMPAIGN, ISOLATED, Run, main, stored, wait_for
+from processes import BINARIES, CAMPAIGN, ISOLATED, PATIENCE_S, Run, main, stored, wait_for
 from restart_test import write_tiny_campaign
 from service_case import ServiceCase
 
@@ -111,7 +111,7 @@ class StorageTest(ServiceCase):
             """Old campaigns go at the start, and perhaps after the first answers."""
             nonlocal coordinator
             coordinator.terminate()
-            self.assertEqual(coordinator.wait(timeout=30), 0)
+            self.assertEqual(coordinator.wait(timeout=PATIENCE_S), 0)
             coordinator = self.start_keeping(*limits)
             wait_for(lambda: {each["id"] for each in json.loads(self.dispersa("list", "--json"))["campaigns"]} == expected,
                      f"{expected} and no other")

@@ -13,9 +13,9 @@ import tempfile
 import unittest
 
 from hosts import Hosts
-from processes import BINARIES, CAMPAIGN, PATIENCE_S, Run, content, end, main, settled, stored, wait_for
+from processes import BINARIES, CAMPAIGN, HALF_WAY_CASES, PATIENCE_S, Run, content, end, main, settled, stored, wait_for
 
-CASES = 800
+CASES = HALF_WAY_CASES
 NETWORK = ["--domain", "34", "--insecure"]  # the game day does this with keys
 FIRST, SECOND, WORKERS = 0, 1, 2  # hosts
 

@@ -17,7 +17,7 @@ import tempfile
 
 BLOCK = re.compile(r"^```(sh|text)\n(.*?)^```$", re.M | re.S)
 MARK = "@@follow@@"
-TIMEOUT_S = 240
+TIMEOUT_S = 900
 PIPE_CLOSED = 128 + signal.SIGPIPE
 
 

@@ -80,7 +80,7 @@ class SiteTest(unittest.TestCase):
         cls.site = cls.folder / "docs"
         of_python = ["--package", os.environ["DISPERSA_PACKAGE"]] if os.environ.get("DISPERSA_PACKAGE") else []
         done = subprocess.run(["/usr/bin/python3", "-B", BUILD, "--programs", BINARIES, "--out", cls.site, *of_python],
-                              capture_output=True, text=True, timeout=280)
+                              capture_output=True, text=True, timeout=900)
         assert done.returncode == 0, done.stdout + done.stderr
 
     def test_the_pages_are_there(self):

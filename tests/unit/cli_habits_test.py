@@ -18,7 +18,7 @@ import unittest
 BINARIES = pathlib.Path(os.environ["DISPERSA_BINARIES"])
 CAMPAIGNS = pathlib.Path(os.environ["DISPERSA_CAMPAIGNS"])
 SMOKE = CAMPAIGNS / "smoke.yaml"
-TIMEOUT_S = 120
+TIMEOUT_S = 300
 
 
 def run(program, *arguments, **options):

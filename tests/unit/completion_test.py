@@ -14,7 +14,7 @@ import time
 import unittest
 
 BINARIES = pathlib.Path(os.environ["DISPERSA_BINARIES"])
-TIMEOUT_S = 60
+TIMEOUT_S = 300
 
 
 def output(*command, **options):
