@@ -72,6 +72,25 @@ void PassOnPropellant(const Vehicle& vehicle, std::size_t from, LauncherPlant& p
     SetPropellant(vehicle.stages[i].motor, plant.stacks[i - 1].burn.left_kg, plant.stacks[i].burn);
 }
 
+// Where the ascent of the reference never reaches the cut-off before the last restart, because the reference
+// is of another vehicle, nothing is left to restart with. Then the last burn takes until the program's end,
+// and the burn before leaves what that takes.
+void LeaveForRestart(const FlightDefinition& definition, LauncherPlant& planned) {
+  const std::size_t last = planned.stacks.size() - 1;
+  const Stage& stage = definition.vehicle.stages[last];
+  if (!stage.restarts || !EndsInFlight(stage.motor) || definition.cut_off_s[last] < HUGE_VAL) return;
+  const double burns_s = definition.program.knots.back().time_s - definition.last_ignition_s;
+  if (!(burns_s > 0.0)) return;
+  MotorBurn& before = planned.stacks[last - 1].burn;
+  const double takes_kg =
+      planned.stacks[last].burn.full_flow_kg_s * EngineLevels(stage.motor.throttle).Sum(burns_s);
+  const double burnt_kg = std::max(before.propellant_mass_kg - stage.motor.residual_mass_kg - takes_kg, 0.0);
+  const EngineLevels levels(definition.vehicle.stages[last - 1].motor.throttle);
+  CutOffAt(levels.TimeOf(burnt_kg / before.full_flow_kg_s), before);
+  PassOnPropellant(definition.vehicle, last - 1, planned);
+  CutOffAt(burns_s, planned.stacks[last].burn);
+}
+
 // The bodies of a configuration, as bits of LauncherPhase::jettisoned.
 unsigned BitsOf(const Vehicle& vehicle, const AeroConfiguration& configuration) {
   unsigned bits = 0, bit = 1;
@@ -469,6 +488,8 @@ GuidanceMission BuildMission(const FlightDefinition& definition, const LauncherP
   mission.below_burnout_s = times[last - 1].burnout_s;
   mission.last_ignition_s = mission.moves_ignition ? definition.last_ignition_s : times[last].ignition_s;
   mission.velocity_reserve_m_s = definition.velocity_reserve_m_s;
+  mission.air_below_m = kAirBelow_m;
+  mission.coast_air_below_m = kCoastAirBelow_m;
   mission.program.step_s = kStep_s;
   for (double time_s = 0.0; time_s <= definition.program.knots.back().time_s + kStep_s; time_s += kStep_s) {
     const PitchYawRoll at = definition.program.At(time_s).angles;
@@ -524,6 +545,7 @@ FlightModel::FlightModel(FlightDefinition definition)
       CutOffAt(definition_.cut_off_s[i], planned.stacks[i].burn);
       PassOnPropellant(definition_.vehicle, i, planned);
     }
+  LeaveForRestart(definition_, planned);
   std::vector<MotorBurn> burns;
   for (const LauncherStack& stack : planned.stacks) burns.push_back(stack.burn);
   const std::vector<StageTimes> times =

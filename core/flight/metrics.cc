@@ -279,9 +279,12 @@ constexpr Row kRows[] = {
      },
      kOfOrbitNotDigested},
     {"guidance_converged", kPure, "–", kGuidance, "Guidance converged",
-     "1 if the last guidance plan reaches the target, and also the last plan that controlled altitude, and, "
+     "1 if the flight is injected, the last guidance plan reaches the target, and also the last plan that "
+     "controlled altitude, and, "
      "where no command ended the last burn, its energy is within 1 m/s of the target's; else 0",
-     kSmaller, [](const Measured& m) { return m.Guided(m.sums.guidance.arrives ? 1.0 : 0.0); }, kNotDigested},
+     kSmaller,
+     [](const Measured& m) { return m.Guided(m.sums.guidance.arrives && m.sums.injected ? 1.0 : 0.0); },
+     kNotDigested},
     {"guidance_ignition_shift", kSeconds, "Δt_ign", kGuidance, "Last ignition, moved by guidance",
      "time of the last ignition minus the reference's", kAnyway,
      [](const Measured& m) { return m.Guided(m.sums.guidance.ignition_shift_s); }, kNotDigested},

@@ -13,6 +13,9 @@ double DynamicPressure(const GuidanceMission& mission, const NavigatedState& sta
 /// kPa its force is 1 % of the thrust of a large core. Ten degrees of incidence are 0.17 kPa rad, a tenth of
 /// what launchers bear.
 inline constexpr double kThinAir_pa = 1e3;
+/// A departure from the reference's attitude, times dynamic pressure, is at most this: thrusters of some tens
+/// of newtons hold it in the coast after a burn.
+inline constexpr double kMostIncidence_pa_rad = 5.0;
 
 /// How far a flight is beyond the criterion of a body that waits: 0 or more where the body is due. In m of
 /// altitude, or the logarithm of the criterion's heat flux over the flight's. Both are almost straight over a

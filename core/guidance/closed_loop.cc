@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <cmath>
 
+#include "core/guidance/air.h"
 #include "core/math/functions.h"
 
 namespace dispersa {
@@ -173,6 +174,16 @@ void ClosedLoopGuidance::TakeOver(double time_s) {
   command_.Start(time_s, mission_.program.At(time_s), mission_.program.RateAt(time_s));
 }
 
+void ClosedLoopGuidance::BoundIncidence(const NavigatedState& state, PlanUnknown pitch, PlanUnknown yaw,
+                                        CorrectorTask& task) {
+  const double most_rad = kMostIncidence_pa_rad / DynamicPressure(mission_, state);
+  for (const PlanUnknown unknown : {pitch, yaw}) {
+    task.low[unknown] = std::max(task.low[unknown], -most_rad);
+    task.high[unknown] = std::min(task.high[unknown], most_rad);
+    plan_.value[unknown] = Clamp(plan_.value[unknown], task.low[unknown], task.high[unknown]);
+  }
+}
+
 void ClosedLoopGuidance::BoundCutOffs(const Knowledge& known, double time_s, CorrectorTask& task) {
   task.keeps_solved = below_engine_ || last_engine_;
   GuidedStage last = known.last;
@@ -284,6 +295,7 @@ void ClosedLoopGuidance::SeeEarlierBurn(const GuidanceSight& sight) {
                              kPitchHalf, kYawMiddle, kWaste},
                             prior_.nominal, outcome_.acted ? kIterations : kFirstIterations);
   if (mission_.last.is_cut_off()) FreeCutOff(!mission_.holds_last, task);
+  BoundIncidence(sight.state, kEarlierPitch, kEarlierYaw, task);
   task.free[kBelowCutOff] = mission_.below.is_cut_off();
   task.free[kIgnition] = mission_.moves_ignition;
   task.keeps_solved = true;
@@ -326,6 +338,7 @@ void ClosedLoopGuidance::SeeBelowBurn(const GuidanceSight& sight) {
   if (sight.burn_ignition_s + DurationOf(known.below, plan_.value[kBelowCutOff]) - time_s < kHold_s) return;
   CorrectorTask task = Task({kBelowPitch, kBelowYaw, kIgnition, kPitchMiddle, kPitchHalf, kYawMiddle, kWaste},
                             prior_.nominal, outcome_.acted ? kIterations : kFirstIterations);
+  BoundIncidence(sight.state, kBelowPitch, kBelowYaw, task);
   task.free[kBelowCutOff] = known.below.is_cut_off();
   if (mission_.last.is_cut_off()) FreeCutOff(!mission_.holds_last, task);
   task.free[kIgnition] = mission_.moves_ignition;

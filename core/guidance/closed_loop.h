@@ -64,6 +64,8 @@ class ClosedLoopGuidance {
   void TakeOver(double time_s);
   /// Bounds of the cut-offs, and of an ignition after one, as the estimates have them.
   void BoundCutOffs(const Knowledge& known, double time_s, CorrectorTask& task);
+  /// Bounds of a burn's departures from the reference's attitude, in the air that is left.
+  void BoundIncidence(const NavigatedState& state, PlanUnknown pitch, PlanUnknown yaw, CorrectorTask& task);
   void SteerToCutOff(const Knowledge& known, const NavigatedState& state);
   void SetCutOff(const Correction& found);
   void SetPeriod(double since_s, double left_s);

@@ -43,7 +43,7 @@ Misses<misses> Scaled(const GuidanceMission& mission, const Injection& reached, 
                       const CorrectorTask& task, bool turns) {
   const OrbitMiss miss = OrbitMissOf(mission, reached);
   Misses<misses> m;
-  m(0) = miss.energy_m_s / kTolerance[0];
+  m(0) = (miss.energy_m_s - miss.dive_m_s) / kTolerance[0];
   if (turns && task.meets_altitude && miss.size_m_s) {
     m(1) = before != nullptr
                ? (miss.across * before->along - miss.along * before->across) /

@@ -95,6 +95,10 @@ struct GuidedStage {
   double Burnt(double duration_s) const { return burn.full_flow_kg_s * levels->Sum(duration_s); }
 };
 
+/// A flight that falls below this altitude comes back into the air at orbital speed: 7 Pa at 105 km. Nozzles
+/// hold the attitude there. Thrusters do not, at any incidence: in a coast it is 1 Pa.
+inline constexpr double kAirBelow_m = 105e3, kCoastAirBelow_m = 115e3;
+
 /// How a burn begins after the one before.
 struct BurnStart {
   bool on_timer = false;         ///< at `ignition_s`, else `after_burnout_s` after the one before has ended
@@ -129,6 +133,9 @@ struct GuidanceMission {
   double last_ignition_s = 0.0;       ///< of the reference
   double velocity_reserve_m_s = 0.0;  ///< by which the reference arrives faster than the target
   DirectionTable program;             ///< from the ignition of the stage before the last on
+  /// Predictions have no air: a plan whose way falls below this altitude, in a coast or a burn, is a bad one
+  /// (0: any may).
+  double air_below_m = 0.0, coast_air_below_m = 0.0;
 };
 
 /// The next burn (`last`), if it is another one of the same engine after a burn of `duration_s`: what is left

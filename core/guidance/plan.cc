@@ -13,6 +13,10 @@ namespace {
 // acceleration: what is left makes up for what the command loses.
 constexpr double kOfTurnRate = 0.7;
 
+// Angles change along the last burn in this time at least: a reference of another vehicle may leave it
+// nothing.
+constexpr double kShortestCourse_s = 1.0;
+
 // A burn's duration: its scale, and its shortest.
 constexpr double kOfBurn = 0.15, kShortestOfBurn = 0.2;
 // A longer burn of the last engine uses up the reserve of propellant: this part of the reserve costs 1. The
@@ -168,7 +172,7 @@ void SetReach(const GuidanceMission& mission, PlanPrior& prior) {
 PlanPrior BuildPrior(const GuidanceMission& mission) {
   PlanPrior prior;
   prior.mission = &mission;
-  prior.last_duration_s = mission.last.burn.duration_s;
+  prior.last_duration_s = std::max(mission.last.burn.duration_s, kShortestCourse_s);
   const double burnout_s = mission.last_ignition_s + prior.last_duration_s;
   const Direction from = mission.program.At(mission.last_ignition_s), to = mission.program.At(burnout_s);
   auto& value = prior.nominal.value;

@@ -17,11 +17,21 @@ namespace dispersa {
 
 namespace {
 
+// How far a place is below where the air begins, about. Only where it falls: what climbs leaves the air.
+void SeeDive(const GuidanceMission& mission, double air_below_m, NavigatedState& state) {
+  const Vector3& p = state.p_EoC_I;
+  if (!(air_below_m > 0.0 && p.dot(state.v_IC_I) < 0.0)) return;
+  const double radius_m = p.norm(), sine = p.z() / radius_m;
+  const double ground_m = mission.earth.equatorial_radius_m * (1.0 - mission.earth.flattening * sine * sine);
+  state.dive_m = std::max(state.dive_m, ground_m + air_below_m - radius_m);
+}
+
 // Equal steps of no more than `longest_s` from the state's time to `to_s`. `thrust` is the specific force in
 // I at a time since the state's; the end of a step and the beginning of the next share it.
 template <class ThrustAt>
-void Advance(const Earth& earth, double to_s, double longest_s, const ThrustAt& thrust,
-             NavigatedState& state) {
+void Advance(const GuidanceMission& mission, double air_below_m, double to_s, double longest_s,
+             const ThrustAt& thrust, NavigatedState& state) {
+  const Earth& earth = mission.earth;
   const double way_s = to_s - state.time_s;
   if (!(way_s > 0.0)) return;
   const int steps = std::max(1, static_cast<int>(std::ceil(way_s / longest_s)));
@@ -40,9 +50,16 @@ void Advance(const Earth& earth, double to_s, double longest_s, const ThrustAt& 
     const Vector3 a4 = Gravitation(earth, p + h * v3) + at_end;
     p += h / 6.0 * (v + 2.0 * (v2 + v3) + v4);
     v += h / 6.0 * (a1 + 2.0 * (a2 + a3) + a4);
+    SeeDive(mission, air_below_m, state);
     at_start = at_end;
   }
   state.time_s = to_s;
+}
+
+void Coast(const GuidanceMission& mission, double to_s, const PredictorSteps& steps, NavigatedState& state) {
+  Advance(
+      mission, mission.coast_air_below_m, to_s, steps.coast_s, [](double) { return Vector3(0.0, 0.0, 0.0); },
+      state);
 }
 
 // Bodies of a burn that wait for their criteria. They leave where the prediction meets these.
@@ -66,7 +83,8 @@ class WaitingBodies {
         LetGo(due, mass_kg);
         continue;
       }
-      dispersa::Advance(mission_.earth, std::min(to_s, from.time_s + longest_s), longest_s, thrust, state);
+      dispersa::Advance(mission_, mission_.air_below_m, std::min(to_s, from.time_s + longest_s), longest_s,
+                        thrust, state);
       const NavigatedState end = state;
       auto first = waiting_.end();
       for (auto drop = waiting_.begin(); drop != waiting_.end(); ++drop) {
@@ -78,7 +96,7 @@ class WaitingBodies {
       }
       if (first != waiting_.end()) LetGo(first, mass_kg);
     }
-    dispersa::Advance(mission_.earth, to_s, longest_s, thrust, state);
+    dispersa::Advance(mission_, mission_.air_below_m, to_s, longest_s, thrust, state);
   }
 
  private:
@@ -102,7 +120,7 @@ class WaitingBodies {
       before_s = at.time_s;
       before = beyond;
       at = from;
-      dispersa::Advance(mission_.earth, then_s, longest_s, thrust, at);
+      dispersa::Advance(mission_, mission_.air_below_m, then_s, longest_s, thrust, at);
       beyond = BeyondCriterion(mission_, drop, at);
     }
     return at;
@@ -266,8 +284,7 @@ std::optional<GuidedStage> FlyEarlierBurns(const GuidanceMission& mission, const
       stage.ignition_mass_kg -= known.expelled_kg;
     ignition_s =
         start.on_timer ? std::max(start.ignition_s, state.time_s) : state.time_s + start.after_burnout_s;
-    Advance(
-        mission.earth, ignition_s, steps.coast_s, [](double) { return Vector3(0.0, 0.0, 0.0); }, state);
+    Coast(mission, ignition_s, steps, state);
     before = stage;
     return stage;
   };
@@ -366,8 +383,7 @@ Injection Predict(const GuidanceMission& mission, const PlanPrior& prior, const 
   if (shares_coast)
     state = way.at_ignition;
   else if (!lit)
-    Advance(
-        mission.earth, ignition_s, steps.coast_s, [](double) { return Vector3(0.0, 0.0, 0.0); }, state);
+    Coast(mission, ignition_s, steps, state);
   if (way_out != nullptr) {
     way.plan = plan;
     way.at_ignition = state;
@@ -402,6 +418,7 @@ Injection Predict(const GuidanceMission& mission, const PlanPrior& prior, const 
   injection.at = ArrivalOf(mission.earth, state.time_s, state.p_EoC_I, state.v_IC_I);
   injection.time_s = state.time_s;
   injection.radius_m = state.p_EoC_I.norm();
+  injection.dive_m = state.dive_m;
   injection.p_EoC_I = state.p_EoC_I;
   injection.v_IC_I = state.v_IC_I;
   if (known.phase == GuidancePhase::kCoast || lit) {

@@ -13,6 +13,7 @@ struct NavigatedState {
   double time_s = 0.0;
   Vector3 p_EoC_I = Vector3::Zero();
   Vector3 v_IC_I = Vector3::Zero();
+  double dive_m = 0.0;  ///< predicted: how far it has fallen below GuidanceMission::air_below_m
 };
 
 enum class GuidancePhase {
@@ -41,6 +42,7 @@ struct Injection {
   Arrival at;
   double time_s = 0.0;
   double radius_m = 0.0;  ///< from the Earth's centre
+  double dive_m = 0.0;    ///< how far the way there has fallen below GuidanceMission::air_below_m
   Vector3 p_EoC_I = Vector3::Zero(), v_IC_I = Vector3::Zero();
   /// Of the first burn, where it ends: inertial speed and time.
   double burn_end_speed_m_s = 0.0, burn_end_s = 0.0;

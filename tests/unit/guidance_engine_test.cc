@@ -255,5 +255,19 @@ TEST(ClosedLoopGuidance, WithoutAPlanFliesTheReference) {
   EXPECT_TRUE(guidance.outcome().arrives);
 }
 
+// A reference of another vehicle may leave its last burn nothing.
+TEST(LastBurnAttitude, IsANumberOfABurnOfNothing) {
+  GuidanceMission mission = EngineMission();
+  mission.last.burn.duration_s = 0.0;
+  const PlanPrior prior = BuildPrior(mission);
+  Plan plan = prior.nominal;
+  plan.value[kPitchHalf] = 0.1;
+  const LastBurnAttitude burn(plan, prior);
+  for (const double since_s : {0.0, 0.3, 2.0}) {
+    EXPECT_TRUE(std::isfinite(burn.At(since_s).pitch_rad)) << since_s;
+    EXPECT_TRUE(std::isfinite(burn.RateAt(since_s).pitch_rad)) << since_s;
+  }
+}
+
 }  // namespace
 }  // namespace dispersa::guidance_engine_test

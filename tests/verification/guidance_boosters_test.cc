@@ -146,6 +146,37 @@ TEST(GuidedCore, ArrivesAtItsPlace) {
   }
 }
 
+// Two boosters that the reference knows nothing of. Flown by it as a point mass, the ascent never reaches the
+// speed of the first cut-off of stage 2: nothing would be left of its propellant for the last burn.
+TEST(GuidedCore, ArrivesWithAReferenceOfAnotherVehicle) {
+  Campaign campaign = GalleryLauncher(DISPERSA_CAMPAIGNS, "falcon9");
+  Boosters& boosters = campaign.vehicle.boosters;
+  boosters.count = 2;
+  boosters.dry_mass_kg = 12e3;
+  boosters.propellant_mass_kg = 148e3;
+  boosters.radius_m = 3.4;
+  boosters.diameter_m = 2.6;
+  boosters.top_station_m = 45.0;
+  boosters.bottom_station_m = 70.0;
+  boosters.nozzle_station_m = 69.0;
+  boosters.motor.thrust_n = 3.2e6;
+  boosters.motor.burning_time_s = 127.0;
+  boosters.grain = {47.0, 67.0, 2.55, 1.0};
+  boosters.separation_delay_s = 3.0;
+  campaign.vehicle.structure_beam.reset();
+  campaign.vehicle.stages[0].liftoff_mass_kg += boosters.LiftOffMass();
+  const FlightDefinition definition = DefinitionOf(campaign);
+  EXPECT_EQ(definition.cut_off_s[1], HUGE_VAL);
+  const FlightResult flown = Fly(FlightModel(definition), {});
+  ASSERT_EQ(flown.outcome, Outcome::kCompleted) << flown.reason;
+  std::printf("two boosters of 160 t: perigee %.2f km, apogee %.2f km, converged %g\n",
+              MetricOf(flown, "perigee_km"), MetricOf(flown, "apogee_km"),
+              MetricOf(flown, "guidance_converged"));
+  EXPECT_EQ(MetricOf(flown, "guidance_converged"), 1.0);
+  EXPECT_NEAR(MetricOf(flown, "perigee_km"), 185.0, 1.0);
+  EXPECT_NEAR(MetricOf(flown, "apogee_km"), 35786.0, 5.0);
+}
+
 // Flights of Soyuz' campaign whose propellant ran out when a longer burn cost guidance nothing, or when it
 // sought the ellipse with its perigee where the plan before had it: 2 to 15 km of perigee were missing.
 TEST(GuidedCore, KeepsTheReserveOfPropellant) {

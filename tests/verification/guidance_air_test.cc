@@ -1,0 +1,85 @@
+// Guidance keeps out of the air, of which its predictions know nothing.
+#include <gtest/gtest.h>
+
+#include <algorithm>
+#include <cmath>
+#include <string>
+
+#include "core/campaign/flight_definition.h"
+#include "core/flight/tick_sample.h"
+#include "core/vehicle/vehicle.h"
+#include "tests/gallery_launcher.h"
+#include "tests/slv4_flight.h"
+
+namespace dispersa::guidance_air_test {
+namespace {
+
+FlightResult FlyNominal(const Campaign& campaign, bool closed_loop) {
+  FlightDefinition definition = DefinitionOf(campaign);
+  definition.guidance.closed_loop = closed_loop;
+  return Fly(FlightModel(definition), {});
+}
+
+void Print(const std::string& what, const FlightResult& flown, const FlightResult& open) {
+  std::printf("%s: axis %.1f km (%.1f open loop), perigee %.1f km (%.1f), converged %g\n", what.c_str(),
+              MetricOf(flown, "semi_major_axis_error_km"), MetricOf(open, "semi_major_axis_error_km"),
+              MetricOf(flown, "perigee_km"), MetricOf(open, "perigee_km"), MetricOf(flown, "guidance_converged"));
+}
+
+// A core that lacks so much that the orbit is out of reach. The lower the path, the more energy it leaves:
+// guidance without a bound led the upper stage down to 90 km, where the air turned it over.
+TEST(GuidedAboveTheAir, WhereEnergyIsMissing) {
+  for (const double factor : {0.985, 0.97}) {
+    SCOPED_TRACE(factor);
+    Campaign campaign = GalleryLauncher(DISPERSA_CAMPAIGNS, "ariane5");
+    Motor& core = campaign.vehicle.stages[0].motor;
+    core.specific_impulse_s *= factor;
+    core.burning_time_s *= factor;
+    const FlightResult flown = FlyNominal(campaign, true), open = FlyNominal(campaign, false);
+    ASSERT_EQ(open.outcome, Outcome::kCompleted) << open.reason;
+    ASSERT_EQ(flown.outcome, Outcome::kCompleted) << flown.reason;
+    Print("specific impulse of the core times " + std::to_string(factor), flown, open);
+    EXPECT_GT(MetricOf(flown, "semi_major_axis_error_km"), MetricOf(open, "semi_major_axis_error_km"));
+    EXPECT_GT(MetricOf(flown, "perigee_km"), 180.0);
+  }
+}
+
+// A first burn that is too short for the reference's parking orbit, by its timer. Guidance led it to a coast
+// at 95 km, where its thrusters could not hold the attitude.
+TEST(GuidedAboveTheAir, InTheCoast) {
+  Campaign campaign = GalleryLauncher(DISPERSA_CAMPAIGNS, "falcon9");
+  Motor& first = campaign.vehicle.stages[1].motor;
+  first.cut_off = CutOff::kAtTime;
+  first.cut_off_s = 360.0;
+  const FlightResult flown = FlyNominal(campaign, true), open = FlyNominal(campaign, false);
+  ASSERT_EQ(flown.outcome, Outcome::kCompleted) << flown.reason;
+  Print("first burn on a timer", flown, open);
+  EXPECT_EQ(MetricOf(flown, "guidance_converged"), 1.0);
+  EXPECT_NEAR(MetricOf(flown, "perigee_km"), 185.0, 1.0);
+}
+
+// 15 % of payload more than the reference's. In the last seconds of stage 1, at 180 Pa, guidance turned to 8
+// degrees of incidence, which thrusters of 10 N did not hold in the coast that followed.
+TEST(GuidedAboveTheAir, TurnsLittleWhereTheAirIsFelt) {
+  Campaign campaign = GalleryLauncher(DISPERSA_CAMPAIGNS, "electron");
+  for (Stage& stage : campaign.vehicle.stages) stage.liftoff_mass_kg += 34.5;
+  const FlightResult flown = FlyNominal(campaign, true), open = FlyNominal(campaign, false);
+  ASSERT_EQ(open.outcome, Outcome::kCompleted) << open.reason;
+  ASSERT_EQ(flown.outcome, Outcome::kCompleted) << flown.reason;
+  Print("34.5 kg more", flown, open);
+  EXPECT_GT(MetricOf(flown, "semi_major_axis_error_km"), MetricOf(open, "semi_major_axis_error_km"));
+}
+
+// A flight that ends before its injection has not arrived, whatever its last plan says.
+TEST(GuidedAboveTheAir, ConvergesAtAnInjectionOnly) {
+  Campaign campaign = GalleryLauncher(DISPERSA_CAMPAIGNS, "falcon9");
+  campaign.vehicle.limits.axial_load_g = 5.0;
+  campaign.vehicle.limits.terminate = true;
+  const FlightResult flown = FlyNominal(campaign, true);
+  ASSERT_EQ(flown.outcome, Outcome::kStructuralLimit) << flown.reason;
+  EXPECT_EQ(flown.end_stage, 3) << "in the last seconds of the last burn";
+  EXPECT_EQ(MetricOf(flown, "guidance_converged"), 0.0);
+}
+
+}  // namespace
+}  // namespace dispersa::guidance_air_test
