@@ -121,6 +121,12 @@ DISPERSA_BOUNDED_STEP(kPlanUnknowns, kMisses);
 DISPERSA_BOUNDED_STEP(kUncutUnknowns, kAllMisses);
 DISPERSA_BOUNDED_STEP(kTwoBurnUnknowns, kAllMisses);
 DISPERSA_BOUNDED_STEP(kPlanUnknowns, kAllMisses);
+DISPERSA_BOUNDED_STEP(kUncutUnknowns, kMissesAndAir);
+DISPERSA_BOUNDED_STEP(kTwoBurnUnknowns, kMissesAndAir);
+DISPERSA_BOUNDED_STEP(kPlanUnknowns, kMissesAndAir);
+DISPERSA_BOUNDED_STEP(kUncutUnknowns, kAllMissesAndAir);
+DISPERSA_BOUNDED_STEP(kTwoBurnUnknowns, kAllMissesAndAir);
+DISPERSA_BOUNDED_STEP(kPlanUnknowns, kAllMissesAndAir);
 #undef DISPERSA_BOUNDED_STEP
 
 }  // namespace dispersa

@@ -9,8 +9,10 @@
 
 namespace dispersa {
 
-/// Energy, path (two) and plane; and of targets that name a node or a place.
-inline constexpr int kMisses = 4, kAllMisses = 6;
+/// Energy, path (two) and plane; and of targets that name a node or a place. Of ways through the air one more
+/// of either, the last.
+inline constexpr int kMisses = 4, kAllMisses = 6, kMissesAndAir = kMisses + 1,
+                     kAllMissesAndAir = kAllMisses + 1;
 template <int misses>
 using Misses = Eigen::Matrix<double, misses, 1>;
 /// Of the first `count` unknowns of a plan. The order in which sums are taken depends on it.

@@ -14,6 +14,14 @@ namespace {
 // Energy, path, path, plane, m/s. A degree of plane, 130 m/s, then asks for less than 0.1 degree of a thrust
 // that lacks 10 m/s of energy. Then node and place.
 constexpr double kTolerance[kAllMisses] = {1e-2, 3e-2, 3e-2, 1.0, 1.0, 10.0};
+// Of a way that falls into the air, m: 1 km weighs as 33 m/s of energy. Where energy is missing, a low way
+// leaves several m/s more for each kilometre.
+constexpr double kDiveTolerance_m = 0.3;
+// By how much a way may fall into it and still arrive.
+constexpr double kArrivesDive_m = 1e3;
+// Whether misses have node and place, and whether they have the air.
+constexpr bool HasPlace(int misses) { return misses >= kAllMisses; }
+constexpr bool HasAir(int misses) { return misses == kMissesAndAir || misses == kAllMissesAndAir; }
 // Differences for derivatives: small against the curvature, large against the rounding of a prediction.
 constexpr double kDifference = 3e-4;  // of a scale
 // A step that moves no miss by more, in tolerances, needs no further one. Nor does a short one, in scales,
@@ -43,7 +51,7 @@ Misses<misses> Scaled(const GuidanceMission& mission, const Injection& reached, 
                       const CorrectorTask& task, bool turns) {
   const OrbitMiss miss = OrbitMissOf(mission, reached);
   Misses<misses> m;
-  m(0) = (miss.energy_m_s - miss.dive_m_s) / kTolerance[0];
+  m(0) = miss.energy_m_s / kTolerance[0];
   if (turns && task.meets_altitude && miss.size_m_s) {
     m(1) = before != nullptr
                ? (miss.across * before->along - miss.along * before->across) /
@@ -56,10 +64,11 @@ Misses<misses> Scaled(const GuidanceMission& mission, const Injection& reached, 
     m(2) = task.meets_altitude ? miss.shape_m_s / kTolerance[2] : 0.0;
   }
   m(3) = task.meets_plane ? miss.plane_m_s / kTolerance[3] : 0.0;
-  if constexpr (misses > kMisses) {
+  if constexpr (HasPlace(misses)) {
     m(4) = task.meets_plane ? miss.node_m_s / kTolerance[4] : 0.0;
     m(5) = task.meets_altitude ? miss.place_m_s / kTolerance[5] : 0.0;
   }
+  if constexpr (HasAir(misses)) m(misses - 1) = reached.dive_m / kDiveTolerance_m;
   return m;
 }
 
@@ -221,10 +230,10 @@ Correction CorrectFirst(const GuidanceMission& mission, const PlanPrior& prior, 
     if (!taken || is_found) break;
   }
   const double speed_m_s = mission.target.velocity_m_s;
-  bool is_in_place = true;
-  if constexpr (misses > kMisses)
-    is_in_place =
-        ArrivesInPlace(OrbitMissOf(mission, best.reached), speed_m_s, task.meets_altitude, task.meets_plane);
+  bool is_in_place = best.reached.dive_m <= kArrivesDive_m;
+  if constexpr (HasPlace(misses))
+    is_in_place = is_in_place && ArrivesInPlace(OrbitMissOf(mission, best.reached), speed_m_s,
+                                                task.meets_altitude, task.meets_plane);
   if (mission.orbit) {
     best.arrives = is_in_place && ArrivesInOrbit(OrbitMissOf(mission, best.reached), speed_m_s,
                                                  task.meets_altitude, task.meets_plane);
@@ -242,16 +251,27 @@ Correction CorrectFirst(const GuidanceMission& mission, const PlanPrior& prior, 
 Correction Correct(const GuidanceMission& mission, const PlanPrior& prior, const Knowledge& known,
                    const NavigatedState& from, const Plan& start, const CorrectorTask& task) {
   const auto correct = [&]<int count>(std::integral_constant<int, count>) {
-    const auto by = [&](bool turns) {
-      return NamesNodeOrPlace(mission)
-                 ? CorrectFirst<count, kAllMisses>(mission, prior, known, from, start, task, turns)
-                 : CorrectFirst<count, kMisses>(mission, prior, known, from, start, task, turns);
+    const auto with = [&]<int misses>(std::integral_constant<int, misses>) {
+      const auto by = [&](bool turns) {
+        return CorrectFirst<count, misses>(mission, prior, known, from, start, task, turns);
+      };
+      Correction found = by(true);
+      if (found.arrives || !task.meets_altitude || !OrbitMissOf(mission, found.reached).size_m_s)
+        return found;
+      // Each way arrives from where the other one does not.
+      const int predictions = found.predictions;
+      if (const Correction held = by(false); held.prioritised_miss < found.prioritised_miss) found = held;
+      found.predictions += predictions;
+      return found;
     };
-    Correction found = by(true);
-    if (found.arrives || !task.meets_altitude || !OrbitMissOf(mission, found.reached).size_m_s) return found;
-    // Each way arrives from where the other one does not.
+    const bool has_place = NamesNodeOrPlace(mission);
+    Correction found = has_place ? with(std::integral_constant<int, kAllMisses>{})
+                                 : with(std::integral_constant<int, kMisses>{});
+    if (!(found.reached.dive_m > 0.0)) return found;
+    // Through the air, of which predictions know nothing: sought again, with that as a miss.
     const int predictions = found.predictions;
-    if (const Correction held = by(false); held.prioritised_miss < found.prioritised_miss) found = held;
+    found = has_place ? with(std::integral_constant<int, kAllMissesAndAir>{})
+                      : with(std::integral_constant<int, kMissesAndAir>{});
     found.predictions += predictions;
     return found;
   };

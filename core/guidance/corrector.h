@@ -6,6 +6,9 @@
 //
 //   sum ((x - x0) / scale)² + sum (miss / tolerance)²
 //
+// A way that falls into the air is sought again with the fall as one more miss, because predictions have no
+// air.
+//
 // The tolerances are so tight that the first sum only chooses among plans that meet the second. The misses
 // are those of orbit_miss.h. Path has three times the tolerance of energy, the plane a hundred times, the
 // place a thousand times. So energy comes first, then path, then plane, then place.

@@ -13,8 +13,6 @@ namespace {
 constexpr double kElliptic = 0.01;
 // Below this eccentricity the eccentricity vector has no direction to speak of.
 constexpr double kTurns = 0.001;
-// What a dive takes, m/s for each square metre. Smooth where it begins: steps are straight lines.
-constexpr double kOfDive_1_m_s = 1e-6;
 
 // Energy a unit of mass, and the eccentricity vector along the radius and against the path.
 struct Shape {
@@ -81,8 +79,7 @@ OrbitMiss MissOfOrbit(const GuidanceMission& mission, const Injection& reached) 
           is.across,
           speed * (reached.at.inclination_rad - mission.target.inclination_rad),
           NodeMiss(mission, reached),
-          speed * place_rad,
-          kOfDive_1_m_s * Square(reached.dive_m)};
+          speed * place_rad};
 }
 
 }  // namespace
@@ -111,9 +108,7 @@ OrbitMiss OrbitMissOf(const GuidanceMission& mission, const Injection& reached) 
           is.along,
           is.across,
           speed * (at.inclination_rad - target.inclination_rad),
-          NodeMiss(mission, reached),
-          0.0,
-          kOfDive_1_m_s * Square(reached.dive_m)};
+          NodeMiss(mission, reached)};
 }
 
 }  // namespace dispersa

@@ -19,9 +19,6 @@ struct OrbitMiss {
   // Of targets that name a node or a true anomaly.
   double node_m_s = 0.0;   ///< the plane's turn about the Earth's axis, times sine of inclination
   double place_m_s = 0.0;  ///< along the orbit
-  /// What air takes from the energy, 0 or more: 1 m/s for a way there that falls 1 km below the mission's
-  /// air_below_m, 25 m/s for 5 km. It takes control, too.
-  double dive_m_s = 0.0;
 };
 /// Whether a target has one of the last two misses.
 bool NamesNodeOrPlace(const GuidanceMission& mission);

@@ -23,7 +23,8 @@ FlightResult FlyNominal(const Campaign& campaign, bool closed_loop) {
 void Print(const std::string& what, const FlightResult& flown, const FlightResult& open) {
   std::printf("%s: axis %.1f km (%.1f open loop), perigee %.1f km (%.1f), converged %g\n", what.c_str(),
               MetricOf(flown, "semi_major_axis_error_km"), MetricOf(open, "semi_major_axis_error_km"),
-              MetricOf(flown, "perigee_km"), MetricOf(open, "perigee_km"), MetricOf(flown, "guidance_converged"));
+              MetricOf(flown, "perigee_km"), MetricOf(open, "perigee_km"),
+              MetricOf(flown, "guidance_converged"));
 }
 
 // A core that lacks so much that the orbit is out of reach. The lower the path, the more energy it leaves:
