@@ -438,6 +438,9 @@ GuidanceMission BuildMission(const FlightDefinition& definition, const LauncherP
     const double from_s = times[i].ignition_s, to_s = times[i].burnout_s;
     GuidedStage guided;
     guided.burn = stack.burn;
+    for (std::size_t above = i; above < plant.stacks.size(); ++above)
+      guided.cross_section_m2 =
+          std::max(guided.cross_section_m2, 0.25 * kPi * Square(definition.vehicle.stages[above].diameter_m));
     const Stage& of_vehicle = definition.vehicle.stages[i];
     const bool ends_in_flight = EndsInFlight(of_vehicle.motor);
     const bool runs_dry = of_vehicle.motor.cut_off == CutOff::kAtDepletion;

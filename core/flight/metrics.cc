@@ -19,7 +19,8 @@ namespace {
 constexpr double kUndefined = std::numeric_limits<double>::quiet_NaN();
 
 double Rms(const ErrorSums& e) { return e.count > 0.0 ? Sqrt(e.squares / e.count) * kDegPerRad : kUndefined; }
-double Peak(const ErrorSums& e) { return e.count > 0.0 ? e.peak * kDegPerRad : kUndefined; }
+// Errors that are no numbers leave no peak.
+double Peak(const ErrorSums& e) { return e.peak >= 0.0 ? e.peak * kDegPerRad : kUndefined; }
 double Swing(double rad) { return rad >= 0.0 ? rad * kDegPerRad : kUndefined; }
 double Ratio(double part, double whole) { return whole > 0.0 ? part / whole : kUndefined; }
 
@@ -280,8 +281,8 @@ constexpr Row kRows[] = {
      kOfOrbitNotDigested},
     {"guidance_converged", kPure, "–", kGuidance, "Guidance converged",
      "1 if the flight is injected, the last guidance plan reaches the target, and also the last plan that "
-     "controlled altitude, and, "
-     "where no command ended the last burn, its energy is within 1 m/s of the target's; else 0",
+     "controlled altitude, and, where no command ended the last burn, its energy is within 1 m/s of the "
+     "target's; else 0",
      kSmaller,
      [](const Measured& m) { return m.Guided(m.sums.guidance.arrives && m.sums.injected ? 1.0 : 0.0); },
      kNotDigested},

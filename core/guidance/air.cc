@@ -31,6 +31,11 @@ double DynamicPressure(const GuidanceMission& mission, const NavigatedState& sta
   return 0.5 * flow.density_kg_m3 * Square(flow.ground_speed_m_s);
 }
 
+bool FeelsAir(const GuidanceMission& mission, const GuidedStage& stage, const NavigatedState& state) {
+  constexpr double kFelt = 1e-4;
+  return DynamicPressure(mission, state) * stage.cross_section_m2 > kFelt * stage.burn.vacuum_thrust_n;
+}
+
 double BeyondCriterion(const GuidanceMission& mission, const MassDrop& drop, const NavigatedState& state) {
   const double altitude_m = AltitudeOf(mission.earth, state);
   if (drop.trigger == JettisonTrigger::kAtAltitude) return altitude_m - drop.threshold;

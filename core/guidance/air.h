@@ -17,6 +17,11 @@ inline constexpr double kThinAir_pa = 1e3;
 /// of newtons hold it in the coast after a burn.
 inline constexpr double kMostIncidence_pa_rad = 5.0;
 
+/// Whether the air's force on a burning stage, with a drag coefficient of 1, is more than an accelerometer's
+/// reading may be wrong by (1e-4 of the thrust). Then no thrust is estimated from it: a drag that fades would
+/// be taken for a flow.
+bool FeelsAir(const GuidanceMission& mission, const GuidedStage& stage, const NavigatedState& state);
+
 /// How far a flight is beyond the criterion of a body that waits: 0 or more where the body is due. In m of
 /// altitude, or the logarithm of the criterion's heat flux over the flight's. Both are almost straight over a
 /// few seconds.

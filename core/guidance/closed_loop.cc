@@ -275,10 +275,12 @@ void ClosedLoopGuidance::BeginEarlierBurn(std::size_t index) {
 void ClosedLoopGuidance::SeeEarlierBurn(const GuidanceSight& sight) {
   if (earlier_ != sight.earlier) BeginEarlierBurn(sight.earlier);
   const double time_s = sight.state.time_s, since_s = time_s - sight.burn_ignition_s;
-  if (!earlier_engine_) earlier_motor_->Add(since_s, sight.specific_force_m_s2, sight.expelled_kg);
+  const bool reads = !FeelsAir(mission_, mission_.earlier[sight.earlier].stage, sight.state);
+  if (!earlier_engine_ && reads) earlier_motor_->Add(since_s, sight.specific_force_m_s2, sight.expelled_kg);
   if (since_s < kTakeOver_s) return;
   TakeOver(time_s);
-  if (earlier_engine_) earlier_engine_->Add(time_s, since_s, sight.specific_force_m_s2, sight.expelled_kg);
+  if (earlier_engine_ && reads)
+    earlier_engine_->Add(time_s, since_s, sight.specific_force_m_s2, sight.expelled_kg);
   MeasureThrust(sight);
   Knowledge known;
   known.phase = sight.phase;
@@ -319,14 +321,16 @@ void ClosedLoopGuidance::SeeEarlierBurn(const GuidanceSight& sight) {
 
 void ClosedLoopGuidance::SeeBelowBurn(const GuidanceSight& sight) {
   const double since_s = sight.state.time_s - sight.burn_ignition_s;
-  if (!below_engine_) below_.Add(since_s, sight.specific_force_m_s2, sight.expelled_kg);
+  const bool reads = !FeelsAir(mission_, mission_.below, sight.state);
+  if (!below_engine_ && reads) below_.Add(since_s, sight.specific_force_m_s2, sight.expelled_kg);
   if (since_s < kTakeOver_s) return;
   const double time_s = sight.state.time_s;
   if (!steers_) {
     TakeOver(time_s);
     plan_ = prior_.nominal;
   }
-  if (below_engine_) below_engine_->Add(time_s, since_s, sight.specific_force_m_s2, sight.expelled_kg);
+  if (below_engine_ && reads)
+    below_engine_->Add(time_s, since_s, sight.specific_force_m_s2, sight.expelled_kg);
   MeasureThrust(sight);
   Knowledge known;
   known.phase = sight.phase;
@@ -346,6 +350,7 @@ void ClosedLoopGuidance::SeeBelowBurn(const GuidanceSight& sight) {
   const Correction found = Correct(mission_, prior_, known, sight.state, plan_, task);
   plan_ = found.plan;
   outcome_.acted = true;
+  outcome_.arrives = found.arrives;  // the last plan, if nothing plans the burn that follows
   if (known.below.is_cut_off()) SetCutOff(found);
   SetPeriod(since_s, found.reached.burn_end_s - time_s);
 }
@@ -421,11 +426,12 @@ void ClosedLoopGuidance::SeeLastBurn(const GuidanceSight& sight) {
   if (!mission_.config.steers_last_burn) return;
   const double time_s = sight.state.time_s, since_s = time_s - sight.burn_ignition_s;
   if (!mission_.moves_ignition) plan_.value[kIgnition] = sight.burn_ignition_s;
+  const bool reads = !FeelsAir(mission_, mission_.last, sight.state);
   if (last_engine_) {
     if (since_s < kTakeOver_s) return;
     TakeOver(time_s);
-    last_engine_->Add(time_s, since_s, sight.specific_force_m_s2, sight.expelled_kg);
-  } else {
+    if (reads) last_engine_->Add(time_s, since_s, sight.specific_force_m_s2, sight.expelled_kg);
+  } else if (reads) {
     last_.Add(since_s, sight.specific_force_m_s2, sight.expelled_kg);
   }
   MeasureThrust(sight);

@@ -69,6 +69,7 @@ struct MassDrop {
 struct GuidedStage {
   MotorBurn burn;
   double ignition_mass_kg = 0.0;  ///< with everything above
+  double cross_section_m2 = 0.0;  ///< of its widest stage
   bool loses_mass = false;        ///< the reference lets go of something while it burns
   // Of an engine that guidance cuts off, or that uses up its propellant. The reference's burn ends after
   // burn.duration_s.

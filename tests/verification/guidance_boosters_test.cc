@@ -242,5 +242,20 @@ TEST(GuidedCore, IsSteeredBelowALastBurnThatEndsByItself) {
   }
 }
 
+// As planned, the burn after a core's has no plan of its own: the core's last one says whether the flight
+// arrives.
+TEST(GuidedCore, ConvergesByItsPlanIfNothingPlansTheLastBurn) {
+  for (const char* name : {"ariane5", "soyuz"}) {
+    SCOPED_TRACE(name);
+    FlightDefinition definition = DefinitionOf(GalleryLauncher(DISPERSA_CAMPAIGNS, name));
+    definition.guidance.steers_last_burn = false;
+    const FlightResult flown = Fly(FlightModel(definition), {});
+    ASSERT_EQ(flown.outcome, Outcome::kCompleted) << flown.reason;
+    std::printf("%s: axis %.3f km\n", name, MetricOf(flown, "semi_major_axis_error_km"));
+    EXPECT_EQ(MetricOf(flown, "guidance_converged"), 1.0);
+    EXPECT_NEAR(MetricOf(flown, "semi_major_axis_error_km"), 0.0, 0.1);
+  }
+}
+
 }  // namespace
 }  // namespace dispersa::guidance_boosters_test
