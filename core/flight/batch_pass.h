@@ -468,8 +468,12 @@ void Batch<T>::Guide() {
     sight.ignition_s = phase.ignition_s;
     sight.expelled_kg = phase.expelled_mass_kg;
     sight.specific_force_m_s2 = size_of(now.force_n) / Lane(now.mass_kg, lane);
-    sight.measured_angle_rad = size_of(measured_angle_rad_);
-    sight.measured_rate_rad_s = size_of(measured_rate_rad_s_);
+    const auto across_of = [lane](const Vector<T>& v) {
+      const double y_ = Lane(v.y, lane), z = Lane(v.z, lane);
+      return Sqrt(y_ * y_ + z * z);
+    };
+    sight.measured_angle_rad = across_of(measured_angle_rad_);
+    sight.measured_rate_rad_s = across_of(measured_rate_rad_s_);
     if (record->Guide(sight)) SetStop(lane);
   }
 }

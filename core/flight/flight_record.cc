@@ -463,7 +463,6 @@ const Motor* FlightRecord::CutOffEngine(int stage) const {
 void FlightRecord::CutOff(int stage, double time_s) {
   const auto ignition = std::find_if(events.begin(), events.end(),
                                      [&](const FlightEvent& event) { return event.stage == stage; });
-  if (guided) guided->NoteCutOff(stage);
   CommandCutOffOf(model_.definition().vehicle, stage, time_s - ignition->time_s, plant);
   events = EventsOf(model_, plant, inputs,
                     guided ? guided->ignition_s() : model_.definition().last_ignition_s, rail_exit_s_);

@@ -33,8 +33,6 @@ double GuidedFlight::CutOffIn(double time_s, double ignition_s, const Vector3& v
 }
 
 void GuidedFlight::Inject(double altitude_m, const Vector3& p_EoC_I, const Vector3& v_IC_I) {
-  const int last = static_cast<int>(model_.nominal_plant().stacks.size()) - 1;
-  if (cut_off_stack_ == last) return;
   guidance_->BurnOut(altitude_m + position_error_I_.dot(p_EoC_I) / p_EoC_I.norm(),
                      p_EoC_I + position_error_I_, v_IC_I + velocity_error_I_);
 }

@@ -29,7 +29,8 @@ struct LaneSight {
   double ignition_s = 0.0;
   double expelled_kg = 0.0;
   double specific_force_m_s2 = 0.0;
-  double measured_angle_rad = 0.0;  ///< by the gyros
+  // By the gyros, in pitch and yaw: thrust does not turn with roll.
+  double measured_angle_rad = 0.0;
   double measured_rate_rad_s = 0.0;
 };
 
@@ -59,7 +60,6 @@ class GuidedFlight {
   ReferenceAttitude ReferenceAt(double time_s) const;
 
   /// A command has ended the burn of a stage.
-  void NoteCutOff(int stack) { cut_off_stack_ = stack; }
   /// The injection. The arguments are true values.
   void Inject(double altitude_m, const Vector3& p_EoC_I, const Vector3& v_IC_I);
   const GuidanceOutcome& outcome() const;
@@ -75,7 +75,6 @@ class GuidedFlight {
   const std::unique_ptr<ClosedLoopGuidance> guidance_;
   double next_tick_ = 0.0;
   bool steers_ = false;
-  int cut_off_stack_ = -1;                     ///< the last one whose burn a command ended
   bool first_stage_met_air_ = false;           ///< its dynamic pressure has been above kThinAir_pa
   std::optional<double> first_stage_ready_s_;  ///< when both came true
   alignas(64) double row_[ReferenceRows::kRowSize] = {};

@@ -280,9 +280,9 @@ constexpr Row kRows[] = {
      },
      kOfOrbitNotDigested},
     {"guidance_converged", kPure, "–", kGuidance, "Guidance converged",
-     "1 if the flight is injected, the last guidance plan reaches the target, and also the last plan that "
-     "controlled altitude, and, where no command ended the last burn, its energy is within 1 m/s of the "
-     "target's; else 0",
+     "1 if the last guidance plan reaches the target, and also the last plan that controlled altitude, and "
+     "the flight is injected, by its navigation, within 1 m/s of the target's energy and 0.02 deg of its "
+     "plane; else 0",
      kSmaller,
      [](const Measured& m) { return m.Guided(m.sums.guidance.arrives && m.sums.injected ? 1.0 : 0.0); },
      kNotDigested},

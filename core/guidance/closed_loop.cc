@@ -34,8 +34,9 @@ constexpr double kArmed_s = 3.0, kArmedOfBurn = 0.25;
 // Where the speed grows by less than this part of the specific force, time ends the burn.
 constexpr double kAlong = 0.2;
 // A timer does not end a burn that lacks more than this of the target's energy: the propellant does. A flight
-// whose last burn no command has ended has not arrived if its energy is farther off, either way.
+// has not arrived if its energy is farther off at the injection, either way, or its plane.
 constexpr double kLacking_m_s = 1.0;
+constexpr double kOffPlane_rad = 0.02 * kRadPerDeg;
 // Between a burn's end and the ignition of the next, at least: separation and settling.
 constexpr double kApart_s = 10.0;
 // Thrust is measured over the time between two calls, and smoothed.
@@ -481,8 +482,11 @@ void ClosedLoopGuidance::BurnOut(double altitude_m, const Vector3& p_EoC_I, cons
   reached.radius_m = p_EoC_I.norm();
   reached.p_EoC_I = p_EoC_I;
   reached.v_IC_I = v_IC_I;
+  const OrbitMiss miss = OrbitMissOf(mission_, reached);
   // A number that is none has not arrived.
-  if (!(std::fabs(OrbitMissOf(mission_, reached).energy_m_s) <= kLacking_m_s)) outcome_.arrives = false;
+  if (!(std::fabs(miss.energy_m_s) <= kLacking_m_s &&
+        std::fabs(miss.plane_m_s) <= kOffPlane_rad * mission_.target.velocity_m_s))
+    outcome_.arrives = false;
 }
 
 void ClosedLoopGuidance::Command(double time_s) {

@@ -19,7 +19,7 @@ struct GuidanceSight {
   double burn_ignition_s = 0.0;      ///< of the motor that burns
   double specific_force_m_s2 = 0.0;  ///< by the accelerometers, its magnitude
   double expelled_kg = 0.0;          ///< by the reaction control, from its valves' times
-  double attitude_error_rad = 0.0;   ///< measured, to the command
+  double attitude_error_rad = 0.0;   ///< measured, to the command, in pitch and yaw
   double rate_error_rad_s = 0.0;
 };
 
@@ -48,7 +48,7 @@ class ClosedLoopGuidance {
   void Command(double time_s);
   const AttitudeCommand& command() const { return command_; }
   const Plan& plan() const { return plan_; }
-  /// The injection, measured, of a flight whose last burn no command has ended.
+  /// The injection, measured.
   void BurnOut(double altitude_m, const Vector3& p_EoC_I, const Vector3& v_IC_I);
   const GuidanceOutcome& outcome() const { return outcome_; }
 

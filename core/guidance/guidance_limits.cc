@@ -18,6 +18,8 @@ namespace {
 
 // Of what nozzles and thrusters can do, for turning.
 constexpr double kOfNozzles = 0.25, kOfThrusters = 1.0 / 3.0;
+// Of the default, a setting that is slower is warned of.
+constexpr double kSlow = 0.05;
 // A rate is reached in this time.
 constexpr double kHasten_s = 1.5, kCoastHasten_s = 10.0;
 // Pitch and yaw may both be at the edge of the deadband, and beyond it by what the rate adds.
@@ -90,6 +92,17 @@ std::vector<GuidanceExcess> ExcessesOf(const GuidanceConfig& config, const Guide
     found.push_back({"coast_acceleration_deg_s2",
                      "is more than the thrusters can do, " + degrees(authority.thrusters_rad_s2, " deg/s2"),
                      "up to " + degrees(can.coast_acceleration_rad_s2, " deg/s2, or none")});
+  // A plan that is not followed in time is none.
+  const auto is_slow = [](const std::optional<double>& asked, double usual) {
+    return asked.value_or(HUGE_VAL) < kSlow * usual;
+  };
+  const char* const slow = "is so slow that the command does not follow the plans of a burn";
+  if (is_slow(config.turn_acceleration_rad_s2, can.turn_acceleration_rad_s2))
+    found.push_back({"turn_acceleration_deg_s2", slow,
+                     degrees(kSlow * can.turn_acceleration_rad_s2, " deg/s2 or more, or none")});
+  if (is_slow(config.turn_rate_rad_s, can.turn_rate_rad_s))
+    found.push_back(
+        {"turn_rate_deg_s", slow, degrees(kSlow * can.turn_rate_rad_s, " deg/s or more, or none")});
   // Pitch and yaw may both rest at its edge.
   if (config.settled_angle_rad.value_or(HUGE_VAL) < Sqrt(2.0) * authority.deadband_rad)
     found.push_back({"settled_deg",

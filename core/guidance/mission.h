@@ -97,8 +97,9 @@ struct GuidedStage {
 };
 
 /// A flight that falls below this altitude comes back into the air at orbital speed: 7 Pa at 105 km. Nozzles
-/// hold the attitude there. Thrusters do not at any incidence: in a coast it is 3 Pa.
-inline constexpr double kAirBelow_m = 105e3, kCoastAirBelow_m = 110e3;
+/// hold the attitude there. Thrusters of some tens of newtons do not, and over a coast of an hour they use up
+/// hundreds of kilograms: in a coast it is 0.7 Pa, at 120 km.
+inline constexpr double kAirBelow_m = 105e3, kCoastAirBelow_m = 120e3;
 
 /// How a burn begins after the one before.
 struct BurnStart {

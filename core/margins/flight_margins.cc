@@ -17,8 +17,6 @@ namespace {
 
 constexpr double kAfterIgnition_s = 1.0;
 constexpr double kMisalignment_rad = 0.25 * kRadPerDeg;
-constexpr double kLostCycle_deg = 0.2;
-constexpr double kLostError_deg = 5.0;
 
 FlightOrder Spoilt(const FlightInputs& unspoilt, int stage, double gain_db, double delay_s) {
   FlightOrder order;
@@ -36,7 +34,7 @@ FlightOrder Spoilt(const FlightInputs& unspoilt, int stage, double gain_db, doub
 bool Holds(const FlightResult& result) {
   const auto metric = [&](const char* name) { return result.metrics[MetricColumn(name)]; };
   const auto above = [&](const char* name, double limit) { return metric(name) > limit; };
-  return result.outcome == Outcome::kCompleted && !above("deflection_ripple_deg", kLostCycle_deg) &&
+  return result.outcome == Outcome::kCompleted && !above("deflection_ripple_deg", kLostRipple_deg) &&
          !above("pitch_error_peak_deg", kLostError_deg) && !above("yaw_error_peak_deg", kLostError_deg);
 }
 

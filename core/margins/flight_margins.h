@@ -30,6 +30,10 @@ inline constexpr double kFrequencyBand = 0.15;
 inline constexpr double kDispersedGainGate_db = 3.0;
 inline constexpr double kDispersedPhaseGate_deg = 20.0;
 
+/// In a measured margin control counts as lost if the flight does not complete, if the nozzles' commands
+/// ripple by more than this, or if pitch or yaw are off by more.
+inline constexpr double kLostRipple_deg = 0.2, kLostError_deg = 5.0;
+
 /// The linear model from which margins are computed.
 struct MarginModel {
   double frequency_band = kFrequencyBand;  ///< fraction by which the modes' frequencies are also lowered and

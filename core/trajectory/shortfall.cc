@@ -139,7 +139,8 @@ std::string DescribeShortfall(const AscentModel& model, const TrajectoryProblem&
   for (const ConstraintMargin& c : result.reference.constraints)
     if (c.enforced && c.margin < 0.0)
       text += fmt::format(" Constraint: {} = {:.6g} exceeds its limit of {:.6g}.", c.name, c.value, c.limit);
-  if (result.refinement.status != LeastSquaresStatus::kConverged) {
+  // The speed is no residual of an engine with a cut-off velocity.
+  if (result.refinement.status != LeastSquaresStatus::kConverged || EndsByVelocity(model, ascent)) {
     text += CauseText(model, problem, options, result.refined, program);
     if (text.size() > before) return text;
     const std::vector<ProgramVariable> variables = RefinedVariables(model.vehicle, problem);

@@ -90,18 +90,25 @@ std::vector<PlausibilityFinding> Plausibility(const Vehicle& vehicle) {
   using namespace plausibility;
   const std::vector<StageFigures> figures = FiguresOf(vehicle);
   std::vector<PlausibilityFinding> findings;
+  std::size_t body = 0;
   for (std::size_t i = 0; i < vehicle.stages.size(); ++i) {
-    if (vehicle.stages[i].restarts) continue;  // the same body
+    if (!vehicle.stages[i].restarts) body = i;
+    // The last burn has what the body jettisons; the file has it where the body is.
+    for (std::size_t k = 0; k < vehicle.stages[i].jettisoned.size(); ++k)
+      Apply(JettisonChecks(), {vehicle, figures, i, k},
+            "stages[" + std::to_string(body) + "].jettisoned[" + std::to_string(k) + "].", findings);
     const std::string index = "[" + std::to_string(i) + "].";
+    Apply(CutOffChecks(), {vehicle, figures, i},
+          "stages" + index + (vehicle.stages[i].restarts ? "cut_off." : "motor.liquid.cut_off."), findings);
+    if (vehicle.stages[i].restarts) continue;  // the same body
     Apply(StageChecks(), {vehicle, figures, i}, "stages" + index, findings);
+    Apply(PressureChecks(), {vehicle, figures, i}, "stages" + index + "motor.", findings);
+    Apply(GimbalChecks(), {vehicle, figures, i}, "stages" + index + "gimbal.", findings);
     for (std::size_t k = 0; k < vehicle.stages[i].tanks.size(); ++k) {
       const std::string tank = "stages" + index + "tanks[" + std::to_string(k) + "].";
       Apply(TankChecks(), {vehicle, figures, i, k}, tank, findings);
       Apply(TankInStageChecks(), {vehicle, figures, i, k}, tank, findings);
     }
-    for (std::size_t k = 0; k < vehicle.stages[i].jettisoned.size(); ++k)
-      Apply(JettisonChecks(), {vehicle, figures, i, k},
-            "stages" + index + "jettisoned[" + std::to_string(k) + "].", findings);
     if (vehicle.stages[i].gimbal.nozzle_mass_kg > 0.0)
       Apply(NozzleChecks(), {vehicle, figures, i}, "nozzles" + index, findings);
   }
@@ -119,6 +126,11 @@ std::vector<PlausibilityFinding> Plausibility(const Vehicle& vehicle) {
   for (std::size_t k = 0; k < vehicle.boosters.tanks.size(); ++k)
     Apply(TankChecks(), {vehicle, figures, 0, k, true}, "boosters.tanks[" + std::to_string(k) + "].",
           findings);
+  if (vehicle.boosters.count > 0) {
+    const Subject boosters{vehicle, figures, 0, 0, true};
+    Apply(PressureChecks(), boosters, "boosters.motor.", findings);
+    Apply(GimbalChecks(), boosters, "boosters.gimbal.", findings);
+  }
   Apply(VehicleChecks(), {vehicle, figures}, "", findings);
   return findings;
 }

@@ -21,7 +21,8 @@ struct Span {
 };
 inline constexpr Span kAnything{};
 
-/// The subject of a check: the vehicle, and one of its stages, nozzles or gyros, or a tank of its boosters.
+/// The subject of a check: the vehicle, and one of its stages, nozzles or gyros, or its boosters'
+/// motor, gimbal or one of their tanks.
 struct Subject {
   const Vehicle& vehicle;
   const std::vector<StageFigures>& figures;
@@ -31,6 +32,12 @@ struct Subject {
   bool of_yaw_plane = false;
 
   const Tank& tank() const { return (is_booster ? vehicle.boosters.tanks : stage().tanks)[part]; }
+  const Motor& motor() const { return is_booster ? vehicle.boosters.motor : stage().motor; }
+  /// Null: its nozzles do not turn.
+  const Gimbal* gimbal() const {
+    const Gimbal& one = is_booster ? vehicle.boosters.gimbal : stage().gimbal;
+    return (is_booster ? one.limit_rad > 0.0 : stage().is_controlled()) ? &one : nullptr;
+  }
   const Jettison& jettison() const { return stage().jettisoned[part]; }
   /// Of the stack, or a lighter one's.
   const AeroTable& table() const {
@@ -79,6 +86,11 @@ double WidestDiameter(const Vehicle& vehicle, double top_m, double bottom_m);
 
 // Of each stage that is no restart (plausibility_stage.cc).
 std::span<const Check> StageChecks();
+// Of a stage's motor and gimbal, or those of the boosters.
+std::span<const Check> PressureChecks();
+std::span<const Check> GimbalChecks();
+/// Of each burn, restarts too.
+std::span<const Check> CutOffChecks();
 std::span<const Check> JettisonChecks();
 std::span<const Check> TankChecks();
 std::span<const Check> TankInStageChecks();

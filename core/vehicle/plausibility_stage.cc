@@ -10,19 +10,18 @@
 namespace dispersa::plausibility {
 namespace {
 
-// Of thrust and chamber pressure over the burn, about 0.
-double PressureCorrelation(const ThrustCurve& curve) {
+// Thrust over chamber pressure, its largest over its smallest while the thrust is above half of its largest.
+double PressureSpread(const ThrustCurve& curve) {
   if (curve.pressure_pa.empty()) return kNothing;
-  double both = 0.0, thrust = 0.0, pressure = 0.0;
-  for (std::size_t i = 0; i + 1 < curve.time_s.size(); ++i) {
-    const double step_s = curve.time_s[i + 1] - curve.time_s[i];
-    const double p = 0.5 * (curve.pressure_pa[i] + curve.pressure_pa[i + 1]);
-    const double f = 0.5 * (curve.thrust_n[i] + curve.thrust_n[i + 1]);
-    both += step_s * p * f;
-    thrust += step_s * f * f;
-    pressure += step_s * p * p;
+  const double half_n = 0.5 * *std::max_element(curve.thrust_n.begin(), curve.thrust_n.end());
+  double least = HUGE_VAL, most = 0.0;
+  for (std::size_t i = 0; i < curve.time_s.size(); ++i) {
+    if (!(curve.thrust_n[i] > half_n)) continue;
+    const double ratio = curve.thrust_n[i] / std::fmax(curve.pressure_pa[i], 1.0);
+    least = std::fmin(least, ratio);
+    most = std::fmax(most, ratio);
   }
-  return pressure > 0.0 ? both / Sqrt(thrust * pressure) : 0.0;
+  return most / least;
 }
 
 // Of a stage with a table, alone and full: by the table, and by its tubes. Without a table NaN.
@@ -181,25 +180,6 @@ constexpr Check kStageChecks[] = {
        const double area_m2 = s.stage().motor.nozzle_exit_area_m2;
        return area_m2 > 0.0 ? area_m2 / (0.25 * kPi * Square(s.stage().diameter_m)) : kNothing;
      }},
-    {"motor.thrust_curve.table.chamber_pressure",
-     "is at most",
-     "MPa",
-     {0.0, 1000.0},
-     {0.2, 30.0},
-     "solid motors burn at 3 to 15 MPa; a pressure in bar or psi may stand under another unit",
-     [](const Subject& s) {
-       const std::vector<double>& pressure_pa = s.stage().motor.thrust_curve.pressure_pa;
-       return pressure_pa.empty() ? kNothing
-                                  : 1e-6 * *std::max_element(pressure_pa.begin(), pressure_pa.end());
-     }},
-    {"motor.thrust_curve.table.chamber_pressure",
-     "goes with the thrust with a correlation of",
-     "",
-     kAnything,
-     {0.9, kAny},
-     "thrust is the pressure times throat area and thrust coefficient, which change little; a channel may "
-     "belong to another test or run late",
-     [](const Subject& s) { return PressureCorrelation(s.stage().motor.thrust_curve); }},
     {"mass_table.transverse_inertia_kg_m2",
      "is, at ignition, that of the stage's tubes times",
      "",
@@ -234,43 +214,6 @@ constexpr Check kStageChecks[] = {
        const double published_kg_s = s.stage().motor.published_mass_flow_kg_s;
        return published_kg_s > 0.0 ? published_kg_s / s.figure().flow_kg_s : kNothing;
      }},
-    {"gimbal.limit_rad",
-     "lets a nozzle turn by",
-     "deg",
-     {0.0, 89.0},
-     {1.0, 15.0},
-     "the Space Shuttle's boosters 8 deg, its main engines 10.5 deg",
-     [](const Subject& s) {
-       return s.stage().is_controlled() ? s.stage().gimbal.limit_rad * kDegPerRad : kNothing;
-     }},
-    {"gimbal.bandwidth_rad_s",
-     "is",
-     "rad/s",
-     {1.0, 2000.0},
-     {6.0, 250.0},
-     "actuators of nozzles have 2 to 20 Hz; slower ones hold no launcher that the air turns over",
-     [](const Subject& s) {
-       return s.stage().is_controlled() ? s.stage().gimbal.bandwidth_rad_s : kNothing;
-     }},
-    {"gimbal.rate_limit_rad_s",
-     "lets a nozzle turn at",
-     "deg/s",
-     {0.1, 1000.0},
-     {2.0, 120.0},
-     "the Space Shuttle's main engines 10 deg/s, small electric actuators to 60 deg/s",
-     [](const Subject& s) {
-       return s.stage().is_controlled() ? s.stage().gimbal.rate_limit_rad_s * kDegPerRad : kNothing;
-     }},
-    {"motor.liquid.cut_off.velocity_m_s",
-     "is, as an inertial speed,",
-     "m/s",
-     {500.0, 17000.0},
-     {1500.0, 12500.0},
-     "a site on the equator moves at 465 m/s, a circle at 200 km has 7784 m/s, escape from there 11,008 m/s",
-     [](const Subject& s) {
-       return s.stage().motor.cut_off == CutOff::kAtVelocity ? s.stage().motor.cut_off_velocity_m_s
-                                                             : kNothing;
-     }},
     {"gimbal.radius_m",
      "is, as part of half the stage's diameter_m,",
      "",
@@ -293,6 +236,71 @@ constexpr Check kStageChecks[] = {
          farthest_m = std::fmax(
              farthest_m, std::fmax(nozzle.ring.radius_m, Sqrt(Square(nozzle.y_m) + Square(nozzle.z_m))));
        return farthest_m / (0.5 * s.stage().diameter_m);
+     }},
+};
+
+constexpr Check kPressureChecks[] = {
+    {"thrust_curve.table.chamber_pressure",
+     "is at most",
+     "MPa",
+     {0.0, 1000.0},
+     {0.2, 30.0},
+     "solid motors burn at 3 to 15 MPa; a pressure in bar or psi may stand under another unit",
+     [](const Subject& s) {
+       const std::vector<double>& pressure_pa = s.motor().thrust_curve.pressure_pa;
+       return pressure_pa.empty() ? kNothing
+                                  : 1e-6 * *std::max_element(pressure_pa.begin(), pressure_pa.end());
+     }},
+    {"thrust_curve.table.chamber_pressure",
+     "makes thrust over pressure change, in the burn's strong part, by a factor of",
+     "",
+     kAnything,
+     {1.0, 1.4},
+     "thrust is the pressure times throat area and thrust coefficient, which change little; a channel may "
+     "belong to another test or run late",
+     [](const Subject& s) { return PressureSpread(s.motor().thrust_curve); }},
+};
+
+constexpr Check kGimbalChecks[] = {
+    {"limit_rad",
+     "lets a nozzle turn by",
+     "deg",
+     {0.0, 89.0},
+     {1.0, 15.0},
+     "the Space Shuttle's boosters 8 deg, its main engines 10.5 deg",
+     [](const Subject& s) {
+       return s.gimbal() != nullptr ? s.gimbal()->limit_rad * kDegPerRad : kNothing;
+     }},
+    {"bandwidth_rad_s",
+     "is",
+     "rad/s",
+     {1.0, 2000.0},
+     {6.0, 250.0},
+     "actuators of nozzles have 2 to 20 Hz; slower ones hold no launcher that the air turns over",
+     [](const Subject& s) {
+       return s.gimbal() != nullptr ? s.gimbal()->bandwidth_rad_s : kNothing;
+     }},
+    {"rate_limit_rad_s",
+     "lets a nozzle turn at",
+     "deg/s",
+     {0.1, 1000.0},
+     {2.0, 120.0},
+     "the Space Shuttle's main engines 10 deg/s, small electric actuators to 60 deg/s",
+     [](const Subject& s) {
+       return s.gimbal() != nullptr ? s.gimbal()->rate_limit_rad_s * kDegPerRad : kNothing;
+     }},
+};
+
+constexpr Check kCutOffChecks[] = {
+    {"velocity_m_s",
+     "is, as an inertial speed,",
+     "m/s",
+     {500.0, 17000.0},
+     {1500.0, 12500.0},
+     "a site on the equator moves at 465 m/s, a circle at 200 km has 7784 m/s, escape from there 11,008 m/s",
+     [](const Subject& s) {
+       return s.stage().motor.cut_off == CutOff::kAtVelocity ? s.stage().motor.cut_off_velocity_m_s
+                                                             : kNothing;
      }},
 };
 
@@ -372,6 +380,9 @@ constexpr Check kNozzleChecks[] = {
 }  // namespace
 
 std::span<const Check> StageChecks() { return kStageChecks; }
+std::span<const Check> PressureChecks() { return kPressureChecks; }
+std::span<const Check> GimbalChecks() { return kGimbalChecks; }
+std::span<const Check> CutOffChecks() { return kCutOffChecks; }
 std::span<const Check> JettisonChecks() { return kJettisonChecks; }
 std::span<const Check> TankChecks() { return kTankChecks; }
 std::span<const Check> TankInStageChecks() { return kTankInStageChecks; }

@@ -164,9 +164,11 @@ void PrintText(const MarginsResult& result) {
   PrintBySet(result);
   fmt::print(
       "\nMeasured: gain or delay of all axes of one stage changed in flight until control is lost (steps of "
-      "{} dB, {:.0f} ms).\n"
+      "{} dB, {:.0f} ms): nozzles that ripple by more than {} deg, an error of more than {} deg, or a flight "
+      "that does not complete.\n"
       "{:<10} {:>8} {:>8} {:>9}\n",
-      kMeasuredGainStep_db, 1e3 * kMeasuredDelayStep_s, "", "gain dB", "gain dB", "delay ms");
+      kMeasuredGainStep_db, 1e3 * kMeasuredDelayStep_s, kLostRipple_deg, kLostError_deg, "", "gain dB",
+      "gain dB", "delay ms");
   for (const MeasuredMargins& m : result.measured) {
     const auto capped = [](double value, double ceiling) { return value >= ceiling ? ">" : ""; };
     fmt::print("{:<10} {:>8} {:>8} {:>9}  {}\n", fmt::format("stage {}", m.stage + 1),
@@ -174,6 +176,8 @@ void PrintText(const MarginsResult& result) {
                fmt::format("{}-{:.1f}", capped(m.gain_down_db, kMeasuredGainCeiling_db), m.gain_down_db),
                fmt::format("{}{:.0f}", capped(m.delay_s, kMeasuredDelayCeiling_s), 1e3 * m.delay_s),
                PassesGates(m) ? "" : "FAIL");
+    if (m.gain_up_db == 0.0 && m.gain_down_db == 0.0 && m.delay_s == 0.0)
+      fmt::print("{:<10} counts as lost without any change: with a thrust misalignment of 0.25 deg\n", "");
   }
   if (result.dispersed) PrintDispersed(*result.dispersed);
   fmt::print("\n{}\n", result.passed ? "PASS: every gate is met" : "FAIL: a gate is not met");

@@ -196,10 +196,10 @@ TEST(ThrustCurveFile, ChamberPressureOfAnotherTestIsUnusual) {
   files.Edit(
       "vehicle.yaml", kMotor,
       "{thrust_curve: {reference: vacuum, table: {time_s: [0, 30, 60], thrust_n: [60000, 60000, 40000], "
-      "chamber_pressure_bar: [0, 1, 60]}}}");
+      "chamber_pressure_bar: [60, 30, 60]}}}");
   const std::string said = files.Texts(CheckFile(files.Path("vehicle.yaml")).warnings);
-  EXPECT_NE(said.find("stages[0].motor.thrust_curve.table.chamber_pressure_bar: goes with the thrust with a "
-                      "correlation of 0.65"),
+  EXPECT_NE(said.find("stages[0].motor.thrust_curve.table.chamber_pressure_bar: makes thrust over pressure "
+                      "change, in the burn's strong part, by a factor of 3"),
             std::string::npos)
       << said;
 }

@@ -98,6 +98,14 @@ TEST(GuidanceLimits, WhatTheVehicleCannotFollowIsFound) {
       "ignition may wait for a minute | 0.45 deg/s or more, or none\n");
   EXPECT_TRUE(ExcessesOf({}, weak).empty());
   config = {};
+  config.turn_acceleration_rad_s2 = 0.01 * kDeg;
+  config.turn_rate_rad_s = 0.02 * kDeg;
+  text.clear();
+  for (const GuidanceExcess& one : ExcessesOf(config, weak)) text += one.key + " | " + one.allowed + "\n";
+  EXPECT_EQ(text,
+            "turn_acceleration_deg_s2 | 0.015 deg/s2 or more, or none\n"
+            "turn_rate_deg_s | 0.0225 deg/s or more, or none\n");
+  config = {};
   config.settled_angle_rad = 0.71 * kDeg;
   EXPECT_TRUE(ExcessesOf(config, weak).empty());
 }

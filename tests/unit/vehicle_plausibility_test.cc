@@ -8,6 +8,7 @@
 #include <string>
 #include <vector>
 
+#include "core/campaign_yaml/load.h"
 #include "core/math/constants.h"
 #include "core/vehicle/vehicle_figures.h"
 #include "tests/unit/sample_vehicle.h"
@@ -107,6 +108,36 @@ TEST(VehiclePlausibility, WhatCannotBeIsUnusualOfAMadeUpVehicle) {
             std::vector<std::string>{
                 "impossible reaction_control.specific_impulse_s is 7000 s, which cannot be | up to "
                 "1000 s (cold gas 40 to 75 s, hydrazine 220 to 240 s, two propellants to 330 s)"});
+}
+
+// What a restarted engine's last burn has is checked too, at the place where the file has it.
+TEST(VehiclePlausibility, OfARestartIsThatOfItsBody) {
+  Vehicle vehicle = LoadVehicle(DISPERSA_CAMPAIGNS "/gallery/falcon9/vehicle.yaml");
+  EXPECT_EQ(Texts(vehicle), std::vector<std::string>{});
+  ASSERT_TRUE(vehicle.stages[2].restarts);
+  vehicle.stages[2].jettisoned[0].threshold = 10.0;
+  vehicle.stages[2].motor.cut_off = CutOff::kAtVelocity;
+  vehicle.stages[2].motor.cut_off_velocity_m_s = 78e3;
+  const std::vector<std::string> texts = Texts(vehicle);
+  ASSERT_EQ(texts.size(), 2u);
+  EXPECT_EQ(texts[0].find("unusual stages[1].jettisoned[0].at.time_s comes 10 s after lift-off"), 0u) << texts[0];
+  EXPECT_EQ(texts[1].find("impossible stages[2].cut_off.velocity_m_s is, as an inertial speed, 78000 m/s"), 0u)
+      << texts[1];
+}
+
+TEST(VehiclePlausibility, BoostersHaveAGimbalAndAMotorToo) {
+  Vehicle vehicle = LoadVehicle(DISPERSA_CAMPAIGNS "/gallery/ariane5/vehicle.yaml");
+  EXPECT_EQ(Texts(vehicle), std::vector<std::string>{});
+  vehicle.boosters.gimbal.bandwidth_rad_s = 0.3;
+  ThrustCurve& curve = vehicle.boosters.motor.thrust_curve;
+  curve.pressure_pa.assign(curve.time_s.size(), 6e6);
+  const std::vector<std::string> texts = Texts(vehicle);
+  ASSERT_EQ(texts.size(), 2u);
+  EXPECT_EQ(texts[0].find("unusual boosters.motor.thrust_curve.table.chamber_pressure makes thrust over "
+                          "pressure change"),
+            0u)
+      << texts[0];
+  EXPECT_EQ(texts[1].find("impossible boosters.gimbal.bandwidth_rad_s is 0.3 rad/s"), 0u) << texts[1];
 }
 
 struct Slip {

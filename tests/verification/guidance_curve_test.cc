@@ -5,8 +5,10 @@
 #include <cmath>
 #include <cstdio>
 
+#include "core/campaign/flight_definition.h"
 #include "core/guidance/motor_estimate.h"
 #include "core/vehicle/propulsion.h"
+#include "tests/gallery_launcher.h"
 #include "tests/slv4_flight.h"
 
 namespace dispersa::guidance_curve_test {
@@ -75,6 +77,27 @@ TEST(GuidedCurve, DoesNotTakeABurnRateForAnImpulse) {
       EXPECT_NEAR(axis_km, 0.0, 2.0);
       EXPECT_LT(std::fabs(MetricOf(flown, "inclination_error_deg")), 0.05);
     }
+}
+
+// One firing of Scout's thrusters changes its roll rate by 1.4 deg/s, and thrust does not turn with it. Counted
+// as unrest, it let the last ignition wait for a minute: 10 km of axis and 1.2 deg of inclination.
+TEST(GuidedCurve, WaitsForNoRoll) {
+  Campaign campaign = GalleryLauncher(DISPERSA_CAMPAIGNS, "scout");
+  campaign.guidance.closed_loop = true;
+  const FlightModel model(DefinitionOf(campaign));
+  for (const double thrust : {0.988, 0.99, 0.995}) {
+    SCOPED_TRACE(thrust);
+    FlightInputs inputs;
+    inputs.thrust_factor[2] = inputs.mass_flow_factor[2] = thrust;
+    const FlightResult flown = Fly(model, inputs);
+    ASSERT_EQ(flown.outcome, Outcome::kCompleted) << flown.reason;
+    std::printf("stage 3 at %.3f: waited %g s, axis %.3f km, inclination %.4f deg\n", thrust,
+                MetricOf(flown, "guidance_postponement_s"), MetricOf(flown, "semi_major_axis_error_km"),
+                MetricOf(flown, "inclination_error_deg"));
+    EXPECT_LT(MetricOf(flown, "guidance_postponement_s"), 10.0);
+    EXPECT_NEAR(MetricOf(flown, "semi_major_axis_error_km"), 0.0, 1.0);
+    EXPECT_NEAR(MetricOf(flown, "inclination_error_deg"), 0.0, 0.1);
+  }
 }
 
 }  // namespace
