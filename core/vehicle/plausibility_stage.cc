@@ -268,18 +268,14 @@ constexpr Check kGimbalChecks[] = {
      {0.0, 89.0},
      {1.0, 15.0},
      "the Space Shuttle's boosters 8 deg, its main engines 10.5 deg",
-     [](const Subject& s) {
-       return s.gimbal() != nullptr ? s.gimbal()->limit_rad * kDegPerRad : kNothing;
-     }},
+     [](const Subject& s) { return s.gimbal() != nullptr ? s.gimbal()->limit_rad * kDegPerRad : kNothing; }},
     {"bandwidth_rad_s",
      "is",
      "rad/s",
      {1.0, 2000.0},
      {6.0, 250.0},
      "actuators of nozzles have 2 to 20 Hz; slower ones hold no launcher that the air turns over",
-     [](const Subject& s) {
-       return s.gimbal() != nullptr ? s.gimbal()->bandwidth_rad_s : kNothing;
-     }},
+     [](const Subject& s) { return s.gimbal() != nullptr ? s.gimbal()->bandwidth_rad_s : kNothing; }},
     {"rate_limit_rad_s",
      "lets a nozzle turn at",
      "deg/s",

@@ -120,8 +120,10 @@ TEST(VehiclePlausibility, OfARestartIsThatOfItsBody) {
   vehicle.stages[2].motor.cut_off_velocity_m_s = 78e3;
   const std::vector<std::string> texts = Texts(vehicle);
   ASSERT_EQ(texts.size(), 2u);
-  EXPECT_EQ(texts[0].find("unusual stages[1].jettisoned[0].at.time_s comes 10 s after lift-off"), 0u) << texts[0];
-  EXPECT_EQ(texts[1].find("impossible stages[2].cut_off.velocity_m_s is, as an inertial speed, 78000 m/s"), 0u)
+  EXPECT_EQ(texts[0].find("unusual stages[1].jettisoned[0].at.time_s comes 10 s after lift-off"), 0u)
+      << texts[0];
+  EXPECT_EQ(texts[1].find("impossible stages[2].cut_off.velocity_m_s is, as an inertial speed, 78000 m/s"),
+            0u)
       << texts[1];
 }
 

@@ -79,8 +79,8 @@ TEST(GuidedCurve, DoesNotTakeABurnRateForAnImpulse) {
     }
 }
 
-// One firing of Scout's thrusters changes its roll rate by 1.4 deg/s, and thrust does not turn with it. Counted
-// as unrest, it let the last ignition wait for a minute: 10 km of axis and 1.2 deg of inclination.
+// One firing of Scout's thrusters changes its roll rate by 1.4 deg/s, and thrust does not turn with it.
+// Counted as unrest, it let the last ignition wait for a minute: 10 km of axis and 1.2 deg of inclination.
 TEST(GuidedCurve, WaitsForNoRoll) {
   Campaign campaign = GalleryLauncher(DISPERSA_CAMPAIGNS, "scout");
   campaign.guidance.closed_loop = true;
