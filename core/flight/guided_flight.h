@@ -59,7 +59,6 @@ class GuidedFlight {
   /// For times near the last tick. Does not change the state.
   ReferenceAttitude ReferenceAt(double time_s) const;
 
-  /// A command has ended the burn of a stage.
   /// The injection. The arguments are true values.
   void Inject(double altitude_m, const Vector3& p_EoC_I, const Vector3& v_IC_I);
   const GuidanceOutcome& outcome() const;

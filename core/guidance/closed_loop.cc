@@ -34,9 +34,8 @@ constexpr double kArmed_s = 3.0, kArmedOfBurn = 0.25;
 // Where the speed grows by less than this part of the specific force, time ends the burn.
 constexpr double kAlong = 0.2;
 // A timer does not end a burn that lacks more than this of the target's energy: the propellant does. A flight
-// has not arrived if its energy is farther off at the injection, either way, or its plane.
+// has not arrived if its energy is farther off at the injection, either way.
 constexpr double kLacking_m_s = 1.0;
-constexpr double kOffPlane_rad = 0.02 * kRadPerDeg;
 // Between a burn's end and the ignition of the next, at least: separation and settling.
 constexpr double kApart_s = 10.0;
 // Thrust is measured over the time between two calls, and smoothed.
@@ -485,7 +484,7 @@ void ClosedLoopGuidance::BurnOut(double altitude_m, const Vector3& p_EoC_I, cons
   const OrbitMiss miss = OrbitMissOf(mission_, reached);
   // A number that is none has not arrived.
   if (!(std::fabs(miss.energy_m_s) <= kLacking_m_s &&
-        std::fabs(miss.plane_m_s) <= kOffPlane_rad * mission_.target.velocity_m_s))
+        std::fabs(miss.plane_m_s) <= kArrivesPlane_rad * mission_.target.velocity_m_s))
     outcome_.arrives = false;
 }
 

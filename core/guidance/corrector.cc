@@ -121,7 +121,7 @@ bool ArrivesInPlace(const OrbitMiss& miss, double speed_m_s, bool meets_shape, b
 bool Arrives(const Arrival& miss, bool meets_altitude, bool meets_plane) {
   return (!meets_altitude || std::fabs(miss.altitude_m) <= 50.0) && std::fabs(miss.velocity_m_s) <= 0.5 &&
          std::fabs(miss.flight_path_angle_rad) <= 0.01 * kRadPerDeg &&
-         (!meets_plane || std::fabs(miss.inclination_rad) <= 0.02 * kRadPerDeg);
+         (!meets_plane || std::fabs(miss.inclination_rad) <= kArrivesPlane_rad);
 }
 
 namespace {

@@ -53,7 +53,9 @@ struct Correction {
 /// plane.
 inline constexpr double kSolvedMiss = 0.1;
 
-/// Misses with which a plan still arrives: 50 m, 0.5 m/s, 0.01 degree, and 0.02 degree of inclination.
+/// Of the plane, for a plan and for a flight that still arrive.
+inline constexpr double kArrivesPlane_rad = 0.02 * kRadPerDeg;
+/// Misses with which a plan still arrives: 50 m, 0.5 m/s, 0.01 degree, and kArrivesPlane_rad of inclination.
 /// Altitude and plane do not count once they cannot be met any more.
 bool Arrives(const Arrival& miss, bool meets_altitude, bool meets_plane);
 

@@ -20,11 +20,16 @@ FlightResult FlyNominal(const Campaign& campaign, bool closed_loop) {
   return Fly(FlightModel(definition), {});
 }
 
-void Print(const std::string& what, const FlightResult& flown, const FlightResult& open) {
+// Closed and open loop, which both complete.
+void FlyBoth(const std::string& what, const Campaign& campaign, FlightResult* flown, FlightResult* open) {
+  *flown = FlyNominal(campaign, true);
+  *open = FlyNominal(campaign, false);
+  ASSERT_EQ(open->outcome, Outcome::kCompleted) << open->reason;
+  ASSERT_EQ(flown->outcome, Outcome::kCompleted) << flown->reason;
   std::printf("%s: axis %.1f km (%.1f open loop), perigee %.1f km (%.1f), converged %g\n", what.c_str(),
-              MetricOf(flown, "semi_major_axis_error_km"), MetricOf(open, "semi_major_axis_error_km"),
-              MetricOf(flown, "perigee_km"), MetricOf(open, "perigee_km"),
-              MetricOf(flown, "guidance_converged"));
+              MetricOf(*flown, "semi_major_axis_error_km"), MetricOf(*open, "semi_major_axis_error_km"),
+              MetricOf(*flown, "perigee_km"), MetricOf(*open, "perigee_km"),
+              MetricOf(*flown, "guidance_converged"));
 }
 
 // A core that lacks so much that the orbit is out of reach. The lower the path, the more energy it leaves:
@@ -36,10 +41,9 @@ TEST(GuidedAboveTheAir, WhereEnergyIsMissing) {
     Motor& core = campaign.vehicle.stages[0].motor;
     core.specific_impulse_s *= factor;
     core.burning_time_s *= factor;
-    const FlightResult flown = FlyNominal(campaign, true), open = FlyNominal(campaign, false);
-    ASSERT_EQ(open.outcome, Outcome::kCompleted) << open.reason;
-    ASSERT_EQ(flown.outcome, Outcome::kCompleted) << flown.reason;
-    Print("specific impulse of the core times " + std::to_string(factor), flown, open);
+    FlightResult flown, open;
+    ASSERT_NO_FATAL_FAILURE(
+        FlyBoth("specific impulse of the core times " + std::to_string(factor), campaign, &flown, &open));
     EXPECT_GT(MetricOf(flown, "semi_major_axis_error_km"), MetricOf(open, "semi_major_axis_error_km"));
     EXPECT_GT(MetricOf(flown, "perigee_km"), 180.0);
   }
@@ -52,9 +56,8 @@ TEST(GuidedAboveTheAir, InTheCoast) {
   Motor& first = campaign.vehicle.stages[1].motor;
   first.cut_off = CutOff::kAtTime;
   first.cut_off_s = 360.0;
-  const FlightResult flown = FlyNominal(campaign, true), open = FlyNominal(campaign, false);
-  ASSERT_EQ(flown.outcome, Outcome::kCompleted) << flown.reason;
-  Print("first burn on a timer", flown, open);
+  FlightResult flown, open;
+  ASSERT_NO_FATAL_FAILURE(FlyBoth("first burn on a timer", campaign, &flown, &open));
   EXPECT_EQ(MetricOf(flown, "guidance_converged"), 1.0);
   EXPECT_NEAR(MetricOf(flown, "perigee_km"), 185.0, 1.0);
 }
@@ -64,10 +67,8 @@ TEST(GuidedAboveTheAir, InTheCoast) {
 TEST(GuidedAboveTheAir, TurnsLittleWhereTheAirIsFelt) {
   Campaign campaign = GalleryLauncher(DISPERSA_CAMPAIGNS, "electron");
   for (Stage& stage : campaign.vehicle.stages) stage.liftoff_mass_kg += 34.5;
-  const FlightResult flown = FlyNominal(campaign, true), open = FlyNominal(campaign, false);
-  ASSERT_EQ(open.outcome, Outcome::kCompleted) << open.reason;
-  ASSERT_EQ(flown.outcome, Outcome::kCompleted) << flown.reason;
-  Print("34.5 kg more", flown, open);
+  FlightResult flown, open;
+  ASSERT_NO_FATAL_FAILURE(FlyBoth("34.5 kg more", campaign, &flown, &open));
   EXPECT_GT(MetricOf(flown, "semi_major_axis_error_km"), MetricOf(open, "semi_major_axis_error_km"));
 }
 
@@ -90,10 +91,8 @@ TEST(GuidedAboveTheAir, ConvergesAtAnInjectionOnly) {
 TEST(EstimatesInThinAir, TakeNoDragForAFlow) {
   Campaign campaign = GalleryLauncher(DISPERSA_CAMPAIGNS, "falcon9");
   for (Stage& stage : campaign.vehicle.stages) stage.liftoff_mass_kg += 1000.0;
-  const FlightResult flown = FlyNominal(campaign, true), open = FlyNominal(campaign, false);
-  ASSERT_EQ(open.outcome, Outcome::kCompleted) << open.reason;
-  ASSERT_EQ(flown.outcome, Outcome::kCompleted) << flown.reason;
-  Print("1000 kg more", flown, open);
+  FlightResult flown, open;
+  ASSERT_NO_FATAL_FAILURE(FlyBoth("1000 kg more", campaign, &flown, &open));
   EXPECT_NEAR(MetricOf(flown, "semi_major_axis_error_km"), MetricOf(open, "semi_major_axis_error_km"), 25.0);
 }
 
