@@ -31,6 +31,7 @@ std::optional<Limits> AllLimits(const std::vector<Requirement>& requirements, co
     if (!all) all.emplace();
     all->low = std::max(all->low, limits.low);
     all->high = std::min(all->high, limits.high);
+    all->circle = limits.circle;
   }
   return all;
 }
@@ -198,8 +199,8 @@ std::vector<std::string> Warnings(const CampaignSummary& summary) {
       const MetricInfo info = DescribeMetric(one.metric);
       const std::string unit = info.unit.empty() ? "" : " " + info.unit;
       loads += fmt::format("{}{} above {}{} in {}, up to {}{} in case {}", loads.empty() ? "" : "; ",
-                           one.metric, ReadableText(one.limit), unit, one.exceeded,
-                           ReadableText(*one.largest), unit, one.largest_case);
+                           one.metric, StatedText(one.limit), unit, one.exceeded,
+                           RoundedText(*one.largest, Rounding::kNearest, one.limit), unit, one.largest_case);
     }
     warnings.push_back(fmt::format("Structural limits of the vehicle were exceeded in {} of {} flights: {}.",
                                    summary.beyond_limits, summary.flown, loads));
@@ -345,9 +346,11 @@ CampaignSummary BuildSummary(const ResultFolder& folder, const Campaign& campaig
   for (const std::size_t i : folder.metrics()) {
     if (std::find(shown.begin(), shown.end(), i) == shown.end()) continue;
     const std::string& name = folder.metric_list().NameAt(i);
-    const std::vector<double> sorted = SortedFinite(CompletedValues(cases, name));
-    summary.metrics.push_back(
-        {name, SummarizeSorted(sorted, cases.rows() - sorted.size()), Skewness(sorted), Percentiles(sorted)});
+    std::vector<double> values = CompletedValues(cases, name);
+    const Summary statistics = Summarize(values, CircleOf(name));
+    if (IsAllAround(statistics)) values.clear();
+    const std::vector<double> sorted = SortedFinite(std::move(values));
+    summary.metrics.push_back({name, statistics, Skewness(sorted), Percentiles(sorted)});
   }
   HoldAgainstLimits(campaign.vehicle.limits, cases, &summary);
   summary.near_step_limit = NearStepLimit(cases);

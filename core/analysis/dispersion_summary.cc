@@ -198,6 +198,32 @@ bool Agrees(const Moments& expected, const Summary& drawn) {
          std::fabs(drawn.std - expected.std) <= 5.0 * std_error + slack;
 }
 
+bool IsAnyDirection(const ScalarDistribution& d, const InputColumn& column, const Circle& circle) {
+  return circle.is_closed() && d.kind == Distribution::kUniform &&
+         (d.high - d.low) / column.unit > circle.turn * (1.0 - 1e-9);
+}
+
+/// Directions near to the declared mean. Where they lie all around there is no mean to compare; the check
+/// uses the values as they are drawn.
+void SetDrawn(const Dispersion& dispersion, const InputColumn& column, const std::optional<Moments>& expected,
+              std::vector<double> values, DispersionSummary& summary) {
+  const Circle circle = CircleOf(column);
+  const bool around =
+      IsAnyDirection(dispersion.distribution, column, circle) || LiesAllAround(values, circle);
+  if (!around && expected)
+    for (double& value : values) value = NearTo(expected->mean, value, circle);
+  else
+    values = Unwrapped(std::move(values), circle);
+  summary.drawn = Summarize(std::move(values));
+  if (expected && summary.drawn.n >= 10) summary.consistent = Agrees(*expected, summary.drawn);
+  if (around) {
+    summary.drawn = {.n = summary.drawn.n, .undefined = summary.drawn.undefined};
+  } else if (expected) {
+    summary.expected_mean = expected->mean;
+    summary.expected_std = expected->std;
+  }
+}
+
 }  // namespace
 
 std::vector<int> DispersedInputs(const Campaign& campaign) {
@@ -225,16 +251,14 @@ std::vector<DispersionSummary> SummarizeDispersions(const Campaign& campaign, co
       summary.input = column.name;
       summary.key = InputKey(campaign, input);
       summary.declared = Words(dispersion, column.unit, SplitUnit(column.name).unit);
-      summary.drawn = Summarize(cases.inputs[static_cast<std::size_t>(input)]);
       std::optional<Moments> expected = Of(dispersion);
       const bool alone = feeders[static_cast<std::size_t>(input)] == 1;
-      if (expected && alone && !IsEnumerated(campaign.sampling.method)) {
+      if (!alone || IsEnumerated(campaign.sampling.method)) expected.reset();
+      if (expected) {
         expected->mean /= column.unit;
         expected->std /= column.unit;
-        summary.expected_mean = expected->mean;
-        summary.expected_std = expected->std;
-        if (summary.drawn.n >= 10) summary.consistent = Agrees(*expected, summary.drawn);
       }
+      SetDrawn(dispersion, column, expected, cases.inputs[static_cast<std::size_t>(input)], summary);
       summaries.push_back(std::move(summary));
     }
   }
@@ -244,7 +268,8 @@ std::vector<DispersionSummary> SummarizeDispersions(const Campaign& campaign, co
     summary.input = derived.input;
     summary.key = "derived";
     summary.declared = "= " + derived.text;
-    summary.drawn = Summarize(cases.inputs[static_cast<std::size_t>(derived.column)]);
+    const auto column = static_cast<std::size_t>(derived.column);
+    summary.drawn = Summarize(cases.inputs[column], CircleOf(InputColumns()[column]));
     summaries.push_back(std::move(summary));
   }
   return summaries;

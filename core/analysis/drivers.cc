@@ -14,6 +14,7 @@
 #include "core/campaign/dispersion_table.h"
 #include "core/flight/flight_inputs.h"
 #include "core/math/constants.h"
+#include "core/results/metric_catalogue.h"
 #include "core/statistics/normal.h"
 #include "core/statistics/sensitivity.h"
 #include "core/statistics/summary.h"
@@ -53,10 +54,6 @@ bool RankAlike(const Ranked& a, const Ranked& b) {
   return equal || mirrored;
 }
 
-bool IsAngle(const std::string& column) {
-  return column.find("_clock") != std::string::npos || column.find("_azimuth_deg") != std::string::npos;
-}
-
 /// The column of the magnitude that an angle gives a direction to, if there is one.
 std::optional<int> MagnitudeOf(const std::string& angle) {
   if (angle.starts_with("wind_azimuth")) return FindInput("wind_max_speed_m_s");
@@ -90,9 +87,12 @@ std::vector<Feature> Features(const Campaign& campaign, const CaseColumns& cases
   std::vector<Feature> features;
   const std::vector<int> inputs = DispersedInputs(campaign);
   for (const int input : inputs) {
-    const std::string& name = InputColumns()[static_cast<std::size_t>(input)].name;
+    const InputColumn& column = InputColumns()[static_cast<std::size_t>(input)];
+    const std::string& name = column.name;
+    const Circle circle = CircleOf(column);
     const std::string key = InputKey(campaign, input);
-    const std::vector<double> x = Pick(cases.inputs[static_cast<std::size_t>(input)], rows);
+    const std::vector<double> x =
+        Unwrapped(Pick(cases.inputs[static_cast<std::size_t>(input)], rows), circle);
     if (!Varies(x)) continue;
     Ranked ranked(x);
     const auto same = std::find_if(features.begin(), features.end(), [&](const Feature& other) {
@@ -104,7 +104,7 @@ std::vector<Feature> Features(const Campaign& campaign, const CaseColumns& cases
     }
     features.push_back({name, key, "x", std::move(ranked)});
     const std::size_t itself = features.size() - 1;
-    if (IsAngle(name)) {
+    if (circle.is_closed()) {
       std::vector<double> sine, cosine;
       for (const double angle : x) {
         sine.push_back(std::sin(angle * kRadPerDeg));
@@ -143,7 +143,7 @@ std::vector<Feature> Features(const Campaign& campaign, const CaseColumns& cases
 /// One name for a magnitude, its direction, and both together.
 std::string FamilyOf(const std::string& input) {
   const std::string first = input.substr(0, input.find(" along "));
-  const std::optional<int> magnitude = IsAngle(first) ? MagnitudeOf(first) : std::nullopt;
+  const std::optional<int> magnitude = MagnitudeOf(first);
   return magnitude ? InputColumns()[static_cast<std::size_t>(*magnitude)].name : first;
 }
 
@@ -186,7 +186,7 @@ MetricDrivers DriversOf(const std::string& metric, const CaseColumns& cases, Fea
   }
   if (rows.size() < kLeastFlights) return result;
   const std::vector<double> y = Pick(values, rows);
-  if (!Varies(y)) return result;
+  if (!Varies(y) || LiesAllAround(y, CircleOf(metric))) return result;
   const Ranked ranked_y(y);
   const std::vector<Feature>& features = known.Of(rows);
 

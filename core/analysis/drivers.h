@@ -36,7 +36,7 @@ struct MetricDrivers {
 };
 
 /// The drivers of each metric, from the first 50,000 flights that define it. A metric has none if fewer than
-/// 30 completed flights define it, or if it does not vary.
+/// 30 completed flights define it, if it does not vary, or if it lies all around a circle.
 std::vector<MetricDrivers> FindDrivers(const Campaign& campaign, const std::vector<std::string>& metrics,
                                        const CaseColumns& cases);
 

@@ -2,6 +2,7 @@
 
 #include <fmt/format.h>
 
+#include <array>
 #include <cmath>
 #include <map>
 #include <nlohmann/json.hpp>
@@ -10,6 +11,7 @@
 #include "core/environment/earth.h"
 #include "core/flight/engine_version.h"
 #include "core/input/input_error.h"
+#include "core/math/circle.h"
 #include "core/math/constants.h"
 #include "core/results/result_error.h"
 #include "core/results/text.h"
@@ -25,9 +27,66 @@ constexpr int kOutlinePoints = 72;
 double Rounded(double degrees) { return std::round(degrees * 1e7) / 1e7 + 0.0; }
 
 double LatitudeDeg(const Geodetic& place) { return Rounded(place.latitude_rad * kDegPerRad); }
-/// Within half a turn of `near_rad`, so that a line does not run around the Earth.
-double LongitudeDeg(const Geodetic& place, double near_rad) {
-  return Rounded((near_rad + std::remainder(place.longitude_rad - near_rad, kTwoPi)) * kDegPerRad);
+double LongitudeDeg(const Geodetic& place) {
+  return Rounded(NearTo(0.0, place.longitude_rad * kDegPerRad, kCutAt180Deg));
+}
+
+using Ring = std::vector<std::array<double, 2>>;  // longitude and latitude in degrees, closed
+
+/// The part of a ring between two meridians (I. E. Sutherland and G. W. Hodgman, Commun. ACM 17 (1974) 32).
+/// Its points on the meridians are exactly there.
+Ring Between(const Ring& ring, double west_deg, double east_deg) {
+  Ring part = ring;
+  for (const auto& [edge_deg, side] : {std::pair{west_deg, 1.0}, std::pair{east_deg, -1.0}}) {
+    const Ring whole = std::move(part);
+    part.clear();
+    for (std::size_t i = 0; i + 1 < whole.size(); ++i) {
+      const auto& from = whole[i];
+      const auto& to = whole[i + 1];
+      const double inside_from = side * (from[0] - edge_deg), inside_to = side * (to[0] - edge_deg);
+      if (inside_from >= 0.0) part.push_back(from);
+      if (inside_from * inside_to < 0.0)
+        part.push_back({edge_deg, std::lerp(from[1], to[1], inside_from / (inside_from - inside_to))});
+    }
+    if (!part.empty()) part.push_back(part.front());
+  }
+  return part;
+}
+
+/// An outline in pieces from -180 to 180 degrees, cut at the antimeridian as RFC 7946 (section 3.1.9) asks
+/// for. One around a pole runs along the antimeridian to the pole and back.
+std::vector<Ring> Pieces(const std::vector<Geodetic>& outline) {
+  Ring ring;
+  for (const Geodetic& place : outline) {
+    const double longitude_deg = place.longitude_rad * kDegPerRad;
+    ring.push_back({ring.empty() ? NearTo(0.0, longitude_deg, kCutAt180Deg)
+                                 : NearTo(ring.back()[0], longitude_deg, kCutAt180Deg),
+                    place.latitude_rad * kDegPerRad});
+  }
+  const double around_deg = ring.back()[0] - ring.front()[0];
+  if (std::fabs(around_deg) > 180.0) {
+    const double pole_deg = std::copysign(90.0, ring.front()[1]);
+    ring.insert(ring.end(), {{ring.back()[0], pole_deg}, {ring.front()[0], pole_deg}, ring.front()});
+  }
+  std::vector<Ring> pieces;
+  for (const double turn_deg : {-360.0, 0.0, 360.0}) {
+    Ring piece = Between(ring, turn_deg - 180.0, turn_deg + 180.0);
+    if (piece.size() < 4) continue;  // a ring that only touches the meridian
+    for (auto& [longitude_deg, latitude_deg] : piece) {
+      longitude_deg = Rounded(longitude_deg - turn_deg);
+      latitude_deg = Rounded(latitude_deg);
+    }
+    pieces.push_back(std::move(piece));
+  }
+  return pieces;
+}
+
+/// A polygon, or one for each piece.
+Json Area(const std::vector<Geodetic>& outline) {
+  Json rings = Json::array();
+  for (const Ring& piece : Pieces(outline)) rings.push_back(Json::array({Json(piece)}));
+  if (rings.size() == 1) return {{"type", "Polygon"}, {"coordinates", rings[0]}};
+  return {{"type", "MultiPolygon"}, {"coordinates", rings}};
 }
 
 void Shape(Footprint& footprint) {
@@ -128,16 +187,12 @@ std::string FootprintTitle(const Footprint& footprint) {
 std::string GeoJson(const Campaign& campaign, const std::vector<Footprint>& footprints) {
   Json features = Json::array();
   for (const Footprint& footprint : footprints) {
-    const double near_rad = footprint.mean.longitude_rad;
     const char* body = footprint.lost         ? "lost_flight"
                        : footprint.stage == 0 ? "spent_booster"
                                               : "spent_stage";
     for (std::size_t i = 0; i < footprint.containment.size(); ++i) {
       const Containment& containment = footprint.containment[i];
       const ScatterEllipse& ellipse = footprint.ellipses[i];
-      Json ring = Json::array();
-      for (const Geodetic& place : footprint.outlines[i])
-        ring.push_back({LongitudeDeg(place, near_rad), LatitudeDeg(place)});
       features.push_back({{"type", "Feature"},
                           {"properties",
                            {{"kind", "footprint"},
@@ -153,8 +208,8 @@ std::string GeoJson(const Campaign& campaign, const std::vector<Footprint>& foot
                             {"semi_major_km", ellipse.semi_major * 1e-3},
                             {"semi_minor_km", ellipse.semi_minor * 1e-3},
                             {"azimuth_deg", AzimuthDeg(ellipse)},
-                            {"mean", {LongitudeDeg(footprint.mean, near_rad), LatitudeDeg(footprint.mean)}}}},
-                          {"geometry", {{"type", "Polygon"}, {"coordinates", Json::array({ring})}}}});
+                            {"mean", {LongitudeDeg(footprint.mean), LatitudeDeg(footprint.mean)}}}},
+                          {"geometry", Area(footprint.outlines[i])}});
     }
     for (const ImpactPoint& point : footprint.points) {
       features.push_back(
@@ -172,8 +227,7 @@ std::string GeoJson(const Campaign& campaign, const std::vector<Footprint>& foot
              {"replay", ReplayCommand(point.case_index)}}},
            {"geometry",
             {{"type", "Point"},
-             {"coordinates",
-              {LongitudeDeg(point.impact->place, near_rad), LatitudeDeg(point.impact->place)}}}}});
+             {"coordinates", {LongitudeDeg(point.impact->place), LatitudeDeg(point.impact->place)}}}}});
     }
   }
   const Json json = {{"type", "FeatureCollection"},
@@ -196,16 +250,19 @@ std::string Kml(const Campaign& campaign, const std::vector<Footprint>& footprin
       "</PolyStyle></Style>\n",
       HtmlText(campaign.name), campaign.id);
   for (const Footprint& footprint : footprints) {
-    const double near_rad = footprint.mean.longitude_rad;
     kml += fmt::format("<Folder><name>{}</name>\n", FootprintTitle(footprint));
     for (std::size_t i = 0; i < footprint.containment.size(); ++i) {
-      kml += fmt::format(
-          "<Placemark><name>{}</name><styleUrl>#ellipse</styleUrl><Polygon><outerBoundaryIs><LinearRing>"
-          "<coordinates>",
-          ContainmentTitle(footprint, footprint.containment[i]));
-      for (const Geodetic& place : footprint.outlines[i])
-        kml += fmt::format("{:.7f},{:.7f} ", LongitudeDeg(place, near_rad), LatitudeDeg(place));
-      kml += "</coordinates></LinearRing></outerBoundaryIs></Polygon></Placemark>\n";
+      const std::vector<Ring> pieces = Pieces(footprint.outlines[i]);
+      kml += fmt::format("<Placemark><name>{}</name><styleUrl>#ellipse</styleUrl>{}",
+                         ContainmentTitle(footprint, footprint.containment[i]),
+                         pieces.size() > 1 ? "<MultiGeometry>" : "");
+      for (const Ring& piece : pieces) {
+        kml += "<Polygon><outerBoundaryIs><LinearRing><coordinates>";
+        for (const auto& [longitude_deg, latitude_deg] : piece)
+          kml += fmt::format("{:.7f},{:.7f} ", longitude_deg, latitude_deg);
+        kml += "</coordinates></LinearRing></outerBoundaryIs></Polygon>";
+      }
+      kml += fmt::format("{}</Placemark>\n", pieces.size() > 1 ? "</MultiGeometry>" : "");
     }
     for (const ImpactPoint& point : footprint.points) {
       kml += fmt::format(
@@ -215,7 +272,7 @@ std::string Kml(const Campaign& campaign, const std::vector<Footprint>& footprin
           "Placemark>\n",
           point.case_index, ReplayCommand(point.case_index), point.from_altitude_m * 1e-3, point.from_time_s,
           point.impact->time_s, point.impact->speed_m_s, footprint.lost ? "lost" : "spent",
-          LongitudeDeg(point.impact->place, near_rad), LatitudeDeg(point.impact->place));
+          LongitudeDeg(point.impact->place), LatitudeDeg(point.impact->place));
     }
     kml += "</Folder>\n";
   }

@@ -40,8 +40,8 @@ std::vector<Footprint> GatherFootprints(const std::vector<ImpactPoint>& points);
 /// "stage 2, spent", "boosters, spent", "stack from stage 1, lost".
 std::string FootprintTitle(const Footprint& footprint);
 
-/// GeoJSON (RFC 7946): a point for each impact, a polygon for each ellipse. Longitudes go on beyond 180° if a
-/// footprint crosses it.
+/// GeoJSON (RFC 7946): a point for each impact, a polygon for each ellipse; several if it crosses the
+/// antimeridian.
 std::string GeoJson(const Campaign& campaign, const std::vector<Footprint>& footprints);
 /// OGC KML 2.2: a folder for each footprint.
 std::string Kml(const Campaign& campaign, const std::vector<Footprint>& footprints);

@@ -35,16 +35,6 @@ std::string Plural(std::int64_t count, const char* noun) {
   return fmt::format("{} {}{}", count, noun, count == 1 ? "" : "s");
 }
 
-/// A case of a requirement: what it measured, undefined when the flight was lost.
-std::vector<double> ValuesOf(const Requirement& requirement, const CaseColumns& cases) {
-  std::vector<double> values = MeasuredValues(cases, requirement.metric);
-  if (!LossFails(requirement)) return values;
-  for (std::size_t i = 0; i < values.size(); ++i) {
-    if (cases.outcome[i] != Outcome::kCompleted) values[i] = kUndefined;
-  }
-  return values;
-}
-
 CaseTally TallyOf(const Limits& limits, const std::vector<double>& values, const CaseColumns& cases,
                   std::uint64_t all) {
   CaseTally tally;
@@ -224,32 +214,45 @@ Interval BoundsOfReplicates(const CaseTally& tally, const JudgingContext& contex
 
 }  // namespace
 
+std::vector<double> ValuesToJudge(const Requirement& requirement, const CaseColumns& cases) {
+  std::vector<double> values = MeasuredValues(cases, requirement.metric);
+  const Limits limits = LimitsOf(requirement);
+  for (double& value : values) value = limits.Represented(value);
+  if (!LossFails(requirement)) return values;
+  for (std::size_t i = 0; i < values.size(); ++i) {
+    if (cases.outcome[i] != Outcome::kCompleted) values[i] = kUndefined;
+  }
+  return values;
+}
+
 std::string LimitWords(const RequirementSummary& requirement, const std::string& unit) {
   const std::string suffix = unit.empty() ? "" : " " + unit;
   if (requirement.low_limit) {
-    return fmt::format("between {} and {}{}", ReadableText(*requirement.low_limit),
-                       ReadableText(requirement.limit), suffix);
+    return fmt::format("between {} and {}{}", StatedText(*requirement.low_limit),
+                       StatedText(requirement.limit), suffix);
   }
-  return fmt::format("{} {}{}", requirement.below ? "below" : "above", ReadableText(requirement.limit),
-                     suffix);
+  return fmt::format("{} {}{}", requirement.below ? "below" : "above", StatedText(requirement.limit), suffix);
+}
+
+double LimitBeside(const RequirementSummary& requirement, double value) {
+  if (!requirement.low_limit) return requirement.limit;
+  return Limits{*requirement.low_limit, requirement.limit}.Beside(value);
 }
 
 std::string BoundWords(const RequirementSummary& requirement, const std::string& unit) {
   if (!requirement.bound) return "";
-  const double bound = *requirement.bound, low = requirement.low_limit.value_or(requirement.limit);
-  // Of a range the bound is on the side that is nearer.
-  const bool below = requirement.low_limit ? 2.0 * bound >= low + requirement.limit : requirement.below;
-  return fmt::format(
-      "{} {}{}", below ? "below" : "above",
-      RoundedText(bound, below ? Rounding::kUp : Rounding::kDown, below ? requirement.limit : low),
-      unit.empty() ? "" : " " + unit);
+  const double bound = *requirement.bound, limit = LimitBeside(requirement, bound);
+  const bool below = requirement.below && limit == requirement.limit;
+  return fmt::format("{} {}{}", below ? "below" : "above",
+                     RoundedText(bound, below ? Rounding::kUp : Rounding::kDown, limit),
+                     unit.empty() ? "" : " " + unit);
 }
 
 std::string BoundSentence(const RequirementSummary& requirement, const std::string& unit) {
   if (!requirement.bound) return "";
-  const std::string limit =
-      requirement.low_limit ? "limits " + LimitWords(requirement, unit).substr(8)
-                            : "limit " + ReadableText(requirement.limit) + (unit.empty() ? "" : " " + unit);
+  const std::string limit = requirement.low_limit
+                                ? "limits " + LimitWords(requirement, unit).substr(8)
+                                : "limit " + StatedText(requirement.limit) + (unit.empty() ? "" : " " + unit);
   return fmt::format("With {} confidence {} of flights stay {} ({}).",
                      PercentText(1.0 - requirement.consumer_risk), PercentText(requirement.probability),
                      BoundWords(requirement, unit), limit);
@@ -298,7 +301,7 @@ std::vector<RequirementSummary> JudgeAll(const std::vector<Requirement>& require
     summary.consumer_risk = requirement.consumer_risk;
     summary.plan = requirement.plan;
     summary.planned = context.planned;
-    const std::vector<double> values = ValuesOf(requirement, cases);
+    const std::vector<double> values = ValuesToJudge(requirement, cases);
     tallies.push_back(TallyOf(limits, values, cases, context.cases));
     SetWorst(limits, values, cases, summary);
     summary.n = std::ssize(cases.index);
@@ -341,8 +344,8 @@ std::vector<RequirementSummary> JudgeAll(const std::vector<Requirement>& require
     summary.contradicted = verdict.contradicted;
     summary.beyond_plan = verdict.beyond_plan;
     summary.naive_risk = verdict.naive_risk;
-    SetBound(LimitsOf(requirements[i]), ValuesOf(requirements[i], cases), verdict.boundary.accept, missing,
-             summary);
+    SetBound(LimitsOf(requirements[i]), ValuesToJudge(requirements[i], cases), verdict.boundary.accept,
+             missing, summary);
     summary.attained_risk = AttainedRisk(planned[i], summary.looks, missing);
     SetPassChances(summary);
     SetConvergence(tallies[i], cases, summary);

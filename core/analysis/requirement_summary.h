@@ -18,6 +18,10 @@ namespace dispersa {
 /// compared with the loads up to the loss, so a loss alone does not fail them.
 inline bool LossFails(const Requirement& requirement) { return !requirement.by_default; }
 
+/// A case of a requirement: what it measured, as it is held against the limits (Limits::Represented()). It is
+/// undefined when a loss of the flight fails the requirement.
+std::vector<double> ValuesToJudge(const Requirement& requirement, const CaseColumns& cases);
+
 struct RequirementSummary {
   std::string id, rationale, source;  ///< as the campaign gives them
   std::string metric;                 ///< without the prefix
@@ -92,6 +96,8 @@ struct RequirementSummary {
 std::string LimitWords(const RequirementSummary& requirement, const std::string& unit);
 /// "With 90 % confidence 99.73 % of flights stay below 0.225 ° (limit 0.5 °)."; empty without a bound.
 std::string BoundSentence(const RequirementSummary& requirement, const std::string& unit);
+/// The limit that a value stands beside: of a range the nearer one.
+double LimitBeside(const RequirementSummary& requirement, double value);
 /// "below 0.225 °": the bound, rounded so that it still holds; empty without one.
 std::string BoundWords(const RequirementSummary& requirement, const std::string& unit);
 /// " A new campaign can pass with 852 flights or more. ..."; empty unless inconclusive.

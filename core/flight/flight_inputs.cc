@@ -167,6 +167,12 @@ std::string NozzleInColumns(const Vehicle& vehicle, std::size_t stage, int nozzl
   return "nozzle" + std::to_string(FurtherNozzlesBefore(vehicle, stage) + nozzle + 1);
 }
 
+Circle CircleOf(const InputColumn& column) {
+  const bool is_direction = column.name.find("_clock") != std::string::npos ||
+                            column.name.find("_azimuth_deg") != std::string::npos;
+  return is_direction ? kCutAt0Deg : Circle{};
+}
+
 int FindInput(const std::string& name) {
   const std::vector<InputColumn>& columns = InputColumns();
   for (std::size_t i = 0; i < columns.size(); ++i) {

@@ -11,6 +11,7 @@
 #include "core/dynamics/launcher.h"
 #include "core/input/range.h"
 #include "core/input/units.h"
+#include "core/math/circle.h"
 #include "core/math/constants.h"
 #include "core/vehicle/vehicle.h"
 
@@ -401,6 +402,9 @@ inline void DeclareInputs(InputDeclarations& inputs) {
 const std::vector<InputColumn>& InputColumns();
 /// Inputs with a key of their own in `dispersions`, in the order of their columns.
 const std::vector<DispersedInput>& DeclaredDispersals();
+/// Where an input repeats, in the unit of its name: directions of winds, and clock angles. Errors of an angle
+/// repeat too, but they are small ones about 0.
+Circle CircleOf(const InputColumn& column);
 /// Position of a name in InputColumns(), or -1.
 int FindInput(const std::string& name);
 /// The input of a column, in internal units.

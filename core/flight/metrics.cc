@@ -59,6 +59,7 @@ struct Traits {
   bool is_digested = true;
   bool LawInfo::*of_law = nullptr;
   MetricNeeds needs = MetricNeeds::kNothing;
+  Circle circle = {};
 };
 constexpr Traits kByPhase{.by_phase = true}, kUsualByPhase{.by_phase = true, .is_usual = true},
     kUsual{.is_usual = true}, kOfRules{.of_law = &LawInfo::rules},
@@ -68,13 +69,15 @@ constexpr Traits kNotDigested{.is_digested = false};
 // What is not said of flights without a target: the orbit, and how far it is from the target's.
 constexpr Traits kOfOrbit{.needs = MetricNeeds::kControl},
     kOfOrbitNotDigested{.is_digested = false, .needs = MetricNeeds::kControl};
-constexpr Traits kOfNode{.is_digested = false, .needs = MetricNeeds::kNode},
-    kOfArgumentOfPerigee{.is_digested = false, .needs = MetricNeeds::kArgumentOfPerigee},
-    kOfTrueAnomaly{.is_digested = false, .needs = MetricNeeds::kTrueAnomaly};
+constexpr Traits kOfNode{.is_digested = false, .needs = MetricNeeds::kNode, .circle = kCutAt180Deg},
+    kOfArgumentOfPerigee{
+        .is_digested = false, .needs = MetricNeeds::kArgumentOfPerigee, .circle = kCutAt180Deg},
+    kOfTrueAnomaly{.is_digested = false, .needs = MetricNeeds::kTrueAnomaly, .circle = kCutAt180Deg};
 constexpr Traits kOfFreeStage{.is_digested = false, .needs = MetricNeeds::kFreeStage},
     kOfRail{.is_digested = false, .needs = MetricNeeds::kRail},
     kOfApogee{.is_usual = true, .is_digested = false, .needs = MetricNeeds::kApogee},
     kOfImpact{.is_digested = false, .needs = MetricNeeds::kImpact},
+    kLongitudeOfImpact{.is_digested = false, .needs = MetricNeeds::kImpact, .circle = kCutAt180Deg},
     kUsualOfImpact{.is_usual = true, .is_digested = false, .needs = MetricNeeds::kImpact};
 
 struct Row {
@@ -310,7 +313,8 @@ constexpr Row kRows[] = {
     {"impact_latitude", kDegrees, "φ_imp", kFreeFlight, "Latitude of the impact", "geodetic", kAnyway,
      [](const Measured& m) { return m.AtImpact(m.sums.free.impact_latitude_rad * kDegPerRad); }, kOfImpact},
     {"impact_longitude", kDegrees, "λ_imp", kFreeFlight, "Longitude of the impact", "east", kAnyway,
-     [](const Measured& m) { return m.AtImpact(m.sums.free.impact_longitude_rad * kDegPerRad); }, kOfImpact},
+     [](const Measured& m) { return m.AtImpact(m.sums.free.impact_longitude_rad * kDegPerRad); },
+     kLongitudeOfImpact},
     {"impact_downrange", kKilometres, "x_imp", kFreeFlight, "Impact, down-range",
      "along the great circle of the launch azimuth, from the site", kAnyway,
      [](const Measured& m) { return m.AtImpact(m.sums.free.impact_downrange_m * 1e-3); }, kUsualOfImpact},
@@ -452,7 +456,8 @@ std::vector<Metric> AllMetrics() {
                     .is_digested = row.traits.is_digested && !IsRare(phase),
                     .is_part = phase != 0,
                     .of_law = row.traits.of_law,
-                    .needs = NeedsOf(row)});
+                    .needs = NeedsOf(row),
+                    .circle = row.traits.circle});
   });
   return list;
 }

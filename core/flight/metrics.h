@@ -9,6 +9,7 @@
 #include "core/control/autopilot_config.h"
 #include "core/flight/flight_course.h"
 #include "core/flight/outcome.h"
+#include "core/math/circle.h"
 
 namespace dispersa {
 
@@ -84,6 +85,7 @@ struct Metric {
   /// property that a law needs for its flights to have the metric (null: none)
   bool LawInfo::*of_law = nullptr;
   MetricNeeds needs = MetricNeeds::kNothing;
+  Circle circle = {};  ///< where it repeats, in its unit
 };
 
 /// In the order of their columns.

@@ -12,6 +12,7 @@
 
 #include "core/analysis/band_counter.h"
 #include "core/pages/kept_histories.h"
+#include "core/results/metric_catalogue.h"
 #include "core/results/output_file.h"
 #include "core/results/text.h"
 
@@ -125,8 +126,11 @@ std::string HistoryCsv(const History& history, const AutopilotConfig& autopilot)
 
 std::vector<std::size_t> ExtremeRows(const CaseColumns& cases) {
   std::set<std::size_t> rows;
-  for (const CaseColumn& column : cases.metrics) {
-    const std::vector<double> values = column;
+  const std::size_t first_own = cases.metrics.size() - cases.own_metrics.size();
+  for (std::size_t metric = 0; metric < cases.metrics.size(); ++metric) {
+    const Circle circle =
+        metric < first_own ? Metrics()[metric].circle : CircleOf(cases.own_metrics[metric - first_own]);
+    const std::vector<double> values = Unwrapped(cases.metrics[metric], circle);
     std::size_t least = values.size(), largest = values.size();
     for (std::size_t i = 0; i < values.size(); ++i) {
       if (!std::isfinite(values[i])) continue;

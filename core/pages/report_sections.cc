@@ -55,7 +55,7 @@ std::string LimitsTable(const CampaignSummary& summary) {
                    {"Flights beyond", true}});
   for (const CampaignSummary::Limit& one : summary.limits) {
     const MetricInfo info = DescribeMetric(one.metric);
-    table.Row({HtmlText(info.title), WithUnit(one.limit, info.unit),
+    table.Row({HtmlText(info.title), StatedText(one.limit) + (info.unit.empty() ? "" : " " + info.unit),
                one.largest ? RoundedText(*one.largest, Rounding::kNearest, one.limit) +
                                  (info.unit.empty() ? "" : " " + info.unit)
                            : "–",
@@ -168,12 +168,22 @@ std::string WorstCasesSection(const CampaignSummary& summary, const FlightHistor
                                     [&](const MetricSummary& one) { return one.name == worst.metric; });
     const double std = known == summary.metrics.end() ? std::nan("") : known->statistics.std;
     const std::string unit = info.unit.empty() ? "" : " " + info.unit;
+    // As many digits as the scatter or the distance to a limit asks for.
+    const auto value_text = [&](double value) {
+      std::string text = ScatterText(value, std);
+      for (const RequirementSummary& requirement : summary.requirements) {
+        if (requirement.metric != worst.metric) continue;
+        const std::string beside = RoundedText(value, Rounding::kNearest, LimitBeside(requirement, value));
+        if (beside.size() > text.size()) text = beside;
+      }
+      return text;
+    };
     for (std::size_t i = 0; i < worst.cases.size(); ++i) {
       const WorstCase& one = worst.cases[i];
       const bool written =
           std::binary_search(histories.written_cases.begin(), histories.written_cases.end(), one.case_index);
       table.Row({i == 0 ? HtmlText(info.title) : "", std::to_string(one.case_index),
-                 one.value ? ScatterText(*one.value, std) + unit : "–", OutcomeWords(one.outcome),
+                 one.value ? value_text(*one.value) + unit : "–", OutcomeWords(one.outcome),
                  ReplayCell(summary, one.case_index),
                  written ? Code(fmt::format("histories/case_{}.csv", one.case_index)) : ""},
                 i < kPrinted ? "" : "screen");
@@ -205,7 +215,7 @@ std::string StatisticsSection(const CampaignSummary& summary) {
                    {"Max", true}});
   for (const char* group : kMetricGroupTitles) {
     bool titled = false;
-    std::string same, undefined;  // what does not vary needs no row of eleven equal numbers
+    std::string same, around, undefined;  // what does not vary needs no row of eleven equal numbers
     for (const MetricSummary& metric : summary.metrics) {
       const MetricInfo info = DescribeMetric(metric.name);
       if (info.group != group) continue;
@@ -228,7 +238,13 @@ std::string StatisticsSection(const CampaignSummary& summary) {
         undefined += (undefined.empty() ? "" : "; ") + HtmlText(info.title);
         continue;
       }
-      const auto value = [&](double number) { return ScatterText(number, s.std); };
+      if (IsAllAround(s)) {
+        around += fmt::format("{}{} (n = {})", around.empty() ? "" : "; ", HtmlText(info.title), s.n);
+        continue;
+      }
+      const auto value = [&](double number) {
+        return ScatterText(NearTo(s.mean, number, info.circle), s.std);
+      };
       // Above its numbers: beside twelve of them no name finds room.
       table.Wide("<div><b>" + HtmlText(info.title) + (info.unit.empty() ? "" : ", " + HtmlText(info.unit)) +
                      "</b>" + definition + "</div>",
@@ -240,6 +256,8 @@ std::string StatisticsSection(const CampaignSummary& summary) {
                 info.is_part ? "numbers screen" : "numbers");
     }
     if (!same.empty()) table.Wide("<div>The same in all flights: " + same + ".</div>", "name same");
+    if (!around.empty())
+      table.Wide("<div>All around the circle, so without a mean: " + around + ".</div>", "name same");
     if (!undefined.empty()) table.Wide("<div>In no flight: " + undefined + ".</div>", "name same");
   }
   return html + table.Html("statistics");
@@ -252,7 +270,9 @@ std::string DispersionsSection(const CampaignSummary& summary) {
   html +=
       "<p>What was drawn is read back from the inputs as each flight applied them. “Agrees” means that mean "
       "and "
-      "standard deviation lie within five standard errors of the declared ones.</p>\n";
+      "standard deviation lie within five standard errors of the declared ones. A direction from anywhere "
+      "has "
+      "no mean.</p>\n";
   HtmlTable table({{"Input", false, true},
                    {"Declared"},
                    {"Expected mean", true},

@@ -42,10 +42,8 @@ std::string PlanWords(const RequirementSummary& requirement) {
 std::string WorstWords(const RequirementSummary& requirement, const std::string& unit) {
   if (!requirement.worst_completed) return "–";
   const auto& [case_index, value] = *requirement.worst_completed;
-  // Of a range the limit that it is nearer to tells how many digits matter.
-  const double low = requirement.low_limit.value_or(requirement.limit);
-  const double limit = value - low < requirement.limit - value ? low : requirement.limit;
-  return fmt::format("{}{} (case {})", RoundedText(value, Rounding::kNearest, limit),
+  return fmt::format("{}{} (case {})",
+                     RoundedText(value, Rounding::kNearest, LimitBeside(requirement, value)),
                      unit.empty() ? "" : " " + unit, case_index);
 }
 

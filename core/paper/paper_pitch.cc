@@ -93,8 +93,7 @@ std::string RequirementRows(const PaperFlights& flown) {
   for (const Requirement& requirement : flown.campaign.requirements) {
     const RequirementSummary verdict =
         Judge(requirement, flown.campaign.sampling.method, flown.flights.cases, 0);
-    table.Row({fmt::format("<code>{}</code> {} {} {}", requirement.metric, verdict.below ? "below" : "above",
-                           ReadableText(verdict.limit),
+    table.Row({fmt::format("<code>{}</code> {} {}", requirement.metric, LimitWords(verdict, ""),
                            verdict.every_case ? "in every case" : "with " + PercentText(verdict.probability)),
                HtmlText(verdict.sentence), fmt::format("{} / {}", verdict.failures, verdict.n),
                VerdictBadge(verdict.verdict)});

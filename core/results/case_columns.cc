@@ -2,9 +2,11 @@
 
 #include <algorithm>
 #include <memory>
+#include <utility>
 
 #include "core/flight/flight_inputs.h"
 #include "core/flight/metrics.h"
+#include "core/results/metric_catalogue.h"
 #include "core/statistics/summary.h"
 
 namespace dispersa {
@@ -54,7 +56,7 @@ std::vector<double> CompletedValues(const CaseColumns& cases, const std::string&
   for (std::size_t i = 0; i < values.size(); ++i) {
     if (cases.outcome[i] != Outcome::kCompleted) values[i] = kUndefined;
   }
-  return values;
+  return Unwrapped(std::move(values), CircleOf(metric));
 }
 
 std::size_t LostCount(const CaseColumns& cases) {

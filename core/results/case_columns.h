@@ -37,7 +37,8 @@ CaseColumns ReadColumns(const ResultFolder& folder, const std::vector<int>& want
 
 /// A metric's values; NaN if the flights do not have it.
 std::vector<double> MeasuredValues(const CaseColumns& cases, const std::string& metric);
-/// The same, with NaN for every flight that was not completed, even if it measured a value.
+/// The same for statistics and charts: NaN for every flight that was not completed, even if it measured a
+/// value; of a metric on a circle near to the centre of all, so that values may go on beyond the cut.
 std::vector<double> CompletedValues(const CaseColumns& cases, const std::string& metric);
 
 /// Flights that were not completed.

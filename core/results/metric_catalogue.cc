@@ -15,11 +15,26 @@ NameAndUnit SplitUnit(const std::string& name) {
   return {name, ""};
 }
 
-MetricInfo DescribeMetric(const std::string& name) {
-  MetricInfo info;
+namespace {
+
+const Metric* Find(const std::string& name) {
   const auto metric = std::find_if(Metrics().begin(), Metrics().end(),
                                    [&](const Metric& candidate) { return candidate.name == name; });
-  if (metric != Metrics().end()) {
+  return metric == Metrics().end() ? nullptr : &*metric;
+}
+
+}  // namespace
+
+Circle CircleOf(const std::string& metric) {
+  if (const Metric* known = Find(metric)) return known->circle;
+  if (metric.ends_with("longitude_deg")) return kCutAt180Deg;
+  return metric.ends_with("azimuth_deg") || metric.ends_with("clock_deg") ? kCutAt0Deg : Circle{};
+}
+
+MetricInfo DescribeMetric(const std::string& name) {
+  MetricInfo info;
+  info.circle = CircleOf(name);
+  if (const Metric* metric = Find(name)) {
     info.title = metric->title;
     info.symbol = metric->symbol;
     info.unit = metric->unit;

@@ -16,10 +16,14 @@ struct MetricInfo {
   Worse worse = Worse::kLarger;
   bool is_part = false;  ///< of one stage or of the coast
   bool known = false;    ///< a metric of flights
+  Circle circle = {};    ///< where it repeats
 };
 
 /// `name` is a metric's name without prefix. If it is no metric, only the unit at its end is known.
 MetricInfo DescribeMetric(const std::string& name);
+/// Where it repeats, as DescribeMetric() has it. A campaign's own metric says so by its name: it ends in
+/// longitude_deg (from -180), azimuth_deg or clock_deg (from 0).
+Circle CircleOf(const std::string& metric);
 
 /// Unit of a column from the end of its name, and the name without it: "wind_max_speed_m_s" gives "m/s" and
 /// "wind_max_speed".

@@ -5,15 +5,17 @@
 #include <charconv>
 #include <sstream>
 
+#include "core/results/metric_catalogue.h"
 #include "core/results/text.h"
 
 namespace dispersa {
 
 Limits LimitsOf(const Requirement& requirement) {
   Limits limits;
-  if (requirement.within) limits = {(*requirement.within)[0], (*requirement.within)[1]};
+  if (requirement.within) limits = {(*requirement.within)[0], (*requirement.within)[1], {}};
   if (requirement.above) limits.low = *requirement.above;
   if (requirement.below) limits.high = *requirement.below;
+  limits.circle = CircleOf(requirement.metric);
   return limits;
 }
 

@@ -41,8 +41,19 @@ double RoundTo(double value, double resolution, Rounding rounding) {
   return (rounding == Rounding::kUp ? std::ceil(steps) : std::floor(steps)) * resolution;
 }
 
-bool Crosses(double value, double rounded, double against) {
-  return std::isfinite(against) && (value < against ? rounded >= against : rounded < against);
+/// Whether the rounded value stands otherwise to `against` than the value: beyond it, or beside what it
+/// equals.
+bool Misplaces(double value, double rounded, double against) {
+  if (!std::isfinite(against)) return false;
+  if (value == against) return std::fabs(rounded - against) > 1e-14 * std::fabs(against);
+  return value < against ? rounded >= against : rounded <= against;
+}
+
+/// Decimals that show two digits of the distance between the two; `least` where nothing else asks for more.
+int DecimalsBeside(double value, double against, int least) {
+  const double distance = std::fabs(value - against);
+  if (!std::isfinite(distance) || distance == 0.0) return least;
+  return std::max(least, 1 - static_cast<int>(std::floor(std::log10(distance))));
 }
 
 std::string WithoutZeros(std::string text) {
@@ -54,16 +65,24 @@ std::string WithoutZeros(std::string text) {
 
 }  // namespace
 
+std::string StatedText(double value) {
+  if (!std::isfinite(value)) return "–";
+  const double magnitude = std::fabs(value);
+  if (magnitude != 0.0 && (magnitude < 1e-4 || magnitude >= 1e9)) return fmt::format("{:.12g}", value);
+  const int exponent = magnitude == 0.0 ? 0 : static_cast<int>(std::floor(std::log10(magnitude)));
+  return WithoutZeros(fmt::format("{:.{}f}", value + 0.0, std::max(0, 11 - exponent)));
+}
+
 std::string RoundedText(double value, Rounding rounding, double against) {
   if (!std::isfinite(value)) return "–";
   if (value == 0.0) return "0";
   const double magnitude = std::fabs(value);
   const int exponent = static_cast<int>(std::floor(std::log10(magnitude)));
   double rounded = value;
-  int digits = 3;
+  int digits = std::min(16, DecimalsBeside(value, against, 2 - exponent) + exponent + 1);
   for (; digits < 17; ++digits) {
     rounded = RoundTo(value, std::pow(10.0, exponent - digits + 1), rounding);
-    if (!Crosses(value, rounded, against)) break;
+    if (!Misplaces(value, rounded, against)) break;
   }
   if (magnitude < 1e-4 || magnitude >= 1e9) return fmt::format("{:.{}e}", rounded, digits - 1);
   return WithoutZeros(fmt::format("{:.{}f}", rounded, std::max(0, digits - 1 - exponent)));
@@ -86,10 +105,11 @@ std::string ShareText(double probability, Rounding rounding, double against) {
   if (percent < 0.001 && rounding != Rounding::kDown) return "< 0.001 %";
   int decimals = percent < 99.0 ? 2 - static_cast<int>(std::floor(std::log10(percent)))
                                 : std::max(2, static_cast<int>(-std::floor(std::log10(missing))));
+  decimals = DecimalsBeside(percent, 100.0 * against, decimals);
   double rounded = percent;
   for (; decimals < 15; ++decimals) {
     rounded = RoundTo(percent, std::pow(10.0, -decimals), rounding);
-    if (!Crosses(percent, rounded, 100.0 * against)) break;
+    if (!Misplaces(percent, rounded, 100.0 * against)) break;
   }
   return WithoutZeros(fmt::format("{:.{}f}", rounded, decimals)) + " %";
 }

@@ -13,14 +13,18 @@ std::string ShortestText(double value);
 /// For people: five significant digits, without an exponent between 1e-4 and 1e9. "–" if not finite.
 std::string ReadableText(double value);
 enum class Rounding { kNearest, kDown, kUp };
+/// A number as somebody stated it, a limit for instance: "295.4941". Up to twelve digits.
+std::string StatedText(double value);
 /// A result for people: three significant digits, "0.225". A bound is rounded to its own side, so that it
-/// still holds. Has more digits where the rounded value would lie on the other side of `against`, a limit.
+/// still holds. Beside a limit (`against`) it has two digits of its distance to the limit at least, and is
+/// never rounded to the other side of the limit: "295.494" and "295" are told apart.
 std::string RoundedText(double value, Rounding rounding = Rounding::kNearest, double against = std::nan(""));
 /// A value of a sample: two digits of the sample's standard deviation; `value` in full where nothing
 /// scatters.
 std::string ScatterText(double value, double deviation);
 /// A probability as a result in per cent: three significant digits, two decimals near 100 %, and one digit of
-/// what is missing to 100 % nearer still; "< 0.001 %" below that. 0.99954 rounded down is "99.95 %".
+/// what is missing to 100 % nearer still; "< 0.001 %" below that. 0.99954 rounded down is "99.95 %". Beside
+/// another share (`against`) as RoundedText().
 std::string ShareText(double probability, Rounding rounding = Rounding::kNearest,
                       double against = std::nan(""));
 /// "3.1e-06", "0.0123"; "< 1e-15" where doubles say no more.

@@ -48,6 +48,12 @@ Summary Summarize(std::vector<double> values) {
   return SummarizeSorted(sorted, cases - sorted.size());
 }
 
+Summary Summarize(std::vector<double> values, const Circle& circle) {
+  if (!LiesAllAround(values, circle)) return Summarize(Unwrapped(std::move(values), circle));
+  const Summary linear = Summarize(std::move(values));
+  return {.n = linear.n, .undefined = linear.undefined};
+}
+
 Summary SummarizeSorted(const std::vector<double>& sorted, std::size_t undefined) {
   const std::size_t n = sorted.size();
   const double mean = Mean(sorted);

@@ -1,9 +1,12 @@
 // The statistics of one metric over the cases, as tables show them.
 #pragma once
 
+#include <cmath>
 #include <cstddef>
 #include <limits>
 #include <vector>
+
+#include "core/math/circle.h"
 
 namespace dispersa {
 
@@ -34,6 +37,10 @@ Summary SummarizeSorted(const std::vector<double>& sorted, std::size_t undefined
 
 /// The order of `values` does not change a bit of the result: they are sorted, and summed with compensation.
 Summary Summarize(std::vector<double> values);
+/// The same of a quantity on a circle, unwrapped about its centre, so that values may go on beyond the cut.
+/// If the values lie all around, nothing but their number is defined.
+Summary Summarize(std::vector<double> values, const Circle& circle);
+inline bool IsAllAround(const Summary& summary) { return summary.n > 0 && std::isnan(summary.mean); }
 
 /// The finite values in increasing order; -0 becomes 0.
 std::vector<double> SortedFinite(std::vector<double> values);

@@ -241,9 +241,11 @@ ExitCode SearchFor(const SearchCommand& command, const GlobalOptions& global) {
     json["outcome"] = OutcomeName(flown.outcome);
     json["value"] = Number(value);
     json["dispersions"] = nlohmann::ordered_json::array();
-    text += fmt::format("outcome {}, {} {}\n\n{:<44}{:>12}{:>10}\n", OutcomeName(flown.outcome),
-                        requirement.metric, std::isfinite(value) ? ReadableText(value) : "undefined",
-                        "dispersion", "std devs", "share");
+    text += fmt::format(
+        "outcome {}, {} {}\n\n{:<44}{:>12}{:>10}\n", OutcomeName(flown.outcome), requirement.metric,
+        std::isfinite(value) ? RoundedText(value, Rounding::kNearest, LimitsOf(requirement).Beside(value))
+                             : "undefined",
+        "dispersion", "std devs", "share");
     std::vector<std::size_t> order(space.coordinates().size());
     for (std::size_t i = 0; i < order.size(); ++i) order[i] = i;
     std::stable_sort(order.begin(), order.end(), [&](std::size_t a, std::size_t b) {

@@ -17,8 +17,11 @@ RunningTally::RunningTally(const Campaign& campaign)
   const MetricList metrics = MetricsOf(campaign);
   for (const Requirement& requirement : requirements_)
     columns_.push_back(metrics.PositionOf(requirement.metric));
-  for (const std::string& metric : KeyMetrics(campaign))
-    histograms_.push_back({metric, metrics.PositionOf(metric), {}});
+  for (const std::string& metric : KeyMetrics(campaign)) {
+    histograms_.push_back({metric, metrics.PositionOf(metric), {}, {}});
+    for (const Requirement& requirement : requirements_)
+      if (requirement.metric == metric) histograms_.back().limits = LimitsOf(requirement);
+  }
 }
 
 void RunningTally::Add(const CaseResult& result) {
@@ -31,7 +34,7 @@ void RunningTally::Add(const CaseResult& result) {
   if (result.outcome != Outcome::kCompleted) return;
   for (MetricHistogram& histogram : histograms_) {
     if (const double value = result.metrics[histogram.column]; std::isfinite(value))
-      histogram.values.Add(value);
+      histogram.values.Add(histogram.limits.Represented(value));
   }
 }
 

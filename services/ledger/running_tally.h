@@ -7,6 +7,7 @@
 
 #include "core/campaign/campaign.h"
 #include "core/campaign/case_result.h"
+#include "core/statistics/limits.h"
 #include "services/ledger/running_histogram.h"
 
 namespace dispersa {
@@ -27,6 +28,7 @@ struct MetricHistogram {
   std::string metric;
   std::size_t column = 0;
   RunningHistogram values;
+  Limits limits;  ///< of its requirement: on a circle values are counted near to them
 };
 
 class RunningTally {

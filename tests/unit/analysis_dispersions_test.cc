@@ -76,20 +76,20 @@ TEST(Dispersions, AMagnitudeIsHalfNormal) {
   EXPECT_EQ(summary.consistent, true);
 }
 
-TEST(Dispersions, AUniformAngleHasItsMoments) {
+TEST(Dispersions, ADirectionFromHalfATurnHasItsMoments) {
   Dispersion azimuth = Normal("wind_azimuth_deg", 0.0, 0.0);
   azimuth.distribution = {.kind = Distribution::kUniform,
                           .nominal = 0.0,
                           .sigma = 0.0,
                           .low = 0.0,
-                          .high = 2.0 * std::numbers::pi,
+                          .high = std::numbers::pi,
                           .values = {}};
   std::mt19937_64 generator(4);
-  std::uniform_real_distribution<double> uniform(0.0, 360.0);
+  std::uniform_real_distribution<double> uniform(0.0, 180.0);
   const DispersionSummary summary = Summarized(azimuth, 2000, [&] { return uniform(generator); });
-  EXPECT_NEAR(*summary.expected_mean, 180.0, 1e-12);
-  EXPECT_NEAR(*summary.expected_std, 360.0 / std::sqrt(12.0), 1e-12);
-  EXPECT_EQ(summary.declared, "uniform, 0 to 360 °");
+  EXPECT_NEAR(*summary.expected_mean, 90.0, 1e-12);
+  EXPECT_NEAR(*summary.expected_std, 180.0 / std::sqrt(12.0), 1e-12);
+  EXPECT_EQ(summary.declared, "uniform, 0 to 180 °");
   EXPECT_EQ(summary.consistent, true);
 }
 
@@ -120,6 +120,43 @@ TEST(Dispersions, TwoThatFeedOneInputPromiseNothingAboutIt) {
     EXPECT_FALSE(summary.expected_mean.has_value());
   }
   EXPECT_EQ(DispersedInputs(campaign), std::vector<int>{FindInput("drag_factor")});
+}
+
+// Directions: 0 and 360 degrees are the same.
+TEST(Dispersions, OfADirectionAreNearToTheDeclaredMean) {
+  for (const double mean_deg : {0.0, 90.0, 359.0}) {
+    SCOPED_TRACE(mean_deg);
+    std::mt19937_64 generator(3);
+    std::normal_distribution<double> normal(mean_deg, 5.0);
+    const auto in_range = [&] {
+      const double value = normal(generator);
+      return value - 360.0 * std::floor(value / 360.0);
+    };
+    const DispersionSummary summary =
+        Summarized(Normal("wind_azimuth_deg", mean_deg * kRadPerDegree, 5.0 * kRadPerDegree), 2000, in_range);
+    EXPECT_EQ(summary.consistent, true);
+    EXPECT_NEAR(*summary.expected_mean, mean_deg, 1e-9);
+    EXPECT_NEAR(summary.drawn.mean, mean_deg, 0.5);
+    EXPECT_NEAR(summary.drawn.std, 5.0, 0.3);
+  }
+}
+
+TEST(Dispersions, ADirectionFromAnywhereHasNoMean) {
+  std::mt19937_64 generator(4);
+  std::uniform_real_distribution<double> uniform(0.0, 360.0);
+  for (const char* input : {"wind_azimuth_deg", "thrust_misalignment_clock_stage1_deg"}) {
+    Dispersion dispersion = Normal(input, 0.0, 0.0);
+    dispersion.distribution.kind = Distribution::kUniform;
+    dispersion.distribution.high = 2.0 * std::numbers::pi;
+    const DispersionSummary summary = Summarized(dispersion, 2000, [&] { return uniform(generator); });
+    EXPECT_EQ(summary.declared, "uniform, 0 to 360 °");
+    EXPECT_EQ(summary.consistent, true);
+    EXPECT_EQ(summary.drawn.n, 2000u);
+    EXPECT_TRUE(std::isnan(summary.drawn.mean));
+    EXPECT_FALSE(summary.expected_mean);
+    // A wind from the south alone is no draw from everywhere.
+    EXPECT_EQ(Summarized(dispersion, 2000, [&] { return 0.5 * uniform(generator); }).consistent, false);
+  }
 }
 
 }  // namespace

@@ -54,25 +54,90 @@ TEST(Footprints, FindTheSpreadOfTheirPoints) {
   EXPECT_NEAR(footprint.containment[1].empirical, 0.95, 0.02);
 }
 
-TEST(Footprints, GeoJsonAcrossTheDateLine) {
-  const auto json =
-      nlohmann::json::parse(GeoJson(report_test::MakeCampaign(40), GatherFootprints(Scattered(179.95, 40))));
-  EXPECT_EQ(json["type"], "FeatureCollection");
-  ASSERT_EQ(json["features"].size(), 43u);  // three ellipses and forty points
-  double west = 360.0, east = -360.0;
-  for (const auto& feature : json["features"]) {
-    EXPECT_EQ(feature["type"], "Feature");
-    const auto& coordinates = feature["geometry"]["coordinates"];
-    if (feature["geometry"]["type"] == "Polygon") {
-      EXPECT_EQ(coordinates[0].front(), coordinates[0].back());  // a ring is closed
-      EXPECT_EQ(feature["properties"]["points"], 40);
-    } else {
-      west = std::min(west, coordinates[0].get<double>());
-      east = std::max(east, coordinates[0].get<double>());
+/// Twice the area of a ring in square degrees; positive if it runs counter-clockwise.
+double TwiceArea(const nlohmann::json& ring) {
+  double sum = 0.0;
+  for (std::size_t i = 0; i + 1 < ring.size(); ++i)
+    sum += ring[i][0].get<double>() * ring[i + 1][1].get<double>() -
+           ring[i + 1][0].get<double>() * ring[i][1].get<double>();
+  return sum;
+}
+
+// RFC 7946, section 3.1.9: what crosses the antimeridian is cut there. On either side of it, and away from
+// it.
+TEST(Footprints, GeoJsonIsCutAtTheAntimeridian) {
+  double uncut = 0.0;
+  for (const double site_deg : {70.0, 179.95, -179.95}) {
+    SCOPED_TRACE(site_deg);
+    const auto json = nlohmann::json::parse(
+        GeoJson(report_test::MakeCampaign(40), GatherFootprints(Scattered(site_deg, 40))));
+    ASSERT_EQ(json["features"].size(), 43u);  // three ellipses and forty points
+    double area = 0.0;
+    for (const auto& feature : json["features"]) {
+      const auto& geometry = feature["geometry"];
+      if (geometry["type"] == "Point") {
+        EXPECT_LE(std::fabs(geometry["coordinates"][0].get<double>()), 180.0);
+        continue;
+      }
+      EXPECT_EQ(geometry["type"], site_deg == 70.0 ? "Polygon" : "MultiPolygon");
+      nlohmann::json polygons = geometry["coordinates"];
+      if (site_deg == 70.0) polygons = nlohmann::json::array({polygons});
+      EXPECT_EQ(polygons.size(), site_deg == 70.0 ? 1u : 2u);
+      double of_one = 0.0;
+      for (const auto& polygon : polygons) {
+        const auto& ring = polygon[0];
+        EXPECT_EQ(ring.front(), ring.back());
+        double west = 360.0, east = -360.0;
+        for (const auto& place : ring) {
+          west = std::min(west, place[0].get<double>());
+          east = std::max(east, place[0].get<double>());
+        }
+        EXPECT_GE(west, -180.0);
+        EXPECT_LE(east, 180.0);
+        EXPECT_TRUE(site_deg == 70.0 || west == -180.0 || east == 180.0);
+        EXPECT_LT(east - west, 5.0);  // no line around the Earth
+        EXPECT_GT(TwiceArea(ring), 0.0);
+        of_one += TwiceArea(ring);
+      }
+      area += of_one;
     }
+    if (site_deg == 70.0) uncut = area;
+    EXPECT_NEAR(area, uncut, 1e-3 * uncut);  // the pieces are the whole
   }
-  EXPECT_LT(east - west, 2.0);  // no line around the Earth
-  EXPECT_GT(east, 180.0);
+}
+
+TEST(Footprints, AroundThePoleRunToThePole) {
+  std::vector<ImpactPoint> points;
+  for (int i = 0; i < 40; ++i) {
+    ImpactPoint point{.case_index = static_cast<std::uint64_t>(i), .stage = 1};
+    point.impact = Impact{};
+    point.impact->place = {(89.0 + 0.01 * (i % 7)) * kRadPerDeg, (9.0 * i - 180.0) * kRadPerDeg, 0.0};
+    points.push_back(point);
+  }
+  const auto json = nlohmann::json::parse(GeoJson(report_test::MakeCampaign(40), GatherFootprints(points)));
+  const auto& geometry = json["features"][0]["geometry"];
+  double north = 0.0, west = 360.0, east = -360.0;
+  ASSERT_TRUE(geometry["type"] == "Polygon" || geometry["type"] == "MultiPolygon");
+  const nlohmann::json polygons = geometry["type"] == "Polygon"
+                                      ? nlohmann::json::array({geometry["coordinates"]})
+                                      : geometry["coordinates"];
+  for (const auto& polygon : polygons)
+    for (const auto& place : polygon[0]) {
+      west = std::min(west, place[0].get<double>());
+      east = std::max(east, place[0].get<double>());
+      north = std::max(north, place[1].get<double>());
+    }
+  EXPECT_EQ(north, 90.0);
+  EXPECT_EQ(west, -180.0);
+  EXPECT_EQ(east, 180.0);
+}
+
+TEST(Footprints, KmlIsCutAtTheAntimeridian) {
+  const std::string kml = Kml(report_test::MakeCampaign(40), GatherFootprints(Scattered(179.95, 40)));
+  EXPECT_THAT(kml, testing::HasSubstr("<MultiGeometry><Polygon>"));
+  EXPECT_THAT(kml, testing::HasSubstr("</Polygon><Polygon>"));
+  EXPECT_THAT(kml, testing::HasSubstr("-180.0000000,"));
+  EXPECT_THAT(kml, testing::Not(testing::ContainsRegex("18[1-9]\\.|180\\.[0-9]*[1-9],")));
 }
 
 TEST(Footprints, KmlHasAFolderEach) {

@@ -44,7 +44,7 @@ TEST(Judge, NeedsTheCasesOfTheExactBinomial) {
   EXPECT_FALSE(enough.cases_needed.has_value());
   EXPECT_NEAR(*enough.success_lower, std::pow(0.10, 1.0 / 852), 1e-12);  // Clopper-Pearson without a failure
   EXPECT_EQ(enough.sentence,
-            "0 of 852 flights broke the limit. With 90 % confidence at least 99.73 % of flights meet it; "
+            "0 of 852 flights broke the limit. With 90 % confidence at least 99.7301 % of flights meet it; "
             "99.73 % required.");
 
   const RequirementSummary one_less = Judge(requirement, SamplingMethod::kMonteCarlo, Columns(851, 0), 0);
@@ -842,6 +842,75 @@ TEST(StructuralLimits, DoNotKeepACampaignFromStopping) {
   EXPECT_EQ(target_after(200), 200u) << "half of the flights below a limit that none comes near";
   kept.Set(5, "structural_limit_exceeded", 1.0);
   EXPECT_GT(target_after(200), 200u);
+}
+
+/// Impacts from 0.03 degrees west to 0.03 degrees east of a longitude.
+CaseColumns ImpactsAbout(double site_deg) {
+  CaseColumns cases;
+  cases.inputs.resize(InputCount(kUsualStages));
+  cases.metrics.resize(MetricCount(kUsualStages));
+  for (std::size_t i = 0; i < 61; ++i) {
+    cases.index.push_back(i);
+    cases.outcome.push_back(Outcome::kCompleted);
+    cases.metrics[MetricColumn("impact_longitude_deg")].push_back(
+        NearTo(0.0, site_deg + 0.001 * (static_cast<double>(i) - 30.0), kCutAt180Deg));
+  }
+  return cases;
+}
+
+// At the antimeridian as elsewhere, from either side: what is judged is the way to the limit.
+TEST(Judge, OfALongitudeDoesNotSeeTheCut) {
+  for (const double site_deg : {10.0, 179.98, -179.98}) {
+    SCOPED_TRACE(site_deg);
+    const CaseColumns cases = ImpactsAbout(site_deg);
+    const auto judge = [&](std::optional<double> below, std::optional<double> above) {
+      return Judge({.metric = "impact_longitude_deg",
+                    .below = below,
+                    .above = above,
+                    .probability = 0.9,
+                    .consumer_risk = 0.1},
+                   SamplingMethod::kMonteCarlo, cases, 0);
+    };
+    const double east_deg = NearTo(0.0, site_deg + 0.0295, kCutAt180Deg);
+    const double west_deg = NearTo(0.0, site_deg - 0.0295, kCutAt180Deg);
+    for (const RequirementSummary& one : {judge(east_deg, {}), judge({}, west_deg)}) {
+      EXPECT_EQ(one.failures, 1);
+      ASSERT_TRUE(one.bound);
+      EXPECT_GT(*one.margin, 0.0);
+      EXPECT_LT(*one.margin, 0.06);
+      EXPECT_NEAR(one.worst_completed->value, one.limit, 0.001);
+    }
+    Requirement range{
+        .metric = "impact_longitude_deg", .below = {}, .above = {}, .probability = 0.9, .consumer_risk = 0.1};
+    range.within = {{site_deg - 0.0295, site_deg + 0.0295}};
+    EXPECT_EQ(Judge(range, SamplingMethod::kMonteCarlo, cases, 0).failures, 2);
+  }
+}
+
+// The bound is 295.494 for a limit of 295: the words tell them apart.
+TEST(Judge, SaysABoundWithTheDigitsOfItsMargin) {
+  RequirementSummary summary;
+  summary.probability = 0.9973;
+  summary.consumer_risk = 0.1;
+  struct Case {
+    bool below;
+    double limit;
+    std::optional<double> low;
+    double bound;
+    const char* words;
+  };
+  for (const Case& one : {Case{false, 295.0, {}, 295.494, "above 295.49 km (limit 295 km)"},
+                          Case{true, 295.0, {}, 294.506, "below 294.51 km (limit 295 km)"},
+                          Case{true, 300.1234567, {}, 300.0, "below 300 km (limit 300.1234567 km)"},
+                          Case{true, 305.0, 295.0, 295.494, "above 295.49 km (limits 295 and 305 km)"},
+                          Case{true, 305.0, 295.0, 304.5, "below 304.5 km (limits 295 and 305 km)"}}) {
+    summary.below = one.below;
+    summary.limit = one.limit;
+    summary.low_limit = one.low;
+    summary.bound = one.bound;
+    EXPECT_EQ(BoundSentence(summary, "km"),
+              std::string("With 90 % confidence 99.73 % of flights stay ") + one.words + ".");
+  }
 }
 
 }  // namespace

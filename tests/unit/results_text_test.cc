@@ -44,10 +44,40 @@ TEST(RoundedText, HasThreeDigitsAndStaysOnItsSide) {
   EXPECT_EQ(RoundedText(0.22401, Rounding::kUp), "0.225");
   EXPECT_EQ(RoundedText(0.22499, Rounding::kDown), "0.224");
   EXPECT_EQ(RoundedText(0.225, Rounding::kUp), "0.225") << "what is round already stays";
-  EXPECT_EQ(RoundedText(0.49961, Rounding::kUp, 0.5), "0.4997");
-  EXPECT_EQ(RoundedText(0.50004, Rounding::kDown, 0.5), "0.5") << "on the limit is not inside";
+  EXPECT_EQ(RoundedText(0.49961, Rounding::kUp, 0.5), "0.49961");
+  EXPECT_EQ(RoundedText(0.50004, Rounding::kDown, 0.5), "0.50004") << "on the limit is not inside";
   EXPECT_EQ(RoundedText(1.2345e-7), "1.23e-07");
   EXPECT_EQ(RoundedText(report_test::kNaN), "–");
+}
+
+TEST(RoundedText, TellsAValueFromTheLimitBesideIt) {
+  struct Case {
+    double value;
+    Rounding rounding;
+    double limit;
+    const char* text;
+  };
+  const Case cases[] = {{295.494, Rounding::kDown, 295.0, "295.49"},
+                        {294.506, Rounding::kUp, 295.0, "294.51"},
+                        {-295.494, Rounding::kUp, -295.0, "-295.49"},
+                        {295.494, Rounding::kNearest, 0.0, "295"},
+                        {300.0, Rounding::kDown, 295.0, "300"},
+                        {295.0004, Rounding::kDown, 295.0, "295.0004"},
+                        {295.494, Rounding::kUp, 295.494, "295.494"},
+                        {0.225, Rounding::kUp, 0.5, "0.225"},
+                        {1234567.0, Rounding::kDown, 1234560.0, "1234567"},
+                        {0.0, Rounding::kUp, 0.001, "0"}};
+  for (const Case& one : cases) EXPECT_EQ(RoundedText(one.value, one.rounding, one.limit), one.text);
+}
+
+TEST(StatedText, HasAllDigitsThatSomebodyStates) {
+  EXPECT_EQ(StatedText(295.0), "295");
+  EXPECT_EQ(StatedText(-295.4941), "-295.4941");
+  EXPECT_EQ(StatedText(0.1), "0.1");
+  EXPECT_EQ(StatedText(0.0), "0");
+  EXPECT_EQ(StatedText(100000.0), "100000");
+  EXPECT_EQ(StatedText(3.0e-7), "3e-07");
+  EXPECT_EQ(StatedText(report_test::kNaN), "–");
 }
 
 TEST(ScatterText, HasTwoDigitsOfTheDeviation) {
@@ -70,8 +100,8 @@ TEST(ShareText, HasThreeDigitsAndShowsWhatIsMissingTo100) {
   EXPECT_EQ(ShareText(1.0), "100 %");
   EXPECT_EQ(ShareText(0.999999), "99.9999 %");
   // 852 flights without a failure just show 99.73 %: not 99.72 %, and not less than is required.
-  EXPECT_EQ(ShareText(std::pow(0.1, 1.0 / 852), Rounding::kDown, 0.9973), "99.73 %");
-  EXPECT_EQ(ShareText(0.997352, Rounding::kDown, 0.99735), "99.735 %");
+  EXPECT_EQ(ShareText(std::pow(0.1, 1.0 / 852), Rounding::kDown, 0.9973), "99.7301 %");
+  EXPECT_EQ(ShareText(0.997352, Rounding::kDown, 0.99735), "99.7352 %");
 }
 
 TEST(PValueText, IsNeverZero) {
