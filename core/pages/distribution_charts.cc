@@ -4,6 +4,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <optional>
 #include <vector>
 
 #include "core/pages/html_parts.h"
@@ -138,6 +139,31 @@ std::string InjectionFigures(const CampaignSummary& summary, const CaseColumns& 
 
 namespace {
 
+/// A limit of a requirement, drawn where the values are.
+struct Limit {
+  const RequirementSummary& of;
+  double value = 0.0;
+  bool above = false;                ///< values shall lie above it
+  bool is_first = true;              ///< of its requirement
+  std::optional<double> bound = {};  ///< of its side
+};
+
+std::vector<Limit> LimitsBeside(double middle, const Circle& circle,
+                                const std::vector<const RequirementSummary*>& requirements) {
+  std::vector<Limit> limits;
+  for (const RequirementSummary* each : requirements) {
+    const auto add = [&](double value, bool above) {
+      const bool is_first = limits.empty() || &limits.back().of != each;
+      limits.push_back({*each, NearTo(middle, value, circle), above, is_first});
+      if (each->bound && LimitBeside(*each, *each->bound) == value)
+        limits.back().bound = NearTo(middle, *each->bound, circle);
+    };
+    add(each->limit, !each->below);
+    if (each->low_limit) add(*each->low_limit, true);
+  }
+  return limits;
+}
+
 std::string SameValue(const std::string& title, const std::vector<double>& good, const std::string& unit,
                       std::size_t flown, const std::vector<const RequirementSummary*>& requirements) {
   std::string limits;
@@ -147,13 +173,70 @@ std::string SameValue(const std::string& title, const std::vector<double>& good,
                      HtmlText(WithUnit(good.front(), unit)), good.size(), flown, limits);
 }
 
+/// Of one side: the share of the cases beyond each value, or at most each value.
+class TailChart {
+ public:
+  TailChart(const std::string& metric, bool above, std::size_t cases,
+            const std::vector<const RequirementSummary*>& requirements)
+      : above_(above),
+        lowest_share_(LowestShare(cases, requirements)),
+        chart_({.label = AxisLabel(metric)},
+               {.label = above ? "share of cases at most this" : "share of cases beyond this",
+                .low = lowest_share_,
+                .high = 1.0,
+                .logarithmic = true,
+                .percent = true},
+               520, 250) {
+    chart_.ShowsCases(metric);
+  }
+
+  /// A lost flight fails whatever it measured: it lies beyond all values, as in the verdict.
+  void AddCases(std::vector<double> sorted, std::size_t cases) {
+    if (above_) std::reverse(sorted.begin(), sorted.end());
+    const auto all = static_cast<double>(cases);
+    std::vector<double> x, share;
+    for (std::size_t i = 0; i < sorted.size(); ++i) {
+      x.insert(x.end(), {sorted[i], sorted[i]});
+      share.insert(share.end(),
+                   {(all - static_cast<double>(i)) / all, (all - static_cast<double>(i) - 1.0) / all});
+    }
+    AddConfidence(sorted, cases, lowest_share_, &chart_);
+    chart_.Line(x, share, "line-0", "cases");
+  }
+  void AddLimit(const Limit& limit) {
+    chart_.VerticalLimit(limit.value, "limit");
+    if (!limit.of.every_case)
+      chart_.HorizontalLimit(1.0 - limit.of.probability,
+                             fmt::format("{} allowed", PercentText(1.0 - limit.of.probability)), "allowed");
+    if (limit.bound) chart_.VerticalLimit(*limit.bound, "bound", "bound");
+  }
+  std::string Html(const MetricInfo& info, const std::string& without, bool has_two_sides) const {
+    return Figure(chart_.Svg("Exceedance of " + info.title),
+                  HtmlText(info.title) + ": share of the cases " + (above_ ? "at most" : "beyond") +
+                      " each value." +
+                      (has_two_sides ? " A range allows its share on both sides together." : "") + without);
+  }
+
+ private:
+  static double LowestShare(std::size_t cases, const std::vector<const RequirementSummary*>& requirements) {
+    double share = 0.5 / static_cast<double>(cases);
+    for (const RequirementSummary* requirement : requirements)
+      share = std::min(share, 0.5 * (1.0 - requirement->probability));
+    return std::max(share, 1e-6);
+  }
+
+  bool above_;
+  double lowest_share_;
+  SvgChart chart_;
+};
+
 }  // namespace
 
 std::string DistributionFigures(const std::string& metric, const CampaignSummary& summary,
                                 const CaseColumns& cases) {
   const MetricInfo info = DescribeMetric(metric);
   const std::string title = HtmlText(info.title);
-  std::vector<double> good = SortedFinite(CompletedValues(cases, metric));
+  const std::vector<double> good = SortedFinite(CompletedValues(cases, metric));
   if (good.empty()) return fmt::format("<p>{}: no completed flight defines it.</p>\n", title);
 
   std::vector<const RequirementSummary*> requirements;
@@ -162,56 +245,34 @@ std::string DistributionFigures(const std::string& metric, const CampaignSummary
   }
   // One value has no width: whatever a bar showed would be made up.
   if (good.front() == good.back()) return SameValue(title, good, info.unit, cases.rows(), requirements);
-  const bool above = !requirements.empty() && !requirements.front()->below;
-  const std::string axis = AxisLabel(metric);
 
   const Histogram histogram = MakeHistogram(good);
-  SvgChart bars({.label = axis}, {.label = "cases"}, 520, 250);
+  SvgChart bars({.label = AxisLabel(metric)}, {.label = "cases"}, 520, 250);
   bars.ShowsCases(metric);
   bars.Bars(histogram.edges, histogram.counts, "");
-
-  // A lost flight fails whatever it measured: it lies beyond all values, as in the verdict.
-  if (above) std::reverse(good.begin(), good.end());
-  const auto all = static_cast<double>(cases.rows());
-  std::vector<double> x;
-  std::vector<double> share;
-  for (std::size_t i = 0; i < good.size(); ++i) {
-    x.insert(x.end(), {good[i], good[i]});
-    share.insert(share.end(),
-                 {(all - static_cast<double>(i)) / all, (all - static_cast<double>(i) - 1.0) / all});
-  }
-  double lowest_share = 0.5 / all;
-  for (const RequirementSummary* requirement : requirements) {
-    lowest_share = std::min(lowest_share, 0.5 * (1.0 - requirement->probability));
-  }
-  SvgChart tail({.label = axis},
-                {.label = above ? "share of cases at most this" : "share of cases beyond this",
-                 .low = std::max(lowest_share, 1e-6),
-                 .high = 1.0,
-                 .logarithmic = true,
-                 .percent = true},
-                520, 250);
-  tail.ShowsCases(metric);
-  AddConfidence(good, cases.rows(), std::max(lowest_share, 1e-6), &tail);
-  tail.Line(x, share, "line-0", "cases");
-  for (const RequirementSummary* requirement : requirements) {
-    bars.VerticalLimit(requirement->limit, "limit: " + LimitWords(*requirement, info.unit));
-    if (requirement->low_limit) bars.VerticalLimit(*requirement->low_limit, "limit");
-    tail.VerticalLimit(requirement->limit, "limit");
-    if (!requirement->every_case)
-      tail.HorizontalLimit(1.0 - requirement->probability,
-                           fmt::format("{} allowed", PercentText(1.0 - requirement->probability)), "allowed");
-    if (!requirement->bound) continue;
-    bars.VerticalLimit(*requirement->bound, "bound", "bound");
-    tail.VerticalLimit(*requirement->bound, "bound", "bound");
+  const std::vector<Limit> limits = LimitsBeside(Quantile(good, 0.5), info.circle, requirements);
+  for (const Limit& limit : limits) {
+    bars.VerticalLimit(limit.value, limit.is_first ? "limit: " + LimitWords(limit.of, info.unit) : "limit");
+    if (limit.bound) bars.VerticalLimit(*limit.bound, "bound", "bound");
   }
   const std::size_t missing = cases.rows() - good.size();
   const std::string without =
       missing > 0 ? fmt::format(" {} of {} cases are lost or do not define it.", missing, cases.rows()) : "";
-  return Figure(bars.Svg("Histogram of " + info.title),
-                title + ": histogram of the completed flights." + without, "screen") +
-         Figure(tail.Svg("Exceedance of " + info.title),
-                title + ": share of the cases " + (above ? "at most" : "beyond") + " each value." + without);
+  std::string html = Figure(bars.Svg("Histogram of " + info.title),
+                            title + ": histogram of the completed flights." + without, "screen");
+  // A chart for each side that has a limit.
+  const auto has_side = [&](bool above) {
+    return std::any_of(limits.begin(), limits.end(), [&](const Limit& one) { return one.above == above; });
+  };
+  for (const bool above : {false, true}) {
+    if (!has_side(above) && (above || has_side(true))) continue;
+    TailChart tail(metric, above, cases.rows(), requirements);
+    tail.AddCases(good, cases.rows());
+    for (const Limit& limit : limits)
+      if (limit.above == above) tail.AddLimit(limit);
+    html += tail.Html(info, without, has_side(false) && has_side(true));
+  }
+  return html;
 }
 
 }  // namespace dispersa

@@ -6,6 +6,7 @@
 #include <cassert>
 #include <cmath>
 #include <optional>
+#include <string_view>
 #include <vector>
 
 #include "core/pages/html_parts.h"
@@ -70,9 +71,24 @@ struct BandView {
       false;  ///< difference from the nominal flight, beside which the spread would be too small to see
   std::optional<double> from_s = {}, to_s = {};
   bool nominal = true;
-  bool limits = false;  ///< draw the limits of the requirements on the peak
+  bool in_air = false;         ///< only where dynamic pressure is at least kThinAir_pa
+  const char* peak = nullptr;  ///< the metric of its largest magnitude, whose limits are drawn
   int width = 520;
 };
+
+const Band& BandOf(const FlightBands& bands, std::string_view column) {
+  const auto band = std::find_if(bands.bands.begin(), bands.bands.end(),
+                                 [&](const Band& candidate) { return candidate.column == column; });
+  assert(band != bands.bands.end());
+  return *band;
+}
+
+/// Undefined where the air is thin. At rest the wind alone is the incidence, and would set the scale.
+std::vector<double> InAir(std::vector<double> values, const std::vector<double>& qbar_pa) {
+  for (std::size_t i = 0; i < values.size(); ++i)
+    if (!(qbar_pa[i] >= kThinAir_pa)) values[i] = std::nan("");
+  return values;
+}
 
 std::vector<double> Scaled(std::vector<double> values, double factor) {
   for (double& value : values) value *= factor;
@@ -89,10 +105,10 @@ std::vector<double> AtSteps(const History& nominal, const char* column, const Fl
 std::string BandFigure(const BandView& view, const FlightHistories& histories, const CampaignSummary& summary,
                        const Burns& burns, const std::string& caption) {
   const FlightBands& bands = histories.bands;
-  const auto band = std::find_if(bands.bands.begin(), bands.bands.end(),
-                                 [&](const Band& candidate) { return candidate.column == view.column; });
-  assert(band != bands.bands.end());
-  if (!IsDefined(band->p50)) return "";  // nothing commands it
+  const Band& band = BandOf(bands, view.column);
+  const std::vector<double>& qbar_pa = BandOf(bands, "qbar_pa").p50;
+  // Nothing commands it, or there is no air to speak of.
+  if (!IsDefined(view.in_air ? InAir(band.p50, qbar_pa) : band.p50)) return "";
   SvgChart chart({.label = kTimeAxis, .low = view.from_s, .high = view.to_s}, {.label = view.label},
                  view.width, 280);
   burns.AddTo(&chart);
@@ -100,21 +116,21 @@ std::string BandFigure(const BandView& view, const FlightHistories& histories, c
       view.deviation ? AtSteps(histories.nominal_history, view.column, bands) : std::vector<double>();
   const auto shown = [&](std::vector<double> values) {
     for (std::size_t i = 0; i < nominal.size(); ++i) values[i] -= nominal[i];
+    if (view.in_air) values = InAir(std::move(values), qbar_pa);
     return Scaled(std::move(values), view.factor);
   };
-  chart.Band(bands.time_s, shown(band->min), shown(band->max), "band-outer", "min–max");
-  chart.Band(bands.time_s, shown(band->p05), shown(band->p95), "band-inner", "5–95 %");
-  chart.Line(bands.time_s, shown(band->p50), "line-0", "median");
+  chart.Band(bands.time_s, shown(band.min), shown(band.max), "band-outer", "min–max");
+  chart.Band(bands.time_s, shown(band.p05), shown(band.p95), "band-inner", "5–95 %");
+  chart.Line(bands.time_s, shown(band.p50), "line-0", "median");
   if (view.nominal && !view.deviation) {
-    chart.Line(Column(histories.nominal_history, "time_s"),
-               Column(histories.nominal_history, view.column, view.factor), "line-1", "nominal");
+    std::vector<double> flown = Column(histories.nominal_history, view.column, view.factor);
+    if (view.in_air) flown = InAir(std::move(flown), Column(histories.nominal_history, "qbar_pa"));
+    chart.Line(Column(histories.nominal_history, "time_s"), flown, "line-1", "nominal");
   }
-  if (view.limits) {
-    for (const RequirementSummary& requirement : summary.requirements) {
-      if (requirement.metric != "pitch_error_peak_deg") continue;
-      chart.HorizontalLimit(requirement.limit, "limit of the peak");
-      chart.HorizontalLimit(-requirement.limit, "");
-    }
+  for (const RequirementSummary& requirement : summary.requirements) {
+    if (view.peak == nullptr || requirement.metric != view.peak) continue;
+    chart.HorizontalLimit(requirement.limit, "limit of the peak");
+    chart.HorizontalLimit(-requirement.limit, "");
   }
   return Figure(chart.Svg(caption), HtmlText(caption), view.width > 600 ? "wide" : "");
 }
@@ -182,12 +198,8 @@ std::string NominalFigures(const History& nominal) {
   pressure.Line(time_s, Scaled(qbar_pa, 1e-3), "line-0", "");
   add(pressure, "Dynamic pressure.");
 
-  std::vector<double> alpha_deg = Column(nominal, "alpha_deg");
-  for (std::size_t i = 0; i < alpha_deg.size(); ++i) {
-    if (qbar_pa[i] < kThinAir_pa) alpha_deg[i] = std::nan("");
-  }
   SvgChart incidence({.label = kTimeAxis, .low = 0.0, .high = air_end_s}, {.label = "angle of attack, °"});
-  incidence.Line(time_s, alpha_deg, "line-0", "");
+  incidence.Line(time_s, InAir(Column(nominal, "alpha_deg"), qbar_pa), "line-0", "");
   add(incidence, "Angle of attack against the air, where the dynamic pressure is at least 1 kPa.");
   return figures + "</div>\n";
 }
@@ -202,7 +214,7 @@ std::string EnvelopeFigures(const FlightHistories& histories, const CampaignSumm
   const auto add = [&](const BandView& view, const std::string& caption) {
     figures += BandFigure(view, histories, summary, burns, caption);
   };
-  add({.column = "pitch_error_deg", .label = "pitch error, °", .limits = true, .width = 1060},
+  add({.column = "pitch_error_deg", .label = "pitch error, °", .peak = "pitch_error_peak_deg", .width = 1060},
       "Pitch error over the whole flight. The requirement binds powered flight; in the coast the reaction "
       "control's "
       "dead band shows.");
@@ -222,69 +234,144 @@ std::string EnvelopeFigures(const FlightHistories& histories, const CampaignSumm
        .deviation = true},
       "Altitude of the flights above the nominal flight at the same time.");
   add({.column = "deflection_pitch_deg", .label = "pitch deflection, °"}, "Deflection of the pitch channel.");
-  add({.column = "yaw_error_deg", .label = "yaw error, °", .nominal = false}, "Yaw error.");
-  add({.column = "roll_error_deg", .label = "roll error, °", .nominal = false}, "Roll error.");
+  add({.column = "yaw_error_deg", .label = "yaw error, °", .nominal = false, .peak = "yaw_error_peak_deg"},
+      "Yaw error.");
+  add({.column = "roll_error_deg", .label = "roll error, °", .nominal = false, .peak = "roll_error_peak_deg"},
+      "Roll error.");
   add({.column = "qbar_pa",
        .label = "dynamic pressure, kPa",
        .factor = 1e-3,
        .from_s = 0.0,
        .to_s = air_end_s},
       "Dynamic pressure.");
-  add({.column = "alpha_deg", .label = "angle of attack, °", .from_s = 2.0, .to_s = air_end_s},
-      "Angle of attack against the air, wind included, from 2 s on (at rest it has no meaning).");
+  add({.column = "alpha_deg",
+       .label = "angle of attack, °",
+       .from_s = 0.0,
+       .to_s = air_end_s,
+       .in_air = true},
+      "Angle of attack against the air, wind included, where the median dynamic pressure is at least 1 kPa.");
   return figures + "</div>\n";
 }
 
-std::string WorstFigures(const FlightHistories& histories, const CampaignSummary& summary) {
-  struct View {
-    const char* metrics;  ///< how the names of its metrics begin
-    const char* column;
+namespace {
+
+/// What a metric of a peak is a peak of: in a flight that of the columns with the largest magnitude, of
+/// incidence times dynamic pressure.
+struct WorstView {
+  const char* metrics;  ///< how the names of its metrics begin
+  struct Column {
+    const char* name;
     const char* label;
-    bool in_air;
   };
-  static constexpr View kViews[] = {{"pitch_error", "pitch_error_deg", "pitch error, °", false},
-                                    {"yaw_error", "yaw_error_deg", "yaw error, °", false},
-                                    {"roll_error", "roll_error_deg", "roll error, °", false},
-                                    {"deflection", "deflection_pitch_deg", "pitch deflection, °", false},
-                                    {"q_alpha", "alpha_deg", "angle of attack, °", true}};
+  std::vector<Column> columns;
+  bool in_air = false;
+};
+
+const std::vector<WorstView>& WorstViews() {
+  static const std::vector<WorstView> views = {
+      {"pitch_error", {{"pitch_error_deg", "pitch error, °"}}},
+      {"yaw_error", {{"yaw_error_deg", "yaw error, °"}}},
+      {"roll_error", {{"roll_error_deg", "roll error, °"}}},
+      {"deflection",
+       {{"deflection_pitch_deg", "pitch deflection, °"},
+        {"deflection_yaw_deg", "yaw deflection, °"},
+        {"deflection_roll_deg", "roll deflection, °"}}},
+      {"q_alpha", {{"alpha_deg", "angle of attack, °"}, {"beta_deg", "angle of sideslip, °"}}, true},
+      {"alpha_max", {{"alpha_deg", "angle of attack, °"}, {"beta_deg", "angle of sideslip, °"}}, true}};
+  return views;
+}
+
+/// A worst case that has a history, at the steps of the bands.
+class WrittenFlight {
+ public:
+  WrittenFlight(const FlightHistories& histories, std::uint64_t case_index)
+      : bands_(histories.bands),
+        flight_(histories.written_flights[static_cast<std::size_t>(
+            std::lower_bound(histories.written_cases.begin(), histories.written_cases.end(), case_index) -
+            histories.written_cases.begin())]) {}
+
+  std::vector<double> Values(const char* column, bool in_air) const {
+    return in_air ? InAir(At(column), At("qbar_pa")) : At(column);
+  }
+  /// The column of a view that has the peak.
+  std::size_t PeakColumn(const WorstView& view) const {
+    std::size_t best = 0;
+    double most = -1.0;
+    for (std::size_t i = 0; i < view.columns.size(); ++i) {
+      const std::vector<double> values = Values(view.columns[i].name, view.in_air);
+      const std::vector<double> qbar_pa = At("qbar_pa");
+      const bool is_product = std::string_view(view.metrics) == "q_alpha";
+      for (std::size_t k = 0; k < values.size(); ++k) {
+        const double size = std::fabs(values[k]) * (is_product ? qbar_pa[k] : 1.0);
+        if (!(size > most)) continue;
+        most = size;
+        best = i;
+      }
+    }
+    return best;
+  }
+
+ private:
+  const std::vector<double>& At(const char* column) const {
+    return flight_[static_cast<std::size_t>(&BandOf(bands_, column) - bands_.bands.data())];
+  }
+
+  const FlightBands& bands_;
+  const SampledFlight& flight_;
+};
+
+/// The worst cases of a view's metrics that have a history.
+std::vector<std::uint64_t> WorstWritten(const WorstView& view, const FlightHistories& histories,
+                                        const CampaignSummary& summary) {
   constexpr std::size_t kLines = 4;
+  std::vector<std::uint64_t> shown;
+  for (const WorstCases& worst : summary.worst_cases) {
+    if (!worst.metric.starts_with(view.metrics)) continue;
+    for (const WorstCase& one : worst.cases) {
+      const bool written =
+          std::binary_search(histories.written_cases.begin(), histories.written_cases.end(), one.case_index);
+      if (written && shown.size() < kLines &&
+          std::find(shown.begin(), shown.end(), one.case_index) == shown.end())
+        shown.push_back(one.case_index);
+    }
+  }
+  return shown;
+}
+
+}  // namespace
+
+std::string WorstFigures(const FlightHistories& histories, const CampaignSummary& summary) {
   const Burns burns(histories.nominal_history);
   const FlightBands& bands = histories.bands;
   const double air_end_s = AtmosphereEnd(Column(histories.nominal_history, "time_s"),
                                          Column(histories.nominal_history, "qbar_pa"));
   std::string figures;
-  for (const View& view : kViews) {
-    std::vector<std::uint64_t> shown;
-    for (const WorstCases& worst : summary.worst_cases) {
-      if (!worst.metric.starts_with(view.metrics)) continue;
-      for (const WorstCase& one : worst.cases) {
-        const bool written = std::binary_search(histories.written_cases.begin(),
-                                                histories.written_cases.end(), one.case_index);
-        if (written && shown.size() < kLines &&
-            std::find(shown.begin(), shown.end(), one.case_index) == shown.end())
-          shown.push_back(one.case_index);
+  for (const WorstView& view : WorstViews()) {
+    const std::vector<std::uint64_t> worst = WorstWritten(view, histories, summary);
+    for (std::size_t i = 0; i < view.columns.size(); ++i) {
+      const auto& [name, label] = view.columns[i];
+      std::vector<std::uint64_t> shown;
+      for (const std::uint64_t one : worst)
+        if (WrittenFlight(histories, one).PeakColumn(view) == i) shown.push_back(one);
+      if (shown.empty()) continue;
+      ChartAxis time{.label = kTimeAxis};
+      if (view.in_air) time.low = 0.0, time.high = air_end_s;
+      SvgChart chart(time, {.label = label}, 1060, 280);
+      burns.AddTo(&chart);
+      const Band& band = BandOf(bands, name);
+      const auto in_view = [&](const std::vector<double>& values) {
+        return view.in_air ? InAir(values, BandOf(bands, "qbar_pa").p50) : values;
+      };
+      chart.Band(bands.time_s, in_view(band.min), in_view(band.max), "band-outer", "min–max");
+      chart.Band(bands.time_s, in_view(band.p05), in_view(band.p95), "band-inner", "5–95 %");
+      for (std::size_t k = 0; k < shown.size(); ++k) {
+        const std::vector<double> values = WrittenFlight(histories, shown[k]).Values(name, view.in_air);
+        const std::vector<double> time_s(bands.time_s.begin(), bands.time_s.begin() + std::ssize(values));
+        chart.CaseLine(time_s, values, fmt::format("line-{}", k), shown[k]);
       }
+      const std::string caption = fmt::format("Worst cases over the envelope: {}.", label);
+      figures += Figure(chart.Svg(caption), HtmlText(caption), figures.empty() ? "wide" : "wide screen");
     }
-    if (shown.empty()) continue;
-    const auto band = std::find_if(bands.bands.begin(), bands.bands.end(),
-                                   [&](const Band& candidate) { return candidate.column == view.column; });
-    ChartAxis time{.label = kTimeAxis};
-    if (view.in_air) time.low = 2.0, time.high = air_end_s;
-    SvgChart chart(time, {.label = view.label}, 1060, 280);
-    burns.AddTo(&chart);
-    chart.Band(bands.time_s, band->min, band->max, "band-outer", "min–max");
-    chart.Band(bands.time_s, band->p05, band->p95, "band-inner", "5–95 %");
-    for (std::size_t i = 0; i < shown.size(); ++i) {
-      const auto at =
-          std::lower_bound(histories.written_cases.begin(), histories.written_cases.end(), shown[i]) -
-          histories.written_cases.begin();
-      const auto& values = histories.written_flights[static_cast<std::size_t>(at)]
-                                                    [static_cast<std::size_t>(band - bands.bands.begin())];
-      std::vector<double> time_s(bands.time_s.begin(), bands.time_s.begin() + std::ssize(values));
-      chart.CaseLine(time_s, values, fmt::format("line-{}", i), shown[i]);
-    }
-    const std::string caption = fmt::format("Worst cases over the envelope: {}.", view.label);
-    figures += Figure(chart.Svg(caption), HtmlText(caption), figures.empty() ? "wide" : "wide screen");
   }
   return figures.empty() ? "" : "<div class=\"figures\">\n" + figures + "</div>\n";
 }

@@ -1,0 +1,172 @@
+// The charts of a report: what they draw, and over which range.
+#include <gmock/gmock.h>
+#include <gtest/gtest.h>
+
+#include <cmath>
+#include <sstream>
+#include <string>
+#include <vector>
+
+#include "core/pages/distribution_charts.h"
+#include "core/pages/flight_charts.h"
+#include "tests/unit/made_up_results.h"
+
+namespace dispersa::pages_charts_test {
+namespace {
+
+using report_test::kPeak;
+using testing::HasSubstr;
+using testing::Not;
+
+std::size_t CountOf(const std::string& text, const std::string& what) {
+  std::size_t count = 0;
+  for (std::size_t at = text.find(what); at != std::string::npos; at = text.find(what, at + 1)) ++count;
+  return count;
+}
+
+CaseColumns Values(const std::string& metric, const std::vector<double>& values) {
+  CaseColumns cases;
+  cases.metrics.resize(MetricCount(kUsualStages));
+  for (std::size_t i = 0; i < values.size(); ++i) {
+    cases.index.push_back(i);
+    cases.outcome.push_back(Outcome::kCompleted);
+  }
+  cases.metrics[MetricColumn(metric)] = values;
+  return cases;
+}
+
+RequirementSummary Limited(const std::string& metric, bool below, double limit, std::optional<double> low) {
+  RequirementSummary requirement;
+  requirement.metric = metric;
+  requirement.below = below;
+  requirement.limit = limit;
+  requirement.low_limit = low;
+  requirement.probability = 0.9;
+  requirement.consumer_risk = 0.1;
+  return requirement;
+}
+
+// A range is left on either side, so either side has its chart.
+TEST(DistributionFigures, HaveAChartForEachSideThatHasALimit) {
+  struct Case {
+    std::vector<RequirementSummary> requirements;
+    std::size_t beyond, at_most;
+  };
+  const Case cases[] = {{{}, 1, 0},
+                        {{Limited(kPeak, true, 5.0, {})}, 1, 0},
+                        {{Limited(kPeak, false, 5.0, {})}, 0, 1},
+                        {{Limited(kPeak, true, 9.0, 5.0)}, 1, 1},
+                        {{Limited(kPeak, true, 9.0, {}), Limited(kPeak, false, 5.0, {})}, 1, 1}};
+  for (const Case& one : cases) {
+    CampaignSummary summary;
+    summary.requirements = one.requirements;
+    const std::string html = DistributionFigures(kPeak, summary, Values(kPeak, {1, 2, 3, 4}));
+    EXPECT_EQ(CountOf(html, ">share of cases beyond this<"), one.beyond);
+    EXPECT_EQ(CountOf(html, ">share of cases at most this<"), one.at_most);
+    EXPECT_EQ(CountOf(html, "A range allows its share on both sides together."),
+              one.beyond + one.at_most == 2 ? 2u : 0u);
+  }
+}
+
+/// The range of the axis of the first chart that says `what`: "low high from to ...".
+std::pair<double, double> AxisOf(const std::string& html, const std::string& what, const char* axis) {
+  const std::size_t chart = html.rfind("<svg", html.find(what));
+  const std::string name = std::string(" data-") + axis + "=\"";
+  std::istringstream text(html.substr(html.find(name, chart) + name.size(), 60));
+  std::pair<double, double> range;
+  text >> range.first >> range.second;
+  return range;
+}
+
+TEST(DistributionFigures, DrawALimitOnTheValuesSideOfTheCut) {
+  for (const double sign : {1.0, -1.0}) {
+    CampaignSummary summary;
+    summary.requirements = {Limited("impact_longitude_deg", true, sign * 179.9, {})};
+    const std::string html =
+        DistributionFigures("impact_longitude_deg", summary,
+                            Values("impact_longitude_deg", {sign * 179.98, -sign * 179.98, sign * 179.97}));
+    const auto [low, high] = AxisOf(html, "Histogram of", "x");
+    EXPECT_LT(high - low, 1.0);
+    EXPECT_GE(sign > 0.0 ? low : -high, 179.8);
+  }
+}
+
+constexpr int kSteps = 100;
+
+/// A flight of 100 s: 40 degrees of incidence at rest, 3 in the air, and no air after 80 s.
+History Flown(double pitch_deflection_deg, double yaw_deflection_deg) {
+  History history;
+  for (int k = 0; k <= kSteps; ++k) {
+    std::vector<double> row(HistoryColumns().size(), 0.0);
+    const auto set = [&](const char* name, double value) {
+      row[static_cast<std::size_t>(FindHistoryColumn(name))] = value;
+    };
+    set("time_s", k);
+    set("stage", 1);
+    set("thrust_n", 1000.0);
+    set("qbar_pa", k < 5 || k > 80 ? 100.0 : 30000.0);
+    set("alpha_deg", k < 5 ? 40.0 : k > 80 ? 25.0 : 3.0);
+    set("beta_deg", k == 50 ? -8.0 : 0.0);
+    set("deflection_pitch_deg", k == 30 ? pitch_deflection_deg : 0.1);
+    set("deflection_yaw_deg", k == 40 ? yaw_deflection_deg : 0.1);
+    history.values.insert(history.values.end(), row.begin(), row.end());
+  }
+  return history;
+}
+
+FlightHistories HistoriesOf(const std::vector<History>& flights) {
+  FlightHistories histories;
+  std::vector<int> columns;
+  for (int i = 0; i < static_cast<int>(HistoryColumns().size()); ++i) columns.push_back(i);
+  histories.nominal_history = flights[0];
+  for (std::size_t i = 0; i < flights.size(); ++i) {
+    histories.written_cases.push_back(i);
+    histories.written_flights.push_back(SampleFlight(flights[i], columns, 1.0));
+  }
+  histories.bands = ComputeBands(histories.written_flights, columns, 1.0);
+  return histories;
+}
+
+TEST(EnvelopeFigures, ScaleIncidenceByTheAir) {
+  const std::string html = EnvelopeFigures(HistoriesOf({Flown(1.0, 1.0)}), CampaignSummary{}, 10.0);
+  const auto [low, high] = AxisOf(html, ">angle of attack, °<", "y");
+  EXPECT_LE(high, 5.0);
+  EXPECT_GE(low, -5.0);
+}
+
+TEST(EnvelopeFigures, DrawTheLimitOfThePeakThatTheyShow) {
+  for (const char* metric : {"pitch_error_peak_deg", "yaw_error_peak_deg", "roll_error_peak_deg"}) {
+    CampaignSummary summary;
+    summary.requirements = {Limited(metric, true, 0.5, {})};
+    EXPECT_EQ(CountOf(EnvelopeFigures(HistoriesOf({Flown(1.0, 1.0)}), summary, 10.0), ">limit of the peak<"),
+              1u);
+  }
+}
+
+CampaignSummary WorstOf(const std::string& metric, const std::vector<std::uint64_t>& cases) {
+  CampaignSummary summary;
+  summary.worst_cases.push_back({.metric = metric, .cases = {}});
+  for (const std::uint64_t index : cases)
+    summary.worst_cases[0].cases.push_back({.case_index = index, .value = 1.0});
+  return summary;
+}
+
+// The peak's channel is drawn, of each case its own.
+TEST(WorstFigures, DrawTheChannelThatHasThePeak) {
+  const FlightHistories histories = HistoriesOf({Flown(4.0, -5.0), Flown(-4.0, 3.0), Flown(0.0, 6.0)});
+  const std::string both = WorstFigures(histories, WorstOf("deflection_peak_deg", {0, 1}));
+  EXPECT_THAT(both, HasSubstr("Worst cases over the envelope: yaw deflection, °."));
+  EXPECT_THAT(both, HasSubstr("Worst cases over the envelope: pitch deflection, °."));
+  EXPECT_EQ(CountOf(both, "data-case=\"0\""), 1u);
+  EXPECT_LT(both.find("data-case=\"1\""), both.find("data-case=\"0\"")) << "pitch comes first";
+  const std::string yaw = WorstFigures(histories, WorstOf("deflection_peak_deg", {0, 2}));
+  EXPECT_THAT(yaw, Not(HasSubstr("pitch deflection")));
+  EXPECT_EQ(CountOf(yaw, "data-case="), 2u);
+  // Of the incidence in air the sideslip is the larger one, and at rest nothing counts.
+  const std::string incidence = WorstFigures(histories, WorstOf("q_alpha_max_pa_rad", {0}));
+  EXPECT_THAT(incidence, HasSubstr("angle of sideslip, °"));
+  EXPECT_THAT(incidence, Not(HasSubstr("angle of attack, °")));
+}
+
+}  // namespace
+}  // namespace dispersa::pages_charts_test
