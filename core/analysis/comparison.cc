@@ -96,14 +96,12 @@ struct MetricValues {
 };
 
 MetricValues ValuesOf(const CaseColumns& cases, const std::vector<std::size_t>& rows,
-                      const std::string& metric, Worse worse) {
-  const std::vector<double> all = MeasuredValues(cases, metric);
+                      const std::vector<double>& all, Worse worse) {
   MetricValues result;
   for (const std::size_t row : rows) {
     const bool lost = cases.outcome[row] != Outcome::kCompleted;
     result.lost += lost;
     double value = all[row];
-    if (worse == Worse::kFartherFromZero) value = std::fabs(value);
     if (lost)
       value = worse == Worse::kNeither ? kUndefined : worse == Worse::kSmaller ? -kInfinity : kInfinity;
     result.values.push_back(value);
@@ -176,12 +174,43 @@ void ComparePairs(const std::vector<double>& a, const std::vector<double>& b,
   name(result.gains, -1.0);
 }
 
+/// Whether the difference is too small in whatever shows one.
+bool IsTooSmall(const MetricComparison& metric) {
+  if (metric.lost_a != metric.lost_b || !std::isfinite(metric.difference)) return false;
+  return std::fabs(metric.difference) < metric.least &&
+         std::all_of(metric.tails.begin(), metric.tails.end(), [&](const PercentileComparison& tail) {
+           return !(tail.p_holm <= 1.0 - kComparisonConfidence) || std::fabs(tail.difference) < metric.least;
+         });
+}
+
 std::string FindingOf(const MetricComparison& metric) {
   if (!(metric.p_holm <= 1.0 - kComparisonConfidence)) return "not shown";
+  if (IsTooSmall(metric)) return kTooSmall;
   if (metric.info.worse == Worse::kNeither) return "differs";
-  const double sign = metric.info.worse == Worse::kSmaller ? -1.0 : 1.0;
   if (metric.a_better != metric.b_better) return metric.b_better > metric.a_better ? "better" : "worse";
-  return sign * (metric.median_b - metric.median_a) < 0.0 ? "better" : "worse";
+  // Unpaired. A median may be that of a lost flight, so the ranks decide, as in the test.
+  const double sign = metric.info.worse == Worse::kSmaller ? -1.0 : 1.0;
+  return sign * metric.tendency < 0.0 ? "better" : "worse";
+}
+
+/// The share of what the metric's requirements allow, or of how it spreads in A.
+void SetLeast(const ComparedCampaign& a, const ComparedCampaign& b, const std::vector<double>& values_a,
+              double share, MetricComparison& result) {
+  double allowed = kInfinity;
+  for (const Campaign* campaign : {&a.campaign, &b.campaign}) {
+    for (const Requirement& requirement : campaign->requirements) {
+      if (requirement.metric != result.metric) continue;
+      const double allows = requirement.within
+                                ? (*requirement.within)[1] - (*requirement.within)[0]
+                                : std::fabs(requirement.above ? *requirement.above : *requirement.below);
+      if (allows > 0.0) allowed = std::min(allowed, allows);
+    }
+  }
+  result.least_is_of_limit = std::isfinite(allowed);
+  const std::vector<double> sorted = SortedFinite(values_a);
+  if (!result.least_is_of_limit)
+    allowed = sorted.empty() ? 0.0 : Quantile(sorted, 0.95) - Quantile(sorted, 0.05);
+  result.least = share * allowed;
 }
 
 MetricComparison CompareMetric(const std::string& metric, const CaseColumns& a, const CaseColumns& b,
@@ -190,8 +219,10 @@ MetricComparison CompareMetric(const std::string& metric, const CaseColumns& a, 
   result.metric = metric;
   result.info = DescribeMetric(metric);
   const Worse worse = result.info.worse;
-  MetricValues of_a = ValuesOf(a, rows.a, metric, worse);
-  MetricValues of_b = ValuesOf(b, rows.b, metric, worse);
+  const Circle circle = worse == Worse::kFartherFromZero ? Circle{} : result.info.circle;
+  const ComparedValues compared = ValuesToCompare(a, b, metric);
+  MetricValues of_a = ValuesOf(a, rows.a, compared.a, worse);
+  MetricValues of_b = ValuesOf(b, rows.b, compared.b, worse);
   result.lost_a = of_a.lost;
   result.lost_b = of_b.lost;
   std::vector<std::uint64_t> index;
@@ -214,18 +245,26 @@ MetricComparison CompareMetric(const std::string& metric, const CaseColumns& a, 
   result.n_b = of_b.values.size();
   if (result.n_a == 0 || result.n_b == 0) return result;
 
-  const QuantileDifference median =
-      CompareQuantiles(of_a.values, of_b.values, 0.5, kComparisonConfidence, paired);
+  // All around a circle there is no percentile. A pair still has a difference.
+  const bool has_percentiles = !LiesAllAround(of_a.values, circle) && !LiesAllAround(of_b.values, circle);
+  QuantileDifference median;
+  if (has_percentiles)
+    median = CompareQuantiles(of_a.values, of_b.values, 0.5, kComparisonConfidence, paired);
   result.median_a = median.a;
   result.median_b = median.b;
   if (paired) {
-    ComparePairs(of_a.values, of_b.values, index, worse == Worse::kSmaller ? -1.0 : 1.0, result);
-  } else {
+    std::vector<double> near_a = of_b.values;
+    for (std::size_t i = 0; i < near_a.size(); ++i)
+      if (std::isfinite(of_a.values[i])) near_a[i] = NearTo(of_a.values[i], near_a[i], circle);
+    ComparePairs(of_a.values, near_a, index, worse == Worse::kSmaller ? -1.0 : 1.0, result);
+  } else if (has_percentiles) {
     result.difference = median.difference;
     result.interval = median.interval;
+    result.tendency = TendencyOf(of_a.values, of_b.values);
     result.p = LocationP(of_a.values, of_b.values);
   }
   for (const auto& [name, probability] : TailsOf(worse)) {
+    if (!has_percentiles) break;
     const QuantileDifference tail =
         CompareQuantiles(of_a.values, of_b.values, probability, kComparisonConfidence, paired);
     PercentileComparison percentile{name,          probability, tail.a,    tail.b, tail.difference,
@@ -250,10 +289,7 @@ void AdjustMetrics(std::vector<MetricComparison>& metrics) {
   std::vector<double> p;
   for (const MetricComparison& metric : metrics) p.push_back(metric.p);
   const std::vector<double> adjusted = HolmAdjusted(p);
-  for (std::size_t i = 0; i < metrics.size(); ++i) {
-    metrics[i].p_holm = adjusted[i];
-    metrics[i].finding = FindingOf(metrics[i]);
-  }
+  for (std::size_t i = 0; i < metrics.size(); ++i) metrics[i].p_holm = adjusted[i];
   for (const char* name : {"p95", "p99", "p99_73", "p05", "p01", "p00_27"}) {
     std::vector<PercentileComparison*> family;
     std::vector<double> tail_p;
@@ -267,6 +303,7 @@ void AdjustMetrics(std::vector<MetricComparison>& metrics) {
     const std::vector<double> tail_adjusted = HolmAdjusted(tail_p);
     for (std::size_t i = 0; i < family.size(); ++i) family[i]->p_holm = tail_adjusted[i];
   }
+  for (MetricComparison& metric : metrics) metric.finding = FindingOf(metric);
 }
 
 /// Whether each row fails a limit: lost, undefined or outside.
@@ -285,12 +322,12 @@ class CaseChanges {
   /// `fails_a[i]` and `fails_b[i]` belong to pair i. `values_a` and `values_b` are indexed by row of their
   /// campaign; empty if the requirement has no value.
   void Add(const std::string& requirement, const std::vector<bool>& fails_a, const std::vector<bool>& fails_b,
-           const std::vector<double>& values_a, const std::vector<double>& values_b) {
+           const std::vector<double>& values_a, const std::vector<double>& values_b, const Limits& limits) {
     for (std::size_t i = 0; i < fails_a.size(); ++i) {
       if (fails_a[i] == fails_b[i]) continue;
       ChangedCase& changed = (fails_b[i] ? harmed_ : rescued_)[i];
       changed.reasons.push_back({requirement, values_a.empty() ? kUndefined : values_a[rows_.a[i]],
-                                 values_b.empty() ? kUndefined : values_b[rows_.b[i]]});
+                                 values_b.empty() ? kUndefined : values_b[rows_.b[i]], limits});
     }
   }
   std::vector<ChangedCase> Harmed() const { return List(harmed_); }
@@ -321,6 +358,19 @@ std::vector<bool> FailsOf(const ComparedCampaign& compared, const Requirement& r
   return Failing(LimitsOf(requirement), values, rows);
 }
 
+/// Once, if both vehicles bring the limit. Only the loads count, until a loss too: as in the summary.
+void CheckLoad(const ComparedCampaign& a, const ComparedCampaign& b, const SharedRows& rows,
+               const Requirement& requirement, std::vector<Comparison::LoadCheck>& checks) {
+  if (std::any_of(checks.begin(), checks.end(),
+                  [&](const auto& known) { return known.metric == requirement.metric; }))
+    return;
+  const auto failures = [&](const ComparedCampaign& of, const std::vector<std::size_t>& chosen) {
+    const std::vector<bool> fails = FailsOf(of, requirement, ValuesToJudge(requirement, of.cases), chosen);
+    return static_cast<std::size_t>(std::count(fails.begin(), fails.end(), true));
+  };
+  checks.push_back({requirement.metric, failures(a, rows.a), failures(b, rows.b)});
+}
+
 void CompareRequirements(const ComparedCampaign& a, const ComparedCampaign& b, const SharedRows& rows,
                          Comparison& comparison) {
   const bool paired = comparison.pairing.paired;
@@ -333,9 +383,13 @@ void CompareRequirements(const ComparedCampaign& a, const ComparedCampaign& b, c
       for (const std::size_t row : of) is_lost.push_back(cases.outcome[row] != Outcome::kCompleted);
       return is_lost;
     };
-    changes.Add("flight completed", lost(a.cases, rows.a), lost(b.cases, rows.b), {}, {});
+    changes.Add("flight completed", lost(a.cases, rows.a), lost(b.cases, rows.b), {}, {}, {});
   }
   for (std::size_t i = 0; i < requirements.size(); ++i) {
+    if (requirements[i].by_default) {
+      CheckLoad(a, b, rows, requirements[i], comparison.load_checks);
+      continue;
+    }
     const std::string words = LimitText(requirements[i]);
     const bool of_a = i < a.campaign.requirements.size();
     const auto known = std::find_if(comparison.requirements.begin(), comparison.requirements.end(),
@@ -348,8 +402,8 @@ void CompareRequirements(const ComparedCampaign& a, const ComparedCampaign& b, c
     result.metric = requirements[i].metric;
     result.words = words;
     (of_a ? result.in_a : result.in_b) = true;
-    const std::vector<double> values_a = CompletedValues(a.cases, result.metric);
-    const std::vector<double> values_b = CompletedValues(b.cases, result.metric);
+    const std::vector<double> values_a = ValuesToJudge(requirements[i], a.cases);
+    const std::vector<double> values_b = ValuesToJudge(requirements[i], b.cases);
     const std::vector<bool> fails_a = FailsOf(a, requirements[i], values_a, rows.a);
     const std::vector<bool> fails_b = FailsOf(b, requirements[i], values_b, rows.b);
     result.n_a = fails_a.size();
@@ -362,7 +416,7 @@ void CompareRequirements(const ComparedCampaign& a, const ComparedCampaign& b, c
         ++(fails_a[pair] ? (fails_b[pair] ? result.both_fail : result.only_a_fails)
                          : (fails_b[pair] ? result.only_b_fails : result.both_meet));
       }
-      changes.Add(words, fails_a, fails_b, values_a, values_b);
+      changes.Add(words, fails_a, fails_b, values_a, values_b, LimitsOf(requirements[i]));
       const auto real = [](std::size_t count) { return static_cast<double>(count); };
       const double margins = real(result.failures_a) * real(result.n_a - result.failures_a) *
                              real(result.failures_b) * real(result.n_b - result.failures_b);
@@ -420,6 +474,25 @@ Comparison::Side SideOf(const ComparedCampaign& compared) {
           !(campaign.autopilot.plugin && campaign.autopilot.plugin->in_python)};
 }
 
+/// What the changed values are of, by the first part of their path.
+std::string DiffersWords(const std::vector<CampaignChange>& changes) {
+  std::vector<std::pair<std::string, std::size_t>> parts;
+  for (const CampaignChange& change : changes) {
+    const std::string part = change.path.substr(0, change.path.find_first_of(".["));
+    const auto known =
+        std::find_if(parts.begin(), parts.end(), [&](const auto& one) { return one.first == part; });
+    ++(known == parts.end() ? parts.emplace_back(part, 0).second : known->second);
+  }
+  std::string words;
+  for (std::size_t i = 0; i < parts.size(); ++i)
+    words += fmt::format("{}{} ({} value{})",
+                         i == 0                  ? ""
+                         : i + 1 == parts.size() ? " and "
+                                                 : ", ",
+                         parts[i].first, parts[i].second, parts[i].second == 1 ? "" : "s");
+  return words;
+}
+
 /// "injection_altitude_km" of "injection_altitude_error_km"; empty if the metric is no error.
 std::string ValueOfError(const std::string& metric) {
   const std::size_t at = metric.find("_error_");
@@ -437,13 +510,14 @@ void MarkCounted(std::vector<MetricComparison>& metrics) {
 }
 
 struct Findings {
-  std::size_t all = 0, better = 0, worse = 0, differs = 0;
+  std::size_t all = 0, better = 0, worse = 0, differs = 0, too_small = 0;
 
   void Add(const std::string& finding) {
     ++all;
     better += finding == "better";
     worse += finding == "worse";
     differs += finding == "differs";
+    too_small += finding == kTooSmall;
   }
   const char* Together() const {
     return better > 0 && worse > 0 ? "mixed"
@@ -493,9 +567,13 @@ void Conclude(Comparison& comparison) {
     }
     sentence += fmt::format(
         " Of {} metrics, each counted once, B is better in {} and worse in {}. It differs in {} that are "
-        "neither "
-        "good nor bad. The others show no difference.",
-        metrics.all, metrics.better, metrics.worse, metrics.differs);
+        "neither good nor bad.{} The others show no difference.",
+        metrics.all, metrics.better, metrics.worse, metrics.differs,
+        metrics.too_small == 0
+            ? ""
+            : fmt::format(" In {} the difference is certain but too small to matter: less than {} of the "
+                          "limit or of the spread.",
+                          metrics.too_small, PercentText(comparison.practical_share)));
   }
   if (comparison.pairing.paired) {
     sentence += fmt::format(" {} harmed by the change from A to B, {} rescued.",
@@ -505,9 +583,30 @@ void Conclude(Comparison& comparison) {
 
 }  // namespace
 
+ComparedValues ValuesToCompare(const CaseColumns& a, const CaseColumns& b, const std::string& metric) {
+  ComparedValues values{CompletedValues(a, metric), CompletedValues(b, metric)};
+  const MetricInfo info = DescribeMetric(metric);
+  if (info.worse == Worse::kFartherFromZero) {
+    for (std::vector<double>* side : {&values.a, &values.b})
+      for (double& value : *side) value = std::fabs(NearTo(0.0, value, info.circle));
+    return values;
+  }
+  const std::optional<double> of_a = CentreOf(values.a, info.circle), of_b = CentreOf(values.b, info.circle);
+  if (of_a && of_b)
+    for (double& value : values.b) value += NearTo(*of_a, *of_b, info.circle) - *of_b;
+  return values;
+}
+
+std::string SideTitle(const Comparison& comparison, const Comparison::Side& side) {
+  return comparison.a.name == comparison.b.name ? fmt::format("{} in {}", side.name, side.folder) : side.name;
+}
+
 Comparison Compare(const ComparedCampaign& a, const ComparedCampaign& b,
-                   const std::vector<std::string>& metrics, std::vector<CampaignChange> changes) {
+                   const std::vector<std::string>& metrics, std::vector<CampaignChange> changes,
+                   double practical_share) {
   Comparison comparison;
+  comparison.practical_share = practical_share;
+  comparison.differs = DiffersWords(changes);
   comparison.a = SideOf(a);
   comparison.b = SideOf(b);
   comparison.changes = std::move(changes);
@@ -528,6 +627,7 @@ Comparison Compare(const ComparedCampaign& a, const ComparedCampaign& b,
     if (!WhyNotMeasured(a.campaign, metric).empty() || !WhyNotMeasured(b.campaign, metric).empty()) continue;
     MetricComparison result =
         CompareMetric(metric, a.cases, b.cases, rows, comparison.pairing.paired, comparison.independent);
+    SetLeast(a, b, ValuesToCompare(a.cases, b.cases, metric).a, practical_share, result);
     const bool defined =
         std::isfinite(result.median_a) || std::isfinite(result.median_b) || result.lost_a + result.lost_b > 0;
     if (!metrics.empty() || (result.n_a > 0 && result.n_b > 0 && defined))

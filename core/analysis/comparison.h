@@ -13,6 +13,7 @@
 #include "core/results/case_columns.h"
 #include "core/results/metric_catalogue.h"
 #include "core/statistics/intervals.h"
+#include "core/statistics/limits.h"
 #include "core/statistics/summary.h"
 
 namespace dispersa {
@@ -59,6 +60,14 @@ struct PercentileComparison {
   double p_holm = kUndefined;  ///< over the metrics, for this percentile
 };
 
+/// A metric's values by row of each campaign; NaN: lost, or not defined. Magnitudes if the metric is worse
+/// farther from zero. On a circle both near to their centres, and those within half a turn of each other, so
+/// that differences do not run around the circle.
+struct ComparedValues {
+  std::vector<double> a, b;
+};
+ComparedValues ValuesToCompare(const CaseColumns& a, const CaseColumns& b, const std::string& metric);
+
 /// One metric. A flight that was not completed counts as worse than any value. If a metric is neither good
 /// nor bad, such flights are left out. If a metric is worse farther from zero, its magnitude is compared.
 struct MetricComparison {
@@ -77,10 +86,15 @@ struct MetricComparison {
   std::size_t b_better = 0, a_better = 0,
               equal =
                   0;  ///< numbers of pairs; if the metric is neither good nor bad: b smaller, b larger, equal
+  double tendency = kUndefined;  ///< unpaired: TendencyOf(), the direction of the rank sum
   double p = kUndefined;
   double p_holm = kUndefined;  ///< over the metrics
   std::vector<PercentileComparison> tails;
-  std::string finding;  ///< "better", "worse" (of b), "differs", "not shown"
+  /// The smallest difference that matters, in the metric's unit: the share of the nearest limit of a
+  /// requirement (of a range: of its width), or without one of the spread from 5 to 95 % of A. 0: any.
+  double least = 0.0;
+  bool least_is_of_limit = false;
+  std::string finding;  ///< "better", "worse" (of b), "differs", kTooSmall, "not shown"
   /// Counted in the sentence: neither a part of another metric (a stage's), nor a value whose error is
   /// compared.
   bool is_counted = true;
@@ -90,6 +104,12 @@ struct MetricComparison {
   };
   std::vector<Pair> gains, losses;  ///< the pairs in which b gains most, and loses most
 };
+
+/// A difference that is certain but smaller than MetricComparison::least, in the median and in each
+/// percentile that differs, while both campaigns lost as many flights.
+inline constexpr char kTooSmall[] = "too small to matter";
+/// The share that decides MetricComparison::least if nobody states another.
+inline constexpr double kPracticalShare = 0.01;
 
 /// One limit, applied to the flights of both campaigns, even if only one states it. `n` is 0 if the
 /// campaign's flights do not have the metric.
@@ -115,6 +135,7 @@ struct ChangedCase {
   struct Reason {
     std::string requirement;  ///< RequirementComparison::words, or "flight completed"
     double a = kUndefined, b = kUndefined;
+    Limits limits = {};
   };
   std::vector<Reason> reasons;
 };
@@ -128,10 +149,18 @@ struct Comparison {
   };
   Side a, b;
   std::vector<CampaignChange> changes;
+  std::string differs;  ///< "vehicle (3 values) and dispersions (1 value)": what `changes` are of
+  double practical_share = kPracticalShare;
   Pairing pairing;
   bool independent = true;  ///< both are random samples; otherwise differences have no limits and no p-values
   std::vector<MetricComparison> metrics;
   std::vector<RequirementComparison> requirements;
+  /// Limits that a vehicle brings and that neither campaign requires: flights beyond each, lost or not.
+  struct LoadCheck {
+    std::string metric;
+    std::size_t failures_a = 0, failures_b = 0;
+  };
+  std::vector<LoadCheck> load_checks;
   std::vector<ChangedCase> harmed;  ///< met in a and not in b, ascending; empty if unpaired
   std::vector<ChangedCase> rescued;
   /// By the requirements; without any by the metrics that are counted: "better", "worse" (of b), "mixed", "no
@@ -146,7 +175,11 @@ inline constexpr double kComparisonConfidence = 0.95;
 /// compared. Inputs: only the changed ones and the best matched ones are listed, and never more than the
 /// flights show.
 Comparison Compare(const ComparedCampaign& a, const ComparedCampaign& b,
-                   const std::vector<std::string>& metrics, std::vector<CampaignChange> changes);
+                   const std::vector<std::string>& metrics, std::vector<CampaignChange> changes,
+                   double practical_share = kPracticalShare);
+
+/// The campaign's name, with the folder where both have the same name.
+std::string SideTitle(const Comparison& comparison, const Comparison::Side& side);
 
 /// "dispersa replay FOLDER --case N", for the shell and the folder in which the comparison was started.
 std::string ReplayCommand(const std::string& folder, std::uint64_t case_index);

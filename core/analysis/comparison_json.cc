@@ -65,6 +65,9 @@ Json MetricJson(const MetricComparison& metric, const Comparison& comparison) {
                     {"test", paired ? "sign_test" : "rank_sum"},
                     {"p", Number(metric.p)},
                     {"p_holm", Number(metric.p_holm)}};
+  if (!paired) json["median"]["tendency"] = Number(metric.tendency);
+  json["least"] = {{"difference", Number(metric.least)},
+                   {"of", metric.least_is_of_limit ? "limit" : "spread"}};
   json["tails"] = Json::array();
   for (const PercentileComparison& tail : metric.tails) {
     json["tails"].push_back(
@@ -142,6 +145,8 @@ std::string ComparisonJson(const Comparison& comparison) {
   json["sentence"] = comparison.sentence;
   json["confidence"] = kComparisonConfidence;
   json["independent"] = comparison.independent;
+  json["practical_share"] = comparison.practical_share;
+  json["differs_in"] = comparison.differs;
   json["pairing"] = PairingJson(comparison.pairing);
   json["changes"] = Json::array();
   for (const CampaignChange& change : comparison.changes) {
@@ -154,6 +159,10 @@ std::string ComparisonJson(const Comparison& comparison) {
   json["requirements"] = Json::array();
   for (const RequirementComparison& requirement : comparison.requirements)
     json["requirements"].push_back(RequirementJson(requirement, comparison.pairing.paired));
+  json["load_checks"] = Json::array();
+  for (const Comparison::LoadCheck& check : comparison.load_checks)
+    json["load_checks"].push_back(
+        {{"metric", check.metric}, {"failures_a", check.failures_a}, {"failures_b", check.failures_b}});
   json["harmed"] = CasesJson(comparison.harmed, comparison);
   json["rescued"] = CasesJson(comparison.rescued, comparison);
   return json.dump(2) + "\n";

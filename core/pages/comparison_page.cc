@@ -76,6 +76,7 @@ std::string FindingBadge(const std::string& finding) {
                                  : finding == "worse"                         ? "fail"
                                  : finding == "differs" || finding == "mixed" ? "inconclusive"
                                                                               : "";
+  if (finding == kTooSmall) return "<span class=\"soft\">certain but too small to matter</span>";
   if (style.empty()) return "<span class=\"soft\">" + finding + "</span>";
   return fmt::format("<span class=\"badge {}\">{}{}</span>", style,
                      finding == "differs" || finding == "mixed" ? "" : "B ", finding);
@@ -150,22 +151,28 @@ std::string Header(const Comparison& c) {
       return metric.is_counted && metric.finding == finding;
     });
   };
-  const auto side = [](const char* letter, const Comparison::Side& s) {
+  const auto side = [&](const char* letter, const Comparison::Side& s) {
     return fmt::format("{}: {}, autopilot {}, vehicle {}, {} of {} flights completed", letter,
-                       HtmlText(s.name), HtmlText(s.autopilot), HtmlText(s.vehicle), s.completed, s.flown);
+                       HtmlText(SideTitle(c, s)), HtmlText(s.autopilot), HtmlText(s.vehicle), s.completed,
+                       s.flown);
   };
   const bool decided = c.finding == "better" || c.finding == "worse" || c.finding == "mixed";
   std::string html = fmt::format(
-      "<header>\n<h1>{} against {}</h1>\n<p class=\"soft what\">{}<br>{}<br>Differences are B minus A; "
+      "<header>\n<h1>{} against {}</h1>\n<p class=\"soft what\">{}<br>{}<br>{}Differences are B minus A; "
       "{}.</p>\n"
       "<div class=\"headline\">{}<p>{}</p></div>\n",
-      HtmlText(c.b.name), HtmlText(c.a.name), side("A", c.a), side("B", c.b),
+      HtmlText(SideTitle(c, c.b)), HtmlText(SideTitle(c, c.a)), side("A", c.a), side("B", c.b),
+      c.differs.empty() ? "" : "The campaign files differ in " + HtmlText(c.differs) + ".<br>",
       c.pairing.paired
           ? Term("paired comparison", "paired") + fmt::format(", {} pairs of flights", c.pairing.shared)
           : "unpaired",
       decided ? FindingBadge(c.finding) : "<span class=\"badge design\">" + c.finding + "</span>",
       HtmlText(c.sentence));
-  html += RequirementsTable(c) + "<div class=\"tiles\">";
+  html += RequirementsTable(c);
+  for (const Comparison::LoadCheck& check : c.load_checks)
+    html += fmt::format("<p>{}: a limit of the vehicle. Flights beyond it: {} of A, {} of B.</p>\n",
+                        HtmlText(DescribeMetric(check.metric).title), check.failures_a, check.failures_b);
+  html += "<div class=\"tiles\">";
   if (c.pairing.paired) {
     html += Tile(std::to_string(c.harmed.size()), "cases " + Term("harmed")) +
             Tile(std::to_string(c.rescued.size()), "cases " + Term("rescued"));
@@ -241,8 +248,9 @@ std::string CasesTable(const std::vector<ChangedCase>& cases, const Comparison& 
     if (++listed > kListedCases) break;
     for (std::size_t i = 0; i < one.reasons.size(); ++i) {
       const ChangedCase::Reason& reason = one.reasons[i];
-      const auto value = [](double number, Outcome outcome) {
-        if (std::isfinite(number)) return RoundedText(number);
+      const auto value = [&](double number, Outcome outcome) {
+        if (std::isfinite(number))
+          return RoundedText(number, Rounding::kNearest, reason.limits.Beside(number));
         std::string words = OutcomeName(outcome);
         std::replace(words.begin(), words.end(), '_', ' ');
         return words;
@@ -273,9 +281,11 @@ std::string MetricsSection(const Comparison& c) {
       "<h2 id=\"metrics\">Every metric</h2>\n"
       "<p>{} Its 95 % limits stand below it. The tails are on the bad side: 95 and 99 %, or 5 and 1 % if "
       "less is worse. <code>compare.json</code> has the other percentiles. “Not shown”: Holm’s adjusted p is "
-      "above 5 %. This does not show that the campaigns are equal.</p>\n",
+      "above 5 %. This does not show that the campaigns are equal. A difference matters from {} of a "
+      "requirement’s limit on, or without a requirement of the spread of A from 5 to 95 %.</p>\n",
       c.pairing.paired ? "The difference is the median of B minus A over the pairs."
-                       : "The difference is that of the medians.");
+                       : "The difference is that of the medians.",
+      PercentText(c.practical_share));
   HtmlTable table({{"Metric", false, true},
                    {"Unit", true},
                    {"Median A", true},
@@ -313,11 +323,8 @@ std::string MetricsSection(const Comparison& c) {
 }
 
 /// Share of the flights beyond each value. A lost flight counts as beyond any value.
-void AddExceedance(SvgChart& chart, const CaseColumns& cases, const std::string& metric, Worse worse,
-                   const char* style, const char* legend) {
-  std::vector<double> values = CompletedValues(cases, metric);
-  if (worse == Worse::kFartherFromZero)
-    for (double& value : values) value = std::fabs(value);
+void AddExceedance(SvgChart& chart, std::vector<double> values, Worse worse, const char* style,
+                   const char* legend) {
   const auto all = static_cast<double>(values.size());
   std::vector<double> sorted = SortedFinite(std::move(values));
   if (worse == Worse::kSmaller) std::reverse(sorted.begin(), sorted.end());
@@ -349,6 +356,11 @@ std::vector<const MetricComparison*> ShownMetrics(const Comparison& c) {
   return shown;
 }
 
+std::string ComparedTitle(const MetricInfo& info) {
+  return info.title + (info.worse == Worse::kFartherFromZero ? ", magnitude" : "") +
+         (info.unit.empty() ? "" : ", " + info.unit);
+}
+
 std::string FiguresSection(const Comparison& c, const CaseColumns& a, const CaseColumns& b) {
   std::string html =
       "<h2 id=\"figures\">Distributions side by side</h2>\n<p>All flights of each campaign, paired or not; a "
@@ -357,16 +369,16 @@ std::string FiguresSection(const Comparison& c, const CaseColumns& a, const Case
   std::string same;  // one value in all flights of both has no curve
   for (const MetricComparison* metric : ShownMetrics(c)) {
     const MetricInfo& info = metric->info;
-    std::vector<double> values = SortedFinite(CompletedValues(a, metric->metric));
-    const std::vector<double> of_b = SortedFinite(CompletedValues(b, metric->metric));
+    const ComparedValues all = ValuesToCompare(a, b, metric->metric);
+    std::vector<double> values = SortedFinite(all.a);
+    const std::vector<double> of_b = SortedFinite(all.b);
     values.insert(values.end(), of_b.begin(), of_b.end());
     if (!values.empty() && std::count(values.begin(), values.end(), values.front()) == std::ssize(values)) {
       same += fmt::format("{}{} {}", same.empty() ? "" : "; ", HtmlText(info.title),
                           HtmlText(WithUnit(values.front(), info.unit)));
       continue;
     }
-    const std::string axis = info.title + (info.worse == Worse::kFartherFromZero ? ", magnitude" : "") +
-                             (info.unit.empty() ? "" : ", " + info.unit);
+    const std::string axis = ComparedTitle(info);
     const bool smaller = info.worse == Worse::kSmaller;
     SvgChart tail({.label = axis},
                   {.label = smaller ? "share of flights at most this" : "share of flights beyond this",
@@ -375,21 +387,19 @@ std::string FiguresSection(const Comparison& c, const CaseColumns& a, const Case
                    .logarithmic = true,
                    .percent = true},
                   520, 260);
-    AddExceedance(tail, a, metric->metric, info.worse, "line-0", "A");
-    AddExceedance(tail, b, metric->metric, info.worse, "line-1", "B");
+    AddExceedance(tail, all.a, info.worse, "line-0", "A");
+    AddExceedance(tail, all.b, info.worse, "line-1", "B");
     const std::string title = HtmlText(info.title);
     html += Figure(tail.Svg("Exceedance of " + info.title + " in A and B"),
                    title + ": share of the flights " + (smaller ? "at most" : "beyond") + " each value.");
     if (!c.pairing.paired) continue;
-    const std::vector<double> all_a = CompletedValues(a, metric->metric);
-    const std::vector<double> all_b = CompletedValues(b, metric->metric);
     std::vector<double> x, y;
     for (std::size_t row = 0, other = 0; row < a.rows(); ++row) {
       while (other < b.rows() && b.index[other] < a.index[row]) ++other;
       if (other == b.rows() || b.index[other] != a.index[row]) continue;
-      if (!std::isfinite(all_a[row]) || !std::isfinite(all_b[other])) continue;
-      x.push_back(all_a[row]);
-      y.push_back(all_b[other]);
+      if (!std::isfinite(all.a[row]) || !std::isfinite(all.b[other])) continue;
+      x.push_back(all.a[row]);
+      y.push_back(all.b[other]);
     }
     if (x.empty()) continue;
     const double low = std::max(*std::min_element(x.begin(), x.end()), *std::min_element(y.begin(), y.end()));
@@ -421,11 +431,8 @@ std::string ChangesSection(const Comparison& c) {
       for (std::size_t i = 0; i < std::min<std::size_t>(3, pairs->size()); ++i) {
         const MetricComparison::Pair& pair = (*pairs)[i];
         const auto value = [](double number) { return std::isfinite(number) ? RoundedText(number) : "lost"; };
-        table.Row({titled ? ""
-                          : HtmlText(metric->info.title +
-                                     (metric->info.unit.empty() ? "" : ", " + metric->info.unit)),
-                   word, std::to_string(pair.case_index), value(pair.a), value(pair.b),
-                   ReplayBoth(c, pair.case_index)});
+        table.Row({titled ? "" : HtmlText(ComparedTitle(metric->info)), word, std::to_string(pair.case_index),
+                   value(pair.a), value(pair.b), ReplayBoth(c, pair.case_index)});
         titled = true;
       }
     }
@@ -481,7 +488,8 @@ std::string ComparisonPage(const Comparison& comparison, const CaseColumns& a, c
       ".breaking table { table-layout: fixed; } .breaking td code, .breaking th code { white-space: normal; "
       "overflow-wrap: normal; }\n"
       ".metrics tbody th { min-width: 11em; } .metrics td.n .definition { white-space: normal; }\n";
-  const std::string title = comparison.b.name + " against " + comparison.a.name;
+  const std::string title =
+      SideTitle(comparison, comparison.b) + " against " + SideTitle(comparison, comparison.a);
   std::string page = PageHead(title, title, kMoreStyle) + "<main>\n" + Header(comparison) +
                      kComparisonNavigation + CasesSection(comparison) + MetricsSection(comparison) +
                      FiguresSection(comparison, a, b) + ChangesSection(comparison) +

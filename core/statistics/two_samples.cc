@@ -139,6 +139,17 @@ QuantileDifference CompareQuantiles(const std::vector<double>& a, const std::vec
   return result;
 }
 
+double TendencyOf(const std::vector<double>& a, const std::vector<double>& b) {
+  if (a.empty() || b.empty()) return kUndefined;
+  const std::vector<double> sorted = Sorted(a);
+  double larger = 0.0;
+  for (const double value : b) {
+    const auto [equal, above] = std::equal_range(sorted.begin(), sorted.end(), value);
+    larger += static_cast<double>((equal - sorted.begin()) - (sorted.end() - above));
+  }
+  return larger / (static_cast<double>(a.size()) * static_cast<double>(b.size()));
+}
+
 double LocationP(const std::vector<double>& a, const std::vector<double>& b) {
   if (a.empty() || b.empty()) return kUndefined;
   std::vector<double> pooled = a;

@@ -51,6 +51,11 @@ struct QuantileDifference {
 QuantileDifference CompareQuantiles(const std::vector<double>& a, const std::vector<double>& b,
                                     double probability, double confidence, bool paired);
 
+/// How much likelier a value of b is the larger one than the smaller one, of all pairs of a value each: from
+/// -1 to 1 (N. Cliff, Psychol. Bull. 114 (1993) 494). The direction that LocationP() tests. Undefined if
+/// either sample is empty.
+double TendencyOf(const std::vector<double>& a, const std::vector<double>& b);
+
 /// Two-sided p-value for "the values of neither sample tend to be larger": Wilcoxon's rank sum test
 /// (RankSumP).
 double LocationP(const std::vector<double>& a, const std::vector<double>& b);

@@ -22,6 +22,7 @@ struct CompareOptions {
   std::string b;
   std::vector<std::string> metrics;
   std::string out;
+  double practical_percent = 100.0 * kPracticalShare;
 };
 
 std::string IntervalText(const Interval& interval) {
@@ -36,8 +37,9 @@ std::string NumberText(double value) { return std::isfinite(value) ? fmt::format
 
 void PrintText(const Comparison& comparison) {
   for (const auto& [letter, side] : {std::pair{"A", &comparison.a}, std::pair{"B", &comparison.b}})
-    fmt::print("{}: {} ({}), {} of {} flights completed\n", letter, side->name, side->autopilot,
-               side->completed, side->flown);
+    fmt::print("{}: {} ({}), {} of {} flights completed\n", letter, SideTitle(comparison, *side),
+               side->autopilot, side->completed, side->flown);
+  if (!comparison.differs.empty()) fmt::print("The campaign files differ in {}.\n", comparison.differs);
   fmt::print("{}\n{}\n\n", comparison.pairing.sentence, comparison.sentence);
   fmt::print("{:<37} {:>10} {:>10} {:>11} {:>26} {:>11} {:>11}  {}\n", "metric", "median A", "median B",
              "B - A", "95 % interval", "p99 B - A", "p, Holm", "B is");
@@ -51,6 +53,9 @@ void PrintText(const Comparison& comparison) {
                IntervalText(metric.interval), tail == metric.tails.end() ? "–" : NumberText(tail->difference),
                PValueText(metric.p_holm), metric.finding);
   }
+  for (const Comparison::LoadCheck& check : comparison.load_checks)
+    fmt::print("\n{}, a limit of the vehicle: exceeded in {} flights of A, in {} of B\n", check.metric,
+               check.failures_a, check.failures_b);
   for (const RequirementComparison& requirement : comparison.requirements) {
     fmt::print("\n{}: fails in {} of {} in A, {} of {} in B; {} {}\n", requirement.words,
                requirement.failures_a, requirement.n_a, requirement.failures_b, requirement.n_b,
@@ -63,7 +68,8 @@ void PrintText(const Comparison& comparison) {
 
 ExitCode CompareAndShow(const CompareOptions& options, const GlobalOptions& global) {
   RequireWritableFolder("--out", options.out);
-  const FolderComparison compared = CompareFolders(options.a, options.b, options.metrics);
+  const FolderComparison compared =
+      CompareFolders(options.a, options.b, options.metrics, 0.01 * options.practical_percent);
   if (!options.out.empty()) WriteComparison(compared, options.out);
   if (global.json) {
     fmt::print("{}", ComparisonJson(compared.comparison));
@@ -87,6 +93,12 @@ void AddCompareCommand(CLI::App& app, Invocation& invocation) {
       ->type_name(kFolderType);
   command->add_option("--metric", options->metrics, "metric to compare, instead of all; may be repeated")
       ->type_name(kMetricType);
+  command
+      ->add_option("--practical", options->practical_percent,
+                   "per cent of a requirement's limit, or without one of the metric's spread, from which a "
+                   "difference matters; 0: any difference does")
+      ->check(CLI::Range(0.0, 100.0))
+      ->capture_default_str();
   command->footer(
       "Example: dispersa compare results/controllers-1a2b3c4d results/controllers_pd-5e6f7a8b --out "
       "comparison");

@@ -60,7 +60,7 @@ std::vector<CampaignChange> ChangesOf(const Campaign& a, const Campaign& b) {
 }  // namespace
 
 FolderComparison CompareFolders(const std::string& name_a, const std::string& name_b,
-                                const std::vector<std::string>& metrics) {
+                                const std::vector<std::string>& metrics, double practical_share) {
   const StoredCampaign a = OpenStored(name_a);
   const StoredCampaign b = OpenStored(name_b);
   CheckKnown(a.campaign, b.campaign, metrics);
@@ -72,7 +72,7 @@ FolderComparison CompareFolders(const std::string& name_a, const std::string& na
     if (cases->rows() == 0) throw InputError(*name + ": no case has a result");
   compared.comparison = Compare({name_a, a.folder.Provenance("engine"), a.campaign, compared.a},
                                 {name_b, b.folder.Provenance("engine"), b.campaign, compared.b}, metrics,
-                                ChangesOf(a.campaign, b.campaign));
+                                ChangesOf(a.campaign, b.campaign), practical_share);
   return compared;
 }
 

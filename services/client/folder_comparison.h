@@ -18,7 +18,8 @@ struct FolderComparison {
 /// `metrics`: names without prefix; empty: every metric that a flight of both defines. InputError for a
 /// folder that is none or has no case, and for a name that is no metric.
 FolderComparison CompareFolders(const std::string& a, const std::string& b,
-                                const std::vector<std::string>& metrics);
+                                const std::vector<std::string>& metrics,
+                                double practical_share = kPracticalShare);
 
 /// compare.json and compare.html, in a folder that is made if it is missing.
 void WriteComparison(const FolderComparison& compared, const std::filesystem::path& folder);

@@ -7,6 +7,7 @@
 #include <cmath>
 #include <nlohmann/json.hpp>
 
+#include "core/analysis/requirement_summary.h"
 #include "tests/unit/comparison_sample.h"
 
 namespace dispersa::analysis_comparison_test {
@@ -249,6 +250,167 @@ TEST(ReportComparison, OfTwoLawsHasTheMetricsOfBoth) {
   EXPECT_EQ(comparison.requirements[0].n_b, 0u);
   EXPECT_TRUE(std::isnan(comparison.requirements[0].p));
   EXPECT_TRUE(comparison.harmed.empty());
+}
+
+std::vector<std::uint64_t> Indices(std::size_t n, std::uint64_t first = 0) {
+  std::vector<std::uint64_t> list;
+  for (std::size_t i = 0; i < n; ++i) list.push_back(first + i);
+  return list;
+}
+std::vector<double> Ramp(std::size_t n, double from, double step) {
+  std::vector<double> list;
+  for (std::size_t i = 0; i < n; ++i) list.push_back(from + step * static_cast<double>(i));
+  return list;
+}
+
+// The median of A is that of a lost flight. A lost flight is worse than any, of which more or less is worse.
+TEST(ReportComparison, WhoLosesMostFlightsIsNotTheBetterOne) {
+  for (const char* metric : {"pitch_error_rms_deg", "perigee_km"}) {
+    SCOPED_TRACE(metric);
+    CaseColumns a = Columns(Indices(60), Ramp(60, 0.0, 1.0), Ramp(60, 100.0, 0.5), metric);
+    const CaseColumns b = Columns(Indices(60), Ramp(60, 1000.0, 1.0), Ramp(60, 100.2, 0.5), metric);
+    for (std::size_t i = 0; i < 58; ++i) a.outcome[i] = Outcome::kLostControl;
+    const Comparison comparison = CompareColumns(a, b, {}, {metric});
+    ASSERT_FALSE(comparison.pairing.paired);
+    EXPECT_TRUE(std::isnan(comparison.metrics[0].median_a));
+    EXPECT_EQ(comparison.metrics[0].finding, "better");
+    EXPECT_EQ(CompareColumns(b, a, {}, {metric}).metrics[0].finding, "worse");
+  }
+}
+
+// What the summary counts: the loads of each flight, lost or not, and not the losses.
+TEST(ReportComparison, LimitsOfTheVehicleAreCountedAsInTheSummary) {
+  constexpr char kExceeded[] = "structural_limit_exceeded";
+  CaseColumns a = Columns(Indices(6), Ramp(6, 0.0, 1.0), {1, 1, 0, 0, 0, 0}, kExceeded);
+  CaseColumns b = Columns(Indices(6), Ramp(6, 0.0, 1.0), {0, 0, 0, 0, 0, 1}, kExceeded);
+  a.outcome[1] = a.outcome[2] = a.outcome[3] = Outcome::kLostControl;
+  b.outcome[0] = b.outcome[5] = Outcome::kLostControl;
+  Requirement limit{
+      .metric = kExceeded, .below = 0.5, .above = {}, .probability = 0.9973, .consumer_risk = 0.1};
+  limit.by_default = true;
+  const Comparison comparison = CompareColumns(a, b, {limit}, {kExceeded});
+  EXPECT_THAT(comparison.requirements, IsEmpty());
+  ASSERT_EQ(comparison.load_checks.size(), 1u);
+  EXPECT_EQ(comparison.load_checks[0].failures_a, 2u);
+  EXPECT_EQ(comparison.load_checks[0].failures_b, 1u);
+  EXPECT_EQ(Judge(limit, SamplingMethod::kMonteCarlo, a, 0).failures, 2);
+  EXPECT_EQ(Judge(limit, SamplingMethod::kMonteCarlo, b, 0).failures, 1);
+  const auto json = nlohmann::json::parse(ComparisonJson(comparison));
+  EXPECT_EQ(json["load_checks"],
+            nlohmann::json::parse(
+                R"([{"metric": "structural_limit_exceeded", "failures_a": 2, "failures_b": 1}])"));
+  // Stated by a campaign it is a requirement, which a lost flight fails.
+  limit.by_default = false;
+  const Comparison stated = CompareColumns(a, b, {limit}, {kExceeded});
+  EXPECT_THAT(stated.load_checks, IsEmpty());
+  EXPECT_EQ(stated.requirements[0].failures_a, 4u);
+  EXPECT_EQ(stated.requirements[0].failures_b, 2u);
+}
+
+Requirement RmsBelow(double limit) {
+  return {.metric = kMetric, .below = limit, .above = {}, .probability = 0.9, .consumer_risk = 0.1};
+}
+
+// Certain, since all pairs agree; whether it matters is another question.
+TEST(ReportComparison, ADifferenceCanBeTooSmallToMatter) {
+  const CaseColumns a = Columns(Indices(100), Ramp(100, 0.0, 1.0), Ramp(100, 0.2, 0.001));
+  struct Case {
+    double shift;
+    std::vector<Requirement> requirements;
+    double share;
+    const char* finding;
+    double least;
+  };
+  // The spread from 5 to 95 % of 0.200 to 0.299 is 0.0891.
+  const Case cases[] = {{0.0008, {}, 0.01, kTooSmall, 0.000891},
+                        {-0.0008, {}, 0.01, kTooSmall, 0.000891},
+                        {0.0009, {}, 0.01, "worse", 0.000891},
+                        {-0.0009, {}, 0.01, "better", 0.000891},
+                        {0.004, {RmsBelow(0.5)}, 0.01, kTooSmall, 0.005},
+                        {0.006, {RmsBelow(0.5)}, 0.01, "worse", 0.005},
+                        {0.006, {RmsBelow(0.5)}, 0.02, kTooSmall, 0.01},
+                        {0.0008, {}, 0.0, "worse", 0.0}};
+  for (const Case& one : cases) {
+    SCOPED_TRACE(one.shift);
+    const CaseColumns b = Columns(Indices(100), Ramp(100, 0.0, 1.0), Ramp(100, 0.2 + one.shift, 0.001));
+    Campaign of_a = MakeCampaign(100);
+    const Campaign of_b = MakeCampaign(100);
+    of_a.requirements = one.requirements;
+    const Comparison comparison =
+        Compare({"A", "engine", of_a, a}, {"B", "engine", of_b, b}, {kMetric}, {}, one.share);
+    EXPECT_EQ(comparison.metrics[0].finding, one.finding);
+    EXPECT_NEAR(comparison.metrics[0].least, one.least, 1e-12);
+    EXPECT_EQ(comparison.metrics[0].least_is_of_limit, !one.requirements.empty());
+    EXPECT_EQ(nlohmann::json::parse(ComparisonJson(comparison))["practical_share"], one.share);
+    const bool small = one.finding == std::string(kTooSmall);
+    EXPECT_EQ(comparison.sentence.find("In 1 the difference is certain but too small to matter: less than") !=
+                  std::string::npos,
+              small);
+    const std::string page = ComparisonPage(comparison, a, b);
+    EXPECT_EQ(page.find(">certain but too small to matter<") != std::string::npos, small);
+  }
+  // Equal medians say nothing of the flights that B loses.
+  CaseColumns lost = a;
+  for (std::size_t i = 0; i < 20; ++i) lost.outcome[i] = Outcome::kTimeout;
+  EXPECT_EQ(CompareColumns(a, lost).metrics[0].finding, "worse");
+}
+
+TEST(ReportComparison, OfEqualNamesTheFoldersAndWhatDiffersAreNamed) {
+  const CaseColumns cases = Columns({0, 1, 2}, {0.1, 0.2, 0.3}, {1, 2, 3});
+  Campaign alpha = MakeCampaign(3);
+  alpha.name = "alpha";
+  const std::vector<CampaignChange> changes = {{"vehicle.stages[0].thrust_n", "1", "2"},
+                                               {"vehicle.name", "x", "y"},
+                                               {"dispersions.wind.max_speed_m_s", "3", "4"}};
+  const Comparison same =
+      Compare({"old", "engine", alpha, cases}, {"new", "engine", alpha, cases}, {kMetric}, changes);
+  const std::string page = ComparisonPage(same, cases, cases);
+  EXPECT_THAT(page, HasSubstr("<h1>alpha in new against alpha in old</h1>"));
+  EXPECT_THAT(page,
+              HasSubstr("The campaign files differ in vehicle (2 values) and dispersions (1 value).<br>"));
+  Campaign beta = alpha;
+  beta.name = "beta";
+  const Comparison other =
+      Compare({"old", "engine", alpha, cases}, {"new", "engine", beta, cases}, {kMetric}, {});
+  EXPECT_THAT(ComparisonPage(other, cases, cases), HasSubstr("<h1>beta against alpha</h1>"));
+}
+
+// B minus A is the short way around the circle, from either side.
+TEST(ReportComparison, LongitudesAreComparedAcrossTheCut) {
+  constexpr char kLongitude[] = "impact_longitude_deg";
+  for (const double sign : {1.0, -1.0}) {
+    SCOPED_TRACE(sign);
+    std::vector<double> of_a, of_b;
+    for (int i = 0; i < 40; ++i) {
+      of_a.push_back(NearTo(0.0, sign * (179.98 + 0.002 * i), kCutAt180Deg));
+      of_b.push_back(NearTo(0.0, sign * (180.02 + 0.002 * i), kCutAt180Deg));
+    }
+    const CaseColumns a = Columns(Indices(40), Ramp(40, 0.0, 1.0), of_a, kLongitude);
+    const CaseColumns b = Columns(Indices(40), Ramp(40, 0.0, 1.0), of_b, kLongitude);
+    const CaseColumns other = Columns(Indices(40), Ramp(40, 99.0, 1.0), of_b, kLongitude);
+    for (const CaseColumns* against : {&b, &other}) {
+      const Comparison comparison = CompareColumns(a, *against, {}, {kLongitude});
+      EXPECT_EQ(comparison.pairing.paired, against == &b);
+      EXPECT_NEAR(comparison.metrics[0].difference, sign * 0.04, 1e-9);
+      for (const PercentileComparison& tail : comparison.metrics[0].tails)
+        EXPECT_TRUE(std::isnan(tail.difference) || std::fabs(tail.difference - sign * 0.04) < 1e-9);
+    }
+  }
+}
+
+// The values that stand beside an axis or a name of magnitudes are magnitudes.
+TEST(ReportComparison, MagnitudesAreShownAsSuch) {
+  constexpr char kError[] = "injection_altitude_error_km";
+  const CaseColumns a = Columns(Indices(4), Ramp(4, 0.0, 1.0), {-3, 2, -1, 4}, kError);
+  const CaseColumns b = Columns(Indices(4), Ramp(4, 0.0, 1.0), {1, -2.5, 2, -5}, kError);
+  const ComparedValues values = ValuesToCompare(a, b, kError);
+  EXPECT_THAT(values.a, ElementsAre(3, 2, 1, 4));
+  EXPECT_THAT(values.b, ElementsAre(1, 2.5, 2, 5));
+  const std::string page = ComparisonPage(CompareColumns(a, b, {}, {kError}), a, b);
+  const std::size_t chart = page.find("aria-label=\"B against A, pair by pair");
+  ASSERT_NE(chart, std::string::npos);
+  EXPECT_THAT(page.substr(chart, page.find("</svg>", chart) - chart),
+              AllOf(HasSubstr(", magnitude, km"), Not(HasSubstr(">-"))));
 }
 
 }  // namespace
