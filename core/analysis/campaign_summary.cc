@@ -79,21 +79,17 @@ CampaignVerdict Overall(const CampaignSummary& summary) {
   const auto is = [](const char* verdict) {
     return [verdict](const RequirementSummary& requirement) { return requirement.verdict == verdict; };
   };
-  // What the campaign did not ask itself counts from its first failure on.
-  const auto counts = [](const RequirementSummary& requirement) {
-    return !requirement.by_default || requirement.failures > 0;
-  };
-  if (any(counts) && !IsIndependent(summary.sampling)) {
+  const bool is_beyond = std::any_of(summary.load_checks.begin(), summary.load_checks.end(),
+                                     [](const LoadCheck& check) { return check.failures > 0; });
+  if (!IsIndependent(summary.sampling) && (is_beyond || !summary.requirements.empty())) {
     if (summary.cases < summary.design_points) return CampaignVerdict::kIncomplete;
-    return any([](const RequirementSummary& requirement) { return requirement.failures > 0; })
+    return is_beyond || any([](const RequirementSummary& requirement) { return requirement.failures > 0; })
                ? CampaignVerdict::kStudyViolated
                : CampaignVerdict::kStudy;
   }
-  if (any(is("fail"))) return CampaignVerdict::kFail;
-  if (!any(counts) && !any(is("pass"))) return CampaignVerdict::kNothingJudged;
-  return any([&](const RequirementSummary& requirement) {
-    return counts(requirement) && requirement.verdict == "inconclusive";
-  })
+  if (is_beyond || any(is("fail"))) return CampaignVerdict::kFail;
+  if (summary.requirements.empty()) return CampaignVerdict::kNothingJudged;
+  return any(is("inconclusive"))
              ? CampaignVerdict::kInconclusive
              : CampaignVerdict::kPass;
 }
@@ -166,6 +162,8 @@ const char* CampaignVerdictName(CampaignVerdict verdict) {
 
 std::vector<std::string> Warnings(const CampaignSummary& summary) {
   std::vector<std::string> warnings;
+  if (summary.nominal && summary.nominal->outcome != Outcome::kCompleted)
+    warnings.push_back(NominalLoss(*summary.nominal));
   if (summary.python_law)
     warnings.push_back(
         fmt::format("Flown with a Python law, {}: nobody without it can fly these cases again.",
@@ -214,15 +212,10 @@ std::vector<std::string> Warnings(const CampaignSummary& summary) {
   }
   const std::uint64_t completed = summary.outcomes[static_cast<std::size_t>(Outcome::kCompleted)];
   if (completed < summary.flown) {
-    const bool by_default = std::any_of(summary.requirements.begin(), summary.requirements.end(),
-                                        [](const RequirementSummary& r) { return r.by_default; });
     warnings.push_back(fmt::format(
         "{} of {} flights were lost: statistics and percentiles cover the {} that were "
-        "completed, and every lost flight fails every requirement of the campaign{}.",
-        summary.flown - completed, summary.flown, completed,
-        by_default ? "; of the vehicle's own limits a loss says nothing: they are held against what "
-                     "the flight bore until then"
-                   : ""));
+        "completed, and every lost flight fails every requirement.",
+        summary.flown - completed, summary.flown, completed));
   }
   return warnings;
 }
@@ -288,7 +281,7 @@ std::vector<std::string> KeyMetrics(const Campaign& campaign) {
     if (std::find(metrics.begin(), metrics.end(), name) == metrics.end()) metrics.push_back(name);
   };
   for (const Requirement& requirement : campaign.requirements)
-    if (!requirement.by_default) add(requirement.metric);
+    add(requirement.metric);
   for (const OwnMetric& metric : campaign.own_metrics) add(metric.name);
   for (const std::size_t i : MeasuredMetrics(campaign))
     if (i < Metrics().size() && Metrics()[i].is_usual) add(Metrics()[i].name);
@@ -353,6 +346,7 @@ CampaignSummary BuildSummary(const ResultFolder& folder, const Campaign& campaig
     summary.metrics.push_back({name, statistics, Skewness(sorted), Percentiles(sorted)});
   }
   HoldAgainstLimits(campaign.vehicle.limits, cases, &summary);
+  summary.load_checks = CheckLoads(campaign, cases);
   summary.near_step_limit = NearStepLimit(cases);
   summary.requirements = JudgeAll(campaign.requirements, context, cases);
   for (const Requirement& requirement : campaign.requirements) {

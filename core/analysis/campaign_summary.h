@@ -10,6 +10,7 @@
 #include "core/analysis/dispersion_summary.h"
 #include "core/analysis/drivers.h"
 #include "core/analysis/injection_summary.h"
+#include "core/analysis/load_check.h"
 #include "core/analysis/requirement_summary.h"
 #include "core/analysis/standing.h"
 #include "core/campaign/campaign.h"
@@ -94,6 +95,7 @@ struct CampaignSummary {
   };
   std::vector<Limit> limits;
   std::uint64_t beyond_limits = 0;    ///< flights that exceeded any
+  std::vector<LoadCheck> load_checks;
   std::uint64_t near_step_limit = 0;  ///< flights whose fastest part comes near what a step resolves
   bool holm = false;                  ///< the requirements' verdicts hold together
   /// Upper bound of the probability that a campaign which misses any requirement passes them all.

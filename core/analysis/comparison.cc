@@ -7,6 +7,7 @@
 #include <limits>
 #include <map>
 
+#include "core/analysis/load_check.h"
 #include "core/analysis/requirement_summary.h"
 #include "core/campaign/case_result.h"
 #include "core/campaign/dispersion_table.h"
@@ -358,17 +359,20 @@ std::vector<bool> FailsOf(const ComparedCampaign& compared, const Requirement& r
   return Failing(LimitsOf(requirement), values, rows);
 }
 
-/// Once, if both vehicles bring the limit. Only the loads count, until a loss too: as in the summary.
-void CheckLoad(const ComparedCampaign& a, const ComparedCampaign& b, const SharedRows& rows,
-               const Requirement& requirement, std::vector<Comparison::LoadCheck>& checks) {
-  if (std::any_of(checks.begin(), checks.end(),
-                  [&](const auto& known) { return known.metric == requirement.metric; }))
-    return;
-  const auto failures = [&](const ComparedCampaign& of, const std::vector<std::size_t>& chosen) {
-    const std::vector<bool> fails = FailsOf(of, requirement, ValuesToJudge(requirement, of.cases), chosen);
-    return static_cast<std::size_t>(std::count(fails.begin(), fails.end(), true));
+/// Of the rows that both have. A campaign without a checked limit has no failures.
+void CompareLoadChecks(const ComparedCampaign& a, const ComparedCampaign& b, const SharedRows& rows,
+                       Comparison& comparison) {
+  const auto failures = [](const ComparedCampaign& of, const std::vector<std::size_t>& chosen) {
+    const std::vector<bool> beyond = BeyondCheckedLimits(of.campaign, of.cases);
+    std::size_t count = 0;
+    if (!beyond.empty())
+      for (const std::size_t row : chosen) count += beyond[row];
+    return count;
   };
-  checks.push_back({requirement.metric, failures(a, rows.a), failures(b, rows.b)});
+  std::vector<LoadCheck> checks = CheckLoads(a.campaign, a.cases);
+  if (checks.empty()) checks = CheckLoads(b.campaign, b.cases);
+  for (const LoadCheck& check : checks)
+    comparison.load_checks.push_back({check.metric, failures(a, rows.a), failures(b, rows.b)});
 }
 
 void CompareRequirements(const ComparedCampaign& a, const ComparedCampaign& b, const SharedRows& rows,
@@ -376,6 +380,7 @@ void CompareRequirements(const ComparedCampaign& a, const ComparedCampaign& b, c
   const bool paired = comparison.pairing.paired;
   std::vector<Requirement> requirements = a.campaign.requirements;
   requirements.insert(requirements.end(), b.campaign.requirements.begin(), b.campaign.requirements.end());
+  CompareLoadChecks(a, b, rows, comparison);
   CaseChanges changes(a.cases, b.cases, rows);
   if (paired) {
     const auto lost = [](const CaseColumns& cases, const std::vector<std::size_t>& of) {
@@ -386,10 +391,6 @@ void CompareRequirements(const ComparedCampaign& a, const ComparedCampaign& b, c
     changes.Add("flight completed", lost(a.cases, rows.a), lost(b.cases, rows.b), {}, {}, {});
   }
   for (std::size_t i = 0; i < requirements.size(); ++i) {
-    if (requirements[i].by_default) {
-      CheckLoad(a, b, rows, requirements[i], comparison.load_checks);
-      continue;
-    }
     const std::string words = LimitText(requirements[i]);
     const bool of_a = i < a.campaign.requirements.size();
     const auto known = std::find_if(comparison.requirements.begin(), comparison.requirements.end(),

@@ -10,6 +10,7 @@
 #include <vector>
 
 #include "core/analysis/dispersion_summary.h"
+#include "core/analysis/load_check.h"
 #include "core/analysis/requirement_summary.h"
 #include "core/campaign/dispersion_table.h"
 #include "core/flight/flight_inputs.h"
@@ -351,7 +352,12 @@ std::vector<FailureDrivers> FindFailureDrivers(const Campaign& campaign, const C
   constexpr std::size_t kEnoughFailures = 10;
   std::vector<FailureDrivers> all;
   FeaturesOfRows known(campaign, cases);
-  for (const Requirement& requirement : campaign.requirements) {
+  std::vector<Requirement> requirements = campaign.requirements;
+  const std::size_t required = requirements.size();
+  for (const LoadCheck& check : CheckLoads(campaign, cases))
+    if (check.failures > 0) requirements.push_back({.metric = check.metric, .below = 1.0, .above = std::nullopt});
+  for (std::size_t which = 0; which < requirements.size(); ++which) {
+    const Requirement& requirement = requirements[which];
     FailureDrivers result{requirement.metric, false, 0, {}, {}};
     const Limits limits = LimitsOf(requirement);
     const std::vector<double> values = CompletedValues(cases, requirement.metric);
@@ -366,7 +372,7 @@ std::vector<FailureDrivers> FindFailureDrivers(const Campaign& campaign, const C
       marked.push_back(failed);
     }
     result.flights = static_cast<std::size_t>(std::count(marked.begin(), marked.end(), true));
-    if (requirement.by_default && result.flights < kEnoughFailures) continue;  // 0 or 1: none is nearest
+    if (which >= required && result.flights < kEnoughFailures) continue;  // 0 or 1: none is nearest
     if (result.flights < kEnoughFailures && rows.size() >= kLeastFlights) {
       std::vector<double> margins;
       for (const std::size_t row : rows)

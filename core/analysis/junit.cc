@@ -3,6 +3,7 @@
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <map>
 
 #include "core/results/text.h"
 
@@ -20,8 +21,6 @@ Finding FindingOf(const RequirementSummary& requirement, const Standing::Require
                            AdviceSentence(requirement);
   if (standing.verdict == "pass") return {};
   if (standing.verdict == "fail") return {"failure", text};
-  // What the campaign did not ask itself holds nothing up while nothing has failed it.
-  if (requirement.by_default && requirement.failures == 0) return {"skipped", text};
   return {"error", text};
 }
 
@@ -42,7 +41,10 @@ std::string TestCase(const std::string& suite, const std::string& name, const Fi
 std::string JUnitXml(const CampaignSummary& summary) {
   std::string cases;
   int failures = 0, errors = 0, skipped = 0, tests = 0;
-  const auto add = [&](const std::string& name, const Finding& finding) {
+  std::map<std::string, int> named;
+  const auto add = [&](std::string name, const Finding& finding) {
+    // Services take two tests of one name for one.
+    if (const int same = ++named[name]; same > 1) name += fmt::format(" ({})", same);
     ++tests;
     failures += finding.element == "failure";
     errors += finding.element == "error";
@@ -52,6 +54,9 @@ std::string JUnitXml(const CampaignSummary& summary) {
   const Standing& standing = summary.standing;
   for (std::size_t i = 0; i < summary.requirements.size(); ++i)
     add(NameOf(summary.requirements[i]), FindingOf(summary.requirements[i], standing.requirements[i]));
+  // A check without failures is no test that passed: it was seen, and not required.
+  for (const LoadCheck& check : summary.load_checks)
+    if (check.failures > 0) add("load check: " + check.metric, {"failure", LoadCheckSentence(check)});
   if (summary.verdict == CampaignVerdict::kIncomplete)
     add("every case flown",
         {"error", fmt::format("{} of {} cases have a result", summary.flown, summary.cases)});
@@ -68,6 +73,8 @@ std::string JUnitXml(const CampaignSummary& summary) {
     add("verdicts", {"error", "The rules of judgement were changed after the first case was flown."});
   std::string notes;
   for (const std::string& note : StandingNotes(standing, summary)) notes += note + "\n";
+  for (const std::string& warning : Warnings(summary)) notes += warning + "\n";
+  for (const LoadCheck& check : summary.load_checks) notes += LoadCheckSentence(check) + "\n";
   if (!notes.empty()) cases += fmt::format("    <system-out>{}</system-out>\n", HtmlText(notes));
   return fmt::format(
       "<?xml version=\"1.0\" encoding=\"UTF-8\"?>\n<testsuites>\n  <testsuite name=\"{}\" tests=\"{}\" "

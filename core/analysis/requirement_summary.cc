@@ -130,12 +130,19 @@ void SetAdvice(RequirementSummary& summary) {
     summary.advice->extended = AnytimeCasesNeeded(summary.probability, left, summary.failures);
 }
 
+/// Completed flights that do not define the metric are failures, and no limit was broken.
+std::string NotMeasuredSentence(const RequirementSummary& summary) {
+  if (summary.not_measured == 0) return "";
+  return fmt::format(" Of these, the metric was not measured in {}.", Plural(summary.not_measured, "flight"));
+}
+
 std::string IndependentSentence(const RequirementSummary& summary, std::int64_t missing) {
   const std::string required = PercentText(summary.probability) + " required.";
   const std::string confidence = PercentText(1.0 - summary.consumer_risk);
   std::string sentence =
-      fmt::format("{} of {} broke the limit{}.", summary.failures, Plural(summary.n, "flight"),
-                  missing > 0 ? fmt::format(", and {} have no result", missing) : "");
+      fmt::format("{} of {} broke the limit{}.{}", summary.failures, Plural(summary.n, "flight"),
+                  missing > 0 ? fmt::format(", and {} have no result", missing) : "",
+                  NotMeasuredSentence(summary));
   // The bounds of a plan of several looks hold at every look, and are wider than what this one decides by.
   if (summary.verdict == "pass" && *summary.success_lower >= summary.probability) {
     sentence +=
@@ -170,6 +177,8 @@ std::string IndependentSentence(const RequirementSummary& summary, std::int64_t 
 std::string StudySentence(const RequirementSummary& summary, const JudgingContext& context) {
   const std::int64_t met = summary.n - summary.failures;
   std::string sentence = fmt::format("Design study: {} of {} points meet the limit", met, summary.n);
+  if (summary.not_measured > 0)
+    sentence += fmt::format(" (not measured in {})", Plural(summary.not_measured, "flight"));
   if (context.cases > static_cast<std::uint64_t>(summary.n))
     sentence += fmt::format(", {} have no result", context.cases - static_cast<std::uint64_t>(summary.n));
   if (context.design_points > context.cases)
@@ -218,7 +227,6 @@ std::vector<double> ValuesToJudge(const Requirement& requirement, const CaseColu
   std::vector<double> values = MeasuredValues(cases, requirement.metric);
   const Limits limits = LimitsOf(requirement);
   for (double& value : values) value = limits.Represented(value);
-  if (!LossFails(requirement)) return values;
   for (std::size_t i = 0; i < values.size(); ++i) {
     if (cases.outcome[i] != Outcome::kCompleted) values[i] = kUndefined;
   }
@@ -293,7 +301,6 @@ std::vector<RequirementSummary> JudgeAll(const std::vector<Requirement>& require
     summary.source = requirement.source;
     summary.every_case = requirement.every_case;
     summary.metric = requirement.metric;
-    summary.by_default = requirement.by_default;
     summary.below = !requirement.above.has_value();
     summary.limit = summary.below ? limits.high : limits.low;
     if (requirement.within) summary.low_limit = limits.low;
@@ -306,7 +313,9 @@ std::vector<RequirementSummary> JudgeAll(const std::vector<Requirement>& require
     SetWorst(limits, values, cases, summary);
     summary.n = std::ssize(cases.index);
     summary.failures = std::ssize(tallies.back().failed);
-    if (LossFails(requirement)) summary.lost_flights = static_cast<std::int64_t>(LostCount(cases));
+    summary.lost_flights = static_cast<std::int64_t>(LostCount(cases));
+    for (std::size_t row = 0; row < values.size(); ++row)
+      summary.not_measured += cases.outcome[row] == Outcome::kCompleted && !std::isfinite(values[row]);
     summary.post_hoc =
         !context.registered.empty() && std::find(context.registered.begin(), context.registered.end(),
                                                  RequirementLine(requirement)) == context.registered.end();

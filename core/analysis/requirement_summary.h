@@ -14,19 +14,14 @@
 
 namespace dispersa {
 
-/// Whether a lost flight fails a requirement whatever it measured. Limits of the vehicle (`by_default`) are
-/// compared with the loads up to the loss, so a loss alone does not fail them.
-inline bool LossFails(const Requirement& requirement) { return !requirement.by_default; }
-
 /// A case of a requirement: what it measured, as it is held against the limits (Limits::Represented()). It is
-/// undefined when a loss of the flight fails the requirement.
+/// undefined if the flight was lost, because a loss fails every requirement.
 std::vector<double> ValuesToJudge(const Requirement& requirement, const CaseColumns& cases);
 
 struct RequirementSummary {
   std::string id, rationale, source;  ///< as the campaign gives them
   std::string metric;                 ///< without the prefix
   bool every_case = false;            ///< of a study: no probability is stated
-  bool by_default = false;            ///< because the vehicle gives limits
   bool below = true;                  ///< else above; of `within` the high limit
   double limit = 0.0;
   std::optional<double> low_limit;  ///< of `within`
@@ -37,6 +32,7 @@ struct RequirementSummary {
   std::int64_t n = 0;             ///< cases flown
   std::int64_t failures = 0;      ///< beyond the limit, undefined, or a lost flight whatever it measured
   std::int64_t lost_flights = 0;  ///< of the failures: any outcome but completed
+  std::int64_t not_measured = 0;  ///< of the failures: completed flights that do not define the metric
   std::string verdict;            ///< "pass", "fail", "inconclusive"; "study" of chosen points
   /// One-sided confidence bounds of the probability of success; none in a design study without replicates.
   std::optional<double> success_lower;

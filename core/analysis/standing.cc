@@ -90,7 +90,7 @@ std::vector<Attempt> AttemptsAt(const Requirement& requirement, const Requiremen
       const bool as_strict =
           one.probability >= requirement.probability && one.consumer_risk <= requirement.consumer_risk;
       attempts.push_back({record.seed, record.planned, record.cases, one.failures, one.plan,
-                          as_strict && one.verdict == "pass"});
+                          as_strict && one.verdict == "pass", record.engine == summary.engine});
       break;
     }
   }
@@ -180,22 +180,19 @@ void Judge(const Requirement& requirement, const RequirementSummary& shown, cons
   }
 }
 
-StandingVerdict Together(const Campaign& campaign, const CampaignSummary& summary, const Standing& standing) {
+StandingVerdict Together(const CampaignSummary& summary, const Standing& standing) {
   if (summary.verdict == CampaignVerdict::kIncomplete) return StandingVerdict::kIncomplete;
-  bool own = false, passed = false, open = false, not_evidence = standing.is_post_hoc;
-  for (std::size_t i = 0; i < standing.requirements.size(); ++i) {
-    const std::string& verdict = standing.requirements[i].verdict;
-    // What the campaign did not ask itself counts from its first failure on.
-    const bool counts = !campaign.requirements[i].by_default || summary.requirements[i].failures > 0;
-    own = own || !campaign.requirements[i].by_default;
-    if (verdict == "fail") return StandingVerdict::kFail;
-    passed = passed || verdict == "pass";
-    open = open || (counts && verdict == "inconclusive");
-    not_evidence = not_evidence || (counts && verdict == "not_evidence");
+  bool open = false, not_evidence = standing.is_post_hoc;
+  for (const LoadCheck& check : summary.load_checks)
+    if (check.failures > 0) return StandingVerdict::kFail;
+  for (const Standing::Requirement& one : standing.requirements) {
+    if (one.verdict == "fail") return StandingVerdict::kFail;
+    open = open || one.verdict == "inconclusive";
+    not_evidence = not_evidence || one.verdict == "not_evidence";
   }
   if (not_evidence) return StandingVerdict::kNotEvidence;
   if (open) return StandingVerdict::kInconclusive;
-  return own || passed ? StandingVerdict::kPass : StandingVerdict::kNothingJudged;
+  return standing.requirements.empty() ? StandingVerdict::kNothingJudged : StandingVerdict::kPass;
 }
 
 StandingJson ExecutionOf(const ResultFolder& folder) {
@@ -299,7 +296,7 @@ Standing StandingOf(const ResultFolder& folder, const Campaign& campaign, const 
     one.verdict = "not_evidence";
     one.reason = "It was stated after its flights were flown. Flights with another seed can show it.";
   }
-  standing.verdict = Together(campaign, summary, standing);
+  standing.verdict = Together(summary, standing);
   standing.attempts.push_back({campaign.id, campaign.sampling.seed, static_cast<std::int64_t>(summary.cases),
                                StandingVerdictName(standing.verdict),
                                own == all.end() ? std::string() : own->begun_utc, standing.fresh});

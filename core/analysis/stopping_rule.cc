@@ -35,8 +35,7 @@ StoppingRule::StoppingRule(const Campaign& campaign, std::int64_t planned,
     : requirements_(campaign.requirements),
       holm_(campaign.verdicts.holm),
       stops_(campaign.verdicts.stop_when_decided && IsIndependent(campaign.sampling.method) &&
-             std::any_of(campaign.requirements.begin(), campaign.requirements.end(),
-                         [](const Requirement& requirement) { return !requirement.by_default; })),
+             !campaign.requirements.empty()),
       planned_(planned),
       past_looks_(std::move(past_looks)),
       looks_(stops_ ? StoppingLooks(campaign, planned) : std::vector{campaign.sampling.cases}),
@@ -68,7 +67,7 @@ void StoppingRule::Add(std::uint64_t case_index, bool completed, const std::vect
   if (!stops_) return;
   present_.push_back(case_index);
   for (std::size_t i = 0; i < requirements_.size(); ++i) {
-    if ((!completed && LossFails(requirements_[i])) || !LimitsOf(requirements_[i]).Meets(values[i]))
+    if (!completed || !LimitsOf(requirements_[i]).Meets(values[i]))
       failed_[i].push_back(static_cast<std::int64_t>(case_index));
   }
 }
@@ -100,11 +99,9 @@ bool StoppingRule::Decided(const std::vector<std::uint64_t>& quarantined) const 
     tallies.push_back(std::move(tally));
   }
   const auto verdicts = DecideAll(planned, holm_, static_cast<std::int64_t>(target_), tallies, past_looks_);
-  for (std::size_t i = 0; i < verdicts.size(); ++i) {
-    const bool waits = !requirements_[i].by_default || !tallies[i].failed.empty();
-    if (waits && verdicts[i].verdict == Verdict::kInconclusive) return false;
-  }
-  return true;
+  return std::none_of(verdicts.begin(), verdicts.end(), [](const PlannedVerdict& verdict) {
+    return verdict.verdict == Verdict::kInconclusive;
+  });
 }
 
 }  // namespace dispersa

@@ -62,7 +62,6 @@ Json RequirementJson(const RequirementSummary& requirement) {
   json["id"] = requirement.id;
   json["rationale"] = requirement.rationale;
   json["source"] = requirement.source;
-  json["by_default"] = requirement.by_default;
   json["side"] = requirement.low_limit ? "within" : requirement.below ? "below" : "above";
   json["limit"] = Number(requirement.limit);
   json["low_limit"] = OrNull(requirement.low_limit);
@@ -78,6 +77,7 @@ Json RequirementJson(const RequirementSummary& requirement) {
   json["n"] = requirement.n;
   json["failures"] = requirement.failures;
   json["lost_flights"] = requirement.lost_flights;
+  json["not_measured"] = requirement.not_measured;
   json["success_lower"] = OrNull(requirement.success_lower);
   json["success_upper"] = OrNull(requirement.success_upper);
   json["bound"] = OrNull(requirement.bound);
@@ -203,6 +203,9 @@ std::string SummaryJson(const CampaignSummary& summary) {
          {"largest", OrNull(one.largest)},
          {"largest_case", one.largest ? Json(one.largest_case) : Json(nullptr)}});
   }
+  json["load_checks"] = Json::array();
+  for (const LoadCheck& check : summary.load_checks)
+    json["load_checks"].push_back({{"metric", check.metric}, {"n", check.n}, {"failures", check.failures}});
   json["near_step_limit"] = summary.near_step_limit;
   json["requirements"] = Json::array();
   for (const RequirementSummary& requirement : summary.requirements) {

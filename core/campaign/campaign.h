@@ -79,9 +79,6 @@ struct Requirement {
   std::string own_expression = {};                   ///< of a metric of the campaign's own
   VerdictPlan plan = {};
   bool every_case = false;  ///< study only, in place of probability and risk: no point may violate it
-  /// True: the requirement comes from the vehicle's structural limits, and the campaign does not state how to
-  /// judge them. It delays no verdict while it is undecided and no flight has failed it.
-  bool by_default = false;
   std::string id = {};         ///< the project's number of this requirement; these three change no verdict
   std::string rationale = {};  ///< why it is required
   std::string source = {};     ///< the document that requires it

@@ -1,5 +1,7 @@
 #include "core/campaign/case_result.h"
 
+#include <fmt/format.h>
+
 #include <algorithm>
 #include <optional>
 #include <utility>
@@ -80,6 +82,13 @@ CaseResult ResultOf(const FlightModel& model, std::uint64_t case_index, const Fl
   result.metrics = std::move(flight.metrics);
   result.digest = flight.digest;
   return result;
+}
+
+std::string NominalLoss(const CaseResult& nominal) {
+  if (nominal.outcome == Outcome::kCompleted) return "";
+  return fmt::format("The nominal flight itself is lost: {} at {:.2f} s in stage {}{}.",
+                     OutcomeName(nominal.outcome), nominal.end_time_s, nominal.end_stage,
+                     nominal.reason.empty() ? "" : " (" + nominal.reason + ")");
 }
 
 }  // namespace dispersa

@@ -37,6 +37,10 @@ std::vector<std::size_t> ResultMetrics(const Campaign& campaign);
 /// it.
 std::string WhyNotMeasured(const Campaign& campaign, const std::string& metric);
 
+/// "The nominal flight itself is lost: lost_control at 9.37 s in stage 1 (reason)."; empty if it was
+/// completed. It comes before anything else that is said of a campaign.
+std::string NominalLoss(const CaseResult& nominal);
+
 /// The result of a flight of these inputs, as a case's result.
 CaseResult ResultOf(const FlightModel& model, std::uint64_t case_index, const FlightInputs& inputs,
                     FlightResult flight);

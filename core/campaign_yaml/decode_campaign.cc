@@ -71,34 +71,6 @@ void DescribeListTable(Fields& fields, const InputNode& table, Campaign& campaig
   }
 }
 
-// Whether who meets the first has met the second, too.
-bool IsAsStrict(const Requirement& a, const Requirement& b) {
-  if (!a.below || !(*a.below <= *b.below) || !(*a.below > 0.0)) return false;
-  return a.every_case ||
-         (!b.every_case && a.probability >= b.probability && a.consumer_risk <= b.consumer_risk);
-}
-
-// Limits of a structure that nobody judges are none. A campaign may judge them more strictly.
-void RequireLimitsKept(const VerdictPlan& plan, SamplingMethod method,
-                       std::vector<Requirement>& requirements) {
-  Requirement kept;
-  kept.metric = "structural_limit_exceeded";
-  kept.below = 1.0;
-  kept.probability = 0.9973;  // what "3 sigma" of a normal variable means, both sides
-  kept.consumer_risk = 0.10;  // usual of such verdicts (NASA/TP-2010-216447)
-  kept.plan = plan;
-  kept.by_default = true;
-  if (!IsIndependent(method)) {
-    kept.every_case = true;
-    kept.probability = kept.consumer_risk = 0.0;
-    kept.plan = {};
-  }
-  if (std::none_of(requirements.begin(), requirements.end(), [&](const Requirement& requirement) {
-        return requirement.metric == kept.metric && IsAsStrict(requirement, kept);
-      }))
-    requirements.push_back(std::move(kept));
-}
-
 // Only stages that there are, are steered: the first one after its boosters have left.
 template <class T>
 void CheckSteering(const Vehicle& vehicle, const std::array<T, kMaxStages>& steering, const InputNode& node,
@@ -510,8 +482,6 @@ class CampaignDescription {
                             map.Refuse("every_case", "'every_case' is of a design study",
                                        "probability and consumer_risk, or another sampling method");
                         });
-    if (HasLimits(campaign_.vehicle.limits))
-      RequireLimitsKept(plan, campaign_.sampling.method, campaign_.requirements);
     fields.When(Has("assumptions"), [&] {
       fields.Texts("assumptions", 1, SIZE_MAX, campaign_.assumptions,
                    "assumptions of the verdicts; on the report's first page");

@@ -174,6 +174,10 @@ FlownInstants InstantsOf(const FlightModel& model, const FlightOrder& order, dou
   FlownInstants flown;
   flown.outcome = Fly(model, order.inputs, options).outcome;
   if (stage < 0) return flown;
+  if (flown.outcome != Outcome::kCompleted) {
+    last.place = "stage " + std::to_string(stage + 1) + " at the loss";
+    max_q.place = "largest q before the loss";
+  }
   end_stage();
   if (q_max > 0.0) instants.push_back(max_q);
   std::stable_sort(instants.begin(), instants.end(), [](const MarginInstant& a, const MarginInstant& b) {

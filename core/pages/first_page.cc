@@ -100,7 +100,7 @@ std::string LimitCell(const RequirementSummary& requirement, const MetricInfo& i
   cell += "<b>" + HtmlText(info.title) + "</b> " + limit;
   if (requirement.every_case) cell += " in every case";
   if (!before.empty()) cell += "<span class=\"definition\"><b>" + HtmlText(before) + "</b></span>";
-  std::string words = requirement.by_default ? "required because the vehicle gives limits" : "";
+  std::string words;
   for (const std::string& text : {requirement.source, requirement.rationale})
     if (!text.empty()) words += (words.empty() ? "" : " · ") + HtmlText(text);
   // One line; the section of requirements has all of it.
@@ -204,7 +204,10 @@ std::vector<std::string> Notes(const CampaignSummary& summary) {
   }
   for (const auto& [reason, names] : reasons) notes.push_back(names + ": " + reason);
   for (std::string& note : CampaignNotes(standing)) notes.push_back(std::move(note));
-  for (std::string& warning : Warnings(summary)) notes.push_back(std::move(warning));
+  for (std::string& warning : Warnings(summary)) {
+    const bool is_first = summary.nominal && warning == NominalLoss(*summary.nominal);
+    notes.insert(is_first ? notes.begin() : notes.end(), std::move(warning));
+  }
   return notes;
 }
 
@@ -234,6 +237,9 @@ std::string FirstPage(const Campaign& campaign, const CampaignSummary& summary) 
                                    : " (" + Term(standing.is_post_hoc ? "post hoc" : "not evidence") + ")"));
   html += List("warnings", Notes(summary));
   html += RequirementsTable(summary);
+  for (const LoadCheck& check : summary.load_checks)
+    html += fmt::format("<p class=\"load-check\">{}{}</p>\n", check.failures > 0 ? VerdictBadge("fail") + " " : "",
+                        HtmlText(LoadCheckSentence(check)));
   if (const std::string advice = AdviceTogether(summary); !advice.empty())
     html += "<p class=\"advice\">" + HtmlText(advice) + "</p>\n";
   if (!campaign.assumptions.empty())

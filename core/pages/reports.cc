@@ -2,6 +2,7 @@
 
 #include <fmt/format.h>
 
+#include "core/cases/campaign_flights.h"
 #include "core/control/law_here.h"
 #include "core/flight/engine_version.h"
 #include "core/input/input_error.h"
@@ -57,6 +58,9 @@ CampaignSummary WriteReports(const ResultFolder& folder, const Campaign& campaig
     summary.envelope = {histories.bands.flights, histories.bands.extreme_flights};
   } else {
     RemoveHistories(folder);
+    // One flight says whether the campaign disperses about a flight at all.
+    if (!campaign.autopilot.plugin && folder.Provenance("engine") == EngineVersion())
+      summary.nominal = CampaignFlights(campaign).FlyNominal();
   }
   WriteFile(folder.directory() / "summary.json", SummaryJson(summary));
   WriteStanding(folder, summary);

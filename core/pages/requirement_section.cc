@@ -185,14 +185,13 @@ std::string Card(const RequirementSummary& requirement) {
                                                    static_cast<double>(requirement.n);
   const bool study = requirement.verdict == "study";
   std::string html = fmt::format(
-      "<section class=\"requirement\"><p class=\"claim\">{}<b>{}</b> {} {}<br><code>{}</code>{}</p>\n",
+      "<section class=\"requirement\"><p class=\"claim\">{}<b>{}</b> {} {}<br><code>{}</code></p>\n",
       requirement.id.empty() ? "" : Code(requirement.id) + " ", HtmlText(info.title),
       HtmlText(LimitWords(requirement, info.unit)),
       requirement.every_case ? std::string("in every case")
                              : fmt::format("for {} of flights, {} {}", PercentText(requirement.probability),
                                            Term("consumer risk"), PercentText(requirement.consumer_risk)),
-      HtmlText(requirement.metric),
-      requirement.by_default ? ", required because the vehicle gives limits" : "");
+      HtmlText(requirement.metric));
   for (const auto& [name, text] : {std::pair<const char*, const std::string&>{"Why", requirement.rationale},
                                    {"Source", requirement.source}})
     if (!text.empty()) html += fmt::format("<p>{}: {}</p>\n", name, HtmlText(text));
@@ -206,6 +205,7 @@ std::string Card(const RequirementSummary& requirement) {
   html += Fact("cases", std::to_string(requirement.n));
   html += Fact("failures", std::to_string(requirement.failures));
   html += Fact("lost flights", std::to_string(requirement.lost_flights));
+  html += Fact("not measured", std::to_string(requirement.not_measured));
   html += Fact("observed", ShareText(observed));
   html += Fact("worst completed flight", HtmlText(WorstWords(requirement, info.unit)));
   html += Fact("confidence bounds",
@@ -231,9 +231,6 @@ std::string Card(const RequirementSummary& requirement) {
 std::string RequirementsSection(const CampaignSummary& summary) {
   std::string html = "<h2 id=\"requirements\">Requirements</h2>\n";
   if (summary.requirements.empty()) return html + "<p>The campaign states none.</p>\n";
-  const bool by_default =
-      std::any_of(summary.requirements.begin(), summary.requirements.end(),
-                  [](const RequirementSummary& requirement) { return requirement.by_default; });
   html += "<div class=\"cards\">\n";
   for (const RequirementSummary& requirement : summary.requirements) html += Card(requirement);
   html += "</div>\n";
@@ -254,11 +251,7 @@ std::string RequirementsSection(const CampaignSummary& summary) {
          "one-sided. The bound in the metric’s unit is the order statistic that decides: the requirement "
          "passes exactly when it is inside the limit. A lost flight counts as a failure of every "
          "requirement, "
-         "and so does an undefined metric" +
-         (by_default ? "; of the vehicle’s own limits a loss says nothing: they are held against what the "
-                       "flight bore until then"
-                     : "") +
-         ".</p>\n";
+         "and so does an undefined metric.</p>\n";
 }
 
 }  // namespace dispersa

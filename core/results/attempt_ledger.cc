@@ -57,7 +57,6 @@ AttemptJson ToJson(const AttemptRecord& record) {
                                     {"consumer_risk", one.consumer_risk},
                                     {"looks", one.plan.looks},
                                     {"plan", PlanWord(one.plan)},
-                                    {"by_default", one.by_default},
                                     {"failures", one.failures},
                                     {"verdict", one.verdict}});
   return json;
@@ -77,10 +76,13 @@ AttemptRecord ToRecord(const AttemptJson& json) {
   record.verdict = json.at("verdict");
   record.earlier_designs = json.at("earlier_designs");
   record.earlier_designs_of_seed = json.at("earlier_designs_of_seed");
-  for (const AttemptJson& one : json.at("requirements"))
+  for (const AttemptJson& one : json.at("requirements")) {
+    // Earlier engines required the vehicle's limits by themselves. Now they are a check, and no requirement.
+    if (one.value("by_default", false)) continue;
     record.requirements.push_back({one.at("limit"), one.at("line"), one.at("probability"),
-                                   one.at("consumer_risk"), PlanOf(one), one.at("by_default"),
-                                   one.at("failures"), one.at("verdict")});
+                                   one.at("consumer_risk"), PlanOf(one), one.at("failures"),
+                                   one.at("verdict")});
+  }
   return record;
 }
 
@@ -113,7 +115,7 @@ AttemptRecord RecordOf(const Campaign& campaign) {
   for (const Requirement& requirement : campaign.requirements)
     record.requirements.push_back({LimitText(requirement), RequirementLine(requirement),
                                    requirement.probability, requirement.consumer_risk, requirement.plan,
-                                   requirement.by_default, 0, ""});
+                                   0, ""});
   return record;
 }
 

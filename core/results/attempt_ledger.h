@@ -24,7 +24,6 @@ struct RequirementRecord {
   double probability = 0.0;
   double consumer_risk = 0.0;
   VerdictPlan plan;
-  bool by_default = false;
   std::int64_t failures = 0;  ///< among the cases that count; a case without a result is a failure
   std::string verdict;        ///< by its own plan: "pass", "fail", "inconclusive"; empty: none yet
 };

@@ -18,7 +18,7 @@ class Pool {
  public:
   void Add(const Attempt& attempt) {
     Count& count = counts_[attempt.seed];
-    // The same cases flown by another engine may fail differently: the worse counts.
+    // A smaller number of cases can have shown more failures, if cases without a result were flown later.
     if (attempt.cases == count.cases) count.failures = std::max(count.failures, attempt.failures);
     if (attempt.cases > count.cases) count = {attempt.cases, std::max(attempt.failures, count.failures)};
   }
@@ -65,7 +65,7 @@ AttemptsVerdict JudgeAttempts(double probability, double risk, std::uint64_t res
   };
 
   AttemptsVerdict verdict;
-  Pool seen, pool;
+  Pool seen, evidence, pool;
   bool is_begun = false;
   std::uint64_t kept = 0;
   std::map<std::uint64_t, bool> passed_of;  // by seed
@@ -78,29 +78,30 @@ AttemptsVerdict JudgeAttempts(double probability, double risk, std::uint64_t res
     verdict.by_plan = false;
     bool passed = false;
     seen.Add(attempt);
+    if (attempt.is_evidence) evidence.Add(attempt);
     if (fresh && left && kept < reserved) {
       ++kept;
       verdict.by_plan = true;
-      passed = attempt.passed;
+      passed = attempt.passed && attempt.is_evidence;
       if (!is_begun) verdict.risk_left = *left;
       is_begun = true;
-      pool.Add(attempt);
+      if (attempt.is_evidence) pool.Add(attempt);
     } else if (is_begun) {
-      pool.Add(attempt);
-      passed = AnytimePasses(probability, verdict.risk_left, pool.cases(), pool.failures());
+      if (attempt.is_evidence) pool.Add(attempt);
+      passed = attempt.is_evidence && AnytimePasses(probability, verdict.risk_left, pool.cases(), pool.failures());
     } else if (!fresh && AnytimePasses(probability, share, std::max(seen.cases(), attempt.planned), 0)) {
       // Nothing is spent yet and no plan can be kept: evidence that holds at any time, from the first case.
       is_begun = true;
       ++kept;
       verdict.risk_left = share;
-      pool = seen;
-      passed = AnytimePasses(probability, share, pool.cases(), pool.failures());
+      pool = evidence;
+      passed = attempt.is_evidence && AnytimePasses(probability, share, pool.cases(), pool.failures());
     }
     passed = passed || passed_of[attempt.seed];
-    passed_of[attempt.seed] = passed;
+    if (attempt.is_evidence) passed_of[attempt.seed] = passed;
     verdict.passed = passed;
   }
-  const Pool& counted = is_begun ? pool : seen;
+  const Pool& counted = is_begun ? pool : evidence;
   verdict.pool_cases = counted.cases();
   verdict.pool_failures = counted.failures();
   const double left = is_begun ? verdict.risk_left : share;

@@ -23,6 +23,9 @@ struct Attempt {
   std::int64_t failures = 0;  ///< among `cases`; a case without a result counts as a failure
   VerdictPlan plan;
   bool passed = false;  ///< by its own plan, for the present requirement
+  /// False for cases of another engine. They were seen and may have spent risk, but they show nothing about
+  /// the flights of this one.
+  bool is_evidence = true;
 };
 
 struct AttemptsVerdict {
@@ -43,6 +46,7 @@ struct AttemptsVerdict {
 /// - An attempt that could not have passed with any number of failures spends no risk.
 /// - An attempt that flies cases of an earlier attempt again was planned after their results were seen. It
 ///   has no plan to keep.
+/// - Cases that are no evidence are in no pool, and their passes are none.
 /// - If an attempt passed, later attempts that repeat or extend it also pass.
 AttemptsVerdict JudgeAttempts(double probability, double risk, std::uint64_t reserved,
                               const std::vector<Attempt>& attempts);

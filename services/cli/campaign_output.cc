@@ -43,6 +43,16 @@ std::string NextStep(const CampaignSummary& summary) {
   return "";
 }
 
+/// A lost nominal flight first, then the standing, then the rest.
+std::vector<std::string> NotesOf(const CampaignSummary& summary) {
+  std::vector<std::string> notes = StandingNotes(summary.standing, summary);
+  for (std::string& warning : Warnings(summary)) {
+    const bool is_first = summary.nominal && warning == NominalLoss(*summary.nominal);
+    notes.insert(is_first ? notes.begin() : notes.end(), std::move(warning));
+  }
+  return notes;
+}
+
 }  // namespace
 
 void AddReflownOptions(CLI::App& command, ReflownFlights& flights) {
@@ -96,8 +106,7 @@ void PrintSummary(const CampaignSummary& summary, const std::filesystem::path& d
   }
   if (!summary.quarantined.empty()) fmt::print(", {} quarantined", summary.quarantined.size());
   fmt::print("\n");
-  for (const std::string& note : StandingNotes(summary.standing, summary)) fmt::print("warning: {}\n", note);
-  for (const std::string& warning : Warnings(summary)) fmt::print("warning: {}\n", warning);
+  for (const std::string& note : NotesOf(summary)) fmt::print("warning: {}\n", note);
   for (std::size_t i = 0; i < summary.requirements.size(); ++i) {
     const RequirementSummary& requirement = summary.requirements[i];
     std::string verdict = summary.standing.requirements[i].verdict;
@@ -106,6 +115,7 @@ void PrintSummary(const CampaignSummary& summary, const std::filesystem::path& d
     fmt::print("{}: {}: {}{}{}\n", verdict, RequirementWords(requirement), requirement.sentence,
                bound.empty() ? "" : " ", bound);
   }
+  for (const LoadCheck& check : summary.load_checks) fmt::print("{}\n", LoadCheckSentence(check));
   if (const std::string advice = AdviceTogether(summary); !advice.empty()) fmt::print("{}\n", advice);
   fmt::print("VERDICT {}, next: {}\n", StandingBadge(summary.standing), NextStep(summary));
   fmt::print("report: {}\nresult: {}\n", (directory / "report.html").string(), directory.string());

@@ -192,6 +192,7 @@ ExitCode Margins(const MarginsCommand& options, const GlobalOptions& global) {
   if (global.json) {
     fmt::print("{}\n", MarginsJson(result).dump(2));
   } else {
+    if (!result.nominal_loss.empty()) fmt::print("{}\n\n", result.nominal_loss);
     PrintText(result);
   }
   return result.passed ? kExitDone : kExitRequirementFailed;

@@ -74,7 +74,7 @@ Requirement WantedRequirement(const SearchCommand& command, const Campaign& camp
     return requirement;
   }
   for (const Requirement& requirement : campaign.requirements)
-    if (command.metric.empty() ? !requirement.by_default : requirement.metric == command.metric)
+    if (command.metric.empty() || requirement.metric == command.metric)
       return requirement;
   throw InputError(command.metric.empty() ? command.campaign + ": states no requirement"
                                           : command.campaign + ": states no requirement of " + command.metric,
@@ -173,8 +173,9 @@ std::string RandomSentence(const RandomFlights& random, std::uint64_t seed) {
 }
 
 std::string Sentence(const FailureSearchResult& result, const RandomFlights& random, std::uint64_t seed,
-                     const Requirement& requirement, double reach) {
+                     const Requirement& requirement, double reach, const std::string& nominal_loss) {
   const std::string told = " " + RandomSentence(random, seed);
+  if (!nominal_loss.empty()) return nominal_loss + told;
   if (result.found && result.distance == 0.0)
     return fmt::format("The flight without dispersions fails {}.", LimitText(requirement)) + told;
   if (result.found) {
@@ -214,7 +215,8 @@ ExitCode SearchFor(const SearchCommand& command, const GlobalOptions& global) {
   const DispersionSpace& space = searcher.space();
   const FailureSearchResult result = FindSmallestFailure(
       space.coordinates(), [&](const auto& points) { return searcher.Margins(points); }, options);
-  const std::string sentence = Sentence(result, random, options.seed, requirement, options.reach);
+  const std::string sentence = Sentence(result, random, options.seed, requirement, options.reach,
+                                        NominalLoss(CampaignFlights(campaign).FlyNominal()));
 
   nlohmann::ordered_json json = {
       {"schema", "dispersa/search/1"},

@@ -88,6 +88,7 @@ nlohmann::ordered_json MarginsJson(const MarginsResult& result) {
       {"model", result.bends ? "bending, no slosh" : "rigid body: no bending, no slosh"},
       {"frequency_band_percent", 100.0 * result.of.frequency_band},
       {"drift", result.of.path == LateralPath::kDrifts},
+      {"nominal_loss", result.nominal_loss.empty() ? nlohmann::ordered_json() : result.nominal_loss},
       {"autopilot", result.autopilot},
       {"gates",
        {{"gain_db", kGainMarginGate_db},
@@ -118,7 +119,9 @@ MarginsResult MarginsOf(const Campaign& campaign, const MarginsOptions& options)
   result.computed = ComputeMargins(flights.model(), 5.0, {}, result.of);
   result.skipped = SkippedInstants(flights.model());
   result.measured = MeasureMargins(flights.model());
-  result.passed = std::all_of(result.computed.begin(), result.computed.end(),
+  result.nominal_loss = NominalLoss(flights.FlyNominal());
+  result.passed = result.nominal_loss.empty() &&
+                  std::all_of(result.computed.begin(), result.computed.end(),
                               [](const ComputedMargins& m) { return PassesGates(m); }) &&
                   std::all_of(result.measured.begin(), result.measured.end(),
                               [](const MeasuredMargins& m) { return PassesGates(m); });

@@ -27,7 +27,8 @@ struct MarginsResult {
   std::optional<CampaignMargins> dispersed;
   MarginModel of;       ///< the linearised model
   bool bends = false;   ///< the vehicle has bending modes
-  bool passed = false;  ///< every gate is met
+  std::string nominal_loss;  ///< NominalLoss(); a lost flight meets no gate
+  bool passed = false;       ///< every gate is met
 };
 
 /// Flies on all usable cores.

@@ -187,13 +187,14 @@ Service::Reported Service::OutcomeOf(const CampaignSummary& summary) {
   for (std::size_t i = 0; i < std::min(summary.requirements.size(), kMaxOutcomes); ++i) {
     const RequirementSummary& one = summary.requirements[i];
     const auto& standing = summary.standing.requirements;
-    const std::string words =
-        RequirementWords(one) +
-        (one.by_default ? ", because the vehicle gives limits; it counts if one fails" : "");
-    reported.requirements.push_back({one.metric, words, one.probability, one.n, one.failures,
+    reported.requirements.push_back({one.metric, RequirementWords(one), one.probability, one.n, one.failures,
                                      one.success_lower, one.success_upper,
                                      i < standing.size() ? standing[i].verdict : one.verdict});
   }
+  for (const LoadCheck& check : summary.load_checks)
+    if (check.failures > 0)
+      reported.requirements.push_back(
+          {check.metric, LoadCheckSentence(check), 0.0, check.n, check.failures, {}, {}, "fail"});
   return reported;
 }
 
