@@ -390,7 +390,10 @@ TEST(ReportComparison, LongitudesAreComparedAcrossTheCut) {
     const CaseColumns b = Columns(Indices(40), Ramp(40, 0.0, 1.0), of_b, kLongitude);
     const CaseColumns other = Columns(Indices(40), Ramp(40, 99.0, 1.0), of_b, kLongitude);
     for (const CaseColumns* against : {&b, &other}) {
-      const Comparison comparison = CompareColumns(a, *against, {}, {kLongitude});
+      const Requirement above{
+          .metric = kLongitude, .below = {}, .above = sign * 179.9, .probability = 0.9, .consumer_risk = 0.1};
+      const Comparison comparison = CompareColumns(a, *against, {above}, {kLongitude});
+      EXPECT_EQ(comparison.metrics[0].finding, "differs") << "1 % of 179.9 degrees is no small difference";
       EXPECT_EQ(comparison.pairing.paired, against == &b);
       EXPECT_NEAR(comparison.metrics[0].difference, sign * 0.04, 1e-9);
       for (const PercentileComparison& tail : comparison.metrics[0].tails)

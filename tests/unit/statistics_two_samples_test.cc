@@ -132,7 +132,7 @@ TEST(Tendency, CountsPairsOfBothSamples) {
   EXPECT_DOUBLE_EQ(TendencyOf({1.0, 2.0}, {3.0, 4.0, 5.0}), 1.0);
   EXPECT_DOUBLE_EQ(TendencyOf({3.0, 4.0, 5.0}, {1.0, 2.0}), -1.0);
   EXPECT_DOUBLE_EQ(TendencyOf({1.0, 2.0, 3.0}, {2.0, 2.0}), 0.0);
-  EXPECT_DOUBLE_EQ(TendencyOf({1.0, lost}, {2.0, lost}), 0.25);  // larger, smaller, smaller than lost, equal
+  EXPECT_DOUBLE_EQ(TendencyOf({1.0, lost}, {2.0, lost}), 0.25);  // two larger, one smaller, one equal
   EXPECT_DOUBLE_EQ(TendencyOf({1.0, 5.0}, {2.0, lost}), 0.5);
   EXPECT_TRUE(std::isnan(TendencyOf({}, {1.0})));
 }
