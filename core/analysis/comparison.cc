@@ -201,8 +201,10 @@ void SetLeast(const ComparedCampaign& a, const ComparedCampaign& b, const std::v
   for (const Campaign* campaign : {&a.campaign, &b.campaign}) {
     for (const Requirement& requirement : campaign->requirements) {
       if (requirement.metric != result.metric) continue;
-      const double allows = requirement.within
-                                ? (*requirement.within)[1] - (*requirement.within)[0]
+      // Of a place or an altitude a limit is no size: only a range has one.
+      const double allows = requirement.within ? (*requirement.within)[1] - (*requirement.within)[0]
+                            : result.info.worse == Worse::kNeither
+                                ? 0.0
                                 : std::fabs(requirement.above ? *requirement.above : *requirement.below);
       if (allows > 0.0) allowed = std::min(allowed, allows);
     }

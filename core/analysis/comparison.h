@@ -90,8 +90,9 @@ struct MetricComparison {
   double p = kUndefined;
   double p_holm = kUndefined;  ///< over the metrics
   std::vector<PercentileComparison> tails;
-  /// The smallest difference that matters, in the metric's unit: the share of the nearest limit of a
-  /// requirement (of a range: of its width), or without one of the spread from 5 to 95 % of A. 0: any.
+  /// The smallest difference that matters, in the metric's unit: the share of the smallest limit of a
+  /// requirement (of a range: of its width; of a metric that is neither good nor bad of a range alone), or
+  /// without one of the spread from 5 to 95 % of A. 0: any.
   double least = 0.0;
   bool least_is_of_limit = false;
   std::string finding;  ///< "better", "worse" (of b), "differs", kTooSmall, "not shown"

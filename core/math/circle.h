@@ -7,8 +7,8 @@
 
 namespace dispersa {
 
-/// Where a quantity repeats, in its own unit. Without a turn the quantity is an ordinary one, and the functions
-/// below return its values as they are.
+/// Where a quantity repeats, in its own unit. Without a turn the quantity is an ordinary one, and the
+/// functions below return its values as they are.
 struct Circle {
   double turn = 0.0;
   double cut = 0.0;  ///< values lie from here to cut + turn
@@ -27,7 +27,8 @@ std::optional<double> CentreOf(const std::vector<double>& values, const Circle& 
 /// Whether finite values lie all around, without a centre: they have no mean, spread or percentile.
 bool LiesAllAround(const std::vector<double>& values, const Circle& circle);
 
-/// Each value near to the sample's centre. Without a centre, and where nothing repeats, the values as they are.
+/// Each value near to the sample's centre. Without a centre, and where nothing repeats, the values as they
+/// are.
 std::vector<double> Unwrapped(std::vector<double> values, const Circle& circle);
 
 }  // namespace dispersa

@@ -282,7 +282,7 @@ std::string MetricsSection(const Comparison& c) {
       "<p>{} Its 95 % limits stand below it. The tails are on the bad side: 95 and 99 %, or 5 and 1 % if "
       "less is worse. <code>compare.json</code> has the other percentiles. “Not shown”: Holm’s adjusted p is "
       "above 5 %. This does not show that the campaigns are equal. A difference matters from {} of a "
-      "requirement’s limit on, or without a requirement of the spread of A from 5 to 95 %.</p>\n",
+      "requirement’s limit on, or without one of the spread of A from 5 to 95 %.</p>\n",
       c.pairing.paired ? "The difference is the median of B minus A over the pairs."
                        : "The difference is that of the medians.",
       PercentText(c.practical_share));

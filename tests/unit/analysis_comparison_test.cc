@@ -349,9 +349,10 @@ TEST(ReportComparison, ADifferenceCanBeTooSmallToMatter) {
     const std::string page = ComparisonPage(comparison, a, b);
     EXPECT_EQ(page.find(">certain but too small to matter<") != std::string::npos, small);
   }
-  // Equal medians say nothing of the flights that B loses.
+  // Equal medians and percentiles say nothing of the flights that B loses: the six of the largest values in
+  // A.
   CaseColumns lost = a;
-  for (std::size_t i = 0; i < 20; ++i) lost.outcome[i] = Outcome::kTimeout;
+  for (std::size_t i = 94; i < 100; ++i) lost.outcome[i] = Outcome::kTimeout;
   EXPECT_EQ(CompareColumns(a, lost).metrics[0].finding, "worse");
 }
 
@@ -389,7 +390,10 @@ TEST(ReportComparison, LongitudesAreComparedAcrossTheCut) {
     const CaseColumns b = Columns(Indices(40), Ramp(40, 0.0, 1.0), of_b, kLongitude);
     const CaseColumns other = Columns(Indices(40), Ramp(40, 99.0, 1.0), of_b, kLongitude);
     for (const CaseColumns* against : {&b, &other}) {
-      const Comparison comparison = CompareColumns(a, *against, {}, {kLongitude});
+      const Requirement above{
+          .metric = kLongitude, .below = {}, .above = sign * 179.9, .probability = 0.9, .consumer_risk = 0.1};
+      const Comparison comparison = CompareColumns(a, *against, {above}, {kLongitude});
+      EXPECT_EQ(comparison.metrics[0].finding, "differs") << "1 % of 179.9 degrees is no small difference";
       EXPECT_EQ(comparison.pairing.paired, against == &b);
       EXPECT_NEAR(comparison.metrics[0].difference, sign * 0.04, 1e-9);
       for (const PercentileComparison& tail : comparison.metrics[0].tails)
@@ -409,7 +413,7 @@ TEST(ReportComparison, MagnitudesAreShownAsSuch) {
   const std::string page = ComparisonPage(CompareColumns(a, b, {}, {kError}), a, b);
   const std::size_t chart = page.find("aria-label=\"B against A, pair by pair");
   ASSERT_NE(chart, std::string::npos);
-  EXPECT_THAT(page.substr(chart, page.find("</svg>", chart) - chart),
+  EXPECT_THAT(page.substr(chart, page.find("</figure>", chart) - chart),
               AllOf(HasSubstr(", magnitude, km"), Not(HasSubstr(">-"))));
 }
 

@@ -99,13 +99,13 @@ struct Held {
 
 constexpr double kNone = std::numeric_limits<double>::infinity();
 const Held kHeld[] = {
-    {179.9, kNone, 179.95, true, 0.05},   {179.9, kNone, -179.95, true, 0.15},
-    {179.9, kNone, 179.85, false, -0.05}, {179.9, kNone, 0.0, false, -179.9},
-    {-kNone, -179.9, -179.95, true, 0.05}, {-kNone, -179.9, 179.95, true, 0.15},
-    {-kNone, -179.9, -179.85, false, -0.05},
-    {179.0, 181.0, -179.5, true, 0.5},    {179.0, 181.0, -178.5, false, -0.5},
-    {-181.0, -179.0, 179.5, true, 0.5},   {-181.0, -179.0, 178.5, false, -0.5},
-    {0.0, 300.0, -80.0, true, 20.0},      {-300.0, 0.0, 80.0, true, 20.0},
+    {179.9, kNone, 179.95, true, 0.05},      {179.9, kNone, -179.95, true, 0.15},
+    {179.9, kNone, 179.85, false, -0.05},    {179.9, kNone, 0.0, false, -179.9},
+    {-kNone, -179.9, -179.95, true, 0.05},   {-kNone, -179.9, 179.95, true, 0.15},
+    {-kNone, -179.9, -179.85, false, -0.05}, {179.0, 181.0, -179.5, true, 0.5},
+    {179.0, 181.0, -178.5, false, -0.5},     {-181.0, -179.0, 179.5, true, 0.5},
+    {-181.0, -179.0, 178.5, false, -0.5},    {0.0, 300.0, -80.0, true, 20.0},
+    {-300.0, 0.0, 80.0, true, 20.0},
 };
 
 TEST(Circle, ALimitHoldsAgainstTheNearestRepresentation) {

@@ -105,7 +105,8 @@ TEST_F(ReportPageTest, ShowsTheNumbersOfTheSummary) {
     }
     // The row in one piece, so that a number of another metric cannot stand in.
     const auto value = [&](double number) { return ScatterText(number, s.std); };
-    std::string row = value(summary_.nominal->metrics[MetricColumn(metric.name)]);
+    std::string row =
+        value(NearTo(s.mean, summary_.nominal->metrics[MetricColumn(metric.name)], info.circle));
     const auto add = [&](const std::string& text) { row += "</td><td class=\"n\">" + text; };
     add(std::to_string(s.n));
     for (const std::string& text :

@@ -127,5 +127,15 @@ TEST(TwoSamples, TailLimitsCoverTheTruth) {
   }
 }
 
+TEST(Tendency, CountsPairsOfBothSamples) {
+  const double lost = std::numeric_limits<double>::infinity();
+  EXPECT_DOUBLE_EQ(TendencyOf({1.0, 2.0}, {3.0, 4.0, 5.0}), 1.0);
+  EXPECT_DOUBLE_EQ(TendencyOf({3.0, 4.0, 5.0}, {1.0, 2.0}), -1.0);
+  EXPECT_DOUBLE_EQ(TendencyOf({1.0, 2.0, 3.0}, {2.0, 2.0}), 0.0);
+  EXPECT_DOUBLE_EQ(TendencyOf({1.0, lost}, {2.0, lost}), 0.25);  // two larger, one smaller, one equal
+  EXPECT_DOUBLE_EQ(TendencyOf({1.0, 5.0}, {2.0, lost}), 0.5);
+  EXPECT_TRUE(std::isnan(TendencyOf({}, {1.0})));
+}
+
 }  // namespace
 }  // namespace dispersa::statistics_two_samples_test
