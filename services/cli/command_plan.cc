@@ -1,6 +1,5 @@
 // dispersa plan: what every case would fly with, without flying.
 #include <fmt/format.h>
-#include <sys/ioctl.h>
 #include <unistd.h>
 
 #include <memory>
@@ -13,6 +12,7 @@
 #include "core/results/text.h"
 #include "services/cli/command.h"
 #include "services/cli/plan_text.h"
+#include "services/cli/terminal.h"
 #include "services/cli/warn.h"
 #include "services/client/flight_json.h"
 #include "services/program/option_values.h"
@@ -28,11 +28,6 @@ struct PlanOptions {
 };
 
 constexpr std::size_t kUsualWidth = 100;
-
-std::size_t TerminalWidth() {
-  winsize size{};
-  return ioctl(STDOUT_FILENO, TIOCGWINSZ, &size) == 0 && size.ws_col > 0 ? size.ws_col : kUsualWidth;
-}
 
 void PrintCsv(const Campaign& campaign, const CaseDesign& design) {
   std::string line = "case_index";
@@ -81,7 +76,7 @@ ExitCode Plan(const PlanOptions& options, const GlobalOptions& global) {
   } else if (options.csv) {
     PrintCsv(campaign, design);
   } else {
-    fmt::print("{}", PlanText(campaign, options.all, TerminalWidth()));
+    fmt::print("{}", PlanText(campaign, options.all, TerminalWidth(STDOUT_FILENO, kUsualWidth)));
   }
   return kExitDone;
 }

@@ -39,9 +39,9 @@ ExitCode Execute(const Invocation& invocation) {
                   is_incomplete ? kExitIncomplete : kExitInternalError);
   } catch (const std::system_error& error) {
     if (IsOutputLost()) return EndLostOutput(error.code().value());
-    return EndFor(Failure{kExitInternalError, std::string("internal error: ") + error.what()}, global.json);
+    return EndFor(FailureOf(error), global.json);
   } catch (const std::exception& error) {
-    return EndFor(Failure{kExitInternalError, std::string("internal error: ") + error.what()}, global.json);
+    return EndFor(FailureOf(error), global.json);
   }
 }
 

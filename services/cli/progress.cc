@@ -6,6 +6,7 @@
 #include <cstdio>
 #include <utility>
 
+#include "services/cli/terminal.h"
 #include "services/log/log.h"
 
 namespace dispersa {
@@ -14,6 +15,7 @@ namespace {
 constexpr std::chrono::milliseconds kBarPeriod(100);
 constexpr std::chrono::seconds kLinePeriod(5);
 constexpr int kBarWidth = 30;
+constexpr std::size_t kUsualWidth = 80;
 
 }  // namespace
 
@@ -57,7 +59,10 @@ void Progress::Show(std::uint64_t done, std::uint64_t total, const std::string& 
   if (terminal_) {
     const auto filled = static_cast<std::size_t>(fraction * kBarWidth);
     const std::string bar = std::string(filled, '#') + std::string(kBarWidth - filled, '.');
-    Tell("\r\x1b[K{} [{}] {}", what_, bar, line);
+    // A line that wraps cannot be drawn over: "\r" returns to the start of its last row only. The last column
+    // stays free, because some terminals wrap as soon as it is filled.
+    const std::size_t columns = TerminalWidth(STDERR_FILENO, kUsualWidth);
+    Tell("\r\x1b[K{}", FitColumns(fmt::format("{} [{}] {}", what_, bar, line), columns - 1));
     drawn_ = true;
   } else {
     Tell("{}: {}\n", what_, line);

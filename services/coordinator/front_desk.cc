@@ -153,7 +153,7 @@ void RequireRight(const Asker& asker, const Request& request) {
 }
 
 constexpr char kLabelRule[] =
-    "KEY=VALUE, KEY of 1 to 32 letters, digits, '-' and '_', VALUE of 1 to 100 characters";
+    "KEY=VALUE, KEY of 1 to 32 letters, digits, '-' and '_', VALUE of 1 to 100 printable ASCII characters";
 
 bool IsLabel(const std::string& text) {
   const std::size_t equals = text.find('=');

@@ -174,7 +174,7 @@ int RunCoordinator(int argc, char** argv) {
   } catch (const ResultError& error) {
     return EndFor(Failure{error.IsIncomplete() ? kExitIncomplete : kExitInternalError, error.what()}, json);
   } catch (const std::exception& error) {
-    return EndFor(Failure{kExitInternalError, error.what()}, json);
+    return EndFor(FailureOf(error), json);
   }
 }
 

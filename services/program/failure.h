@@ -1,6 +1,7 @@
 // The error that ends a program, in words for its user.
 #pragma once
 
+#include <exception>
 #include <string>
 
 #include "core/input/input_error.h"
@@ -12,6 +13,10 @@ struct Failure {
   ExitCode code;
   std::string message;
 };
+
+/// What ends a program unexpectedly. Memory or threads that the system refuses are kExitIncomplete, because
+/// the same command can go on with more of them; everything else is kExitInternalError.
+Failure FailureOf(const std::exception& error);
 
 /// Says why a program ends: to its log, and with --json to standard output as an object too. Returns the
 /// code.

@@ -1,6 +1,8 @@
 #include "services/transport/participant.h"
 
 #include <arpa/inet.h>
+#include <ifaddrs.h>
+#include <net/if.h>
 #include <netdb.h>
 #include <mutex>
 
@@ -93,6 +95,30 @@ std::string Resolve(const std::string& host) {
   return text;
 }
 
+/// Fast DDS itself only says that it filtered all interfaces out, again and again. Empty address: any.
+void RequireInterface(const std::string& address) {
+  ifaddrs* all = nullptr;
+  if (address.empty() || getifaddrs(&all) != 0) return;
+  bool exists = false, is_up = false;
+  std::string name;
+  for (const ifaddrs* each = all; each != nullptr; each = each->ifa_next) {
+    const bool is_loopback = (each->ifa_flags & IFF_LOOPBACK) != 0;
+    char text[INET_ADDRSTRLEN] = "";
+    if (each->ifa_addr != nullptr && each->ifa_addr->sa_family == AF_INET)
+      inet_ntop(AF_INET, &reinterpret_cast<const sockaddr_in*>(each->ifa_addr)->sin_addr, text, sizeof text);
+    // An interface that is down may have lost its address.
+    if (address != text && !(is_loopback && address.starts_with("127."))) continue;
+    exists = true;
+    name = each->ifa_name;
+    is_up = is_up || (each->ifa_flags & IFF_UP) != 0;
+  }
+  freeifaddrs(all);
+  if (!exists) throw NetworkError("no interface of this machine has the address " + address);
+  if (!is_up)
+    throw NetworkError("the network interface " + name + " of " + address + " is down: `ip link set " + name +
+                       " up` brings it up");
+}
+
 /// One that has no address yet, such as a host that is to take over, does not keep us from the others.
 void AddPeers(const std::vector<Peer>& peers, rtps::LocatorList_t& list) {
   std::string problem;
@@ -158,6 +184,7 @@ Participant::Participant(const ParticipantOptions& options)
                        " is not free: is there a coordinator in domain " + std::to_string(domain) +
                        " already?");
   }
+  RequireInterface(options.network.address);
   ConfigureLibraryOnce();
   participant_ = dds::DomainParticipantFactory::get_instance()->create_participant(
       static_cast<dds::DomainId_t>(domain), MakeQos(options), &neighbours_, dds::StatusMask::none());

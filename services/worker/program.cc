@@ -103,7 +103,7 @@ int RunWorker(int argc, char** argv) {
   } catch (const NetworkError& error) {
     code = EndFor(Failure{kExitBadInput, error.what()}, json);
   } catch (const std::exception& error) {
-    code = EndFor(Failure{kExitInternalError, error.what()}, json);
+    code = EndFor(FailureOf(error), json);
   }
   return code;
 }

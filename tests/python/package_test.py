@@ -7,6 +7,7 @@ import importlib
 import inspect
 import os
 import pathlib
+import shutil
 import subprocess
 import sys
 import tempfile
@@ -102,6 +103,18 @@ class Processor(unittest.TestCase):
             cpuinfo.flush()
             with self.assertRaisesRegex(ImportError, "x86-64-v3"):
                 dispersa._processor.check(cpuinfo.name)
+
+
+class Unbuilt(unittest.TestCase):
+    def test_says_what_to_build(self):
+        package = folder_of(type(self)) / "dispersa"
+        shutil.copytree(PACKAGE, package, ignore=shutil.ignore_patterns("_core*", "__pycache__"))
+        done = subprocess.run([sys.executable, "-c", "import dispersa"], capture_output=True, text=True,
+                              env={**os.environ, "PYTHONPATH": str(package.parent)})
+        version = "{}.{}".format(*sys.version_info)
+        self.assertIn(f"ImportError: the extension of dispersa is not built for Python {version}; `cmake --build build/release "
+                      "--target python` builds it, with the packages of docker/packages.txt and tests/packages.txt\n",
+                      done.stderr)
 
 
 class Installation(unittest.TestCase):

@@ -13,6 +13,7 @@ import resource
 import shutil
 import subprocess
 import tempfile
+import termios
 import unittest
 
 BINARIES = pathlib.Path(os.environ["DISPERSA_BINARIES"])
@@ -144,6 +145,44 @@ class Values(unittest.TestCase):
         self.refused(f"--format: there is no '', {formats}", "export", "results", "--format", "")
 
 
+def on_terminal(command, columns=80, **environment):
+    """What a command writes to a terminal that is its standard error."""
+    ours, theirs = pty.openpty()
+    termios.tcsetwinsize(theirs, (24, columns))
+    process = subprocess.Popen(command, env=environment, stdout=subprocess.DEVNULL, stderr=theirs)
+    os.close(theirs)
+    text = b""
+    try:
+        while part := os.read(ours, 4096):
+            text += part
+    except OSError:
+        pass  # the other end is closed
+    os.close(ours)
+    process.wait(TIMEOUT_S)
+    return text.decode()
+
+
+class Progress(unittest.TestCase):
+    def test_is_drawn_over_on_a_narrow_terminal(self):
+        command = [str(BINARIES / "dispersa"), "run", str(SMOKE), "--workers", "0", "--no-histories", "--out"]
+        for columns in (20, 60, 200):
+            with tempfile.TemporaryDirectory() as folder:
+                text = on_terminal([*command, folder + "/out"], columns, **os.environ)
+            bars = [line.removeprefix("\x1b[K") for line in re.split(r"[\r\n]+", text) if line.startswith("\x1b[K")]
+            self.assertTrue(bars, text)
+            self.assertLess(max(map(len, bars)), columns)
+            self.assertEqual("12/12" in text, columns == 200 or columns == 60, text)
+
+
+class Network(unittest.TestCase):
+    def test_names_an_interface_that_is_down(self):
+        with tempfile.TemporaryDirectory() as folder:
+            done = subprocess.run(["unshare", "-r", "-n", BINARIES / "dispersa", "run", SMOKE, "--workers", "1", "--out",
+                                   folder + "/out"], capture_output=True, text=True, timeout=TIMEOUT_S)
+        self.assertEqual(done.returncode, 2, done.stderr)
+        self.assertIn("the network interface lo of 127.0.0.1 is down: `ip link set lo up` brings it up\n", done.stderr)
+
+
 class Colors(unittest.TestCase):
     # Its vehicle is like none that is known, which is warned of.
     COMMAND = [str(BINARIES / "dispersa"), "plan", "--cases", "1", str(CAMPAIGNS.parent / "tests/data/yaml/campaign.yaml")]
@@ -154,18 +193,7 @@ class Colors(unittest.TestCase):
         command = [*self.COMMAND, *options]
         if not terminal:
             return subprocess.run(command, env=variables, capture_output=True, text=True, timeout=TIMEOUT_S).stderr
-        ours, theirs = pty.openpty()
-        process = subprocess.Popen(command, env=variables, stdout=subprocess.DEVNULL, stderr=theirs)
-        os.close(theirs)
-        text = b""
-        try:
-            while part := os.read(ours, 4096):
-                text += part
-        except OSError:
-            pass  # the other end is closed
-        os.close(ours)
-        process.wait(TIMEOUT_S)
-        return text.decode()
+        return on_terminal(command, **variables)
 
     def test_who_wants_colours(self):
         for expected, terminal, options, environment in [

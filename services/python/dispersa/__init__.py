@@ -12,7 +12,15 @@ from . import _processor
 
 _processor.check()
 
-from ._core import engine_version as _engine_version  # noqa: E402
+try:
+    from ._core import engine_version as _engine_version  # noqa: E402
+except ModuleNotFoundError as _error:
+    if _error.name != __name__ + "._core":
+        raise
+    import sys as _sys
+    raise ImportError(
+        "the extension of dispersa is not built for Python {}.{}; `cmake --build build/release --target python` "
+        "builds it, with the packages of docker/packages.txt and tests/packages.txt".format(*_sys.version_info)) from None
 from ._source import Tree, read, write  # noqa: E402
 from ._campaign import Campaign, Validation, load, validate  # noqa: E402
 from .errors import (BadInput, Error, ExitCode, Incomplete, InputWarning, InternalError, Problem,  # noqa: E402
