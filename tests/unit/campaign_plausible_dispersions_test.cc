@@ -192,7 +192,7 @@ INSTANTIATE_TEST_SUITE_P(
                     "wind_profile has at 10000 m a pressure 0.979 times that of its density and temperature "
                     "| within 2 % (the gas law of dry air; vapour makes up to 1.5 %)"},
         WeatherEdge{"DenserAir", SetDensity, 1.41, 1.43,
-                    "wind_profile has at 10000 m a density of 0.5914 kg/m3 | within a factor of 1.4 of the "
+                    "wind_profile has at 10000 m a density of 0.5913 kg/m3 | within a factor of 1.4 of the "
                     "standard's, 0.4135 kg/m3 (to 60 km seasons and latitudes change it by up to 40 %)"},
         WeatherEdge{"ThinnerAir", SetDensity, 0.71, 0.70,
                     "wind_profile has at 10000 m a density of 0.2895 kg/m3 | within a factor of 1.4 of the "
