@@ -275,13 +275,14 @@ void DescribeDistribution(Fields& fields, const DispersedScalar& scalar, ScalarD
 }
 
 void DescribeDirection(Fields& fields, const char* key, ScalarDistribution& direction, const char* meaning) {
-  constexpr Range kTurns = Between(-kTwoPi, kTwoPi);
+  // A distribution about any direction may reach beyond a turn: angles wrap.
+  constexpr Range kTurns = Between(-kTwoPi, kTwoPi), kDrawn = Between(-5.0 * kTwoPi, 5.0 * kTwoPi);
   bool is_uniform = true;
   fields.WordOrMap(key, "uniform", "a direction", "uniform, {fixed_deg: x} or a distribution", is_uniform,
                    meaning, [&](Fields& map) {
                      map.Either({{Has("distribution"),
                                   [&] {
-                                    DescribeDistribution(map, {kAngle, kTurns}, direction);
+                                    DescribeDistribution(map, {kAngle, kDrawn}, direction);
                                   }},
                                  {Else(), [&] {
                                     double angle_rad = 0.0;

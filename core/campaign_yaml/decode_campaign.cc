@@ -209,6 +209,7 @@ class CampaignDescription {
              "thrusters fire for whole ticks of " + FormatRounded(campaign_.autopilot.tick_s) +
                  " s, which is longer than they have to",
              "at least a tick of the autopilot");
+    WarnOfGround();
     const Part whole{root_, ""};
     for (const UnusualDispersion& unusual : UnusualDispersions(campaign_)) {
       WarnOf(whole, "dispersions." + unusual.key, unusual.message, unusual.allowed);
@@ -237,6 +238,21 @@ class CampaignDescription {
     const InputNode& at = FindField(*part.node, key, &path);
     AddProblem(*warnings_, at, part.path.empty() || path.empty() ? part.path + path : part.path + "." + path,
                message, allowed);
+  }
+
+  // The default of the ground is the ellipsoid.
+  void WarnOfGround() {
+    constexpr double kSame_m = 200.0;
+    const double site_m = campaign_.vehicle.site.altitude_m;
+    std::string path;
+    FindField(*vehicle_.node, "descent.ground_altitude_m", &path);
+    if (campaign_.course.ends != FlightEnd::kImpact || path.find("ground_altitude") != std::string::npos ||
+        std::fabs(site_m) < kSame_m)
+      return;
+    WarnOf(vehicle_, "site.altitude_m",
+           "the site is at " + FormatRounded(site_m) +
+               " m, and flights end at 0 m: descent.ground_altitude_m is not given",
+           "descent: {ground_altitude_m: x}, also where it is 0");
   }
 
   void WarnOfGuidance() {

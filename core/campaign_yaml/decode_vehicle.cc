@@ -1,7 +1,9 @@
 #include <algorithm>
+#include <cmath>
 
 #include "core/campaign_yaml/decode.h"
 #include "core/campaign_yaml/describe_file.h"
+#include "core/input/number_text.h"
 #include "core/input/struct_problems.h"
 #include "core/vehicle/cut_off.h"
 #include "core/vehicle/mass.h"
@@ -87,6 +89,39 @@ void Complete(Vehicle& vehicle) {
   CompleteMassTables(vehicle);
 }
 
+// The masses that a motor's file states beside its curve, against those of the stage or booster that has it.
+void CheckHeader(const std::string& motor, double propellant_kg, double whole_kg, const InputNode& node,
+                 const std::string& path, ProblemList& problems) {
+  const auto check = [&](const char* key, const auto& fits, const std::string& what, const char* allowed) {
+    std::string found;
+    const InputNode& at = FindField(node, motor + ".thrust_curve.table." + key, &found);
+    if (!found.ends_with(key) || fits(*ParseNumber(at.text))) return;
+    AddProblem(problems, at, path.empty() ? found : path + "." + found,
+               "the motor's header states " + at.text + what, allowed);
+  };
+  check(
+      "published_propellant_mass_kg",
+      [&](double stated_kg) {
+        return std::fabs(stated_kg - propellant_kg) <= kFlowSumTolerance * propellant_kg;
+      },
+      " kg of propellant, but propellant_mass_kg is " + FormatRounded(propellant_kg),
+      "the same mass in both, within 1 %");
+  check(
+      "published_motor_mass_kg", [&](double stated_kg) { return stated_kg <= whole_kg; },
+      " kg for the whole motor, which is a part of " + FormatRounded(whole_kg) + " kg",
+      "a motor that is no heavier than the whole");
+}
+void CheckHeaders(const Vehicle& vehicle, const InputNode& node, const std::string& path,
+                  ProblemList& problems) {
+  for (std::size_t i = 0; i < vehicle.stages.size(); ++i)
+    if (const Stage& stage = vehicle.stages[i]; !stage.restarts)
+      CheckHeader("stages[" + std::to_string(i) + "].motor", stage.propellant_mass_kg, stage.liftoff_mass_kg,
+                  node, path, problems);
+  const Boosters& boosters = vehicle.boosters;
+  CheckHeader("boosters.motor", boosters.propellant_mass_kg,
+              boosters.propellant_mass_kg + boosters.dry_mass_kg, node, path, problems);
+}
+
 void CheckPlausibility(const Vehicle& vehicle, const InputNode& node, const std::string& path,
                        ProblemList& problems, ProblemList* warnings) {
   std::vector<PlausibilityFinding> impossible, unusual;
@@ -126,6 +161,7 @@ Vehicle DecodeVehicle(InputNode& node, const std::string& path, std::vector<Inpu
   if (problems.size() > before + of_files || !HasRelations(node)) return vehicle;
   Complete(vehicle);
   AddStructProblems(Problems(vehicle), node, path, problems);
+  CheckHeaders(vehicle, node, path, problems);
   if (problems.size() == before) CheckPlausibility(vehicle, node, path, problems, warnings);
   return vehicle;
 }

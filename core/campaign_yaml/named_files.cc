@@ -11,6 +11,7 @@
 #include "core/campaign_yaml/parse_yaml.h"
 #include "core/campaign_yaml/sha256.h"
 #include "core/campaign_yaml/standard_input.h"
+#include "core/campaign_yaml/text_problems.h"
 #include "core/input/read_value.h"
 
 namespace dispersa {
@@ -21,6 +22,11 @@ constexpr std::size_t kLargestFileOfBytes = std::size_t{32} << 20;
 
 // A thrust curve may be what hobby motors have: by the end of its name.
 InputNode ParseTable(const std::string& text, const std::string& file, std::vector<InputProblem>& problems) {
+  if (WithoutByteOrderMark(text).starts_with('<')) {
+    problems.push_back({file, 1, 1, "", "the file is XML, such as RockSim's motors (.rse), and no table",
+                        "a CSV file; of a motor also an .eng file"});
+    return {};
+  }
   std::string end = std::filesystem::path(file).extension().string();
   for (char& c : end) c = c >= 'A' && c <= 'Z' ? static_cast<char>(c - 'A' + 'a') : c;
   return end == ".eng" ? ParseRasp(text, file, problems) : ParseCsv(text, file, problems);

@@ -4,6 +4,7 @@
 #include <string_view>
 
 #include "core/campaign_yaml/text_problems.h"
+#include "core/input/number_text.h"
 #include "core/input/read_value.h"
 
 namespace dispersa {
@@ -14,20 +15,73 @@ struct Cell {
   int column = 1;  // of its first character
 };
 
-std::vector<Cell> SplitLine(std::string_view line) {
-  std::vector<Cell> cells;
-  std::size_t begin = 0;
+bool IsBlank(char c) { return c == ' ' || c == '\t'; }
+
+// The comma of the world's one half, the semicolon of the other, whose numbers have decimal commas.
+char SeparatorOf(std::string_view header) {
+  bool is_quoted = false;
+  for (const char c : header) {
+    if (c == '"') is_quoted = !is_quoted;
+    if (c == ';' && !is_quoted) return ';';
+  }
+  return ',';
+}
+
+// The cells of a line. A cell may be in quotes (RFC 4180); a quote inside is written twice. Returns false
+// for a quote that does not end, or goes on beside its end; `cells` then ends with that cell.
+bool SplitLine(std::string_view line, char separator, std::vector<Cell>& cells) {
+  std::size_t at = 0;
   while (true) {
-    const std::size_t comma = std::min(line.find(',', begin), line.size());
-    std::size_t first = begin;
-    std::size_t last = comma;
-    while (first < last && (line[first] == ' ' || line[first] == '\t')) ++first;
-    while (last > first && (line[last - 1] == ' ' || line[last - 1] == '\t')) --last;
-    cells.push_back({std::string(line.substr(first, last - first)), static_cast<int>(first) + 1});
-    if (comma == line.size()) return cells;
-    begin = comma + 1;
+    while (at < line.size() && IsBlank(line[at])) ++at;
+    Cell& cell = cells.emplace_back();
+    cell.column = static_cast<int>(at) + 1;
+    if (at < line.size() && line[at] == '"') {
+      for (++at; at < line.size() && (line[at] != '"' || line.substr(at, 2) == "\"\""); ++at) {
+        if (line[at] == '"') ++at;
+        cell.text += line[at];
+      }
+      if (at == line.size()) return false;
+      for (++at; at < line.size() && IsBlank(line[at]);) ++at;
+      if (at < line.size() && line[at] != separator) return false;
+    } else {
+      const std::size_t end = std::min(line.find(separator, at), line.size());
+      cell.text = line.substr(at, end - at);
+      at = end;
+    }
+    while (!cell.text.empty() && IsBlank(cell.text.back())) cell.text.pop_back();
+    if (at == line.size()) return true;
+    ++at;
   }
 }
+
+// Cells of numbers, by what separates their whole part from the rest.
+class DecimalMarks {
+ public:
+  // With a decimal comma turned into a point. Texts are left as they are.
+  std::string Read(const Cell& cell, int line) {
+    const std::size_t comma = cell.text.find(',');
+    if (comma == std::string::npos) {
+      if (cell.text.find('.') != std::string::npos) has_point_ = true;
+      return cell.text;
+    }
+    std::string number = cell.text;
+    number[comma] = '.';
+    if (number.find(',') != std::string::npos || !ParseNumber(number)) return cell.text;
+    if (comma_.text.empty()) comma_ = cell, line_ = line;
+    return number;
+  }
+  void Check(const std::string& file, std::vector<InputProblem>& problems) const {
+    if (has_point_ && !comma_.text.empty())
+      problems.push_back({file, line_, comma_.column, "",
+                          "'" + comma_.text + "' has a decimal comma, and other numbers a decimal point",
+                          "one decimal mark in a table"});
+  }
+
+ private:
+  bool has_point_ = false;
+  Cell comma_;  // the first with a decimal comma
+  int line_ = 0;
+};
 
 }  // namespace
 
@@ -40,6 +94,8 @@ InputNode ParseCsv(const std::string& text, const std::string& file, std::vector
   table.is_table = true;
   place.line = 0;
   std::string_view rest = WithoutByteOrderMark(text);
+  char separator = ',';
+  DecimalMarks marks;
   while (!rest.empty()) {
     const std::size_t end = std::min(rest.find('\n'), rest.size());
     std::string_view line = rest.substr(0, end);
@@ -48,7 +104,14 @@ InputNode ParseCsv(const std::string& text, const std::string& file, std::vector
     if (line.ends_with('\r')) line.remove_suffix(1);
     if (line.empty() || line.starts_with('#')) continue;
 
-    const std::vector<Cell> cells = SplitLine(line);
+    if (table.members.empty()) separator = SeparatorOf(line);
+    std::vector<Cell> cells;
+    if (!SplitLine(line, separator, cells)) {
+      problems.push_back({file, place.line, cells.back().column, "",
+                          "the quotes of this cell do not end with it",
+                          "\"text\", with a quote inside written twice"});
+      continue;
+    }
     if (table.members.empty()) {
       table.line = place.line;
       for (const Cell& cell : cells) {
@@ -57,14 +120,19 @@ InputNode ParseCsv(const std::string& text, const std::string& file, std::vector
       }
     } else if (cells.size() != table.members.size()) {
       problems.push_back({file, place.line, 1, "", "the row has " + std::to_string(cells.size()) + " cells",
-                          std::to_string(table.members.size()) + ", as the header"});
+                          std::to_string(table.members.size()) + ", as the header" +
+                              (separator == ',' && cells.size() > table.members.size()
+                                   ? ". Decimal commas need ';' between cells"
+                                   : "")});
     } else {
       for (std::size_t c = 0; c < cells.size(); ++c) {
         place.column = cells[c].column;
-        table.members[c].value.items.push_back(ScalarAt(place, cells[c].text));
+        table.members[c].value.items.push_back(
+            ScalarAt(place, separator == ';' ? marks.Read(cells[c], place.line) : cells[c].text));
       }
     }
   }
+  marks.Check(file, problems);
   if (table.members.empty())
     problems.push_back({file, 1, 1, "", "the table is empty", "a line with the names of its columns"});
   if (problems.size() > before) return {};

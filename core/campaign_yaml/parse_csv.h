@@ -9,9 +9,11 @@
 
 namespace dispersa {
 
-/// Parses a comma-separated text. Lines that begin with '#' and empty lines do not count. The first other
-/// line names the columns, in any order. The reader of the map checks the columns and the cells. A table of
-/// another form is a problem and gives an absent node (without file), which the readers ignore.
+/// Parses a text of cells apart by commas, or by semicolons if its header has one; a number may then have a
+/// decimal comma. Cells may be in quotes, within a line. Lines that begin with '#' and empty lines do not
+/// count. The first other line names the columns, in any order. The reader of the map checks the columns and
+/// the cells. A table of another form is a problem and gives an absent node (without file), which the readers
+/// ignore.
 InputNode ParseCsv(const std::string& text, const std::string& file, std::vector<InputProblem>& problems);
 
 }  // namespace dispersa

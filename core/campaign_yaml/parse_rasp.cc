@@ -42,10 +42,11 @@ class RaspReader {
   void Take(std::string_view line, int number) {
     place_.line = number;
     place_.column = 1;
-    if (line.starts_with(';')) return;
-    const std::vector<Word> words = Words(line);
+    const std::vector<Word> words = Words(line.substr(0, line.find(';')));
     if (words.empty()) return;
-    if (ended_) {
+    if (ended_ && words.size() == kHeaderWords) {
+      Report(words[0], "a second motor, '" + words[0].text + "', follows the first", "one motor in a file");
+    } else if (ended_) {
       Report(words[0], "the line comes after the thrust of 0 that ends the motor's curve",
              "one motor in a file, and nothing but comments after it");
     } else if (!has_header_) {
@@ -63,16 +64,22 @@ class RaspReader {
       Report({}, "the file holds no motor", kHeader);
     else if (!ended_ && !failed_)
       Report({}, "the curve does not end", "a last line with a thrust of 0");
+    else if (ended_)
+      AddIgnition();
     if (failed_) return {};
     place_.line = 1;
     InputNode table = MapAt(place_);
     table.is_table = true;
     SetMember(table, "time_s", std::move(times_));
     SetMember(table, "thrust_n", std::move(thrusts_));
+    SetMember(table, "published_propellant_mass_kg", std::move(propellant_kg_));
+    SetMember(table, "published_motor_mass_kg", std::move(whole_kg_));
     return table;
   }
 
  private:
+  static constexpr std::size_t kHeaderWords = 7;
+  static constexpr double kLatestPart = 0.1;  // of the first point in the whole curve
   static constexpr const char* kHeader =
       "name, diameter in mm, length in mm, delays, propellant in kg, mass in kg, maker, apart by blanks";
 
@@ -90,7 +97,7 @@ class RaspReader {
   }
 
   void TakeHeader(const std::vector<Word>& words) {
-    if (words.size() != 7)
+    if (words.size() != kHeaderWords)
       return Report(words[0], "the header has " + std::to_string(words.size()) + " fields in place of 7",
                     kHeader);
     Number(words[1], "the diameter", false);
@@ -101,6 +108,8 @@ class RaspReader {
       Report(words[4],
              "the propellant of " + words[4].text + " kg is more than the motor's " + words[5].text + " kg",
              "a part of the motor's mass");
+    propellant_kg_ = At(words[4]);
+    whole_kg_ = At(words[5]);
   }
 
   void TakePoint(const std::vector<Word>& words) {
@@ -110,7 +119,6 @@ class RaspReader {
     const std::optional<double> time_s = Number(words[0], "the time", times_.items.empty());
     const std::optional<double> thrust_n = Number(words[1], "the thrust", true);
     if (!time_s || !thrust_n) return;
-    if (times_.items.empty() && *time_s > 0.0) Add({"0", words[0].column}, {"0", words[1].column});
     if (!times_.items.empty() && !(*time_s > last_s_))
       return Report(words[0], "the time " + words[0].text + " is not later than that before it",
                     "times that increase");
@@ -119,15 +127,33 @@ class RaspReader {
     Add(words[0], words[1]);
   }
 
+  // The format leaves out the point at 0 s. A clock that did not start at ignition is not meant by that.
+  void AddIgnition() {
+    const InputNode& first = times_.items.front();
+    const double first_s = *ParseNumber(first.text);
+    if (first_s > kLatestPart * last_s_) {
+      place_.line = first.line;
+      return Report({"", first.column},
+                    "the first time, " + first.text + " s, is more than a tenth of the curve's " +
+                        FormatRounded(last_s_) + " s after ignition",
+                    "times since ignition; from 0 s to the first one the thrust rises from 0");
+    }
+    if (first_s == 0.0) return;
+    times_.items.insert(times_.items.begin(), ScalarAt(times_.items.front(), "0"));
+    thrusts_.items.insert(thrusts_.items.begin(), ScalarAt(thrusts_.items.front(), "0"));
+  }
+
+  InputNode At(const Word& word) {
+    place_.column = word.column;
+    return ScalarAt(place_, word.text);
+  }
   void Add(const Word& time, const Word& thrust) {
-    place_.column = time.column;
-    times_.items.push_back(ScalarAt(place_, time.text));
-    place_.column = thrust.column;
-    thrusts_.items.push_back(ScalarAt(place_, thrust.text));
+    times_.items.push_back(At(time));
+    thrusts_.items.push_back(At(thrust));
   }
 
   std::vector<InputProblem>& problems_;
-  InputNode place_, times_, thrusts_;
+  InputNode place_, times_, thrusts_, propellant_kg_, whole_kg_;
   double last_s_ = 0.0;
   bool has_header_ = false, ended_ = false, failed_ = false;
 };
@@ -135,6 +161,7 @@ class RaspReader {
 }  // namespace
 
 InputNode ParseRasp(const std::string& text, const std::string& file, std::vector<InputProblem>& problems) {
+  if (!CheckUtf8(text, file, problems)) return {};
   RaspReader reader(file, problems);
   std::string_view rest = WithoutByteOrderMark(text);
   int line_number = 0;

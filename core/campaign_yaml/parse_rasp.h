@@ -9,11 +9,12 @@
 
 namespace dispersa {
 
-/// A map with the columns time_s and thrust_n of the text's only motor. Lines that begin with ';' and empty
-/// lines do not count. The first other line is the header: name, diameter in mm, length in mm, delays, mass
-/// of propellant and of the whole in kg, maker. It is checked and not used. Each further line is a time in s
-/// and a thrust in N. Times increase. Only the last thrust is 0. The point at 0 s without thrust is added. A
-/// text of another form is a problem and gives an absent node.
+/// A map with the columns time_s and thrust_n of the text's only motor, and the masses of its header, which
+/// are compared with the vehicle's. ';' begins a comment. Empty lines do not count. The first other line is
+/// the header: name, diameter in mm, length in mm, delays, mass of propellant and of the whole in kg, maker.
+/// Each further line is a time in s and a thrust in N. Times increase. Only the last thrust is 0. The point
+/// at 0 s without thrust is added, if the first one is in the first tenth of the curve. A text of another
+/// form is a problem and gives an absent node.
 InputNode ParseRasp(const std::string& text, const std::string& file, std::vector<InputProblem>& problems);
 
 }  // namespace dispersa

@@ -86,6 +86,16 @@ class PlanReader {
     if (is_magnitude && requirement.above && *requirement.above < 0.0)
       Warn(item, path, "above", "a magnitude is always above " + FormatRounded(*requirement.above),
            "a limit of 0 or more");
+    const Worse worse =
+        requirement.own_expression.empty() ? Metrics()[MetricColumn(metric)].worse : Worse::kNeither;
+    const bool is_error = worse == Worse::kFartherFromZero;
+    if (requirement.above &&
+        (is_error ? *requirement.above > 0.0 : is_magnitude && *requirement.above >= 0.0))
+      Warn(item, path, "above", "larger values of '" + metric + "' are the worse ones, and these meet it",
+           "below, or within");
+    if (requirement.below && is_error && *requirement.below < 0.0)
+      Warn(item, path, "below", "values farther from 0 are the worse ones, and these meet it",
+           "above, or within");
     const bool is_attitude = metric.starts_with("pitch_error_peak_") ||
                              metric.starts_with("pitch_error_rms_") || metric.starts_with("yaw_error_") ||
                              metric.starts_with("roll_error_");

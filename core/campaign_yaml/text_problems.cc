@@ -32,13 +32,15 @@ bool CheckUtf8(const std::string& text, const std::string& file, std::vector<Inp
   int line = 1;
   int column = 1;
   for (std::size_t at = 0; at < text.size();) {
-    const std::size_t bytes = CharacterBytes(text, at);
+    // A text of single bytes in UTF-16 is UTF-8 with a byte 0 beside each.
+    const std::size_t bytes = text[at] == '\0' ? 0 : CharacterBytes(text, at);
     if (bytes == 0) {
       constexpr char kDigits[] = "0123456789ABCDEF";
       const auto byte = static_cast<unsigned char>(text[at]);
       problems.push_back({file, line, column, "",
                           std::string("the byte 0x") + kDigits[byte >> 4] + kDigits[byte & 15] +
-                              " is no UTF-8: the file is in another encoding, such as Latin-1",
+                              " is no UTF-8: the file is in another encoding, such as " +
+                              (byte == 0 || (at == 0 && byte >= 0xFE) ? "UTF-16" : "Latin-1"),
                           "text in UTF-8"});
       return false;
     }

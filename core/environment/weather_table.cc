@@ -4,6 +4,7 @@
 
 #include "core/environment/atmosphere.h"
 #include "core/input/fields.h"
+#include "core/input/number_text.h"
 
 namespace dispersa {
 namespace {
@@ -42,8 +43,9 @@ void Describe(Fields& fields, WeatherTable& table) {
       const std::string at = "altitude_m[" + std::to_string(i) + "]";
       if (!(table.altitude_m[i] > kAtmosphereBottom_m &&
             table.altitude_m[i] + kWindFade_m < kAtmosphereTop_m))
-        return fields.Refuse(at, "the air of " + fields.Quote(at) + " m is not that of a flight",
-                             "altitudes above -5000 m and below 990,000 m");
+        return fields.Refuse(
+            at, "the air of " + FormatRounded(table.altitude_m[i]) + " m is not that of a flight",
+            "altitudes above -5000 m and below 990,000 m");
       if (i > 0 && table.altitude_m[i] - table.altitude_m[i - 1] < kLeastLevel_m)
         return fields.Refuse(at, "is less than 10 m above the one before",
                              "altitudes 10 m apart or more, in a table with the air's state");

@@ -6,6 +6,11 @@
 namespace dispersa {
 namespace {
 
+// Of a component: the thermosphere's strongest. Values for "missing" (999.9, -9999) are beyond.
+constexpr double kFastestWind_m_s = 500.0;
+constexpr Range kComponent = Between(-kFastestWind_m_s, kFastestWind_m_s);
+constexpr Range kDeviation = Between(0.0, kFastestWind_m_s);
+
 // In a Check(): columns of one length, over altitudes that grow.
 void CheckColumns(Fields& fields, const std::vector<double>& altitude_m,
                   std::initializer_list<const std::vector<double>*> columns, const char* allowed) {
@@ -18,9 +23,10 @@ void CheckColumns(Fields& fields, const std::vector<double>& altitude_m,
 }  // namespace
 
 void Describe(Fields& fields, WindTable& table, const char* allowed) {
-  fields.Numbers("altitude_m", kAnyNumber, 2, SIZE_MAX, table.altitude_m, "geodetic, increasing");
-  fields.Numbers("north_m_s", kAnyNumber, 2, SIZE_MAX, table.north_m_s, "towards north, at each altitude");
-  fields.Numbers("east_m_s", kAnyNumber, 2, SIZE_MAX, table.east_m_s, "towards east");
+  fields.Quantities("altitude", kLength, kAnyNumber, 2, SIZE_MAX, table.altitude_m, "geodetic, increasing");
+  fields.Quantities("north", kSpeed, kComponent, 2, SIZE_MAX, table.north_m_s,
+                    "towards north, at each altitude");
+  fields.Quantities("east", kSpeed, kComponent, 2, SIZE_MAX, table.east_m_s, "towards east");
   fields.Check([&fields, &table, allowed] {
     CheckColumns(fields, table.altitude_m, {&table.north_m_s, &table.east_m_s}, allowed);
   });
@@ -34,13 +40,15 @@ void Describe(Fields& fields, WindStatistics& statistics) {
 }
 
 void DescribeLevels(Fields& fields, WindStatistics& statistics, std::size_t most) {
-  fields.Numbers("altitude_m", kAnyNumber, 2, most, statistics.altitude_m, "geodetic, increasing");
-  fields.Numbers("mean_north_m_s", kAnyNumber, 2, SIZE_MAX, statistics.mean_north_m_s, "at each altitude");
-  fields.Numbers("mean_east_m_s", kAnyNumber, 2, SIZE_MAX, statistics.mean_east_m_s, "at each altitude");
-  fields.Numbers("sigma_north_m_s", kNonNegative, 2, SIZE_MAX, statistics.sigma_north_m_s,
-                 "standard deviation");
-  fields.Numbers("sigma_east_m_s", kNonNegative, 2, SIZE_MAX, statistics.sigma_east_m_s,
-                 "standard deviation");
+  fields.Quantities("altitude", kLength, kAnyNumber, 2, most, statistics.altitude_m, "geodetic, increasing");
+  fields.Quantities("mean_north", kSpeed, kComponent, 2, SIZE_MAX, statistics.mean_north_m_s,
+                    "at each altitude");
+  fields.Quantities("mean_east", kSpeed, kComponent, 2, SIZE_MAX, statistics.mean_east_m_s,
+                    "at each altitude");
+  fields.Quantities("sigma_north", kSpeed, kDeviation, 2, SIZE_MAX, statistics.sigma_north_m_s,
+                    "standard deviation");
+  fields.Quantities("sigma_east", kSpeed, kDeviation, 2, SIZE_MAX, statistics.sigma_east_m_s,
+                    "standard deviation");
   fields.Check([&fields, &statistics] {
     CheckColumns(fields, statistics.altitude_m,
                  {&statistics.mean_north_m_s, &statistics.mean_east_m_s, &statistics.sigma_north_m_s,

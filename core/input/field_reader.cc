@@ -278,6 +278,7 @@ class FieldReader : public Fields {
   }
   void VisitNumber(const NumberKey& key, std::optional<double>& value) override {
     const Found found = FindNumber(key);
+    known_.back().is_column = false;
     if (found.node != nullptr)
       value = ReadNumber(*found.node, PathOf(found.key), problems_, key.range, found.unit);
     else if (key.needed)
@@ -434,6 +435,7 @@ class FieldReader : public Fields {
     std::vector<std::string> keys;  ///< in each unit, or the key itself
     bool has_units = false;
     bool needed = true;
+    bool is_column = true;  ///< a single number is none
   };
   struct Found {
     InputNode* node = nullptr;
@@ -598,6 +600,7 @@ class FieldReader : public Fields {
   std::string ColumnNames() const {
     std::vector<std::string> needed, optional;
     for (const Known& known : known_) {
+      if (!known.is_column) continue;
       std::vector<std::string>& of = known.needed ? needed : optional;
       if (std::find(of.begin(), of.end(), known.keys.front()) == of.end()) of.push_back(known.keys.front());
     }
@@ -634,6 +637,13 @@ class FieldReader : public Fields {
                 (meant.empty() ? "" : " (did you mean '" + meant + "'?)"),
             JoinWords(quantity->keys));
         explained.insert(quantity->keys.begin(), quantity->keys.end());
+        continue;
+      }
+      const auto other = std::find_if(
+          keys.begin(), keys.end(), [&](const std::string& key) { return IsInAnotherUnit(member.key, key); });
+      if (other != keys.end()) {
+        add("the unit of '" + member.key + "' is not known here", *other);
+        explained.insert(*other);
         continue;
       }
       explained.insert(Nearest(member.key, keys));

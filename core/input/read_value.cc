@@ -5,6 +5,7 @@
 #include <numeric>
 
 #include "core/input/number_text.h"
+#include "core/input/struct_problems.h"
 
 namespace dispersa {
 namespace {
@@ -111,6 +112,7 @@ std::string Nearest(const std::string& word, const std::vector<std::string>& wor
   std::size_t best_distance = std::max<std::size_t>(2, word.size() / 4) + 1;
   std::string best;
   for (const std::string& candidate : words) {
+    if (IsInAnotherUnit(word, candidate)) continue;  // the numbers under it would be others
     const std::size_t distance = EditDistance(word, candidate);
     if (distance < best_distance && distance < std::max(word.size(), candidate.size())) {
       best_distance = distance;

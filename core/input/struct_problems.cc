@@ -32,6 +32,10 @@ const InputMember* FindMember(const InputNode& map, std::string_view name) {
 
 }  // namespace
 
+bool IsInAnotherUnit(std::string_view a, std::string_view b) {
+  return a != b && Stem(a) == Stem(b) && Stem(a).size() < std::min(a.size(), b.size());
+}
+
 const InputNode& FindField(const InputNode& node, const std::string& field_path, std::string* found_path) {
   const InputNode* at = &node;
   found_path->clear();

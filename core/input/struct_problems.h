@@ -2,6 +2,7 @@
 #pragma once
 
 #include <string>
+#include <string_view>
 #include <vector>
 
 #include "core/input/input_node.h"
@@ -12,6 +13,9 @@ namespace dispersa {
 /// The node of a field's path, e.g. "stages[1].gimbal.limit_rad", or the last node on the way that exists.
 /// `found_path` receives its path with the keys as the file spells them (limit_deg).
 const InputNode& FindField(const InputNode& node, const std::string& field_path, std::string* found_path);
+
+/// Whether two keys differ in the unit alone: altitude_m and altitude_km.
+bool IsInAnotherUnit(std::string_view a, std::string_view b);
 
 /// Records what the Problems() of a struct found (path, message, allowed) at the places of the values. `path`
 /// is the node's.

@@ -17,12 +17,13 @@ namespace {
 double Deg(double radians) { return radians / kRadPerDeg; }
 std::string Signed(double value) { return fmt::format("{:+.2g}", value + 0.0); }
 
-std::string InjectionTable(const OptimizationResult& result, const std::optional<OrbitErrors>& flown) {
+std::string InjectionTable(const OptimizationResult& result, const std::optional<CheckFlight>& check) {
   std::vector<HtmlTable::Column> columns = {
       {"Injection"}, {"desired", true}, {"reached", true}, {"error", true}, {"with half the steps", true}};
+  const bool flown = check && check->completed();
   if (flown) columns.push_back({"flown closed loop", true});
   HtmlTable table(columns);
-  for (const InjectionRow& row : InjectionRows(result, flown)) {
+  for (const InjectionRow& row : InjectionRows(result, check)) {
     std::vector<std::string> cells = {HtmlText(row.name), ReadableText(row.desired),
                                       FixedText(row.reached, row.decimals), Signed(row.error),
                                       Signed(row.halved)};
@@ -144,13 +145,13 @@ std::string ObjectiveText(const TrajectoryProblem& problem) {
 }  // namespace
 
 std::vector<InjectionRow> InjectionRows(const OptimizationResult& result,
-                                        const std::optional<OrbitErrors>& flown) {
+                                        const std::optional<CheckFlight>& check) {
   const Reference& reference = result.reference;
   const TrajectoryProblem& problem = reference.problem;
   const Orbit& orbit = reference.orbit;
   const OrbitErrors &error = result.errors, &halved = result.halved_step_errors;
   const auto arrived = [&](double OrbitErrors::*of, double unit) {
-    return flown ? std::optional<double>((*flown).*of * unit) : std::nullopt;
+    return check && check->completed() ? std::optional<double>(check->errors.*of * unit) : std::nullopt;
   };
   std::vector<InjectionRow> rows;
   // The altitudes of an ellipse count from the equator's radius. The flight's geodetic altitude is no measure
@@ -216,7 +217,7 @@ std::string LimitsThatDoNotBind(const Reference& reference) {
   return text;
 }
 
-std::string TrajectoryPage(const OptimizationResult& result, const std::optional<OrbitErrors>& flown) {
+std::string TrajectoryPage(const OptimizationResult& result, const std::optional<CheckFlight>& check) {
   const Reference& reference = result.reference;
   const TrajectoryProblem& problem = reference.problem;
   const std::string title =
@@ -233,12 +234,15 @@ std::string TrajectoryPage(const OptimizationResult& result, const std::optional
       HtmlText(reference.engine));
   if (!result.reached)
     page += "<p>" + VerdictBadge("fail") + " The target is missed: " + HtmlText(result.statement) + "</p>\n";
-  page += "<h2>Injection</h2>\n" + InjectionTable(result, flown);
+  if (check && !check->completed())
+    page += "<p>" + VerdictBadge("fail") + " " + HtmlText(CheckFlightText(*check)) + ".</p>\n";
+  page += "<h2>Injection</h2>\n" + InjectionTable(result, check);
   page +=
       fmt::format("<p>The orbit reached: {}.{}</p>\n", HtmlText(OrbitSentence(reference)),
-                  flown ? " Flown closed loop: the errors of the nominal flight with six degrees of freedom "
-                          "under the campaign’s autopilot, reaction control included."
-                        : "");
+                  check && check->completed()
+                      ? " Flown closed loop: the errors of the nominal flight with six degrees of freedom "
+                        "under the campaign’s autopilot, reaction control included."
+                      : "");
   page += "<h2>Flight program</h2>\n" + VariableTable(reference);
   page +=
       "<p class=\"soft\">A variable at its bound was limited by it. A better value may lie beyond the bound, "

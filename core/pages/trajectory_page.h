@@ -6,12 +6,13 @@
 #include <string>
 #include <vector>
 
+#include "core/trajectory/check_flight.h"
 #include "core/trajectory/optimize.h"
 
 namespace dispersa {
 
-/// `flown`: the injection errors of the closed-loop nominal flight of the reference, if it was flown.
-std::string TrajectoryPage(const OptimizationResult& result, const std::optional<OrbitErrors>& flown);
+/// `check`: the closed-loop nominal flight of the reference, if it was flown.
+std::string TrajectoryPage(const OptimizationResult& result, const std::optional<CheckFlight>& check);
 
 /// One condition of the target, in the unit of its name.
 struct InjectionRow {
@@ -23,7 +24,7 @@ struct InjectionRow {
 };
 /// The conditions that the target names, and no others.
 std::vector<InjectionRow> InjectionRows(const OptimizationResult& result,
-                                        const std::optional<OrbitErrors>& flown);
+                                        const std::optional<CheckFlight>& check);
 
 /// Greenwich's right ascension (rad, 0 to 2 pi) at the lift-off for which the orbit's node is the target's.
 /// None if the target has no node.

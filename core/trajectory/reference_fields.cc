@@ -1,6 +1,7 @@
 #include <cmath>
 
 #include "core/environment/earth.h"
+#include "core/input/number_text.h"
 #include "core/trajectory/aim.h"
 #include "core/trajectory/optimize.h"
 #include "core/trajectory/reference.h"
@@ -37,6 +38,11 @@ void DescribeAzimuthBounds(Fields& fields, Bounds& bounds) {
                     "[low, high], clockwise from north; [350, 10] goes through north");
   if (limits.size() != 2) return;
   bounds = {limits[0], limits[0] <= limits[1] ? limits[1] : limits[1] + kTwoPi};
+  if (limits[0] > limits[1] && bounds.high - bounds.low > kPi)
+    return fields.Refuse("launch_azimuth",
+                         "descends, and so goes through north, over " +
+                             FormatRounded((bounds.high - bounds.low) * kDegPerRad) + " deg",
+                         "[low, high]; through north at most half a turn, as [350, 10]");
   if (limits[0] >= kTwoPi || bounds.high - bounds.low > kTwoPi)
     fields.Refuse("launch_azimuth", "is more than a turn",
                   "[low, high], low from 0 to below 360; [350, 10] goes through north");

@@ -16,14 +16,23 @@ namespace {
 
 double Deg(double radians) { return radians / kRadPerDeg; }
 
-// Text about a variable that the refinement holds at a bound.
+// Text about a variable that a refinement holds at a bound. `best` is the program that is reported.
 std::string HeldText(const TrajectoryProblem& problem, const FlightProgram& program,
-                     const ProgramVariable& held) {
-  const double value = held.Of(program);
+                     const FlightProgram& best, const ProgramVariable& held) {
+  const double value = held.Of(program), reported = held.Of(best);
   const Bounds& bounds = held.BoundsOf(problem);
   const bool upper = value - bounds.low > bounds.high - value;
-  return fmt::format(" {} is at the {} end of its bounds ({:.6g} {}).", held.Name(),
-                     upper ? "upper" : "lower", value / held.unit(), held.unit_name());
+  const std::string elsewhere =
+      std::fabs(reported - value) > 1e-3 * (bounds.high - bounds.low)
+          ? fmt::format("; the best program has {:.6g} {}", reported / held.unit(), held.unit_name())
+          : "";
+  return fmt::format(" {} stops at the {} end of its bounds ({:.6g} {}){}.", held.Name(),
+                     upper ? "upper" : "lower", value / held.unit(), held.unit_name(), elsewhere);
+}
+// Rounded to what is shown, without a negative zero.
+double Shown(double value, int decimals) {
+  const double scale = std::pow(10.0, decimals);
+  return std::round(value * scale) / scale + 0.0;
 }
 
 struct SpeedAtTarget {
@@ -59,7 +68,7 @@ const char* Where(const SpeedAtTarget& speed) {
 // For an engine with a cut-off velocity: that velocity, and the bounds that keep altitude and angle from the
 // target.
 std::string CutOffText(const AscentModel& model, const TrajectoryProblem& problem,
-                       const TrajectoryOptions& options, FlightProgram program) {
+                       const TrajectoryOptions& options, FlightProgram program, const FlightProgram& best) {
   std::string text;
   const Motor& engine = model.vehicle.stages.back().motor;
   const double ends_m_s = engine.cut_off_velocity_m_s;
@@ -73,7 +82,7 @@ std::string CutOffText(const AscentModel& model, const TrajectoryProblem& proble
   if (refined.status == LeastSquaresStatus::kConverged) return text;
   const std::vector<ProgramVariable> variables = AltitudeAndAngleVariables(model.vehicle, problem);
   for (const std::size_t held : refined.held_at_bound)
-    text += " Bound: for altitude and angle" + HeldText(problem, program, variables[held]);
+    text += " Bound: for altitude and angle" + HeldText(problem, program, best, variables[held]);
   return text;
 }
 
@@ -86,7 +95,7 @@ std::string CauseText(const AscentModel& model, const TrajectoryProblem& problem
   // ended where the propellant does, and the best program not.
   for (const FlightProgram& one : {program, best})
     if (EndsByVelocity(model, FlyAscent(model, one, AscentOptionsOf(problem, options.steps))))
-      return CutOffText(model, problem, options, one);
+      return CutOffText(model, problem, options, one, best);
   const Bounds& azimuth = problem.launch_azimuth_rad;
   SpeedAtTarget slow = SpeedToward(model, problem, options, program, azimuth.high);
   SpeedAtTarget fast = SpeedToward(model, problem, options, program, azimuth.low);
@@ -95,22 +104,19 @@ std::string CauseText(const AscentModel& model, const TrajectoryProblem& problem
   if (!fast.on_target) {
     const std::vector<ProgramVariable> variables = AltitudeAndAngleVariables(model.vehicle, problem);
     for (const std::size_t held : fast.held)
-      text += " Bound: for altitude and angle" + HeldText(problem, fast.program, variables[held]);
+      text += " Bound: for altitude and angle" + HeldText(problem, fast.program, best, variables[held]);
   }
   if (problem.velocity_is_free) return text;
   const double asked = AimedVelocity(problem);
-  if (fast.velocity_m_s < asked)
+  const auto speed = [&](const SpeedAtTarget& found, const char* end, const char* than) {
     text += fmt::format(
-        " Energy: {} the vehicle has at most {:.1f} m/s (launch azimuth {:.6g} deg), {:.1f} m/s less than "
-        "the "
-        "target asks.",
-        Where(fast), fast.velocity_m_s, Deg(fast.program.launch_azimuth_rad), asked - fast.velocity_m_s);
-  if (slow.velocity_m_s > asked)
-    text += fmt::format(
-        " Energy: {} the vehicle has at least {:.1f} m/s (launch azimuth {:.6g} deg), {:.1f} m/s more than "
-        "the "
-        "target asks; the bounds of the launch azimuth do not let it spend the surplus.",
-        Where(slow), slow.velocity_m_s, Deg(slow.program.launch_azimuth_rad), slow.velocity_m_s - asked);
+        " Speed: {} the {} end of the launch azimuth's bounds ({:.6g} deg) gives {:.1f} m/s, {:.1f} m/s {} "
+        "than the target asks.",
+        Where(found), end, Deg(found.program.launch_azimuth_rad), found.velocity_m_s,
+        std::fabs(asked - found.velocity_m_s), than);
+  };
+  if (fast.velocity_m_s < asked) speed(fast, "faster", "less");
+  if (slow.velocity_m_s > asked) speed(slow, "slower", "more");
   return text;
 }
 
@@ -120,17 +126,24 @@ std::string DescribeShortfall(const AscentModel& model, const TrajectoryProblem&
                               const TrajectoryOptions& options, const OptimizationResult& result) {
   const FlightProgram& program = result.reference.program;
   const AscentResult ascent = FlyAscent(model, program, AscentOptionsOf(problem, options.steps));
+  const std::int64_t tried = result.reference.evaluations;
+  constexpr const char* kUntried = " Other bounds, populations and seeds were not tried.";
   if (!ascent.completed)
     return fmt::format(
-        "The target is out of reach: every program falls back to the ground; the best flies {:.1f} s.",
-        ascent.end_time_s);
+               "The target is not reached: none of {} ascents within the bounds comes to an orbit; the best "
+               "flies {:.1f} s.",
+               tried, ascent.end_time_s) +
+           kUntried;
   const OrbitErrors& e = result.errors;
-  // A miss this small does not mean that the target is out of reach.
   constexpr OrbitErrors kNear = {100.0, 0.5, 0.01 * kRadPerDeg, 0.01 * kRadPerDeg, 0.1 * kRadPerDeg};
   std::string text =
-      fmt::format("The target is {}: the best program ends {:+.3f} km, {:+.3f} m/s and {:+.4f} deg from it.",
-                  IsWithin(e, kNear) ? "narrowly missed" : "out of reach", e.altitude_m * 1e-3,
-                  e.velocity_m_s, Deg(e.flight_path_angle_rad));
+      IsWithin(e, result.tolerance)
+          ? fmt::format("The target is reached, but by none of {} ascents with every constraint met.", tried)
+          : fmt::format(
+                "The target is {}: the best of {} ascents within the bounds ends {:+.3f} km, {:+.3f} m/s and "
+                "{:+.4f} deg from it.",
+                IsWithin(e, kNear) ? "narrowly missed" : "not reached", tried, Shown(e.altitude_m * 1e-3, 3),
+                Shown(e.velocity_m_s, 3), Shown(Deg(e.flight_path_angle_rad), 4));
   if (problem.target_inclination_rad)
     text += fmt::format(" Its inclination is off by {:+.4f} deg.", Deg(e.inclination_rad));
   if (problem.target_argument_of_perigee_rad)
@@ -142,13 +155,13 @@ std::string DescribeShortfall(const AscentModel& model, const TrajectoryProblem&
   // The speed is no residual of an engine with a cut-off velocity.
   if (result.refinement.status != LeastSquaresStatus::kConverged || EndsByVelocity(model, ascent)) {
     text += CauseText(model, problem, options, result.refined, program);
-    if (text.size() > before) return text;
+    if (text.size() > before) return text + kUntried;
     const std::vector<ProgramVariable> variables = RefinedVariables(model.vehicle, problem);
     for (const std::size_t held : result.refinement.held_at_bound)
-      text += " Bound:" + HeldText(problem, result.refined, variables[held]);
+      text += " Bound:" + HeldText(problem, result.refined, program, variables[held]);
   }
   if (text.size() == before) text += fmt::format(" The refinement {}.", Describe(result.refinement.status));
-  return text;
+  return text + kUntried;
 }
 
 }  // namespace dispersa

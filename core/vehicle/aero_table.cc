@@ -58,8 +58,8 @@ void Describe(Fields& fields, AeroRows& rows) {
   fields.OptionalQuantities("beta", kAngle, Between(-kQuarterTurn, kQuarterTurn), 4, SIZE_MAX, rows.beta_rad,
                             "sideslip; rows of 0 are needed");
   fields.OptionalNumbers("cy", kAnyNumber, 4, SIZE_MAX, rows.cy, "side force, to the right");
-  fields.OptionalNumbers("xcp_side_station_m", kAnyNumber, 4, SIZE_MAX, rows.xcp_side_station_m,
-                         "where cy acts");
+  fields.OptionalQuantities("xcp_side_station", kLength, kAnyNumber, 4, SIZE_MAX, rows.xcp_side_station_m,
+                            "where cy acts");
   fields.OptionalNumbers("cln", kAnyNumber, 4, SIZE_MAX, rows.cln, "yawing moment, nose right");
   fields.OptionalNumbers("cnr_per_rad", kAnyNumber, 4, SIZE_MAX, rows.cnr_per_rad,
                          "yaw damping; default: cmq_per_rad");

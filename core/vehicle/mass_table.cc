@@ -58,13 +58,16 @@ void Describe(Fields& fields, MassTable& table) {
                     "about the axis");
   fields.Quantities("transverse_inertia", kInertia, kPositive, 2, kMost, table.transverse_inertia_kg_m2,
                     "about its centre, body y (and z)");
-  // Keys with one unit keep the schema short.
-  fields.OptionalNumbers("yaw_inertia_kg_m2", kPositive, 2, kMost, table.yaw_inertia_kg_m2, "about body z");
-  fields.OptionalNumbers("cg_y_m", kAnyNumber, 2, kMost, table.cg_y_m, "towards body y");
-  fields.OptionalNumbers("cg_z_m", kAnyNumber, 2, kMost, table.cg_z_m, "towards body z");
-  fields.OptionalNumbers("product_xy_kg_m2", kAnyNumber, 2, kMost, table.product_xy_kg_m2, "of x y dm");
-  fields.OptionalNumbers("product_xz_kg_m2", kAnyNumber, 2, kMost, table.product_xz_kg_m2, "of x z dm");
-  fields.OptionalNumbers("product_yz_kg_m2", kAnyNumber, 2, kMost, table.product_yz_kg_m2, "of y z dm");
+  fields.OptionalQuantities("yaw_inertia", kInertia, kPositive, 2, kMost, table.yaw_inertia_kg_m2,
+                            "about body z");
+  fields.OptionalQuantities("cg_y", kLength, kAnyNumber, 2, kMost, table.cg_y_m, "towards body y");
+  fields.OptionalQuantities("cg_z", kLength, kAnyNumber, 2, kMost, table.cg_z_m, "towards body z");
+  fields.OptionalQuantities("product_xy", kInertia, kAnyNumber, 2, kMost, table.product_xy_kg_m2,
+                            "of x y dm");
+  fields.OptionalQuantities("product_xz", kInertia, kAnyNumber, 2, kMost, table.product_xz_kg_m2,
+                            "of x z dm");
+  fields.OptionalQuantities("product_yz", kInertia, kAnyNumber, 2, kMost, table.product_yz_kg_m2,
+                            "of y z dm");
   fields.Check([&fields, &table] {
     const std::size_t count = table.cg_station_m.size();
     std::vector<const std::vector<double>*> optional = {&table.propellant_kg, &table.time_s, &table.mass_kg};

@@ -60,6 +60,7 @@ std::string PathOf(const Check& check, const Subject& subject) {
   const std::string field = subject.of_yaw_plane ? InYawPlane(check) : check.field;
   if (field == "table.xcp_side_station_m" && subject.table().is_by_moment) return "table.cln";
   if (field == "table.xcp_station_m" && subject.table().is_by_moment) return "table.cm";
+  if (field == "gimbal.pivot_station_m" && subject.stage().gimbal.fixed) return "nozzle_station_m";
   if (field != "motor.thrust_n") return field;
   if (subject.stage().is_liquid()) return "motor.liquid.thrust_n";
   return subject.stage().motor.thrust_curve.empty() ? field : "motor.thrust_curve";
@@ -104,6 +105,9 @@ std::vector<PlausibilityFinding> Plausibility(const Vehicle& vehicle) {
     Apply(StageChecks(), {vehicle, figures, i}, "stages" + index, findings);
     Apply(PressureChecks(), {vehicle, figures, i}, "stages" + index + "motor.", findings);
     Apply(GimbalChecks(), {vehicle, figures, i}, "stages" + index + "gimbal.", findings);
+    for (std::size_t k = 0; k < vehicle.stages[i].fins.size(); ++k)
+      Apply(FinChecks(), {vehicle, figures, i, k}, "stages" + index + "fins[" + std::to_string(k) + "].",
+            findings);
     for (std::size_t k = 0; k < vehicle.stages[i].tanks.size(); ++k) {
       const std::string tank = "stages" + index + "tanks[" + std::to_string(k) + "].";
       Apply(TankChecks(), {vehicle, figures, i, k}, tank, findings);

@@ -27,7 +27,7 @@ struct Subject {
   const Vehicle& vehicle;
   const std::vector<StageFigures>& figures;
   std::size_t index = 0;
-  std::size_t part = 0;  ///< tank or jettisoned body of the stage, lighter table (from 1)
+  std::size_t part = 0;  ///< tank, set of fins or jettisoned body of the stage, lighter table (from 1)
   bool is_booster = false;
   bool of_yaw_plane = false;
 
@@ -38,6 +38,7 @@ struct Subject {
     const Gimbal& one = is_booster ? vehicle.boosters.gimbal : stage().gimbal;
     return (is_booster ? one.limit_rad > 0.0 : stage().is_controlled()) ? &one : nullptr;
   }
+  const FinSet& fins() const { return stage().fins[part]; }
   const Jettison& jettison() const { return stage().jettisoned[part]; }
   /// Of the stack, or a lighter one's.
   const AeroTable& table() const {
@@ -92,6 +93,7 @@ std::span<const Check> GimbalChecks();
 /// Of each burn, restarts too.
 std::span<const Check> CutOffChecks();
 std::span<const Check> JettisonChecks();
+std::span<const Check> FinChecks();
 std::span<const Check> TankChecks();
 std::span<const Check> TankInStageChecks();
 std::span<const Check> NozzleChecks();

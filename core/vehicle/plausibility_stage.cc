@@ -45,6 +45,11 @@ double TableOverTubes(const Subject& s, double MassProperties::*value) {
   return tubes.*value > 0.0 ? table.*value / (tubes.*value) : kNothing;
 }
 
+double PartOfProfile(const Subject& s) {
+  const double widest_m = WidestDiameter(s.vehicle, s.stage().PropellantTop(), s.stage().PropellantBottom());
+  return widest_m > 0.0 ? s.stage().diameter_m / widest_m : kNothing;
+}
+
 constexpr Check kStageChecks[] = {
     {"propellant_mass_kg",
      "implies with thrust and burning time a specific impulse of",
@@ -165,11 +170,21 @@ constexpr Check kStageChecks[] = {
      kAnything,
      {0.4, 1.02},
      "1 where the case is the skin, less inside a wider fairing",
-     [](const Subject& s) {
-       const double widest_m =
-           WidestDiameter(s.vehicle, s.stage().PropellantTop(), s.stage().PropellantBottom());
-       return widest_m > 0.0 ? s.stage().diameter_m / widest_m : kNothing;
-     }},
+     [](const Subject& s) { return s.index == 0 ? kNothing : PartOfProfile(s); }},
+    {"diameter_m",
+     "is, as part of the profile's largest diameter about the first stage's propellant,",
+     "",
+     kAnything,
+     {0.7, 1.02},
+     "1 where the case is the skin; no fairing is about a first stage",
+     [](const Subject& s) { return s.index == 0 ? PartOfProfile(s) : kNothing; }},
+    {"gimbal.pivot_station_m",
+     "is, as part of the stage's bottom_station_m,",
+     "",
+     kAnything,
+     {0.0, 1.05},
+     "the nozzles begin inside the base",
+     [](const Subject& s) { return s.stage().gimbal.pivot_station_m / s.stage().bottom_station_m; }},
     {"motor.nozzle_exit_area_m2",
      "is, as part of the stage's cross-section,",
      "",
@@ -331,6 +346,37 @@ constexpr Check kJettisonChecks[] = {
      }},
 };
 
+// Checks of sets of fins.
+constexpr Check kFinChecks[] = {
+    {"leading_edge_station_m",
+     "begins the root, as part of the stage's bottom_station_m, at",
+     "",
+     {0.0, 1.0},
+     {0.0, 1.0},
+     "the fins are on the body",
+     [](const Subject& s) { return s.fins().leading_edge_station_m / s.stage().bottom_station_m; }},
+    {"root_chord_m",
+     "ends the root, as part of the stage's bottom_station_m, at",
+     "",
+     kAnything,
+     {0.0, 1.02},
+     "the root is on the body; only the tip may stand back by its sweep",
+     [](const Subject& s) {
+       return (s.fins().leading_edge_station_m + s.fins().root_chord_m) / s.stage().bottom_station_m;
+     }},
+    {"leading_edge_station_m",
+     "begins the root, behind the bottom_station_m of the stage above, by",
+     "m",
+     kAnything,
+     {0.0, kAny},
+     "the fins leave with their stage",
+     [](const Subject& s) {
+       return s.is_last()
+                  ? kNothing
+                  : s.fins().leading_edge_station_m - s.vehicle.stages[s.last_burn() + 1].bottom_station_m;
+     }},
+};
+
 constexpr Check kTankChecks[] = {
     {"density_kg_m3",
      "is",
@@ -380,6 +426,7 @@ std::span<const Check> PressureChecks() { return kPressureChecks; }
 std::span<const Check> GimbalChecks() { return kGimbalChecks; }
 std::span<const Check> CutOffChecks() { return kCutOffChecks; }
 std::span<const Check> JettisonChecks() { return kJettisonChecks; }
+std::span<const Check> FinChecks() { return kFinChecks; }
 std::span<const Check> TankChecks() { return kTankChecks; }
 std::span<const Check> TankInStageChecks() { return kTankInStageChecks; }
 std::span<const Check> NozzleChecks() { return kNozzleChecks; }

@@ -3,12 +3,27 @@
 #include <cmath>
 
 #include "core/math/constants.h"
+#include "core/vehicle/aerodynamics_build_up.h"
 #include "core/vehicle/mass.h"
 #include "core/vehicle/plausibility_checks.h"
 #include "core/vehicle/propulsion.h"
 
 namespace dispersa::plausibility {
 namespace {
+
+// Of the whole stack at lift-off, in slow air at a small incidence.
+double StaticMargin(const Vehicle& vehicle) {
+  constexpr double kSlow = 0.3, kSmall_rad = 2.0 * kRadPerDeg;
+  const AeroTable table = AerodynamicsOf(vehicle).front();
+  std::size_t mach = 0, incidence = 0;
+  while (mach + 1 < table.mach.size() && table.mach[mach] < kSlow) ++mach;
+  while (incidence + 1 < table.incidence_rad.size() && table.incidence_rad[incidence] < kSmall_rad)
+    ++incidence;
+  const StackMass stack = BuildStackMasses(vehicle).front();
+  return (table.xcp_station_m[table.RowOf(mach, incidence)] -
+          stack.At(stack.propellant_mass_kg).cg_station_m) /
+         table.reference_length_m;
+}
 
 constexpr Check kGyroChecks[] = {
     {"station_m",
@@ -25,11 +40,50 @@ constexpr Check kVehicleChecks[] = {
      "is",
      "deg",
      kAnything,
-     {-42.0, 64.0},
-     "orbital launch sites lie between 39.3 deg south (Mahia) and 62.9 deg north (Plesetsk); latitude and "
+     {-45.0, 79.5},
+     "launch sites lie between 39.3 deg south (Mahia) and 78.9 deg north (Ny-Alesund); latitude and "
      "longitude "
      "may have changed places",
      [](const Subject& s) { return s.vehicle.site.latitude_rad * kDegPerRad; }},
+    {"descent.parachute.deployment_altitude_m",
+     "is above the ground of the impact area by",
+     "m",
+     {0.0, kAny},
+     {50.0, kAny},
+     "below the ground it never opens; ground_altitude_m and deployment altitude count from the ellipsoid",
+     [](const Subject& s) {
+       const Descent& descent = s.vehicle.descent;
+       return descent.parachute_area_m2 > 0.0 ? descent.parachute_altitude_m - descent.ground_altitude_m
+                                              : kNothing;
+     }},
+    {"stages[0].fins",
+     "put the centre of pressure of the uncontrolled vehicle behind its centre of gravity, at lift-off, by",
+     "diameters",
+     kAnything,
+     {0.0, kAny},
+     "with a static margin below 0 it turns over; 1 to 3 are usual",
+     [](const Subject& s) {
+       return s.vehicle.stages[0].is_controlled() ? kNothing : StaticMargin(s.vehicle);
+     }},
+    {"boosters.bottom_station_m",
+     "is, as part of the first stage's,",
+     "",
+     kAnything,
+     {0.4, 1.15},
+     "boosters stand beside the first stage",
+     [](const Subject& s) {
+       return s.vehicle.boosters.count > 0 ? s.vehicle.boosters.bottom_station_m / s.length_m() : kNothing;
+     }},
+    {"boosters.nozzle_station_m",
+     "is, as part of the boosters' bottom_station_m,",
+     "",
+     kAnything,
+     {0.5, 1.05},
+     "the nozzles end inside the base",
+     [](const Subject& s) {
+       const Boosters& b = s.vehicle.boosters;
+       return b.count > 0 ? b.nozzle_station_m / b.bottom_station_m : kNothing;
+     }},
     {"limits.q_max_pa",
      "is",
      "Pa",

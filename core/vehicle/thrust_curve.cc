@@ -49,6 +49,12 @@ void Describe(Fields& fields, ThrustCurve& curve) {
       "its integral is the propellant, within 1 %; default: proportional to the thrust");
   fields.OptionalQuantities("chamber_pressure", kGasPressure, kNonNegative, 2, kThrustCurveRows,
                             curve.pressure_pa, "of the test; checked against the thrust, not used in flight");
+  // Its reader compares them with the vehicle; nothing else uses them.
+  std::optional<double> stated_kg;
+  fields.OptionalNumber("published_propellant_mass_kg", kPositive, stated_kg,
+                        "as the header of an .eng file states it; the vehicle's, within 1 %");
+  fields.OptionalNumber("published_motor_mass_kg", kPositive, stated_kg,
+                        "with propellant, likewise; at most the mass of what it is a part of");
   fields.Check([&] {
     const auto refuse_count = [&](std::size_t count, const std::string& what, const std::string& allowed) {
       fields.Refuse(

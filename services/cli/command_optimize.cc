@@ -31,10 +31,11 @@ struct OptimizeOptions {
   int seeds = 0;    ///< 0: one optimisation that writes its reference; else a study that writes nothing
 };
 
-void PrintInjection(const OptimizationResult& result, const std::optional<OrbitErrors>& flown) {
+void PrintInjection(const OptimizationResult& result, const std::optional<CheckFlight>& check) {
+  const bool flown = check && check->completed();
   fmt::print("{:<26}{:>12}{:>16}{:>12}{:>14}", "injection", "desired", "reached", "error", "half the step");
   fmt::print("{}\n", flown ? fmt::format("{:>14}", "closed loop") : "");
-  for (const InjectionRow& row : InjectionRows(result, flown)) {
+  for (const InjectionRow& row : InjectionRows(result, check)) {
     // Rounded to what is shown, and never a negative zero.
     fmt::print("{:<26}{:>12.6g}{:>16.7f}{:>+12.2g}{:>+14.2g}", row.name, row.desired,
                std::round(row.reached * 1e7) / 1e7 + 0.0, row.error, row.halved);
@@ -42,12 +43,13 @@ void PrintInjection(const OptimizationResult& result, const std::optional<OrbitE
   }
   fmt::print("{}\n", OrbitSentence(result.reference));
   if (flown) fmt::print("closed loop: errors of the nominal flight under the campaign's autopilot\n");
+  if (check) fmt::print("{}\n", CheckFlightText(*check));
 }
 
-void PrintText(const OptimizationResult& result, const std::optional<OrbitErrors>& flown) {
+void PrintText(const OptimizationResult& result, const std::optional<CheckFlight>& check) {
   const Reference& reference = result.reference;
   const FlightProgram& program = reference.program;
-  PrintInjection(result, flown);
+  PrintInjection(result, check);
   fmt::print(
       "\nflight program: alpha_max {:.6f} deg, t1 {:.4f} s, t3 {:.4f} s, t2 {:.4f} s, coast {:.4f} s, "
       "launch azimuth {:.6f} deg\n",
@@ -104,13 +106,13 @@ ExitCode Optimize(const OptimizeOptions& options, const GlobalOptions& global) {
   WriteFoundReference(found, file);
   const OptimizationResult& result = found.result;
   if (global.json) {
-    fmt::print("{}\n", FoundReferenceJson(input.vehicle, result, file.string()).dump(2));
+    fmt::print("{}\n", FoundReferenceJson(input.vehicle, found, file.string()).dump(2));
   } else {
-    PrintText(result, found.flown);
+    PrintText(result, found.check);
     fmt::print("reference{}: {}\n", result.reached ? "" : ", which misses its target", file.string());
   }
-  if (result.reached) return kExitDone;
-  Tell("{}\n", result.statement);
+  if (found.reached()) return kExitDone;
+  Tell("{}\n", found.Statement());
   return kExitRequirementFailed;
 }
 

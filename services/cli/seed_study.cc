@@ -49,14 +49,14 @@ std::vector<Column> Columns(const std::vector<SeedRow>& rows) {
        [](const SeedRow& r) { return Deg(r.program.launch_azimuth_rad); }, false},
       {"q*alpha", "q_alpha_max_pa_rad", 9, 1, [](const SeedRow& r) { return r.q_alpha_max_pa_rad; }, false}};
   const bool flown =
-      std::all_of(rows.begin(), rows.end(), [](const SeedRow& r) { return r.flown.has_value(); });
+      std::all_of(rows.begin(), rows.end(), [](const SeedRow& r) { return r.check && r.check->completed(); });
   if (flown) {
     columns.push_back({"6D dH,km", "flown_altitude_error_km", 9, 4,
-                       [](const SeedRow& r) { return r.flown->altitude_m * 1e-3; }, true});
+                       [](const SeedRow& r) { return r.check->errors.altitude_m * 1e-3; }, true});
     columns.push_back({"6D dV,m/s", "flown_velocity_error_m_s", 10, 4,
-                       [](const SeedRow& r) { return r.flown->velocity_m_s; }, true});
+                       [](const SeedRow& r) { return r.check->errors.velocity_m_s; }, true});
     columns.push_back({"6D dg,deg", "flown_flight_path_angle_error_deg", 10, 5,
-                       [](const SeedRow& r) { return Deg(r.flown->flight_path_angle_rad); }, true});
+                       [](const SeedRow& r) { return Deg(r.check->errors.flight_path_angle_rad); }, true});
   }
   columns.push_back(
       {"ascents", "ascents", 8, 0, [](const SeedRow& r) { return static_cast<double>(r.ascents); }, false});
@@ -102,9 +102,10 @@ std::vector<SeedRow> RunSeedStudy(const OptimizationInput& input, int seeds, con
                       FlyAscent(model, read.program, AscentOptionsOf(read.problem, steps)).orbit);
     };
     row.read_back = errors(options.steps);
-    row.reached = result.reached && IsWithin(row.read_back, result.tolerance);
     row.halved = errors(HalvedSteps(options.steps));
-    row.flown = FlyReference(input, read);
+    row.check = FlyReference(input, read);
+    row.reached =
+        result.reached && IsWithin(row.read_back, result.tolerance) && (!row.check || row.check->completed());
     row.program = read.program;
     for (const ConstraintMargin& c : read.constraints)
       if (c.name == "q_alpha_max_pa_rad") row.q_alpha_max_pa_rad = c.value;
@@ -139,6 +140,9 @@ std::string SeedStudyText(const std::vector<SeedRow>& rows) {
   summary("worst", true, [](const Spread& range) { return range.Magnitude(); });
   summary("least", false, [](const Spread& range) { return range.low; });
   summary("largest", false, [](const Spread& range) { return range.high; });
+  for (const SeedRow& row : rows)
+    if (row.check && !row.check->completed())
+      text += fmt::format("seed {}: {}\n", row.seed, CheckFlightText(*row.check));
   const auto reached =
       std::count_if(rows.begin(), rows.end(), [](const SeedRow& row) { return row.reached; });
   return text + fmt::format("reached from {} of {} seeds\n", reached, rows.size());
@@ -150,6 +154,7 @@ nlohmann::ordered_json SeedStudyJson(const std::vector<SeedRow>& rows) {
   for (const SeedRow& row : rows) {
     nlohmann::ordered_json object = {{"seed", row.seed}, {"reached", row.reached}};
     for (const Column& column : columns) object[column.json] = column.value(row);
+    if (row.check) object["check_flight"] = CheckFlightJson(*row.check);
     list.push_back(std::move(object));
   }
   return {{"schema", "dispersa/optimize-seeds/1"}, {"seeds", std::move(list)}};

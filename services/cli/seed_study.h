@@ -10,16 +10,17 @@
 #include <vector>
 
 #include "core/campaign_yaml/load.h"
+#include "core/trajectory/check_flight.h"
 #include "core/trajectory/optimize.h"
 
 namespace dispersa {
 
 struct SeedRow {
   std::uint64_t seed = 0;
-  bool reached = false;              ///< as written and read back too
+  bool reached = false;              ///< as written and read back too, and by the check flight
   OrbitErrors read_back;             ///< of the program as written to text, read again and flown again
   OrbitErrors halved;                ///< the same with half the steps
-  std::optional<OrbitErrors> flown;  ///< closed loop, if the campaign has an autopilot
+  std::optional<CheckFlight> check;  ///< closed loop, if the campaign has an autopilot
   FlightProgram program;
   double q_alpha_max_pa_rad = 0.0;
   std::int64_t ascents = 0;

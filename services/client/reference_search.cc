@@ -40,18 +40,30 @@ TrajectoryOptions SearchOptions(const OptimizationInput& input, int threads) {
   return options;
 }
 
-std::optional<OrbitErrors> FlyReference(const OptimizationInput& input, const Reference& reference) {
+std::optional<CheckFlight> FlyReference(const OptimizationInput& input, const Reference& reference) {
   if (!input.autopilot) return std::nullopt;
   Campaign campaign;
   campaign.vehicle = input.vehicle;
   campaign.autopilot = *input.autopilot;
   campaign.reference = reference;
   const CaseResult result = CampaignFlights(campaign).FlyNominal();
-  if (result.outcome != Outcome::kCompleted) return std::nullopt;
+  CheckFlight flight{result.outcome, result.end_time_s, result.reason};
+  if (!flight.completed()) return flight;
   const auto metric = [&](const char* name) { return result.metrics[MetricColumn(name)]; };
-  return OrbitErrors{metric("injection_altitude_error_km") * 1e3, metric("injection_velocity_error_m_s"),
-                     metric("injection_flight_path_angle_error_deg") * kRadPerDeg,
-                     metric("inclination_error_deg") * kRadPerDeg};
+  flight.errors = {metric("injection_altitude_error_km") * 1e3, metric("injection_velocity_error_m_s"),
+                   metric("injection_flight_path_angle_error_deg") * kRadPerDeg,
+                   metric("inclination_error_deg") * kRadPerDeg};
+  return flight;
+}
+
+nlohmann::ordered_json CheckFlightJson(const CheckFlight& flight) {
+  return {{"outcome", OutcomeName(flight.outcome)},
+          {"end_time_s", Number(flight.end_time_s)},
+          {"reason", flight.reason}};
+}
+
+std::string FoundReference::Statement() const {
+  return result.reached && !reached() ? CheckFlightText(*check) : result.statement;
 }
 
 FoundReference FindReference(const OptimizationInput& input, int threads, Observer& observer) {
@@ -60,7 +72,7 @@ FoundReference FindReference(const OptimizationInput& input, int threads, Observ
   reference.name = input.name;
   reference.vehicle_sha256 = input.vehicle_sha256;
   reference.target_missed = found.result.statement;
-  if (found.result.reached) found.flown = FlyReference(input, reference);
+  if (found.result.reached) found.check = FlyReference(input, reference);
   return found;
 }
 
@@ -72,11 +84,12 @@ void RequireWritableReference(const std::string& option, const fs::path& file) {
 void WriteFoundReference(const FoundReference& found, const fs::path& file) {
   WriteFile(file, WriteReference(found.result.reference));
   WriteFile(Beside(file, ".csv"), AscentCsv(found.result.history));
-  WriteFile(Beside(file, ".html"), TrajectoryPage(found.result, found.flown));
+  WriteFile(Beside(file, ".html"), TrajectoryPage(found.result, found.check));
 }
 
-nlohmann::ordered_json FoundReferenceJson(const Vehicle& vehicle, const OptimizationResult& result,
+nlohmann::ordered_json FoundReferenceJson(const Vehicle& vehicle, const FoundReference& found,
                                           const std::string& file) {
+  const OptimizationResult& result = found.result;
   const Reference& reference = result.reference;
   const FlightProgram& program = reference.program;
   auto constraints = nlohmann::ordered_json::array();
@@ -91,7 +104,8 @@ nlohmann::ordered_json FoundReferenceJson(const Vehicle& vehicle, const Optimiza
     variables[variable.Name() + "_" + variable.unit_name()] = variable.Of(program) / variable.unit();
   return {{"schema", "dispersa/optimize/1"},
           {"reference", file},
-          {"reached", result.reached},
+          {"reached", found.reached()},
+          {"check_flight", found.check ? CheckFlightJson(*found.check) : nlohmann::ordered_json(nullptr)},
           {"orbit",
            {{"altitude_km", Number(reference.orbit.altitude_m * 1e-3)},
             {"velocity_m_s", Number(reference.orbit.velocity_m_s)},

@@ -8,6 +8,7 @@
 #include <string>
 
 #include "core/campaign_yaml/load.h"
+#include "core/trajectory/check_flight.h"
 #include "core/trajectory/optimize.h"
 #include "services/client/observer.h"
 
@@ -26,13 +27,20 @@ auto SearchOrInputError(const Function& function) {
   }
 }
 
-/// Injection errors of the nominal flight with six degrees of freedom under the input's autopilot. Nothing
-/// without an autopilot, or when the flight does not complete.
-std::optional<OrbitErrors> FlyReference(const OptimizationInput& input, const Reference& reference);
+/// The nominal flight with six degrees of freedom under the input's autopilot. Nothing without an autopilot.
+std::optional<CheckFlight> FlyReference(const OptimizationInput& input, const Reference& reference);
+
+/// {outcome, end_time_s, reason}
+nlohmann::ordered_json CheckFlightJson(const CheckFlight& flight);
 
 struct FoundReference {
   OptimizationResult result;         ///< named after the campaign, and the vehicle that it is for
-  std::optional<OrbitErrors> flown;  ///< FlyReference, if the target is reached
+  std::optional<CheckFlight> check;  ///< FlyReference, if the target is reached
+
+  /// Also by the check flight, if there is one.
+  bool reached() const { return result.reached && !(check && !check->completed()); }
+  /// How far the search got, or why the check flight was lost; empty if the target is reached.
+  std::string Statement() const;
 };
 /// A search that misses its target has still found something, which says so itself. Throws InputError,
 /// Interrupted.
@@ -44,7 +52,7 @@ void RequireWritableReference(const std::string& option, const std::filesystem::
 void WriteFoundReference(const FoundReference& found, const std::filesystem::path& file);
 
 /// Schema "dispersa/optimize/1". `file` is the place of the reference.
-nlohmann::ordered_json FoundReferenceJson(const Vehicle& vehicle, const OptimizationResult& result,
+nlohmann::ordered_json FoundReferenceJson(const Vehicle& vehicle, const FoundReference& found,
                                           const std::string& file);
 
 }  // namespace dispersa

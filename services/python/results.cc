@@ -157,9 +157,9 @@ py::tuple Optimize(const std::string& name, const std::optional<std::string>& te
     if (!out.empty()) RequireWritableReference("out", out);
     const FoundReference found = FindReference(input, ThreadsOrAll(threads), observer);
     if (!out.empty()) WriteFoundReference(found, out);
-    json = FoundReferenceJson(input.vehicle, found.result, out).dump(2);
+    json = FoundReferenceJson(input.vehicle, found, out).dump(2);
     reference = WriteReference(found.result.reference);
-    statement = found.result.statement;
+    statement = found.Statement();
   });
   return py::make_tuple(json, reference, statement);
 }

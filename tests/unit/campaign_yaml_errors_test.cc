@@ -492,8 +492,9 @@ TEST(CampaignYamlErrors, BadCellsOfATableAreFoundByLineAndColumn) {
   files.Edit("wind_statistics.csv", "10000,5,25,9,12", "10000, 5,much,-9,12");
   EXPECT_EQ(
       files.Texts(CheckFile(files.Path("campaign.yaml")).errors),
-      "wind_statistics.csv:4:10: mean_east_m_s[1]: 'much' is not a number, allowed: a number\n"
-      "wind_statistics.csv:4:15: sigma_north_m_s[1]: -9 is out of range, allowed: a number not below 0\n");
+      "wind_statistics.csv:4:10: mean_east_m_s[1]: 'much' is not a number, allowed: a number from -500 to "
+      "500\n"
+      "wind_statistics.csv:4:15: sigma_north_m_s[1]: -9 is out of range, allowed: a number from 0 to 500\n");
   files.Edit("wind_statistics.csv", "10000, 5,much,-9,12", "10000,5,25,9");
   EXPECT_EQ(files.Texts(CheckFile(files.Path("campaign.yaml")).errors),
             "wind_statistics.csv:4:1: the row has 4 cells, allowed: 5, as the header\n");

@@ -6,6 +6,7 @@
 #include <vector>
 
 #include "core/campaign_yaml/load.h"
+#include "core/input/read_value.h"
 #include "tests/unit/bad_input.h"
 
 namespace dispersa::campaign_yaml_plausibility_test {
@@ -268,6 +269,107 @@ TEST(CampaignYamlPlausibility, HarmlessTabsStay) {
   const InputFiles files;
   files.Edit("campaign.yaml", "name: trial", "name:\ttrial");
   EXPECT_TRUE(CheckFile(files.Path("campaign.yaml")).errors.empty());
+}
+
+// Files of soundings write such values where nothing was measured.
+TEST(CampaignYamlPlausibility, WindsOfNoValueAreRefused) {
+  const InputFiles files;
+  files.Edit("campaign.yaml", "  wind:", "  wind_profile: {table: wind.csv}\n  wind:");
+  for (const std::string value : {"-9999", "9999", "999.9", "-500.1"}) {
+    files.Write("wind.csv", "altitude_m,north_m_s,east_m_s\n0,0,5\n5000," + value + ",5\n20000,0,5\n");
+    EXPECT_EQ(
+        files.Texts(CheckFile(files.Path("campaign.yaml")).errors),
+        "wind.csv:3:6: north_m_s[1]: " + value + " is out of range, allowed: a number from -500 to 500\n");
+    files.Write("wind.csv", "altitude_m,north_m_s,east_m_s\n0,0,5\n5000,0," + value + "\n20000,0,5\n");
+    EXPECT_EQ(
+        files.Texts(CheckFile(files.Path("campaign.yaml")).errors),
+        "wind.csv:3:8: east_m_s[1]: " + value + " is out of range, allowed: a number from -500 to 500\n");
+  }
+  files.Write("wind.csv", "altitude_m,north_m_s,east_m_s\n0,0,5\n5000,-500,500\n20000,0,5\n");
+  EXPECT_TRUE(CheckFile(files.Path("campaign.yaml")).errors.empty());
+}
+
+TEST(CampaignYamlPlausibility, AColumnMayHaveAnyUnit) {
+  const InputFiles files;
+  files.Edit("campaign.yaml", "  wind:", "  wind_profile: {table: wind.csv}\n  wind:");
+  files.Write("wind.csv", "altitude_km;east_km_h;north_m_s\n0;36;-1,5\n20;72;2\n");
+  const WeatherTable table = *LoadCampaign(files.Path("campaign.yaml")).wind_table;
+  EXPECT_EQ(table.altitude_m, (std::vector<double>{0.0, 20e3}));
+  EXPECT_EQ(table.north_m_s, (std::vector<double>{-1.5, 2.0}));
+  EXPECT_DOUBLE_EQ(table.east_m_s[0], 10.0);
+  EXPECT_DOUBLE_EQ(table.east_m_s[1], 20.0);
+}
+
+// The numbers under another unit's name would be others.
+TEST(CampaignYamlPlausibility, NoOtherUnitIsProposed) {
+  EXPECT_EQ(DidYouMean("altitude_km", {"altitude_m"}), "");
+  EXPECT_EQ(DidYouMean("altitud_m", {"altitude_m"}), " (did you mean 'altitude_m'?)");
+  const InputFiles files;
+  files.Edit("campaign.yaml", "  wind:", "  wind_profile: {table: wind.csv}\n  wind:");
+  files.Write("wind.csv", "altitude_ft,north_m_s,east_m_s\n0,0,5\n60000,0,5\n");
+  EXPECT_EQ(files.Texts(CheckFile(files.Path("campaign.yaml")).errors),
+            "wind.csv:1:1: the unit of 'altitude_ft' is not known here, allowed: altitude_m, altitude_km, "
+            "altitude_mm, altitude_um\n");
+}
+
+// 270 deg and 6 sigma of 20 deg are 390 deg.
+TEST(CampaignYamlPlausibility, ANormalDirectionMayPassNorth) {
+  const InputFiles files;
+  files.Edit("campaign.yaml", "azimuth: uniform",
+             "azimuth: {distribution: normal, mean_deg: 270, sigma_deg: 20}");
+  EXPECT_EQ(files.Texts(CheckFile(files.Path("campaign.yaml")).errors), "");
+}
+
+TEST(CampaignYamlPlausibility, AHighSiteNamesItsGround) {
+  const InputFiles files;
+  const auto said = [&] {
+    const std::string text = files.Texts(CheckFile(files.Path("campaign.yaml")).warnings);
+    const std::size_t at = text.find("vehicle.yaml:3:62: site.altitude_m: ");
+    return at == std::string::npos ? text.find("ground") == std::string::npos ? "" : text
+                                   : text.substr(at, text.find('\n', at) - at);
+  };
+  files.Edit("campaign.yaml", "requirements:", "flight: {ends: impact}\nrequirements:");
+  EXPECT_EQ(said(), "");
+  files.Edit("vehicle.yaml", "altitude_m: 0}", "altitude_m: 201}");
+  EXPECT_EQ(said(),
+            "vehicle.yaml:3:62: site.altitude_m: the site is at 201 m, and flights end at 0 m: "
+            "descent.ground_altitude_m is not given, allowed: descent: {ground_altitude_m: x}, also where it "
+            "is 0");
+  files.Edit("vehicle.yaml", "hold_down_s", "descent: {ground_altitude_km: 0}\nhold_down_s");
+  EXPECT_EQ(said(), "");
+}
+
+TEST(CampaignYamlPlausibility, ARequirementOfTheWorseSideIsWarnedOf) {
+  const auto said = [](const std::string& requirement) {
+    const InputFiles files;
+    files.Edit("campaign.yaml", "metric: pitch_error_peak_deg, below: 0.5", requirement);
+    const std::string text = files.Texts(CheckFile(files.Path("campaign.yaml")).warnings);
+    const std::size_t at = text.find("worse ones");
+    return at == std::string::npos
+               ? ""
+               : text.substr(text.rfind('\n', at) + 1, text.find('\n', at) - text.rfind('\n', at) - 1);
+  };
+  EXPECT_EQ(said("metric: pitch_error_peak_deg, above: 0.75"),
+            "campaign.yaml:13:43: requirements[0].above: larger values of 'pitch_error_peak_deg' are the "
+            "worse ones, and these meet it, allowed: below, or within");
+  EXPECT_NE(said("metric: injection_altitude_error_km, above: 0.75"), "");
+  EXPECT_NE(said("metric: injection_altitude_error_km, below: -0.75"), "");
+  for (const char* sound : {"metric: pitch_error_peak_deg, below: 0.5", "metric: perigee_km, above: 300",
+                            "metric: injection_altitude_error_km, above: -0.75",
+                            "metric: injection_altitude_error_km, below: 0.75"})
+    EXPECT_EQ(said(sound), "") << sound;
+}
+
+// [95, 85] would search all but the ten degrees that are meant.
+TEST(CampaignYamlPlausibility, ReversedBoundsOfAnAzimuthAreRefused) {
+  const InputFiles files;
+  files.Edit("reference.yaml", "launch_azimuth_deg: [90, 170]", "launch_azimuth_deg: [170, 90]");
+  EXPECT_EQ(
+      files.Texts(CheckFile(files.Path("reference.yaml")).errors),
+      "reference.yaml:11:25: problem.bounds.launch_azimuth_deg: descends, and so goes through north, over "
+      "280 deg, allowed: [low, high]; through north at most half a turn, as [350, 10]\n");
+  files.Edit("reference.yaml", "launch_azimuth_deg: [170, 90]", "launch_azimuth_deg: [271, 90]");
+  EXPECT_EQ(files.Texts(CheckFile(files.Path("reference.yaml")).errors), "");
 }
 
 }  // namespace

@@ -370,7 +370,7 @@ TEST(WeatherFile, MayHaveTheAir) {
   files.Write("weather.csv",
               "altitude_km,north_m_s,east_m_s,pressure_hpa,temperature_k\n0,1,2,1010,300\n10,3,4,280,230\n");
   files.Edit("campaign.yaml", "  wind:", "  wind_profile: {table: weather.csv}\n  wind:");
-  EXPECT_THAT(files.Texts(CheckFile(files.Path("campaign.yaml")).errors), HasSubstr("altitude"));
+  EXPECT_EQ(files.Texts(CheckFile(files.Path("campaign.yaml")).errors), "");
   files.Write(
       "weather.csv",
       "altitude_m,north_m_s,east_m_s,pressure_hpa,temperature_k\n0,1,2,1010,300\n10000,3,4,280,230\n");

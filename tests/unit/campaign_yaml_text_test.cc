@@ -101,9 +101,69 @@ TEST(ParseCsv, SkipsAByteOrderMark) {
             std::vector<std::string>{"2"});
 }
 
+struct CsvForm {
+  const char* name;
+  const char* text;
+  std::vector<std::string> a, b;
+  const char* said = "";
+};
+void PrintTo(const CsvForm& form, std::ostream* out) { *out << form.name; }
+class CsvForms : public testing::TestWithParam<CsvForm> {};
+TEST_P(CsvForms, AreReadOrRefusedInFull) {
+  std::vector<InputProblem> problems;
+  const InputNode table = ParseCsv(GetParam().text, "f", problems);
+  EXPECT_EQ(Texts(problems), GetParam().said);
+  EXPECT_EQ(Column(table, "a"), GetParam().a);
+  EXPECT_EQ(Column(table, "b"), GetParam().b);
+}
+INSTANTIATE_TEST_SUITE_P(
+    Each, CsvForms,
+    testing::Values(
+        CsvForm{"Quotes", "\"a\", \"b\" \n\"1\" ,\" 2\"\n", {"1"}, {" 2"}},
+        CsvForm{"SeparatorInQuotes", "a,b\n\"x, y\",\"x \"\"z\"\"\"\n", {"x, y"}, {"x \"z\""}},
+        CsvForm{"SemicolonInAQuotedHeader", "a,b,\"c;d\"\n1,2,3\n", {"1"}, {"2"}},
+        CsvForm{"EmptyCells", "a,b\n,\"\"\n", {""}, {""}},
+        CsvForm{"Semicolons", "a;b\n1.5;2\n", {"1.5"}, {"2"}},
+        CsvForm{"DecimalCommas", "a;b\n-0,5;\"1,25e3\"\n7;x, y\n", {"-0.5", "7"}, {"1.25e3", "x, y"}},
+        CsvForm{"BothDecimalMarks",
+                "a;b\n1;2.5\n1,5;2\n",
+                {},
+                {},
+                "f:3:1: '1,5' has a decimal comma, and other numbers a decimal point, allowed: one decimal "
+                "mark in a table\n"},
+        CsvForm{"DecimalCommasBetweenCommas",
+                "a,b\n0,5,2\n",
+                {},
+                {},
+                "f:2:1: the row has 3 cells, allowed: 2, as the header. Decimal commas need ';' between "
+                "cells\n"},
+        CsvForm{"ThousandsBetweenCommas", "a,b\n\"1,234\",2\n", {"1,234"}, {"2"}},
+        CsvForm{"TooFew", "a,b\n1\n", {}, {}, "f:2:1: the row has 1 cells, allowed: 2, as the header\n"},
+        CsvForm{"OpenQuotes",
+                "a,b\n1,\"2\n",
+                {},
+                {},
+                "f:2:3: the quotes of this cell do not end with it, allowed: \"text\", with a quote inside "
+                "written twice\n"},
+        CsvForm{"TextBesideQuotes",
+                "a,b\n\"1\"2,3\n",
+                {},
+                {},
+                "f:2:1: the quotes of this cell do not end with it, allowed: \"text\", with a quote inside "
+                "written twice\n"}),
+    [](const auto& form) { return std::string(form.param.name); });
+
+TEST(ParseRasp, ACommentMayEndALine) {
+  std::vector<InputProblem> problems;
+  const InputNode curve =
+      ParseRasp("M 1200 9000 P 1500 1600 X ; made up\n0.1 100;ignition\n2 0 ; end\n", "f", problems);
+  EXPECT_EQ(Texts(problems), "");
+  EXPECT_EQ(Column(curve, "thrust_n"), (std::vector<std::string>{"0", "100", "0"}));
+}
+
 TEST(ParseRasp, SkipsAByteOrderMark) {
   std::vector<InputProblem> problems;
-  ParseRasp("\xEF\xBB\xBFM 1200 9000 P 1500 1600 X\n1 100\n2 0\n", "f", problems);
+  ParseRasp("\xEF\xBB\xBFM 1200 9000 P 1500 1600 X\n0.1 100\n2 0\n", "f", problems);
   EXPECT_EQ(Texts(problems), "");
 }
 

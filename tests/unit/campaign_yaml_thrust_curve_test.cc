@@ -21,7 +21,7 @@ constexpr char kMotor[] =
 // Made up.
 constexpr char kEng[] =
     "; a made-up motor\n"
-    "TRIAL-1 98 640 5-10 1.20 2.10 NOBODY\n"
+    "TRIAL-1 98 640 5-10 1500 1600 NOBODY\n"
     "   0.05 90000.0\n"
     "   0.50 100000\n"
     "   2.00 80000\n"
@@ -180,7 +180,7 @@ TEST(ThrustCurveFile, OfAThousandRowsIsNotThinned) {
 // One row more, of an .eng file, and rows of noise alone: no value below 0.
 TEST(ThrustCurveFile, OfAnEngFileIsThinnedToo) {
   const InputFiles files;
-  std::string text = "A 98 640 0 1 2 NOBODY\n";
+  std::string text = "A 98 640 0 1500 1600 NOBODY\n";
   for (int i = 1; i <= 1001; ++i)
     text += FormatNumber(0.02 * i) + " " + FormatNumber(i == 1001 ? 0.0 : i % 2 == 0 ? 50e3 : 1.0) + "\n";
   files.Write("curve.eng", text);
@@ -189,6 +189,16 @@ TEST(ThrustCurveFile, OfAnEngFileIsThinnedToo) {
   EXPECT_EQ(curve.thinned.rows, 1002u);
   EXPECT_EQ(curve.time_s.size(), kThrustCurveCorners);
   for (double thrust_n : curve.thrust_n) EXPECT_GE(thrust_n, 0.0);
+}
+
+// The format leaves out the point at ignition.
+TEST(ThrustCurveFile, ATenthIsEarly) {
+  const InputFiles files;
+  files.Write("curve.eng",
+              "TRIAL-1 98 640 5-10 1486 1600 NOBODY ; less by 0.93 %\n0.26 90000\n0.5 100000 ; peak\n"
+              "2 80000\n2.6 0\n");
+  EXPECT_EQ(MotorOf(files, "{thrust_curve: {reference: vacuum, table: curve.eng}}").thrust_curve.time_s,
+            (std::vector<double>{0.0, 0.26, 0.5, 2.0, 2.6}));
 }
 
 TEST(ThrustCurveFile, ChamberPressureOfAnotherTestIsUnusual) {
@@ -311,8 +321,8 @@ INSTANTIATE_TEST_SUITE_P(
                  "curve.eng:2:1: the header has 6 fields in place of 7, allowed: " HEADER "\n"},
         BadCurve{"DiameterOfWords", kEngMotor, "curve.eng", Eng(" 98 ", " wide "),
                  "curve.eng:2:9: the diameter is 'wide', allowed: a number above 0\n"},
-        BadCurve{"MorePropellantThanMotor", kEngMotor, "curve.eng", Eng("1.20", "3.20"),
-                 "curve.eng:2:21: the propellant of 3.20 kg is more than the motor's 2.10 kg, allowed: a "
+        BadCurve{"MorePropellantThanMotor", kEngMotor, "curve.eng", Eng("1500", "1700"),
+                 "curve.eng:2:21: the propellant of 1700 kg is more than the motor's 1600 kg, allowed: a "
                  "part of the "
                  "motor's mass\n"},
         BadCurve{
@@ -325,10 +335,40 @@ INSTANTIATE_TEST_SUITE_P(
             "curve.eng:5:4: the time 0.50 is not later than that before it, allowed: times that increase\n"},
         BadCurve{"NoEnd", kEngMotor, "curve.eng", Eng("   2.60 0.0\n", ""),
                  "curve.eng:6:1: the curve does not end, allowed: a last line with a thrust of 0\n"},
-        BadCurve{"SecondMotor", kEngMotor, "curve.eng", std::string(kEng) + "TRIAL-2 98 640 0 1 2 NOBODY\n",
+        BadCurve{
+            "SecondMotor", kEngMotor, "curve.eng", std::string(kEng) + "TRIAL-2 98 640 0 1 2 NOBODY\n",
+            "curve.eng:8:1: a second motor, 'TRIAL-2', follows the first, allowed: one motor in a file\n"},
+        BadCurve{"PointAfterTheEnd", kEngMotor, "curve.eng", std::string(kEng) + "3.0 5.0 ; late\n",
                  "curve.eng:8:1: the line comes after the thrust of 0 that ends the motor's curve, allowed: "
                  "one motor in "
                  "a file, and nothing but comments after it\n"},
+        // A tenth of 2.6 s is the last that is read: ATenthIsEarly.
+        BadCurve{"ClockOfTheTestStand", kEngMotor, "curve.eng", Eng("0.05", "0.261"),
+                 "curve.eng:3:4: the first time, 0.261 s, is more than a tenth of the curve's 2.6 s after "
+                 "ignition, allowed: times since ignition; from 0 s to the first one the thrust rises from "
+                 "0\n"},
+        BadCurve{"HeaderOfLessPropellant", kEngMotor, "curve.eng", Eng("1500", "1484"),
+                 "curve.eng:2:21: stages[0].motor.thrust_curve.table.published_propellant_mass_kg: the "
+                 "motor's header states 1484 kg of propellant, but propellant_mass_kg is 1500, allowed: the "
+                 "same mass in both, within 1 %\n"},
+        BadCurve{"HeaderOfMorePropellant", kEngMotor, "curve.eng", Eng("1500", "1516"),
+                 "curve.eng:2:21: stages[0].motor.thrust_curve.table.published_propellant_mass_kg: the "
+                 "motor's header states 1516 kg of propellant, but propellant_mass_kg is 1500, allowed: the "
+                 "same mass in both, within 1 %\n"},
+        BadCurve{"HeaderOfAHeavierMotor", kEngMotor, "curve.eng", Eng("1600", "99000"),
+                 "curve.eng:2:26: stages[0].motor.thrust_curve.table.published_motor_mass_kg: the motor's "
+                 "header states 99000 kg for the whole motor, which is a part of 3000 kg, allowed: a motor "
+                 "that is no heavier than the whole\n"},
+        BadCurve{"Utf16", kEngMotor, "curve.eng", "\xFF\xFEX",
+                 "curve.eng:1:1: the byte 0xFF is no UTF-8: the file is in another encoding, such as UTF-16, "
+                 "allowed: text in UTF-8\n"},
+        BadCurve{"Utf16WithoutMark", kCsvMotor, "curve.csv", std::string("t\0i\0", 4),
+                 "curve.csv:1:2: the byte 0x00 is no UTF-8: the file is in another encoding, such as UTF-16, "
+                 "allowed: text in UTF-8\n"},
+        BadCurve{"OfRockSim", "{thrust_curve: {reference: vacuum, table: curve.rse}}", "curve.rse",
+                 "<engine-database>\n",
+                 "curve.rse:1:1: the file is XML, such as RockSim's motors (.rse), and no table, allowed: a "
+                 "CSV file; of a motor also an .eng file\n"},
         BadCurve{"NoMotor", kEngMotor, "curve.eng", "; nothing\n",
                  "curve.eng:1:1: the file holds no motor, allowed: " HEADER "\n"}),
     [](const auto& bad) { return std::string(bad.param.name); });

@@ -9,12 +9,15 @@
 #include <system_error>
 #include <vector>
 
+#include "core/campaign_yaml/load.h"
 #include "core/math/constants.h"
+#include "core/pages/trajectory_page.h"
 #include "services/cli/campaign_text.h"
 #include "services/cli/progress.h"
 #include "services/cli/seed_study.h"
 #include "services/cli/terminal.h"
 #include "services/cli/vehicle_text.h"
+#include "services/client/reference_search.h"
 #include "services/log/log.h"
 #include "services/program/failure.h"
 #include "tests/unit/sample_vehicle.h"
@@ -178,8 +181,11 @@ std::vector<SeedRow> SampleRows() {
   one.reached = true;
   one.read_back = {.altitude_m = 0.5, .velocity_m_s = -0.002, .flight_path_angle_rad = 3e-6 * kRadPerDeg};
   one.halved = {.altitude_m = 0.25, .velocity_m_s = 0.001, .flight_path_angle_rad = -2e-6 * kRadPerDeg};
-  one.flown =
-      OrbitErrors{.altitude_m = 1500.0, .velocity_m_s = -2.5, .flight_path_angle_rad = 0.05 * kRadPerDeg};
+  one.check =
+      CheckFlight{Outcome::kCompleted,
+                  600.0,
+                  "",
+                  {.altitude_m = 1500.0, .velocity_m_s = -2.5, .flight_path_angle_rad = 0.05 * kRadPerDeg}};
   one.program.alpha_max_rad = 4.0 * kRadPerDeg;
   one.program.t1_s = 3.5;
   one.program.t2_s = 160.0;
@@ -242,8 +248,47 @@ TEST(SeedStudy, AsJsonHasItsUnitsInTheNames) {
   EXPECT_NEAR(first["flown_flight_path_angle_error_deg"], 0.05, 1e-12);
   EXPECT_EQ(first["ascents"], 1234);
   // A value that one of the searches did not fly is in no row.
-  rows[1].flown.reset();
+  rows[1].check.reset();
   EXPECT_FALSE(SeedStudyJson(rows)["seeds"][0].contains("flown_altitude_error_km"));
+  EXPECT_FALSE(SeedStudyJson(rows)["seeds"][1].contains("check_flight"));
+}
+
+// A check flight that is lost is said, and is no missing column alone.
+TEST(SeedStudy, SaysWhichCheckFlightIsLost) {
+  std::vector<SeedRow> rows = SampleRows();
+  rows[1].check = CheckFlight{Outcome::kLostControl, 26.0, "the attitude error is large"};
+  const std::vector<std::string> lines = Lines(SeedStudyText(rows));
+  EXPECT_EQ(lines[6], "seed 8: check flight: lost at 26 s, because the attitude error is large");
+  EXPECT_EQ(lines[7], "reached from 1 of 2 seeds");
+  const auto json = SeedStudyJson(rows);
+  EXPECT_EQ(json["seeds"][1]["check_flight"].dump(),
+            R"({"outcome":"lost_control","end_time_s":26.0,"reason":"the attitude error is large"})");
+  EXPECT_FALSE(json["seeds"][0].contains("flown_altitude_error_km"));
+}
+
+// A reference that reaches the target and cannot be flown is none.
+TEST(CheckFlight, OfALostFlightDecides) {
+  const Vehicle vehicle = LoadVehicle(DISPERSA_CAMPAIGNS "/vehicles/slv4.yaml");
+  FoundReference found;
+  found.result.reference = LoadReference(DISPERSA_CAMPAIGNS "/references/slv4_500km.yaml");
+  found.result.reached = true;
+  const auto json = [&] { return FoundReferenceJson(vehicle, found, "r.yaml"); };
+  EXPECT_TRUE(found.reached());
+  EXPECT_EQ(found.Statement(), "");
+  EXPECT_TRUE(json()["check_flight"].is_null());
+  found.check = CheckFlight{Outcome::kCompleted, 512.25, ""};
+  EXPECT_TRUE(found.reached());
+  EXPECT_EQ(CheckFlightText(*found.check), "check flight: completed at 512.25 s");
+  EXPECT_EQ(json()["check_flight"].dump(), R"({"outcome":"completed","end_time_s":512.25,"reason":""})");
+  found.check = CheckFlight{Outcome::kLostControl, 26.0, "the attitude error is large"};
+  EXPECT_FALSE(found.reached());
+  EXPECT_EQ(found.Statement(), "check flight: lost at 26 s, because the attitude error is large");
+  EXPECT_EQ(json()["reached"], false);
+  EXPECT_NE(TrajectoryPage(found.result, found.check).find("check flight: lost at 26 s"), std::string::npos);
+  // A target that is missed is said first.
+  found.result.reached = false;
+  found.result.statement = "The target is not reached.";
+  EXPECT_EQ(found.Statement(), "The target is not reached.");
 }
 
 TEST(FitColumns, CutsWhatWouldWrap) {

@@ -10,6 +10,7 @@
 
 #include "core/campaign_yaml/load.h"
 #include "core/math/constants.h"
+#include "core/vehicle/mass.h"
 #include "core/vehicle/vehicle_figures.h"
 #include "tests/unit/sample_vehicle.h"
 
@@ -245,9 +246,9 @@ INSTANTIATE_TEST_SUITE_P(
               "up to 1 (the propellant is inside)"}},
         Slip{"StageOutsideTheProfile",
              [](Vehicle& v) { v.stages[0].diameter_m = 1.3; },
-             {"unusual stages[0].diameter_m is, as part of the profile's largest diameter about this stage's "
-              "propellant, 1.083 "
-              "| 0.4 to 1.02 (1 where the case is the skin, less inside a wider fairing)"}},
+             {"unusual stages[0].diameter_m is, as part of the profile's largest diameter about the first "
+              "stage's propellant, 1.083 | 0.7 to 1.02 (1 where the case is the skin; no fairing is about a "
+              "first stage)"}},
         Slip{"NozzleWiderThanTheBase",
              [](Vehicle& v) { v.stages[1].motor.nozzle_exit_area_m2 = 1.0; },
              {"unusual stages[1].motor.nozzle_exit_area_m2 is, as part of the stage's cross-section, 1.273 | "
@@ -297,9 +298,9 @@ INSTANTIATE_TEST_SUITE_P(
              [](Vehicle& v) {
                v.profile = {{ProfileShape::kCone, 2.0, 6.0}, {ProfileShape::kCylinder, 18.0, 6.0}};
              },
-             {"unusual stages[0].diameter_m is, as part of the profile's largest diameter about this stage's "
-              "propellant, 0.2 | "
-              "0.4 to 1.02 (1 where the case is the skin, less inside a wider fairing)",
+             {"unusual stages[0].diameter_m is, as part of the profile's largest diameter about the first "
+              "stage's propellant, 0.2 | 0.7 to 1.02 (1 where the case is the skin; no fairing is about a "
+              "first stage)",
               "unusual stages[1].diameter_m is, as part of the profile's largest diameter about this stage's "
               "propellant, "
               "0.1667 | 0.4 to 1.02 (1 where the case is the skin, less inside a wider fairing)",
@@ -404,12 +405,11 @@ INSTANTIATE_TEST_SUITE_P(
             [](Vehicle& v) { v.stages[0].gimbal.bandwidth_rad_s = 0.3; },
             {"impossible stages[0].gimbal.bandwidth_rad_s is 0.3 rad/s, which cannot be | 1 to 2000 rad/s "
              "(actuators of nozzles have 2 to 20 Hz; slower ones hold no launcher that the air turns over)"}},
-        Slip{
-            "LatitudeAndLongitudeSwapped",
-            [](Vehicle& v) { v.site.latitude_rad = -80.6 * kRadPerDeg; },
-            {"unusual site.latitude_rad is -80.6 deg | -42 to 64 deg (orbital launch sites lie between 39.3 "
-             "deg "
-             "south (Mahia) and 62.9 deg north (Plesetsk); latitude and longitude may have changed places)"}},
+        Slip{"LatitudeAndLongitudeSwapped",
+             [](Vehicle& v) { v.site.latitude_rad = -80.6 * kRadPerDeg; },
+             {"unusual site.latitude_rad is -80.6 deg | -45 to 79.5 deg (launch sites lie between 39.3 deg "
+              "south (Mahia) and 78.9 deg north (Ny-Alesund); latitude and longitude may have changed "
+              "places)"}},
         Slip{"PressureLimitOfABreeze",
              [](Vehicle& v) { v.limits.q_max_pa = 40.0; },
              {"unusual limits.q_max_pa is 40 Pa | 5000 to 300000 Pa (launchers meet 20,000 to 90,000 Pa)"}},
@@ -432,6 +432,296 @@ INSTANTIATE_TEST_SUITE_P(
               "0.01 to 60 "
               "deg/s2 (a rate of 1 deg/s should take neither minutes nor less than a cycle to stop)"}}),
     [](const auto& bad) { return std::string(bad.param.name); });
+
+// A row of a table of checks: what sets its value, a value just inside and one just outside, and the text of
+// that one up to its source. Nothing else of the vehicle is said.
+struct Edge {
+  const char* name;
+  void (*set)(Vehicle&, double);
+  double inside, outside;
+  std::string text;
+};
+void PrintTo(const Edge& edge, std::ostream* out) { *out << edge.name; }
+
+class VehicleEdges : public testing::TestWithParam<Edge> {};
+
+TEST_P(VehicleEdges, AreWhereTheTableSays) {
+  Vehicle vehicle = UsualVehicle();
+  GetParam().set(vehicle, GetParam().inside);
+  EXPECT_EQ(Texts(vehicle), std::vector<std::string>{});
+  GetParam().set(vehicle, GetParam().outside);
+  const std::vector<std::string> texts = Texts(vehicle);
+  ASSERT_EQ(texts.size(), 1u) << testing::PrintToString(texts);
+  EXPECT_EQ(texts[0].substr(0, GetParam().text.size()), GetParam().text);
+  EXPECT_EQ(texts[0].substr(GetParam().text.size(), 2), " (");
+}
+
+const std::string kTable = "aerodynamics.tables[0].table.";
+
+// One of two Mach numbers alone is changed: the least is told from the greatest.
+void SetAxial(Vehicle& v, double x) { v.aerodynamics[0].ca = {0.3, 0.3, x, 0.3}; }
+void SetPowerOff(Vehicle& v, double x) { v.aerodynamics[0].ca_power_off = {0.3, 0.3, 0.3 + x, 0.3}; }
+void SetSlope(Vehicle& v, double x) { v.aerodynamics[0].cn = {0.0, 3.0, 0.0, x}; }
+void SetPlace(Vehicle& v, double x) { v.aerodynamics[0].xcp_station_m = {4.0, 4.0, 20.0 * x, 4.0}; }
+void SetPitchDamping(Vehicle& v, double x) { v.aerodynamics[0].cmq_per_rad = {-1.0, x}; }
+void SetRollDamping(Vehicle& v, double x) { v.aerodynamics[0].clp_per_rad = {-1.0, x}; }
+// Pressure by thrust but at one time; the tail, below half of the thrust, is far off.
+void SetPressure(Vehicle& v, double megapascals, double part) {
+  ThrustCurve curve{{0.0, 50.0, 99.0, 100.0}, {200e3, 200e3, 101e3, 90e3}};
+  for (const double thrust_n : curve.thrust_n)
+    curve.pressure_pa.push_back(megapascals * 1e6 * thrust_n / 200e3);
+  curve.pressure_pa[2] /= part;
+  curve.pressure_pa[3] *= 0.01;
+  SetThrustCurve(curve, v.stages[0].motor);
+}
+void SetGreatestPressure(Vehicle& v, double x) { SetPressure(v, x, 1.0); }
+void SetPressureSpread(Vehicle& v, double x) { SetPressure(v, 6.0, x); }
+void SetLatitude(Vehicle& v, double x) { v.site.latitude_rad = x * kRadPerDeg; }
+void SetParachute(Vehicle& v, double x) {
+  v.descent.parachute_area_m2 = 10.0;
+  v.descent.ground_altitude_m = 1400.0;
+  v.descent.parachute_altitude_m = 1400.0 + x;
+}
+void SetPivot(Vehicle& v, double x) { v.stages[1].gimbal.pivot_station_m = 11.0 * x; }
+void SetFins(Vehicle& v, double leading_m, double chord_m) {
+  v.stages[0].fins = {FinSet{}, FinSet{}};
+  for (FinSet& fins : v.stages[0].fins) {
+    fins.leading_edge_station_m = 18.0;
+    fins.root_chord_m = 1.0;
+  }
+  v.stages[0].fins[1].leading_edge_station_m = leading_m;
+  v.stages[0].fins[1].root_chord_m = chord_m;
+}
+void SetFinsEnd(Vehicle& v, double x) { SetFins(v, 19.0, 20.0 * x - 19.0); }
+void SetFinsAbove(Vehicle& v, double x) { SetFins(v, 11.0 + x, 1.0); }
+void SetFinsBegin(Vehicle& v, double x) { SetFins(v, 20.0 * x, 0.1); }
+void SetProfile(Vehicle& v, double x) {
+  v.profile = {{ProfileShape::kCone, 2.0, 1.2 / x}, {ProfileShape::kCylinder, 18.0, 1.2 / x}};
+}
+void SetMargin(Vehicle& v, double x) {
+  v.stages.resize(1);
+  v.aerodynamics.resize(1);
+  Stage& stage = v.stages[0];
+  stage.gimbal = FixedNozzle(19.5);
+  stage.motor.thrust_n = 500e3;
+  stage.motor.burning_time_s = 40.0;
+  const StackMass stack = BuildStackMasses(v)[0];
+  const double cg_m = stack.At(stack.propellant_mass_kg).cg_station_m;
+  v.aerodynamics[0].reference_length_m = 1.2;
+  v.aerodynamics[0].xcp_station_m.assign(4, cg_m + 1.2 * x);
+}
+
+// Values that one number alone sets.
+void SetReferenceArea(Vehicle& v, double x) { v.aerodynamics[0].reference_area_m2 = 0.25 * kPi * 1.44 * x; }
+void SetReferenceLength(Vehicle& v, double x) { v.aerodynamics[0].reference_length_m = 1.2 * x; }
+void SetFirstMach(Vehicle& v, double x) { v.aerodynamics[0].mach = {x, 10.0}; }
+void SetLastMach(Vehicle& v, double x) { v.aerodynamics[1].mach = {0.0, x}; }
+void SetLastIncidence(Vehicle& v, double x) {
+  v.aerodynamics[0].incidence_rad = {0.0, x * kRadPerDeg};
+  v.aerodynamics[0].cn = {0.0, 3.0 * x * kRadPerDeg, 0.0, 3.0 * x * kRadPerDeg};
+}
+void SetAxialUncertainty(Vehicle& v, double x) { v.aerodynamics[0].uncertainty.ca = {0.1, x}; }
+void SetNormalUncertainty(Vehicle& v, double x) { v.aerodynamics[0].uncertainty.cn = {x, 0.1}; }
+void SetPlaceUncertainty(Vehicle& v, double x) { v.aerodynamics[0].uncertainty.xcp_m = {0.1, 20.0 * x}; }
+void SetForceAtZero(Vehicle& v, double x) { v.aerodynamics[0].cn = {0.0, 3.0, x, 3.0}; }
+void SetGimbalLimit(Vehicle& v, double x) { v.stages[1].gimbal.limit_rad = x * kRadPerDeg; }
+void SetBandwidth(Vehicle& v, double x) { v.stages[1].gimbal.bandwidth_rad_s = x; }
+void SetRateLimit(Vehicle& v, double x) { v.stages[1].gimbal.rate_limit_rad_s = x * kRadPerDeg; }
+void SetHinges(Vehicle& v, double x) { v.stages[1].gimbal.radius_m = 0.5 * x; }
+void SetPublishedFlow(Vehicle& v, double x) { v.stages[0].motor.published_mass_flow_kg_s = 92.0 * x; }
+void SetExitArea(Vehicle& v, double x) { v.stages[1].motor.nozzle_exit_area_m2 = 0.25 * kPi * x; }
+void SetJettison(Vehicle& v, JettisonTrigger trigger, double threshold) {
+  Jettison first, second;
+  first.mass_kg = second.mass_kg = 10.0;
+  first.trigger = JettisonTrigger::kAtTime;
+  first.threshold = 200.0;
+  second.trigger = trigger;
+  second.threshold = threshold;
+  v.stages[1].jettisoned = {first, second};
+}
+void SetJettisonTime(Vehicle& v, double x) { SetJettison(v, JettisonTrigger::kAtTime, x); }
+void SetJettisonAltitude(Vehicle& v, double x) { SetJettison(v, JettisonTrigger::kAtAltitude, 1e3 * x); }
+void SetJettisonFlux(Vehicle& v, double x) { SetJettison(v, JettisonTrigger::kAtHeatFlux, x); }
+void SetPressureLimit(Vehicle& v, double x) { v.limits.q_max_pa = x; }
+void SetProductLimit(Vehicle& v, double x) { v.limits.q_alpha_pa_rad = x; }
+void SetAxialLimit(Vehicle& v, double x) { v.limits.axial_load_g = x; }
+void SetThrusterImpulse(Vehicle& v, double x) { v.reaction_control.specific_impulse_s = x; }
+void SetGyro(Vehicle& v, double x) {
+  v.sensors.rate_gyros = {{.name = "one", .station_m = 1.0}, {.name = "other", .station_m = 20.0 * x}};
+}
+void SetInertialUnit(Vehicle& v, double x) { v.sensors.inertial_unit_station_m = 20.0 * x; }
+
+INSTANTIATE_TEST_SUITE_P(
+    Each, VehicleEdges,
+    testing::Values(
+        Edge{"LeastReferenceArea", SetReferenceArea, 0.301, 0.299,
+             "unusual aerodynamics.tables[0].reference_area_m2 is the cross-section of the stack's lowest "
+             "stage times 0.299 | 0.3 to 4"},
+        Edge{"GreatestReferenceArea", SetReferenceArea, 3.99, 4.01,
+             "unusual aerodynamics.tables[0].reference_area_m2 is the cross-section of the stack's lowest "
+             "stage times 4.01 | 0.3 to 4"},
+        Edge{"GreatestReferenceLength", SetReferenceLength, 1.99, 2.01,
+             "unusual aerodynamics.tables[0].reference_length_m is the diameter of the stack's lowest stage "
+             "times 2.01 | 0.5 to 2"},
+        Edge{"FirstMach", SetFirstMach, 0.9, 0.91, "unusual " + kTable + "mach begin at 0.91 | up to 0.9"},
+        Edge{"LastMach", SetLastMach, 2.0, 1.99,
+             "unusual aerodynamics.tables[1].table.mach end at 1.99 | 2 to 50"},
+        Edge{"LastIncidence", SetLastIncidence, 5.01, 4.99,
+             "unusual " + kTable + "incidence_deg ends at 4.99 deg | 5 to 180 deg"},
+        Edge{"AxialUncertainty", SetAxialUncertainty, 0.5, 0.51,
+             "unusual " + kTable + "ca_uncertainty is, as one standard deviation, at most 0.51 | up to 0.5"},
+        Edge{"NormalUncertainty", SetNormalUncertainty, 0.5, 0.51,
+             "unusual " + kTable + "cn_uncertainty is, as one standard deviation, at most 0.51 | up to 0.5"},
+        Edge{"PlaceUncertainty", SetPlaceUncertainty, 0.099, 0.101,
+             "unusual " + kTable +
+                 "xcp_uncertainty_m is, as one standard deviation and part of the stack's length, at most "
+                 "0.101 | up to 0.1"},
+        Edge{"ForceAtZero", SetForceAtZero, 0.001, 0.0011,
+             "unusual " + kTable + "cn is at an incidence of 0 0.0011 | -0.001 to 0.001"},
+        Edge{"NegativeForceAtZero", SetForceAtZero, -0.001, -0.0011,
+             "unusual " + kTable + "cn is at an incidence of 0 -0.0011 | -0.001 to 0.001"},
+        Edge{"GimbalLimit", SetGimbalLimit, 14.9, 15.1,
+             "unusual stages[1].gimbal.limit_rad lets a nozzle turn by 15.1 deg | 1 to 15 deg"},
+        Edge{"Bandwidth", SetBandwidth, 6.0, 5.9,
+             "unusual stages[1].gimbal.bandwidth_rad_s is 5.9 rad/s | 6 to 250 rad/s"},
+        Edge{"RateLimit", SetRateLimit, 119.0, 121.0,
+             "unusual stages[1].gimbal.rate_limit_rad_s lets a nozzle turn at 121 deg/s | 2 to 120 deg/s"},
+        Edge{"Hinges", SetHinges, 0.99, 1.01,
+             "unusual stages[1].gimbal.radius_m is, as part of half the stage's diameter_m, 1.01 | up to 1"},
+        Edge{"PublishedFlow", SetPublishedFlow, 1.24, 1.26,
+             "unusual stages[0].motor.published_mass_flow_kg_s is the flow that propellant and burning time "
+             "give times 1.26 | 0.8 to 1.25"},
+        Edge{"ExitArea", SetExitArea, 0.021, 0.019,
+             "unusual stages[1].motor.nozzle_exit_area_m2 is, as part of the stage's cross-section, 0.019 | "
+             "0.02 to 1"},
+        Edge{"JettisonTime", SetJettisonTime, 90.0, 89.0,
+             "unusual stages[1].jettisoned[1].at.time_s comes 89 s after lift-off | 90 to 1000 s after "
+             "lift-off"},
+        Edge{"JettisonAltitude", SetJettisonAltitude, 200.0, 201.0,
+             "unusual stages[1].jettisoned[1].at.altitude_m comes at 201 km | 60 to 200 km"},
+        Edge{"JettisonFlux", SetJettisonFlux, 10.0, 9.0,
+             "unusual stages[1].jettisoned[1].at.heat_flux_w_m2 waits for a free-molecular heating of 9 W/m2 "
+             "| "
+             "10 to 10000 W/m2"},
+        Edge{"PressureLimit", SetPressureLimit, 5000.0, 4999.0,
+             "unusual limits.q_max_pa is 4999 Pa | 5000 to 300000 Pa"},
+        Edge{"ProductLimit", SetProductLimit, 200.0, 199.0,
+             "unusual limits.q_alpha_pa_rad is 199 Pa rad | 200 to 30000 Pa rad"},
+        Edge{"AxialLimit", SetAxialLimit, 50.0, 51.0, "unusual limits.axial_load_g is 51 g | 2 to 50 g"},
+        Edge{"ThrusterImpulse", SetThrusterImpulse, 340.0, 341.0,
+             "unusual reaction_control.specific_impulse_s is 341 s | 30 to 340 s"},
+        Edge{"Gyro", SetGyro, 1.0, 1.01,
+             "impossible sensors.rate_gyros[1].station_m lies, as part of the vehicle's length, 1.01, which "
+             "cannot be | up to 1"},
+        Edge{"InertialUnit", SetInertialUnit, 1.0, 1.01,
+             "impossible sensors.inertial_unit.station_m lies, as part of the vehicle's length, 1.01, which "
+             "cannot be | up to 1"},
+        Edge{"LeastAxial", SetAxial, 0.02, 0.0199,
+             "unusual " + kTable + "ca is at least 0.0199 | 0.02 or more"},
+        Edge{"GreatestAxial", SetAxial, 2.0, 2.001,
+             "unusual " + kTable + "ca is at most, at the smallest incidence, 2.001 | up to 2"},
+        Edge{"LeastPowerOff", SetPowerOff, -0.0099, -0.0101,
+             "unusual " + kTable +
+                 "ca_power_off exceeds ca, at the smallest incidence, by at least -0.0101 | -0.01 to 0.5"},
+        Edge{"GreatestPowerOff", SetPowerOff, 0.499, 0.501,
+             "unusual " + kTable +
+                 "ca_power_off exceeds ca, at the smallest incidence, by at most 0.501 | -0.01 to 0.5"},
+        Edge{"LeastSlope", SetSlope, 0.5, 0.499,
+             "unusual " + kTable +
+                 "cn rises from an incidence of 0 by at least 0.499 a radian | 0.5 a radian or more"},
+        Edge{"GreatestSlope", SetSlope, 40.0, 40.1,
+             "unusual " + kTable +
+                 "cn rises from an incidence of 0 by at most 40.1 a radian | up to 40 a radian"},
+        Edge{"ForemostPressure", SetPlace, 0.0, -0.01,
+             "unusual " + kTable +
+                 "xcp_station_m lies, as part of the stack's length, at least -0.01 | up to 1"},
+        Edge{"AftmostPressure", SetPlace, 1.0, 1.01,
+             "unusual " + kTable +
+                 "xcp_station_m lies, as part of the stack's length, at most 1.01 | up to 1"},
+        Edge{"GreatestPitchDamping", SetPitchDamping, 0.0, 0.001,
+             "impossible " + kTable + "cmq_per_rad is at most 0.001, which cannot be | up to 0"},
+        Edge{"LeastPitchDamping", SetPitchDamping, -10000.0, -10001.0,
+             "unusual " + kTable + "cmq_per_rad is at least -10001 | -10000 or more"},
+        Edge{"GreatestRollDamping", SetRollDamping, 0.0, 0.001,
+             "impossible " + kTable + "clp_per_rad is at most 0.001, which cannot be | up to 0"},
+        Edge{"GreatestChamberPressure", SetGreatestPressure, 29.9, 30.1,
+             "unusual stages[0].motor.thrust_curve.table.chamber_pressure is at most 30.1 MPa | 0.2 to 30 "
+             "MPa"},
+        Edge{"LeastChamberPressure", SetGreatestPressure, 0.201, 0.199,
+             "unusual stages[0].motor.thrust_curve.table.chamber_pressure is at most 0.199 MPa | 0.2 to 30 "
+             "MPa"},
+        Edge{"PressureOfTheStrongPart", SetPressureSpread, 1.39, 1.41,
+             "unusual stages[0].motor.thrust_curve.table.chamber_pressure makes thrust over pressure change, "
+             "in the burn's strong part, by a factor of 1.41 | 1 to 1.4"},
+        Edge{"NorthernmostSite", SetLatitude, 78.9, 80.2,
+             "unusual site.latitude_rad is 80.2 deg | -45 to 79.5 deg"},
+        Edge{"SouthernmostSite", SetLatitude, -39.3, -45.1,
+             "unusual site.latitude_rad is -45.1 deg | -45 to 79.5 deg"},
+        Edge{"ParachuteNearTheGround", SetParachute, 50.0, 49.0,
+             "unusual descent.parachute.deployment_altitude_m is above the ground of the impact area by 49 m "
+             "| "
+             "50 m or more"},
+        Edge{
+            "ParachuteBelowTheGround", SetParachute, 300.0, -1.0,
+            "impossible descent.parachute.deployment_altitude_m is above the ground of the impact area by -1 "
+            "m, which cannot be | 0 m or more"},
+        Edge{"NozzleBehindTheStage", SetPivot, 1.049, 1.051,
+             "unusual stages[1].gimbal.pivot_station_m is, as part of the stage's bottom_station_m, 1.051 | "
+             "up "
+             "to 1.05"},
+        Edge{"FinsThatEndBehindTheStage", SetFinsEnd, 1.019, 1.021,
+             "unusual stages[0].fins[1].root_chord_m ends the root, as part of the stage's bottom_station_m, "
+             "at 1.021 | up to 1.02"},
+        Edge{"FinsOnTheStageAbove", SetFinsAbove, 0.0, -0.5,
+             "unusual stages[0].fins[1].leading_edge_station_m begins the root, behind the bottom_station_m "
+             "of "
+             "the stage above, by -0.5 m | 0 m or more"},
+        Edge{"FirstStageInAWiderProfile", SetProfile, 0.71, 0.69,
+             "unusual stages[0].diameter_m is, as part of the profile's largest diameter about the first "
+             "stage's propellant, 0.69 | 0.7 to 1.02"},
+        Edge{
+            "UnstableWithoutControl", SetMargin, 0.01, -0.01,
+            "unusual stages[0].fins put the centre of pressure of the uncontrolled vehicle behind its centre "
+            "of gravity, at lift-off, by -0.01 diameters | 0 diameters or more"}),
+    [](const auto& edge) { return std::string(edge.param.name); });
+
+TEST(VehiclePlausibility, FinsBehindTheBodyCannotBe) {
+  Vehicle vehicle = UsualVehicle();
+  SetFinsBegin(vehicle, 1.01);
+  const std::vector<std::string> texts = Texts(vehicle);
+  ASSERT_EQ(texts.size(), 1u) << testing::PrintToString(texts);
+  EXPECT_EQ(texts[0],
+            "impossible stages[0].fins[1].leading_edge_station_m begins the root, as part of the stage's "
+            "bottom_station_m, at 1.01, which cannot be | up to 1 (the fins are on the body)");
+}
+
+// Two tanks of different volumes: both count.
+TEST(VehiclePlausibility, TanksTakeTheirStageTogether) {
+  Vehicle vehicle = LoadVehicle(DISPERSA_CAMPAIGNS "/gallery/falcon9/vehicle.yaml");
+  Stage& stage = vehicle.stages[0];
+  ASSERT_EQ(stage.tanks.size(), 2u);
+  const double room_m3 = 0.25 * kPi * stage.diameter_m * stage.diameter_m *
+                         (stage.bottom_station_m - vehicle.stages[1].bottom_station_m);
+  // The second tank takes what is left but `spare`; its density keeps it filled.
+  const auto texts_of = [&](double part) {
+    Tank& tank = stage.tanks[1];
+    const double wanted_m3 = part * room_m3 - stage.tanks[0].Volume();
+    const double fill = tank.propellant_mass_kg / tank.density_kg_m3 / tank.Volume();
+    tank.diameter_m *= std::sqrt(wanted_m3 / tank.Volume());
+    tank.density_kg_m3 = tank.propellant_mass_kg / (fill * tank.Volume());
+    std::vector<std::string> found;
+    for (const std::string& text : Texts(vehicle))
+      if (text.find("stages[0].tanks take together") != std::string::npos) found.push_back(text);
+    return found;
+  };
+  EXPECT_TRUE(texts_of(0.949).empty());
+  EXPECT_EQ(
+      texts_of(0.951),
+      std::vector<std::string>{
+          "unusual stages[0].tanks take together, as part of the stage's diameter_m from its bottom to "
+          "the next stage's (of the last: to their top), 0.951 | 0.05 to 0.95 (the tanks are inside the "
+          "stage; of Vega's upper stage they take 0.09)"});
+}
 
 }  // namespace
 }  // namespace dispersa::vehicle_plausibility_test

@@ -442,14 +442,14 @@ def margins(what, *, cases=None, autopilot=None, base=None, frequency_band_perce
 
 class Optimization(dict):
     """The object that `dispersa optimize --json` prints, as a dict. `yaml`: the text of the reference file. `statement`: how
-    far the search missed its target, or empty."""
+    far the search missed its target, or why its check flight was lost; or empty."""
 
     yaml = ""
     statement = ""
 
     @property
     def reached(self):
-        """Whether the target is reached. A miss is a result too, not an exception."""
+        """Whether the target is reached, and the check flight completed. A miss is a result too, not an exception."""
         return self["reached"]
 
     @property
