@@ -63,11 +63,8 @@ class ComparisonOfEveryMetric : public testing::TestWithParam<Sides> {};
 TEST_P(ComparisonOfEveryMetric, HoldsItsEstimates) {
   const CaseColumns a = Flights(0.0, "a"), b = Flights(GetParam().moved, GetParam().draws_of_b);
   const Comparison comparison = CompareAll(a, b);
-  FlightKind kind(ControlLaw::kAdaptiveFuzzy);
-  kind.has_node = kind.has_argument_of_perigee = kind.has_true_anomaly = true;
-  kind.has_free_stage = kind.has_rail = true;
-  kind.ends = FlightEnd::kImpact;
-  ASSERT_EQ(comparison.metrics.size(), MetricsUnder(kUsualStages, kind).size());
+  ASSERT_EQ(comparison.metrics.size(),
+            MetricsUnder(kUsualStages, AnyUnder(ControlLaw::kAdaptiveFuzzy)).size());
   EXPECT_EQ(comparison.pairing.paired, std::string(GetParam().draws_of_b) == "a");
   for (const MetricComparison& metric : comparison.metrics) {
     ASSERT_TRUE(std::isfinite(metric.difference)) << metric.metric;
