@@ -92,14 +92,13 @@ TEST(BoostersFile, LeaveNoBendingMomentToJudge) {
   files.Edit("vehicle.yaml", kAfter, kBoosters);
   EXPECT_EQ(
       files.Texts(CheckFile(files.Path("campaign.yaml")).errors),
-      "vehicle.yaml:36:63: limits.bending_moment_kn_m: holds for a part of the flight: boosters' loads on "
+      "vehicle.yaml:36:70: limits.bending_moment_kn_m: holds for a part of the flight: boosters' loads on "
       "the core are not modelled, allowed: a limit of a vehicle with a profile and without boosters\n");
   files.Edit("vehicle.yaml", " bending_moment_kn_m: 50,", "");
   EXPECT_EQ(
       files.Texts(CheckFile(files.Path("campaign.yaml")).errors),
       "campaign.yaml:13:14: requirements[0].metric: 'bending_moment_max_n_m' is of flights with section "
-      "loads of every stage: a profile and no boosters, allowed: a metric of this law, or a law that has "
-      "it\n");
+      "loads of every stage: a profile and no boosters, allowed: a metric that these flights have\n");
 }
 
 constexpr char kGrain[] =

@@ -1,5 +1,5 @@
-// Columns of a history against what flew, computed from other columns and by hand: two stages, the first with two
-// nozzles that differ and boosters that differ, the second with a cross of four that differ.
+// Columns of a history against what flew, computed from other columns and by hand: two stages, the first with
+// two nozzles that differ and boosters that differ, the second with a cross of four that differ.
 #include <gtest/gtest.h>
 
 #include <cmath>
