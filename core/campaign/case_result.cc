@@ -23,15 +23,6 @@ FlightKind KindOf(const Campaign& campaign) {
   return kind;
 }
 
-// All that a law's flights may have: those of other needs are empty.
-FlightKind AnyUnder(ControlLaw law) {
-  FlightKind any(law);
-  any.has_free_stage = any.has_rail = true;
-  any.ends = FlightEnd::kImpact;
-  any.has_node = any.has_argument_of_perigee = any.has_true_anomaly = true;
-  return any;
-}
-
 std::vector<std::size_t> MetricsOfKind(const Campaign& campaign, const FlightKind& kind) {
   const std::size_t stages = ColumnClass(campaign.vehicle);
   std::vector<std::size_t> positions = MetricsUnder(stages, kind);

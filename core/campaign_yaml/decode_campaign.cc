@@ -443,7 +443,7 @@ class CampaignDescription {
   void CheckMeasured(Fields& requirement, const std::string& metric) {
     if (!has_autopilot_ || metric.empty()) return;
     if (const std::string why = WhyNotMeasured(campaign_, metric); !why.empty())
-      requirement.Refuse("metric", "'" + metric + "' " + why, "a metric of this law, or a law that has it");
+      requirement.Refuse("metric", "'" + metric + "' " + why, "a metric that these flights have");
   }
 
   // Names that an own metric may not have again.

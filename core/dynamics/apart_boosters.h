@@ -27,7 +27,7 @@ struct ApartBooster {
   MotorBurnLanes<T> burn;
   T y_m, z_m, dry_kg;
   DrainingMassLanes<T> tanks;
-  Vector<T> along;          ///< its thrust undeflected: canted and misaligned, times its factor
+  Vector<T> along;          ///< its thrust undeflected: canted and misaligned
   Vector<T> first, second;  ///< across it, where a positive angle turns the thrust about each hinge
   MaskOf<T> burning;
   T fraction, flow_kg_s, kg;  ///< now: of full thrust; propellant

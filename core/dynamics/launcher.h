@@ -112,7 +112,7 @@ struct EachBooster {
   double dry_kg = 0.0;
   DrainingMass tanks;  ///< of liquid propellant, by its mass
   double y_m = 0.0, z_m = 0.0;
-  /// Its thrust undeflected, canted and misaligned, times its factor; and where each hinge turns it.
+  /// Its thrust undeflected, canted and misaligned; and where each hinge turns it.
   Vector3 along = Vector3::UnitX(), first = Vector3::Zero(), second = Vector3::Zero();
 };
 /// The boosters of the first stage.

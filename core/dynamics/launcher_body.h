@@ -54,6 +54,7 @@ struct LauncherPlantLanes {
   bool jet_damping, flow_coriolis;
   Matrix<T> thrust_tilt;
   T thrust_offset_y_m, thrust_offset_z_m;
+  T nozzles_thrust;  ///< of all nozzles together, over that of the burn
   bool any_departs;  ///< some lane's nozzles are not all the same
   MaskOf<T> departs;
   NozzleDepartureLanes<T> nozzles[kNozzles];
@@ -522,7 +523,7 @@ DISPERSA_INLINE LoadsOf<T> LoadsAt(double earth_rate_rad_s, const LauncherPlantL
     thrust.moment_n_m = thrust.moment_n_m + Cross(arm, reaction.force_n) + reaction.couple_n_m;
   }
   if constexpr (Body::kBends) BendThrust(plant, phase, masses, body, thrust);
-  o.thrust_n = Select(phase.burning, thrust.thrust_n, none);
+  o.thrust_n = Select(phase.burning, thrust.thrust_n * plant.nozzles_thrust, none);
   o.flow_kg_s = Select(phase.burning, thrust.flow_kg_s, none);
   o.force_n = Select(phase.burning, o.force_n + thrust.force_n, o.force_n);
   T exit_station_m = plant.pivot_station_m;  // of what flows

@@ -159,6 +159,10 @@ DISPERSA_INLINE void SetLane(LauncherPlantLanes<T>& p, int lane, const LauncherP
       Lane(p.thrust_tilt.row[row][column], lane) = tilt[3 * column + row];
   Lane(p.thrust_offset_y_m, lane) = s.thrust_offset_y_m;
   Lane(p.thrust_offset_z_m, lane) = s.thrust_offset_z_m;
+  double nozzles_thrust = 1.0;
+  for (int i = 0; i < s.layout.nozzles; ++i)
+    nozzles_thrust += s.layout.share[i] * (s.nozzles.data()[i].thrust_factor - 1.0);
+  Lane(p.nozzles_thrust, lane) = nozzles_thrust;
   bool departs = false;
   for (int i = 0; i < kNozzles; ++i) departs |= SetLane(p.nozzles[i], lane, s.nozzles.data()[i]);
   p.nozzles_listed = plant.nozzles_are_listed();

@@ -216,7 +216,7 @@ Batch<T>::Batch(const FlightModel& model, FlightQueue& queue)
   for (T& weight : gyro_weight_) weight = T(0.0);
   unit_weight_ = unit_.truth.w = unit_.measured.w = T(1.0);
   gust_bottom_m_ = gust_top_m_ = T(0.0);
-  roll_rate_peak_rad_s_ = T(0.0);
+  roll_rate_peak_rad_s_ = T(kNoPeak);
   least_static_margin_ = T(kFarFuture);
 }
 
@@ -278,7 +278,7 @@ void Batch<T>::Start(int lane, FlightRecord* record) {
               in.gyro_bias_pitch_rad_s != 0.0 || in.gyro_bias_yaw_rad_s != 0.0);
   Lane(unit_weight_, lane) = 1.0;
   for (T& weight : gyro_weight_) Lane(weight, lane) = 0.0;
-  Lane(roll_rate_peak_rad_s_, lane) = 0.0;
+  Lane(roll_rate_peak_rad_s_, lane) = kNoPeak;
   Lane(least_static_margin_, lane) = kFarFuture;
   any_drift_ = Any(drifts_ & live_);
   any_judged_ = false;
@@ -292,7 +292,7 @@ void Batch<T>::Start(int lane, FlightRecord* record) {
   unit_.Start(lane, step_.motion().q, record->believed_attitude);
   SetStack(lane, 0);
   if (record->refusal != nullptr) {
-    End(lane, Outcome::kNumericalFailure, record->refusal);
+    End(lane, record->refused_as, record->refusal);
     return;
   }
   // Events before lift-off happen at lift-off.

@@ -207,10 +207,9 @@ void SetMasses(const Vehicle& vehicle, LauncherPlant& plant) {
     LauncherStack& stack = plant.stacks[i];
     stack.mass = masses[i];
     stack.mass_rows = vehicle.stages[i].flown_mass.rows;
-    // The loads of boosters on the core's sections are not modelled.
     if (vehicle.stages[i].restarts)
       stack.loads = plant.stacks[i - 1].loads;
-    else if (!vehicle.profile.empty() && (i > 0 || vehicle.boosters.count == 0))
+    else if (HasSectionLoads(vehicle, i))
       stack.loads = std::make_shared<const LoadTable>(BuildLoadTable(vehicle, static_cast<int>(i)));
     else if (vehicle.structure_beam)
       stack.loads = std::make_shared<const LoadTable>(BuildLiftTable(vehicle, static_cast<int>(i)));

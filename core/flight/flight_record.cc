@@ -3,7 +3,9 @@
 #include <algorithm>
 #include <array>
 #include <cmath>
+#include <cstdio>
 
+#include "core/dynamics/air_data.h"
 #include "core/dynamics/fall.h"
 #include "core/dynamics/integrator.h"
 #include "core/dynamics/jettison.h"
@@ -58,17 +60,23 @@ std::vector<FlightEvent> EventsOf(const FlightModel& model, const LauncherPlant&
       }
       events.push_back({beside.separation_s, EventKind::kBoosterSeparation, stage});
     }
-    if (i == 0 && rail_exit_s >= 0.0) events.push_back({rail_exit_s, EventKind::kRailExit, stage});
+    const bool leaves_rail = i == 0 && rail_exit_s >= 0.0,
+               slides_on = leaves_rail && rail_exit_s >= t.burnout_s;
+    if (leaves_rail && !slides_on) events.push_back({rail_exit_s, EventKind::kRailExit, stage});
     if (const auto& spin = definition.vehicle.stages[i].spin_motors;
         spin && t.ignition_s + spin->duration_s < t.burnout_s)
       events.push_back({t.ignition_s + spin->duration_s, EventKind::kSpinEnd, stage});
     std::stable_sort(events.begin() + static_cast<std::ptrdiff_t>(first), events.end(),
                      [](const FlightEvent& a, const FlightEvent& b) { return a.time_s < b.time_s; });
     events.push_back({t.burnout_s, EventKind::kBurnout, stage});
+    if (slides_on) events.push_back({rail_exit_s, EventKind::kRailExit, stage});
     if (i + 1 < timeline.size()) events.push_back({t.separation_s, EventKind::kSeparation, stage});
   }
   return events;
 }
+
+// On a rail, without thrust.
+constexpr double kLongestSlide_s = 600.0;
 
 // CVODE's absolute tolerances of the change within a tick: m, m/s, quaternion, rad/s, rad, rad/s.
 std::array<double, kLauncherSize> AbsoluteTolerances() {
@@ -251,22 +259,48 @@ void FlightRecord::StandOnRail() {
   phase.boosting = plant.boosters != nullptr;
   if (plant.has_apart_boosters()) phase.boosters_burning = (1u << plant.boosters->each.size()) - 1u;
   phase.ignition_s = events.front().time_s;
-  const auto end = std::find_if(events.begin(), events.end(), [](const FlightEvent& event) {
-    return event.kind == EventKind::kBurnout || event.kind == EventKind::kBoosterBurnout;
-  });
-  const std::optional<double> exit_s =
-      rail_->ExitTime(phase, model_.definition().autopilot.tick_s, end->time_s);
-  if (!exit_s) {
-    refusal_ = "the vehicle does not leave its rail before a burnout";
-    refusal = refusal_.c_str();
+  RailSlide::Way way;
+  const auto ends_at = [&](double limit_s) {
+    return rail_->Follow(phase, model_.definition().autopilot.tick_s, limit_s, way);
+  };
+  bool leaves = false, separates = false;
+  for (const FlightEvent& event : events) {
+    const bool burns_out = event.kind == EventKind::kBurnout,
+               boosters = event.kind == EventKind::kBoosterBurnout;
+    separates = event.kind == EventKind::kSeparation || event.kind == EventKind::kBoosterSeparation;
+    if (!burns_out && !boosters && !separates) continue;
+    leaves = ends_at(event.time_s);
+    if (leaves || separates) break;
+    if (burns_out) {
+      phase.burning = phase.boosting = false;
+      phase.burnt = true;
+    } else if (event.booster >= 0) {
+      phase.boosters_burning &= ~(1u << event.booster);
+      phase.boosting = phase.boosters_burning != 0;
+    } else {
+      phase.boosting = false;
+    }
+  }
+  // Without thrust it slides on until it stops.
+  if (!leaves && !separates && way.speed_m_s > 0.0) leaves = ends_at(way.time_s + kLongestSlide_s);
+  if (leaves) {
+    rail_exit_s_ = way.time_s;
+    events = EventsOf(model_, plant, inputs, model_.definition().last_ignition_s, rail_exit_s_);
     return;
   }
-  rail_exit_s_ = *exit_s;
-  events = EventsOf(model_, plant, inputs, model_.definition().last_ignition_s, rail_exit_s_);
+  char text[100];
+  const char* const how = way.stops() ? "stops and would slide back" : separates ? "separates" : "stays";
+  std::snprintf(text, sizeof text, "on its rail the vehicle %s, %.2f m of %.2f m from its foot, at %.1f s",
+                how, way.travel_m, rail->length_m, way.time_s);
+  refusal_ = text;
+  refusal = refusal_.c_str();
+  // A way that is no number is the computation's fault, all others are the vehicle's.
+  if (std::isfinite(way.travel_m)) refused_as = Outcome::kImpact;
 }
 
-void FlightRecord::LeaveRail(const double*) {
+void FlightRecord::LeaveRail(const double* y) {
   sums.free.left_rail = true;
+  sums.free.rail_exit_incidence_rad = TotalIncidence(equations_->Evaluate({}, rail_exit_s_, y).v_AB_B);
   sums.free.rail_exit_time_s = rail_exit_s_;
   sums.free.rail_exit_speed_m_s = rail_->speed_m_s();
   rail_.reset();

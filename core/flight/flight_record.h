@@ -79,7 +79,8 @@ class FlightRecord {
   const char* lost_attitude;  ///< reasons of a loss of control
   const char* lost_rate;
   const char* refusal = nullptr;  ///< reason why its inputs cannot be flown (null: they can)
-  double believed_attitude[4];    ///< q_IB (w, x, y, z) that the inertial unit is aligned to at lift-off
+  Outcome refused_as = Outcome::kNumericalFailure;
+  double believed_attitude[4];  ///< q_IB (w, x, y, z) that the inertial unit is aligned to at lift-off
   bool every_tick;     ///< has an observer, or metrics of its campaign's own: is watched at each tick
   bool watched;        ///< is watched at some ticks: a history is enough
   long history_ticks;  ///< ticks between two rows (0: no history)

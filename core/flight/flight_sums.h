@@ -16,26 +16,28 @@
 
 namespace dispersa {
 
+/// What the largest of magnitudes is without any of them: no magnitude.
+inline constexpr double kNoPeak = -1.0;
+
 /// Sums of a signed angle over ticks.
 struct ErrorSums {
   double squares = 0.0;
-  double peak = -1.0;        ///< largest magnitude, negative without ticks
+  double peak = kNoPeak;     ///< largest magnitude
   double peak_time_s = 0.0;  ///< when it was first reached
   double count = 0.0;
 };
 
-/// Sums and maxima over ticks, from 0: for one flight (T = double) or for W flights side by side.
+/// Sums over ticks, and largest magnitudes: for one flight (T = double) or for W flights side by side.
 template <class T>
 struct TickSums {
-  T itae_rad_s2, deflection_rate_peak_rad_s, saturated_ticks, travel_rad;
-  T q_max_pa, q_alpha_max_pa_rad, alpha_max_rad, axial_load_max_g, lateral_load_max_g;
-  T bending_moment_max_n_m, bending_moment_station_m;
-  T v_outside_ticks, v_falling_ticks, departure_norm2_peak;
+  T itae_rad_s2 = T(0.0), saturated_ticks = T(0.0), travel_rad = T(0.0);
+  T v_outside_ticks = T(0.0), v_falling_ticks = T(0.0), bending_moment_station_m = T(0.0);
+  T deflection_rate_peak_rad_s = T(kNoPeak), departure_norm2_peak = T(kNoPeak);
+  T q_max_pa = T(kNoPeak), q_alpha_max_pa_rad = T(kNoPeak), alpha_max_rad = T(kNoPeak);
+  T axial_load_max_g = T(kNoPeak), lateral_load_max_g = T(kNoPeak), bending_moment_max_n_m = T(kNoPeak);
 };
 
 struct FlightSums : TickSums<double> {
-  FlightSums() : TickSums<double>{} {}
-
   ErrorSums pitch[kMaxStages];    ///< powered flight, by stage
   ErrorSums coast;                ///< pitch
   ErrorSums yaw, roll;            ///< powered flight
@@ -120,6 +122,7 @@ struct LaneMetrics {
   DISPERSA_INLINE void StartFlight(int lane) {
     for (unsigned i = 0; i < kValues<T, LaneMetrics>; ++i) SetLaneAt<T>(*this, i, lane, 0.0);
     for (ErrorSumsLanes<T>* e : {&pitch, &coast, &yaw, &roll, &deflection}) SetLane(*e, lane, ErrorSums{});
+    SetLaneValues<T>(sums, lane, TickSums<double>{});
   }
   /// At a lane's burnout, and when it ends.
   DISPERSA_INLINE void EndStage(int lane, int stage, FlightSums& flight) {
@@ -238,7 +241,7 @@ struct LaneMetrics {
   DISPERSA_INLINE void AddLoadsOfLane(int lane, const Instant<double>& now) {
     LaneMetrics<double> one{};
     one.AddLoads(true, now);
-    // All other values of `one` are 0, which raises nothing.
+    // All other values of `one` are of no tick, which raises nothing.
     for (unsigned i = 0; i < kValues<T, TickSums<T>>; ++i) {
       const double to = LaneAt<double>(one.sums, i, 0);
       if (to > LaneAt<T>(sums, i, lane)) SetLaneAt<T>(sums, i, lane, to);

@@ -19,9 +19,10 @@ namespace {
 constexpr double kUndefined = std::numeric_limits<double>::quiet_NaN();
 
 double Rms(const ErrorSums& e) { return e.count > 0.0 ? Sqrt(e.squares / e.count) * kDegPerRad : kUndefined; }
-// Errors that are no numbers leave no peak.
-double Peak(const ErrorSums& e) { return e.peak >= 0.0 ? e.peak * kDegPerRad : kUndefined; }
-double Swing(double rad) { return rad >= 0.0 ? rad * kDegPerRad : kUndefined; }
+// Of what is no number nothing is the largest.
+double Largest(double magnitude) { return magnitude >= 0.0 ? magnitude : kUndefined; }
+double LargestAngle(double rad) { return Largest(rad) * kDegPerRad; }
+double Peak(const ErrorSums& e) { return LargestAngle(e.peak); }
 double Ratio(double part, double whole) { return whole > 0.0 ? part / whole : kUndefined; }
 
 // The results from which metrics are computed.
@@ -32,7 +33,9 @@ struct Measured {
 
   /// The value, if the flight got there.
   double AtHandover(double value) const { return sums.handed_over ? value : kUndefined; }
+  double Powered(double value) const { return pitch.count > 0.0 ? value : kUndefined; }
   double Guided(double value) const { return sums.guidance.acted ? value : kUndefined; }
+  double AtGuidedIgnition(double value) const { return sums.handed_over ? Guided(value) : kUndefined; }
   double AtInjection(double value) const {
     return sums.injected && std::isfinite(value) ? value : kUndefined;
   }
@@ -60,7 +63,12 @@ struct Traits {
   bool LawInfo::*of_law = nullptr;
   MetricNeeds needs = MetricNeeds::kNothing;
   Circle circle = {};
+  const char* over = nullptr;  // null: as others of its group or its needs
 };
+constexpr const char *kLastIgnition = "the last ignition",
+                     *kLoaded =
+                         "lift-off to the end of the last burn, or to the apogee of flights that go on; "
+                         "without coasts";
 constexpr Traits kByPhase{.by_phase = true}, kUsualByPhase{.by_phase = true, .is_usual = true},
     kUsual{.is_usual = true}, kOfRules{.of_law = &LawInfo::rules},
     kOfAdaptation{.of_law = &LawInfo::adaptation};
@@ -73,6 +81,11 @@ constexpr Traits kOfNode{.is_digested = false, .needs = MetricNeeds::kNode, .cir
     kOfArgumentOfPerigee{
         .is_digested = false, .needs = MetricNeeds::kArgumentOfPerigee, .circle = kCutAt180Deg},
     kOfTrueAnomaly{.is_digested = false, .needs = MetricNeeds::kTrueAnomaly, .circle = kCutAt180Deg};
+constexpr Traits kOfSectionLoads{.needs = MetricNeeds::kSectionLoads},
+    kOfLimits{.needs = MetricNeeds::kLimits};
+constexpr Traits kAtHandover{.over = kLastIgnition},
+    kAtGuidedIgnition{.is_digested = false, .over = kLastIgnition},
+    kOfThrusters{.over = "lift-off to the end of the last burn"};
 constexpr Traits kOfFreeStage{.is_digested = false, .needs = MetricNeeds::kFreeStage},
     kOfRail{.is_digested = false, .needs = MetricNeeds::kRail},
     kOfApogee{.is_usual = true, .is_digested = false, .needs = MetricNeeds::kApogee},
@@ -125,10 +138,10 @@ constexpr Row kRows[] = {
      [](const Measured& m) { return Peak(m.pitch); }, kUsualByPhase},
     {"pitch_error_peak_time", kSeconds, "t(max |e_θ|)", kAttitude, "Time of the pitch error's peak",
      "since lift-off; the first one, if there are several", kAnyway,
-     [](const Measured& m) { return m.pitch.count > 0.0 ? m.pitch.peak_time_s : kUndefined; }, kByPhase},
+     [](const Measured& m) { return m.pitch.peak >= 0.0 ? m.pitch.peak_time_s : kUndefined; }, kByPhase},
     {"pitch_error_itae", kDegreeSeconds2, "∫ t |e_θ| dt", kAttitude, "Pitch error, ITAE",
      "integral over powered flight of time since lift-off times magnitude of the pitch error", kLarger,
-     [](const Measured& m) { return m.sums.itae_rad_s2 * kDegPerRad; }},
+     [](const Measured& m) { return m.Powered(m.sums.itae_rad_s2 * kDegPerRad); }},
     {"yaw_error_rms", kDegrees, "rms e_ψ", kAttitude, "Yaw error, RMS",
      "root mean square about body z over powered flight", kLarger,
      [](const Measured& m) { return Rms(m.sums.yaw); }},
@@ -150,65 +163,68 @@ constexpr Row kRows[] = {
      [](const Measured& m) { return Rms(m.sums.deflection); }},
     {"deflection_rate_peak", kDegreesPerSecond, "max |dδ/dt|", kControlEffort, "Deflection rate, peak",
      "largest magnitude of any nozzle's rate over powered flight", kLarger,
-     [](const Measured& m) { return m.sums.deflection_rate_peak_rad_s * kDegPerRad; }},
+     [](const Measured& m) { return LargestAngle(m.sums.deflection_rate_peak_rad_s); }},
     {"deflection_saturated_fraction", kPure, "t_sat/t", kControlEffort, "Deflection saturated",
      "fraction of powered flight in which a nozzle is commanded to its limit or beyond", kLarger,
      [](const Measured& m) { return Ratio(m.sums.saturated_ticks, m.pitch.count); }},
     {"deflection_travel", kDegrees, "∫ |dδ|", kControlEffort, "Deflection travel",
      "angle travelled by a drive during burns, mean of all drives; shows the wear of actuators", kLarger,
-     [](const Measured& m) { return m.sums.travel_rad * kDegPerRad; }},
+     [](const Measured& m) { return m.Powered(m.sums.travel_rad * kDegPerRad); }},
     {"deflection_ripple", kDegrees, "δ_pp", kControlEffort, "Deflection ripple",
      "largest peak-to-peak of the pitch, yaw or roll deflection in windows of 1 s (10 per second), minus the "
      "least-squares line; without the first 5 s after an ignition, the kick (t1 to t2) and the gust's "
      "altitudes; of any origin, also turbulence",
-     kLarger, [](const Measured& m) { return Swing(m.sums.ripple_rad); }},
+     kLarger, [](const Measured& m) { return LargestAngle(m.sums.ripple_rad); }},
     {"deflection_limit_cycle", kDegrees, "δ_lc", kControlEffort, "Limit cycle of the deflection",
      "largest peak-to-peak of a sustained periodic oscillation of the pitch, yaw or roll deflection: 12 to "
      "24 periods of 0.3125 to 10 Hz with one phase, at the times of the deflection ripple; 0: none",
-     kLarger, [](const Measured& m) { return Swing(m.sums.limit_cycle_rad); }},
+     kLarger, [](const Measured& m) { return LargestAngle(m.sums.limit_cycle_rad); }},
 
     {"q_max", kPascals, "max q", kLoads, "Dynamic pressure, maximum",
      "largest outside the coast, burnouts included", kLarger,
-     [](const Measured& m) { return m.sums.q_max_pa; }},
+     [](const Measured& m) { return Largest(m.sums.q_max_pa); }},
     {"q_alpha_max", kPascalRadians, "max qα", kLoads, "Product of dynamic pressure and incidence, maximum",
      "where the dynamic pressure is at least 1 kPa", kLarger,
-     [](const Measured& m) { return m.sums.q_alpha_max_pa_rad; }, kUsual},
+     [](const Measured& m) { return Largest(m.sums.q_alpha_max_pa_rad); }, kUsual},
     {"alpha_max", kDegrees, "max α", kLoads, "Incidence as flown, maximum",
      "total incidence where the dynamic pressure is at least 1 kPa", kLarger,
-     [](const Measured& m) { return m.sums.alpha_max_rad * kDegPerRad; }},
+     [](const Measured& m) { return LargestAngle(m.sums.alpha_max_rad); }},
     {"axial_load_max", kStandardGravities, "max n_x", kLoads, "Axial load, maximum",
      "specific force (all forces but gravitation) along the body axis, over 9.80665 m/s²; outside the coast, "
      "burnouts included",
-     kLarger, [](const Measured& m) { return m.sums.axial_load_max_g; }},
+     kLarger, [](const Measured& m) { return Largest(m.sums.axial_load_max_g); }},
     {"lateral_load_max", kStandardGravities, "max n_yz", kLoads, "Lateral load, maximum",
      "specific force normal to the body axis at the centre of gravity, over 9.80665 m/s²; outside the coast, "
      "burnouts included",
-     kLarger, [](const Measured& m) { return m.sums.lateral_load_max_g; }},
+     kLarger, [](const Measured& m) { return Largest(m.sums.lateral_load_max_g); }},
     {"bending_moment_max", kNewtonMetres, "max M", kLoads, "Bending moment, maximum",
      "largest at the cross-sections at eighths of the stack's length, from inertia and flow ahead of them, "
      "with bending; outside the coast",
      kLarger,
      [](const Measured& m) {
        return m.sums.bending_moment_max_n_m > 0.0 ? m.sums.bending_moment_max_n_m : kUndefined;
-     }},
+     },
+     kOfSectionLoads},
     {"bending_moment_station", kMetres, "x(max M)", kLoads, "Station of the largest bending moment",
      "aft of the nose tip", kAnyway,
      [](const Measured& m) {
        return m.sums.bending_moment_max_n_m > 0.0 ? m.sums.bending_moment_station_m : kUndefined;
-     }},
+     },
+     kOfSectionLoads},
     {"structural_limit_exceeded", kPure, "–", kLoads, "Structural limit exceeded",
      "1 if a limit of the vehicle file was exceeded, else 0", kLarger,
-     [](const Measured& m) { return ExceedsStructure(m.definition.vehicle.limits, m.sums) ? 1.0 : 0.0; }},
+     [](const Measured& m) { return ExceedsStructure(m.definition.vehicle.limits, m.sums) ? 1.0 : 0.0; },
+     kOfLimits},
 
     {"handover_attitude_error", kDegrees, "|e|(t_ign)", kAttitude, "Attitude error at the last ignition",
      "magnitude of the rotation error that the reaction control leaves to the gimbals", kLarger,
-     [](const Measured& m) { return m.AtHandover(m.sums.handover_angle_rad * kDegPerRad); }},
+     [](const Measured& m) { return m.AtHandover(m.sums.handover_angle_rad * kDegPerRad); }, kAtHandover},
     {"handover_rate_error", kDegreesPerSecond, "|ω_e|(t_ign)", kAttitude, "Rate error at the last ignition",
      "magnitude of the rate error that the reaction control leaves to the gimbals", kLarger,
-     [](const Measured& m) { return m.AtHandover(m.sums.handover_rate_rad_s * kDegPerRad); }},
+     [](const Measured& m) { return m.AtHandover(m.sums.handover_rate_rad_s * kDegPerRad); }, kAtHandover},
     {"rcs_propellant", kKilograms, "m_rcs", kControlEffort, "Reaction control propellant",
      "expelled in coasts, and under thrust for roll if the nozzles do not control it", kLarger,
-     [](const Measured& m) { return m.sums.expelled_kg; }},
+     [](const Measured& m) { return m.sums.expelled_kg; }, kOfThrusters},
 
     {"injection_altitude", kKilometres, "h", kInjection, "Injection altitude",
      "geodetic, at the end of the last burn", kAnyway,
@@ -258,7 +274,8 @@ constexpr Row kRows[] = {
      kOfRules},
     {"adaptation_norm_peak", kDegreesPerSecond2, "max ‖Δα̂‖", kControlLaw, "Adaptation, largest norm",
      "largest distance of the pitch rules' consequents from their start", kLarger,
-     [](const Measured& m) { return Sqrt(m.sums.departure_norm2_peak) * kDegPerRad; }, kOfAdaptation},
+     [](const Measured& m) { return LargestAngle(Sqrt(Largest(m.sums.departure_norm2_peak))); },
+     kOfAdaptation},
     {"rules_fired", kPure, "n_rules", kControlLaw, "Rules fired",
      "number of pitch rules that were active at any time", kAnyway,
      [](const Measured& m) { return static_cast<double>(std::popcount(m.sums.rules_fired)); }, kOfRules},
@@ -291,17 +308,22 @@ constexpr Row kRows[] = {
      kNotDigested},
     {"guidance_ignition_shift", kSeconds, "Δt_ign", kGuidance, "Last ignition, moved by guidance",
      "time of the last ignition minus the reference's", kAnyway,
-     [](const Measured& m) { return m.Guided(m.sums.guidance.ignition_shift_s); }, kNotDigested},
+     [](const Measured& m) { return m.AtGuidedIgnition(m.sums.guidance.ignition_shift_s); },
+     kAtGuidedIgnition},
     {"guidance_postponement", kSeconds, "t_wait", kGuidance, "Last ignition, postponed",
      "wait of the last ignition until the attitude settled", kLarger,
-     [](const Measured& m) { return m.Guided(m.sums.guidance.postponed_s); }, kNotDigested},
+     [](const Measured& m) { return m.AtGuidedIgnition(m.sums.guidance.postponed_s); }, kAtGuidedIgnition},
     {"guidance_excess_velocity", kMetresPerSecond, "ΔV_x", kGuidance, "Excess velocity",
      "of the last burn, used up by its turn in yaw, as planned at ignition", kAnyway,
-     [](const Measured& m) { return m.Guided(m.sums.guidance.excess_m_s); }, kNotDigested},
+     [](const Measured& m) { return m.AtGuidedIgnition(m.sums.guidance.excess_m_s); }, kAtGuidedIgnition},
     {"step_limit_fraction", kPure, "f/f_step", kIntegration, "Fastest part relative to the step limit",
      "largest ratio of the frequency of an actuator or bending mode, as dispersed, to the limit that the "
      "integration step resolves",
-     kLarger, [](const Measured& m) { return m.sums.step_limit_fraction; }, kNotDigested},
+     kLarger,
+     [](const Measured& m) {
+       return m.sums.step_limit_fraction > 0.0 ? m.sums.step_limit_fraction : kUndefined;
+     },
+     kNotDigested},
 
     {"apogee_altitude", kKilometres, "h_max", kFreeFlight, "Apogee altitude",
      "geodetic, where altitude stops growing after the last burn", kAnyway,
@@ -329,7 +351,7 @@ constexpr Row kRows[] = {
      kSmaller, [](const Measured& m) { return m.OffTheRail(m.sums.free.rail_exit_speed_m_s); }, kOfRail},
     {"roll_rate_peak", kDegreesPerSecond, "max |p|", kFreeFlight, "Roll rate, peak",
      "largest magnitude about the body axis while a stage without gimbal flies", kLarger,
-     [](const Measured& m) { return m.sums.free.roll_rate_peak_rad_s * kDegPerRad; }, kOfFreeStage},
+     [](const Measured& m) { return LargestAngle(m.sums.free.roll_rate_peak_rad_s); }, kOfFreeStage},
     {"static_margin_min", kPure, "min (x_CP − x_CG)/d", kFreeFlight, "Static margin, least",
      "centre of pressure aft of the centre of gravity, in diameters, while a stage without gimbal flies and "
      "the dynamic pressure is at least 1 kPa",
@@ -361,6 +383,11 @@ constexpr Row kRows[] = {
            AngleError(m.sums.orbit.true_anomaly_rad, OrbitOf(m.definition).true_anomaly_rad.value_or(0.0)));
      },
      kOfTrueAnomaly},
+
+    {"rail_exit_incidence", kDegrees, "α_rail", kFreeFlight, "Incidence off the rail",
+     "total, to the air and its wind, where the vehicle leaves the rail", kLarger,
+     [](const Measured& m) { return m.OffTheRail(m.sums.free.rail_exit_incidence_rad * kDegPerRad); },
+     kOfRail},
 };
 
 // Sums of all stages together. If several stages share a peak, the first stage has it.
@@ -424,6 +451,10 @@ bool Meets(const FlightKind& kind, MetricNeeds needs) {
       return kind.is_controlled;
     case MetricNeeds::kFreeStage:
       return kind.has_free_stage;
+    case MetricNeeds::kSectionLoads:
+      return kind.has_section_loads;
+    case MetricNeeds::kLimits:
+      return kind.has_limits;
     case MetricNeeds::kRail:
       return kind.has_rail;
     case MetricNeeds::kApogee:
@@ -440,6 +471,36 @@ bool Meets(const FlightKind& kind, MetricNeeds needs) {
   return false;
 }
 
+const char* OverOf(const Row& row) {
+  if (row.traits.over != nullptr) return row.traits.over;
+  switch (row.group) {
+    case kAttitude:
+    case kControlEffort:
+    case kControlLaw:
+      return "burns of stages that an autopilot controls";
+    case kLoads:
+      return kLoaded;
+    case kInjection:
+      return "the end of the last burn";
+    case kGuidance:
+      return "the last plan";
+    case kIntegration:
+      return "before lift-off";
+    default:
+      break;
+  }
+  switch (row.traits.needs) {
+    case MetricNeeds::kFreeStage:
+      return "flight of stages without gimbal, to the apogee";
+    case MetricNeeds::kRail:
+      return "where it leaves the rail";
+    case MetricNeeds::kApogee:
+      return "the apogee";
+    default:
+      return "the impact";
+  }
+}
+
 // The metrics of all stages.
 std::vector<Metric> AllMetrics() {
   std::vector<Metric> list;
@@ -450,6 +511,9 @@ std::vector<Metric> AllMetrics() {
                     .symbol = row.symbol,
                     .unit = row.unit.text,
                     .definition = row.definition,
+                    .over = phase == 0             ? OverOf(row)
+                            : phase == kPhases - 1 ? "coasts"
+                                                   : "the burn of stage " + std::to_string(phase),
                     .group = row.group,
                     .worse = row.worse,
                     .is_usual = row.traits.is_usual && phase == 0,
@@ -492,9 +556,19 @@ FlightKind KindOf(const Vehicle& vehicle, const AutopilotConfig& autopilot, cons
   kind.is_controlled = course.is_controlled;
   kind.has_free_stage = std::any_of(vehicle.stages.begin(), vehicle.stages.end(),
                                     [](const Stage& stage) { return !stage.is_controlled(); });
+  kind.has_section_loads = HasSectionLoads(vehicle, 0);
+  kind.has_limits = HasLimits(vehicle.limits);
   kind.has_rail = vehicle.rail && vehicle.rail->length_m > 0.0;
   kind.ends = course.ends;
   return kind;
+}
+
+FlightKind AnyUnder(ControlLaw law) {
+  FlightKind any(law);
+  any.has_free_stage = any.has_section_loads = any.has_limits = any.has_rail = true;
+  any.ends = FlightEnd::kImpact;
+  any.has_node = any.has_argument_of_perigee = any.has_true_anomaly = true;
+  return any;
 }
 
 bool HasMetric(const Metric& metric, const FlightKind& kind) {
@@ -509,6 +583,10 @@ std::string NeedsOf(const Metric& metric) {
       return "a stage that an autopilot controls";
     case MetricNeeds::kFreeStage:
       return "a stage without gimbal";
+    case MetricNeeds::kSectionLoads:
+      return "section loads of every stage: a profile and no boosters";
+    case MetricNeeds::kLimits:
+      return "limits of the vehicle's structure";
     case MetricNeeds::kRail:
       return "a rail";
     case MetricNeeds::kApogee:

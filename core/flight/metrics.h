@@ -45,8 +45,10 @@ constexpr const char* TitleOf(MetricGroup group) { return kMetricGroupTitles[sta
 /// What flights must have, besides their law, to have a metric.
 enum class MetricNeeds {
   kNothing,
-  kControl,    ///< a stage that an autopilot controls
-  kFreeStage,  ///< a stage that nothing controls
+  kControl,       ///< a stage that an autopilot controls
+  kFreeStage,     ///< a stage that nothing controls
+  kSectionLoads,  ///< of every stack: a profile, and no boosters, whose loads on the core are not modelled
+  kLimits,        ///< of the vehicle's structure
   kRail,
   kApogee,  ///< they end there, or later
   kImpact,
@@ -61,12 +63,16 @@ struct FlightKind {
   ControlLaw pitch_law;
   bool is_controlled = true;
   bool has_free_stage = false;
+  bool has_section_loads = false;  ///< of every stack
+  bool has_limits = false;
   bool has_rail = false;
   FlightEnd ends = FlightEnd::kInjection;
   // What the target names.
   bool has_node = false, has_argument_of_perigee = false, has_true_anomaly = false;
 };
 FlightKind KindOf(const Vehicle& vehicle, const AutopilotConfig& autopilot, const FlightCourse& course);
+/// All that flights under a law may have: those of other needs are empty.
+FlightKind AnyUnder(ControlLaw law);
 
 /// A metric that a flight does not define (a stage that it never reached) is NaN inside and NULL, empty or
 /// null outside.
@@ -76,6 +82,7 @@ struct Metric {
   std::string symbol;      ///< "max |e_θ|"
   std::string unit;        ///< "°" for instance (empty: a pure number)
   std::string definition;  ///< completes the title (empty if the title says all)
+  std::string over;        ///< the part of a flight that it is taken over: "the last ignition"
   MetricGroup group = MetricGroup::kAttitude;
   Worse worse = Worse::kLarger;
   bool is_usual = false;     ///< shown in full in every report, with or without a requirement

@@ -9,7 +9,7 @@ enum class Outcome {
   kCompleted,        ///< reached the end of the last stage's burn
   kLostControl,      ///< attitude error above 15° for 0.5 s, or a rate above 60 °/s
   kStructuralLimit,  ///< only if the vehicle's limits say so
-  kImpact,
+  kImpact,           ///< fell below the launch site, or did not get off its rail
   kNumericalFailure,
   kTimeout,  ///< of simulated time
 };

@@ -81,25 +81,24 @@ void RailSlide::Advance(const LauncherPhase& phase, double from_s, double to_s, 
   WriteState(StateAt(to_s, travel_m_, speed_m_s_, end.cg_station_m), y);
 }
 
-std::optional<double> RailSlide::ExitTime(const LauncherPhase& phase, double step_s, double limit_s) const {
-  double travel_m = 0.0, speed_m_s = 0.0;
-  for (double from_s = 0.0; from_s < limit_s;) {
-    const double to_s = std::min(from_s + step_s, limit_s);
-    const double before_m = travel_m, before_m_s = speed_m_s;
-    Step(phase, from_s, to_s, travel_m, speed_m_s);
-    if (travel_m >= rail_.length_m) {
-      double low_s = from_s, high_s = to_s;
-      for (int i = 0; i < 40; ++i) {
-        const double middle_s = 0.5 * (low_s + high_s);
-        double m = before_m, m_s = before_m_s;
-        Step(phase, from_s, middle_s, m, m_s);
-        (m < rail_.length_m ? low_s : high_s) = middle_s;
-      }
-      return high_s;
+bool RailSlide::Follow(const LauncherPhase& phase, double step_s, double limit_s, Way& way) const {
+  while (way.time_s < limit_s && !way.stops()) {
+    const double to_s = std::min(way.time_s + step_s, limit_s);
+    const Way before = way;
+    Step(phase, before.time_s, to_s, way.travel_m, way.speed_m_s);
+    way.time_s = to_s;
+    if (!(way.travel_m >= rail_.length_m)) continue;
+    double low_s = before.time_s, high_s = to_s;
+    for (int i = 0; i < 40; ++i) {
+      const double middle_s = 0.5 * (low_s + high_s);
+      double m = before.travel_m, m_s = before.speed_m_s;
+      Step(phase, before.time_s, middle_s, m, m_s);
+      (m < rail_.length_m ? low_s : high_s) = middle_s;
     }
-    from_s = to_s;
+    way.time_s = high_s;
+    return true;
   }
-  return std::nullopt;
+  return false;
 }
 
 }  // namespace dispersa

@@ -9,8 +9,6 @@
 // through the body as propellant burns; the state follows it. Method: classical Runge-Kutta of fourth order.
 #pragma once
 
-#include <optional>
-
 #include "core/dynamics/launcher.h"
 #include "core/flight/launch_frame.h"
 #include "core/vehicle/rail.h"
@@ -24,9 +22,16 @@ class RailSlide {
 
   /// Moves on, and writes the state at `to_s`.
   void Advance(const LauncherPhase& phase, double from_s, double to_s, double* y);
-  /// From the beginning to the end of the rail in steps of `step_s`: when it gets there. None if it does not
-  /// until `limit_s`.
-  std::optional<double> ExitTime(const LauncherPhase& phase, double step_s, double limit_s) const;
+  /// A way along the rail before the flight takes it.
+  struct Way {
+    double time_s = 0.0, travel_m = 0.0, speed_m_s = 0.0;
+
+    /// Above the rail's foot, which holds it until thrust exceeds weight and friction. It would slide back.
+    bool stops() const { return travel_m > 0.0 && !(speed_m_s > 0.0); }
+  };
+  /// Goes on in steps of `step_s` to the end of the rail, until it stops, or until `limit_s`. True if it gets
+  /// to the end.
+  bool Follow(const LauncherPhase& phase, double step_s, double limit_s, Way& way) const;
 
   double speed_m_s() const { return speed_m_s_; }
 

@@ -155,6 +155,7 @@ void ExportHdf5(const ResultFolder& folder, const std::filesystem::path& file) {
         column(path, info.unit, cases.metrics[i]);
         output.Attribute(path, "group", info.group);
         output.Attribute(path, "label", info.title);
+        if (!info.over.empty()) output.Attribute(path, "defined_over", info.over);
       }
     }
     std::filesystem::rename(temporary, file);

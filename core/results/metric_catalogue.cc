@@ -40,6 +40,7 @@ MetricInfo DescribeMetric(const std::string& name) {
     info.unit = metric->unit;
     info.group = TitleOf(metric->group);
     info.definition = metric->definition;
+    info.over = metric->over;
     info.worse = metric->worse;
     info.is_part = metric->is_part;
     info.known = true;

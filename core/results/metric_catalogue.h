@@ -13,6 +13,7 @@ struct MetricInfo {
   std::string unit;        ///< "°", "km", "" for a pure number
   std::string group;       ///< "Attitude" (empty for an unknown name)
   std::string definition;  ///< one sentence (empty for an unknown name)
+  std::string over;        ///< the part of a flight (empty for an unknown name)
   Worse worse = Worse::kLarger;
   bool is_part = false;  ///< of one stage or of the coast
   bool known = false;    ///< a metric of flights

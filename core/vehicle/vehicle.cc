@@ -346,6 +346,10 @@ int LastBurn(const Vehicle& vehicle, int stage) {
   return static_cast<int>(last);
 }
 
+bool HasSectionLoads(const Vehicle& vehicle, std::size_t stage) {
+  return !vehicle.profile.empty() && (stage > 0 || vehicle.boosters.count == 0);
+}
+
 bool CutsOffInFlight(const Vehicle& vehicle) {
   return std::any_of(vehicle.stages.begin(), vehicle.stages.end(),
                      [](const Stage& stage) { return EndsInFlight(stage.motor); });
@@ -376,6 +380,12 @@ std::vector<StructProblem> Problems(const Vehicle& vehicle) {
   CheckAims(vehicle, check);
   CheckJettisons(vehicle, check);
   CheckBoosters(vehicle, check);
+  check.Require(!(vehicle.limits.bending_moment_n_m > 0.0) || HasSectionLoads(vehicle, 0),
+                "limits.bending_moment_n_m",
+                vehicle.profile.empty()
+                    ? "has no sections to hold for: the vehicle has no profile"
+                    : "holds for a part of the flight: boosters' loads on the core are not modelled",
+                "a limit of a vehicle with a profile and without boosters");
   const ReactionControl& rcs = vehicle.reaction_control;
   std::vector<StructProblem> problems = check.Take();
   for (std::size_t i = 0; problems.empty() && i < count; ++i)

@@ -44,6 +44,10 @@ const Kind kKinds[] = {
     {"liquid", MADE_UP "electron_open_loop.yaml", {0, 1}, true},         // throttled; listed, a fairing
     {"guided_restart", SHIPPED "gallery/vega/campaign.yaml", {0, 1}, true},
     {"guided_liquid", SHIPPED "gallery/electron/campaign.yaml", {0, 1}, true},
+    {"rail_boosters", MADE_UP "rail_boosters.yaml", {0, 1}, true},    // bodies of their own
+    {"five_nozzles", MADE_UP "five_nozzles.yaml", {0, 1}, true},      // over a stage of five
+    {"two_planes", MADE_UP "two_planes.yaml", {0, 1}, true},          // motor out, and tables drawn
+    {"restart_masses", MADE_UP "restart_masses.yaml", {0, 1}, true},  // and a fairing
     {"jettison", SHIPPED "gallery/scout/campaign.yaml", {0, 1}, true},
     {"law_adaptive_fuzzy", SHIPPED "controllers.yaml"},
     {"law_composite_fuzzy",

@@ -63,10 +63,8 @@ class ComparisonOfEveryMetric : public testing::TestWithParam<Sides> {};
 TEST_P(ComparisonOfEveryMetric, HoldsItsEstimates) {
   const CaseColumns a = Flights(0.0, "a"), b = Flights(GetParam().moved, GetParam().draws_of_b);
   const Comparison comparison = CompareAll(a, b);
-  FlightKind kind(ControlLaw::kAdaptiveFuzzy);
-  kind.has_node = kind.has_argument_of_perigee = kind.has_true_anomaly = true;
-  kind.has_free_stage = kind.has_rail = true;
-  kind.ends = FlightEnd::kImpact;
+  FlightKind kind = AnyUnder(ControlLaw::kAdaptiveFuzzy);
+  kind.has_limits = false;
   ASSERT_EQ(comparison.metrics.size(), MetricsUnder(kUsualStages, kind).size());
   EXPECT_EQ(comparison.pairing.paired, std::string(GetParam().draws_of_b) == "a");
   for (const MetricComparison& metric : comparison.metrics) {

@@ -82,6 +82,25 @@ TEST(BoostersFile, ReadThrustCurvesAndStandInTheId) {
   EXPECT_NE(LoadCampaign(files.Path("campaign.yaml")).flight_id, campaign.flight_id);
 }
 
+// Bending moments are known of the flight after the boosters have left: neither a limit nor a requirement can
+// hold for that.
+TEST(BoostersFile, LeaveNoBendingMomentToJudge) {
+  const InputFiles files;
+  files.Edit("vehicle.yaml", "axial_load_g: 12,", "axial_load_g: 12, bending_moment_kn_m: 50,");
+  files.Edit("campaign.yaml", "pitch_error_peak_deg, below: 0.5", "bending_moment_max_n_m, below: 5e4");
+  EXPECT_EQ(files.Texts(CheckFile(files.Path("campaign.yaml")).errors), "");
+  files.Edit("vehicle.yaml", kAfter, kBoosters);
+  EXPECT_EQ(
+      files.Texts(CheckFile(files.Path("campaign.yaml")).errors),
+      "vehicle.yaml:36:70: limits.bending_moment_kn_m: holds for a part of the flight: boosters' loads on "
+      "the core are not modelled, allowed: a limit of a vehicle with a profile and without boosters\n");
+  files.Edit("vehicle.yaml", " bending_moment_kn_m: 50,", "");
+  EXPECT_EQ(
+      files.Texts(CheckFile(files.Path("campaign.yaml")).errors),
+      "campaign.yaml:13:14: requirements[0].metric: 'bending_moment_max_n_m' is of flights with section "
+      "loads of every stage: a profile and no boosters, allowed: a metric that these flights have\n");
+}
+
 constexpr char kGrain[] =
     "grain: {top_station_m: 8, bottom_station_m: 8.9, outer_diameter_m: 0.28, inner_diameter_m: 0.1}";
 void MakeLiquid(const InputFiles& files) {

@@ -234,6 +234,21 @@ TEST(Clusters, FlowOfTheStageIsTheSumOfItsEngines) {
   EXPECT_EQ(burn.vacuum_thrust_n, nominal.vacuum_thrust_n);
 }
 
+// Of each stage by its own engines: those beyond four count on through the vehicle.
+TEST(Clusters, FlowOfAnUpperStageIsThatOfItsOwnEngines) {
+  FlightDefinition definition = Definition(Octaweb());
+  definition.vehicle.stages[1].gimbal.nozzles = Octaweb();
+  const FlightModel model(definition);
+  FlightInputs inputs;
+  inputs.further_flow_factor[2] = 1.06;      // the seventh of the first stage
+  inputs.further_flow_factor[5 + 4] = 0.91;  // the ninth of the second
+  const LauncherPlant& nominal = model.nominal_plant();
+  const LauncherPlant plant = model.PlantFor(inputs);
+  for (const auto& [stage, factor] : {std::pair<std::size_t, double>{0, 1.06}, {1, 0.91}})
+    EXPECT_NEAR(plant.stacks[stage].burn.full_flow_kg_s,
+                nominal.stacks[stage].burn.full_flow_kg_s * (1.0 + (factor - 1.0) / 9.0), 1e-11);
+}
+
 // Moment of roll: all of the ring turned by d along it, T r sin d with the ring's thrust. At the command's
 // limit that is what the layout promises.
 TEST(Clusters, RollByTheRing) {

@@ -100,6 +100,23 @@ TEST(StepGyro, StandsStillWhereItDoesNotAct) {
   EXPECT_EQ(gyro.memory.output_rad_s.x, before.output_rad_s.x);
 }
 
+// Neither the attitude nor the time of a lane that does not measure moves.
+TEST(InertialUnit, StandsStillInLanesThatDoNotMeasure) {
+  lanes::InertialUnit<double> unit{};
+  const double believed[] = {1.0, 0.0, 0.0, 0.0};
+  const lanes::Turn<double> at_start{1.0, 0.0, 0.0, 0.0}, later{0.0, 1.0, 0.0, 0.0};
+  unit.Start(0, at_start, believed);
+  unit.drift_rad_s = {0.01, 0.0, 0.0};
+  unit.Measure(false, 5.0, later);
+  EXPECT_EQ(unit.time_s, 0.0);
+  EXPECT_EQ(unit.measured.w, 1.0);
+  EXPECT_EQ(unit.truth.w, 1.0);
+  // So that its next measurement covers all the time since: twice 0.01 rad in 2 s.
+  unit.Measure(true, 2.0, at_start);
+  EXPECT_EQ(unit.time_s, 2.0);
+  EXPECT_NEAR(2.0 * unit.measured.x, 0.02, 1e-6);
+}
+
 TEST(BuildSensors, SharesCountInTheStagesThatTheyName) {
   Vehicle vehicle = LoadVehicle(DISPERSA_CAMPAIGNS "/vehicles/slv4.yaml");
   vehicle.sensors.rate_gyros = {{"a", 1.0, 200.0, 0.5, 0.01, 3}, {"b", 2.0, 0.0, 0.7, 0.0, 1}};

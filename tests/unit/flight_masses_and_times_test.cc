@@ -59,6 +59,28 @@ TEST(BoosterTimes, AreDetectedOnATickAndEndWithTheStage) {
   }
 }
 
+// What a stage jettisons on its last burn is on board in all of them, and has no dispersed mass of its own.
+TEST(DispersedVehicle, WhatARestartLetsGoOfIsPartOfEachBurnsMass) {
+  Vehicle vehicle = Slv4();
+  Stage again = vehicle.stages.back();
+  again.restarts = true;
+  Jettison body;
+  body.mass_kg = 120.0;
+  again.jettisoned = {body};
+  vehicle.stages.back().jettisoned.clear();
+  vehicle.stages.push_back(again);
+  const std::size_t first = vehicle.stages.size() - 2;
+  for (const std::size_t burn : {first, first + 1}) vehicle.stages[burn].liftoff_mass_kg += body.mass_kg;
+  FlightInputs in;
+  in.dry_mass_factor[first] = 1.1;
+  const double dry_kg = DryMass(vehicle, static_cast<int>(first));
+  const Vehicle heavier = WithDispersedMasses(vehicle, in);
+  for (const std::size_t burn : {first, first + 1})
+    EXPECT_NEAR(heavier.stages[burn].liftoff_mass_kg,
+                1.1 * dry_kg + vehicle.stages[burn].propellant_mass_kg + body.mass_kg, 1e-9)
+        << burn;
+}
+
 // A heavier charge burns longer at the same thrust: total impulse over propellant, the exhaust velocity,
 // stays.
 TEST(DispersedVehicle, AThrustCurveIsStretchedWithItsPropellant) {

@@ -9,6 +9,7 @@
 
 #include <gtest/gtest.h>
 
+#include <array>
 #include <cmath>
 #include <map>
 #include <set>
@@ -30,6 +31,7 @@ FlightDefinition Definition() {
   definition.kick_end_s = 2.0;
   definition.target = {500e3, 7600.0, 0.1 * kDeg, 61.5 * kDeg};
   definition.vehicle.limits.lateral_load_g = 0.45;
+  definition.vehicle.profile = {{ProfileShape::kCone, 2.0, 1.2}, {ProfileShape::kCylinder, 18.0, 1.2}};
   return definition;
 }
 
@@ -330,7 +332,7 @@ TEST(MetricsRecorder, EveryMetricOfAMadeUpFlight) {
       {"guidance_ignition_shift_s", nan},
       {"guidance_postponement_s", nan},
       {"guidance_excess_velocity_m_s", nan},
-      {"step_limit_fraction", 0.0},
+      {"step_limit_fraction", nan},  // of no part that the recorder knows
       // Of flights that go on after injection, of rails and of stages without gimbal.
       {"apogee_altitude_km", nan},
       {"apogee_time_s", nan},
@@ -347,7 +349,8 @@ TEST(MetricsRecorder, EveryMetricOfAMadeUpFlight) {
       // Of targets that name them.
       {"node_error_deg", nan},
       {"argument_of_perigee_error_deg", nan},
-      {"true_anomaly_error_deg", nan}};
+      {"true_anomaly_error_deg", nan},
+      {"rail_exit_incidence_deg", nan}};
 
   const std::vector<double> values = flight.recorder.Finish();
   ASSERT_EQ(values.size(), MetricCount(kUsualStages));
@@ -393,11 +396,88 @@ TEST(MetricsRecorder, WhatAFlightDoesNotReachIsUndefined) {
                            "lyapunov_decreasing_fraction",
                            "semi_major_axis_error_km",
                            "inclination_error_deg",
-                           "guidance_converged"})
+                           "guidance_converged",
+                           "pitch_error_itae_deg_s2",
+                           "deflection_rate_peak_deg_s",
+                           "deflection_travel_deg",
+                           "q_max_pa",
+                           "q_alpha_max_pa_rad",
+                           "alpha_max_deg",
+                           "axial_load_max_g",
+                           "lateral_load_max_g",
+                           "bending_moment_max_n_m",
+                           "bending_moment_station_m",
+                           "adaptation_norm_peak_deg_s2",
+                           "step_limit_fraction"})
     EXPECT_TRUE(std::isnan(flight[name])) << name;
-  for (const char* name : {"pitch_error_itae_deg_s2", "q_max_pa", "axial_load_max_g", "rcs_propellant_kg",
-                           "structural_limit_exceeded", "rules_fired"})
+  for (const char* name : {"rcs_propellant_kg", "structural_limit_exceeded", "rules_fired"})
     EXPECT_EQ(flight[name], 0.0) << name;
+}
+
+// The loads at a burnout, of which some are of no tick before, leave all else as it is.
+TEST(MetricsRecorder, ABurnoutRaisesItsLoadsAlone) {
+  Recording flight;
+  LauncherInstant burnout;
+  burnout.loads.mass_kg = 100.0;
+  burnout.loads.force_n = Vector3(-6.0 * 100.0 * kStandardGravity, 0.0, 0.0);
+  flight.recorder.AddLoads(burnout);
+  EXPECT_NEAR(flight["axial_load_max_g"], 6.0, 1e-12);
+  EXPECT_EQ(flight["lateral_load_max_g"], 0.0);
+  EXPECT_EQ(flight["q_max_pa"], 0.0);
+  for (const char* name : {"alpha_max_deg", "q_alpha_max_pa_rad", "deflection_rate_peak_deg_s",
+                           "adaptation_norm_peak_deg_s2", "pitch_error_itae_deg_s2"})
+    EXPECT_TRUE(std::isnan(flight[name])) << name;
+}
+
+// Those of free stages; of a guided flight that is lost before its last ignition.
+TEST(MetricsRecorder, PeaksOfFreeStagesAndGuidanceNeedTheirPart) {
+  FlightDefinition definition = Definition();
+  for (Stage& stage : definition.vehicle.stages) stage.gimbal = FixedNozzle(stage.gimbal.pivot_station_m);
+  definition.course.is_controlled = false;
+  FlightSums sums;
+  const auto value = [&](const char* name) { return Measure(sums, definition).metrics[MetricColumn(name)]; };
+  EXPECT_TRUE(std::isnan(value("roll_rate_peak_deg_s")));
+  EXPECT_TRUE(std::isnan(value("static_margin_min")));
+  sums.free.roll_rate_peak_rad_s = 0.0;
+  EXPECT_EQ(value("roll_rate_peak_deg_s"), 0.0);
+
+  definition = Definition();
+  sums.guidance.acted = true;
+  for (const bool ignites : {false, true}) {
+    sums.handed_over = ignites;
+    for (const char* name :
+         {"guidance_ignition_shift_s", "guidance_postponement_s", "guidance_excess_velocity_m_s"})
+      EXPECT_EQ(std::isnan(value(name)), !ignites) << name;
+    EXPECT_EQ(value("guidance_converged"), 0.0);
+  }
+}
+
+// What is known of a part of the flight only is no maximum of the flight.
+TEST(MetricsRecorder, BendingMomentsNeedSectionLoadsOfEveryStage) {
+  FlightSums sums;
+  sums.bending_moment_max_n_m = 25e3;
+  sums.bending_moment_station_m = 6.0;
+  FlightDefinition beside = Definition(), bare = Definition();
+  beside.vehicle.boosters.count = 2;
+  bare.vehicle.profile.clear();
+  for (const char* name : {"bending_moment_max_n_m", "bending_moment_station_m"}) {
+    EXPECT_FALSE(std::isnan(Measure(sums, Definition()).metrics[MetricColumn(name)])) << name;
+    EXPECT_TRUE(std::isnan(Measure(sums, beside).metrics[MetricColumn(name)])) << name;
+    EXPECT_TRUE(std::isnan(Measure(sums, bare).metrics[MetricColumn(name)])) << name;
+  }
+}
+
+// On both sides of the turn at which angles begin again.
+TEST(MetricsRecorder, ErrorsOfTheNodeAreTheShorterWayRound) {
+  FlightDefinition definition = Definition();
+  FlightSums sums;
+  sums.injected = true;
+  for (const auto& [is_deg, wanted_deg, error_deg] :
+       {std::array{359.0, 1.0, -2.0}, {1.0, 359.0, 2.0}, {30.0, 10.0, 20.0}, {10.0, 200.0, 170.0}}) {
+    sums.orbit.ascending_node_rad = is_deg * kDeg;
+    definition.target.node_rad = wanted_deg * kDeg;
+    EXPECT_NEAR(Measure(sums, definition).metrics[MetricColumn("node_error_deg")], error_deg, 1e-9) << is_deg;
+  }
 }
 
 TEST(MetricsRecorder, PeakIsTheLargestMagnitudeAndItsFirstTime) {
@@ -417,8 +497,8 @@ TEST(MetricsRecorder, IncidenceCountsFromOneKilopascal) {
   Tick below = Powered(0.0), at = Powered(0.01);
   SetLoads(below, 999.9, 30.0, Vector3::Zero());
   flight.recorder.AddTick(below);
-  EXPECT_EQ(flight["alpha_max_deg"], 0.0);
-  EXPECT_EQ(flight["q_alpha_max_pa_rad"], 0.0);
+  EXPECT_TRUE(std::isnan(flight["alpha_max_deg"]));
+  EXPECT_TRUE(std::isnan(flight["q_alpha_max_pa_rad"]));
   SetLoads(at, 1000.0, 30.0, Vector3::Zero());
   flight.recorder.AddTick(at);
   EXPECT_NEAR(flight["alpha_max_deg"], 30.0, 1e-12);
@@ -432,7 +512,7 @@ TEST(MetricsRecorder, StructuralFlagNamesOnlyGivenLimits) {
   Tick s = Powered(0.0);
   SetLoads(s, 1e6, 50.0, Vector3(100.0, 100.0, 0.0));
   flight.recorder.AddTick(s);
-  EXPECT_EQ(flight["structural_limit_exceeded"], 0.0);
+  EXPECT_TRUE(std::isnan(flight["structural_limit_exceeded"]));
 
   for (const StructuralLimits& limits :
        {StructuralLimits{.q_max_pa = 1e3}, StructuralLimits{.q_alpha_pa_rad = 1e3},

@@ -157,6 +157,11 @@ INSTANTIATE_TEST_SUITE_P(
                 },
                 {"profile: is 19.000000 m long in all | sections that end at the first stage's "
                  "bottom_station_m, 20.000000 m"}},
+        Mistake{
+            "LimitOfSectionsThatTheVehicleHasNot",
+            [](Vehicle& v) { v.limits.bending_moment_n_m = 1e5; },
+            {"limits.bending_moment_n_m: has no sections to hold for: the vehicle has no profile | a limit "
+             "of a vehicle with a profile and without boosters"}},
         Mistake{"OneTableForTwoStacks",
                 [](Vehicle& v) { v.aerodynamics.pop_back(); },
                 {"aerodynamics.tables: has 1 tables | one table for each of the 2 stacks"}}),

@@ -8,6 +8,8 @@
 #include <vector>
 
 #include "core/flight/flight.h"
+#include "core/flight/flight_sums.h"
+#include "core/flight/ripple.h"
 #include "core/margins/linear_axis.h"
 #include "core/math/constants.h"
 #include "core/trajectory/ascent.h"
@@ -165,6 +167,85 @@ TEST(ApartBoosters, ForcesAndTheEquationOfRotation) {
   // The stage's own flow counts as if C, which is 6 mm beside it, were on the axis.
   EXPECT_NEAR((is - expected).norm(), 0.0, 1e-4 * expected.norm());
   EXPECT_GT((all.inertia.inverse() * carried).norm(), 1e-3 * expected.norm()) << "the flows count";
+}
+
+// Without a moment, so that nothing hides what little spin the grains' own propellant takes along. About the
+// axis and across it; all of the equation of rotation above, for centres on the axis.
+TEST(ApartBoosters, GrainsLoseTheSpinOfWhatBurns) {
+  const FlightDefinition definition = Boosted({0.0, 120.0, 240.0});
+  const LauncherPlant plant = FlightModel(definition).PlantFor({});
+  const double since_s = 6.0, h_s = 1e-3;
+  const Bodies all = ByHand(definition, plant, since_s);
+  const Matrix3 rate =
+      (ByHand(definition, plant, since_s + h_s).inertia - ByHand(definition, plant, since_s - h_s).inertia) /
+      (2.0 * h_s);
+  const double core_kg_s = plant.stacks[0].burn.full_flow_kg_s, lever = all.cg.x() - kPivot_m;
+  for (const Vector3& w : {Vector3(0.3, 0.0, 0.0), Vector3(0.0, 0.05, 0.0), Vector3(0.0, 0.0, -0.05)}) {
+    std::array<double, kLauncherSize> y{}, dydt{};
+    RigidBodyState s;
+    s.p_EoC_I = {Wgs84().equatorial_radius_m + 2e6, 0.0, 0.0};
+    s.w_IB_B = w;
+    WriteState(s, y.data());
+    Vector3 carried = core_kg_s * Vector3(0.16 * w.x(), lever * lever * w.y(), lever * lever * w.z());
+    for (const double at : {0.0, 120.0 * kDeg, 240.0 * kDeg}) {
+      const Vector3 arm(all.cg.x() - kNozzle_m, kRadius_m * std::cos(at), kRadius_m * std::sin(at));
+      carried += kPropellant_kg / kBurn_s * arm.cross(w.cross(arm));
+    }
+    LauncherModel(plant).Derivative(Boosting(3), since_s, y.data(), dydt.data());
+    const Vector3 expected = -all.inertia.inverse() * (rate * w + carried);
+    EXPECT_NEAR((ReadState(dydt.data()).w_IB_B - expected).norm(), 0.0, 1e-5 * expected.norm())
+        << w.transpose();
+  }
+}
+
+// Factors of all drives and of the stage's, which steers together with them.
+TEST(ApartBoosters, DrivesHaveTheBandwidthOfTheirStage) {
+  FlightInputs inputs;
+  inputs.actuator_bandwidth_factor = 1.1;
+  inputs.stack_actuator_bandwidth_factor = {0.9, 0.5};
+  const LauncherPlant plant = FlightModel(Gimballed({0.0, 180.0})).PlantFor(inputs);
+  EXPECT_NEAR(plant.boosters->gimbal.bandwidth_rad_s, 30.0 * 1.1 * 0.9, 1e-12);
+  EXPECT_NEAR(plant.stacks[0].gimbal.bandwidth_rad_s, 25.0 * 1.1 * 0.9, 1e-12);
+  EXPECT_NEAR(plant.stacks[1].gimbal.bandwidth_rad_s, 25.0 * 1.1 * 0.5, 1e-12);
+}
+
+// At a booster's burnout a command about an axis goes to other nozzles: what an axis feels jumps, and no
+// nozzle swings.
+TEST(ApartBoosters, RippleBeginsAnewAtEachBurnout) {
+  FlightDefinition definition = Gimballed({0.0, 180.0}, true);
+  FlightInputs inputs;
+  inputs.thrust_misalignment_y_rad[0] = 0.5 * kDeg;
+  const FlightModel model(definition);
+  FlightResult result;
+  const auto ticks = TicksOf(definition, inputs, &result);
+  ASSERT_EQ(result.outcome, Outcome::kCompleted) << result.reason;
+  RippleMeter anew(definition.autopilot.tick_s), through(definition.autopilot.tick_s);
+  unsigned burning = ticks.front().boosters_burning;
+  int burnouts = 0;
+  for (const TickSample& s : ticks) {
+    if (s.boosters_burning != burning) {
+      anew.Interrupt();
+      burning = s.boosters_burning;
+      ++burnouts;
+    }
+    if (!s.burning || s.since_ignition_s < lanes::kSettled_s ||
+        (s.time_s >= definition.kick_start_s && s.time_s <= definition.kick_end_s)) {
+      anew.Interrupt();
+      through.Interrupt();
+      continue;
+    }
+    const NozzleLayout& layout = model.nominal_plant().LayoutOf(s.stack, s.boosting);
+    double felt[3] = {};
+    for (std::size_t axis = 0; axis < 3; ++axis)
+      for (std::size_t i = 0; i < static_cast<std::size_t>(layout.banks()) * kDrives; ++i)
+        felt[axis] += layout.felt[axis][i] * s.nozzle_rad[i];
+    anew.Add(felt[kRoll], felt[kPitch], felt[kYaw]);
+    through.Add(felt[kRoll], felt[kPitch], felt[kYaw]);
+  }
+  EXPECT_GE(burnouts, 1);
+  EXPECT_GT(through.worst_rad(), 1.05 * anew.worst_rad());
+  EXPECT_NEAR(MetricOf(result, "deflection_ripple_deg"), anew.worst_rad() * kDegPerRad,
+              1e-9 + 1e-3 * (through.worst_rad() - anew.worst_rad()) * kDegPerRad);
 }
 
 // Four at equal angles with nothing to tell them apart: what the model of boosters all alike says.

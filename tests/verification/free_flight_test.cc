@@ -9,6 +9,7 @@
 #include "core/flight/flight.h"
 #include "core/flight/tick_sample.h"
 #include "core/math/constants.h"
+#include "core/math/functions.h"
 #include "core/vehicle/fins.h"
 #include "tests/unit/sample_vehicle.h"
 
@@ -213,17 +214,125 @@ TEST(FreeFlight, LeavesTheRailAsInClosedForm) {
     }
 }
 
+// A burn of 0.3 s, without air: v = c ln(m0 / m) - g' t to the burnout, and then g' alone. With a second
+// stage, that waits, and without, when the burnout is the last.
+struct ShortBurn {
+  FlightDefinition definition = FreeDefinition(70.0 * kRadPerDeg, 1.0);
+  double against_m_s2, speed_m_s, travel_m, burnt_s = 0.3;
+
+  explicit ShortBurn(double rail_m, std::size_t stages = 2) {
+    Vehicle& vehicle = definition.vehicle;
+    vehicle.rail->length_m = rail_m;
+    vehicle.rail->friction = 0.2;
+    vehicle.stages.resize(stages);
+    vehicle.aerodynamics.resize(stages);
+    Stage& first = vehicle.stages[0];
+    first.separation_delay_s = 1.5;
+    first.motor.thrust_n = 800e3;
+    first.motor.burning_time_s = burnt_s;
+    const double m0 = first.liftoff_mass_kg, m = m0 - first.propellant_mass_kg;
+    const double flow = first.propellant_mass_kg / burnt_s, c = first.motor.thrust_n / flow;
+    const double r = 6378137.0, rate = 7.292115e-5;
+    const double g = Gravitation(Wgs84(), Vector3(r, 0.0, 0.0)).norm() - rate * rate * r;
+    against_m_s2 = g * (std::sin(70.0 * kRadPerDeg) + 0.2 * std::cos(70.0 * kRadPerDeg));
+    speed_m_s = c * std::log(m0 / m) - against_m_s2 * burnt_s;
+    travel_m = c * burnt_s - c * m / flow * std::log(m0 / m) - 0.5 * against_m_s2 * Square(burnt_s);
+  }
+};
+
+TEST(FreeFlight, SlidesOnAfterABurnoutOnTheRail) {
+  for (const std::size_t stages : {1u, 2u}) {
+    const ShortBurn burn(15.0, stages);
+    ASSERT_LT(burn.travel_m, 10.0);
+    FlightResult result;
+    Samples(burn.definition, Airless(), &result);
+    EXPECT_EQ(result.outcome, Outcome::kCompleted) << result.reason;
+    const double speed = std::sqrt(Square(burn.speed_m_s) - 2.0 * burn.against_m_s2 * (15.0 - burn.travel_m));
+    EXPECT_NEAR(MetricOf(result, "rail_exit_speed_m_s"), speed, 1e-4) << stages;
+    EXPECT_NEAR(MetricOf(result, "rail_exit_time_s"),
+                burn.burnt_s + (burn.speed_m_s - speed) / burn.against_m_s2, 1e-5);
+  }
+}
+
+// The vehicle's own failure, and where it ends up.
+TEST(FreeFlight, WhatDoesNotGetOffTheRailFailsWithItsReason) {
+  const auto reason = [](const FlightDefinition& definition) {
+    FlightResult result;
+    Samples(definition, Airless(), &result);
+    EXPECT_EQ(result.outcome, Outcome::kImpact);
+    EXPECT_TRUE(std::isnan(MetricOf(result, "rail_exit_speed_m_s")));
+    EXPECT_TRUE(std::isnan(MetricOf(result, "rail_exit_incidence_deg")));
+    return result.reason;
+  };
+  ShortBurn burn(100.0, 1);
+  char text[100];
+  std::snprintf(
+      text, sizeof text,
+      "on its rail the vehicle stops and would slide back, %.2f m of 100.00 m from its foot, at %.1f s",
+      burn.travel_m + 0.5 * Square(burn.speed_m_s) / burn.against_m_s2,
+      burn.burnt_s + burn.speed_m_s / burn.against_m_s2);
+  EXPECT_EQ(reason(burn.definition), text);
+  ShortBurn weak(2.0, 1);
+  weak.definition.vehicle.stages[0].motor.thrust_n = 60e3;
+  EXPECT_EQ(reason(weak.definition),
+            "on its rail the vehicle stays, 0.00 m of 2.00 m from its foot, at 0.3 s");
+  ShortBurn parts(15.0);
+  parts.definition.vehicle.stages[0].separation_delay_s = 0.1;
+  const std::string parted = reason(parts.definition);
+  EXPECT_EQ(parted.substr(0, 34), "on its rail the vehicle separates,") << parted;
+}
+
+// Up a vertical rail into a wind across it.
+TEST(FreeFlight, MeasuresTheIncidenceOffTheRail) {
+  FlightDefinition definition = FreeDefinition(90.0 * kRadPerDeg, 1.0);
+  definition.vehicle.rail->length_m = 6.0;
+  FlightInputs inputs = Airless();
+  inputs.wind_max_speed_m_s = 12.0;
+  inputs.wind_altitude_m = 0.0;
+  inputs.wind_width_m = 1e6;
+  FlightResult result;
+  Samples(definition, inputs, &result);
+  EXPECT_NEAR(MetricOf(result, "rail_exit_incidence_deg"),
+              std::atan2(12.0, MetricOf(result, "rail_exit_speed_m_s")) * kDegPerRad, 1e-3);
+  EXPECT_TRUE(std::isnan(MetricOf(result, "alpha_max_deg")));  // there is no air
+}
+
 TEST(FreeFlight, StandsOnTheRailUntilThrustExceedsWeight) {
   FlightDefinition definition = FreeDefinition(90.0 * kRadPerDeg, 1.0);
   definition.vehicle.rail->length_m = 2.0;
   definition.vehicle.stages[0].motor.ignition_rise_s = 2.0;
   FlightResult result;
-  for (const TickSample& s : Samples(definition, Airless(), &result))
+  double radius_m = 0.0, cg_station_m = 0.0, moved_m = 0.0;
+  for (const TickSample& s : Samples(definition, Airless(), &result)) {
+    if (s.time_s == 0.0) {
+      radius_m = s.state.p_EoC_I.norm();
+      cg_station_m = s.instant.cg_station_m;
+    }
     if (s.time_s > 0.0 && s.instant.thrust_n < 0.95 * 9.78 * 13000.0) {
       EXPECT_LT((s.state.v_IC_I - Vector3(0.0, 0.0, 7.292115e-5).cross(s.state.p_EoC_I)).norm(), 1e-9);
+      // The body stands still: its centre of gravity moves up it as propellant at its foot burns.
+      moved_m = cg_station_m - s.instant.cg_station_m;
+      EXPECT_NEAR(s.state.p_EoC_I.norm() - radius_m, moved_m, 1e-7);
       if (s.time_s > 1.0) break;
     }
+  }
+  EXPECT_GT(moved_m, 1e-3);
   EXPECT_GT(MetricOf(result, "rail_exit_time_s"), 2.0 * 0.6);
+}
+
+// A rail of no length is none: it says how the vehicle stands, and nothing leaves it.
+TEST(FreeFlight, ARailOfNoLengthHasNoExit) {
+  const FlightDefinition definition = FreeDefinition(80.0 * kRadPerDeg, 1.0);
+  EXPECT_FALSE(KindOf(definition.vehicle, definition.autopilot, definition.course).has_rail);
+  FlightResult result;
+  const auto samples = Samples(definition, Airless(), &result);
+  for (const char* name : {"rail_exit_time_s", "rail_exit_speed_m_s", "rail_exit_incidence_deg"})
+    EXPECT_TRUE(std::isnan(MetricOf(result, name))) << name;
+  FlightDefinition bare = definition;
+  bare.vehicle.rail.reset();
+  FlightResult same;
+  Samples(bare, Airless(), &same);
+  EXPECT_EQ(result.digest.Hex(), same.digest.Hex());
 }
 
 // A rigid body without air, and a point mass: from the last burnout to the apogee.
