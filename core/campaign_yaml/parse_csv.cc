@@ -18,7 +18,9 @@ std::vector<Cell> SplitLine(std::string_view line) {
   std::vector<Cell> cells;
   std::size_t begin = 0;
   while (true) {
-    const std::size_t comma = std::min(line.find(',', begin), line.size());
+    std::size_t comma = begin;
+    for (bool is_quoted = false; comma < line.size() && (is_quoted || line[comma] != ','); ++comma)
+      if (line[comma] == '"') is_quoted = !is_quoted;
     std::size_t first = begin;
     std::size_t last = comma;
     while (first < last && (line[first] == ' ' || line[first] == '\t')) ++first;
@@ -41,7 +43,13 @@ InputNode ParseCsv(const std::string& text, const std::string& file, std::vector
   place.line = 0;
   std::string_view rest = WithoutByteOrderMark(text);
   while (!rest.empty()) {
-    const std::size_t end = std::min(rest.find('\n'), rest.size());
+    // A quoted cell, such as the reason of a lost flight, may have line breaks.
+    std::size_t end = 0;
+    int breaks = 0;
+    for (bool is_quoted = false; end < rest.size() && (is_quoted || rest[end] != '\n'); ++end) {
+      if (rest[end] == '"' && !rest.starts_with('#')) is_quoted = !is_quoted;
+      if (rest[end] == '\n') ++breaks;
+    }
     std::string_view line = rest.substr(0, end);
     rest.remove_prefix(std::min(end + 1, rest.size()));
     ++place.line;
@@ -64,6 +72,7 @@ InputNode ParseCsv(const std::string& text, const std::string& file, std::vector
         table.members[c].value.items.push_back(ScalarAt(place, cells[c].text));
       }
     }
+    place.line += breaks;
   }
   if (table.members.empty())
     problems.push_back({file, 1, 1, "", "the table is empty", "a line with the names of its columns"});

@@ -213,8 +213,9 @@ FlightInputs DrawnInputs(std::uint64_t flight) {
   some(in.gust_altitude_m, 9000.0);
   in.gust_length_m = 400.0;
   for (std::size_t level = 0; level < kWindLevels; ++level) {
-    some(in.wind_profile_north[level], draws.Normal());
-    some(in.wind_profile_east[level], draws.Normal());
+    some(in.wind_profile_north_m_s[level], 5.0 * draws.Normal());
+    some(in.wind_profile_east_m_s[level], 5.0 * draws.Normal());
+    if (level < 3) in.wind_profile_altitude_m[level] = 6000.0 * static_cast<double>(level);
   }
   for (double* factor :
        {&in.drag_factor, &in.lift_factor, &in.cg_factor, &in.cp_factor, &in.density_factor,
