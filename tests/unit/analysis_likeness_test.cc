@@ -5,6 +5,7 @@
 
 #include <string>
 
+#include "core/analysis/campaign_summary.h"
 #include "core/campaign_yaml/load.h"
 #include "core/cases/campaign_flights.h"
 #include "core/results/result_folder.h"
@@ -39,7 +40,8 @@ CaseColumns Rows(std::size_t count, bool are_alike) {
 constexpr char kRead[] = "{density: {distribution: normal, sigma_percent: 1}}\n";
 constexpr char kUnread[] = "{fin_cant: {distribution: normal, sigma_deg: 0.1, per: stage}}\n";
 constexpr char kBoth[] =
-    "{fin_cant: {distribution: normal, sigma_deg: 0.1}, density: {distribution: normal, sigma_percent: 1}}\n";
+    "{fin_cant: {distribution: normal, sigma_deg: 0.1, per: stage}, density: {distribution: normal, "
+    "sigma_percent: 1}}\n";
 constexpr char kConstant[] = "{density: {distribution: constant, value_factor: 1.1}}\n";
 constexpr char kNoise[] = "{gyro_noise: {distribution: constant, value_deg_s: 0.01}}\n";
 constexpr char kTurbulence[] = "{turbulence: {severity: light}}\n";
@@ -71,28 +73,46 @@ TEST(WhyNoEvidence, SaysWhatIsMissing) {
   }
 }
 
-TEST(WhyNoEvidence, ComparesTheDigestsOfAFolder) {
-  const Campaign campaign = With(kRead);
+// A folder of results with these digests, whose metrics are all 0.1.
+CampaignSummary Summary(const Campaign& campaign, const std::vector<std::uint64_t>& digests) {
   const InputFiles files;
-  const auto alike = [&](const std::string& name, std::vector<std::uint64_t> digests) {
-    ResultFolder folder = ResultFolder::Create(files.Path(name), campaign);
-    std::vector<CaseResult> results;
-    for (const std::uint64_t digest : digests) {
-      CaseResult result;
-      result.case_index = results.size();
-      result.inputs = InputValues(FlightInputs{}, ColumnClass(campaign.vehicle));
-      result.metrics.assign(MetricsOf(campaign).size(), kUndefined);
-      result.digest = {digest, 1};
-      results.push_back(result);
-    }
-    folder.Append(results);
-    return ReadColumns(folder, {}).are_alike;
+  ResultFolder folder = ResultFolder::Create(files.Path("out"), campaign);
+  std::vector<CaseResult> results;
+  for (const std::uint64_t digest : digests) {
+    CaseResult& result = results.emplace_back();
+    result.case_index = results.size() - 1;
+    result.outcome = Outcome::kCompleted;
+    result.inputs = InputValues(FlightInputs{}, ColumnClass(campaign.vehicle));
+    result.metrics.assign(MetricsOf(campaign).size(), 0.1);
+    result.digest = {digest, 1};
+  }
+  folder.Append(results);
+  return BuildSummary(folder, campaign);
+}
+
+TEST(WhyNoEvidence, ComparesAllDigestsOfAFolder) {
+  const Campaign campaign = With(kRead);
+  EXPECT_EQ(Summary(campaign, {5}).no_evidence, "");
+  EXPECT_NE(Summary(campaign, {5, 5}).no_evidence, "");
+  EXPECT_NE(Summary(campaign, {5, 5, 5}).no_evidence, "");
+  EXPECT_EQ(Summary(campaign, {5, 5, 6}).no_evidence, "");
+  EXPECT_EQ(Summary(campaign, {6, 5, 5}).no_evidence, "");
+}
+
+TEST(WhyNoEvidence, DecidesARequirementThatStatesAProbability) {
+  const auto standing = [](const char* dispersions, const char* limit) {
+    const Campaign campaign =
+        With(std::string(dispersions) + "requirements:\n  - {metric: pitch_error_peak_deg, " + limit +
+             ", probability: 0.4, consumer_risk: 0.3}\n");
+    return Summary(campaign, {1, 2, 3}).standing;
   };
-  EXPECT_FALSE(alike("one", {5}));
-  EXPECT_TRUE(alike("two", {5, 5}));
-  EXPECT_TRUE(alike("three", {5, 5, 5}));
-  EXPECT_FALSE(alike("last", {5, 5, 6}));
-  EXPECT_FALSE(alike("first", {6, 5, 5}));
+  EXPECT_EQ(standing(kRead, "below: 1").verdict, StandingVerdict::kPass);
+  const Standing unread = standing(kUnread, "below: 1");
+  EXPECT_EQ(unread.verdict, StandingVerdict::kNotEvidence);
+  EXPECT_EQ(unread.requirements[0].verdict, "not_evidence");
+  EXPECT_EQ(unread.requirements[0].reason.substr(0, 42), "No part of the flight reads what varies (d");
+  EXPECT_EQ(standing(kConstant, "below: 1").verdict, StandingVerdict::kNotEvidence);
+  EXPECT_EQ(standing(kUnread, "below: 0.05").verdict, StandingVerdict::kFail) << "a failure is one";
 }
 
 }  // namespace
