@@ -64,6 +64,7 @@ TEST(UnusualDispersions, AreThoseOfTheWholeVehicleToo) {
 
 TEST(UnusualDispersions, AreThoseOfOneNozzleAsOfAStage) {
   Campaign campaign;
+  campaign.vehicle.stages.resize(1);
   campaign.dispersions = {Normal("nozzle_misalignment_stage1_left_deg", 0.0, 1.0 * kRadPerDeg)};
   EXPECT_THAT(
       Texts(campaign),
