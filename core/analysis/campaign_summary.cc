@@ -6,6 +6,7 @@
 #include <cmath>
 #include <sstream>
 
+#include "core/analysis/likeness.h"
 #include "core/analysis/stopping_rule.h"
 #include "core/campaign/case_design.h"
 #include "core/campaign/case_result.h"
@@ -362,6 +363,7 @@ CampaignSummary BuildSummary(const ResultFolder& folder, const Campaign& campaig
   summary.drivers = FindDrivers(campaign, KeyMetrics(campaign), cases);
   summary.failure_drivers = FindFailureDrivers(campaign, cases);
   summary.verdict = Overall(summary);
+  summary.no_evidence = WhyNoEvidence(campaign, cases);
   summary.standing = StandingOf(folder, campaign, summary);
   return summary;
 }

@@ -118,6 +118,7 @@ struct CampaignSummary {
     std::size_t extreme_flights = 0;
   };
   std::optional<Envelope> envelope;
+  std::string no_evidence;            ///< WhyNoEvidence() the flights are; empty: they may be
   std::optional<CaseResult> nominal;  ///< the flight without dispersions, if it was flown
   /// The verdict after earlier attempts and changes. It is no part of summary.json.
   Standing standing;

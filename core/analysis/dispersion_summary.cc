@@ -7,6 +7,7 @@
 #include <numbers>
 
 #include "core/campaign/dispersion_table.h"
+#include "core/campaign/plausible_dispersions.h"
 #include "core/flight/flight_inputs.h"
 #include "core/results/metric_catalogue.h"
 #include "core/results/sampling_text.h"
@@ -242,6 +243,12 @@ std::vector<DispersionSummary> SummarizeDispersions(const Campaign& campaign, co
   for (const Dispersion& dispersion : campaign.dispersions) {
     for (const int input : dispersion.inputs) ++feeders[static_cast<std::size_t>(input)];
   }
+  const std::vector<SetInput> set = SetInputs(campaign);
+  const auto why_unread = [&](int input) {
+    const auto found =
+        std::find_if(set.begin(), set.end(), [&](const SetInput& one) { return one.column == input; });
+    return found == set.end() ? std::string() : found->unread;
+  };
   std::vector<DispersionSummary> summaries;
   for (const Dispersion& dispersion : campaign.dispersions) {
     for (const int input : dispersion.inputs) {
@@ -250,6 +257,7 @@ std::vector<DispersionSummary> SummarizeDispersions(const Campaign& campaign, co
       summary.dispersion = dispersion.name;
       summary.input = column.name;
       summary.key = InputKey(campaign, input);
+      summary.unread = why_unread(input);
       summary.declared = Words(dispersion, column.unit, SplitUnit(column.name).unit);
       std::optional<Moments> expected = Of(dispersion);
       const bool alone = feeders[static_cast<std::size_t>(input)] == 1;
@@ -267,6 +275,7 @@ std::vector<DispersionSummary> SummarizeDispersions(const Campaign& campaign, co
     summary.dispersion = "derived";
     summary.input = derived.input;
     summary.key = "derived";
+    summary.unread = why_unread(derived.column);
     summary.declared = "= " + derived.text;
     const auto column = static_cast<std::size_t>(derived.column);
     summary.drawn = Summarize(cases.inputs[column], CircleOf(InputColumns()[column]));

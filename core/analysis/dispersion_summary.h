@@ -18,6 +18,7 @@ struct DispersionSummary {
   std::string input;       ///< column, without the prefix
   std::string key;         ///< its name in the campaign file
   std::string declared;    ///< "normal, mean 1, 3σ 0.02"
+  std::string unread;      ///< why no part of the flight reads it; empty: one does
   /// Of the declared distribution. None if several dispersions feed the input, if the design decides its
   /// values, or if directions lie all around: they have no mean.
   std::optional<double> expected_mean;

@@ -290,6 +290,10 @@ Standing StandingOf(const ResultFolder& folder, const Campaign& campaign, const 
     Standing::Requirement& one = standing.requirements.emplace_back();
     Judge(requirement, shown, summary, AttemptsAt(requirement, shown, summary, looks, planned_first, counted),
           campaign.verdicts.attempts, one);
+    if (!summary.no_evidence.empty() && requirement.probability > 0.0 && one.verdict != "fail") {
+      one.verdict = "not_evidence";
+      one.reason = summary.no_evidence;
+    }
     if (Holds(registered.lines, RequirementLine(requirement))) continue;
     one.post_hoc = standing.is_post_hoc = true;
     if (one.verdict == "fail") continue;

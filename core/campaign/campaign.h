@@ -67,6 +67,7 @@ struct Dispersion {
   /// weighted sum of those of the named dispersions. The weights are a row of the Cholesky factor of the
   /// correlations. Empty: not correlated.
   std::vector<std::pair<std::size_t, double>> mix = {};
+  bool replaces = false;  ///< of a list's table: the value stands in place of all other draws of its input
 };
 
 struct Requirement {
@@ -121,7 +122,7 @@ struct Campaign {
   Sampling sampling;
   std::vector<Dispersion> dispersions;
   std::vector<DerivedInput> derived;              ///< set after all draws of a case
-  std::optional<WindStatistics> wind_statistics;  ///< climatology whose levels the profile draws fill
+  std::optional<WindStatistics> wind_statistics;  ///< climatology of the profile draws
   std::optional<WeatherTable> wind_table;         ///< a profile that every flight meets, the nominal too
   std::vector<OwnMetric> own_metrics;
   std::vector<Requirement> requirements;

@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <limits>
 #include <string_view>
 
 #include "core/campaign/drawn_value.h"
@@ -108,15 +109,21 @@ double CaseDesign::Uniform(std::uint64_t case_index, std::size_t dispersion) con
   return Stream(sampling_.seed, case_index, dispersions_[dispersion].name).Uniform();
 }
 
-double CaseDesign::Normal(std::uint64_t case_index, std::size_t dispersion) const {
+double CaseDesign::Normal(std::uint64_t case_index, std::size_t dispersion,
+                          std::vector<double>& deviates) const {
+  const auto deviate = [&](std::size_t of) {
+    if (std::isnan(deviates[of])) deviates[of] = InverseNormal(Uniform(case_index, of));
+    return deviates[of];
+  };
   const auto& mix = dispersions_[dispersion].mix;
-  if (mix.empty()) return InverseNormal(Uniform(case_index, dispersion));
+  if (mix.empty()) return deviate(dispersion);
   double sum = 0.0;
-  for (const auto& [other, weight] : mix) sum += weight * InverseNormal(Uniform(case_index, other));
+  for (const auto& [other, weight] : mix) sum += weight * deviate(other);
   return sum;
 }
 
-double CaseDesign::Value(std::uint64_t case_index, std::size_t dispersion) const {
+double CaseDesign::Value(std::uint64_t case_index, std::size_t dispersion,
+                         std::vector<double>& deviates) const {
   const ScalarDistribution& d = dispersions_[dispersion].distribution;
   const auto factor = std::find(factors_.begin(), factors_.end(), dispersion);
   if (factor != factors_.end()) {
@@ -143,7 +150,7 @@ double CaseDesign::Value(std::uint64_t case_index, std::size_t dispersion) const
     case Distribution::kConstant:
       return d.values.front();
     case Distribution::kNormal:
-      return d.nominal + d.sigma * Normal(case_index, dispersion);
+      return d.nominal + d.sigma * Normal(case_index, dispersion, deviates);
     default:
       return DrawnValue(d, truncation_[dispersion], Uniform(case_index, dispersion));
   }
@@ -151,14 +158,16 @@ double CaseDesign::Value(std::uint64_t case_index, std::size_t dispersion) const
 
 FlightInputs CaseDesign::Draw(std::uint64_t case_index) const {
   FlightInputs inputs;
+  std::vector<double> deviates(dispersions_.size(), std::numeric_limits<double>::quiet_NaN());
   for (std::size_t i = 0; i < dispersions_.size(); ++i) {
-    double value = Value(case_index, i);
+    double value = Value(case_index, i, deviates);
     if (dispersions_[i].absolute) value = std::fabs(value);
     for (const int column : dispersions_[i].inputs) {
       double& input = InputValue(inputs, column);
-      input = IsFactor(column) ? input * value : value;
+      input = IsFactor(column) && !dispersions_[i].replaces ? input * value : value;
     }
   }
+  TakeColumns(inputs);
   Derive(derived_, inputs);
   return inputs;
 }

@@ -30,8 +30,9 @@ class CaseDesign {
 
  private:
   double Uniform(std::uint64_t case_index, std::size_t dispersion) const;
-  double Normal(std::uint64_t case_index, std::size_t dispersion) const;
-  double Value(std::uint64_t case_index, std::size_t dispersion) const;
+  /// `deviates`: the standard normals of a case as far as they are drawn, else NaN.
+  double Normal(std::uint64_t case_index, std::size_t dispersion, std::vector<double>& deviates) const;
+  double Value(std::uint64_t case_index, std::size_t dispersion, std::vector<double>& deviates) const;
 
   Sampling sampling_;
   std::vector<Dispersion> dispersions_;

@@ -4,6 +4,7 @@
 #include <cmath>
 
 #include "core/campaign/campaign.h"
+#include "core/input/number_text.h"
 #include "core/input/read_value.h"
 
 namespace dispersa {
@@ -39,7 +40,8 @@ double Value(const DerivedInput& derived, const FlightInputs& inputs) {
 }  // namespace
 
 void Describe(Fields& fields, DerivedInput& derived, const std::vector<DerivedInput>& before,
-              const std::vector<Dispersion>& dispersions, std::size_t stages) {
+              const std::vector<Dispersion>& dispersions, const Vehicle& vehicle) {
+  const std::size_t stages = ColumnClass(vehicle);
   fields.Text("input", derived.input, "a column of cases.csv without its prefix");
   fields.Text("expression", derived.text, "from drawn columns, in their units");
   if (derived.input.empty() || derived.text.empty()) return;
@@ -47,8 +49,8 @@ void Describe(Fields& fields, DerivedInput& derived, const std::vector<DerivedIn
     return fields.Refuse("input", UnknownText(derived.input, stages), kNames);
   derived.column = FindInput(derived.input);
   for (const Dispersion& dispersion : dispersions)
-    if (std::find(dispersion.inputs.begin(), dispersion.inputs.end(), derived.column) !=
-        dispersion.inputs.end())
+    if (!dispersion.replaces && std::find(dispersion.inputs.begin(), dispersion.inputs.end(),
+                                          derived.column) != dispersion.inputs.end())
       return fields.Refuse("input",
                            "'" + derived.input + "' is drawn by the dispersion '" + dispersion.name + "'",
                            "an input that no dispersion draws");
@@ -69,15 +71,20 @@ void Describe(Fields& fields, DerivedInput& derived, const std::vector<DerivedIn
   } catch (const ExpressionError& error) {
     return fields.Refuse("expression", error.what(), error.allowed);
   }
-  if (!std::isfinite(Value(derived, FlightInputs{})))
+  const double nominal = Value(derived, FlightInputs{});
+  const double unit = InputColumns()[static_cast<std::size_t>(derived.column)].unit;
+  if (!std::isfinite(nominal))
     fields.Refuse("expression", "it has no value for the nominal flight's inputs",
                   "an expression that is finite there");
+  else if (!IsAllowed(vehicle, derived.column, nominal * unit))
+    fields.Refuse("expression", "it is " + FormatRounded(nominal) + " for the nominal flight's inputs",
+                  RangeText(vehicle, derived.column));
 }
 
 void Derive(const std::vector<DerivedInput>& derived, FlightInputs& inputs) {
   for (const DerivedInput& one : derived)
     InputValue(inputs, one.column) =
-        Value(one, inputs) * InputColumns()[static_cast<std::size_t>(one.column)].unit;
+        (Value(one, inputs) + 0.0) * InputColumns()[static_cast<std::size_t>(one.column)].unit;
 }
 
 }  // namespace dispersa

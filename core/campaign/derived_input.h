@@ -20,10 +20,9 @@ struct DerivedInput {
   Expression expression = {};  ///< of the values of all columns
 };
 
-/// The keys of one derived input. `before` are the derived ones ahead of it. `stages` counts those of the
-/// vehicle.
+/// The keys of one derived input. `before` are the derived ones ahead of it.
 void Describe(Fields& fields, DerivedInput& derived, const std::vector<DerivedInput>& before,
-              const std::vector<Dispersion>& dispersions, std::size_t stages);
+              const std::vector<Dispersion>& dispersions, const Vehicle& vehicle);
 
 /// Sets derived inputs from the drawn ones. Not finite where an expression is undefined.
 void Derive(const std::vector<DerivedInput>& derived, FlightInputs& inputs);

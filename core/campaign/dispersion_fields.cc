@@ -166,7 +166,7 @@ class DispersionFields {
         if (const std::optional<Unfit> unfit =
                 is_sound_ && row.unfit != nullptr ? row.unfit(vehicle_, stage) : std::nullopt)
           map.Refuse("", unfit->what, unfit->allowed);
-      const ScalarDistribution distribution = ReadScalar(map, Limited(row, of.stages));
+      const ScalarDistribution distribution = ReadScalar(map, Limited(row, "stage", StageNames(of.stages)));
       if (row.draws == Draws::kOffAxis) return OffAxis(map, row, name, of, distribution);
       if (row.draws == Draws::kThrust) return Thrust(map, row, name, of, distribution);
       if (row.draws == Draws::kPropellantTemperature)
@@ -181,15 +181,32 @@ class DispersionFields {
     });
   }
 
-  DispersedScalar Limited(const DispersionRow& row, const std::vector<int>& stages) const {
+  // Of columns that the draws go to, whose place the vehicle may limit further.
+  DispersedScalar Limited(const DispersionRow& row, const char* what,
+                          const std::vector<std::string>& names) const {
     DispersedScalar scalar = row.scalar;
-    if (!is_sound_ || row.limits == nullptr) return scalar;
-    for (const int stage : stages) {
-      const Range range = row.limits(vehicle_, stage);
+    if (!is_sound_ || row.columns.empty() || row.columns.front().find('{') == std::string::npos)
+      return scalar;
+    for (const std::string& name : names) {
+      const int column = FindInput(FillColumn(row.columns.front(), what, name));
+      if (column < 0 || InputColumns()[static_cast<std::size_t>(column)].allowed.of == nullptr) continue;
+      const Range range = RangeOf(vehicle_, column);
       scalar.range = {std::max(scalar.range.low, range.low), std::min(scalar.range.high, range.high),
                       range.low_open, range.high_open};
     }
     return scalar;
+  }
+
+  static std::vector<std::string> StageNames(const std::vector<int>& stages) {
+    std::vector<std::string> names;
+    for (const int stage : stages) names.push_back(StageName(stage));
+    return names;
+  }
+  std::vector<std::string> BoosterNames() const {
+    std::vector<std::string> names;
+    for (std::size_t k = 0; k < vehicle_.boosters.angles_rad.size(); ++k)
+      names.push_back(BoosterInColumns(vehicle_, k));
+    return names;
   }
 
   static Per PerWhat(Fields& map, const DispersionRow& row) {
@@ -343,7 +360,7 @@ class DispersionFields {
     bool is_there = false;
     fields.OptionalMap(row.key, is_there, row.meaning, [&](Fields& map) {
       if (is_sound_) SpreadOut(campaign_.vehicle.boosters);
-      ScalarDistribution distribution = ReadScalar(map, Limited(row, {1}));
+      ScalarDistribution distribution = ReadScalar(map, Limited(row, "further", BoosterNames()));
       if (row.draws == Draws::kBoostersTemperature) {
         double sensitivity_1_k = 0.0;
         map.Quantity("sensitivity", kPerTemperature, UpTo(0.02), sensitivity_1_k,
@@ -392,7 +409,7 @@ class DispersionFields {
   void WindSpeed(Fields& map, const DispersionRow& row) {
     double most_m_s = 0.0;
     bool is_uniform = false;
-    map.Quantity("max_speed", kSpeed, Between(0.0, 200.0), most_m_s, "of the jet stream");
+    map.Quantity("max_speed", kSpeed, row.scalar.range, most_m_s, "of the jet stream");
     map.Choice<bool>("speed", {{"fixed", false}, {"uniform", true}}, is_uniform,
                      "the largest, or uniform from 0 to it", false);
     Add("wind/speed", is_uniform ? Uniform(0.0, most_m_s) : Constant(most_m_s), row.columns);
@@ -437,20 +454,46 @@ class DispersionFields {
       dispersa::Describe(map, statistics);
       map.OptionalTable("statistics", has_statistics, "a CSV file of means and standard deviations",
                         [&](Fields& columns) { DescribeLevels(columns, statistics, kWindLevels); });
-      ScalarDistribution standard_normal;
-      standard_normal.kind = Distribution::kNormal;
-      standard_normal.sigma = 1.0;
-      const std::vector<std::string> north = ExpandColumn(row.columns[0]),
-                                     east = ExpandColumn(row.columns[1]);
-      for (std::size_t i = 0; i < std::min(statistics.altitude_m.size(), north.size()); ++i) {
-        Add("wind_profile/north" + std::to_string(i + 1), standard_normal, {north[i]});
-        Add("wind_profile/east" + std::to_string(i + 1), standard_normal, {east[i]});
-      }
+      DrawProfile(statistics, row);
     });
     map.ExactlyOne({"table", "statistics"});
     if (has_table == has_statistics)
       map.Refuse("", has_table ? "'table' and 'statistics' are both given" : "no profile is given",
                  "either table: FILE.csv or statistics: FILE.csv");
+  }
+
+  // Correlated normals: the winds of the levels themselves. Their altitudes go with them, so that a row of
+  // inputs is a profile.
+  void DrawProfile(const WindStatistics& statistics, const DispersionRow& row) {
+    const std::vector<std::string> north = ExpandColumn(row.columns[0]), east = ExpandColumn(row.columns[1]),
+                                   altitude = ExpandColumn(row.columns[2]);
+    std::size_t levels = north.size();
+    for (const auto* column : {&statistics.altitude_m, &statistics.mean_north_m_s, &statistics.mean_east_m_s,
+                               &statistics.sigma_north_m_s, &statistics.sigma_east_m_s})
+      levels = std::min(levels, column->size());
+    WindStatistics flown = statistics;
+    flown.altitude_m.resize(levels);
+    const std::vector<std::vector<double>> weights = WindWeights(flown);
+    const std::size_t first = campaign_.dispersions.size();
+    const auto add = [&](const std::string& name, double mean, double sigma, const std::string& column) {
+      ScalarDistribution wind;
+      wind.kind = Distribution::kNormal;
+      wind.nominal = mean;
+      wind.sigma = sigma;
+      const std::size_t component = campaign_.dispersions.size() - first;
+      Add(name, wind, {column});
+      for (std::size_t i = 0; i <= component; ++i)
+        if (weights[component][i] != 0.0)
+          campaign_.dispersions.back().mix.emplace_back(first + i, weights[component][i]);
+    };
+    for (std::size_t k = 0; k < levels; ++k) {
+      const std::string level = std::to_string(k + 1);
+      add("wind_profile/north" + level, statistics.mean_north_m_s[k], statistics.sigma_north_m_s[k],
+          north[k]);
+      add("wind_profile/east" + level, statistics.mean_east_m_s[k], statistics.sigma_east_m_s[k], east[k]);
+    }
+    for (std::size_t k = 0; k < levels; ++k)
+      Add("wind_profile/altitude" + std::to_string(k + 1), Constant(statistics.altitude_m[k]), {altitude[k]});
   }
 
   // Normal draws in standard deviations: one of each coefficient, for all tables.

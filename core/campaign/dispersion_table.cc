@@ -2,31 +2,19 @@
 
 #include <algorithm>
 
-#include "core/flight/dispersed_vehicle.h"
-#include "core/vehicle/mass.h"
-#include "core/vehicle/propulsion.h"
+#include "core/vehicle/vehicle.h"
 
 namespace dispersa {
 namespace {
 
-constexpr double kInfinity = std::numeric_limits<double>::infinity();
 constexpr Distribution kOfTemperature[] = {Distribution::kNormal, Distribution::kTwoPoint,
                                            Distribution::kValues, Distribution::kConstant};
 
+// A row's range is that of its columns' declarations, unless it draws something else than they hold.
 constexpr DispersedScalar Any(Dimension dimension) { return {dimension, kAnyNumber}; }
-
-// ---- limits ----
 
 const Stage& StageAt(const Vehicle& vehicle, int stage) {
   return vehicle.stages[static_cast<std::size_t>(stage) - 1];
-}
-
-// At most what the grain's case holds.
-Range LimitsOfPropellant(const Vehicle& vehicle, int stage) {
-  return Inside(0.0, LargestPropellantFactor(StageAt(vehicle, stage)));
-}
-Range LimitsOfBoosterPropellant(const Vehicle& vehicle, int) {
-  return Inside(0.0, LargestPropellantFactor(AsStage(vehicle.boosters)));
 }
 
 // ---- what takes no values ----
@@ -49,28 +37,6 @@ std::optional<Unfit> BoostersWithoutMixture(const Vehicle& vehicle, int) {
   if (vehicle.boosters.tanks.size() >= 2) return std::nullopt;
   return Unfit{"the boosters have no two tanks, whose flows could differ",
                "boosters with liquid engines of two propellants"};
-}
-
-// Half the least moment of inertia, about either axis, of the stack without its own propellant and without
-// masses that may leave. With three such products the tensor is still that of a body.
-Range LimitsOfProduct(const Vehicle& vehicle, int stage) {
-  StackMass left = Without(BuildStackMasses(vehicle)[static_cast<std::size_t>(stage) - 1], stage - 1,
-                           BuildJettisonedMasses(vehicle), ~0u);
-  if (stage == 1 && vehicle.boosters.count > 0)
-    left = Without(left, 0, {BuildBoosterMass(vehicle.boosters)}, 1u);
-  const MassProperties empty = left.At(0.0);
-  const double most = 0.5 * std::min(empty.axial_inertia_kg_m2, empty.transverse_inertia_kg_m2);
-  return Between(-most, most);
-}
-
-// Nothing happens before what triggers it.
-Range LimitsOfIgnition(const Vehicle& vehicle, int stage) {
-  const Stage& s = StageAt(vehicle, stage);
-  return {s.ignition == IgnitionTrigger::kBurnoutDetection ? -s.ignition_delay_s : -kInfinity, kInfinity,
-          false, false};
-}
-Range LimitsOfSeparation(const Vehicle& vehicle, int stage) {
-  return {-StageAt(vehicle, stage).separation_delay_s, kInfinity, false, false};
 }
 
 // ---- rows ----
@@ -99,6 +65,16 @@ DispersionRow BodyAxes(const char* key, Draws draws, Dimension dimension, const 
   for (const char* axis : {"roll", "pitch", "yaw"})
     row.parts.push_back({axis, "about this axis", draws, Any(dimension), {FillColumn(column, "body", axis)}});
   return row;
+}
+
+void SetRange(DispersionRow& row) {
+  const bool is_temperature =
+      row.draws == Draws::kPropellantTemperature || row.draws == Draws::kBoostersTemperature;
+  if (!row.columns.empty() && !is_temperature) {
+    const int column = FindInput(ExpandColumn(row.columns.front()).front());
+    row.scalar.range = InputColumns()[static_cast<std::size_t>(column)].allowed.range;
+  }
+  for (DispersionRow& part : row.parts) SetRange(part);
 }
 
 std::vector<DispersionRow> MakeRows() {
@@ -136,8 +112,7 @@ std::vector<DispersionRow> MakeRows() {
              "factor of the thrust at the same flow"));
   add(stages("dry_mass", {"dry_mass_factor_{stage}"},
              "factor of a stage's whole structure; in the last stage with the payload"));
-  add(stages("propellant_load", {"propellant_factor_{stage}"}, "factor of the propellant at ignition"))
-      .limits = LimitsOfPropellant;
+  add(stages("propellant_load", {"propellant_factor_{stage}"}, "factor of the propellant at ignition"));
   add({"payload_mass",
        "added to one element of the last stage's structure",
        Draws::kPayloadMass,
@@ -147,13 +122,11 @@ std::vector<DispersionRow> MakeRows() {
       add({"product_of_inertia", "of the stack, about its centre of gravity, constant over the burn",
            Draws::kParts});
   for (const char* plane : {"xy", "xz", "yz"}) {
-    DispersionRow& part = products.parts.emplace_back(
-        DispersionRow{plane,
-                      "in this plane of the body axes",
-                      Draws::kStages,
-                      Any(kInertia),
-                      {"product_of_inertia_" + std::string(plane) + "_{stage}_kg_m2"}});
-    part.limits = LimitsOfProduct;
+    products.parts.push_back({plane,
+                              "in this plane of the body axes",
+                              Draws::kStages,
+                              Any(kInertia),
+                              {"product_of_inertia_" + std::string(plane) + "_{stage}_kg_m2"}});
   }
   DispersionRow& ignition = add({"ignition_delay",
                                  "delay of a stage's ignition; stage 1 ignites before lift-off",
@@ -161,14 +134,12 @@ std::vector<DispersionRow> MakeRows() {
                                  Any(kTime),
                                  {"ignition_delay_{stage}_s"}});
   ignition.first_stage = 2;
-  ignition.limits = LimitsOfIgnition;
   DispersionRow& separation = add({"separation_delay",
                                    "delay of a stage's separation; the last stage does not separate",
                                    Draws::kStages,
                                    Any(kTime),
                                    {"separation_delay_{stage}_s"}});
   separation.last_stages_without = 1;
-  separation.limits = LimitsOfSeparation;
   add(once("launch_azimuth_error", Any(kAngle), "launch_azimuth_error_deg",
            "clockwise, of the vehicle and the inertial unit; not measured"));
   add(BodyAxes("initial_attitude_error", Draws::kOnce, kAngle, "initial_{body}_error_deg",
@@ -180,35 +151,24 @@ std::vector<DispersionRow> MakeRows() {
        {"wind_max_speed_m_s"},
        {},
        {{"azimuth", "direction from which it blows", Draws::kDirection, Any(kAngle), {"wind_azimuth_deg"}},
-        {"altitude",
-         "of the maximum",
-         Draws::kFixedOrAbsent,
-         {kLength, Between(0.0, 100e3)},
-         {"wind_altitude_m"}},
-        {"width",
-         "full width at half the maximum",
-         Draws::kFixedOrAbsent,
-         {kLength, Between(100.0, 100e3)},
-         {"wind_width_m"}}}});
+        {"altitude", "of the maximum", Draws::kFixedOrAbsent, Any(kLength), {"wind_altitude_m"}},
+        {"width", "full width at half the maximum", Draws::kFixedOrAbsent, Any(kLength), {"wind_width_m"}}}});
   add({"gust",
        "1 - cosine gust",
        Draws::kGust,
        Any(kSpeed),
        {},
        {},
-       {{"speed", "the largest", Draws::kFixed, {kSpeed, Between(-100.0, 100.0)}, {"gust_speed_m_s"}},
-        {"altitude",
-         "altitude at which it begins",
-         Draws::kFixed,
-         {kLength, Between(0.0, 100e3)},
-         {"gust_altitude_m"}},
-        {"length", "in altitude", Draws::kFixed, {kLength, Between(1.0, 10e3)}, {"gust_length_m"}},
+       {{"speed", "the largest", Draws::kFixed, Any(kSpeed), {"gust_speed_m_s"}},
+        {"altitude", "altitude at which it begins", Draws::kFixed, Any(kLength), {"gust_altitude_m"}},
+        {"length", "in altitude", Draws::kFixed, Any(kLength), {"gust_length_m"}},
         {"azimuth", "direction from which it blows", Draws::kDirection, Any(kAngle), {"gust_azimuth_deg"}}}});
   add({"wind_profile",
        "one profile for all flights, the nominal too, or statistics to draw profiles from",
        Draws::kWindProfile,
        Any(kSpeed),
-       {"wind_profile_north_{level}", "wind_profile_east_{level}"}});
+       {"wind_profile_north_{level}_m_s", "wind_profile_east_{level}_m_s",
+        "wind_profile_altitude_{level}_m"}});
   add({"turbulence",
        "Dryden's, of MIL-F-8785C",
        Draws::kTurbulence,
@@ -239,14 +199,14 @@ std::vector<DispersionRow> MakeRows() {
        {"bending_frequency_factor_{mode}"}});
   add(once("bending_damping", kPositiveFactor, "bending_damping_factor",
            "factor of the modes' damping ratio"));
-  add(once("bending_slope", {{}, kNonNegative}, "bending_slope_factor",
+  add(once("bending_slope", kPositiveFactor, "bending_slope_factor",
            "factor of the modes' slopes at the sensors"));
   DispersionRow& tip_off =
       add(BodyAxes("tip_off_rate", Draws::kEachStage, kAngularRate, "tip_off_{body}_{stage}_deg_s",
                    "of the upper stack at each separation"));
   for (DispersionRow& part : tip_off.parts) part.last_stages_without = 1;
   add(BodyAxes("gyro_bias", Draws::kOnce, kAngularRate, "gyro_bias_{body}_deg_s", "of the rate gyros"));
-  add(once("gyro_noise", {kAngularRate, kNonNegative}, "gyro_noise_deg_s", "standard deviation of a sample"));
+  add(once("gyro_noise", Any(kAngularRate), "gyro_noise_deg_s", "standard deviation of a sample"));
   add({"navigation_position_error",
        "constant error of guidance's navigation",
        Draws::kEachAxis,
@@ -265,11 +225,7 @@ std::vector<DispersionRow> MakeRows() {
        Any(kAngle),
        {"stuck_nozzle", "stuck_nozzle_stage"},
        {},
-       {{"angle",
-         "at which it stays",
-         Draws::kFixed,
-         {kAngle, Inside(-kQuarterTurn, kQuarterTurn)},
-         {"stuck_nozzle_deg"}}}});
+       {{"angle", "at which it stays", Draws::kFixed, Any(kAngle), {"stuck_nozzle_deg"}}}});
   const std::vector<std::string> of_booster = {"nozzle_thrust_factor_{further}",
                                                "nozzle_flow_factor_{further}"};
   add({"booster_burn_rate", "factor of a booster's thrust and flow together; its impulse stays",
@@ -294,8 +250,7 @@ std::vector<DispersionRow> MakeRows() {
        "factor of a booster's propellant",
        Draws::kBoosters,
        kPositiveFactor,
-       {"booster_propellant_factor_{further}"}})
-      .limits = LimitsOfBoosterPropellant;
+       {"booster_propellant_factor_{further}"}});
   add({"booster_mixture_ratio",
        "factor of the first tank's flow over the others'",
        Draws::kBoosters,
@@ -316,8 +271,9 @@ std::vector<DispersionRow> MakeRows() {
                         : input.drawn_for == DrawnFor::kEachMode ? Draws::kEachMode
                                                                  : Draws::kOnce;
     const Dispersal& by = input.dispersal;
-    add({by.key, by.meaning, draws, {by.dimension, by.range}, {input.column}});
+    add({by.key, by.meaning, draws, Any(by.dimension), {input.column}});
   }
+  for (DispersionRow& row : rows) SetRange(row);
   return rows;
 }
 

@@ -56,8 +56,6 @@ struct DispersionRow {
   std::optional<double> absent = {};             ///< the value in every case if the key is not there
   int first_stage = 1;
   int last_stages_without = 0;  ///< number of last stages that cannot be dispersed
-  /// Further limits of the draws, for a stage of a vehicle, or its boosters.
-  Range (*limits)(const Vehicle& vehicle, int stage) = nullptr;
   /// Of a stage of a vehicle, or its boosters: none, if it takes the values.
   std::optional<Unfit> (*unfit)(const Vehicle& vehicle, int stage) = nullptr;
 };

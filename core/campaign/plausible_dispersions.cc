@@ -14,10 +14,6 @@
 namespace dispersa {
 namespace {
 
-bool IsOfNavigation(const std::string& column) {
-  return column.rfind("navigation_", 0) == 0 || column.rfind("accelerometer_", 0) == 0;
-}
-
 // What a distribution draws but for 0.27 % of the cases, least and greatest.
 std::array<double, 2> ReachOf(const ScalarDistribution& distribution) {
   constexpr double kTail = 0.00135;
@@ -55,7 +51,7 @@ void CheckAir(const WeatherTable& table, const Add& add) {
   if (!table.has_air()) return;
   const GasLawMiss miss = MissOfGasLaw(table);
   if (std::fabs(miss.part) > kGasLawPart)
-    add({"wind_profile",
+    add({"dispersions.wind_profile",
          fmt::format("has at {:.6g} m a pressure {:.3g} times that of its density and temperature",
                      table.altitude_m[miss.level], 1.0 + miss.part),
          fmt::format("within {:g} % (the gas law of dry air; vapour makes up to 1.5 %)",
@@ -68,7 +64,7 @@ void CheckAir(const WeatherTable& table, const Add& add) {
     if (part > worst) worst = part, level = i;
   }
   if (worst > kAirPart)
-    add({"wind_profile",
+    add({"dispersions.wind_profile",
          fmt::format("has at {:.6g} m a density of {:.4g} kg/m3", table.altitude_m[level],
                      AirOfLevel(table, level).density_kg_m3),
          fmt::format("within a factor of {:.2g} of the standard's, {:.4g} kg/m3 (to 60 km seasons and "
@@ -76,21 +72,67 @@ void CheckAir(const WeatherTable& table, const Add& add) {
                      std::exp(kAirPart), StandardAtmosphere1976(table.altitude_m[level]).density_kg_m3)});
 }
 
-bool DrawsTailOffOfNone(const Campaign& campaign) {
-  bool draws = false;
+std::string PathOf(const Dispersion& dispersion, int input) {
+  if (dispersion.replaces) return "sampling.table." + InputColumns()[static_cast<std::size_t>(input)].name;
+  return "dispersions." + InputKey(input);
+}
+
+double NominalOf(int input) {
+  static FlightInputs nominal;
+  return InputValue(nominal, input);
+}
+
+// Values of every input, each away from the nominal one if any case may have it so.
+FlightInputs FarthestInputs(const Campaign& campaign) {
+  FlightInputs set;
   for (const Dispersion& dispersion : campaign.dispersions)
-    for (const int input : dispersion.inputs)
-      for (std::size_t i = 0; i < campaign.vehicle.stages.size(); ++i) {
-        if (InputColumns()[static_cast<std::size_t>(input)].name !=
-            "tail_off_factor_stage" + std::to_string(i + 1))
-          continue;
-        if (campaign.vehicle.stages[i].motor.tail_off_s > 0.0) return false;
-        draws = true;
-      }
-  return draws;
+    for (const double reach : ReachOf(dispersion.distribution))
+      for (const int input : dispersion.inputs)
+        if (reach != NominalOf(input)) InputValue(set, input) = reach;
+  // An expression may give anything.
+  for (const DerivedInput& derived : campaign.derived) InputValue(set, derived.column) = HUGE_VAL;
+  return set;
+}
+
+// The flight draws noise of its own from these, in every case another.
+bool IsOfNoise(int input) {
+  const std::string& name = InputColumns()[static_cast<std::size_t>(input)].name;
+  return name == "gyro_noise_deg_s" || name == "turbulence_exceedance";
+}
+
+// Keys none of whose inputs is read, each once.
+template <typename Add>
+void FindUnread(const Campaign& campaign, const Add& add) {
+  const std::vector<SetInput> inputs = SetInputs(campaign);
+  for (const SetInput& one : inputs) {
+    const bool is_read = std::any_of(inputs.begin(), inputs.end(), [&](const SetInput& other) {
+      return other.key == one.key && other.unread.empty();
+    });
+    if (!is_read) add({one.key, "nothing uses it: " + one.unread, one.allowed});
+  }
 }
 
 }  // namespace
+
+std::vector<SetInput> SetInputs(const Campaign& campaign) {
+  const FlightInputs set = FarthestInputs(campaign);
+  const FlightParts parts{campaign.vehicle, campaign.autopilot, campaign.guidance, campaign.course, set};
+  std::vector<SetInput> found;
+  const auto add = [&](const std::string& key, int input, bool varies) {
+    const Readers& readers = InputColumns()[static_cast<std::size_t>(input)].readers;
+    const bool is_read = IsRead(parts, input);
+    found.push_back({key, input, varies || IsOfNoise(input), is_read ? "" : readers.unread,
+                     is_read ? "" : readers.allowed});
+  };
+  for (const Dispersion& dispersion : campaign.dispersions)
+    for (const int input : dispersion.inputs) {
+      const auto [low, high] = ReachOf(dispersion.distribution);
+      if (low != high || low != NominalOf(input)) add(PathOf(dispersion, input), input, low != high);
+    }
+  for (std::size_t i = 0; i < campaign.derived.size(); ++i)
+    add("derived[" + std::to_string(i) + "]", campaign.derived[i].column, true);
+  return found;
+}
 
 std::vector<UnusualDispersion> UnusualDispersions(const Campaign& campaign) {
   std::vector<UnusualDispersion> found;
@@ -98,44 +140,34 @@ std::vector<UnusualDispersion> UnusualDispersions(const Campaign& campaign) {
     const auto same = [&](const UnusualDispersion& other) { return other.key == one.key; };
     if (std::none_of(found.begin(), found.end(), same)) found.push_back(std::move(one));
   };
+  FindUnread(campaign, add);
   for (const Dispersion& dispersion : campaign.dispersions) {
     for (const int input : dispersion.inputs) {
       const InputColumn& column = InputColumns()[static_cast<std::size_t>(input)];
-      const std::string key = InputKey(input);
-      if (key.empty()) continue;
       const std::array<double, 2> reach = ReachOf(dispersion.distribution);
-      if (IsOfNavigation(column.name) && !campaign.guidance.closed_loop &&
-          (reach[0] != 0.0 || reach[1] != 0.0))
-        add({key,
-             "nothing uses it: the flight has no closed-loop guidance, and the autopilot has sensors of its "
-             "own",
-             "guidance: {mode: closed_loop}, or none of navigation's errors"});
       const UsualValues& usual = column.usual;
       const double low = reach[0] / column.unit, high = reach[1] / column.unit;
       if (low >= usual.low && high <= usual.high) continue;
-      add({key,
+      add({PathOf(dispersion, input),
            fmt::format("draws from {:.4g} to {:.4g} ({}) but for 0.27 % of the cases", low, high,
                        column.name),
            fmt::format("{:g} to {:g} ({})", usual.low, usual.high, usual.source)});
     }
   }
-  if (DrawsTailOffOfNone(campaign))
-    add({"tail_off", "nothing uses it: no stage that it draws for has a tail_off_*",
-         "tail_off_* of the stages' motors, or no tail_off"});
   const auto draws_tables = [](const Dispersion& dispersion) {
     return dispersion.name.starts_with("aerodynamic_uncertainty/");
   };
   const std::vector<AeroTable>& tables = campaign.vehicle.aerodynamics;
   if (!campaign.dispersions.empty() && std::any_of(tables.begin(), tables.end(), IsUncertain) &&
       std::none_of(campaign.dispersions.begin(), campaign.dispersions.end(), draws_tables))
-    add({"", "do not draw the uncertainty that the vehicle's aerodynamic tables state",
+    add({"dispersions", "do not draw the uncertainty that the vehicle's aerodynamic tables state",
          "aerodynamic_uncertainty: {of: [ca, cn, xcp, damping]}"});
   if (const auto& table = campaign.wind_table) {
     double fastest_m_s = 0.0;
     for (std::size_t i = 0; i < table->altitude_m.size(); ++i)
       fastest_m_s = std::max(fastest_m_s, std::sqrt(table->north_m_s[i] * table->north_m_s[i] +
                                                     table->east_m_s[i] * table->east_m_s[i]));
-    CheckWind("wind_profile", fastest_m_s, table->altitude_m.back(), add);
+    CheckWind("dispersions.wind_profile", fastest_m_s, table->altitude_m.back(), add);
     CheckAir(*table, add);
   }
   if (const auto& statistics = campaign.wind_statistics) {
@@ -144,7 +176,7 @@ std::vector<UnusualDispersion> UnusualDispersions(const Campaign& campaign) {
       fastest_m_s = std::max({fastest_m_s,
                               std::fabs(statistics->mean_north_m_s[i]) + 3.0 * statistics->sigma_north_m_s[i],
                               std::fabs(statistics->mean_east_m_s[i]) + 3.0 * statistics->sigma_east_m_s[i]});
-    CheckWind("wind_profile", fastest_m_s, statistics->altitude_m.back(), add);
+    CheckWind("dispersions.wind_profile", fastest_m_s, statistics->altitude_m.back(), add);
   }
   return found;
 }

@@ -49,25 +49,72 @@ void SpreadForList(const InputNode& table, Vehicle& vehicle) {
   }
 }
 
-// The columns of a list's table, each an input by its name in cases.csv without the prefix.
-void DescribeListTable(Fields& fields, const InputNode& table, Campaign& campaign) {
-  SpreadForList(table, campaign.vehicle);
+// A cases.csv serves as it is: its inputs have a prefix, and its other columns are results.
+bool KeepInputs(InputNode& table) {
+  constexpr std::string_view kPrefix = "input_";
+  const auto is_input = [&](const InputMember& member) { return member.key.starts_with(kPrefix); };
+  if (std::none_of(table.members.begin(), table.members.end(), is_input)) return false;
+  std::erase_if(table.members, [&](const InputMember& member) { return !is_input(member); });
+  for (InputMember& member : table.members) member.key.erase(0, kPrefix.size());
+  return true;
+}
+
+// Of a cases.csv: columns that neither differ from the nominal flight nor replace another draw say nothing.
+void LeaveOutNominal(InputNode& table, const std::vector<Dispersion>& dispersions) {
+  static FlightInputs nominal;
+  const std::vector<InputMember> all = table.members;
+  std::erase_if(table.members, [&](const InputMember& member) {
+    const int input = FindInput(member.key);
+    if (input < 0 || member.value.items.empty()) return false;
+    const bool is_drawn = std::any_of(dispersions.begin(), dispersions.end(), [&](const Dispersion& one) {
+      return std::find(one.inputs.begin(), one.inputs.end(), input) != one.inputs.end();
+    });
+    const double value = InputValue(nominal, input) / InputColumns()[static_cast<std::size_t>(input)].unit;
+    return !is_drawn && std::all_of(member.value.items.begin(), member.value.items.end(),
+                                    [&](const InputNode& item) { return ParseNumber(item.text) == value; });
+  });
+  if (table.members.empty()) table.members = {all.front()};
+}
+
+// A column's numbers, where the vehicle can have them. The nominal value is one of them: nothing may read it.
+void ReadListed(Fields& fields, const char* key, int input, const Vehicle& vehicle,
+                std::vector<double>& values) {
+  static FlightInputs nominal;
+  const double unit = InputColumns()[static_cast<std::size_t>(input)].unit;
+  const double usual = InputValue(nominal, input);
+  Range range = RangeOf(vehicle, input);
+  if (!range.Contains(usual)) {
+    if (usual <= range.low) range.low = usual, range.low_open = false;
+    if (usual >= range.high) range.high = usual, range.high_open = false;
+  }
+  fields.Numbers(key, {range.low / unit, range.high / unit, range.low_open, range.high_open}, 1, SIZE_MAX,
+                 values, "in the unit of its name");
+  for (std::size_t i = 0; i < values.size(); ++i) {
+    values[i] *= unit;
+    if (values[i] == usual || !range.Contains(values[i]) || IsAllowed(vehicle, input, values[i])) continue;
+    fields.Refuse(std::string(key) + "[" + std::to_string(i) + "]",
+                  FormatNumber(values[i] / unit) + " is no whole number", RangeText(vehicle, input));
+  }
+}
+
+// The columns of a list's table, each an input by its name in cases.csv.
+void DescribeListTable(Fields& fields, const InputNode& table, bool is_sound, Campaign& campaign) {
   std::vector<std::string> names;
   const std::size_t count = InputCount(ColumnClass(campaign.vehicle));
   for (std::size_t i = 0; i < count; ++i) names.push_back(InputColumns()[i].name);
+  const Vehicle vehicle = is_sound ? campaign.vehicle : Vehicle{};
   for (const InputMember& member : table.members) {
     const char* key = member.key.c_str();
     const int input = FindInput(member.key);
     if (input < 0 || static_cast<std::size_t>(input) >= count) {
       fields.Misplaced(key, {}, ("'{}' is not an input" + MeantInput(member.key, names)).c_str(),
-                       "a column of cases.csv without its prefix 'input_'");
+                       "a column of cases.csv");
       continue;
     }
     ScalarDistribution values;
     values.kind = Distribution::kValues;
-    fields.Numbers(key, kAnyNumber, 1, SIZE_MAX, values.values, "in the unit of its name");
-    for (double& value : values.values) value *= InputColumns()[static_cast<std::size_t>(input)].unit;
-    campaign.dispersions.push_back({"list/" + member.key, std::move(values), {input}, false, {}});
+    ReadListed(fields, key, input, vehicle, values.values);
+    campaign.dispersions.push_back({"list/" + member.key, std::move(values), {input}, false, {}, true});
   }
 }
 
@@ -212,7 +259,7 @@ class CampaignDescription {
     WarnOfGround();
     const Part whole{root_, ""};
     for (const UnusualDispersion& unusual : UnusualDispersions(campaign_)) {
-      WarnOf(whole, "dispersions." + unusual.key, unusual.message, unusual.allowed);
+      WarnOf(whole, unusual.key, unusual.message, unusual.allowed);
       warnings_->back().unusual = true;
     }
     WarnOfGuidance();
@@ -385,6 +432,7 @@ class CampaignDescription {
                      map.Columns("table",
                                  "the cases of a list, a column of cases.csv an input; or a CSV file",
                                  [this](InputNode& node, const std::string& path) {
+                                   is_cases_csv_ = KeepInputs(node);
                                    list_ = {&node, path};
                                  });
                    }},
@@ -414,9 +462,13 @@ class CampaignDescription {
     bool has_dispersions = false;
     fields.OptionalMap("dispersions", has_dispersions, "inputs that differ from case to case",
                        [&](Fields& map) { dispersa::DescribeDispersions(map, before == 0, campaign_); });
-    if (list_.node != nullptr)
+    if (list_.node != nullptr) {
+      if (is_cases_csv_) LeaveOutNominal(*list_.node, campaign_.dispersions);
+      SpreadForList(*list_.node, campaign_.vehicle);
+      const bool is_sound = before == 0 && problems_.size() == before;
       ReadFields(*list_.node, list_.path, problems_, files_,
-                 [this](Fields& map) { DescribeListTable(map, *list_.node, campaign_); });
+                 [&](Fields& map) { DescribeListTable(map, *list_.node, is_sound, campaign_); });
+    }
     std::vector<Correlation> correlations;
     fields.List(
         "correlations", 0, SIZE_MAX, correlations, "groups of normal dispersions that are drawn together",
@@ -424,10 +476,39 @@ class CampaignDescription {
     fields.OptionalList("derived", 1, InputColumns().size(), campaign_.derived,
                         "inputs that follow from drawn ones", [&](Fields& map, DerivedInput& derived) {
                           dispersa::Describe(map, derived, DerivedBefore(derived), campaign_.dispersions,
-                                             ColumnClass(campaign_.vehicle));
+                                             campaign_.vehicle);
                         });
+    std::erase_if(campaign_.derived,
+                  [this](const DerivedInput& derived) { return IsListed(derived.column); });
+    if (list_.node != nullptr) LeaveOutReplaced();
     if (problems_.size() == before && has_sampling_)
       CheckDesign(fields, campaign_.sampling, campaign_.dispersions);
+  }
+
+  // Draws whose inputs the table gives, all of them, are none. Those that others are correlated with stay.
+  void LeaveOutReplaced() {
+    std::vector<Dispersion>& all = campaign_.dispersions;
+    std::vector<bool> kept(all.size());
+    for (std::size_t i = 0; i < all.size(); ++i)
+      kept[i] = all[i].replaces || !std::all_of(all[i].inputs.begin(), all[i].inputs.end(),
+                                                [this](int input) { return IsListed(input); });
+    for (std::size_t i = 0; i < all.size(); ++i)
+      if (kept[i])
+        for (const auto& [other, weight] : all[i].mix) kept[other] = true;
+    std::vector<std::size_t> now(all.size());
+    std::vector<Dispersion> left;
+    for (std::size_t i = 0; i < all.size(); ++i) {
+      now[i] = left.size();
+      if (kept[i]) left.push_back(std::move(all[i]));
+    }
+    for (Dispersion& dispersion : left)
+      for (auto& [other, weight] : dispersion.mix) other = now[other];
+    all = std::move(left);
+  }
+  // The table's value stands in place of a derived one.
+  bool IsListed(int column) const {
+    return std::any_of(campaign_.dispersions.begin(), campaign_.dispersions.end(),
+                       [&](const Dispersion& one) { return one.replaces && one.inputs.front() == column; });
   }
 
   std::vector<DerivedInput> DerivedBefore(const DerivedInput& derived) const {
@@ -513,6 +594,7 @@ class CampaignDescription {
   ProblemList* const warnings_;
   Part vehicle_, reference_, optimize_, list_;
   bool has_sampling_ = false;
+  bool is_cases_csv_ = false;
   bool has_autopilot_ = false;
 };
 

@@ -97,7 +97,13 @@ InputNode ParseCsv(const std::string& text, const std::string& file, std::vector
   char separator = ',';
   DecimalMarks marks;
   while (!rest.empty()) {
-    const std::size_t end = std::min(rest.find('\n'), rest.size());
+    // A quoted cell, such as the reason of a lost flight, may have line breaks.
+    std::size_t end = 0;
+    int breaks = 0;
+    for (bool is_quoted = false; end < rest.size() && (is_quoted || rest[end] != '\n'); ++end) {
+      if (rest[end] == '"' && !rest.starts_with('#')) is_quoted = !is_quoted;
+      if (rest[end] == '\n') ++breaks;
+    }
     std::string_view line = rest.substr(0, end);
     rest.remove_prefix(std::min(end + 1, rest.size()));
     ++place.line;
@@ -131,6 +137,7 @@ InputNode ParseCsv(const std::string& text, const std::string& file, std::vector
             ScalarAt(place, separator == ';' ? marks.Read(cells[c], place.line) : cells[c].text));
       }
     }
+    place.line += breaks;
   }
   marks.Check(file, problems);
   if (table.members.empty())

@@ -63,7 +63,7 @@ CaseResult FlightsHere::Fly(const FlightInputs& inputs, std::uint64_t case_index
   options.scheme = scheme;
   options.case_index = case_index;
   options.history = history;
-  return ResultOf(*model_, case_index, inputs, dispersa::Fly(*model_, inputs, options));
+  return ResultOf(*model_, case_index, model_->AsApplied(inputs), dispersa::Fly(*model_, inputs, options));
 }
 
 void FlightsHere::FlyCases(CaseQueue& queue) const {

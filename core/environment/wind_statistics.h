@@ -26,15 +26,12 @@ struct WindStatistics {
 void Describe(Fields& fields, WindStatistics& statistics);
 void DescribeLevels(Fields& fields, WindStatistics& statistics, std::size_t most);
 
-/// How many standard normals DrawWind takes: two a level.
-inline std::size_t NormalsFor(const WindStatistics& statistics) { return 2 * statistics.altitude_m.size(); }
-
-/// One profile: a first-order autoregression in altitude, with rho = exp(-dh / correlation length). The
-/// standardised components of a level are z = rho z' + sqrt(1 - rho²) e, where z' are those of the level
-/// below. At the lowest level z = e. e_north = normals[2k] and e_east = r normals[2k] + sqrt(1 - r²)
-/// normals[2k+1], where r is the correlation of the components. Every level then has exactly the given means,
-/// deviations and correlation. Two levels dh apart have the correlation exp(-dh / length). standard_normals
-/// has NormalsFor(statistics) values.
-WindTable DrawWind(const WindStatistics& statistics, const std::vector<double>& standard_normals);
+/// The standardised components of every level (north, east, level by level) as weighted sums of independent
+/// standard normals: one row a component, as many weights. A first-order autoregression in altitude, with
+/// rho = exp(-dh / correlation length): z = rho z' + sqrt(1 - rho²) e, where z' are those of the level below.
+/// At the lowest level z = e. With the normals n, e_north = n[2k] and e_east = r n[2k] + sqrt(1 - r²)
+/// n[2k+1], where r is the correlation of the components. Every level then has exactly the given correlation.
+/// Two levels dh apart have the correlation exp(-dh / length).
+std::vector<std::vector<double>> WindWeights(const WindStatistics& statistics);
 
 }  // namespace dispersa

@@ -24,7 +24,7 @@ const InputDeclarations& Declared() {
 InputDeclarations& InputDeclarations::One(double FlightInputs::*field, const std::string& name, double unit,
                                           const Dispersal& dispersal) {
   Begin();
-  columns_.push_back({name, unit, OffsetOf(&(nominal_.*field)), {}});
+  columns_.push_back({name, unit, OffsetOf(&(nominal_.*field))});
   Disperse(dispersal, DrawnFor::kFlight, name);
   return *this;
 }
@@ -34,8 +34,10 @@ InputDeclarations& InputDeclarations::EachStage(PerStage FlightInputs::*field, c
                                                 const Dispersal& dispersal) {
   Begin();
   for (std::size_t i = 0; i < kMaxStages; ++i)
-    ColumnsWith(i).push_back(
-        {stem + "_stage" + std::to_string(i + 1) + unit_suffix, unit, OffsetOf(&(nominal_.*field)[i])});
+    ColumnsWith(i).push_back({stem + "_stage" + std::to_string(i + 1) + unit_suffix,
+                              unit,
+                              OffsetOf(&(nominal_.*field)[i]),
+                              {static_cast<int>(i) + 1, 0}});
   Disperse(dispersal, DrawnFor::kEachStage, stem + "_{stage}" + unit_suffix);
   return *this;
 }
@@ -46,8 +48,10 @@ InputDeclarations& InputDeclarations::EachNozzle(PerNozzle FlightInputs::*field,
   for (std::size_t i = 0; i < kMaxStages; ++i)
     for (std::size_t nozzle = 0; nozzle < kNozzles; ++nozzle)
       ColumnsWith(i).push_back(
-          {stem + "_stage" + std::to_string(i + 1) + "_" + kNozzleNames[nozzle] + unit_suffix, unit,
-           OffsetOf(&(nominal_.*field)[i][nozzle])});
+          {stem + "_stage" + std::to_string(i + 1) + "_" + kNozzleNames[nozzle] + unit_suffix,
+           unit,
+           OffsetOf(&(nominal_.*field)[i][nozzle]),
+           {static_cast<int>(i) + 1, static_cast<int>(nozzle)}});
   return *this;
 }
 
@@ -57,8 +61,10 @@ InputDeclarations& InputDeclarations::EachFurtherNozzle(PerFurtherNozzle FlightI
   Begin();
   for (std::size_t i = 0; i < kFurtherNozzles; ++i)
     further_[i].push_back(
-        {stem + "_nozzle" + std::to_string(kNozzles + 1 + static_cast<int>(i)) + unit_suffix, unit,
-         OffsetOf(&(nominal_.*field)[i])});
+        {stem + "_nozzle" + std::to_string(kNozzles + 1 + static_cast<int>(i)) + unit_suffix,
+         unit,
+         OffsetOf(&(nominal_.*field)[i]),
+         {0, static_cast<int>(i)}});
   return *this;
 }
 
@@ -66,16 +72,22 @@ InputDeclarations& InputDeclarations::EachMode(std::array<double, kModes> Flight
                                                const std::string& stem, const Dispersal& dispersal) {
   Begin();
   for (std::size_t i = 0; i < kModes; ++i)
-    columns_.push_back({stem + "_mode" + std::to_string(i + 1), 1.0, OffsetOf(&(nominal_.*field)[i])});
+    columns_.push_back({stem + "_mode" + std::to_string(i + 1),
+                        1.0,
+                        OffsetOf(&(nominal_.*field)[i]),
+                        {0, static_cast<int>(i)}});
   Disperse(dispersal, DrawnFor::kEachMode, stem + "_{mode}");
   return *this;
 }
 
 InputDeclarations& InputDeclarations::EachLevel(std::array<double, kWindLevels> FlightInputs::*field,
-                                                const std::string& stem) {
+                                                const std::string& stem, const std::string& unit_suffix) {
   Begin();
   for (std::size_t i = 0; i < kWindLevels; ++i)
-    columns_.push_back({stem + "_" + std::to_string(i + 1), 1.0, OffsetOf(&(nominal_.*field)[i])});
+    columns_.push_back({stem + "_" + std::to_string(i + 1) + unit_suffix,
+                        1.0,
+                        OffsetOf(&(nominal_.*field)[i]),
+                        {0, static_cast<int>(i)}});
   return *this;
 }
 
@@ -89,11 +101,23 @@ InputDeclarations& InputDeclarations::EachLaunchAxis(std::array<double, 3> Fligh
   return *this;
 }
 
-void InputDeclarations::Usually(const UsualValues& usual) {
-  for (std::size_t i = last_; i < columns_.size(); ++i) columns_[i].usual = usual;
-  for (std::size_t i = last_rare_; i < rare_.size(); ++i) rare_[i].usual = usual;
+template <typename Set>
+InputDeclarations& InputDeclarations::ForLast(Set set) {
+  for (std::size_t i = last_; i < columns_.size(); ++i) set(columns_[i]);
+  for (std::size_t i = last_rare_; i < rare_.size(); ++i) set(rare_[i]);
   for (auto& columns : further_)
-    for (std::size_t i = last_further_; i < columns.size(); ++i) columns[i].usual = usual;
+    for (std::size_t i = last_further_; i < columns.size(); ++i) set(columns[i]);
+  return *this;
+}
+
+InputDeclarations& InputDeclarations::Within(const AllowedValues& allowed) {
+  return ForLast([&](InputColumn& column) { column.allowed = allowed; });
+}
+InputDeclarations& InputDeclarations::ReadBy(const Readers& readers) {
+  return ForLast([&](InputColumn& column) { column.readers = readers; });
+}
+InputDeclarations& InputDeclarations::Usually(const UsualValues& usual) {
+  return ForLast([&](InputColumn& column) { column.usual = usual; });
 }
 
 std::vector<InputColumn> InputDeclarations::AllColumns() const {
@@ -186,13 +210,21 @@ double& InputValue(FlightInputs& inputs, int column) {
   return *reinterpret_cast<double*>(reinterpret_cast<char*>(&inputs) + offset);
 }
 
+void TakeColumns(FlightInputs& inputs) {
+  for (const InputColumn& column : InputColumns()) {
+    double& value = *reinterpret_cast<double*>(reinterpret_cast<char*>(&inputs) + column.offset);
+    const double in_unit = value / column.unit + 0.0;
+    value = in_unit * column.unit;
+  }
+}
+
 std::vector<double> InputValues(const FlightInputs& inputs, std::size_t stages) {
   std::vector<double> values(InputCount(stages));
   for (std::size_t i = 0; i < values.size(); ++i) {
     const InputColumn& column = InputColumns()[i];
     double value;
     std::memcpy(&value, reinterpret_cast<const char*>(&inputs) + column.offset, sizeof value);
-    values[i] = value / column.unit + 0.0;  // + 0.0: results hold no -0
+    values[i] = 0.0 + value / column.unit;  // 0.0 +: results hold no -0
   }
   return values;
 }

@@ -628,13 +628,12 @@ double FlowFactor(const NozzleLayout& layout, const FlightInputs& in, std::size_
   return 1.0 + more;
 }
 
-WindTable DrawnProfile(const WindStatistics& statistics, const FlightInputs& inputs) {
-  std::vector<double> normals;
-  for (std::size_t level = 0; level < statistics.altitude_m.size(); ++level) {
-    normals.push_back(inputs.wind_profile_north[level]);
-    normals.push_back(inputs.wind_profile_east[level]);
-  }
-  return DrawWind(statistics, normals);
+WindTable ProfileOf(const FlightInputs& in, int levels) {
+  const auto first = [levels](const std::array<double, kWindLevels>& values) {
+    return std::vector<double>(values.begin(), values.begin() + levels);
+  };
+  return {first(in.wind_profile_altitude_m), first(in.wind_profile_north_m_s),
+          first(in.wind_profile_east_m_s)};
 }
 
 TurbulenceField TurbulenceOf(const FlightInputs& in, const TurbulencePath& path, std::uint64_t seed,
@@ -666,7 +665,21 @@ std::shared_ptr<const BoosterSet> BoostersFor(const Vehicle& vehicle, const Boos
 
 }  // namespace
 
-LauncherPlant FlightModel::PlantFor(const FlightInputs& in, std::optional<std::uint64_t> case_index) const {
+FlightInputs FlightModel::AsApplied(FlightInputs in) const {
+  const auto& statistics = definition_.wind_statistics;
+  if (!statistics || WindLevelsOf(in.wind_profile_altitude_m) > 0) return in;
+  const auto fill = [](const std::vector<double>& from, std::array<double, kWindLevels>& to) {
+    std::copy_n(from.begin(), std::min(from.size(), to.size()), to.begin());
+  };
+  fill(statistics->altitude_m, in.wind_profile_altitude_m);
+  fill(statistics->mean_north_m_s, in.wind_profile_north_m_s);
+  fill(statistics->mean_east_m_s, in.wind_profile_east_m_s);
+  return in;
+}
+
+LauncherPlant FlightModel::PlantFor(const FlightInputs& inputs,
+                                    std::optional<std::uint64_t> case_index) const {
+  const FlightInputs in = AsApplied(inputs);
   LauncherPlant plant = nominal_;
   plant.cg_factor = in.cg_factor;
   plant.inertia_factor = in.inertia_factor;
@@ -680,7 +693,8 @@ LauncherPlant FlightModel::PlantFor(const FlightInputs& in, std::optional<std::u
     wind.jets.push_back({in.wind_max_speed_m_s, in.wind_altitude_m, in.wind_width_m, in.wind_azimuth_rad});
   if (in.gust_speed_m_s != 0.0)
     wind.gusts.push_back({in.gust_speed_m_s, in.gust_altitude_m, in.gust_length_m, in.gust_azimuth_rad});
-  if (definition_.wind_statistics) wind.tables.push_back(DrawnProfile(*definition_.wind_statistics, in));
+  if (const int levels = WindLevelsOf(in.wind_profile_altitude_m); levels > 0)
+    wind.tables.push_back(ProfileOf(in, levels));
 
   if (case_index && definition_.turbulence_path && in.turbulence_exceedance > 0.0)
     plant.environment.turbulence = std::make_shared<const TurbulenceField>(

@@ -46,8 +46,8 @@ struct FlightDefinition {
   double kick_end_s = 0.0;
   InjectionTarget target;
   std::optional<WeatherTable> wind_table;
-  std::optional<WindStatistics> wind_statistics;
-  std::uint64_t noise_seed = 0;  ///< of the sensors and of turbulence
+  std::optional<WindStatistics> wind_statistics;  ///< flights whose inputs have no profile meet its means
+  std::uint64_t noise_seed = 0;                   ///< of the sensors and of turbulence
   /// Along which turbulence is laid. Null: no flight meets any, whatever its inputs ask.
   std::shared_ptr<const TurbulencePath> turbulence_path = {};
   GuidanceConfig guidance;
@@ -102,6 +102,8 @@ class FlightModel {
   /// The knowledge of closed-loop guidance before lift-off; empty for open-loop flights.
   const std::optional<GuidanceMission>& guidance_mission() const { return guidance_mission_; }
 
+  /// The inputs as a flight applies them: those of the nominal flight have the campaign's mean wind.
+  FlightInputs AsApplied(FlightInputs inputs) const;
   /// The nominal plant with a flight's factors, winds and misalignments. With a case index the plant also has
   /// the turbulence that this case draws.
   LauncherPlant PlantFor(const FlightInputs& inputs, std::optional<std::uint64_t> case_index = {}) const;

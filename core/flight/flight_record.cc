@@ -204,7 +204,7 @@ class FlightRecord::JudgedMotion {
 };
 
 FlightRecord::FlightRecord(const FlightModel& model, const FlightOrder& order)
-    : inputs(order.inputs),
+    : inputs(model.AsApplied(order.inputs)),
       options(order.options),
       plant(model.PlantFor(order.inputs, order.options.case_index)),
       weather(PrepareWeather(plant.environment.wind, plant.environment.density,
@@ -223,7 +223,8 @@ FlightRecord::FlightRecord(const FlightModel& model, const FlightOrder& order)
       gyro_noise_(model.definition().noise_seed, options.case_index, "gyro_noise") {
   const double tick_s = model.definition().autopilot.tick_s;
   sums.step_limit_fraction = GreatestStepUse(plant, tick_s).fraction;
-  refusal_ = RefusalOf(model.definition().vehicle, inputs, plant, tick_s);
+  const FlightDefinition& of = model.definition();
+  refusal_ = RefusalOf({of.vehicle, of.autopilot, of.guidance, of.course, inputs}, plant, tick_s);
   if (!refusal_.empty()) refusal = refusal_.c_str();
   WriteState(LiftOffState(model, inputs), lift_off);
   const Quaternion believed = BelievedAttitude(model, inputs, ReadState(lift_off).q_IB);

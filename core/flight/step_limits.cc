@@ -50,6 +50,13 @@ void EachMode(const LauncherPlant& plant, std::size_t stack, F f) {
   }
 }
 
+// Altitudes that grow, then zeros.
+bool IsProfile(const std::array<double, kWindLevels>& altitude_m) {
+  const std::size_t levels = static_cast<std::size_t>(WindLevelsOf(altitude_m));
+  return std::all_of(altitude_m.begin() + static_cast<std::ptrdiff_t>(levels), altitude_m.end(),
+                     [](double altitude) { return altitude == 0.0; });
+}
+
 // Sylvester's criterion for the tensor of a stack that has burnt out and let go of all it may, where the
 // moments are least.
 bool IsInertia(const LauncherPlant& plant, std::size_t index) {
@@ -90,31 +97,13 @@ double FastestPart(const LauncherPlant& plant, int stack) {
   return fastest_rad_s;
 }
 
-std::string RefusalOf(const Vehicle& vehicle, const FlightInputs& in, const LauncherPlant& plant,
-                      double tick_s) {
-  const std::vector<double> values = InputValues(in, ColumnClass(vehicle));
-  for (std::size_t i = 0; i < values.size(); ++i)
-    if (!std::isfinite(values[i])) return "the input " + InputColumns()[i].name + " has no value";
-  for (std::size_t i = 0; i < vehicle.stages.size(); ++i) {
-    const std::string stage = "stage " + std::to_string(i + 1);
-    if (!(in.dry_mass_factor[i] > 0.0)) return "the dry mass of " + stage + " is not above 0";
-    if (!(in.propellant_factor[i] > 0.0)) return "the propellant of " + stage + " is not above 0";
-    if (in.propellant_factor[i] > LargestPropellantFactor(vehicle.stages[i]))
-      return (vehicle.stages[i].is_liquid() ? "a tank of " : "the grain of ") + stage + " does not hold " +
-             Text(in.propellant_factor[i]) + " times its propellant";
-    if (!(in.mixture_ratio_factor[i] > 0.0)) return "the mixture ratio of " + stage + " is not above 0";
-    if (!IsInertia(plant, i)) return "the products of inertia of " + stage + " are no body's";
-  }
-  for (std::size_t k = 0; k < vehicle.boosters.angles_rad.size(); ++k) {
-    const std::size_t at = static_cast<std::size_t>(FurtherNozzlesBefore(vehicle, vehicle.stages.size())) + k;
-    const std::string booster = "booster " + std::to_string(k + 1);
-    if (!(in.booster_dry_mass_factor[at] > 0.0)) return "the dry mass of " + booster + " is not above 0";
-    if (!(in.booster_propellant_factor[at] > 0.0)) return "the propellant of " + booster + " is not above 0";
-    if (in.booster_propellant_factor[at] > LargestPropellantFactor(AsStage(vehicle.boosters)))
-      return booster + " does not hold " + Text(in.booster_propellant_factor[at]) + " times its propellant";
-    if (!(in.booster_mixture_ratio_factor[at] > 0.0))
-      return "the mixture ratio of " + booster + " is not above 0";
-  }
+std::string RefusalOf(const FlightParts& parts, const LauncherPlant& plant, double tick_s) {
+  const Vehicle& vehicle = parts.vehicle;
+  const FlightInputs& in = parts.set;
+  if (std::string why = WhyNotAllowed(parts); !why.empty()) return why;
+  for (std::size_t i = 0; i < vehicle.stages.size(); ++i)
+    if (!IsInertia(plant, i))
+      return "the products of inertia of stage " + std::to_string(i + 1) + " are no body's";
   if (in.payload_mass_kg != 0.0) {
     const Vehicle dispersed = WithDispersedMasses(vehicle, in);
     const double dry_kg = DryMass(dispersed, static_cast<int>(dispersed.stages.size()) - 1);
@@ -122,6 +111,11 @@ std::string RefusalOf(const Vehicle& vehicle, const FlightInputs& in, const Laun
       if (!(element.fraction * dry_kg >= 0.0))
         return "the element '" + element.name + "' weighs less than nothing";
   }
+  // The number of a nozzle counts those of its own stage.
+  const auto stuck = static_cast<std::size_t>(in.stuck_nozzle_stage);
+  if (stuck > 0 && in.stuck_nozzle > NozzleCount(vehicle.stages[stuck - 1].gimbal))
+    return "stage " + std::to_string(stuck) + " has no nozzle " + Text(in.stuck_nozzle);
+  if (!IsProfile(in.wind_profile_altitude_m)) return "the altitudes of the wind profile do not grow";
   if (plant.boosters && plant.boosters->burn.duration_s >= plant.stacks[0].burn.duration_s)
     return "the boosters burn as long as their stage, or longer";
   for (std::size_t k = 0; plant.boosters && k < plant.boosters->each.size(); ++k)

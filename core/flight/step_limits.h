@@ -44,9 +44,9 @@ StepUse GreatestStepUse(const LauncherPlant& plant, double tick_s);
 /// The highest natural frequency of a stack's actuators and bending modes, rad/s.
 double FastestPart(const LauncherPlant& plant, int stack);
 
-/// Reason, as a sentence, why a flight with these inputs and their plant cannot be computed; empty if it can.
-std::string RefusalOf(const Vehicle& vehicle, const FlightInputs& inputs, const LauncherPlant& plant,
-                      double tick_s);
+/// Reason, as a sentence, why a flight with these inputs (the parts' `set`) and their plant cannot be
+/// computed; empty if it can.
+std::string RefusalOf(const FlightParts& parts, const LauncherPlant& plant, double tick_s);
 
 /// Actuators of a nominal vehicle beyond their limit, by the path in its file.
 std::vector<StructProblem> StepProblems(const Vehicle& vehicle, double tick_s);

@@ -291,9 +291,10 @@ std::string DispersionsSection(const CampaignSummary& summary) {
     table.Row({InputNames(one.key, one.input), HtmlText(one.declared), text(one.expected_mean),
                text(one.drawn.mean), scale(one.expected_std), scale(one.drawn.std), text(one.drawn.min),
                text(one.drawn.max),
-               !one.consistent   ? "–"
-               : *one.consistent ? "agrees"
-                                 : "<span class=\"badge fail\">differs</span>"});
+               !one.unread.empty() ? "<span class=\"badge fail\">not read</span> " + HtmlText(one.unread)
+               : !one.consistent   ? "–"
+               : *one.consistent   ? "agrees"
+                                   : "<span class=\"badge fail\">differs</span>"});
   }
   return html + table.Html();
 }

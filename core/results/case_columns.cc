@@ -18,8 +18,11 @@ CaseColumns ReadColumns(const ResultFolder& folder, const std::vector<int>& want
   cases.own_metrics = folder.metric_list().own();
   const auto file = std::make_shared<ColumnFile>(folder.directory(), metrics + wanted_inputs.size());
   std::vector<double> row(metrics + wanted_inputs.size());
+  Digest first;
   folder.ForEach([&](const CaseResult& result) {
     if (observe) observe(result);
+    if (cases.index.empty()) first = result.digest;
+    cases.are_alike = (cases.index.size() == 1 || cases.are_alike) && result.digest == first;
     cases.index.push_back(result.case_index);
     cases.outcome.push_back(result.outcome);
     if (result.outcome != Outcome::kCompleted && cases.lost_flights.size() < kListedLostFlights) {

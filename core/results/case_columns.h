@@ -22,6 +22,7 @@ struct CaseColumns {
   std::vector<CaseColumn>
       metrics;  ///< one for each metric of the vehicle (empty if its control law does not measure it)
   std::vector<std::string> own_metrics;  ///< names of the campaign's own metrics, the last ones of `metrics`
+  bool are_alike = false;                ///< two flights or more, and all have one digest
   std::vector<LostFlight> lost_flights;  ///< the first kListedLostFlights lost flights
 
   std::size_t rows() const { return index.size(); }

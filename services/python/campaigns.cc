@@ -178,7 +178,11 @@ FlightInputs InputsOf(const LoadedCampaign& campaign, const CampaignFlights& fli
     if (column < 0 || static_cast<std::size_t>(column) >= InputCount(campaign.stages()))
       throw InputError("inputs: '" + name + "' is not an input of this vehicle",
                        "a name of Campaign.input_names");
-    InputValue(inputs, column) = value * InputColumns()[static_cast<std::size_t>(column)].unit;
+    const double applied = value * InputColumns()[static_cast<std::size_t>(column)].unit;
+    if (!IsAllowed(campaign.campaign().vehicle, column, applied) && applied != InputValue(inputs, column))
+      throw InputError("inputs: " + name + " is " + FormatNumber(value),
+                       RangeText(campaign.campaign().vehicle, column));
+    InputValue(inputs, column) = applied;
   }
   return inputs;
 }

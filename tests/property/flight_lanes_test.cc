@@ -212,9 +212,17 @@ FlightInputs DrawnInputs(std::uint64_t flight) {
   some(in.gust_speed_m_s, 9.0 * draws.Uniform());
   some(in.gust_altitude_m, 9000.0);
   in.gust_length_m = 400.0;
+  constexpr double kAltitudes_m[] = {0.0, 6000.0, 14000.0}, kNorth_m_s[] = {0.0, 5.0, 20.0},
+                   kEast_m_s[] = {1.0, 2.0, 3.0}, kSigma_m_s[] = {2.0, 5.0, 8.0};
   for (std::size_t level = 0; level < kWindLevels; ++level) {
-    some(in.wind_profile_north[level], draws.Normal());
-    some(in.wind_profile_east[level], draws.Normal());
+    double north = 0.0, east = 0.0;
+    some(north, draws.Normal());
+    some(east, draws.Normal());
+    // Without altitudes a flight meets the means of the campaign's statistics.
+    if (level >= std::size(kAltitudes_m) || flight % 4 == 1) continue;
+    in.wind_profile_altitude_m[level] = kAltitudes_m[level];
+    in.wind_profile_north_m_s[level] = kNorth_m_s[level] + kSigma_m_s[level] * north;
+    in.wind_profile_east_m_s[level] = kEast_m_s[level] + kSigma_m_s[level] * east;
   }
   for (double* factor :
        {&in.drag_factor, &in.lift_factor, &in.cg_factor, &in.cp_factor, &in.density_factor,
@@ -239,9 +247,9 @@ FlightInputs DrawnInputs(std::uint64_t flight) {
   for (std::size_t stage = 0; stage < kUsualStages; ++stage) {
     seldom(in.dry_mass_factor[stage], 1.0 + 0.01 * later.Normal());
     seldom(in.propellant_factor[stage], 1.0 + 0.005 * later.Normal());
-    seldom(in.product_of_inertia_xy_kg_m2[stage], 2.0 * later.Normal());
-    seldom(in.product_of_inertia_xz_kg_m2[stage], 2.0 * later.Normal());
-    seldom(in.product_of_inertia_yz_kg_m2[stage], 2.0 * later.Normal());
+    seldom(in.product_of_inertia_xy_kg_m2[stage], 0.05 * later.Normal());
+    seldom(in.product_of_inertia_xz_kg_m2[stage], 0.03 * later.Normal());
+    seldom(in.product_of_inertia_yz_kg_m2[stage], 0.03 * later.Normal());
     seldom(in.ignition_delay_s[stage], 0.2 * later.Uniform());
     seldom(in.separation_delay_s[stage], 0.1 * later.Uniform());
     seldom(in.thrust_misalignment_y_rad[stage], 0.1 * kRadPerDeg * later.Normal());

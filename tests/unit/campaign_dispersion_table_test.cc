@@ -31,7 +31,7 @@ TEST(DispersionTable, AColumnHasTheNameThatTheFileGivesIt) {
   EXPECT_EQ(KeyOfColumn("wind_azimuth_deg"), "wind.azimuth");
   EXPECT_EQ(KeyOfColumn("turbulence_scale"), "turbulence.scale");
   EXPECT_EQ(KeyOfColumn("tip_off_yaw_stage1_deg_s"), "tip_off_rate.yaw");
-  EXPECT_EQ(KeyOfColumn("wind_profile_east_30"), "wind_profile");
+  EXPECT_EQ(KeyOfColumn("wind_profile_east_30_m_s"), "wind_profile");
   EXPECT_EQ(KeyOfColumn("bending_frequency_factor_mode5"), "bending_frequency");
 }
 

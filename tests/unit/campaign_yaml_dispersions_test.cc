@@ -186,13 +186,19 @@ TEST(CampaignYamlDispersions, GustIsFixedOrDrawn) {
   EXPECT_THAT(Inputs(list[2]), ElementsAre("gust_length_m"));
 }
 
-TEST(CampaignYamlDispersions, WindStatisticsDrawStandardNormals) {
+// The winds themselves, and the altitudes at which they blow.
+TEST(CampaignYamlDispersions, WindStatisticsDrawTheWindsOfTheirLevels) {
   const auto list = Decode(
       "wind_profile: {statistics: wind_statistics.csv, correlation_ne: 0.1, correlation_length_km: 3}");
-  EXPECT_THAT(Names(list), ElementsAre("wind_profile/north1", "wind_profile/east1", "wind_profile/north2",
-                                       "wind_profile/east2"));
-  EXPECT_EQ(list[3].distribution.sigma, 1.0);
-  EXPECT_THAT(Inputs(list[3]), ElementsAre("wind_profile_east_2"));
+  EXPECT_THAT(Names(list),
+              ElementsAre("wind_profile/north1", "wind_profile/east1", "wind_profile/north2",
+                          "wind_profile/east2", "wind_profile/altitude1", "wind_profile/altitude2"));
+  EXPECT_EQ(list[3].distribution.nominal, 25.0);
+  EXPECT_EQ(list[3].distribution.sigma, 12.0);
+  EXPECT_THAT(Inputs(list[3]), ElementsAre("wind_profile_east_2_m_s"));
+  EXPECT_EQ(list[3].mix.size(), 4u);
+  EXPECT_THAT(Inputs(list[5]), ElementsAre("wind_profile_altitude_2_m"));
+  EXPECT_EQ(list[5].distribution.values, std::vector<double>{10000.0});
 }
 
 TEST(CampaignYamlDispersions, RatesSensorsActuatorsAndLoop) {
@@ -284,7 +290,7 @@ TEST(CampaignYamlDispersions, AListThatNamesADispersionIsToldItsColumn) {
   files.Write("runs.csv", "drag_coefficient,thrust,wind_azimut_deg\n1,1,90\n1.1,1,180\n");
   files.Edit("campaign.yaml", "method: monte_carlo, cases: 100, seed: 20260101",
              "method: list, cases: 2, seed: 1, table: runs.csv");
-  const std::string allowed = ", allowed: a column of cases.csv without its prefix 'input_'\n";
+  const std::string allowed = ", allowed: a column of cases.csv\n";
   EXPECT_EQ(files.Texts(CheckFile(files.Path("campaign.yaml")).errors),
             "runs.csv:1:1: drag_coefficient: 'drag_coefficient' is not an input (did you mean its column "
             "'drag_factor'?)" +

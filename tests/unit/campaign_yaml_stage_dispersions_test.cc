@@ -166,7 +166,7 @@ TEST(StageDispersions, WhatIsWrongIsSaidInFull) {
   EXPECT_EQ(Problems("propellant_load: {distribution: uniform, bound_percent: 20, per: stage}"),
             "campaign.yaml:8:20: dispersions.propellant_load: a draw can be 1.2 (factor), allowed: a number "
             "above 0 "
-            "and below 1.125\n");
+            "and not above 1.125\n");
   EXPECT_EQ(
       Problems("payload_mass: {distribution: uniform, bound_kg: 20, element: payload}"),
       "campaign.yaml:8:64: dispersions.payload_mass.element: 'payload' is not an element of the last stage's "

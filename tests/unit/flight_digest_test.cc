@@ -120,9 +120,10 @@ TEST(InputColumns, NameTheFieldsOfFlightInputs) {
   expect("gust_altitude_m", in.gust_altitude_m, 1.0);
   expect("gust_length_m", in.gust_length_m, 1.0);
   expect("gust_azimuth_deg", in.gust_azimuth_rad, kRadPerDeg);
-  expect("wind_profile_north_1", in.wind_profile_north[0], 1.0);
-  expect("wind_profile_north_20", in.wind_profile_north[19], 1.0);
-  expect("wind_profile_east_1", in.wind_profile_east[0], 1.0);
+  expect("wind_profile_north_1_m_s", in.wind_profile_north_m_s[0], 1.0);
+  expect("wind_profile_north_20_m_s", in.wind_profile_north_m_s[19], 1.0);
+  expect("wind_profile_east_1_m_s", in.wind_profile_east_m_s[0], 1.0);
+  expect("wind_profile_altitude_20_m", in.wind_profile_altitude_m[19], 1.0);
   expect("drag_factor", in.drag_factor, 1.0);
   expect("lift_factor", in.lift_factor, 1.0);
   expect("cg_factor", in.cg_factor, 1.0);

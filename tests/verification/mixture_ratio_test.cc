@@ -150,8 +150,10 @@ TEST(MixtureRatio, IsRefusedWhereItIsNone) {
   const FlightDefinition definition = Liquid();
   const FlightModel model(definition);
   const FlightInputs none = Drawn(1.0, 0.0);
-  EXPECT_EQ(RefusalOf(definition.vehicle, none, model.PlantFor(none), 0.01),
-            "the mixture ratio of stage 1 is not above 0");
+  EXPECT_EQ(
+      RefusalOf({definition.vehicle, definition.autopilot, definition.guidance, definition.course, none},
+                model.PlantFor(none), 0.01),
+      "the input mixture_ratio_factor_stage1 is 0; allowed: a number above 0");
 }
 
 }  // namespace

@@ -182,19 +182,20 @@ TEST(StepLimits, FasterBendingModesAreRefused) {
   EXPECT_EQ(Fly(model, inputs).outcome, Outcome::kNumericalFailure);
 }
 
-// Inputs of a list may be anything.
+// Of an expression, say, which no file shows.
 TEST(StepLimits, MassesThatNoVehicleHasAreRefused) {
   const FlightModel model(Slv4Definition(DISPERSA_CAMPAIGNS));
   FlightInputs overfull, negative, light, tensor;
   overfull.propellant_factor[1] = 1.2;
   negative.dry_mass_factor[0] = -1.0;
-  light.payload_mass_kg = -400.0;
-  light.payload_element = 2.0;
+  light.payload_mass_kg = -100.0;  // less than another element weighs
+  light.payload_element = 1.0;
   tensor.product_of_inertia_xy_kg_m2[3] = 1e5;
-  EXPECT_EQ(Fly(model, overfull).reason, "the grain of stage 2 does not hold 1.2 times its propellant");
-  EXPECT_EQ(Fly(model, negative).reason, "the dry mass of stage 1 is not above 0");
-  EXPECT_EQ(Fly(model, light).reason, "the element 'payload and equipment' weighs less than nothing");
-  EXPECT_EQ(Fly(model, tensor).reason, "the products of inertia of stage 4 are no body's");
+  EXPECT_EQ(Fly(model, overfull).reason,
+            "the input propellant_factor_stage2 is 1.2; allowed: a number above 0 and not above 1.108225");
+  EXPECT_EQ(Fly(model, negative).reason, "the input dry_mass_factor_stage1 is -1; allowed: a number above 0");
+  EXPECT_EQ(Fly(model, light).reason, "the element 'nose' weighs less than nothing");
+  EXPECT_EQ(Fly(model, tensor).reason.substr(0, 53), "the input product_of_inertia_xy_stage4_kg_m2 is 10000");
 }
 
 }  // namespace

@@ -1,0 +1,119 @@
+// Flights that show no more than one of them, with the full sentences.
+#include "core/analysis/likeness.h"
+
+#include <gtest/gtest.h>
+
+#include <string>
+
+#include "core/analysis/campaign_summary.h"
+#include "core/campaign_yaml/load.h"
+#include "core/cases/campaign_flights.h"
+#include "core/results/result_folder.h"
+#include "tests/unit/input_files.h"
+
+namespace dispersa::analysis_likeness_test {
+namespace {
+
+Campaign With(const std::string& dispersions) {
+  const InputFiles files;
+  files.Write("alike.yaml",
+              "schema: dispersa/campaign/1\nname: alike\n"
+              "vehicle: " DISPERSA_CAMPAIGNS
+              "/vehicles/slv4.yaml\n"
+              "reference: " DISPERSA_CAMPAIGNS
+              "/references/slv4_500km.yaml\n"
+              "autopilot: " DISPERSA_CAMPAIGNS
+              "/autopilots/adaptive_fuzzy.yaml\n"
+              "sampling: {method: monte_carlo, cases: 3, seed: 1}\n"
+              "dispersions: " +
+                  dispersions);
+  return LoadCampaign(files.Path("alike.yaml"));
+}
+
+CaseColumns Rows(std::size_t count, bool are_alike) {
+  CaseColumns cases;
+  cases.index.resize(count);
+  cases.are_alike = are_alike;
+  return cases;
+}
+
+constexpr char kRead[] = "{density: {distribution: normal, sigma_percent: 1}}\n";
+constexpr char kUnread[] = "{fin_cant: {distribution: normal, sigma_deg: 0.1, per: stage}}\n";
+constexpr char kBoth[] =
+    "{fin_cant: {distribution: normal, sigma_deg: 0.1, per: stage}, density: {distribution: normal, "
+    "sigma_percent: 1}}\n";
+constexpr char kConstant[] = "{density: {distribution: constant, value_factor: 1.1}}\n";
+constexpr char kNoise[] = "{gyro_noise: {distribution: constant, value_deg_s: 0.01}}\n";
+constexpr char kTurbulence[] = "{turbulence: {severity: light}}\n";
+
+TEST(WhyNoEvidence, SaysWhatIsMissing) {
+  const std::string none = "No input varies from case to case: 3 flights show no more than one.";
+  const struct {
+    const char* dispersions;
+    bool are_alike;
+    std::string why;
+  } rows[] = {
+      {"{}\n", true, none},
+      {kConstant, true, none},
+      {kConstant, false, none},
+      {kUnread, true,
+       "No part of the flight reads what varies (dispersions.fin_cant: no stage that it draws for has fins): "
+       "3 flights show no more than one."},
+      {kRead, true,
+       "All 3 flights are alike to the last bit, although their inputs vary: they show no more than one."},
+      {kRead, false, ""},
+      {kBoth, false, ""},
+      {kNoise, false, ""},
+      {kTurbulence, false, ""},
+  };
+  for (const auto& row : rows) {
+    const Campaign campaign = With(row.dispersions);
+    EXPECT_EQ(WhyNoEvidence(campaign, Rows(3, row.are_alike)), row.why) << row.dispersions;
+    EXPECT_EQ(WhyNoEvidence(campaign, Rows(1, row.are_alike)), "") << "one flight claims nothing";
+  }
+}
+
+// A folder of results with these digests, whose metrics are all 0.1.
+CampaignSummary Summary(const Campaign& campaign, const std::vector<std::uint64_t>& digests) {
+  const InputFiles files;
+  ResultFolder folder = ResultFolder::Create(files.Path("out"), campaign);
+  std::vector<CaseResult> results;
+  for (const std::uint64_t digest : digests) {
+    CaseResult& result = results.emplace_back();
+    result.case_index = results.size() - 1;
+    result.outcome = Outcome::kCompleted;
+    result.inputs = InputValues(FlightInputs{}, ColumnClass(campaign.vehicle));
+    result.metrics.assign(MetricsOf(campaign).size(), 0.1);
+    result.digest = {digest, 1};
+  }
+  folder.Append(results);
+  return BuildSummary(folder, campaign);
+}
+
+TEST(WhyNoEvidence, ComparesAllDigestsOfAFolder) {
+  const Campaign campaign = With(kRead);
+  EXPECT_EQ(Summary(campaign, {5}).no_evidence, "");
+  EXPECT_NE(Summary(campaign, {5, 5}).no_evidence, "");
+  EXPECT_NE(Summary(campaign, {5, 5, 5}).no_evidence, "");
+  EXPECT_EQ(Summary(campaign, {5, 5, 6}).no_evidence, "");
+  EXPECT_EQ(Summary(campaign, {6, 5, 5}).no_evidence, "");
+}
+
+TEST(WhyNoEvidence, DecidesARequirementThatStatesAProbability) {
+  const auto standing = [](const char* dispersions, const char* limit) {
+    const Campaign campaign =
+        With(std::string(dispersions) + "requirements:\n  - {metric: pitch_error_peak_deg, " + limit +
+             ", probability: 0.4, consumer_risk: 0.3}\n");
+    return Summary(campaign, {1, 2, 3}).standing;
+  };
+  EXPECT_EQ(standing(kRead, "below: 1").verdict, StandingVerdict::kPass);
+  const Standing unread = standing(kUnread, "below: 1");
+  EXPECT_EQ(unread.verdict, StandingVerdict::kNotEvidence);
+  EXPECT_EQ(unread.requirements[0].verdict, "not_evidence");
+  EXPECT_EQ(unread.requirements[0].reason.substr(0, 42), "No part of the flight reads what varies (d");
+  EXPECT_EQ(standing(kConstant, "below: 1").verdict, StandingVerdict::kNotEvidence);
+  EXPECT_EQ(standing(kUnread, "below: 0.05").verdict, StandingVerdict::kFail) << "a failure is one";
+}
+
+}  // namespace
+}  // namespace dispersa::analysis_likeness_test
