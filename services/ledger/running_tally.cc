@@ -27,7 +27,7 @@ RunningTally::RunningTally(const Campaign& campaign)
 void RunningTally::Add(const CaseResult& result) {
   ++n_;
   for (std::size_t i = 0; i < requirements_.size(); ++i) {
-    const bool met = (result.outcome == Outcome::kCompleted || !LossFails(requirements_[i])) &&
+    const bool met = result.outcome == Outcome::kCompleted &&
                      LimitsOf(requirements_[i]).Meets(result.metrics[columns_[i]]);
     failures_[i] += met ? 0 : 1;
   }
