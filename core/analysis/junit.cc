@@ -17,8 +17,7 @@ struct Finding {
 };
 
 Finding FindingOf(const RequirementSummary& requirement, const Standing::Requirement& standing) {
-  const std::string text = (standing.reason.empty() ? "" : standing.reason + " ") + requirement.sentence +
-                           AdviceSentence(requirement);
+  const std::string text = JudgedSentence(requirement, standing) + AdviceSentence(requirement);
   if (standing.verdict == "pass") return {};
   if (standing.verdict == "fail") return {"failure", text};
   return {"error", text};
@@ -73,6 +72,9 @@ std::string JUnitXml(const CampaignSummary& summary) {
     add("verdicts", {"error", "The rules of judgement were changed after the first case was flown."});
   std::string notes;
   for (const std::string& note : StandingNotes(standing, summary)) notes += note + "\n";
+  for (std::size_t i = 0; i < standing.requirements.size(); ++i)  // a test that passes has no text of its own
+    if (standing.requirements[i].verdict == "pass" && !standing.requirements[i].reason.empty())
+      notes += NameOf(summary.requirements[i]) + ": " + standing.requirements[i].reason + "\n";
   for (const std::string& warning : Warnings(summary)) notes += warning + "\n";
   for (const LoadCheck& check : summary.load_checks) notes += LoadCheckSentence(check) + "\n";
   if (!notes.empty()) cases += fmt::format("    <system-out>{}</system-out>\n", HtmlText(notes));

@@ -62,6 +62,10 @@ Registered RegisteredIn(const ResultFolder& folder, const Campaign& campaign,
     return std::any_of(campaign.requirements.begin(), campaign.requirements.end(),
                        [&](const Requirement& requirement) { return RequirementLine(requirement) == line; });
   };
+  // Earlier engines required the vehicle's limits by themselves. Where the file requires what it did then, such
+  // a line is the only one that it does not give.
+  if (id == campaign.requirements_id)
+    std::erase_if(registered.lines, [&](const auto& one) { return !is_required(one.first); });
   const bool same = registered.lines.size() == campaign.requirements.size() &&
                     std::all_of(registered.lines.begin(), registered.lines.end(),
                                 [&](const auto& one) { return is_required(one.first); });
@@ -223,7 +227,8 @@ std::string AttemptsNote(const Standing& standing) {
     std::string verdict = one.verdict.empty() ? "not ended" : one.verdict;
     std::replace(verdict.begin(), verdict.end(), '_', ' ');
     list +=
-        fmt::format("{}seed {}, {}: {}", list.empty() ? "" : "; ", one.seed, FlightsText(one.cases), verdict);
+        fmt::format("{}seed {}, {}: {}{}", list.empty() ? "" : "; ", one.seed, FlightsText(one.cases), verdict,
+                    one.is_evidence ? "" : " (flown by another engine: no evidence)");
   }
   return fmt::format("Attempt {} at this design. Earlier ones here: {}.", standing.attempts.size(), list);
 }
@@ -270,7 +275,8 @@ Standing StandingOf(const ResultFolder& folder, const Campaign& campaign, const 
   for (auto one = all.begin(); one != own; ++one)
     if (one->design_id == campaign.design_id) earlier.push_back(*one);
   for (const AttemptRecord& one : earlier)
-    standing.attempts.push_back({one.id, one.seed, one.cases, one.verdict, one.begun_utc, one.fresh});
+    standing.attempts.push_back({one.id, one.seed, one.cases, one.verdict, one.begun_utc, one.fresh,
+                                 one.engine == summary.engine});
   const std::vector<AttemptRecord> counted =
       standing.fresh.empty() ? Counted(earlier) : std::vector<AttemptRecord>();
 
@@ -307,6 +313,10 @@ Standing StandingOf(const ResultFolder& folder, const Campaign& campaign, const 
   return standing;
 }
 
+std::string JudgedSentence(const RequirementSummary& requirement, const Standing::Requirement& standing) {
+  return (standing.reason.empty() || standing.post_hoc ? "" : standing.reason + " ") + requirement.sentence;
+}
+
 std::vector<std::string> StandingNotes(const Standing& standing, const CampaignSummary& summary) {
   std::vector<std::string> notes;
   for (std::size_t i = 0; i < standing.requirements.size(); ++i) {
@@ -314,8 +324,6 @@ std::vector<std::string> StandingNotes(const Standing& standing, const CampaignS
     if (one.post_hoc)
       notes.push_back(fmt::format("Post hoc: {} was not required before the first case was flown.",
                                   RequirementWords(summary.requirements[i])));
-    else if (!one.reason.empty())
-      notes.push_back(fmt::format("{}: {}", summary.requirements[i].metric, one.reason));
   }
   for (const Standing::Dropped& one : standing.dropped)
     notes.push_back(

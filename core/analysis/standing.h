@@ -58,6 +58,7 @@ struct Standing {
     std::string verdict;  ///< StandingVerdictName(); empty: it has not ended
     std::string begun_utc;
     std::string fresh;  ///< reason of `--fresh`; empty: none
+    bool is_evidence = true;  ///< flown by the engine that flew this campaign
   };
 
   StandingVerdict verdict = StandingVerdict::kIncomplete;
@@ -74,7 +75,10 @@ struct Standing {
 /// The standing of a folder with this summary. Reads the folder's own ledger and its record of looks.
 Standing StandingOf(const ResultFolder& folder, const Campaign& campaign, const CampaignSummary& summary);
 
-/// Sentences about the standing that a reader needs before any number: of the requirements and of the
+/// The sentence of a requirement, after the one of what decided in its place: all attempts together, another rule.
+std::string JudgedSentence(const RequirementSummary& requirement, const Standing::Requirement& standing);
+
+/// Sentences about the standing that a reader needs before any number: changes of requirements, and of the
 /// campaign.
 std::vector<std::string> StandingNotes(const Standing& standing, const CampaignSummary& summary);
 /// Of the campaign alone: the rules of judgement, earlier attempts, earlier designs.

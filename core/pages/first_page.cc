@@ -85,11 +85,6 @@ int Rank(const std::string& verdict) {
   return verdict == "fail" ? 0 : verdict == "not_evidence" ? 1 : verdict == "inconclusive" ? 2 : 3;
 }
 
-/// As a board calls it: the project's own number, or what is measured.
-std::string NameOf(const RequirementSummary& requirement) {
-  return requirement.id.empty() ? DescribeMetric(requirement.metric).title : requirement.id;
-}
-
 std::string LimitCell(const RequirementSummary& requirement, const MetricInfo& info,
                       const std::string& before) {
   std::string cell = requirement.id.empty() ? "" : Code(requirement.id) + " ";
@@ -170,7 +165,7 @@ std::string RequirementsTable(const CampaignSummary& summary) {
     for (std::size_t d = 0; d < successors.size(); ++d)
       if (successors[d] == static_cast<int>(i)) before = BeforeWords(standing.dropped[d]);
     table.Row({VerdictBadge(one.post_hoc && one.verdict == "not_evidence" ? "post hoc" : one.verdict),
-               LimitCell(requirement, info, before), HtmlText(requirement.sentence),
+               LimitCell(requirement, info, before), HtmlText(JudgedSentence(requirement, one)),
                MarginCell(requirement, info),
                // A probability that doubles round to 0 is small, not 0.
                requirement.attained_risk ? HtmlText(ShareText(std::max(*requirement.attained_risk, 1e-300)))
@@ -190,19 +185,6 @@ std::vector<std::string> Notes(const CampaignSummary& summary) {
         "Post hoc: requirements were changed after the first flight. Their rows say how. Flights with "
         "another "
         "seed can show that they are met.");
-  std::vector<std::pair<std::string, std::string>> reasons;  // and of which requirements
-  for (std::size_t i = 0; i < standing.requirements.size(); ++i) {
-    const Standing::Requirement& one = standing.requirements[i];
-    if (one.reason.empty() || one.post_hoc) continue;
-    const auto same = std::find_if(reasons.begin(), reasons.end(),
-                                   [&](const auto& known) { return known.first == one.reason; });
-    const std::string name = NameOf(summary.requirements[i]);
-    if (same == reasons.end())
-      reasons.emplace_back(one.reason, name);
-    else
-      same->second += ", " + name;
-  }
-  for (const auto& [reason, names] : reasons) notes.push_back(names + ": " + reason);
   for (std::string& note : CampaignNotes(standing)) notes.push_back(std::move(note));
   for (std::string& warning : Warnings(summary)) {
     const bool is_first = summary.nominal && warning == NominalLoss(*summary.nominal);

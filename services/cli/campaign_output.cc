@@ -112,7 +112,8 @@ void PrintSummary(const CampaignSummary& summary, const std::filesystem::path& d
     std::string verdict = summary.standing.requirements[i].verdict;
     std::replace(verdict.begin(), verdict.end(), '_', ' ');
     const std::string bound = BoundSentence(requirement, DescribeMetric(requirement.metric).unit);
-    fmt::print("{}: {}: {}{}{}\n", verdict, RequirementWords(requirement), requirement.sentence,
+    fmt::print("{}: {}: {}{}{}\n", verdict, RequirementWords(requirement),
+               JudgedSentence(requirement, summary.standing.requirements[i]),
                bound.empty() ? "" : " ", bound);
   }
   for (const LoadCheck& check : summary.load_checks) fmt::print("{}\n", LoadCheckSentence(check));

@@ -15,7 +15,7 @@ namespace {
 constexpr std::chrono::milliseconds kBarPeriod(100);
 constexpr std::chrono::seconds kLinePeriod(5);
 constexpr int kBarWidth = 30;
-constexpr std::size_t kUsualWidth = 80;
+constexpr std::size_t kUsualProgressWidth = 80;
 
 }  // namespace
 
@@ -61,7 +61,7 @@ void Progress::Show(std::uint64_t done, std::uint64_t total, const std::string& 
     const std::string bar = std::string(filled, '#') + std::string(kBarWidth - filled, '.');
     // A line that wraps cannot be drawn over: "\r" returns to the start of its last row only. The last column
     // stays free, because some terminals wrap as soon as it is filled.
-    const std::size_t columns = TerminalWidth(STDERR_FILENO, kUsualWidth);
+    const std::size_t columns = TerminalWidth(STDERR_FILENO, kUsualProgressWidth);
     Tell("\r\x1b[K{}", FitColumns(fmt::format("{} [{}] {}", what_, bar, line), columns - 1));
     drawn_ = true;
   } else {

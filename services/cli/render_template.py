@@ -67,8 +67,10 @@ def main(summary_file, template_file):
     standing = {"verdict": told.get("standing_verdict") or summary["verdict"], "attempts": told.get("attempts", []),
                 "requirements": [], "notes": [], "post_hoc": False} | told.get("standing", {})
     for k, requirement in enumerate(summary["requirements"]):
-        known = standing["requirements"][k]["verdict"] if k < len(standing["requirements"]) else requirement["verdict"]
-        requirement["standing_verdict"] = known
+        known = standing["requirements"][k] if k < len(standing["requirements"]) else {"verdict": requirement["verdict"]}
+        requirement["standing_verdict"] = known["verdict"]
+        if known.get("reason") and not known["post_hoc"]:  # what decided in place of the campaign's own flights
+            requirement["sentence"] = known["reason"] + " " + requirement["sentence"]
 
     def too_long(*_):
         raise TimeoutError(f"takes longer than {PATIENCE_S} s")

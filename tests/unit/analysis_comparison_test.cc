@@ -7,6 +7,7 @@
 #include <cmath>
 #include <nlohmann/json.hpp>
 
+#include "core/analysis/load_check.h"
 #include "core/analysis/requirement_summary.h"
 #include "tests/unit/comparison_sample.h"
 
@@ -280,28 +281,29 @@ TEST(ReportComparison, WhoLosesMostFlightsIsNotTheBetterOne) {
 
 // What the summary counts: the loads of each flight, lost or not, and not the losses.
 TEST(ReportComparison, LimitsOfTheVehicleAreCountedAsInTheSummary) {
-  constexpr char kExceeded[] = "structural_limit_exceeded";
-  CaseColumns a = Columns(Indices(6), Ramp(6, 0.0, 1.0), {1, 1, 0, 0, 0, 0}, kExceeded);
-  CaseColumns b = Columns(Indices(6), Ramp(6, 0.0, 1.0), {0, 0, 0, 0, 0, 1}, kExceeded);
+  constexpr char kLoad[] = "axial_load_max_g";
+  CaseColumns a = Columns(Indices(6), Ramp(6, 0.0, 1.0), {9.5, 9.5, 8, 8, 8, 8}, kLoad);
+  CaseColumns b = Columns(Indices(6), Ramp(6, 0.0, 1.0), {8, 8, 8, 8, 8, 9.5}, kLoad);
   a.outcome[1] = a.outcome[2] = a.outcome[3] = Outcome::kLostControl;
   b.outcome[0] = b.outcome[5] = Outcome::kLostControl;
-  Requirement limit{
-      .metric = kExceeded, .below = 0.5, .above = {}, .probability = 0.9973, .consumer_risk = 0.1};
-  limit.by_default = true;
-  const Comparison comparison = CompareColumns(a, b, {limit}, {kExceeded});
+  Campaign campaign = report_test::MakeCampaign(6);
+  campaign.vehicle.limits.axial_load_g = 9.0;
+  const auto compare = [&] { return Compare({"A", "engine", campaign, a}, {"B", "engine", campaign, b}, {kLoad}, {}); };
+  const Comparison comparison = compare();
   EXPECT_THAT(comparison.requirements, IsEmpty());
   ASSERT_EQ(comparison.load_checks.size(), 1u);
   EXPECT_EQ(comparison.load_checks[0].failures_a, 2u);
   EXPECT_EQ(comparison.load_checks[0].failures_b, 1u);
-  EXPECT_EQ(Judge(limit, SamplingMethod::kMonteCarlo, a, 0).failures, 2);
-  EXPECT_EQ(Judge(limit, SamplingMethod::kMonteCarlo, b, 0).failures, 1);
+  EXPECT_EQ(CheckLoads(campaign, a)[0].failures, 2);
+  EXPECT_EQ(CheckLoads(campaign, b)[0].failures, 1);
   const auto json = nlohmann::json::parse(ComparisonJson(comparison));
   EXPECT_EQ(json["load_checks"],
             nlohmann::json::parse(
                 R"([{"metric": "structural_limit_exceeded", "failures_a": 2, "failures_b": 1}])"));
   // Stated by a campaign it is a requirement, which a lost flight fails.
-  limit.by_default = false;
-  const Comparison stated = CompareColumns(a, b, {limit}, {kExceeded});
+  campaign.requirements = {
+      {.metric = kLoad, .below = 9.0, .above = {}, .probability = 0.9973, .consumer_risk = 0.1}};
+  const Comparison stated = compare();
   EXPECT_THAT(stated.load_checks, IsEmpty());
   EXPECT_EQ(stated.requirements[0].failures_a, 4u);
   EXPECT_EQ(stated.requirements[0].failures_b, 2u);

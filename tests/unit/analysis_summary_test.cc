@@ -4,10 +4,12 @@
 #include <gmock/gmock.h>
 
 #include <cmath>
+#include <limits>
 #include <nlohmann/json.hpp>
 #include <utility>
 
 #include "core/analysis/junit.h"
+#include "core/analysis/load_check.h"
 #include "core/analysis/stopping_rule.h"
 #include "core/flight/engine_version.h"
 #include "tests/unit/made_up_results.h"
@@ -475,11 +477,10 @@ TEST_F(Misuse, ExtendingUntilItPassesDoesNotPassAndShows) {
   EXPECT_EQ(summary_.standing.verdict, StandingVerdict::kNotEvidence);
   EXPECT_EQ(summary_.standing.requirements[0].verdict, "not_evidence");
   EXPECT_EQ(StandingBadge(summary_.standing), "not evidence");
-  ASSERT_EQ(StandingNotes(summary_.standing, summary_).size(), 1u);
-  EXPECT_THAT(
-      StandingNotes(summary_.standing, summary_)[0],
-      testing::StartsWith("pitch_error_peak_deg: Earlier campaigns of this design have used up the risk "
-                          "of 10 %. All 129 flights together show 1 failure; under the any-time rule "));
+  EXPECT_THAT(StandingNotes(summary_.standing, summary_), testing::IsEmpty());
+  EXPECT_THAT(JudgedSentence(summary_.requirements[0], summary_.standing.requirements[0]),
+              testing::StartsWith("Earlier campaigns of this design have used up the risk of 10 %. All 129 flights "
+                                  "together show 1 failure; under the any-time rule "));
   // Reading it again is no further look.
   const std::string before = SummaryJson(summary_);
   Fly(129, 1);
@@ -720,18 +721,18 @@ TEST(SummaryJson, DoesNotDependOnTheOrderOfArrival) {
   EXPECT_EQ(SummaryJson(BuildSummary(ascending, campaign)), SummaryJson(BuildSummary(descending, campaign)));
 }
 
+const Requirement kExceeded = {.metric = "structural_limit_exceeded",
+                               .below = 1.0,
+                               .above = std::nullopt,
+                               .probability = 0.9973,
+                               .consumer_risk = 0.10};
+
 // A vehicle with limits, and a campaign whose one requirement every case meets.
 struct LimitedCampaign {
   explicit LimitedCampaign(std::uint64_t cases) : campaign(MakeCampaign(cases)) {
     campaign.vehicle.limits.q_max_pa = 100e3;
     campaign.vehicle.limits.axial_load_g = 9.0;
-    campaign.requirements = {PeakBelow(1e3, 0.5, 0.10),
-                             {.metric = "structural_limit_exceeded",
-                              .below = 1.0,
-                              .above = std::nullopt,
-                              .probability = 0.9973,
-                              .consumer_risk = 0.10,
-                              .by_default = true}};
+    campaign.requirements = {PeakBelow(1e3, 0.5, 0.10)};
     for (std::uint64_t k = 0; k < cases; ++k) {
       results.push_back(MakeCase(k));
       Set(k, "q_max_pa", 80e3 + static_cast<double>(k));
@@ -756,8 +757,8 @@ struct LimitedCampaign {
 TEST(StructuralLimits, ThatAreKeptByTooFewFlightsHoldNothingUp) {
   const LimitedCampaign kept(20);
   const CampaignSummary summary = kept.Summary();
-  EXPECT_EQ(summary.requirements[1].verdict, "inconclusive");
-  EXPECT_TRUE(summary.requirements[1].by_default);
+  ASSERT_EQ(summary.load_checks.size(), 1u);
+  EXPECT_EQ(summary.load_checks[0].failures, 0);
   EXPECT_EQ(summary.verdict, CampaignVerdict::kPass);
   EXPECT_EQ(summary.beyond_limits, 0u);
   ASSERT_EQ(summary.limits.size(), 2u);
@@ -766,10 +767,11 @@ TEST(StructuralLimits, ThatAreKeptByTooFewFlightsHoldNothingUp) {
   EXPECT_EQ(*summary.limits[0].largest, 80e3 + 19.0);
   EXPECT_EQ(summary.limits[0].largest_case, 19u);
   EXPECT_THAT(Warnings(summary), testing::IsEmpty());
-  // Stated by the campaign itself, the same requirement needs its cases.
+  // Stated by the campaign, a requirement takes the check's place and needs its cases.
   LimitedCampaign stated(20);
-  stated.campaign.requirements[1].by_default = false;
+  stated.campaign.requirements.push_back(kExceeded);
   EXPECT_EQ(stated.Summary().verdict, CampaignVerdict::kInconclusive);
+  EXPECT_THAT(stated.Summary().load_checks, testing::IsEmpty());
 }
 
 TEST(StructuralLimits, CountFromTheFirstFlightBeyondThem) {
@@ -777,8 +779,8 @@ TEST(StructuralLimits, CountFromTheFirstFlightBeyondThem) {
   one.Set(7, "axial_load_max_g", 9.5);
   one.Set(7, "structural_limit_exceeded", 1.0);
   const CampaignSummary summary = one.Summary();
-  EXPECT_EQ(summary.requirements[1].failures, 1);
-  EXPECT_EQ(summary.verdict, CampaignVerdict::kInconclusive) << "1 of 100 is no proof of 0.27 % either way";
+  EXPECT_EQ(summary.load_checks[0].failures, 1);
+  EXPECT_EQ(summary.verdict, CampaignVerdict::kFail);
   EXPECT_EQ(summary.beyond_limits, 1u);
   EXPECT_EQ(summary.limits[0].exceeded, 0u);
   EXPECT_EQ(summary.limits[1].exceeded, 1u);
@@ -790,7 +792,7 @@ TEST(StructuralLimits, CountFromTheFirstFlightBeyondThem) {
   const auto json = nlohmann::json::parse(SummaryJson(summary));
   EXPECT_EQ(json["limits"]["exceeded"], 1);
   EXPECT_EQ(json["limits"]["loads"][1]["largest_case"], 7);
-  EXPECT_EQ(json["requirements"][1]["by_default"], true);
+  EXPECT_EQ(json["load_checks"][0]["failures"], 1);
 }
 
 TEST(StructuralLimits, ExceededByEveryFlightFailTheCampaign) {
@@ -815,8 +817,7 @@ TEST(StructuralLimits, AreHeldAgainstWhatALostFlightBore) {
   const CampaignSummary summary = lost.Summary();
   EXPECT_EQ(summary.requirements[0].failures, 2);
   EXPECT_EQ(summary.requirements[0].lost_flights, 2);
-  EXPECT_EQ(summary.requirements[1].failures, 1);
-  EXPECT_EQ(summary.requirements[1].lost_flights, 0);
+  EXPECT_EQ(summary.load_checks[0].failures, 1);
 }
 
 TEST(StructuralLimits, OfAStudyThatAsksNothingLeaveItAsItWas) {
@@ -824,6 +825,21 @@ TEST(StructuralLimits, OfAStudyThatAsksNothingLeaveItAsItWas) {
   study.campaign.requirements.erase(study.campaign.requirements.begin());
   study.campaign.sampling.method = SamplingMethod::kSobol;
   EXPECT_EQ(study.Summary().verdict, CampaignVerdict::kNothingJudged);
+}
+
+// A limit whose load no flight defines was not kept. Of a lost flight, what it bore until then counts.
+TEST(StructuralLimits, AreNotKeptByLoadsThatWereNotMeasured) {
+  LimitedCampaign open(20);
+  open.Set(3, "q_max_pa", std::numeric_limits<double>::quiet_NaN());
+  open.Set(4, "q_max_pa", std::numeric_limits<double>::quiet_NaN());
+  open.results[4].outcome = Outcome::kLostControl;
+  open.Set(5, "q_max_pa", 110e3);
+  const CampaignSummary summary = open.Summary();
+  EXPECT_EQ(summary.load_checks[0].failures, 2);
+  EXPECT_EQ(summary.load_checks[0].not_measured, 1);
+  EXPECT_EQ(LoadCheckSentence(summary.load_checks[0]),
+            "Load check: 1 of 20 flights went beyond a limit of the vehicle, and in 1 completed its load is not "
+            "measured. No flight may.");
 }
 
 TEST(StructuralLimits, DoNotKeepACampaignFromStopping) {

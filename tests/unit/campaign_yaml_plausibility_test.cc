@@ -84,34 +84,18 @@ TEST(CampaignYamlPlausibility, WhatCannotBeIsAWarningOfAMadeUpVehicle) {
           "impulse of 24473 s, usual: 180 to 470 s (200 to 410 s of solid and liquid rockets"));
 }
 
-TEST(CampaignYamlPlausibility, LimitsAreRequiredUnlessTheCampaignSaysHow) {
+TEST(CampaignYamlPlausibility, LimitsOfTheVehicleAreNoRequirement) {
   const InputFiles files;
   const Campaign campaign = LoadCampaign(files.Path("campaign.yaml"));
-  ASSERT_EQ(campaign.requirements.size(), 2u);
-  EXPECT_FALSE(campaign.requirements[0].by_default);
-  const Requirement& kept = campaign.requirements[1];
-  EXPECT_TRUE(kept.by_default);
-  EXPECT_EQ(kept.metric, "structural_limit_exceeded");
-  EXPECT_EQ(kept.below, 1.0);
-  EXPECT_EQ(kept.probability, 0.9973);
-  EXPECT_EQ(kept.consumer_risk, 0.10);
-
+  ASSERT_EQ(campaign.requirements.size(), 1u);
   files.Edit("campaign.yaml", "requirements:\n",
              "requirements:\n  - {metric: structural_limit_exceeded, below: 1, probability: 0.9, "
              "consumer_risk: 0.2}\n");
   const Campaign own = LoadCampaign(files.Path("campaign.yaml"));
-  ASSERT_EQ(own.requirements.size(), 3u) << "a looser one switches nothing off";
+  ASSERT_EQ(own.requirements.size(), 2u);
   EXPECT_EQ(own.requirements[0].probability, 0.9);
-  EXPECT_FALSE(own.requirements[0].by_default);
-  EXPECT_TRUE(own.requirements[2].by_default);
   EXPECT_EQ(own.flight_id, campaign.flight_id) << "requirements decide no case";
   EXPECT_EQ(own.design_id, campaign.design_id);
-  files.Edit("campaign.yaml", "below: 1, probability: 0.9, consumer_risk: 0.2",
-             "below: 1, probability: 0.999, consumer_risk: 0.05");
-  const Campaign strict = LoadCampaign(files.Path("campaign.yaml"));
-  ASSERT_EQ(strict.requirements.size(), 2u) << "one that is as strict takes its place";
-  EXPECT_FALSE(strict.requirements[0].by_default);
-
   files.Edit("vehicle.yaml", "limits: {q_alpha_kpa_rad: 10, axial_load_g: 12, terminate: false}\n", "");
   const Campaign unlimited = LoadCampaign(files.Path("campaign.yaml"));
   EXPECT_NE(unlimited.flight_id, campaign.flight_id) << "limits decide a metric";
@@ -158,8 +142,6 @@ TEST(CampaignYamlPlausibility, EveryCaseIsOfStudies) {
   files.Edit("campaign.yaml", "method: monte_carlo", "method: sobol");
   const Campaign study = LoadCampaign(files.Path("campaign.yaml"));
   EXPECT_TRUE(study.requirements[0].every_case);
-  EXPECT_TRUE(study.requirements.back().by_default);
-  EXPECT_TRUE(study.requirements.back().every_case);
 }
 
 TEST(CampaignYamlPlausibility, PlansThatCannotDecideAreWarnedOf) {

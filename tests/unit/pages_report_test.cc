@@ -267,7 +267,7 @@ TEST_F(ReportPageTest, AFlightBeyondALimitIsInTheHeadAndAmongTheOutcomes) {
   EXPECT_THAT(page_, Not(HasSubstr("Limits of the vehicle")));
   summary_.limits = {{"q_max_pa", 100e3, 0, 97e3, 4}, {"axial_load_max_g", 9.0, 3, 9.5, 17}};
   summary_.beyond_limits = 3;
-  summary_.requirements[0].by_default = true;
+  summary_.load_checks = {{"structural_limit_exceeded", 40, 3}};
   const std::string page = ReportPage(campaign_, summary_, cases_, histories_);
   const std::size_t head = page.find("<div class=\"headline exceeded\">");
   EXPECT_LT(page.find("<span class=\"badge fail\">structural limit exceeded</span>", head),
