@@ -249,7 +249,8 @@ void MapSchema::OneOf(const std::vector<OneQuantity>& quantities, std::size_t&, 
   for (const OneQuantity& quantity : quantities) {
     for (const Unit& unit : quantity.dimension) {
       const std::string name = quantity.stem + ("_" + std::string(unit.suffix));
-      const std::string text = Description(quantity.range, unit, quantity.meaning);
+      const bool is_first = &unit == &quantity.dimension.front();  // said once; the key's ending is the unit
+      const std::string text = is_first ? Description(quantity.range, unit, quantity.meaning) : std::string();
       quantities_[name] = {quantity.stem, UnitsOf(quantity.dimension)};
       Add({name.c_str(), text.c_str(), false}, NumberIn(quantity.range, unit));
       one.push_back(Required(name));

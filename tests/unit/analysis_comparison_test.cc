@@ -282,7 +282,8 @@ TEST(ReportComparison, WhoLosesMostFlightsIsNotTheBetterOne) {
 // What the summary counts: the loads of each flight, lost or not, and not the losses.
 TEST(ReportComparison, LimitsOfTheVehicleAreCountedAsInTheSummary) {
   constexpr char kLoad[] = "axial_load_max_g";
-  CaseColumns a = Columns(Indices(6), Ramp(6, 0.0, 1.0), {9.5, 9.5, 8, 8, 8, 8}, kLoad);
+  // B has not flown A's seventh case, which is beyond the limit, too.
+  CaseColumns a = Columns(Indices(7), Ramp(7, 0.0, 1.0), {9.5, 9.5, 8, 8, 8, 8, 9.5}, kLoad);
   CaseColumns b = Columns(Indices(6), Ramp(6, 0.0, 1.0), {8, 8, 8, 8, 8, 9.5}, kLoad);
   a.outcome[1] = a.outcome[2] = a.outcome[3] = Outcome::kLostControl;
   b.outcome[0] = b.outcome[5] = Outcome::kLostControl;
@@ -294,7 +295,7 @@ TEST(ReportComparison, LimitsOfTheVehicleAreCountedAsInTheSummary) {
   ASSERT_EQ(comparison.load_checks.size(), 1u);
   EXPECT_EQ(comparison.load_checks[0].failures_a, 2u);
   EXPECT_EQ(comparison.load_checks[0].failures_b, 1u);
-  EXPECT_EQ(CheckLoads(campaign, a)[0].failures, 2);
+  EXPECT_EQ(CheckLoads(campaign, a)[0].failures, 3);
   EXPECT_EQ(CheckLoads(campaign, b)[0].failures, 1);
   const auto json = nlohmann::json::parse(ComparisonJson(comparison));
   EXPECT_EQ(json["load_checks"],

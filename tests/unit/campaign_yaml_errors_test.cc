@@ -607,8 +607,7 @@ TEST(RequiredMetrics, AreOfTheLawThatFlies) {
              "pitch: {law: pd, gains: [{kp_1_s2: 9, kd_1_s: 4}, {kp_1_s2: 16, kd_1_s: 6}]}\n");
   EXPECT_EQ(files.Texts(CheckFile(files.Path("campaign.yaml")).errors),
             "campaign.yaml:13:14: requirements[0].metric: 'rules_fired' is of flights whose law of pitch is "
-            "adaptive_fuzzy or frozen_fuzzy; here it is pd, allowed: a metric of this law, or a law that has "
-            "it\n");
+            "adaptive_fuzzy or frozen_fuzzy; here it is pd, allowed: a metric that these flights have\n");
 }
 
 }  // namespace

@@ -61,6 +61,11 @@ inline Campaign MakeCampaign(std::uint64_t cases) {
   campaign.reference.name = "reference";
   campaign.autopilot.name = "autopilot";
   MeasureEverything(campaign);
+  ScalarDistribution drag;
+  drag.kind = Distribution::kNormal;
+  drag.nominal = 1.0;
+  drag.sigma = 0.1;
+  campaign.dispersions.push_back({"drag_coefficient", drag, {FindInput("drag_factor")}});
   campaign.canonical_yaml = "name: made_up\n";
   campaign.id = std::string(64, '1');
   campaign.flight_id = std::string(64, '2');

@@ -446,7 +446,8 @@ std::vector<TickSample> Flown(const FlightModel& model, Scheme scheme = FlightOp
   options.observe = [&](const TickSample& s) {
     if (s.time_s > 25.0 && s.time_s < 40.0) samples.push_back(s);
   };
-  EXPECT_EQ(Fly(model, Table3Inputs(), options).outcome, Outcome::kCompleted);
+  const auto flown = Fly(model, Table3Inputs(), options);
+  EXPECT_EQ(flown.outcome, Outcome::kCompleted) << flown.reason;
   return samples;
 }
 // The largest coordinate of a mode, and the largest difference between two flights.
