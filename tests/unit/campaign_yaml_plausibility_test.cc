@@ -97,6 +97,10 @@ TEST(CampaignYamlPlausibility, LimitsOfTheVehicleAreNoRequirement) {
   EXPECT_EQ(own.flight_id, campaign.flight_id) << "requirements decide no case";
   EXPECT_EQ(own.design_id, campaign.design_id);
   files.Edit("vehicle.yaml", "limits: {q_alpha_kpa_rad: 10, axial_load_g: 12, terminate: false}\n", "");
+  EXPECT_THAT(files.Texts(CheckFile(files.Path("campaign.yaml")).errors),
+              HasSubstr("'structural_limit_exceeded' is of flights with limits of the vehicle's structure"));
+  files.Edit("campaign.yaml",
+             "  - {metric: structural_limit_exceeded, below: 1, probability: 0.9, consumer_risk: 0.2}\n", "");
   const Campaign unlimited = LoadCampaign(files.Path("campaign.yaml"));
   EXPECT_NE(unlimited.flight_id, campaign.flight_id) << "limits decide a metric";
   EXPECT_EQ(LoadOptimization(files.Path("campaign.yaml")).vehicle_sha256,

@@ -72,6 +72,13 @@ inline Campaign MakeCampaign(std::uint64_t cases) {
   return campaign;
 }
 
+/// With a limit that nothing reaches: its folder stores every metric.
+inline Campaign MakeLimitedCampaign(std::uint64_t cases) {
+  Campaign campaign = MakeCampaign(cases);
+  campaign.vehicle.limits.axial_load_g = 1e9;
+  return campaign;
+}
+
 /// Every number differs from every other, and between cases.
 inline CaseResult MakeCase(std::uint64_t index) {
   CaseResult result;

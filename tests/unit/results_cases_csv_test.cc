@@ -14,7 +14,7 @@ namespace dispersa::results_cases_csv_test {
 namespace {
 
 using report_test::kNaN;
-using report_test::MakeCampaign;
+using report_test::MakeLimitedCampaign;
 using report_test::MakeCase;
 using report_test::ReadText;
 using report_test::TemporaryFolder;
@@ -62,7 +62,7 @@ TEST(CasesCsv, NamesEveryColumn) {
 
 TEST(CasesCsv, HasTheMetricsOfItsLawAlone) {
   TemporaryFolder temporary;
-  Campaign campaign = MakeCampaign(1);
+  Campaign campaign = MakeLimitedCampaign(1);
   campaign.autopilot.pitch.law = ControlLaw::kPd;
   ResultFolder folder = ResultFolder::Create(temporary / "out", campaign);
   folder.Append({{MakeCase(0)}});
@@ -106,9 +106,9 @@ TEST(CasesCsv, WritesOneLineACase) {
 
 TEST(CasesCsv, DoesNotDependOnTheOrderOfArrival) {
   TemporaryFolder temporary;
-  ResultFolder ascending = ResultFolder::Create(temporary / "ascending", MakeCampaign(50));
+  ResultFolder ascending = ResultFolder::Create(temporary / "ascending", MakeLimitedCampaign(50));
   for (std::uint64_t k = 0; k < 50; ++k) ascending.Append({{MakeCase(k)}});
-  ResultFolder shuffled = ResultFolder::Create(temporary / "shuffled", MakeCampaign(50));
+  ResultFolder shuffled = ResultFolder::Create(temporary / "shuffled", MakeLimitedCampaign(50));
   std::vector<CaseResult> batch;
   for (std::uint64_t k = 0; k < 50; ++k) batch.push_back(MakeCase((k * 37 + 11) % 50));  // 37 is prime to 50
   shuffled.Append(batch);
@@ -124,7 +124,7 @@ TEST(CasesCsv, DoesNotDependOnTheOrderOfArrival) {
 
 TEST(CasesCsv, LeavesOutWhatIsTheSameInAllCases) {
   TemporaryFolder temporary;
-  ResultFolder folder = ResultFolder::Create(temporary / "out", MakeCampaign(2));
+  ResultFolder folder = ResultFolder::Create(temporary / "out", MakeLimitedCampaign(2));
   CaseResult first = MakeCase(0), second = MakeCase(1);
   std::fill(first.inputs.begin(), first.inputs.end(), 1.0);
   std::fill(first.metrics.begin(), first.metrics.end(), 2.0);
@@ -146,7 +146,7 @@ TEST(CasesCsv, LeavesOutWhatIsTheSameInAllCases) {
 TEST(CasesCsv, CountsTheCasesOfAFileHoweverTheyAreQuoted) {
   TemporaryFolder temporary;
   EXPECT_EQ(CountCases(temporary / "none"), 0u);
-  ResultFolder folder = ResultFolder::Create(temporary / "out", MakeCampaign(3));
+  ResultFolder folder = ResultFolder::Create(temporary / "out", MakeLimitedCampaign(3));
   WriteCasesCsv(folder, StoredColumns(folder), temporary / "cases.csv");
   EXPECT_EQ(CountCases(temporary / "cases.csv"), 0u) << "a header alone";
   CaseResult quoted = MakeCase(1);
@@ -158,7 +158,7 @@ TEST(CasesCsv, CountsTheCasesOfAFileHoweverTheyAreQuoted) {
 
 TEST(CasesCsv, ShowsNegativeZeroAsZeroAndUndefinedAsEmpty) {
   TemporaryFolder temporary;
-  ResultFolder folder = ResultFolder::Create(temporary / "out", MakeCampaign(1));
+  ResultFolder folder = ResultFolder::Create(temporary / "out", MakeLimitedCampaign(1));
   CaseResult result = MakeCase(0);
   result.metrics[0] = -0.0;
   result.metrics[1] = kNaN;

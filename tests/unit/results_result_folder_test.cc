@@ -24,7 +24,7 @@ namespace dispersa::results_result_folder_test {
 namespace {
 
 using report_test::kNaN;
-using report_test::MakeCampaign;
+using report_test::MakeLimitedCampaign;
 using report_test::MakeCase;
 using report_test::ReadText;
 using report_test::TemporaryFolder;
@@ -49,7 +49,7 @@ std::string Query(const std::filesystem::path& folder, const std::string& sql) {
 
 TEST(ResultFolder, HoldsTheCampaignAndWhereItComesFrom) {
   TemporaryFolder temporary;
-  const ResultFolder folder = ResultFolder::Create(temporary / "a" / "b", MakeCampaign(3));
+  const ResultFolder folder = ResultFolder::Create(temporary / "a" / "b", MakeLimitedCampaign(3));
   EXPECT_EQ(ReadText(temporary / "a" / "b" / "campaign.yaml"), "name: made_up\n");
   EXPECT_EQ(folder.Provenance("campaign_id"), std::string(64, '1'));
   EXPECT_EQ(folder.Provenance("flight_id"), std::string(64, '2'));
@@ -60,7 +60,7 @@ TEST(ResultFolder, HoldsTheCampaignAndWhereItComesFrom) {
 
 TEST(ResultFolder, ReturnsAResultToTheLastBit) {
   TemporaryFolder temporary;
-  ResultFolder folder = ResultFolder::Create(temporary / "out", MakeCampaign(3));
+  ResultFolder folder = ResultFolder::Create(temporary / "out", MakeLimitedCampaign(3));
   CaseResult stored = MakeCase(2);
   stored.outcome = Outcome::kLostControl;
   stored.reason = "it's \"gone\", or so";
@@ -80,7 +80,7 @@ TEST(ResultFolder, ReturnsAResultToTheLastBit) {
 
 TEST(ResultFolder, StoresUndefinedAsNullAndNoNegativeZero) {
   TemporaryFolder temporary;
-  ResultFolder folder = ResultFolder::Create(temporary / "out", MakeCampaign(1));
+  ResultFolder folder = ResultFolder::Create(temporary / "out", MakeLimitedCampaign(1));
   CaseResult result = MakeCase(0);
   result.metrics[0] = kNaN;
   result.metrics[1] = std::numeric_limits<double>::infinity();
@@ -100,7 +100,7 @@ TEST(ResultFolder, StoresUndefinedAsNullAndNoNegativeZero) {
 
 TEST(ResultFolder, AcceptsARepeatedResultOnce) {
   TemporaryFolder temporary;
-  ResultFolder folder = ResultFolder::Create(temporary / "out", MakeCampaign(3));
+  ResultFolder folder = ResultFolder::Create(temporary / "out", MakeLimitedCampaign(3));
   EXPECT_EQ(folder.Append({{MakeCase(1), MakeCase(0)}}), 2u);
   EXPECT_EQ(folder.Append({{MakeCase(1), MakeCase(2), MakeCase(2)}}), 1u);
   EXPECT_THAT(folder.PresentCases(), ElementsAre(0, 1, 2));
@@ -108,7 +108,7 @@ TEST(ResultFolder, AcceptsARepeatedResultOnce) {
 
 TEST(ResultFolder, RefusesADifferentResultOfACaseWithItsWholeBatch) {
   TemporaryFolder temporary;
-  ResultFolder folder = ResultFolder::Create(temporary / "out", MakeCampaign(3));
+  ResultFolder folder = ResultFolder::Create(temporary / "out", MakeLimitedCampaign(3));
   folder.Append({{MakeCase(1)}});
   CaseResult other = MakeCase(1);
   other.digest.low = 5;
@@ -126,7 +126,7 @@ TEST(ResultFolder, RefusesADifferentResultOfACaseWithItsWholeBatch) {
 }
 
 Campaign WithOwn(const std::vector<std::string>& names) {
-  Campaign campaign = MakeCampaign(4);
+  Campaign campaign = MakeLimitedCampaign(4);
   for (const std::string& name : names) campaign.own_metrics.push_back({name, "max(" + name + ")", "", {}});
   return campaign;
 }
@@ -192,7 +192,7 @@ TEST(ResultFolder, AMetricNamedAfterAStageMakesNoVehicleOfManyStages) {
 
 TEST(ResultFolder, ListsInOrderWhatIsThere) {
   TemporaryFolder temporary;
-  ResultFolder folder = ResultFolder::Create(temporary / "out", MakeCampaign(100));
+  ResultFolder folder = ResultFolder::Create(temporary / "out", MakeLimitedCampaign(100));
   folder.Append({{MakeCase(41), MakeCase(3)}});
   folder.Append({{MakeCase(17)}});
   EXPECT_THAT(folder.PresentCases(), ElementsAre(3, 17, 41));
@@ -207,7 +207,7 @@ TEST(ResultFolder, ListsInOrderWhatIsThere) {
 
 TEST(ResultFolder, KeepsQuarantineUntilThereIsAResult) {
   TemporaryFolder temporary;
-  ResultFolder folder = ResultFolder::Create(temporary / "out", MakeCampaign(10));
+  ResultFolder folder = ResultFolder::Create(temporary / "out", MakeLimitedCampaign(10));
   folder.Quarantine({5, "killed 3 workers"});
   folder.Quarantine({4, "hung 1 worker"});
   folder.Quarantine({4, "hung 3 workers"});
@@ -220,7 +220,7 @@ TEST(ResultFolder, KeepsQuarantineUntilThereIsAResult) {
 
 TEST(ResultFolder, KeepsTelemetryApart) {
   TemporaryFolder temporary;
-  ResultFolder folder = ResultFolder::Create(temporary / "out", MakeCampaign(10));
+  ResultFolder folder = ResultFolder::Create(temporary / "out", MakeLimitedCampaign(10));
   folder.Store({}, {{{.case_index = 3,
                       .worker = "w1",
                       .host = "h",
@@ -234,7 +234,7 @@ TEST(ResultFolder, KeepsTelemetryApart) {
 
 TEST(ResultFolder, KnowsWhoReturnedWhatAndForgetsAllOfOneWorker) {
   TemporaryFolder temporary;
-  ResultFolder folder = ResultFolder::Create(temporary / "out", MakeCampaign(10));
+  ResultFolder folder = ResultFolder::Create(temporary / "out", MakeLimitedCampaign(10));
   folder.Store({{MakeCase(1), MakeCase(2), MakeCase(3)}},
                {{{1, "liar", "h", "", kNaN}, {2, "honest", "h", "", kNaN}, {3, "liar", "h", "", kNaN}}});
   EXPECT_EQ(folder.WorkerOf(2), "honest");
@@ -263,7 +263,7 @@ TEST(ResultFolder, KnowsWhoReturnedWhatAndForgetsAllOfOneWorker) {
 TEST(ResultFolder, RefusesAFolderThatIsNotEmpty) {
   TemporaryFolder temporary;
   std::filesystem::create_directories(temporary / "out" / "something");
-  EXPECT_EQ(MessageOf<InputError>([&] { ResultFolder::Create(temporary / "out", MakeCampaign(1)); }),
+  EXPECT_EQ(MessageOf<InputError>([&] { ResultFolder::Create(temporary / "out", MakeLimitedCampaign(1)); }),
             (temporary / "out").string() +
                 ": the folder is not empty, allowed: a new or an empty folder, or --resume "
                 "to continue a campaign of the same flight id");
@@ -272,7 +272,7 @@ TEST(ResultFolder, RefusesAFolderThatIsNotEmpty) {
 TEST(ResultFolder, RefusesAFolderThatCannotBeMade) {
   TemporaryFolder temporary;
   std::ofstream(temporary / "file") << "not a folder";
-  EXPECT_EQ(MessageOf<InputError>([&] { ResultFolder::Create(temporary / "file" / "out", MakeCampaign(1)); }),
+  EXPECT_EQ(MessageOf<InputError>([&] { ResultFolder::Create(temporary / "file" / "out", MakeLimitedCampaign(1)); }),
             (temporary / "file" / "out").string() +
                 ": cannot be made: Not a directory, allowed: a folder that can be written");
 }
@@ -296,8 +296,8 @@ TEST(ResultFolder, RefusesToOpenWhatIsNone) {
 
 TEST(ResultFolder, ResumesAndExtendsTheSameFlights) {
   TemporaryFolder temporary;
-  { ResultFolder::Create(temporary / "out", MakeCampaign(2)).Append({{MakeCase(0), MakeCase(1)}}); }
-  Campaign longer = MakeCampaign(5);
+  { ResultFolder::Create(temporary / "out", MakeLimitedCampaign(2)).Append({{MakeCase(0), MakeCase(1)}}); }
+  Campaign longer = MakeLimitedCampaign(5);
   longer.id = std::string(64, '3');
   longer.canonical_yaml = "name: made_up\ncases: 5\n";
   const ResultFolder folder = ResultFolder::Resume(temporary / "out", longer);
@@ -309,25 +309,25 @@ TEST(ResultFolder, ResumesAndExtendsTheSameFlights) {
 
 TEST(ResultFolder, RefusesToMixFlights) {
   TemporaryFolder temporary;
-  { ResultFolder::Create(temporary / "out", MakeCampaign(2)).Append({{MakeCase(1)}}); }
+  { ResultFolder::Create(temporary / "out", MakeLimitedCampaign(2)).Append({{MakeCase(1)}}); }
   const std::string folder = (temporary / "out").string();
 
-  Campaign other = MakeCampaign(2);
+  Campaign other = MakeLimitedCampaign(2);
   other.flight_id = std::string(64, '9');
   EXPECT_EQ(MessageOf<InputError>([&] { ResultFolder::Resume(folder, other); }),
             folder + ": holds results of flight id " + std::string(64, '2') + ", the campaign's is " +
                 std::string(64, '9'));
-  EXPECT_EQ(MessageOf<InputError>([&] { ResultFolder::Resume(folder, MakeCampaign(1)); }),
+  EXPECT_EQ(MessageOf<InputError>([&] { ResultFolder::Resume(folder, MakeLimitedCampaign(1)); }),
             folder + ": already holds case 1, the campaign has only 1 cases");
   Database(folder + "/results.sqlite", Database::Mode::kExisting)
       .Execute("UPDATE provenance SET value = '0.0.0+older' WHERE key = 'engine'");
-  EXPECT_EQ(MessageOf<InputError>([&] { ResultFolder::Resume(folder, MakeCampaign(2)); }),
+  EXPECT_EQ(MessageOf<InputError>([&] { ResultFolder::Resume(folder, MakeLimitedCampaign(2)); }),
             folder + ": holds results of engine 0.0.0+older, this one is " + EngineVersion());
 }
 
 TEST(ResultFolder, RefusesColumnsOfAnotherEngine) {
   TemporaryFolder temporary;
-  { ResultFolder::Create(temporary / "out", MakeCampaign(2)); }
+  { ResultFolder::Create(temporary / "out", MakeLimitedCampaign(2)); }
   Database((temporary / "out") / "results.sqlite", Database::Mode::kExisting)
       .Execute("ALTER TABLE cases DROP COLUMN metric_" + MetricNames()[0]);
   EXPECT_EQ(MessageOf<InputError>([&] { ResultFolder::Open(temporary / "out"); }),
@@ -342,12 +342,12 @@ TEST(ResultFolder, IsWrittenByOneProcessAtATime) {
       ": another dispersa process is writing this folder, allowed: another folder, or to "
       "wait for that process to end";
   {
-    const ResultFolder folder = ResultFolder::Create(temporary / "out", MakeCampaign(2));
-    EXPECT_EQ(MessageOf<InputError>([&] { ResultFolder::Resume(temporary / "out", MakeCampaign(2)); }), busy);
+    const ResultFolder folder = ResultFolder::Create(temporary / "out", MakeLimitedCampaign(2));
+    EXPECT_EQ(MessageOf<InputError>([&] { ResultFolder::Resume(temporary / "out", MakeLimitedCampaign(2)); }), busy);
     ResultFolder reader = ResultFolder::Open(temporary / "out");
     EXPECT_EQ(MessageOf<InputError>([&] { reader.Lock(); }), busy);
   }
-  const ResultFolder folder = ResultFolder::Resume(temporary / "out", MakeCampaign(2));
+  const ResultFolder folder = ResultFolder::Resume(temporary / "out", MakeLimitedCampaign(2));
   EXPECT_EQ(MessageOf<InputError>([&] { FolderLock again(temporary / "out"); }), busy);
 }
 
@@ -356,13 +356,13 @@ TEST(ResultFolder, AFolderOfTheFirstVersionIsReadAndBecomesOneOfTodayWhenItGoesO
   TemporaryFolder temporary;
   const std::filesystem::path database = temporary / "out" / "results.sqlite";
   {
-    ResultFolder folder = ResultFolder::Create(temporary / "out", MakeCampaign(3));
+    ResultFolder folder = ResultFolder::Create(temporary / "out", MakeLimitedCampaign(3));
     folder.Append({{MakeCase(0), MakeCase(2)}});
   }
   Database(database, Database::Mode::kExisting).Execute("DROP TABLE audits; PRAGMA user_version = 0");
   EXPECT_THAT(ResultFolder::Open(temporary / "out").PresentCases(), ElementsAre(0, 2));
   {
-    ResultFolder folder = ResultFolder::Resume(temporary / "out", MakeCampaign(3));
+    ResultFolder folder = ResultFolder::Resume(temporary / "out", MakeLimitedCampaign(3));
     EXPECT_THAT(folder.PresentCases(), ElementsAre(0, 2));
     folder.AppendAudits({{Claim{"w", 0, MakeCase(0).digest, false}}});
   }
@@ -370,19 +370,19 @@ TEST(ResultFolder, AFolderOfTheFirstVersionIsReadAndBecomesOneOfTodayWhenItGoesO
   Statement version(today, "PRAGMA user_version");
   ASSERT_TRUE(version.Step());
   EXPECT_EQ(version.Integer(0), 2);
-  EXPECT_THAT(ResultFolder::Resume(temporary / "out", MakeCampaign(3)).PresentCases(), ElementsAre(0, 2));
+  EXPECT_THAT(ResultFolder::Resume(temporary / "out", MakeLimitedCampaign(3)).PresentCases(), ElementsAre(0, 2));
 }
 
 TEST(ResultFolder, AFolderOfALaterVersionIsLeftAlone) {
   TemporaryFolder temporary;
-  ResultFolder::Create(temporary / "out", MakeCampaign(3));
+  ResultFolder::Create(temporary / "out", MakeLimitedCampaign(3));
   Database(temporary / "out" / "results.sqlite", Database::Mode::kExisting)
       .Execute("PRAGMA user_version = 3");
   const std::string error =
       (temporary / "out").string() +
       ": written by a newer dispersa: its results.sqlite has version 3, this one reads 2";
   EXPECT_EQ(MessageOf<InputError>([&] { ResultFolder::Open(temporary / "out"); }), error);
-  EXPECT_EQ(MessageOf<InputError>([&] { ResultFolder::Resume(temporary / "out", MakeCampaign(3)); }), error);
+  EXPECT_EQ(MessageOf<InputError>([&] { ResultFolder::Resume(temporary / "out", MakeLimitedCampaign(3)); }), error);
 }
 
 TEST(ResultFolder, TellsADamagedRowAndRemovesItToBeFlownAgain) {
@@ -393,7 +393,7 @@ TEST(ResultFolder, TellsADamagedRowAndRemovesItToBeFlownAgain) {
         std::string("digest = '0' || substr(digest, 2, 30) || 'e'"), std::string("row_digest = ''")}) {
     TemporaryFolder temporary;
     {
-      ResultFolder folder = ResultFolder::Create(temporary / "out", MakeCampaign(3));
+      ResultFolder folder = ResultFolder::Create(temporary / "out", MakeLimitedCampaign(3));
       folder.Append({{MakeCase(0), MakeCase(1), MakeCase(2)}});
     }
     Database((temporary / "out") / "results.sqlite", Database::Mode::kExisting)
@@ -405,7 +405,7 @@ TEST(ResultFolder, TellsADamagedRowAndRemovesItToBeFlownAgain) {
       EXPECT_EQ(MessageOf<ResultError>([&] { folder.Load(1); }), error) << damage;
       EXPECT_EQ(MessageOf<ResultError>([&] { folder.ForEach([](const CaseResult&) {}); }), error) << damage;
     }
-    const ResultFolder folder = ResultFolder::Resume(temporary / "out", MakeCampaign(3));
+    const ResultFolder folder = ResultFolder::Resume(temporary / "out", MakeLimitedCampaign(3));
     EXPECT_THAT(folder.damaged(), ElementsAre(1)) << damage;
     EXPECT_THAT(folder.PresentCases(), ElementsAre(0, 2)) << damage;
   }
@@ -413,7 +413,7 @@ TEST(ResultFolder, TellsADamagedRowAndRemovesItToBeFlownAgain) {
 
 TEST(ResultFolder, KeepsTheFingerprintOfEachRow) {
   TemporaryFolder temporary;
-  ResultFolder folder = ResultFolder::Create(temporary / "out", MakeCampaign(3));
+  ResultFolder folder = ResultFolder::Create(temporary / "out", MakeLimitedCampaign(3));
   folder.Append({{MakeCase(2), MakeCase(1)}});
   EXPECT_THAT(folder.Fingerprints(),
               ElementsAre(Pair(1, Fingerprint(MakeCase(1))), Pair(2, Fingerprint(MakeCase(2)))));
@@ -423,7 +423,7 @@ TEST(ResultFolder, KeepsTheFingerprintOfEachRow) {
 TEST(ResultFolder, IsReadByWhoMayNotWriteIt) {
   TemporaryFolder temporary;
   const std::filesystem::path out = temporary / "100%# out?";
-  ResultFolder::Create(out, MakeCampaign(3)).Append({{MakeCase(1)}});
+  ResultFolder::Create(out, MakeLimitedCampaign(3)).Append({{MakeCase(1)}});
   using std::filesystem::perms;
   std::filesystem::permissions(out.parent_path(), perms(0755));
   for (const auto& file : std::filesystem::directory_iterator(out))
