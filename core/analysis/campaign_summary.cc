@@ -90,9 +90,9 @@ CampaignVerdict Overall(const CampaignSummary& summary) {
   }
   if (is_beyond || any(is("fail"))) return CampaignVerdict::kFail;
   if (summary.requirements.empty()) return CampaignVerdict::kNothingJudged;
-  return any(is("inconclusive"))
-             ? CampaignVerdict::kInconclusive
-             : CampaignVerdict::kPass;
+  return any(is("not_evidence"))   ? CampaignVerdict::kNotEvidence
+         : any(is("inconclusive")) ? CampaignVerdict::kInconclusive
+                                   : CampaignVerdict::kPass;
 }
 
 void HoldAgainstLimits(const StructuralLimits& limits, const CaseColumns& cases, CampaignSummary* summary) {
@@ -150,6 +150,8 @@ const char* CampaignVerdictName(CampaignVerdict verdict) {
       return "nothing_judged";
     case CampaignVerdict::kInconclusive:
       return "inconclusive";
+    case CampaignVerdict::kNotEvidence:
+      return "not_evidence";
     case CampaignVerdict::kStudy:
     case CampaignVerdict::kStudyViolated:
       return "study";
@@ -349,6 +351,7 @@ CampaignSummary BuildSummary(const ResultFolder& folder, const Campaign& campaig
   HoldAgainstLimits(campaign.vehicle.limits, cases, &summary);
   summary.load_checks = CheckLoads(campaign, cases);
   summary.near_step_limit = NearStepLimit(cases);
+  context.no_evidence = WhyNoEvidence(campaign, cases);
   summary.requirements = JudgeAll(campaign.requirements, context, cases);
   for (const Requirement& requirement : campaign.requirements) {
     summary.overall_risk = std::max(summary.overall_risk, requirement.consumer_risk);
@@ -363,7 +366,6 @@ CampaignSummary BuildSummary(const ResultFolder& folder, const Campaign& campaig
   summary.drivers = FindDrivers(campaign, KeyMetrics(campaign), cases);
   summary.failure_drivers = FindFailureDrivers(campaign, cases);
   summary.verdict = Overall(summary);
-  summary.no_evidence = WhyNoEvidence(campaign, cases);
   summary.standing = StandingOf(folder, campaign, summary);
   return summary;
 }

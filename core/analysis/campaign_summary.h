@@ -29,12 +29,13 @@ enum class CampaignVerdict {
   kPass,
   kNothingJudged,
   kInconclusive,
+  kNotEvidence,
   kStudy,
   kStudyViolated,
   kFail,
   kIncomplete
 };
-/// "pass", "nothing_judged", "inconclusive", "study", "study", "fail", "incomplete".
+/// "pass", "nothing_judged", "inconclusive", "not_evidence", "study", "study", "fail", "incomplete".
 const char* CampaignVerdictName(CampaignVerdict verdict);
 
 struct MetricSummary {
@@ -118,7 +119,6 @@ struct CampaignSummary {
     std::size_t extreme_flights = 0;
   };
   std::optional<Envelope> envelope;
-  std::string no_evidence;            ///< WhyNoEvidence() the flights are; empty: they may be
   std::optional<CaseResult> nominal;  ///< the flight without dispersions, if it was flown
   /// The verdict after earlier attempts and changes. It is no part of summary.json.
   Standing standing;

@@ -344,6 +344,12 @@ std::vector<RequirementSummary> JudgeAll(const std::vector<Requirement>& require
     RequirementSummary& summary = summaries[i];
     const PlannedVerdict& verdict = verdicts[i];
     summary.verdict = VerdictName(verdict.verdict);
+    if (!context.no_evidence.empty() && verdict.verdict != Verdict::kFail) {  // a failure is one, alone or alike
+      summary.verdict = "not_evidence";
+      summary.sentence = fmt::format("{} of {} broke the limit.{} {}", summary.failures, Plural(summary.n, "flight"),
+                                     NotMeasuredSentence(summary), context.no_evidence);
+      continue;
+    }
     summary.success_lower = verdict.success_lower;
     summary.success_upper = verdict.success_upper;
     summary.cases_needed = verdict.cases_needed;

@@ -33,7 +33,7 @@ struct RequirementSummary {
   std::int64_t failures = 0;      ///< beyond the limit, undefined, or a lost flight whatever it measured
   std::int64_t lost_flights = 0;  ///< of the failures: any outcome but completed
   std::int64_t not_measured = 0;  ///< of the failures: completed flights that do not define the metric
-  std::string verdict;            ///< "pass", "fail", "inconclusive"; "study" of chosen points
+  std::string verdict;            ///< "pass", "fail", "inconclusive", "not_evidence"; "study" of chosen points
   /// One-sided confidence bounds of the probability of success; none in a design study without replicates.
   std::optional<double> success_lower;
   std::optional<double> success_upper;
@@ -111,6 +111,7 @@ struct JudgingContext {
   std::vector<std::int64_t> past_looks;  ///< numbers of cases at which verdicts were read before
   std::vector<std::string> registered;   ///< RequirementLine() before the first case; none: as they are
   bool holm = false;
+  std::string no_evidence;  ///< WhyNoEvidence(): no share of flights passes by these cases; empty: it may
 };
 
 /// The verdicts on all requirements. Only independent cases give one (Decide()). The points of a design study

@@ -156,7 +156,7 @@ void Judge(const Requirement& requirement, const RequirementSummary& shown, cons
     return;
   }
   standing.verdict = shown.verdict.empty() ? "inconclusive" : shown.verdict;
-  if (shown.n == 0) return;
+  if (shown.n == 0 || standing.verdict == "not_evidence") return;
   const AttemptsVerdict verdict =
       JudgeAttempts(requirement.probability, requirement.consumer_risk, reserved, attempts);
   standing.pool_cases = verdict.pool_cases;
@@ -296,10 +296,6 @@ Standing StandingOf(const ResultFolder& folder, const Campaign& campaign, const 
     Standing::Requirement& one = standing.requirements.emplace_back();
     Judge(requirement, shown, summary, AttemptsAt(requirement, shown, summary, looks, planned_first, counted),
           campaign.verdicts.attempts, one);
-    if (!summary.no_evidence.empty() && requirement.probability > 0.0 && one.verdict != "fail") {
-      one.verdict = "not_evidence";
-      one.reason = summary.no_evidence;
-    }
     if (Holds(registered.lines, RequirementLine(requirement))) continue;
     one.post_hoc = standing.is_post_hoc = true;
     if (one.verdict == "fail") continue;

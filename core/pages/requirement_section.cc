@@ -183,7 +183,8 @@ std::string Card(const RequirementSummary& requirement) {
   const double observed = requirement.n == 0 ? std::nan("")
                                              : static_cast<double>(requirement.n - requirement.failures) /
                                                    static_cast<double>(requirement.n);
-  const bool study = requirement.verdict == "study";
+  // Points that are chosen, or flights that show no more than one.
+  const bool shows_nothing = requirement.verdict == "study" || requirement.verdict == "not_evidence";
   std::string html = fmt::format(
       "<section class=\"requirement\"><p class=\"claim\">{}<b>{}</b> {} {}<br><code>{}</code></p>\n",
       requirement.id.empty() ? "" : Code(requirement.id) + " ", HtmlText(info.title),
@@ -198,7 +199,7 @@ std::string Card(const RequirementSummary& requirement) {
   html += "<p class=\"sentence\">" + HtmlText(requirement.sentence) + "</p>\n";
   if (requirement.bound) {
     html += "<p class=\"value\">" + HtmlText(BoundSentence(requirement, info.unit)) + "</p>\n";
-  } else if (!study) {
+  } else if (!shows_nothing) {
     html += "<p class=\"sentence\">No " + Term("bound") + ": too few cases or too many lost.</p>\n";
   }
   html += "<dl class=\"facts\">";
@@ -212,8 +213,8 @@ std::string Card(const RequirementSummary& requirement) {
                requirement.success_lower
                    ? fmt::format("≥ {}, ≤ {}", ShareText(*requirement.success_lower, Rounding::kDown),
                                  ShareText(*requirement.success_upper, Rounding::kUp))
-                   : "none: design study");
-  if (!study) {
+                   : requirement.verdict == "study" ? "none: design study" : "none: no evidence");
+  if (!shows_nothing) {
     html += Fact("plan", PlanWords(requirement));
     html += Fact(
         "decision rule",

@@ -32,6 +32,8 @@ std::string NextStep(const CampaignSummary& summary) {
     case StandingVerdict::kInconclusive:
       return "fly more cases; the line above says how many";
     case StandingVerdict::kNotEvidence:
+      if (summary.verdict == CampaignVerdict::kNotEvidence)
+        return "disperse what the vehicle has; the lines above say what nothing reads";
       return IsIndependent(summary.sampling)
                  ? "fly the requirements as they stand with another seed, or read the reasons above"
                  : "require 'every_case: true', or sample by monte_carlo";

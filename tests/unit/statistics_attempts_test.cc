@@ -55,6 +55,38 @@ TEST(Attempts, AnotherSeedAddsToThePoolAndHasNoPlan) {
   EXPECT_FALSE(Judged({Ended(1, 45, 1), Ended(2, *verdict.pool_needed - 46, 0)}).passed);
 }
 
+/// Of a design that just misses, by a plan of one look.
+double PassRiskOf(std::int64_t cases) {
+  const std::int64_t most = MaxFailures(kShare, kRisk, cases).value();
+  double risk = 0.0, term = std::pow(kShare, cases);
+  for (std::int64_t k = 0; k <= most; ++k) {
+    risk += term;
+    term *= static_cast<double>(cases - k) / static_cast<double>(k + 1) * (1.0 - kShare) / kShare;
+  }
+  return risk;
+}
+
+Attempt OfAnotherEngine(Attempt attempt) {
+  attempt.is_evidence = false;
+  return attempt;
+}
+
+TEST(Attempts, OfAnotherEngineSpendRiskAndShowNothing) {
+  // It passed and it spent the plan: two flights of this engine show what two flights show.
+  const AttemptsVerdict after = Judged({OfAnotherEngine(Ended(1, 100, 0)), Ended(2, 2, 0)});
+  EXPECT_FALSE(after.passed);
+  EXPECT_FALSE(after.passed_before);
+  EXPECT_TRUE(after.is_spent);
+  EXPECT_EQ(after.pool_cases, 2);
+  EXPECT_NEAR(after.risk_left, kRisk - PassRiskOf(100), 1e-12);
+  // The same cases flown again by this engine, beside another seed of the other one: these alone are the pool.
+  const AttemptsVerdict again =
+      Judged({OfAnotherEngine(Ended(8, 5, 0)), OfAnotherEngine(Ended(7, 5, 1)), Ended(7, 200, 0)});
+  EXPECT_EQ(again.pool_cases, 200);
+  EXPECT_EQ(again.pool_failures, 0);
+  EXPECT_TRUE(again.passed);
+}
+
 TEST(Attempts, ThatCouldNotHavePassedSpendNothing) {
   const AttemptsVerdict verdict = Judged({Ended(1, 20, 0), Ended(2, 44, 3), Ended(3, 45, 0)});
   EXPECT_TRUE(verdict.passed);

@@ -77,7 +77,7 @@ class Results:
 
     @property
     def verdict(self):
-        """"pass", "fail", "inconclusive", "study" or "incomplete", for the stored cases."""
+        """"pass", "fail", "inconclusive", "not_evidence", "study" or "incomplete", for the stored cases."""
         return self._stored["verdict"]
 
     @property
