@@ -147,6 +147,7 @@ struct Comparison {
     std::uint64_t seed = 0, cases = 0;
     std::size_t flown = 0, completed = 0;
     bool has_its_law = true;  ///< false: flown with a control law in Python, which the folder does not hold
+    std::string nominal_loss = {};  ///< NominalLoss(); empty: it was completed, or is not known
   };
   Side a, b;
   std::vector<CampaignChange> changes;

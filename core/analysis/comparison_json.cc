@@ -15,7 +15,8 @@ Json SideJson(const Comparison::Side& side) {
           {"flight_id", side.flight_id}, {"engine", side.engine},       {"vehicle", side.vehicle},
           {"reference", side.reference}, {"autopilot", side.autopilot}, {"sampling", side.sampling},
           {"seed", side.seed},           {"cases", side.cases},         {"flown", side.flown},
-          {"completed", side.completed}};
+          {"completed", side.completed},
+          {"nominal_loss", side.nominal_loss.empty() ? Json() : Json(side.nominal_loss)}};
 }
 
 Json PairingJson(const Pairing& pairing) {

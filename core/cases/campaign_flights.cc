@@ -8,6 +8,7 @@
 
 #include "core/cases/contained_flights.h"
 #include "core/control/law_here.h"
+#include "core/flight/engine_version.h"
 #include "core/flight/flight_model.h"
 #include "core/flight/lane_engine.h"
 
@@ -142,6 +143,11 @@ void CampaignFlights::FlyCases(const std::vector<CaseOrder>& orders, int threads
     fly();
   }
   if (shared.problem) std::rethrow_exception(shared.problem);
+}
+
+std::optional<CaseResult> NominalOf(const Campaign& campaign, const std::string& engine) {
+  if (campaign.autopilot.plugin || engine != EngineVersion()) return std::nullopt;
+  return CampaignFlights(campaign).FlyNominal();
 }
 
 }  // namespace dispersa

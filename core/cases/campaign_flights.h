@@ -3,6 +3,8 @@
 
 #include <cstdint>
 #include <functional>
+#include <optional>
+#include <string>
 #include <vector>
 
 #include "core/cases/flights_here.h"
@@ -45,5 +47,9 @@ class CampaignFlights {
 
   FlightsHere here_;
 };
+
+/// The nominal flight of a campaign whose cases were flown by the engine `engine`; none if that is not this one,
+/// or if a plug-in decides it.
+std::optional<CaseResult> NominalOf(const Campaign& campaign, const std::string& engine);
 
 }  // namespace dispersa

@@ -59,8 +59,7 @@ CampaignSummary WriteReports(const ResultFolder& folder, const Campaign& campaig
   } else {
     RemoveHistories(folder);
     // One flight says whether the campaign disperses about a flight at all.
-    if (!campaign.autopilot.plugin && folder.Provenance("engine") == EngineVersion())
-      summary.nominal = CampaignFlights(campaign).FlyNominal();
+    summary.nominal = NominalOf(campaign, folder.Provenance("engine"));
   }
   WriteFile(folder.directory() / "summary.json", SummaryJson(summary));
   WriteStanding(folder, summary);

@@ -97,6 +97,7 @@ class Tuner {
     const CampaignFlights held(rigid);
     std::vector<MarginInstant> instants = MarginInstants(held.model());
     skipped_ = SkippedInstants(held.model());
+    start_loss_ = NominalLoss(held.FlyNominal());
     if (options.dispersed > 0)
       held_.emplace(Plant(), instants, CampaignFlights(Stiff(rigid)), options.dispersed);
     margins_.emplace(Plant(), std::move(instants));
@@ -106,6 +107,7 @@ class Tuner {
     TuningResult result;
     result.feasible = true;
     result.skipped = skipped_;
+    result.start_loss = start_loss_;
     for (int stage = 0; stage < Plant().StageCount(); ++stage) {
       result.stages.push_back(TuneStage(stage, observer, result.evaluations));
       result.feasible = result.feasible && result.stages.back().feasible;
@@ -116,6 +118,8 @@ class Tuner {
     }
     result.flights = flights_;
     result.autopilot = campaign_.autopilot;
+    result.nominal_loss = NominalLoss(CampaignFlights(campaign_).FlyNominal());
+    result.feasible = result.feasible && result.nominal_loss.empty();
     if (!result.feasible) return result;
     std::vector<double> rms_deg;
     for (const FlightResult& flown : FlyCases(ModelWith(campaign_.autopilot))) {
@@ -398,6 +402,7 @@ class Tuner {
   std::unique_ptr<CampaignFlights>
       start_;  ///< all stages untuned; margins are computed about its nominal flight
   std::vector<SkippedInstant> skipped_;
+  std::string start_loss_;
   std::optional<NominalMargins> margins_;
   std::optional<HeldPlants> held_;  ///< set if dispersed plants are held
   std::atomic<std::uint64_t> flights_ = 0;

@@ -79,7 +79,9 @@ struct TuningResult {
   std::vector<StageTuning> stages;
   std::vector<SkippedInstant> skipped;             ///< of the nominal flight, without margins
   std::optional<AugmentationTuning> augmentation;  ///< if PD is augmented and every stage is feasible
-  bool feasible = false;                           ///< all stages, and the augmentation
+  std::string start_loss;    ///< NominalLoss() of the design that the search starts from: margins end there
+  std::string nominal_loss;  ///< NominalLoss() of the tuned autopilot, which is then not feasible
+  bool feasible = false;     ///< all stages, and the augmentation
   /// Powered pitch error of the tuned autopilot over the cases of the tuning. 0 if not feasible.
   double median_rms_deg = 0.0;
   double largest_peak_deg = 0.0;

@@ -39,6 +39,8 @@ void PrintText(const Comparison& comparison) {
   for (const auto& [letter, side] : {std::pair{"A", &comparison.a}, std::pair{"B", &comparison.b}})
     fmt::print("{}: {} ({}), {} of {} flights completed\n", letter, SideTitle(comparison, *side),
                side->autopilot, side->completed, side->flown);
+  for (const auto& [letter, side] : {std::pair{"A", &comparison.a}, std::pair{"B", &comparison.b}})
+    if (!side->nominal_loss.empty()) fmt::print("warning: {}: {}\n", letter, side->nominal_loss);
   if (!comparison.differs.empty()) fmt::print("The campaign files differ in {}.\n", comparison.differs);
   fmt::print("{}\n{}\n\n", comparison.pairing.sentence, comparison.sentence);
   fmt::print("{:<37} {:>10} {:>10} {:>11} {:>26} {:>11} {:>11}  {}\n", "metric", "median A", "median B",

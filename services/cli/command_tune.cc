@@ -133,6 +133,10 @@ nlohmann::ordered_json MissedJson(const std::string& missed) {
 
 nlohmann::ordered_json ResultJson(const TuneOptions& options, const TuningResult& result,
                                   const std::vector<TuningRecord>& log) {
+  if (!result.nominal_loss.empty()) fmt::print(stream, "warning: {}\n", result.nominal_loss);
+  if (!result.start_loss.empty())
+    fmt::print(stream, "warning: With the design that the search starts from: {} Margins are computed up to there.\n",
+               result.start_loss);
   auto stages = nlohmann::ordered_json::array();
   for (std::size_t i = 0; i < result.stages.size(); ++i) {
     const StageTuning& stage = result.stages[i];
@@ -181,6 +185,8 @@ nlohmann::ordered_json ResultJson(const TuneOptions& options, const TuningResult
   return {{"schema", "dispersa/tune/1"},
           {"autopilot", options.out},
           {"feasible", result.feasible},
+          {"nominal_loss", result.nominal_loss.empty() ? nlohmann::ordered_json()
+                                                       : nlohmann::ordered_json(result.nominal_loss)},
           {"seed", options.tuning.seed},
           {"cases", options.tuning.cases},
           {"evaluations", result.evaluations},

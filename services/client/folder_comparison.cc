@@ -6,6 +6,7 @@
 #include <utility>
 
 #include "core/campaign/case_result.h"
+#include "core/cases/campaign_flights.h"
 #include "core/flight/flight_inputs.h"
 #include "core/input/input_error.h"
 #include "core/results/output_file.h"
@@ -73,6 +74,9 @@ FolderComparison CompareFolders(const std::string& name_a, const std::string& na
   compared.comparison = Compare({name_a, a.folder.Provenance("engine"), a.campaign, compared.a},
                                 {name_b, b.folder.Provenance("engine"), b.campaign, compared.b}, metrics,
                                 ChangesOf(a.campaign, b.campaign), practical_share);
+  for (const auto& [stored, side] :
+       {std::pair{&a, &compared.comparison.a}, std::pair{&b, &compared.comparison.b}})
+    if (const auto nominal = NominalOf(stored->campaign, side->engine)) side->nominal_loss = NominalLoss(*nominal);
   return compared;
 }
 

@@ -183,7 +183,8 @@ Service::Reported Service::OutcomeOf(const CampaignSummary& summary) {
   Reported reported{summary.standing.verdict,
                     summary.engine,
                     static_cast<std::int64_t>(summary.standing.attempts.size()),
-                    {}};
+                    {},
+                    summary.nominal ? NominalLoss(*summary.nominal) : std::string()};
   for (std::size_t i = 0; i < std::min(summary.requirements.size(), kMaxOutcomes); ++i) {
     const RequirementSummary& one = summary.requirements[i];
     const auto& standing = summary.standing.requirements;
@@ -212,7 +213,7 @@ void Service::FinishReports() {
       entry.engine = std::move(reported.engine);
       entry.attempts = reported.attempts;
       entry.requirements = std::move(reported.requirements);
-      End(entry, CampaignState::kDone, CampaignExitCode(reported.verdict, entry.conflicts));
+      End(entry, CampaignState::kDone, CampaignExitCode(reported.verdict, entry.conflicts), reported.nominal_loss);
     } catch (...) {
       Fail(entry, std::current_exception());
     }

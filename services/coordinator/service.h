@@ -130,6 +130,7 @@ class Service {
     std::string engine;
     std::int64_t attempts;
     std::vector<RequirementOutcome> requirements;
+    std::string nominal_loss;  ///< NominalLoss(); empty: the nominal flight was completed
   };
   struct Reporting {
     std::string id;
