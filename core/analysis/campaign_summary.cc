@@ -215,10 +215,10 @@ std::vector<std::string> Warnings(const CampaignSummary& summary) {
   }
   const std::uint64_t completed = summary.outcomes[static_cast<std::size_t>(Outcome::kCompleted)];
   if (completed < summary.flown) {
-    warnings.push_back(fmt::format(
-        "{} of {} flights were lost: statistics and percentiles cover the {} that were "
-        "completed, and every lost flight fails every requirement.",
-        summary.flown - completed, summary.flown, completed));
+    warnings.push_back(
+        fmt::format("{} of {} flights were lost: statistics and percentiles cover the {} that were "
+                    "completed, and every lost flight fails every requirement.",
+                    summary.flown - completed, summary.flown, completed));
   }
   return warnings;
 }
@@ -283,8 +283,7 @@ std::vector<std::string> KeyMetrics(const Campaign& campaign) {
   const auto add = [&](const std::string& name) {
     if (std::find(metrics.begin(), metrics.end(), name) == metrics.end()) metrics.push_back(name);
   };
-  for (const Requirement& requirement : campaign.requirements)
-    add(requirement.metric);
+  for (const Requirement& requirement : campaign.requirements) add(requirement.metric);
   for (const OwnMetric& metric : campaign.own_metrics) add(metric.name);
   for (const std::size_t i : MeasuredMetrics(campaign))
     if (i < Metrics().size() && Metrics()[i].is_usual) add(Metrics()[i].name);

@@ -95,7 +95,7 @@ struct CampaignSummary {
     std::uint64_t largest_case = 0;
   };
   std::vector<Limit> limits;
-  std::uint64_t beyond_limits = 0;    ///< flights that exceeded any
+  std::uint64_t beyond_limits = 0;  ///< flights that exceeded any
   std::vector<LoadCheck> load_checks;
   std::uint64_t near_step_limit = 0;  ///< flights whose fastest part comes near what a step resolves
   bool holm = false;                  ///< the requirements' verdicts hold together

@@ -11,10 +11,18 @@ using Json = nlohmann::ordered_json;
 Json IntervalJson(const Interval& interval) { return {Number(interval.lower), Number(interval.upper)}; }
 
 Json SideJson(const Comparison::Side& side) {
-  return {{"directory", side.folder},    {"name", side.name},           {"id", side.id},
-          {"flight_id", side.flight_id}, {"engine", side.engine},       {"vehicle", side.vehicle},
-          {"reference", side.reference}, {"autopilot", side.autopilot}, {"sampling", side.sampling},
-          {"seed", side.seed},           {"cases", side.cases},         {"flown", side.flown},
+  return {{"directory", side.folder},
+          {"name", side.name},
+          {"id", side.id},
+          {"flight_id", side.flight_id},
+          {"engine", side.engine},
+          {"vehicle", side.vehicle},
+          {"reference", side.reference},
+          {"autopilot", side.autopilot},
+          {"sampling", side.sampling},
+          {"seed", side.seed},
+          {"cases", side.cases},
+          {"flown", side.flown},
           {"completed", side.completed},
           {"nominal_loss", side.nominal_loss.empty() ? Json() : Json(side.nominal_loss)}};
 }

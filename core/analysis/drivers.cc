@@ -355,7 +355,8 @@ std::vector<FailureDrivers> FindFailureDrivers(const Campaign& campaign, const C
   std::vector<Requirement> requirements = campaign.requirements;
   const std::size_t required = requirements.size();
   for (const LoadCheck& check : CheckLoads(campaign, cases))
-    if (check.failures > 0) requirements.push_back({.metric = check.metric, .below = 1.0, .above = std::nullopt});
+    if (check.failures > 0)
+      requirements.push_back({.metric = check.metric, .below = 1.0, .above = std::nullopt});
   for (std::size_t which = 0; which < requirements.size(); ++which) {
     const Requirement& requirement = requirements[which];
     FailureDrivers result{requirement.metric, false, 0, {}, {}};

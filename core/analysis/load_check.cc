@@ -15,10 +15,11 @@ constexpr char kAllLimits[] = "structural_limit_exceeded";
 
 bool IsRequired(const Campaign& campaign, const StructuralLimit& one) {
   const double limit = campaign.vehicle.limits.*one.limit;
-  return std::any_of(campaign.requirements.begin(), campaign.requirements.end(), [&](const Requirement& each) {
-    return each.below && ((each.metric == kAllLimits && *each.below > 0.0 && *each.below <= 1.0) ||
-                          (each.metric == one.metric && *each.below <= limit));
-  });
+  return std::any_of(
+      campaign.requirements.begin(), campaign.requirements.end(), [&](const Requirement& each) {
+        return each.below && ((each.metric == kAllLimits && *each.below > 0.0 && *each.below <= 1.0) ||
+                              (each.metric == one.metric && *each.below <= limit));
+      });
 }
 
 /// For each row whether fails(load, limit, outcome) of any checked limit; empty if there is none to check.
@@ -30,7 +31,8 @@ std::vector<bool> AnyLimit(const Campaign& campaign, const CaseColumns& cases, F
     if (!(limit > 0.0) || IsRequired(campaign, one)) continue;
     const std::vector<double> loads = cases.metrics.at(MetricColumn(one.metric));
     any.resize(loads.size());
-    for (std::size_t i = 0; i < loads.size(); ++i) any[i] = any[i] || fails(loads[i], limit, cases.outcome[i]);
+    for (std::size_t i = 0; i < loads.size(); ++i)
+      any[i] = any[i] || fails(loads[i], limit, cases.outcome[i]);
   }
   return any;
 }
@@ -57,8 +59,9 @@ std::vector<LoadCheck> CheckLoads(const Campaign& campaign, const CaseColumns& c
 
 std::string LoadCheckSentence(const LoadCheck& check) {
   const std::string open =
-      check.not_measured > 0 ? fmt::format(", and in {} completed its load is not measured", check.not_measured)
-                             : std::string();
+      check.not_measured > 0
+          ? fmt::format(", and in {} completed its load is not measured", check.not_measured)
+          : std::string();
   return fmt::format("Load check: {} of {} flight{} went beyond a limit of the vehicle{}. {}",
                      check.failures - check.not_measured, check.n, check.n == 1 ? "" : "s", open,
                      check.failures > 0 ? "No flight may."

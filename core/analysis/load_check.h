@@ -19,9 +19,9 @@ struct LoadCheck {
   std::int64_t not_measured = 0;  ///< completed flights among the failures that do not define a checked load
 };
 
-/// For each row whether the flight fails: it went beyond a checked limit, or completed without the load that the
-/// limit is of. Empty if the campaign has none to check. A requirement takes the place of a check: `structural_limit_exceeded` below 1 that of all limits, a load
-/// below its limit that of this one.
+/// For each row whether the flight fails: it went beyond a checked limit, or completed without the load that
+/// the limit is of. Empty if the campaign has none to check. A requirement takes the place of a check:
+/// `structural_limit_exceeded` below 1 that of all limits, a load below its limit that of this one.
 std::vector<bool> BeyondCheckedLimits(const Campaign& campaign, const CaseColumns& cases);
 
 /// None or one: all the checked limits together.

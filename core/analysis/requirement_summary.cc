@@ -139,10 +139,9 @@ std::string NotMeasuredSentence(const RequirementSummary& summary) {
 std::string IndependentSentence(const RequirementSummary& summary, std::int64_t missing) {
   const std::string required = PercentText(summary.probability) + " required.";
   const std::string confidence = PercentText(1.0 - summary.consumer_risk);
-  std::string sentence =
-      fmt::format("{} of {} broke the limit{}.{}", summary.failures, Plural(summary.n, "flight"),
-                  missing > 0 ? fmt::format(", and {} have no result", missing) : "",
-                  NotMeasuredSentence(summary));
+  std::string sentence = fmt::format(
+      "{} of {} broke the limit{}.{}", summary.failures, Plural(summary.n, "flight"),
+      missing > 0 ? fmt::format(", and {} have no result", missing) : "", NotMeasuredSentence(summary));
   // The bounds of a plan of several looks hold at every look, and are wider than what this one decides by.
   if (summary.verdict == "pass" && *summary.success_lower >= summary.probability) {
     sentence +=
@@ -344,10 +343,12 @@ std::vector<RequirementSummary> JudgeAll(const std::vector<Requirement>& require
     RequirementSummary& summary = summaries[i];
     const PlannedVerdict& verdict = verdicts[i];
     summary.verdict = VerdictName(verdict.verdict);
-    if (!context.no_evidence.empty() && verdict.verdict != Verdict::kFail) {  // a failure is one, alone or alike
+    if (!context.no_evidence.empty() &&
+        verdict.verdict != Verdict::kFail) {  // a failure is one, alone or alike
       summary.verdict = "not_evidence";
-      summary.sentence = fmt::format("{} of {} broke the limit.{} {}", summary.failures, Plural(summary.n, "flight"),
-                                     NotMeasuredSentence(summary), context.no_evidence);
+      summary.sentence =
+          fmt::format("{} of {} broke the limit.{} {}", summary.failures, Plural(summary.n, "flight"),
+                      NotMeasuredSentence(summary), context.no_evidence);
       continue;
     }
     summary.success_lower = verdict.success_lower;

@@ -33,7 +33,7 @@ struct RequirementSummary {
   std::int64_t failures = 0;      ///< beyond the limit, undefined, or a lost flight whatever it measured
   std::int64_t lost_flights = 0;  ///< of the failures: any outcome but completed
   std::int64_t not_measured = 0;  ///< of the failures: completed flights that do not define the metric
-  std::string verdict;            ///< "pass", "fail", "inconclusive", "not_evidence"; "study" of chosen points
+  std::string verdict;  ///< "pass", "fail", "inconclusive", "not_evidence"; "study" of chosen points
   /// One-sided confidence bounds of the probability of success; none in a design study without replicates.
   std::optional<double> success_lower;
   std::optional<double> success_upper;

@@ -62,8 +62,8 @@ Registered RegisteredIn(const ResultFolder& folder, const Campaign& campaign,
     return std::any_of(campaign.requirements.begin(), campaign.requirements.end(),
                        [&](const Requirement& requirement) { return RequirementLine(requirement) == line; });
   };
-  // Earlier engines required the vehicle's limits by themselves. Where the file requires what it did then, such
-  // a line is the only one that it does not give.
+  // Earlier engines required the vehicle's limits by themselves. Where the file requires what it did then,
+  // such a line is the only one that it does not give.
   if (id == campaign.requirements_id)
     std::erase_if(registered.lines, [&](const auto& one) { return !is_required(one.first); });
   const bool same = registered.lines.size() == campaign.requirements.size() &&
@@ -226,9 +226,8 @@ std::string AttemptsNote(const Standing& standing) {
     const Standing::AttemptLine& one = standing.attempts[i];
     std::string verdict = one.verdict.empty() ? "not ended" : one.verdict;
     std::replace(verdict.begin(), verdict.end(), '_', ' ');
-    list +=
-        fmt::format("{}seed {}, {}: {}{}", list.empty() ? "" : "; ", one.seed, FlightsText(one.cases), verdict,
-                    one.is_evidence ? "" : " (flown by another engine: no evidence)");
+    list += fmt::format("{}seed {}, {}: {}{}", list.empty() ? "" : "; ", one.seed, FlightsText(one.cases),
+                        verdict, one.is_evidence ? "" : " (flown by another engine: no evidence)");
   }
   return fmt::format("Attempt {} at this design. Earlier ones here: {}.", standing.attempts.size(), list);
 }
@@ -275,8 +274,8 @@ Standing StandingOf(const ResultFolder& folder, const Campaign& campaign, const 
   for (auto one = all.begin(); one != own; ++one)
     if (one->design_id == campaign.design_id) earlier.push_back(*one);
   for (const AttemptRecord& one : earlier)
-    standing.attempts.push_back({one.id, one.seed, one.cases, one.verdict, one.begun_utc, one.fresh,
-                                 one.engine == summary.engine});
+    standing.attempts.push_back(
+        {one.id, one.seed, one.cases, one.verdict, one.begun_utc, one.fresh, one.engine == summary.engine});
   const std::vector<AttemptRecord> counted =
       standing.fresh.empty() ? Counted(earlier) : std::vector<AttemptRecord>();
 

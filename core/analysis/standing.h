@@ -57,7 +57,7 @@ struct Standing {
     std::int64_t cases = 0;
     std::string verdict;  ///< StandingVerdictName(); empty: it has not ended
     std::string begun_utc;
-    std::string fresh;  ///< reason of `--fresh`; empty: none
+    std::string fresh;        ///< reason of `--fresh`; empty: none
     bool is_evidence = true;  ///< flown by the engine that flew this campaign
   };
 
@@ -75,7 +75,8 @@ struct Standing {
 /// The standing of a folder with this summary. Reads the folder's own ledger and its record of looks.
 Standing StandingOf(const ResultFolder& folder, const Campaign& campaign, const CampaignSummary& summary);
 
-/// The sentence of a requirement, after the one of what decided in its place: all attempts together, another rule.
+/// The sentence of a requirement, after the one of what decided in its place: all attempts together, another
+/// rule.
 std::string JudgedSentence(const RequirementSummary& requirement, const Standing::Requirement& standing);
 
 /// Sentences about the standing that a reader needs before any number: changes of requirements, and of the

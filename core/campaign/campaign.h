@@ -79,7 +79,7 @@ struct Requirement {
   std::optional<std::array<double, 2>> within = {};  ///< between both, strictly
   std::string own_expression = {};                   ///< of a metric of the campaign's own
   VerdictPlan plan = {};
-  bool every_case = false;  ///< study only, in place of probability and risk: no point may violate it
+  bool every_case = false;     ///< study only, in place of probability and risk: no point may violate it
   std::string id = {};         ///< the project's number of this requirement; these three change no verdict
   std::string rationale = {};  ///< why it is required
   std::string source = {};     ///< the document that requires it

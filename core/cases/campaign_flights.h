@@ -48,8 +48,8 @@ class CampaignFlights {
   FlightsHere here_;
 };
 
-/// The nominal flight of a campaign whose cases were flown by the engine `engine`; none if that is not this one,
-/// or if a plug-in decides it.
+/// The nominal flight of a campaign whose cases were flown by the engine `engine`; none if that is not this
+/// one, or if a plug-in decides it.
 std::optional<CaseResult> NominalOf(const Campaign& campaign, const std::string& engine);
 
 }  // namespace dispersa

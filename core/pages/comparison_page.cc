@@ -169,7 +169,8 @@ std::string Header(const Comparison& c) {
       decided ? FindingBadge(c.finding) : "<span class=\"badge design\">" + c.finding + "</span>",
       HtmlText(c.sentence));
   for (const auto& [letter, lost] : {std::pair{"A", &c.a.nominal_loss}, std::pair{"B", &c.b.nominal_loss}})
-    if (!lost->empty()) html += fmt::format("<ul class=\"warnings\"><li>{}: {}</li></ul>\n", letter, HtmlText(*lost));
+    if (!lost->empty())
+      html += fmt::format("<ul class=\"warnings\"><li>{}: {}</li></ul>\n", letter, HtmlText(*lost));
   html += RequirementsTable(c);
   for (const Comparison::LoadCheck& check : c.load_checks)
     html += fmt::format("<p>{}: a limit of the vehicle. Flights beyond it: {} of A, {} of B.</p>\n",

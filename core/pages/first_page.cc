@@ -220,8 +220,9 @@ std::string FirstPage(const Campaign& campaign, const CampaignSummary& summary) 
   html += List("warnings", Notes(summary));
   html += RequirementsTable(summary);
   for (const LoadCheck& check : summary.load_checks)
-    html += fmt::format("<p class=\"load-check\">{}{}</p>\n", check.failures > 0 ? VerdictBadge("fail") + " " : "",
-                        HtmlText(LoadCheckSentence(check)));
+    html +=
+        fmt::format("<p class=\"load-check\">{}{}</p>\n",
+                    check.failures > 0 ? VerdictBadge("fail") + " " : "", HtmlText(LoadCheckSentence(check)));
   if (const std::string advice = AdviceTogether(summary); !advice.empty())
     html += "<p class=\"advice\">" + HtmlText(advice) + "</p>\n";
   if (!campaign.assumptions.empty())

@@ -213,7 +213,8 @@ std::string Card(const RequirementSummary& requirement) {
                requirement.success_lower
                    ? fmt::format("≥ {}, ≤ {}", ShareText(*requirement.success_lower, Rounding::kDown),
                                  ShareText(*requirement.success_upper, Rounding::kUp))
-                   : requirement.verdict == "study" ? "none: design study" : "none: no evidence");
+               : requirement.verdict == "study" ? "none: design study"
+                                                : "none: no evidence");
   if (!shows_nothing) {
     html += Fact("plan", PlanWords(requirement));
     html += Fact(

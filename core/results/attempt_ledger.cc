@@ -114,8 +114,8 @@ AttemptRecord RecordOf(const Campaign& campaign) {
   record.planned = static_cast<std::int64_t>(campaign.sampling.cases);
   for (const Requirement& requirement : campaign.requirements)
     record.requirements.push_back({LimitText(requirement), RequirementLine(requirement),
-                                   requirement.probability, requirement.consumer_risk, requirement.plan,
-                                   0, ""});
+                                   requirement.probability, requirement.consumer_risk, requirement.plan, 0,
+                                   ""});
   return record;
 }
 

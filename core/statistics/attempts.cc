@@ -88,7 +88,8 @@ AttemptsVerdict JudgeAttempts(double probability, double risk, std::uint64_t res
       if (attempt.is_evidence) pool.Add(attempt);
     } else if (is_begun) {
       if (attempt.is_evidence) pool.Add(attempt);
-      passed = attempt.is_evidence && AnytimePasses(probability, verdict.risk_left, pool.cases(), pool.failures());
+      passed =
+          attempt.is_evidence && AnytimePasses(probability, verdict.risk_left, pool.cases(), pool.failures());
     } else if (!fresh && AnytimePasses(probability, share, std::max(seen.cases(), attempt.planned), 0)) {
       // Nothing is spent yet and no plan can be kept: evidence that holds at any time, from the first case.
       is_begun = true;

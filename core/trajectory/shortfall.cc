@@ -31,7 +31,8 @@ std::string HeldText(const TrajectoryProblem& problem, const FlightProgram& prog
 }
 // Rounded to what is shown, without a negative zero.
 double Shown(double value, int decimals) {
-  const double scale = std::pow(10.0, decimals);
+  double scale = 1.0;
+  for (int i = 0; i < decimals; ++i) scale *= 10.0;
   return std::round(value * scale) / scale + 0.0;
 }
 

@@ -115,8 +115,8 @@ void PrintSummary(const CampaignSummary& summary, const std::filesystem::path& d
     std::replace(verdict.begin(), verdict.end(), '_', ' ');
     const std::string bound = BoundSentence(requirement, DescribeMetric(requirement.metric).unit);
     fmt::print("{}: {}: {}{}{}\n", verdict, RequirementWords(requirement),
-               JudgedSentence(requirement, summary.standing.requirements[i]),
-               bound.empty() ? "" : " ", bound);
+               JudgedSentence(requirement, summary.standing.requirements[i]), bound.empty() ? "" : " ",
+               bound);
   }
   for (const LoadCheck& check : summary.load_checks) fmt::print("{}\n", LoadCheckSentence(check));
   if (const std::string advice = AdviceTogether(summary); !advice.empty()) fmt::print("{}\n", advice);

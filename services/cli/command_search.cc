@@ -74,8 +74,7 @@ Requirement WantedRequirement(const SearchCommand& command, const Campaign& camp
     return requirement;
   }
   for (const Requirement& requirement : campaign.requirements)
-    if (command.metric.empty() || requirement.metric == command.metric)
-      return requirement;
+    if (command.metric.empty() || requirement.metric == command.metric) return requirement;
   throw InputError(command.metric.empty() ? command.campaign + ": states no requirement"
                                           : command.campaign + ": states no requirement of " + command.metric,
                    "--metric with --below or --above");

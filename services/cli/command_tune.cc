@@ -135,7 +135,8 @@ nlohmann::ordered_json ResultJson(const TuneOptions& options, const TuningResult
                                   const std::vector<TuningRecord>& log) {
   if (!result.nominal_loss.empty()) fmt::print(stream, "warning: {}\n", result.nominal_loss);
   if (!result.start_loss.empty())
-    fmt::print(stream, "warning: With the design that the search starts from: {} Margins are computed up to there.\n",
+    fmt::print(stream,
+               "warning: With the design that the search starts from: {} Margins are computed up to there.\n",
                result.start_loss);
   auto stages = nlohmann::ordered_json::array();
   for (std::size_t i = 0; i < result.stages.size(); ++i) {

@@ -76,7 +76,8 @@ FolderComparison CompareFolders(const std::string& name_a, const std::string& na
                                 ChangesOf(a.campaign, b.campaign), practical_share);
   for (const auto& [stored, side] :
        {std::pair{&a, &compared.comparison.a}, std::pair{&b, &compared.comparison.b}})
-    if (const auto nominal = NominalOf(stored->campaign, side->engine)) side->nominal_loss = NominalLoss(*nominal);
+    if (const auto nominal = NominalOf(stored->campaign, side->engine))
+      side->nominal_loss = NominalLoss(*nominal);
   return compared;
 }
 

@@ -88,8 +88,8 @@ nlohmann::ordered_json MarginsJson(const MarginsResult& result) {
       {"model", result.bends ? "bending, no slosh" : "rigid body: no bending, no slosh"},
       {"frequency_band_percent", 100.0 * result.of.frequency_band},
       {"drift", result.of.path == LateralPath::kDrifts},
-      {"nominal_loss", result.nominal_loss.empty() ? nlohmann::ordered_json()
-                                                   : nlohmann::ordered_json(result.nominal_loss)},
+      {"nominal_loss",
+       result.nominal_loss.empty() ? nlohmann::ordered_json() : nlohmann::ordered_json(result.nominal_loss)},
       {"autopilot", result.autopilot},
       {"gates",
        {{"gain_db", kGainMarginGate_db},

@@ -25,8 +25,8 @@ struct MarginsResult {
   std::vector<SkippedInstant> skipped;
   std::vector<MeasuredMargins> measured;
   std::optional<CampaignMargins> dispersed;
-  MarginModel of;       ///< the linearised model
-  bool bends = false;   ///< the vehicle has bending modes
+  MarginModel of;            ///< the linearised model
+  bool bends = false;        ///< the vehicle has bending modes
   std::string nominal_loss;  ///< NominalLoss(); a lost flight meets no gate
   bool passed = false;       ///< every gate is met
 };

@@ -213,7 +213,8 @@ void Service::FinishReports() {
       entry.engine = std::move(reported.engine);
       entry.attempts = reported.attempts;
       entry.requirements = std::move(reported.requirements);
-      End(entry, CampaignState::kDone, CampaignExitCode(reported.verdict, entry.conflicts), reported.nominal_loss);
+      End(entry, CampaignState::kDone, CampaignExitCode(reported.verdict, entry.conflicts),
+          reported.nominal_loss);
     } catch (...) {
       Fail(entry, std::current_exception());
     }

@@ -11,7 +11,9 @@ namespace dispersa {
 Peer ParsePeer(const std::string& text, int domain) {
   const std::size_t colon = text.rfind(':');
   if (text.find(':') != colon)
-    throw NetworkError("peer '" + text + "' is an IPv6 address, allowed: an IPv4 address or a host name, with :PORT if the port is not the usual one");
+    throw NetworkError("peer '" + text +
+                       "' is an IPv6 address, allowed: an IPv4 address or a host name, with :PORT if the "
+                       "port is not the usual one");
   Peer peer{text.substr(0, colon), CoordinatorPort(domain)};
   if (colon != std::string::npos) {
     const char* const end = text.data() + text.size();

@@ -284,8 +284,9 @@ TEST(ParsePeerTest, RefusesWhatIsNoPeer) {
   EXPECT_EQ(message("host:1x"), "peer 'host:1x': not HOST:PORT with a port from 1 to 65535");
   EXPECT_EQ(message(":123"), "peer ':123': the host is missing");
   for (const std::string text : {"::1", "[::1]:7405", "fe80::1"}) {
-    EXPECT_EQ(message(text), "peer '" + text + "' is an IPv6 address, allowed: an IPv4 address or a host name, with "
-                                               ":PORT if the port is not the usual one");
+    EXPECT_EQ(message(text), "peer '" + text +
+                                 "' is an IPv6 address, allowed: an IPv4 address or a host name, with "
+                                 ":PORT if the port is not the usual one");
   }
 }
 

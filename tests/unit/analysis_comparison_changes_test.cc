@@ -52,10 +52,9 @@ TEST(ComparisonSentence, NamesTheLargestChange) {
 
 // The campaigns share cases 2, 3 and 5, which stand in other rows of A than of B.
 TEST(ComparedCases, ShowTheValuesOfTheirOwnRows) {
-  const Comparison comparison =
-      CompareColumns(Columns({0, 2, 3, 5}, {0.1, 0.3, 0.4, 0.6}, {0.01, 0.12, 2.13, 0.15}),
-                     Columns({1, 2, 3, 4, 5}, {0.2, 0.3, 0.4, 0.5, 0.6}, {3.01, 2.22, 0.23, 3.04, 2.25}),
-                     {Below(1.0)});
+  const Comparison comparison = CompareColumns(
+      Columns({0, 2, 3, 5}, {0.1, 0.3, 0.4, 0.6}, {0.01, 0.12, 2.13, 0.15}),
+      Columns({1, 2, 3, 4, 5}, {0.2, 0.3, 0.4, 0.5, 0.6}, {3.01, 2.22, 0.23, 3.04, 2.25}), {Below(1.0)});
   ASSERT_EQ(comparison.harmed.size(), 2u);
   EXPECT_EQ(comparison.harmed[0].case_index, 2u);
   EXPECT_EQ(comparison.harmed[0].reasons[0].a, 0.12);

@@ -289,7 +289,9 @@ TEST(ReportComparison, LimitsOfTheVehicleAreCountedAsInTheSummary) {
   b.outcome[0] = b.outcome[5] = Outcome::kLostControl;
   Campaign campaign = report_test::MakeCampaign(6);
   campaign.vehicle.limits.axial_load_g = 9.0;
-  const auto compare = [&] { return Compare({"A", "engine", campaign, a}, {"B", "engine", campaign, b}, {kLoad}, {}); };
+  const auto compare = [&] {
+    return Compare({"A", "engine", campaign, a}, {"B", "engine", campaign, b}, {kLoad}, {});
+  };
   const Comparison comparison = compare();
   EXPECT_THAT(comparison.requirements, IsEmpty());
   ASSERT_EQ(comparison.load_checks.size(), 1u);

@@ -95,8 +95,12 @@ TEST(Dispersions, ADirectionFromHalfATurnHasItsMoments) {
 
 TEST(Dispersions, AConstantHasNoSpread) {
   Dispersion speed = Normal("wind_max_speed_m_s", 0.0, 0.0);
-  speed.distribution = {
-      .kind = Distribution::kConstant, .nominal = 60.96, .sigma = 0.0, .low = 0.0, .high = 0.0, .values = {60.96}};
+  speed.distribution = {.kind = Distribution::kConstant,
+                        .nominal = 60.96,
+                        .sigma = 0.0,
+                        .low = 0.0,
+                        .high = 0.0,
+                        .values = {60.96}};
   EXPECT_EQ(Summarized(speed, 50, [] { return 60.96; }).consistent, true);
   EXPECT_EQ(Summarized(speed, 50, [] { return 60.0; }).consistent, false);
   EXPECT_EQ(Summarized(speed, 50, [] { return 60.96; }).declared, "constant 60.96 m/s");

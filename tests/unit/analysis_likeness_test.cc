@@ -113,9 +113,10 @@ TEST(WhyNoEvidence, DecidesARequirementThatStatesAProbability) {
   EXPECT_EQ(unread.verdict, CampaignVerdict::kNotEvidence);
   EXPECT_EQ(unread.standing.verdict, StandingVerdict::kNotEvidence);
   EXPECT_EQ(unread.standing.requirements[0].verdict, "not_evidence");
-  EXPECT_EQ(unread.requirements[0].sentence,
-            "0 of 3 flights broke the limit. No part of the flight reads what varies (dispersions.fin_cant: no "
-            "stage that it draws for has fins): 3 flights show no more than one.");
+  EXPECT_EQ(
+      unread.requirements[0].sentence,
+      "0 of 3 flights broke the limit. No part of the flight reads what varies (dispersions.fin_cant: no "
+      "stage that it draws for has fins): 3 flights show no more than one.");
   EXPECT_EQ(unread.requirements[0].success_lower, std::nullopt);
   EXPECT_EQ(flown(kConstant, "below: 1").standing.verdict, StandingVerdict::kNotEvidence);
   EXPECT_EQ(flown(kUnread, "below: 0.05").standing.verdict, StandingVerdict::kFail) << "a failure is one";

@@ -34,7 +34,8 @@ CampaignSummary Flown(Campaign campaign, std::uint64_t beyond, std::uint64_t unm
   std::vector<CaseResult> results;
   for (std::uint64_t k = 0; k < campaign.sampling.cases; ++k) {
     results.push_back(MakeCase(k));
-    results.back().metrics[MetricColumn(kPeak)] = k < unmeasured ? std::numeric_limits<double>::quiet_NaN() : 0.1;
+    results.back().metrics[MetricColumn(kPeak)] =
+        k < unmeasured ? std::numeric_limits<double>::quiet_NaN() : 0.1;
     results.back().metrics[MetricColumn("q_max_pa")] = k < beyond ? 120.0 : 80.0;
     results.back().metrics[MetricColumn("structural_limit_exceeded")] = k < beyond ? 1.0 : 0.0;
   }
@@ -68,21 +69,22 @@ TEST_P(LoadChecks, StandApartFromTheRequirementsAndFailByAnyFlight) {
   EXPECT_EQ(summary.requirements.size(), campaign.requirements.size());
   EXPECT_STREQ(StandingVerdictName(summary.standing.verdict), StandingVerdictName(GetParam().standing));
   const auto json = nlohmann::json::parse(SummaryJson(summary));
-  EXPECT_EQ(json["load_checks"], nlohmann::json::array({{{"metric", "structural_limit_exceeded"},
-                                                         {"n", 40},
-                                                         {"failures", GetParam().beyond}}}));
+  EXPECT_EQ(json["load_checks"],
+            nlohmann::json::array(
+                {{{"metric", "structural_limit_exceeded"}, {"n", 40}, {"failures", GetParam().beyond}}}));
   const std::string junit = JUnitXml(summary);
   EXPECT_THAT(junit, HasSubstr(GetParam().beyond > 0 ? "failures=\"1\"" : "failures=\"0\""));
   EXPECT_THAT(junit, HasSubstr(std::to_string(GetParam().beyond) + " of 40 flights went beyond a limit"));
 }
 
-INSTANTIATE_TEST_SUITE_P(All, LoadChecks,
-                         testing::Values(Checked{"None", 0, true, StandingVerdict::kPass},
-                                         Checked{"One", 1, true, StandingVerdict::kFail},
-                                         Checked{"Three", 3, true, StandingVerdict::kFail},
-                                         Checked{"NothingRequired", 0, false, StandingVerdict::kNothingJudged},
-                                         Checked{"OneWhereNothingIsRequired", 1, false, StandingVerdict::kFail}),
-                         [](const auto& row) { return row.param.name; });
+INSTANTIATE_TEST_SUITE_P(
+    All, LoadChecks,
+    testing::Values(Checked{"None", 0, true, StandingVerdict::kPass},
+                    Checked{"One", 1, true, StandingVerdict::kFail},
+                    Checked{"Three", 3, true, StandingVerdict::kFail},
+                    Checked{"NothingRequired", 0, false, StandingVerdict::kNothingJudged},
+                    Checked{"OneWhereNothingIsRequired", 1, false, StandingVerdict::kFail}),
+    [](const auto& row) { return row.param.name; });
 
 TEST(UndefinedMetric, OfACompletedFlightIsAFailure) {
   const CampaignSummary three = Flown(WithLimit(), 0, 3);

@@ -40,8 +40,8 @@ struct Earlier {
   double limit = 0.5, probability = 0.9, risk = 0.1;
 };
 
-/// The campaign: 40 flights with seed 7, of which `failures` break "below 0.5 for 90 % at 10 % risk". One look
-/// at 40 cases passes with at most one failure.
+/// The campaign: 40 flights with seed 7, of which `failures` break "below 0.5 for 90 % at 10 % risk". One
+/// look at 40 cases passes with at most one failure.
 struct Row {
   std::string name;
   std::vector<Earlier> earlier;
@@ -126,18 +126,17 @@ INSTANTIATE_TEST_SUITE_P(
 // another seed.
 INSTANTIATE_TEST_SUITE_P(
     Binding, StandingOfAttempts,
-    testing::Values(
-        Row{"NoCases", {{kSeed, 60, 0, 0, "", 0.05}}, 0, {}, kPass, 40, 0},
-        Row{"OneCase", {{kSeed, 60, 1, 1, "fail", 0.05}}, 0, {}, kNotEvidence, 40, 0, true},
-        Row{"OtherSeed", {{8, 60, 60, 60, "fail", 0.05}}, 0, {}, kPass, 40, 0},
-        // The first with cases binds, not the first of all.
-        Row{"NoCasesThenTheSame",
-            {{kSeed, 60, 0, 0, "", 0.05}, {kSeed, 50, 5, 0, "inconclusive"}},
-            0,
-            {},
-            kPass,  // by the any-time rule
-            40,
-            0}),
+    testing::Values(Row{"NoCases", {{kSeed, 60, 0, 0, "", 0.05}}, 0, {}, kPass, 40, 0},
+                    Row{"OneCase", {{kSeed, 60, 1, 1, "fail", 0.05}}, 0, {}, kNotEvidence, 40, 0, true},
+                    Row{"OtherSeed", {{8, 60, 60, 60, "fail", 0.05}}, 0, {}, kPass, 40, 0},
+                    // The first with cases binds, not the first of all.
+                    Row{"NoCasesThenTheSame",
+                        {{kSeed, 60, 0, 0, "", 0.05}, {kSeed, 50, 5, 0, "inconclusive"}},
+                        0,
+                        {},
+                        kPass,  // by the any-time rule
+                        40,
+                        0}),
     [](const auto& row) { return row.param.name; });
 
 // Flying the same cases again adds none and takes no failure back.

@@ -283,10 +283,9 @@ TEST_F(FiveCases, StatisticsAreThoseWorkedOutByHand) {
   EXPECT_NEAR(peak.std, std::sqrt(5.0 / 3.0), 1e-15);
   EXPECT_EQ(peak.p50, 2.5);
   EXPECT_EQ(peak.max, 4.0);
-  EXPECT_THAT(
-      Warnings(summary),
-      ElementsAre("1 of 5 flights were lost: statistics and percentiles cover the 4 "
-                  "that were completed, and every lost flight fails every requirement."));
+  EXPECT_THAT(Warnings(summary),
+              ElementsAre("1 of 5 flights were lost: statistics and percentiles cover the 4 "
+                          "that were completed, and every lost flight fails every requirement."));
 }
 
 TEST_F(FiveCases, WorstCasesBeginWithALostOne) {
@@ -478,9 +477,10 @@ TEST_F(Misuse, ExtendingUntilItPassesDoesNotPassAndShows) {
   EXPECT_EQ(summary_.standing.requirements[0].verdict, "not_evidence");
   EXPECT_EQ(StandingBadge(summary_.standing), "not evidence");
   EXPECT_THAT(StandingNotes(summary_.standing, summary_), testing::IsEmpty());
-  EXPECT_THAT(JudgedSentence(summary_.requirements[0], summary_.standing.requirements[0]),
-              testing::StartsWith("Earlier campaigns of this design have used up the risk of 10 %. All 129 flights "
-                                  "together show 1 failure; under the any-time rule "));
+  EXPECT_THAT(
+      JudgedSentence(summary_.requirements[0], summary_.standing.requirements[0]),
+      testing::StartsWith("Earlier campaigns of this design have used up the risk of 10 %. All 129 flights "
+                          "together show 1 failure; under the any-time rule "));
   // Reading it again is no further look.
   const std::string before = SummaryJson(summary_);
   Fly(129, 1);
@@ -837,9 +837,10 @@ TEST(StructuralLimits, AreNotKeptByLoadsThatWereNotMeasured) {
   const CampaignSummary summary = open.Summary();
   EXPECT_EQ(summary.load_checks[0].failures, 2);
   EXPECT_EQ(summary.load_checks[0].not_measured, 1);
-  EXPECT_EQ(LoadCheckSentence(summary.load_checks[0]),
-            "Load check: 1 of 20 flights went beyond a limit of the vehicle, and in 1 completed its load is not "
-            "measured. No flight may.");
+  EXPECT_EQ(
+      LoadCheckSentence(summary.load_checks[0]),
+      "Load check: 1 of 20 flights went beyond a limit of the vehicle, and in 1 completed its load is not "
+      "measured. No flight may.");
 }
 
 TEST(StructuralLimits, DoNotKeepACampaignFromStopping) {

@@ -136,9 +136,11 @@ TEST_P(WeatherEdges, AreWhereTheChecksSay) {
 }
 
 constexpr const char* kFast =
-    "dispersions.wind_profile has a wind of 150.1 m/s | up to 150 m/s (the strongest jet streams have 100 to 120 m/s)";
+    "dispersions.wind_profile has a wind of 150.1 m/s | up to 150 m/s (the strongest jet streams have 100 to "
+    "120 m/s)";
 constexpr const char* kLow =
-    "dispersions.wind_profile ends at 4999 m, above which the wind fades within 10000 m | 5000 m or more (altitudes may "
+    "dispersions.wind_profile ends at 4999 m, above which the wind fades within 10000 m | 5000 m or more "
+    "(altitudes may "
     "be in kilometres)";
 
 // 3, 4, 5: across and along the meridian together.
@@ -190,16 +192,20 @@ INSTANTIATE_TEST_SUITE_P(
         WeatherEdge{"EastOfALevel", SetEastLevel, 149.9, 150.1, kFast},
         WeatherEdge{"TopLevel", SetTopLevel, 5000.0, 4999.0, kLow},
         WeatherEdge{"GreaterPressure", SetPressure, 1.019, 1.021,
-                    "dispersions.wind_profile has at 10000 m a pressure 1.02 times that of its density and temperature | "
+                    "dispersions.wind_profile has at 10000 m a pressure 1.02 times that of its density and "
+                    "temperature | "
                     "within 2 % (the gas law of dry air; vapour makes up to 1.5 %)"},
         WeatherEdge{"LesserPressure", SetPressure, 0.981, 0.979,
-                    "dispersions.wind_profile has at 10000 m a pressure 0.979 times that of its density and temperature "
+                    "dispersions.wind_profile has at 10000 m a pressure 0.979 times that of its density and "
+                    "temperature "
                     "| within 2 % (the gas law of dry air; vapour makes up to 1.5 %)"},
         WeatherEdge{"DenserAir", SetDensity, 1.41, 1.43,
-                    "dispersions.wind_profile has at 10000 m a density of 0.5913 kg/m3 | within a factor of 1.4 of the "
+                    "dispersions.wind_profile has at 10000 m a density of 0.5913 kg/m3 | within a factor of "
+                    "1.4 of the "
                     "standard's, 0.4135 kg/m3 (to 60 km seasons and latitudes change it by up to 40 %)"},
         WeatherEdge{"ThinnerAir", SetDensity, 0.71, 0.70,
-                    "dispersions.wind_profile has at 10000 m a density of 0.2895 kg/m3 | within a factor of 1.4 of the "
+                    "dispersions.wind_profile has at 10000 m a density of 0.2895 kg/m3 | within a factor of "
+                    "1.4 of the "
                     "standard's, 0.4135 kg/m3 (to 60 km seasons and latitudes change it by up to 40 %)"}),
     [](const auto& edge) { return std::string(edge.param.name); });
 

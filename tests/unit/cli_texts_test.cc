@@ -296,22 +296,25 @@ TEST(FitColumns, CutsWhatWouldWrap) {
     const char* text;
     std::size_t columns;
     const char* fitted;
-  } kCases[] = {{"", 3, ""},       {"abc", 4, "abc"},   {"abc", 3, "abc"},   {"abcd", 3, "ab…"}, {"0.5 °", 5, "0.5 °"},
-                {"°°°°", 3, "°°…"}, {"abcd", 1, "…"},    {"abcd", 0, ""}};
-  for (const auto& [text, columns, fitted] : kCases) EXPECT_EQ(FitColumns(text, columns), fitted) << text << columns;
+  } kCases[] = {{"", 3, ""},           {"abc", 4, "abc"},  {"abc", 3, "abc"}, {"abcd", 3, "ab…"},
+                {"0.5 °", 5, "0.5 °"}, {"°°°°", 3, "°°…"}, {"abcd", 1, "…"},  {"abcd", 0, ""}};
+  for (const auto& [text, columns, fitted] : kCases)
+    EXPECT_EQ(FitColumns(text, columns), fitted) << text << columns;
 }
 
 TEST(FailureOf, SaysWhatTheSystemRefuses) {
   const Failure memory = FailureOf(std::bad_alloc());
   EXPECT_EQ(memory.code, kExitIncomplete);
-  EXPECT_EQ(memory.message,
-            "the memory is used up; raise its limit (`ulimit -v`, a container's limit) or take fewer --threads or "
-            "--workers");
+  EXPECT_EQ(
+      memory.message,
+      "the memory is used up; raise its limit (`ulimit -v`, a container's limit) or take fewer --threads or "
+      "--workers");
   const Failure thread = FailureOf(std::system_error(EAGAIN, std::generic_category()));
   EXPECT_EQ(thread.code, kExitIncomplete);
-  EXPECT_EQ(thread.message,
-            "the system refuses another thread; raise the limit of memory or threads (`ulimit -v`, `ulimit -u`) or "
-            "take fewer --threads or --workers");
+  EXPECT_EQ(
+      thread.message,
+      "the system refuses another thread; raise the limit of memory or threads (`ulimit -v`, `ulimit -u`) or "
+      "take fewer --threads or --workers");
   const Failure other = FailureOf(std::system_error(EIO, std::generic_category()));
   EXPECT_EQ(other.code, kExitInternalError);
   EXPECT_EQ(other.message, "internal error: Input/output error");

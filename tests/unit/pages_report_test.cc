@@ -285,7 +285,8 @@ TEST_F(ReportPageTest, AFlightBeyondALimitIsInTheHeadAndAmongTheOutcomes) {
           "class=\"n\">17</td><td class=\"n\"><span class=\"badge fail\">3</span></td>"));
   EXPECT_THAT(page, HasSubstr("<th scope=\"row\">Dynamic pressure, maximum</th><td class=\"n\">100000 "
                               "Pa</td><td class=\"n\">97000 Pa"));
-  EXPECT_THAT(page, HasSubstr("Load check: 3 of 40 flights went beyond a limit of the vehicle. No flight may."));
+  EXPECT_THAT(page,
+              HasSubstr("Load check: 3 of 40 flights went beyond a limit of the vehicle. No flight may."));
   // Beside "structural limit 0": what did not end the flights.
   EXPECT_THAT(
       page,

@@ -14,8 +14,8 @@ namespace dispersa::results_cases_csv_test {
 namespace {
 
 using report_test::kNaN;
-using report_test::MakeLimitedCampaign;
 using report_test::MakeCase;
+using report_test::MakeLimitedCampaign;
 using report_test::ReadText;
 using report_test::TemporaryFolder;
 using testing::EndsWith;

@@ -24,8 +24,8 @@ namespace dispersa::results_result_folder_test {
 namespace {
 
 using report_test::kNaN;
-using report_test::MakeLimitedCampaign;
 using report_test::MakeCase;
+using report_test::MakeLimitedCampaign;
 using report_test::ReadText;
 using report_test::TemporaryFolder;
 using testing::ElementsAre;
@@ -272,7 +272,8 @@ TEST(ResultFolder, RefusesAFolderThatIsNotEmpty) {
 TEST(ResultFolder, RefusesAFolderThatCannotBeMade) {
   TemporaryFolder temporary;
   std::ofstream(temporary / "file") << "not a folder";
-  EXPECT_EQ(MessageOf<InputError>([&] { ResultFolder::Create(temporary / "file" / "out", MakeLimitedCampaign(1)); }),
+  EXPECT_EQ(MessageOf<InputError>(
+                [&] { ResultFolder::Create(temporary / "file" / "out", MakeLimitedCampaign(1)); }),
             (temporary / "file" / "out").string() +
                 ": cannot be made: Not a directory, allowed: a folder that can be written");
 }
@@ -343,7 +344,8 @@ TEST(ResultFolder, IsWrittenByOneProcessAtATime) {
       "wait for that process to end";
   {
     const ResultFolder folder = ResultFolder::Create(temporary / "out", MakeLimitedCampaign(2));
-    EXPECT_EQ(MessageOf<InputError>([&] { ResultFolder::Resume(temporary / "out", MakeLimitedCampaign(2)); }), busy);
+    EXPECT_EQ(MessageOf<InputError>([&] { ResultFolder::Resume(temporary / "out", MakeLimitedCampaign(2)); }),
+              busy);
     ResultFolder reader = ResultFolder::Open(temporary / "out");
     EXPECT_EQ(MessageOf<InputError>([&] { reader.Lock(); }), busy);
   }
@@ -370,7 +372,8 @@ TEST(ResultFolder, AFolderOfTheFirstVersionIsReadAndBecomesOneOfTodayWhenItGoesO
   Statement version(today, "PRAGMA user_version");
   ASSERT_TRUE(version.Step());
   EXPECT_EQ(version.Integer(0), 2);
-  EXPECT_THAT(ResultFolder::Resume(temporary / "out", MakeLimitedCampaign(3)).PresentCases(), ElementsAre(0, 2));
+  EXPECT_THAT(ResultFolder::Resume(temporary / "out", MakeLimitedCampaign(3)).PresentCases(),
+              ElementsAre(0, 2));
 }
 
 TEST(ResultFolder, AFolderOfALaterVersionIsLeftAlone) {
@@ -382,7 +385,8 @@ TEST(ResultFolder, AFolderOfALaterVersionIsLeftAlone) {
       (temporary / "out").string() +
       ": written by a newer dispersa: its results.sqlite has version 3, this one reads 2";
   EXPECT_EQ(MessageOf<InputError>([&] { ResultFolder::Open(temporary / "out"); }), error);
-  EXPECT_EQ(MessageOf<InputError>([&] { ResultFolder::Resume(temporary / "out", MakeLimitedCampaign(3)); }), error);
+  EXPECT_EQ(MessageOf<InputError>([&] { ResultFolder::Resume(temporary / "out", MakeLimitedCampaign(3)); }),
+            error);
 }
 
 TEST(ResultFolder, TellsADamagedRowAndRemovesItToBeFlownAgain) {

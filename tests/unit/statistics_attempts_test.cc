@@ -79,7 +79,8 @@ TEST(Attempts, OfAnotherEngineSpendRiskAndShowNothing) {
   EXPECT_TRUE(after.is_spent);
   EXPECT_EQ(after.pool_cases, 2);
   EXPECT_NEAR(after.risk_left, kRisk - PassRiskOf(100), 1e-12);
-  // The same cases flown again by this engine, beside another seed of the other one: these alone are the pool.
+  // The same cases flown again by this engine, beside another seed of the other one: these alone are the
+  // pool.
   const AttemptsVerdict again =
       Judged({OfAnotherEngine(Ended(8, 5, 0)), OfAnotherEngine(Ended(7, 5, 1)), Ended(7, 200, 0)});
   EXPECT_EQ(again.pool_cases, 200);

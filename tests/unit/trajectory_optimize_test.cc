@@ -91,7 +91,9 @@ TEST(OptimizeTrajectory, SaysHowFarItGotAndWhatItTried) {
   const OptimizationResult result = OptimizeTrajectory(input.vehicle, input.problem, OptionsFor(input, 2));
   EXPECT_FALSE(result.reached);
   EXPECT_THAT(result.statement, HasSubstr(" Speed: carried to the target's altitude the faster end"));
-  EXPECT_THAT(result.statement, HasSubstr(" m/s less than the target asks. Other bounds, populations and seeds were not tried."));
+  EXPECT_THAT(
+      result.statement,
+      HasSubstr(" m/s less than the target asks. Other bounds, populations and seeds were not tried."));
 }
 
 TEST(OptimizeTrajectory, SaysWhichConstraintStoppedIt) {
