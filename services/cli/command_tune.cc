@@ -133,11 +133,6 @@ nlohmann::ordered_json MissedJson(const std::string& missed) {
 
 nlohmann::ordered_json ResultJson(const TuneOptions& options, const TuningResult& result,
                                   const std::vector<TuningRecord>& log) {
-  if (!result.nominal_loss.empty()) fmt::print(stream, "warning: {}\n", result.nominal_loss);
-  if (!result.start_loss.empty())
-    fmt::print(stream,
-               "warning: With the design that the search starts from: {} Margins are computed up to there.\n",
-               result.start_loss);
   auto stages = nlohmann::ordered_json::array();
   for (std::size_t i = 0; i < result.stages.size(); ++i) {
     const StageTuning& stage = result.stages[i];
@@ -202,6 +197,11 @@ nlohmann::ordered_json ResultJson(const TuneOptions& options, const TuningResult
 
 void PrintText(std::FILE* stream, const TuneOptions& options, const TuningResult& result,
                const std::vector<TuningRecord>& log) {
+  if (!result.nominal_loss.empty()) fmt::print(stream, "warning: {}\n", result.nominal_loss);
+  if (!result.start_loss.empty())
+    fmt::print(stream,
+               "warning: With the design that the search starts from: {} Margins are computed up to there.\n",
+               result.start_loss);
   fmt::print(stream, "{:<6}{:>11}{:>10}{:>14}{:>14}\n", "stage", "generation", "feasible", "best rms deg",
              "mean rms deg");
   const auto number = [](const std::optional<double>& value) {
