@@ -179,7 +179,7 @@ class Network(unittest.TestCase):
         with tempfile.TemporaryDirectory() as folder:
             done = subprocess.run(["unshare", "-r", "-n", BINARIES / "dispersa", "run", SMOKE, "--workers", "1", "--out",
                                    folder + "/out"], capture_output=True, text=True, timeout=TIMEOUT_S)
-        self.assertEqual(done.returncode, 2, done.stderr)
+        self.assertEqual(done.returncode, 5, done.stderr)
         self.assertIn("the network interface lo of 127.0.0.1 is down: `ip link set lo up` brings it up\n", done.stderr)
 
 
