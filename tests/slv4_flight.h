@@ -35,7 +35,7 @@ inline FlightInputs Table3Inputs() {
   inputs.wind_max_speed_m_s = 60.96;
   inputs.wind_azimuth_rad = 280.0 * kRadPerDeg;
   inputs.drag_factor = 1.067;
-  inputs.thrust_factor = {1.02, 0.98, 1.02, 0.98};
+  for (std::size_t stage = 0; stage < 4; ++stage) inputs.thrust_factor[stage] = stage % 2 == 0 ? 1.02 : 0.98;
   return inputs;
 }
 
