@@ -168,6 +168,11 @@ std::string Header(const Comparison& c) {
           : "unpaired",
       decided ? FindingBadge(c.finding) : "<span class=\"badge design\">" + c.finding + "</span>",
       HtmlText(c.sentence));
+  if (const std::vector<std::string> incomplete = IncompleteSides(c); !incomplete.empty()) {
+    html += "<ul class=\"warnings\">\n";
+    for (const std::string& sentence : incomplete) html += "<li>" + HtmlText(sentence) + ".</li>\n";
+    html += "</ul>\n";
+  }
   html += RequirementsTable(c);
   for (const Comparison::LoadCheck& check : c.load_checks)
     html += fmt::format("<p>{}: a limit of the vehicle. Flights beyond it: {} of A, {} of B.</p>\n",

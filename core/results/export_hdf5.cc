@@ -119,7 +119,8 @@ class Hdf5File {
 
 }  // namespace
 
-void ExportHdf5(const ResultFolder& folder, const std::filesystem::path& file) {
+void ExportHdf5(const ResultFolder& folder, const std::filesystem::path& file,
+                const std::string& incomplete) {
   H5dont_atexit();  // after a full disk the library's last rites end the process with SIGSEGV
   H5Eset_auto2(H5E_DEFAULT, nullptr, nullptr);  // what goes wrong is thrown, not printed
   std::vector<int> inputs;
@@ -144,6 +145,7 @@ void ExportHdf5(const ResultFolder& folder, const std::filesystem::path& file) {
       output.Attribute("/", "schema", "dispersa/hdf5/1");
       for (const char* key : {"name", "campaign_id", "flight_id", "engine", "seed", "cases", "sampling"})
         output.Attribute("/", key, folder.Provenance(key));
+      if (!incomplete.empty()) output.Attribute("/", "incomplete", incomplete);
       output.Group("/cases");
       output.Integers("/cases/case_index", cases.index);
       output.Texts("/cases/outcome", outcome);
