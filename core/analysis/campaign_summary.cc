@@ -121,18 +121,6 @@ std::uint64_t NearStepLimit(const CaseColumns& cases) {
                                                   [](double fraction) { return fraction > kNearStepLimit; }));
 }
 
-/// Cases that the campaign flies: where it stops, if it stops by itself.
-std::uint64_t CasesToFly(const Campaign& campaign, const JudgingContext& context,
-                         const std::vector<QuarantinedCase>& quarantined, const CaseColumns& cases) {
-  StoppingRule rule(campaign, context.planned, context.past_looks);
-  rule.Add(cases);
-  std::vector<std::uint64_t> quarantined_indices;
-  for (const QuarantinedCase& one : quarantined) quarantined_indices.push_back(one.case_index);
-  while (rule.Advance(quarantined_indices)) {
-  }
-  return rule.target();
-}
-
 std::vector<std::string> Lines(const std::string& text) {
   std::vector<std::string> lines;
   std::istringstream stream(text);
@@ -163,6 +151,20 @@ const char* CampaignVerdictName(CampaignVerdict verdict) {
   return "";
 }
 
+std::uint64_t CasesToFly(const ResultFolder& folder, const Campaign& campaign, const CaseColumns& cases) {
+  StoppingRule rule(campaign, folder.PlannedCases(), folder.PastLooks());
+  rule.Add(cases);
+  std::vector<std::uint64_t> quarantined;
+  for (const QuarantinedCase& one : folder.QuarantinedCases()) quarantined.push_back(one.case_index);
+  while (rule.Advance(quarantined)) {
+  }
+  return rule.target();
+}
+
+std::string MissingWords(std::uint64_t flown, std::uint64_t cases) {
+  return fmt::format("{} of {} cases have a result", flown, cases);
+}
+
 std::vector<std::string> Warnings(const CampaignSummary& summary) {
   std::vector<std::string> warnings;
   if (summary.nominal && summary.nominal->outcome != Outcome::kCompleted)
@@ -173,8 +175,7 @@ std::vector<std::string> Warnings(const CampaignSummary& summary) {
                     summary.python_law->name));
   const bool independent = IsIndependent(summary.sampling);
   if (summary.flown < summary.cases) {
-    warnings.push_back(
-        fmt::format("Incomplete: {} of {} cases have a result.", summary.flown, summary.cases));
+    warnings.push_back("Incomplete: " + MissingWords(summary.flown, summary.cases) + ".");
     for (const RequirementSummary& requirement : summary.requirements) {
       if (requirement.verdict != "fail") continue;
       warnings.push_back(
@@ -306,15 +307,12 @@ CampaignSummary BuildSummary(const ResultFolder& folder, const Campaign& campaig
   context.method = campaign.sampling.method;
   context.replicates = campaign.sampling.replicates;
   context.design_points = DesignSize(campaign);
-  context.planned = folder.PlannedCases();
-  context.past_looks = folder.PastLooks();
   context.registered = Lines(folder.Provenance("requirements"));
   if (context.registered.empty()) context.registered = {"no requirement"};
   context.holm = campaign.verdicts.holm;
-  context.cases = CasesToFly(campaign, context, summary.quarantined, cases);
+  context.cases = CasesToFly(folder, campaign, cases);
   // The campaign by itself, as if it were the first: what was planned or read before is judged by StandingOf.
   context.planned = static_cast<std::int64_t>(campaign.sampling.cases);
-  context.past_looks.clear();
   summary.cases = context.cases;
   summary.replicates = context.replicates;
   summary.design_points = context.design_points;

@@ -124,6 +124,12 @@ struct CampaignSummary {
   Standing standing;
 };
 
+/// Cases that the campaign flies: where it stops, if it stops by itself. `cases` are its results.
+std::uint64_t CasesToFly(const ResultFolder& folder, const Campaign& campaign, const CaseColumns& cases);
+
+/// "160 of 3000 cases have a result".
+std::string MissingWords(std::uint64_t flown, std::uint64_t cases);
+
 /// Sentences that the first screen shows before any number, after those of StandingNotes(): missing cases,
 /// studies, lost flights.
 std::vector<std::string> Warnings(const CampaignSummary& summary);

@@ -7,6 +7,7 @@
 #include <limits>
 #include <map>
 
+#include "core/analysis/campaign_summary.h"
 #include "core/analysis/load_check.h"
 #include "core/analysis/requirement_summary.h"
 #include "core/campaign/case_result.h"
@@ -471,7 +472,7 @@ Comparison::Side SideOf(const ComparedCampaign& compared) {
           campaign.autopilot.name,
           SamplingMethodName(campaign.sampling.method),
           campaign.sampling.seed,
-          campaign.sampling.cases,
+          compared.to_fly.value_or(campaign.sampling.cases),
           compared.cases.rows(),
           compared.cases.rows() - LostCount(compared.cases),
           !(campaign.autopilot.plugin && campaign.autopilot.plugin->in_python)};
@@ -598,6 +599,15 @@ ComparedValues ValuesToCompare(const CaseColumns& a, const CaseColumns& b, const
   if (of_a && of_b)
     for (double& value : values.b) value += NearTo(*of_a, *of_b, info.circle) - *of_b;
   return values;
+}
+
+std::vector<std::string> IncompleteSides(const Comparison& comparison) {
+  std::vector<std::string> sides;
+  for (const auto& [letter, side] : {std::pair{"A", &comparison.a}, std::pair{"B", &comparison.b}})
+    if (side->flown < side->cases)
+      sides.push_back(fmt::format("{} ({}) is incomplete: {}", letter, SideTitle(comparison, *side),
+                                  MissingWords(side->flown, side->cases)));
+  return sides;
 }
 
 std::string SideTitle(const Comparison& comparison, const Comparison::Side& side) {

@@ -24,6 +24,7 @@ struct ComparedCampaign {
   std::string engine;
   const Campaign& campaign;
   const CaseColumns& cases;  ///< with all inputs
+  std::optional<std::uint64_t> to_fly = {};  ///< CasesToFly(); none: all of the campaign's cases
 };
 
 /// A value of campaign.yaml that differs between the two.
@@ -144,7 +145,8 @@ struct ChangedCase {
 struct Comparison {
   struct Side {
     std::string folder, name, id, flight_id, engine, vehicle, reference, autopilot, sampling;
-    std::uint64_t seed = 0, cases = 0;
+    std::uint64_t seed = 0;
+    std::uint64_t cases = 0;  ///< CasesToFly()
     std::size_t flown = 0, completed = 0;
     bool has_its_law = true;  ///< false: flown with a control law in Python, which the folder does not hold
     std::string nominal_loss = {};  ///< NominalLoss(); empty: it was completed, or is not known
@@ -179,6 +181,9 @@ inline constexpr double kComparisonConfidence = 0.95;
 Comparison Compare(const ComparedCampaign& a, const ComparedCampaign& b,
                    const std::vector<std::string>& metrics, std::vector<CampaignChange> changes,
                    double practical_share = kPracticalShare);
+
+/// "A (smoke) is incomplete: 160 of 3000 cases have a result", for each side that lacks cases.
+std::vector<std::string> IncompleteSides(const Comparison& comparison);
 
 /// The campaign's name, with the folder where both have the same name.
 std::string SideTitle(const Comparison& comparison, const Comparison::Side& side);

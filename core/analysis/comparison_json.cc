@@ -150,6 +150,7 @@ std::string ComparisonJson(const Comparison& comparison) {
   json["schema"] = "dispersa/compare/1";
   json["a"] = SideJson(comparison.a);
   json["b"] = SideJson(comparison.b);
+  json["incomplete"] = IncompleteSides(comparison);
   json["finding"] = comparison.finding;
   json["sentence"] = comparison.sentence;
   json["confidence"] = kComparisonConfidence;

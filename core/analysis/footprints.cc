@@ -184,7 +184,8 @@ std::string FootprintTitle(const Footprint& footprint) {
                                 : fmt::format("stage {}, spent", footprint.stage);
 }
 
-std::string GeoJson(const Campaign& campaign, const std::vector<Footprint>& footprints) {
+std::string GeoJson(const Campaign& campaign, const std::vector<Footprint>& footprints,
+                    const std::string& incomplete) {
   Json features = Json::array();
   for (const Footprint& footprint : footprints) {
     const char* body = footprint.lost         ? "lost_flight"
@@ -230,25 +231,27 @@ std::string GeoJson(const Campaign& campaign, const std::vector<Footprint>& foot
              {"coordinates", {LongitudeDeg(point.impact->place), LatitudeDeg(point.impact->place)}}}}});
     }
   }
-  const Json json = {{"type", "FeatureCollection"},
-                     {"name", campaign.name},
-                     {"campaign_id", campaign.id},
-                     {"flight_id", campaign.flight_id},
-                     {"features", std::move(features)}};
+  Json json = {{"type", "FeatureCollection"},
+               {"name", campaign.name},
+               {"campaign_id", campaign.id},
+               {"flight_id", campaign.flight_id}};
+  if (!incomplete.empty()) json["incomplete"] = incomplete;
+  json["features"] = std::move(features);
   return json.dump(1) + "\n";
 }
 
-std::string Kml(const Campaign& campaign, const std::vector<Footprint>& footprints) {
+std::string Kml(const Campaign& campaign, const std::vector<Footprint>& footprints,
+                const std::string& incomplete) {
   std::string kml = fmt::format(
       "<?xml version=\"1.0\" encoding=\"UTF-8\"?>\n<kml "
       "xmlns=\"http://www.opengis.net/kml/2.2\">\n<Document>\n"
-      "<name>{}: impact points</name>\n<description>campaign {}</description>\n"
+      "<name>{}: impact points</name>\n<description>campaign {}{}</description>\n"
       "<Style id=\"spent\"><IconStyle><color>ffa85f1f</color><scale>0.4</scale></IconStyle></Style>\n"
       "<Style id=\"lost\"><IconStyle><color>ff2d27c0</color><scale>0.6</scale></IconStyle></Style>\n"
       "<Style "
       "id=\"ellipse\"><LineStyle><color>ff1b62c8</color><width>2</width></LineStyle><PolyStyle><fill>0</fill>"
       "</PolyStyle></Style>\n",
-      HtmlText(campaign.name), campaign.id);
+      HtmlText(campaign.name), campaign.id, incomplete.empty() ? "" : "; " + HtmlText(incomplete));
   for (const Footprint& footprint : footprints) {
     kml += fmt::format("<Folder><name>{}</name>\n", FootprintTitle(footprint));
     for (std::size_t i = 0; i < footprint.containment.size(); ++i) {

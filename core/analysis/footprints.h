@@ -41,9 +41,11 @@ std::vector<Footprint> GatherFootprints(const std::vector<ImpactPoint>& points);
 std::string FootprintTitle(const Footprint& footprint);
 
 /// GeoJSON (RFC 7946): a point for each impact, a polygon for each ellipse; several if it crosses the
-/// antimeridian.
-std::string GeoJson(const Campaign& campaign, const std::vector<Footprint>& footprints);
-/// OGC KML 2.2: a folder for each footprint.
-std::string Kml(const Campaign& campaign, const std::vector<Footprint>& footprints);
+/// antimeridian. `incomplete` is a member of the collection, if it is not empty.
+std::string GeoJson(const Campaign& campaign, const std::vector<Footprint>& footprints,
+                    const std::string& incomplete = "");
+/// OGC KML 2.2: a folder for each footprint. `incomplete` is part of the description.
+std::string Kml(const Campaign& campaign, const std::vector<Footprint>& footprints,
+                const std::string& incomplete = "");
 
 }  // namespace dispersa

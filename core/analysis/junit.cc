@@ -57,8 +57,7 @@ std::string JUnitXml(const CampaignSummary& summary) {
   for (const LoadCheck& check : summary.load_checks)
     if (check.failures > 0) add("load check: " + check.metric, {"failure", LoadCheckSentence(check)});
   if (summary.verdict == CampaignVerdict::kIncomplete)
-    add("every case flown",
-        {"error", fmt::format("{} of {} cases have a result", summary.flown, summary.cases)});
+    add("every case flown", {"error", MissingWords(summary.flown, summary.cases)});
   else if (standing.verdict == StandingVerdict::kNothingJudged && summary.requirements.empty())
     add("requirements", {"skipped", "The campaign states no requirement: nothing is judged."});
   for (const Standing::Dropped& dropped : standing.dropped)

@@ -171,6 +171,11 @@ std::string Header(const Comparison& c) {
   for (const auto& [letter, lost] : {std::pair{"A", &c.a.nominal_loss}, std::pair{"B", &c.b.nominal_loss}})
     if (!lost->empty())
       html += fmt::format("<ul class=\"warnings\"><li>{}: {}</li></ul>\n", letter, HtmlText(*lost));
+  if (const std::vector<std::string> incomplete = IncompleteSides(c); !incomplete.empty()) {
+    html += "<ul class=\"warnings\">\n";
+    for (const std::string& sentence : incomplete) html += "<li>" + HtmlText(sentence) + ".</li>\n";
+    html += "</ul>\n";
+  }
   html += RequirementsTable(c);
   for (const Comparison::LoadCheck& check : c.load_checks)
     html += fmt::format("<p>{}: a limit of the vehicle. Flights beyond it: {} of A, {} of B.</p>\n",

@@ -12,6 +12,7 @@
 
 #include "core/analysis/band_counter.h"
 #include "core/pages/kept_histories.h"
+#include "core/results/file_system.h"
 #include "core/results/metric_catalogue.h"
 #include "core/results/output_file.h"
 #include "core/results/text.h"
@@ -99,11 +100,7 @@ void EmptyDirectory(const fs::path& directory) {
   std::error_code error;
   fs::remove_all(directory, error);
   if (!error) fs::create_directories(directory, error);
-  if (error) {
-    throw ResultError(
-        error == std::errc::no_space_on_device ? ResultError::Kind::kDiskFull : ResultError::Kind::kFile,
-        fmt::format("{}: cannot be made anew: {}", directory.string(), error.message()));
-  }
+  if (error) FailFile(directory.string(), "cannot be made anew", error.value());
 }
 
 }  // namespace

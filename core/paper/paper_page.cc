@@ -8,8 +8,8 @@
 #include "core/pages/trajectory_figures.h"
 #include "core/paper/heat_map.h"
 #include "core/paper/paper_sections.h"
+#include "core/results/file_system.h"
 #include "core/results/output_file.h"
-#include "core/results/result_error.h"
 #include "core/results/text.h"
 
 namespace dispersa {
@@ -153,8 +153,7 @@ void WritePaper(const PaperStudy& study, const std::filesystem::path& directory)
   const std::filesystem::path data = directory / "data";
   std::error_code error;
   std::filesystem::create_directories(data, error);
-  if (error)
-    throw ResultError(ResultError::Kind::kFile, data.string() + ": cannot be made: " + error.message());
+  if (error) FailFile(data.string(), "cannot be made", error.value());
   WriteFile(data / "figs2_3_trajectory.csv", AscentCsv(study.optimization.history));
   WriteFile(data / "figs6_9_nominal.csv", HistoryCsv(study.nominal_history, study.nominal_autopilot));
   for (const auto& [name, flown] : study.campaigns) {

@@ -1,15 +1,13 @@
 #include "core/results/attempt_ledger.h"
 
-#include <fmt/format.h>
-
 #include <algorithm>
 #include <cerrno>
-#include <cstring>
 #include <fstream>
 #include <nlohmann/json.hpp>
 #include <utility>
 
 #include "core/flight/engine_version.h"
+#include "core/results/file_system.h"
 #include "core/results/output_file.h"
 #include "core/results/requirement_text.h"
 #include "core/results/result_error.h"
@@ -86,11 +84,6 @@ AttemptRecord ToRecord(const AttemptJson& json) {
   return record;
 }
 
-[[noreturn]] void FailLedger(const fs::path& file, int error) {
-  throw ResultError(error == ENOSPC ? ResultError::Kind::kDiskFull : ResultError::Kind::kFile,
-                    fmt::format("{}: {}", file.string(), std::strerror(error)));
-}
-
 template <typename Action>
 std::optional<std::string> ReasonOf(Action action) {
   try {
@@ -123,7 +116,7 @@ std::vector<AttemptRecord> AttemptLedger::Read() const {
   std::error_code error;
   if (!fs::exists(file_, error)) return {};
   std::ifstream stream(file_);
-  if (!stream) FailLedger(file_, errno);
+  if (!stream) FailFile(file_.string(), "cannot be read", errno);
   std::vector<AttemptRecord> records;
   for (std::string line; std::getline(stream, line);) {
     try {

@@ -1,16 +1,14 @@
 #include "core/results/case_column.h"
 
 #include <fcntl.h>
-#include <fmt/format.h>
 #include <unistd.h>
 
 #include <algorithm>
 #include <cassert>
 #include <cerrno>
-#include <cstring>
 #include <string>
 
-#include "core/results/result_error.h"
+#include "core/results/file_system.h"
 
 namespace dispersa {
 namespace {
@@ -19,11 +17,7 @@ namespace {
 constexpr std::size_t kBlockRows = 8192;
 
 [[noreturn]] void Fail(const std::filesystem::path& directory, int error) {
-  if (error == ENOSPC || error == EDQUOT)
-    throw ResultError(ResultError::Kind::kDiskFull,
-                      fmt::format("{}: no space left on the disk", directory.string()));
-  throw ResultError(ResultError::Kind::kFile, fmt::format("{}: columns of results cannot be kept there: {}",
-                                                          directory.string(), std::strerror(error)));
+  FailFile(directory.string(), "columns of results cannot be kept there", error);
 }
 
 /// A file without a name, so that it is removed even if the process is killed.

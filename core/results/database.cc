@@ -9,16 +9,41 @@
 #include <limits>
 #include <system_error>
 
+#include "core/input/input_error.h"
+#include "core/results/file_system.h"
 #include "core/results/result_error.h"
+#include "core/results/sqlite_files.h"
 
 namespace dispersa {
 namespace {
 
-/// A full disk shows as SQLITE_FULL, or as an input/output error with the reason in `system_error`. The
-/// latter comes from the index of the write-ahead log, which SQLite extends by other calls.
-bool IsDiskFull(int code, int system_error) {
-  return (code & 0xff) == SQLITE_FULL ||
-         ((code & 0xff) == SQLITE_IOERR && (system_error == ENOSPC || system_error == EDQUOT));
+/// What the file system lacks; null: nothing.
+const char* LackOf(int code, int system_error) {
+  switch (code) {
+    case SQLITE_IOERR_LOCK:
+    case SQLITE_IOERR_RDLOCK:
+    case SQLITE_IOERR_UNLOCK:
+    case SQLITE_IOERR_CHECKRESERVEDLOCK:
+      return IsNotOffered(system_error) ? "cannot lock files" : nullptr;
+    case SQLITE_IOERR_SHMMAP:
+      return system_error != ENOMEM ? "cannot share memory between processes" : nullptr;
+    default:
+      return nullptr;
+  }
+}
+
+/// SQLite adds up to eight characters to a path. Its own limit is 512.
+constexpr std::size_t kLongestPath = 504;
+
+/// Why a database cannot be opened, if its path is the reason.
+void RequireShortPath(const std::filesystem::path& file) {
+  std::error_code error;
+  const std::string whole =
+      std::filesystem::weakly_canonical(std::filesystem::absolute(file), error).string();
+  if (error || whole.size() <= kLongestPath) return;
+  throw InputError(
+      fmt::format("{}: its path has {} characters, too many for SQLite", file.string(), whole.size()),
+      fmt::format("at most {}", kLongestPath));
 }
 
 /// A database of another user, or in an archive. This process may not write it. No other process writes it
@@ -56,9 +81,12 @@ Database::Database(const std::filesystem::path& file, Mode mode) : file_(file) {
   } else {
     flags |= SQLITE_OPEN_READWRITE | (mode == Mode::kCreate ? SQLITE_OPEN_CREATE : 0);
   }
-  const int code = sqlite3_open_v2(name.c_str(), &handle_, flags, nullptr);
+  const int code = sqlite3_open_v2(name.c_str(), &handle_, flags, SqliteFiles());
   try {
-    if (code != SQLITE_OK) Fail(code);
+    if (code != SQLITE_OK) {
+      RequireShortPath(file);
+      Fail(code);
+    }
     sqlite3_extended_result_codes(handle_, 1);
     sqlite3_busy_timeout(handle_, 10000);
     if (sqlite3_db_readonly(handle_, "main") == 0) {
@@ -94,8 +122,7 @@ void Database::CopyTo(const std::filesystem::path& file) const {
   }  // closed: its own write-ahead log is in it
   std::filesystem::rename(temporary, file, error);
   if (error) {
-    throw ResultError(ResultError::Kind::kFile,
-                      fmt::format("{}: cannot be made: {}", file.string(), error.message()));
+    FailFile(file.string(), "cannot be made", error.value());
   }
 }
 
@@ -103,10 +130,8 @@ Statement Database::Prepare(const std::string& sql) { return Statement(*this, sq
 
 void Database::Fail(int code) const {
   const int system_error = handle_ != nullptr ? sqlite3_system_errno(handle_) : 0;
-  if (IsDiskFull(code, system_error)) {
-    throw ResultError(ResultError::Kind::kDiskFull,
-                      fmt::format("{}: no space left on the disk", file_.string()));
-  }
+  if ((code & 0xff) == SQLITE_FULL) FailFile(file_.string(), "cannot be written", SqliteFullError());
+  if (const char* lack = LackOf(code, system_error)) RefuseFileSystem(file_.string(), lack, system_error);
   throw ResultError(ResultError::Kind::kFile,
                     fmt::format("{}: {}", file_.string(),
                                 handle_ != nullptr ? sqlite3_errmsg(handle_) : sqlite3_errstr(code)));

@@ -14,11 +14,13 @@ namespace dispersa {
 class Statement;
 
 /// One connection, used by one thread at a time. A committed transaction survives a killed process and a
-/// power cut (WAL, synchronous FULL). Waits up to 10 s for another process's lock.
+/// power cut (WAL, synchronous FULL). Waits up to 10 s for another process's lock. Needs a file system with
+/// locks and shared memory.
 class Database {
  public:
   enum class Mode { kCreate, kExisting };
 
+  /// InputError if the path is too long for SQLite.
   Database(const std::filesystem::path& file, Mode mode);
   ~Database();
   Database(const Database&) = delete;

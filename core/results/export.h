@@ -12,7 +12,8 @@ namespace dispersa {
 void ExportJsonLines(const ResultFolder& folder, const std::filesystem::path& file);
 
 /// HDF5 with the groups of README.md and a dataset for each column. The same results give the same bytes.
-/// Throws ResultError.
-void ExportHdf5(const ResultFolder& folder, const std::filesystem::path& file);
+/// `incomplete` is an attribute of the file, if it is not empty. Throws ResultError.
+void ExportHdf5(const ResultFolder& folder, const std::filesystem::path& file,
+                const std::string& incomplete = "");
 
 }  // namespace dispersa

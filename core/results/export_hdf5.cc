@@ -1,29 +1,38 @@
-#include <fmt/format.h>
 #include <hdf5.h>
 
 #include <algorithm>
+#include <cerrno>
 #include <cstdint>
 #include <filesystem>
 #include <string>
+#include <system_error>
 #include <utility>
 #include <vector>
 
 #include "core/campaign/dispersion_table.h"
 #include "core/flight/flight_inputs.h"
+#include "core/input/disk_full.h"
 #include "core/results/case_columns.h"
 #include "core/results/export.h"
+#include "core/results/file_system.h"
 #include "core/results/metric_catalogue.h"
 #include "core/results/result_error.h"
 
 namespace dispersa {
 namespace {
 
+[[noreturn]] void FailHdf5(const std::string& what) {
+  const int error = errno;  // of the call that the library failed in
+  if (DiskFullWords(error)) throw std::system_error(error, std::generic_category());
+  throw ResultError(ResultError::Kind::kFile, what + ": HDF5 cannot write it");
+}
+
 /// An identifier of the library, closed at the end of its scope.
 class Handle {
  public:
   using Close = herr_t (*)(hid_t);
   Handle(hid_t id, Close close, const std::string& what) : id_(id), close_(close) {
-    if (id_ < 0) throw ResultError(ResultError::Kind::kFile, what + ": HDF5 cannot write it");
+    if (id_ < 0) FailHdf5(what);
   }
   ~Handle() {
     if (id_ >= 0) close_(id_);
@@ -32,6 +41,7 @@ class Handle {
   Handle(const Handle&) = delete;
   Handle& operator=(const Handle&) = delete;
   operator hid_t() const { return id_; }
+  hid_t Release() { return std::exchange(id_, -1); }
 
  private:
   hid_t id_;
@@ -39,7 +49,7 @@ class Handle {
 };
 
 void Check(herr_t result, const std::string& what) {
-  if (result < 0) throw ResultError(ResultError::Kind::kFile, what + ": HDF5 cannot write it");
+  if (result < 0) FailHdf5(what);
 }
 
 /// Text of fixed length, padded with zeros: every reader supports this. Octave does not support UTF-8 in
@@ -63,6 +73,9 @@ class Hdf5File {
     Check(H5Pset_obj_track_times(creation_, false), name_);
     Check(H5Pset_obj_track_times(group_creation_, false), name_);
   }
+
+  /// What the library still holds is written.
+  void Close() { Check(H5Fclose(file_.Release()), name_); }
 
   void Group(const char* path) {
     Handle(H5Gcreate2(file_, path, H5P_DEFAULT, group_creation_, H5P_DEFAULT), H5Gclose, path);
@@ -106,7 +119,9 @@ class Hdf5File {
 
 }  // namespace
 
-void ExportHdf5(const ResultFolder& folder, const std::filesystem::path& file) {
+void ExportHdf5(const ResultFolder& folder, const std::filesystem::path& file,
+                const std::string& incomplete) {
+  H5dont_atexit();  // after a full disk the library's last rites end the process with SIGSEGV
   H5Eset_auto2(H5E_DEFAULT, nullptr, nullptr);  // what goes wrong is thrown, not printed
   std::vector<int> inputs;
   for (std::size_t i = 0; i < InputCount(folder.stages()); ++i) inputs.push_back(static_cast<int>(i));
@@ -130,6 +145,7 @@ void ExportHdf5(const ResultFolder& folder, const std::filesystem::path& file) {
       output.Attribute("/", "schema", "dispersa/hdf5/1");
       for (const char* key : {"name", "campaign_id", "flight_id", "engine", "seed", "cases", "sampling"})
         output.Attribute("/", key, folder.Provenance(key));
+      if (!incomplete.empty()) output.Attribute("/", "incomplete", incomplete);
       output.Group("/cases");
       output.Integers("/cases/case_index", cases.index);
       output.Texts("/cases/outcome", outcome);
@@ -157,12 +173,12 @@ void ExportHdf5(const ResultFolder& folder, const std::filesystem::path& file) {
         output.Attribute(path, "label", info.title);
         if (!info.over.empty()) output.Attribute(path, "defined_over", info.over);
       }
+      output.Close();
     }
     std::filesystem::rename(temporary, file);
-  } catch (const std::filesystem::filesystem_error& error) {
+  } catch (const std::system_error& error) {
     std::filesystem::remove(temporary, ignored);
-    throw ResultError(ResultError::Kind::kFile,
-                      fmt::format("{}: cannot be written: {}", file.string(), error.code().message()));
+    FailFile(file.string(), "cannot be written", error.code().value());
   } catch (...) {
     std::filesystem::remove(temporary, ignored);
     throw;

@@ -2,22 +2,31 @@
 
 #include <fcntl.h>
 #include <fmt/format.h>
-#include <sys/file.h>
 #include <unistd.h>
 
 #include <cerrno>
+#include <cstring>
 #include <utility>
 
 #include "core/input/input_error.h"
+#include "core/results/file_system.h"
 
 namespace dispersa {
 
 FolderLock::FolderLock(const std::filesystem::path& directory)
     : directory_(open(directory.c_str(), O_RDONLY | O_DIRECTORY | O_CLOEXEC)) {
-  if (directory_ >= 0 && flock(directory_, LOCK_EX | LOCK_NB) != 0 && errno == EWOULDBLOCK) {
+  if (directory_ < 0) {
+    throw InputError(fmt::format("{}: cannot be opened: {}", directory.string(), std::strerror(errno)),
+                     "a folder that can be read and written");
+  }
+  try {
+    if (!LockFile(directory_, false, directory)) {
+      throw InputError(fmt::format("{}: another dispersa process is writing this folder", directory.string()),
+                       "another folder, or to wait for that process to end");
+    }
+  } catch (...) {
     close(directory_);
-    throw InputError(fmt::format("{}: another dispersa process is writing this folder", directory.string()),
-                     "another folder, or to wait for that process to end");
+    throw;
   }
 }
 

@@ -1,16 +1,13 @@
 #include "core/results/output_file.h"
 
 #include <fcntl.h>
-#include <fmt/format.h>
-#include <sys/file.h>
 #include <sys/stat.h>
 #include <unistd.h>
 
 #include <cerrno>
-#include <cstring>
 #include <utility>
 
-#include "core/results/result_error.h"
+#include "core/results/file_system.h"
 
 namespace dispersa {
 
@@ -26,23 +23,30 @@ fs::path Behind(const fs::path& name) {
   return error ? name.parent_path() / fs::read_symlink(name) : there;
 }
 
+/// Closed at the end of its scope.
+class Descriptor {
+ public:
+  explicit Descriptor(int number) : number_(number) {}
+  ~Descriptor() {
+    if (number_ >= 0) close(number_);
+  }
+  Descriptor(const Descriptor&) = delete;
+  Descriptor& operator=(const Descriptor&) = delete;
+  operator int() const { return number_; }
+
+ private:
+  int number_;
+};
+
 // Makes the new name survive a power cut. On file systems that cannot do this, only that protection is
 // missing.
 void SyncFolderOf(const fs::path& file) {
   const fs::path folder = file.has_parent_path() ? file.parent_path() : ".";
-  const int directory = open(folder.c_str(), O_RDONLY | O_DIRECTORY | O_CLOEXEC);
-  if (directory < 0) return;
-  fsync(directory);
-  close(directory);
+  const Descriptor directory(open(folder.c_str(), O_RDONLY | O_DIRECTORY | O_CLOEXEC));
+  if (directory >= 0) (void)SyncFile(directory);
 }
 
-[[noreturn]] void FailToWrite(const std::string& name, int error) {
-  if (error == ENOSPC || error == EDQUOT) {
-    throw ResultError(ResultError::Kind::kDiskFull, name + ": no space left on the disk");
-  }
-  throw ResultError(ResultError::Kind::kFile,
-                    fmt::format("{}: cannot be written: {}", name, std::strerror(error)));
-}
+constexpr char kUnwritable[] = "cannot be written";
 
 }  // namespace
 
@@ -100,7 +104,7 @@ void OutputFile::Commit() {
   if (stream_ == nullptr) OpenDirect();
   if (std::fflush(stream_) != 0) Fail(errno);
   if (stream_ == stdout) return;
-  if (!temporary_.empty() && fsync(fileno(stream_)) != 0) Fail(errno);
+  if (const int error = temporary_.empty() ? 0 : SyncFile(fileno(stream_))) Fail(error);
   std::FILE* stream = std::exchange(stream_, nullptr);
   if (std::fclose(stream) != 0) Fail(errno);
   if (temporary_.empty()) return;
@@ -109,7 +113,7 @@ void OutputFile::Commit() {
 }
 
 void OutputFile::Fail(int error) const {
-  FailToWrite(stream_ == stdout ? "standard output" : target_.string(), error);
+  FailFile(stream_ == stdout ? "standard output" : target_.string(), kUnwritable, error);
 }
 
 void WriteFile(const std::filesystem::path& target, std::string_view bytes) {
@@ -119,9 +123,9 @@ void WriteFile(const std::filesystem::path& target, std::string_view bytes) {
 }
 
 void AppendLine(const fs::path& file, std::string_view line) {
-  const int descriptor = open(file.c_str(), O_RDWR | O_CREAT | O_APPEND | O_CLOEXEC, 0666);
-  if (descriptor < 0) FailToWrite(file.string(), errno);
-  flock(descriptor, LOCK_EX);
+  const Descriptor descriptor(open(file.c_str(), O_RDWR | O_CREAT | O_APPEND | O_CLOEXEC, 0666));
+  if (descriptor < 0) FailFile(file.string(), kUnwritable, errno);
+  LockFile(descriptor, true, file);
   char last = '\n';
   const off_t size = lseek(descriptor, 0, SEEK_END);
   if (size > 0) (void)!pread(descriptor, &last, 1, size - 1);
@@ -129,9 +133,8 @@ void AppendLine(const fs::path& file, std::string_view line) {
   text.append(line).append("\n");
   const ssize_t written = write(descriptor, text.data(), text.size());
   int error = written == std::ssize(text) ? 0 : (written < 0 ? errno : ENOSPC);
-  if (error == 0 && fsync(descriptor) != 0) error = errno;
-  close(descriptor);
-  if (error != 0) FailToWrite(file.string(), error);
+  if (error == 0) error = SyncFile(descriptor);
+  if (error != 0) FailFile(file.string(), kUnwritable, error);
   if (size <= 0) SyncFolderOf(file);
 }
 

@@ -11,18 +11,16 @@ namespace dispersa {
 class ResultError : public std::runtime_error {
  public:
   enum class Kind {
-    kDiskFull,  ///< no space left, or over quota: the run is incomplete and can be resumed
-    kFewer,     ///< fewer results than there should be: a fuller file was not replaced
-    kConflict,  ///< a case returned twice with different digests: an internal error that is never ignored
-    kFile,      ///< any other failure of the disk or the database
+    kDiskFull,    ///< no space left, over quota, or a file at its limit: the run can be resumed
+    kFewer,       ///< fewer results than there should be: a fuller file was not replaced
+    kConflict,    ///< a case returned twice with different digests: an internal error that is never ignored
+    kFileSystem,  ///< the file system lacks locks or shared memory: the user chooses another folder
+    kFile,        ///< any other failure of the disk or the database
   };
 
   ResultError(Kind kind, const std::string& message) : std::runtime_error(message), kind_(kind) {}
 
   Kind kind() const { return kind_; }
-  /// True if the results are incomplete and no program is at fault (exit code 5). Otherwise the exit code is
-  /// 1.
-  bool IsIncomplete() const { return kind_ == Kind::kDiskFull || kind_ == Kind::kFewer; }
 
  private:
   Kind kind_;

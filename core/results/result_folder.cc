@@ -16,6 +16,7 @@
 #include "core/flight/flight_inputs.h"
 #include "core/flight/metrics.h"
 #include "core/results/database.h"
+#include "core/results/file_system.h"
 #include "core/results/fingerprint.h"
 #include "core/results/output_file.h"
 #include "core/results/requirement_text.h"
@@ -291,15 +292,6 @@ void TakeTheUnmeasured(Database& database, std::int64_t case_index, const std::s
   }
 }
 
-/// The error for a folder that cannot be made or written, from the system's reason.
-[[noreturn]] void FailSystem(const fs::path& path, const std::error_code& error) {
-  if (error == std::errc::no_space_on_device) {
-    throw ResultError(Kind::kDiskFull, fmt::format("{}: no space left on the disk", path.string()));
-  }
-  throw InputError(fmt::format("{}: cannot be made: {}", path.string(), error.message()),
-                   "a folder that can be written");
-}
-
 }  // namespace
 
 ResultFolder::ResultFolder(fs::path directory, std::unique_ptr<Database> database)
@@ -324,10 +316,10 @@ ResultFolder ResultFolder::Create(const fs::path& directory, const Campaign& cam
                                   std::optional<FolderLock> lock) {
   std::error_code error;
   fs::create_directories(directory, error);
-  if (error) FailSystem(directory, error);
+  if (error) FailFolder(directory.string(), error);
   if (!lock) lock.emplace(directory);
   const bool empty = fs::is_empty(directory, error);
-  if (error) FailSystem(directory, error);
+  if (error) FailFolder(directory.string(), error);
   if (!empty) {
     throw InputError(fmt::format("{}: the folder is not empty", directory.string()),
                      "a new or an empty folder, or --resume to continue a campaign of the same flight id");
@@ -351,7 +343,7 @@ ResultFolder ResultFolder::Create(const fs::path& directory, const Campaign& cam
     transaction.Commit();
   }
   fs::rename(temporary, database, error);
-  if (error) FailSystem(database, error);
+  if (error) FailFolder(database.string(), error);
   ResultFolder folder(directory, std::make_unique<Database>(database, Database::Mode::kExisting));
   folder.lock_ = std::move(lock);
   return folder;

@@ -13,6 +13,7 @@
 #include "services/cli/command.h"
 #include "services/client/folder_comparison.h"
 #include "services/client/writable.h"
+#include "services/log/log.h"
 
 namespace dispersa {
 namespace {
@@ -37,8 +38,9 @@ std::string NumberText(double value) { return std::isfinite(value) ? fmt::format
 
 void PrintText(const Comparison& comparison) {
   for (const auto& [letter, side] : {std::pair{"A", &comparison.a}, std::pair{"B", &comparison.b}})
-    fmt::print("{}: {} ({}), {} of {} flights completed\n", letter, SideTitle(comparison, *side),
-               side->autopilot, side->completed, side->flown);
+    fmt::print("{}: {} ({}), {} of {} flights completed{}\n", letter, SideTitle(comparison, *side),
+               side->autopilot, side->completed, side->flown,
+               side->flown < side->cases ? fmt::format(", {} cases missing", side->cases - side->flown) : "");
   for (const auto& [letter, side] : {std::pair{"A", &comparison.a}, std::pair{"B", &comparison.b}})
     if (!side->nominal_loss.empty()) fmt::print("warning: {}: {}\n", letter, side->nominal_loss);
   if (!comparison.differs.empty()) fmt::print("The campaign files differ in {}.\n", comparison.differs);
@@ -80,7 +82,9 @@ ExitCode CompareAndShow(const CompareOptions& options, const GlobalOptions& glob
     if (!options.out.empty())
       fmt::print("\ncomparison: {}\n", (std::filesystem::path(options.out) / "compare.html").string());
   }
-  return kExitDone;
+  const std::vector<std::string> incomplete = IncompleteSides(compared.comparison);
+  for (const std::string& side : incomplete) LogWarning("{}", side);
+  return incomplete.empty() ? kExitDone : kExitIncomplete;
 }
 
 }  // namespace

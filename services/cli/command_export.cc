@@ -18,6 +18,7 @@
 #include "services/cli/stream_beside.h"
 #include "services/client/stored_campaign.h"
 #include "services/client/writable.h"
+#include "services/log/log.h"
 #include "services/program/threads.h"
 
 namespace dispersa {
@@ -39,8 +40,8 @@ void ExportImpacts(const StoredCampaign& stored, const ExportOptions& options, s
   const std::vector<Footprint> footprints =
       FootprintsOf(stored.folder, stored.campaign, UsableCores(),
                    [&](std::size_t done, std::size_t total) { progress.Show(done, total); });
-  WriteFile(options.out, options.format == ExportFormat::kKml ? Kml(stored.campaign, footprints)
-                                                              : GeoJson(stored.campaign, footprints));
+  const auto text = options.format == ExportFormat::kKml ? Kml : GeoJson;
+  WriteFile(options.out, text(stored.campaign, footprints, stored.incomplete));
   for (const Footprint& footprint : footprints) {
     fmt::print(stream, "{}: {} down{}", FootprintTitle(footprint), footprint.points.size(),
                footprint.aloft > 0 ? fmt::format(", {} aloft", footprint.aloft) : "");
@@ -73,7 +74,7 @@ ExitCode Export(const ExportOptions& options, const GlobalOptions& global) {
       ExportJsonLines(stored.folder, options.out);
       break;
     case ExportFormat::kHdf5:
-      ExportHdf5(stored.folder, options.out);
+      ExportHdf5(stored.folder, options.out, stored.incomplete);
       break;
     case ExportFormat::kGeoJson:
     case ExportFormat::kKml:
@@ -84,12 +85,15 @@ ExitCode Export(const ExportOptions& options, const GlobalOptions& global) {
       break;
   }
   if (global.json) {
-    const nlohmann::ordered_json object = {{"schema", "dispersa/export/1"}, {"file", options.out}};
+    nlohmann::ordered_json object = {{"schema", "dispersa/export/1"}, {"file", options.out}};
+    if (!stored.incomplete.empty()) object["incomplete"] = stored.incomplete;
     fmt::print("{}\n", object.dump(2));
   } else if (stream == stdout) {
     fmt::print("export: {}\n", options.out);
   }
-  return kExitDone;
+  if (stored.incomplete.empty()) return kExitDone;
+  LogWarning("{}: {}", options.directory, stored.incomplete);
+  return kExitIncomplete;
 }
 
 }  // namespace

@@ -13,6 +13,7 @@
 #include "services/client/stored_campaign.h"
 #include "services/client/writable.h"
 #include "services/ledger/campaign_book.h"
+#include "services/log/log.h"
 #include "services/program/threads.h"
 
 namespace dispersa {
@@ -37,6 +38,7 @@ ExitCode Fill(const ReportCommand& options) {
   } else {
     WriteFile(options.out, text);
   }
+  if (!stored.incomplete.empty()) LogWarning("{}: {}", options.directory, stored.incomplete);
   return CampaignExitCode(BuildSummary(stored.folder, stored.campaign).standing.verdict, 0, options.gate);
 }
 

@@ -11,6 +11,7 @@
 #include "core/results/result_error.h"
 #include "services/cli/command.h"
 #include "services/cli/commands.h"
+#include "services/ledger/result_exit_code.h"
 #include "services/log/log.h"
 #include "services/program/command_line.h"
 #include "services/program/failure.h"
@@ -34,9 +35,8 @@ ExitCode Execute(const Invocation& invocation) {
   } catch (const ContainedEnd& end) {
     return EndFor(InputError(std::string("the control law ") + end.what()), global.json, kExitIncomplete);
   } catch (const ResultError& error) {
-    const bool is_incomplete = error.IsIncomplete() || IsOutputLost();
     return EndFor(InputError(error.what()), global.json,
-                  is_incomplete ? kExitIncomplete : kExitInternalError);
+                  IsOutputLost() ? kExitIncomplete : ExitCodeOf(error));
   } catch (const std::system_error& error) {
     if (IsOutputLost()) return EndLostOutput(error.code().value());
     return EndFor(FailureOf(error), global.json);
@@ -48,7 +48,7 @@ ExitCode Execute(const Invocation& invocation) {
 }  // namespace
 
 int RunProgram(int argc, char** argv) {
-  HoldStandardStreams();
+  PrepareFiles();
   LogForPeople(LogColor::kAuto);
   try {
     ChosenEngine();

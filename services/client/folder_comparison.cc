@@ -69,11 +69,9 @@ FolderComparison CompareFolders(const std::string& name_a, const std::string& na
   CheckMeasured(name_b, b.campaign, metrics);
   CheckSameDefinitions(a.campaign, b.campaign, metrics);
   FolderComparison compared = {{}, AllColumns(a.folder), AllColumns(b.folder)};
-  for (const auto& [name, cases] : {std::pair{&name_a, &compared.a}, std::pair{&name_b, &compared.b}})
-    if (cases->rows() == 0) throw InputError(*name + ": no case has a result");
-  compared.comparison = Compare({name_a, a.folder.Provenance("engine"), a.campaign, compared.a},
-                                {name_b, b.folder.Provenance("engine"), b.campaign, compared.b}, metrics,
-                                ChangesOf(a.campaign, b.campaign), practical_share);
+  compared.comparison = Compare({name_a, a.folder.Provenance("engine"), a.campaign, compared.a, a.cases},
+                                {name_b, b.folder.Provenance("engine"), b.campaign, compared.b, b.cases},
+                                metrics, ChangesOf(a.campaign, b.campaign), practical_share);
   for (const auto& [stored, side] :
        {std::pair{&a, &compared.comparison.a}, std::pair{&b, &compared.comparison.b}})
     if (const auto nominal = NominalOf(stored->campaign, side->engine))

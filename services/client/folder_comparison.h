@@ -15,8 +15,8 @@ struct FolderComparison {
   CaseColumns a, b;  ///< with all inputs
 };
 
-/// `metrics`: names without prefix; empty: every metric that a flight of both defines. InputError for a
-/// folder that is none or has no case, and for a name that is no metric.
+/// `metrics`: names without prefix; empty: every metric that a flight of both defines. Errors of
+/// OpenStored(), and InputError for a name that is no metric.
 FolderComparison CompareFolders(const std::string& a, const std::string& b,
                                 const std::vector<std::string>& metrics,
                                 double practical_share = kPracticalShare);

@@ -1,7 +1,10 @@
 #include "services/client/stored_campaign.h"
 
+#include <fmt/format.h>
+
 #include <utility>
 
+#include "core/analysis/campaign_summary.h"
 #include "core/campaign_yaml/load.h"
 #include "core/input/input_error.h"
 
@@ -15,7 +18,18 @@ StoredCampaign OpenStored(const std::string& directory) {
       !FindOwn(campaign.own_metrics, folder.own_metrics()))
     throw InputError(directory + ": the metrics of its campaign.yaml are not those that were measured",
                      "`dispersa run CAMPAIGN --out " + directory + " --resume`, which flies the cases again");
-  return {std::move(folder), std::move(campaign)};
+  const std::uint64_t flown = folder.CaseCount();
+  // The rows decide where a campaign stops by itself.
+  const std::uint64_t cases = campaign.verdicts.stop_when_decided && flown > 0
+                                  ? CasesToFly(folder, campaign, ReadColumns(folder, {}))
+                                  : campaign.sampling.cases;
+  std::string incomplete = flown < cases ? "incomplete: " + MissingWords(flown, cases) : "";
+  if (flown == 0)
+    throw ResultError(ResultError::Kind::kFewer,
+                      fmt::format("{}: {}; copy results.sqlite-wal too if this is a copy, or fly the cases: "
+                                  "`dispersa run CAMPAIGN --out {} --resume`",
+                                  directory, incomplete, directory));
+  return {std::move(folder), std::move(campaign), cases, std::move(incomplete)};
 }
 
 }  // namespace dispersa

@@ -1,6 +1,7 @@
 // A result folder and the campaign that it holds.
 #pragma once
 
+#include <cstdint>
 #include <string>
 
 #include "core/campaign/campaign.h"
@@ -10,10 +11,13 @@ namespace dispersa {
 
 struct StoredCampaign {
   ResultFolder folder;
-  Campaign campaign;  ///< of campaign.yaml
+  Campaign campaign;        ///< of campaign.yaml
+  std::uint64_t cases = 0;  ///< CasesToFly()
+  std::string incomplete;   ///< "incomplete: 160 of 3000 cases have a result"; empty: none is missing
 };
 
-/// InputError if the directory is no result folder, or its campaign.yaml cannot be read.
+/// InputError if the directory is no result folder, or its campaign.yaml cannot be read. ResultError (kFewer)
+/// if no case has a result.
 StoredCampaign OpenStored(const std::string& directory);
 
 }  // namespace dispersa

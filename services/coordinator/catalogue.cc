@@ -11,6 +11,7 @@
 #include <utility>
 
 #include "core/input/input_error.h"
+#include "core/results/file_system.h"
 #include "core/results/output_file.h"
 #include "core/results/result_error.h"
 #include "services/coordinator/dump_any_text.h"
@@ -134,10 +135,7 @@ bool ComesBefore(const CatalogueEntry& a, const CatalogueEntry& b) {
 void MakeDataFolder(const fs::path& directory) {
   std::error_code error;
   fs::create_directories(directory, error);
-  if (error) {
-    throw InputError(directory.string() + ": cannot be made: " + error.message(),
-                     "a folder that can be written");
-  }
+  if (error) FailFolder(directory.string(), error);
 }
 
 Catalogue::Catalogue(const fs::path& directory) : directory_(directory) {
@@ -189,11 +187,7 @@ CatalogueEntry& Catalogue::Add(CatalogueEntry entry, const std::string& text) {
   entry.order = next_order_++;
   std::error_code error;
   fs::create_directories(directory_ / entry.id, error);
-  if (error) {
-    const bool is_full = error == std::errc::no_space_on_device;
-    throw ResultError(is_full ? ResultError::Kind::kDiskFull : ResultError::Kind::kFile,
-                      (directory_ / entry.id).string() + ": cannot be made: " + error.message());
-  }
+  if (error) FailFile((directory_ / entry.id).string(), "cannot be made", error.value());
   WriteFile(directory_ / entry.id / "campaign.yaml", text);
   Write(entry);
   const std::string id = entry.id;
@@ -241,8 +235,7 @@ void Catalogue::Remove(const std::string& id) {
   const fs::path folder = directory_ / id, deleted = directory_ / (kDeleted + id);
   std::error_code error;
   fs::rename(folder, deleted, error);
-  if (error)
-    throw ResultError(ResultError::Kind::kFile, folder.string() + ": cannot be removed: " + error.message());
+  if (error) FailFile(folder.string(), "cannot be removed", error.value());
   entries_.erase(id);
   open_.erase(id);
   ++changes_;

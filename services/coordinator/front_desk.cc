@@ -15,6 +15,7 @@
 #include "core/results/json_number.h"
 #include "services/coordinator/dump_any_text.h"
 #include "services/coordinator/packed_files.h"
+#include "services/ledger/result_exit_code.h"
 #include "services/program/exit_code.h"
 #include "services/transport/permissions.h"
 #include "services/transport/validity.h"
@@ -222,7 +223,7 @@ Reply FrontDesk::Answer(const Request& request) {
     reply.code = kExitBadInput;
     reply.text = "the coordinator does not understand the arguments of '" + Printable(request.method) + "'";
   } catch (const ResultError& error) {
-    reply.code = error.IsIncomplete() ? kExitIncomplete : kExitInternalError;
+    reply.code = ExitCodeOf(error);
     reply.text = error.what();
   } catch (const std::exception& error) {
     reply.code = kExitInternalError;

@@ -10,6 +10,7 @@
 #include "core/campaign_yaml/standard_input.h"
 #include "core/results/result_error.h"
 #include "services/coordinator/serve.h"
+#include "services/ledger/result_exit_code.h"
 #include "services/log/log.h"
 #include "services/program/command_line.h"
 #include "services/program/completion_words.h"
@@ -39,7 +40,7 @@ CLI::Validator IsHttpAddress() {
 }  // namespace
 
 int RunCoordinator(int argc, char** argv) {
-  HoldStandardStreams();
+  PrepareFiles();
   LogForDaemon("dispersa-coordinator");
   NetworkOptions network;
   RunRequest request;
@@ -172,7 +173,7 @@ int RunCoordinator(int argc, char** argv) {
   } catch (const NetworkError& error) {
     return EndFor(Failure{kExitBadInput, error.what()}, json);
   } catch (const ResultError& error) {
-    return EndFor(Failure{error.IsIncomplete() ? kExitIncomplete : kExitInternalError, error.what()}, json);
+    return EndFor(Failure{ExitCodeOf(error), error.what()}, json);
   } catch (const std::exception& error) {
     return EndFor(FailureOf(error), json);
   }

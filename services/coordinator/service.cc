@@ -18,6 +18,7 @@
 #include "services/coordinator/packed_files.h"
 #include "services/ledger/campaign_attempt.h"
 #include "services/ledger/open_book.h"
+#include "services/ledger/result_exit_code.h"
 #include "services/log/log.h"
 #include "services/program/exit_code.h"
 #include "services/transport/validity.h"
@@ -337,8 +338,7 @@ void Service::Fail(CatalogueEntry& entry, std::exception_ptr error) {
     if (problem.kind() == ResultError::Kind::kDiskFull) {
       Delay(entry, problem.what());
     } else {
-      End(entry, CampaignState::kFailed, problem.IsIncomplete() ? kExitIncomplete : kExitInternalError,
-          problem.what());
+      End(entry, CampaignState::kFailed, ExitCodeOf(problem), problem.what());
     }
   } catch (const InputError& problem) {
     End(entry, CampaignState::kFailed, kExitBadInput, problem.what());

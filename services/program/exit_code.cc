@@ -11,7 +11,7 @@ const std::vector<ExitMeaning>& ExitMeanings() {
       {kExitInternalError, "internal error, or a machine returned other bits"},
       {kExitIncomplete,
        "incomplete: no workers, no answer from the coordinator, disk full, closed standard output, "
-       "quarantined cases, cancelled"},
+       "quarantined cases, cancelled, cases missing in a folder"},
       {kExitReplayMismatch, "a replayed flight differs from the stored one"},
       {kExitRequirementFailed,
        "a requirement failed (one point of a study is enough), or `optimize`, `tune` or `margins` missed a "

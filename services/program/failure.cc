@@ -6,6 +6,7 @@
 #include <new>
 #include <system_error>
 
+#include "core/input/disk_full.h"
 #include "services/log/log.h"
 #include "services/program/error_json.h"
 
@@ -23,6 +24,9 @@ Failure FailureOf(const std::exception& error) {
         kExitIncomplete,
         "the system refuses another thread; raise the limit of memory or threads (`ulimit -v`, `ulimit -u`) "
         "or take fewer --threads or --workers"};
+  if (system != nullptr)
+    if (const auto full = DiskFullWords(system->code().value()))
+      return {kExitIncomplete, *full + " (" + error.what() + ")"};
   return {kExitInternalError, std::string("internal error: ") + error.what()};
 }
 

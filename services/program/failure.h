@@ -14,8 +14,9 @@ struct Failure {
   std::string message;
 };
 
-/// What ends a program unexpectedly. Memory or threads that the system refuses are kExitIncomplete, because
-/// the same command can go on with more of them; everything else is kExitInternalError.
+/// What ends a program unexpectedly. Memory, threads or a place on the disk that the system refuses are
+/// kExitIncomplete, because the same command can go on with more of them. Everything else is
+/// kExitInternalError.
 Failure FailureOf(const std::exception& error);
 
 /// Says why a program ends: to its log, and with --json to standard output as an object too. Returns the

@@ -4,24 +4,27 @@
 #include <unistd.h>
 
 #include <cerrno>
+#include <csignal>
 #include <cstdio>
 #include <cstring>
 #include <string>
 
+#include "core/input/disk_full.h"
 #include "services/log/log.h"
 
 namespace dispersa {
 namespace {
 
 std::string ReasonOf(int error) {
-  if (error == ENOSPC || error == EDQUOT) return ": no space left on the disk";
+  if (const auto full = DiskFullWords(error)) return ": " + *full;
   if (error == EBADF) return ": it is closed";
   return error == 0 ? "" : std::string(": ") + std::strerror(error);
 }
 
 }  // namespace
 
-void HoldStandardStreams() {
+void PrepareFiles() {
+  std::signal(SIGXFSZ, SIG_IGN);
   // Each gets its own number back, the lowest that is free; the one to print to only for reading.
   for (const int stream : {STDIN_FILENO, STDOUT_FILENO, STDERR_FILENO})
     if (fcntl(stream, F_GETFD) < 0) open("/dev/null", stream == STDERR_FILENO ? O_WRONLY : O_RDONLY);

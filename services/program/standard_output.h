@@ -7,9 +7,11 @@
 
 namespace dispersa {
 
-/// Call before any file is opened. A closed standard stream stays reserved. Otherwise the next opened file
-/// would get its number, and the printed text. Printing to it is still an error.
-void HoldStandardStreams();
+/// Call before any file is opened.
+/// - A closed standard stream stays reserved. Otherwise the next opened file would get its number, and the
+///   printed text. Printing to it is still an error.
+/// - A write beyond the limit of a file's size (`ulimit -f`) becomes an error, and does not end the process.
+void PrepareFiles();
 
 /// Prints a program's whole output. Returns kExitDone, or kExitIncomplete if it did not arrive.
 ExitCode PrintAndEnd(std::string_view text);

@@ -1,4 +1,5 @@
 #include "services/python/errors.h"
+#include "services/ledger/result_exit_code.h"
 
 #include <string>
 #include <string_view>
@@ -56,7 +57,7 @@ void Translate(std::exception_ptr problem) {
   } catch (const InputError& error) {
     Raise("BadInput", ProblemsOf(error.problems()));
   } catch (const ResultError& error) {
-    Raise(error.IsIncomplete() ? "Incomplete" : "InternalError", Words(error.what()));
+    Raise(ErrorName(ExitCodeOf(error)), Words(error.what()));
   } catch (const PluginError& error) {
     Raise("BadInput", py::str(std::string("the control law ") + error.what()));
   } catch (const ContainedEnd& end) {

@@ -25,7 +25,7 @@
 namespace dispersa {
 
 int RunWorker(int argc, char** argv) {
-  HoldStandardStreams();
+  PrepareFiles();
   LogForDaemon("dispersa-worker");
 
   WorkerOptions options;

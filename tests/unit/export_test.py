@@ -8,6 +8,7 @@ import os
 import pathlib
 import re
 import shutil
+import sqlite3
 import subprocess
 import tempfile
 import time
@@ -60,6 +61,103 @@ class Columns(ExportTest):
         done = dispersa("export", self.results, "--format", "jsonl", "--columns", "varying", "--out", file)
         self.assertEqual((done.returncode, done.stderr),
                          (2, "--columns: only a CSV file can leave columns out, allowed: --format csv\n"))
+
+
+class Incomplete(ExportTest):
+    """The folder of a run that was killed, and a copy of it without the database's log."""
+    CASES = 30000
+
+    @classmethod
+    def setUpClass(cls):
+        super().setUpClass()
+        cls.killed = cls.folder / "killed"
+        flight = subprocess.Popen([BINARIES / "dispersa", "run", CAMPAIGNS / "smoke.yaml", "--cases", str(cls.CASES), "--workers", "0",
+                                   "--no-histories", "--quiet", "--out", cls.killed], stdout=subprocess.DEVNULL)
+        deadline = time.monotonic() + TIMEOUT_S
+        while cls.stored() == 0 and flight.poll() is None and time.monotonic() < deadline:
+            time.sleep(0.02)
+        flight.kill()
+        flight.wait()
+        cls.flown = cls.stored()
+        assert 0 < cls.flown < cls.CASES
+        cls.words = f"incomplete: {cls.flown} of {cls.CASES} cases have a result"
+        cls.copy = cls.folder / "copy"
+        shutil.copytree(cls.killed, cls.copy, ignore=shutil.ignore_patterns("*-wal", "*-shm"))
+
+    @classmethod
+    def stored(cls):
+        try:
+            with sqlite3.connect(f"file:{cls.killed}/results.sqlite?mode=ro", uri=True) as database:
+                return database.execute("SELECT count(*) FROM cases").fetchone()[0]
+        except sqlite3.OperationalError:
+            return 0
+
+    def export(self, form):
+        file = self.folder / f"incomplete.{form}"
+        done = dispersa("export", self.killed, "--format", form, "--out", file, "--quiet")
+        self.assertEqual((done.returncode, done.stderr), (5, f"warning: {self.killed}: {self.words}\n"), form)
+        return file
+
+    def test_an_export_says_what_is_missing_and_writes_it_where_it_has_a_place(self):
+        self.assertEqual(self.export("csv").read_text().count("\n"), self.flown + 1)
+        self.assertEqual(self.export("jsonl").read_text().count("\n"), self.flown)
+        self.assertEqual(json.loads(self.export("geojson").read_text())["incomplete"], self.words)
+        self.assertIn(f"; {self.words}</description>", self.export("kml").read_text())
+        self.assertIn(f'<error message="{self.words.removeprefix("incomplete: ")}"/>', self.export("junit").read_text())
+        read = run(DEBIAN_PYTHON, "-c", f"import h5py; print(h5py.File({str(self.export('hdf5'))!r}).attrs['incomplete'].decode())")
+        self.assertEqual(read.stdout, self.words + "\n", read.stderr)
+        done = dispersa("export", self.killed, "--format", "csv", "--out", self.folder / "incomplete.csv", "--json")
+        self.assertEqual((done.returncode, json.loads(done.stdout)["incomplete"]), (5, self.words))
+
+    def test_a_comparison_says_what_is_missing(self):
+        out = self.folder / "comparison"
+        side = f"B (smoke in {self.killed}) is {self.words}"
+        done = dispersa("compare", self.results, self.killed, "--out", out)
+        self.assertEqual((done.returncode, done.stderr), (5, f"warning: {side}\n"))
+        self.assertIn(f"{self.flown} of {self.flown} flights completed, {self.CASES - self.flown} cases missing\n", done.stdout)
+        self.assertIn(f"<li>{side}.</li>", (out / "compare.html").read_text())
+        done = dispersa("compare", self.killed, self.results, "--json")
+        told = json.loads(done.stdout)
+        self.assertEqual((done.returncode, told["incomplete"]), (5, [side.replace("B", "A", 1)]))
+        self.assertEqual((told["a"]["cases"], told["a"]["flown"]), (self.CASES, self.flown))
+        done = dispersa("compare", self.results, self.results, "--json")
+        self.assertEqual((done.returncode, done.stderr, json.loads(done.stdout)["incomplete"]), (0, "", []))
+
+    def test_a_filled_template_says_what_is_missing(self):
+        folder = self.folder / "filled"
+        shutil.copytree(self.killed, folder)
+        shutil.copy(self.results / "summary.json", folder)
+        done = dispersa("report", folder, "--template", self.template("x"))
+        self.assertEqual((done.returncode, done.stdout, done.stderr), (5, "x", f"warning: {folder}: {self.words}\n"))
+
+    def test_a_folder_without_any_case_is_refused(self):
+        words = (f"{self.copy}: incomplete: 0 of {self.CASES} cases have a result; copy results.sqlite-wal too if this is a copy, "
+                 f"or fly the cases: `dispersa run CAMPAIGN --out {self.copy} --resume`")
+        for command in (("export", self.copy, "--format", "csv", "--out", self.folder / "none.csv"),
+                        ("compare", self.results, self.copy), ("compare", self.copy, self.results),
+                        ("report", self.copy, "--no-histories"), ("replay", self.copy, "--case", "0")):
+            done = dispersa(*command)
+            self.assertEqual((done.returncode, done.stdout, done.stderr), (5, "", words + "\n"), command)
+            told = json.loads(dispersa(*command, "--json").stdout)
+            self.assertEqual((told["schema"], told["code"], told["errors"][0]["message"]), ("dispersa/error/1", 5, words))
+        self.assertFalse((self.folder / "none.csv").exists())
+
+    def test_one_case_of_it_is_flown_again(self):
+        done = dispersa("replay", self.killed, "--case", "0")
+        self.assertEqual((done.returncode, done.stderr), (0, ""))
+
+    def test_a_campaign_that_stopped_because_it_was_decided_lacks_nothing(self):
+        campaign = self.folder / "decided.yaml"
+        text = (CAMPAIGNS / "smoke.yaml").read_text()
+        for folder in ("vehicles", "references", "autopilots"):
+            text = text.replace(f": {folder}/", f": {CAMPAIGNS}/{folder}/")
+        campaign.write_text(text + "verdicts: {looks: 3, stop: when_decided}\n")
+        out = self.folder / "apart" / "decided"
+        done = dispersa("run", campaign, "--cases", "300", "--workers", "0", "--no-histories", "--quiet", "--out", out, "--json")
+        self.assertEqual(done.returncode, 0, done.stderr)
+        self.assertLess(len((out / "cases.csv").read_text().splitlines()), 200)
+        done = dispersa("export", out, "--format", "csv", "--out", self.folder / "decided.csv")
+        self.assertEqual((done.returncode, done.stderr), (0, ""))
 
 
 class Ending(ExportTest):

@@ -159,7 +159,7 @@ TEST(Reports, LeaveATableOfMoreCasesAsItIs) {
     WriteReports(folder, TheCampaign(), options);
     FAIL() << "three cases were replaced by one";
   } catch (const ResultError& error) {
-    EXPECT_TRUE(error.IsIncomplete());
+    EXPECT_EQ(error.kind(), ResultError::Kind::kFewer);
     EXPECT_EQ(error.what(),
               (out / "cases.csv").string() +
                   ": it has 3 cases and results.sqlite has 1: the reports stay as they are; remove "

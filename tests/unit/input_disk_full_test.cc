@@ -1,0 +1,19 @@
+#include "core/input/disk_full.h"
+
+#include <gtest/gtest.h>
+
+#include <cerrno>
+
+namespace dispersa {
+namespace {
+
+TEST(DiskFull, HasTheSameWordsForEachLimitAndNamesIt) {
+  EXPECT_EQ(DiskFullWords(ENOSPC), "no space left on the disk");
+  EXPECT_EQ(DiskFullWords(EDQUOT), "no space left on the disk: the quota is used up");
+  EXPECT_EQ(DiskFullWords(EFBIG),
+            "no space left on the disk: a file has reached its limit (`ulimit -f`, or the file system's)");
+  for (const int other : {0, EIO, EACCES, EROFS, ENOENT, ENOMEM}) EXPECT_EQ(DiskFullWords(other), std::nullopt);
+}
+
+}  // namespace
+}  // namespace dispersa
