@@ -26,7 +26,6 @@ namespace dispersa {
 namespace {
 
 constexpr double kMeasure_s = 1.0;
-constexpr std::size_t kRateOver = 10;  // measurements
 constexpr std::size_t kMaxProblem = 1000;
 constexpr std::size_t kRemembered = 16;  // tallies of campaigns that fly no more
 
@@ -390,8 +389,7 @@ void Service::Measure() {
   for (auto& [id, flying] : flying_) {
     CatalogueEntry& entry = catalogue_.At(id);
     if (counts) entry.bytes = catalogue_.CountBytes(id);
-    flying.past.emplace_back(now_s, flying.book->ledger().Progress().done);
-    if (flying.past.size() > kRateOver) flying.past.pop_front();
+    flying.pace.Measure(now_s, flying.book->ledger().Progress().done);
     NoteConflicts(entry, flying);
     NoteRemoved(entry, flying);
     Publish(entry);
@@ -504,13 +502,8 @@ CampaignView Service::View(const std::string& id) const {
     view.problem = "no worker here can fly it: " + *refusal;
   if (const std::string& pause = flying->second.book->pause(); !pause.empty()) view.problem = Waiting(pause);
   view.progress = flying->second.book->ledger().Progress();
-  const auto& past = flying->second.past;
-  if (past.size() < 2) return view;
-  const double seconds = past.back().first - past.front().first;
-  view.rate_per_s = static_cast<double>(past.back().second - past.front().second) / seconds;
-  if (view.rate_per_s > 0.0) {
-    view.eta_s = static_cast<double>(view.progress.waiting + view.progress.assigned) / view.rate_per_s;
-  }
+  view.rate_per_s = flying->second.pace.PerSecond();
+  view.eta_s = TimeLeft(view.progress, view.rate_per_s);
   return view;
 }
 
@@ -578,19 +571,10 @@ void Service::RequireQuota(const CatalogueEntry& entry) const {
 void Service::Relaunch(const std::string& id, int priority, const std::vector<std::string>& labels) {
   CatalogueEntry entry = catalogue_.At(id);
   entry.priority = priority;
-  for (const std::string& label : labels) {
-    std::erase(entry.labels, label);
-    entry.labels.push_back(label);
-  }
-  if (entry.labels.size() > kMaxLabels)
-    entry.labels.erase(entry.labels.begin(), entry.labels.end() - std::ptrdiff_t{kMaxLabels});
+  AddLabels(&entry, labels);
   if (IsContinuedByLaunch(entry)) {
     RequireQuota(entry);
-    entry.state = CampaignState::kWaiting;
-    entry.quarantined = 0;
-    entry.ended_unix_s = 0;
-    entry.problem.clear();
-    entry.verdict.clear();
+    QueueAgain(&entry);
   }
   catalogue_.Write(entry);
   catalogue_.At(id) = entry;
@@ -637,7 +621,9 @@ void Service::Remember(const CatalogueEntry& entry) const {
   std::string verdict;
   try {
     std::ifstream stream(catalogue_.ResultsOf(entry.id) / "summary.json");
-    if (stream) verdict = nlohmann::json::parse(stream).value("verdict", "");
+    // Of a campaign that was repaired and then cancelled, it is the report of results that are gone.
+    if (stream && entry.state == CampaignState::kDone)
+      verdict = nlohmann::json::parse(stream).value("verdict", "");
   } catch (const nlohmann::json::exception&) {
     // A damaged summary has no verdict.
   }
@@ -659,27 +645,20 @@ void Service::DeleteOld() {
   const Retention& keep = options_.retention;
   if ((!keep.days && !keep.bytes) || workforce_.now_s() - retained_s_ < kRetention_s) return;
   retained_s_ = workforce_.now_s();
-  std::vector<const CatalogueEntry*> ended;
-  std::map<std::string, std::uint64_t> sizes;
-  std::uint64_t total = 0;
-  for (const auto& [id, entry] : catalogue_.entries()) {
-    if (MayBeDeleted(id)) ended.push_back(&entry);
-    if (keep.bytes) total += sizes[id] = entry.bytes;
-  }
-  std::sort(ended.begin(), ended.end(),
-            [](const auto* a, const auto* b) { return a->ended_unix_s < b->ended_unix_s; });
-  const std::int64_t now = options_.unix_time_s();
-  for (const CatalogueEntry* entry : ended) {
-    const std::string id = entry->id;
-    const bool is_old = keep.days && static_cast<double>(now - entry->ended_unix_s) > 86400.0 * *keep.days;
-    if (!is_old && !(keep.bytes && total > *keep.bytes)) break;
-    try {
-      if (keep.bytes) total -= sizes[id];
-      Delete(id, is_old ? ": it ended long ago (--keep)" : ": the campaigns take too much space (--keep)");
-    } catch (const ResultError& error) {
-      LogError("campaign {} cannot be deleted: {}", id.substr(0, 8), error.what());
-    }
-  }
+  std::vector<Stored> campaigns;
+  for (const auto& [id, entry] : catalogue_.entries())
+    campaigns.push_back({id, entry.ended_unix_s, entry.bytes, MayBeDeleted(id)});
+  DeleteBeyond(
+      keep, std::move(campaigns), options_.unix_time_s(), [this](const std::string& id, bool is_old) {
+        try {
+          Delete(id,
+                 is_old ? ": it ended long ago (--keep)" : ": the campaigns take too much space (--keep)");
+          return true;
+        } catch (const ResultError& error) {
+          LogError("campaign {} cannot be deleted: {}", id.substr(0, 8), error.what());
+          return false;
+        }
+      });
 }
 
 void Service::Repair(const std::string& id, const std::string& worker) {
@@ -690,12 +669,9 @@ void Service::Repair(const std::string& id, const std::string& worker) {
                               entry.state == CampaignState::kReporting ? "reporting" : "being opened"));
   }
   CatalogueEntry repaired = entry;
-  repaired.state = CampaignState::kWaiting;
+  QueueAgain(&repaired);
   repaired.distrusted.push_back(worker);
-  repaired.quarantined = repaired.conflicts = 0;
-  repaired.ended_unix_s = 0;
-  repaired.problem.clear();
-  repaired.verdict.clear();
+  repaired.conflicts = 0;
   catalogue_.Write(repaired);
   if (flying_.contains(id)) {
     TakeBack(id);

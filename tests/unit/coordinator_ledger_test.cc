@@ -106,6 +106,34 @@ TEST(Ledger, BatchesCasesThatFlySideBySideInWholePacks) {
               ElementsAre(8, 56, 56, 40, 16, 8, 8, 4, 2, 1, 1));
 }
 
+// One case in a hundred that ends at once, or that takes long, says little of the others.
+TEST(Ledger, BatchesFollowTheMeanOfManyCasesAndNotTheLastOne) {
+  const auto next_after = [](double last_s) {
+    Ledger ledger("1", 4000, {.batch_duration_s = 1.0, .max_batch = 1000, .side_by_side = 1});
+    ledger.Join("w", {.engine_version = "1", .slots = 1, .credits = 1}, 0.0);
+    double now_s = 0.0;
+    const auto fly = [&](double seconds) {
+      const auto given = ledger.Assign(now_s);
+      for (const std::uint64_t i : given.at(0).cases) {
+        ledger.Started("w", i, given[0].attempt, now_s);
+        now_s += seconds;
+        ledger.Finished("w", i, given[0].attempt, ResultOf(i), now_s);
+      }
+    };
+    for (int i = 0; i < 3; ++i) fly(1.0 / 64);
+    const auto given = ledger.GiveTo("w", 0, now_s);
+    ledger.Started("w", given->cases[0], given->attempt, now_s);
+    now_s += last_s;
+    ledger.Finished("w", given->cases[0], given->attempt, ResultOf(given->cases[0]), now_s);
+    ledger.Join("v", {.engine_version = "1", .slots = 1, .credits = 1}, now_s);
+    return ledger.GiveTo("v", 0, now_s)->cases.size();
+  };
+  EXPECT_EQ(next_after(1.0 / 64), 64u);
+  // The newest one has a weight of a tenth: 0.9 + 0.1 * 0 and 0.9 + 0.1 * 11 of a 64th.
+  EXPECT_EQ(next_after(0.0), 71u);
+  EXPECT_EQ(next_after(11.0 / 64), 32u);
+}
+
 TEST(Ledger, AResultIsAcceptedOnceAndComparedEverAfter) {
   Ledger ledger("1", 3);
   ledger.Join("w", kHello, 0.0);
