@@ -16,6 +16,7 @@
 #include "services/coordinator/dump_any_text.h"
 #include "services/coordinator/epoch.h"
 #include "services/coordinator/packed_files.h"
+#include "services/coordinator/queue.h"
 #include "services/ledger/campaign_attempt.h"
 #include "services/ledger/open_book.h"
 #include "services/log/log.h"
@@ -228,46 +229,14 @@ std::optional<std::uint64_t> Service::free_bytes() const {
   return error ? std::nullopt : std::optional<std::uint64_t>(space.available);
 }
 
-// Of campaigns of the same flights one after the other: the later takes over what the earlier has flown. What
-// lacks its report alone, when the coordinator is started again, comes after all that is to be flown.
-const CatalogueEntry* Service::NextToOpen() const {
-  std::set<std::string> busy;
-  std::map<std::string, std::uint64_t> flying;  // by owner
-  for (const std::string& id : catalogue_.open()) {
-    const CatalogueEntry& entry = catalogue_.entries().at(id);
-    if (entry.state == CampaignState::kFlying || entry.state == CampaignState::kReporting)
-      busy.insert(entry.flight_id);
-    if (entry.state == CampaignState::kFlying) ++flying[entry.owner];
-  }
-  const auto has_no_place = [&](const CatalogueEntry& entry) {
-    const auto places = options_.quotas.Of(entry.owner).places;
-    return places && flying[entry.owner] >= *places;
-  };
-  const CatalogueEntry* next = nullptr;
-  const auto comes_before = [](const CatalogueEntry& a, const CatalogueEntry& b) {
-    const auto is_flown = [](const CatalogueEntry& entry) {
-      return entry.done + entry.quarantined >= entry.cases;
-    };
-    return is_flown(a) == is_flown(b) ? ComesBefore(a, b) : is_flown(b);
-  };
-  for (const std::string& id : catalogue_.open()) {
-    const CatalogueEntry& entry = catalogue_.entries().at(id);
-    if (entry.state != CampaignState::kWaiting || busy.contains(entry.flight_id) || IsDelayed(id) ||
-        has_no_place(entry))
-      continue;
-    if (next == nullptr || comes_before(entry, *next)) next = &entry;
-  }
-  return next;
-}
-
 // One that flies goes back into the queue if this one has a higher priority.
 bool Service::MakeRoomFor(const CatalogueEntry& entry) {
   if (flying_.size() < options_.flying_at_once) return true;
-  const auto last = std::max_element(flying_.begin(), flying_.end(), [this](const auto& a, const auto& b) {
-    return ComesBefore(catalogue_.At(a.first), catalogue_.At(b.first));
-  });
-  CatalogueEntry& lowest = catalogue_.At(last->first);
-  if (lowest.priority >= entry.priority || !last->second.book->TryFlush()) return false;
+  std::vector<const CatalogueEntry*> flying;
+  for (const auto& [id, each] : flying_) flying.push_back(&catalogue_.At(id));
+  const CatalogueEntry* last = WhoGivesWayTo(entry, flying);
+  if (last == nullptr || !flying_.at(last->id).book->TryFlush()) return false;
+  CatalogueEntry& lowest = catalogue_.At(last->id);
   TakeBack(lowest.id);
   lowest.state = CampaignState::kWaiting;
   Save(lowest);
@@ -277,7 +246,10 @@ bool Service::MakeRoomFor(const CatalogueEntry& entry) {
 
 void Service::StartOpening() {
   if (opening_) return;
-  const CatalogueEntry* entry = NextToOpen();
+  std::vector<const CatalogueEntry*> open;
+  for (const std::string& id : catalogue_.open()) open.push_back(&catalogue_.At(id));
+  const CatalogueEntry* entry =
+      NextOf(open, options_.quotas, [this](const std::string& id) { return IsDelayed(id); });
   if (entry == nullptr || !MakeRoomFor(*entry)) return;
   const std::string id = entry->id;
   try {

@@ -147,7 +147,6 @@ class Service {
   void FinishOpening();
   void StartOpening();
   void BeginToOpen(const CatalogueEntry& entry);
-  const CatalogueEntry* NextToOpen() const;
   /// Throws Refused if its owner may not have it fly besides its other campaigns.
   void RequireQuota(const CatalogueEntry& entry) const;
   bool MakeRoomFor(const CatalogueEntry& entry);

@@ -3,11 +3,13 @@
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
+#include <deque>
 #include <string>
 #include <vector>
 
 #include "services/coordinator/catalogue.h"
 #include "services/coordinator/pace.h"
+#include "services/coordinator/queue.h"
 #include "services/coordinator/quota.h"
 #include "services/coordinator/retention.h"
 
@@ -204,6 +206,116 @@ TEST(Queue, GoesByPriorityAndThenByAge) {
   EXPECT_TRUE(ComesBefore(entry(-1, 2), entry(-1, 3)));
   EXPECT_FALSE(ComesBefore(entry(2, 3), entry(2, 2)));
   EXPECT_FALSE(ComesBefore(entry(2, 2), entry(2, 2)));
+}
+
+// A queue as a test writes it.
+class Queued {
+ public:
+  CatalogueEntry& Add(const std::string& id, CampaignState state, const std::string& owner = "ann",
+                      int priority = 0) {
+    CatalogueEntry& entry = entries_.emplace_back();
+    entry.id = entry.flight_id = id;
+    entry.state = state;
+    entry.owner = owner;
+    entry.priority = priority;
+    entry.order = entries_.size();
+    entry.cases = 100;
+    return entry;
+  }
+  /// The id of the one that is opened next; `delayed` waits for the disk.
+  std::string Next(const Quotas& quotas = {}, const std::string& delayed = "") const {
+    const CatalogueEntry* next = NextOf(All(), quotas, [&](const std::string& id) { return id == delayed; });
+    return next == nullptr ? "none" : next->id;
+  }
+  std::string GivesWayTo(int priority) const {
+    CatalogueEntry entry;
+    entry.priority = priority;
+    const CatalogueEntry* last = WhoGivesWayTo(entry, All());
+    return last == nullptr ? "none" : last->id;
+  }
+
+ private:
+  std::vector<const CatalogueEntry*> All() const {
+    std::vector<const CatalogueEntry*> all;
+    for (const CatalogueEntry& entry : entries_) all.push_back(&entry);
+    return all;
+  }
+  std::deque<CatalogueEntry> entries_;
+};
+
+constexpr CampaignState kWaiting = CampaignState::kWaiting, kFlying = CampaignState::kFlying,
+                        kReporting = CampaignState::kReporting;
+
+TEST(Queue, OpensWhatHasTheHighestPriorityAndWaitsLongest) {
+  Queued queue;
+  EXPECT_EQ(queue.Next(), "none");
+  queue.Add("flies", kFlying, "ann", 9);
+  queue.Add("reports", kReporting, "ann", 9);
+  queue.Add("low", kWaiting, "ann", -1);
+  queue.Add("older", kWaiting, "ann", 2);
+  queue.Add("younger", kWaiting, "ann", 2);
+  EXPECT_EQ(queue.Next(), "older");
+  EXPECT_EQ(queue.Next({}, "older"), "younger") << "the disk was full a moment ago";
+}
+
+TEST(Queue, WhatLacksItsReportAloneComesLast) {
+  Queued queue;
+  CatalogueEntry& flown = queue.Add("flown", kWaiting, "ann", 5);
+  queue.Add("not flown", kWaiting);
+  flown.done = 97;
+  flown.quarantined = 3;
+  EXPECT_EQ(queue.Next(), "not flown");
+  flown.done = 96;
+  EXPECT_EQ(queue.Next(), "flown");
+  Queued both;
+  both.Add("older", kWaiting).done = 100;
+  both.Add("higher", kWaiting, "ann", 1).done = 100;
+  EXPECT_EQ(both.Next(), "higher");
+}
+
+TEST(Queue, OfTheSameFlightsOneAfterTheOther) {
+  for (const CampaignState busy : {kFlying, kReporting}) {
+    Queued queue;
+    queue.Add("first", busy).flight_id = "same";
+    queue.Add("second", kWaiting).flight_id = "same";
+    EXPECT_EQ(queue.Next(), "none");
+    queue.Add("other", kWaiting);
+    EXPECT_EQ(queue.Next(), "other");
+  }
+}
+
+// Ann has two places and both are taken, bob has three of his own.
+TEST(Queue, EachOwnerHasSoManyPlaces) {
+  Quotas quotas;
+  quotas.Add("places=2");
+  quotas.Add("bob:places=3");
+  Queued queue;
+  queue.Add("a1", kFlying);
+  queue.Add("a2", kFlying);
+  queue.Add("a3", kWaiting, "ann", 9);
+  queue.Add("b1", kFlying, "bob");
+  queue.Add("b2", kFlying, "bob");
+  queue.Add("b3", kWaiting, "bob");
+  queue.Add("c1", kReporting, "carol");
+  queue.Add("c2", kReporting, "carol");
+  EXPECT_EQ(queue.Next(quotas), "b3");
+  EXPECT_EQ(queue.Next(quotas, "b3"), "none");
+  queue.Add("c3", kWaiting, "carol");
+  EXPECT_EQ(queue.Next(quotas, "b3"), "c3") << "reports take no place, nor does what waits";
+  queue.Add("c4", kWaiting, "carol", 1);
+  EXPECT_EQ(queue.Next(quotas, "b3"), "c4");
+  EXPECT_EQ(queue.Next(), "a3") << "without quotas";
+}
+
+TEST(Queue, TheLastGivesWayToAHigherPriority) {
+  Queued queue;
+  EXPECT_EQ(queue.GivesWayTo(5), "none");
+  queue.Add("high", kFlying, "ann", 3);
+  queue.Add("older", kFlying, "ann", 1);
+  queue.Add("younger", kFlying, "ann", 1);
+  queue.Add("middle", kFlying, "ann", 2);
+  EXPECT_EQ(queue.GivesWayTo(2), "younger");
+  EXPECT_EQ(queue.GivesWayTo(1), "none") << "an equal priority takes nobody's place";
 }
 
 }  // namespace
