@@ -15,6 +15,7 @@
 #include "core/results/output_file.h"
 #include "services/coordinator/dump_any_text.h"
 #include "services/coordinator/epoch.h"
+#include "services/coordinator/outcomes.h"
 #include "services/coordinator/packed_files.h"
 #include "services/coordinator/queue.h"
 #include "services/ledger/campaign_attempt.h"
@@ -170,32 +171,14 @@ bool Service::StartReport() {
           const CampaignSummary summary = WriteReports(folder, campaign, options);
           NoteEndedIn(root, folder, campaign, summary);
           TryToPack(results);
-          return OutcomeOf(summary);
+          return Reported{summary.standing.verdict, summary.engine,
+                          static_cast<std::int64_t>(summary.standing.attempts.size()), OutcomesOf(summary)};
         });
     reporting_.push_back({id, std::move(reported)});
   } catch (...) {
     Fail(entry, std::current_exception());
   }
   return true;
-}
-
-Service::Reported Service::OutcomeOf(const CampaignSummary& summary) {
-  Reported reported{summary.standing.verdict,
-                    summary.engine,
-                    static_cast<std::int64_t>(summary.standing.attempts.size()),
-                    {}};
-  for (std::size_t i = 0; i < std::min(summary.requirements.size(), kMaxOutcomes); ++i) {
-    const RequirementSummary& one = summary.requirements[i];
-    const auto& standing = summary.standing.requirements;
-    reported.requirements.push_back({one.metric, RequirementWords(one), one.probability, one.n, one.failures,
-                                     one.success_lower, one.success_upper,
-                                     i < standing.size() ? standing[i].verdict : one.verdict});
-  }
-  for (const LoadCheck& check : summary.load_checks)
-    if (check.failures > 0)
-      reported.requirements.push_back(
-          {check.metric, LoadCheckSentence(check), 0.0, check.n, check.failures, {}, {}, "fail"});
-  return reported;
 }
 
 void Service::FinishReports() {

@@ -136,7 +136,6 @@ class Service {
     std::string id;
     std::future<Reported> reported;
   };
-  static Reported OutcomeOf(const CampaignSummary& summary);
 
   void CloseBroken();
   void CloseRefused();

@@ -8,6 +8,7 @@
 #include <vector>
 
 #include "services/coordinator/catalogue.h"
+#include "services/coordinator/outcomes.h"
 #include "services/coordinator/pace.h"
 #include "services/coordinator/queue.h"
 #include "services/coordinator/quota.h"
@@ -316,6 +317,35 @@ TEST(Queue, TheLastGivesWayToAHigherPriority) {
   queue.Add("middle", kFlying, "ann", 2);
   EXPECT_EQ(queue.GivesWayTo(2), "younger");
   EXPECT_EQ(queue.GivesWayTo(1), "none") << "an equal priority takes nobody's place";
+}
+
+// Of 21 requirements the first 20, each with the verdict that stands; load checks come behind them.
+TEST(Outcomes, HaveTheVerdictThatStandsAndTheLoadChecksThatFailed) {
+  CampaignSummary summary;
+  for (int i = 0; i < 21; ++i) {
+    RequirementSummary one;
+    one.metric = "m" + std::to_string(i);
+    one.n = 100 + i;
+    one.failures = i;
+    one.verdict = "pass";
+    summary.requirements.push_back(one);
+    if (i < 2) {
+      summary.standing.requirements.emplace_back();
+      summary.standing.requirements.back().verdict = i == 0 ? "fail" : "inconclusive";
+    }
+  }
+  summary.load_checks = {{"structural_limit_exceeded", 50, 0, 0}, {"bending_moment_n_m", 60, 4, 0}};
+  const std::vector<RequirementOutcome> outcomes = OutcomesOf(summary);
+  ASSERT_EQ(outcomes.size(), 21u);
+  EXPECT_EQ(outcomes[0].verdict, "fail");
+  EXPECT_EQ(outcomes[1].verdict, "inconclusive");
+  EXPECT_EQ(outcomes[2].verdict, "pass");
+  EXPECT_EQ(outcomes[19].metric, "m19");
+  EXPECT_EQ(outcomes[19].n, 119);
+  EXPECT_EQ(outcomes[19].failures, 19);
+  EXPECT_EQ(outcomes[20].metric, "bending_moment_n_m");
+  EXPECT_EQ(outcomes[20].failures, 4);
+  EXPECT_EQ(outcomes[20].verdict, "fail");
 }
 
 }  // namespace
