@@ -132,6 +132,27 @@ bool ComesBefore(const CatalogueEntry& a, const CatalogueEntry& b) {
   return std::tuple(b.priority, a.order) < std::tuple(a.priority, b.order);
 }
 
+void AddLabels(CatalogueEntry* entry, const std::vector<std::string>& labels) {
+  for (const std::string& label : labels) {
+    std::erase(entry->labels, label);
+    entry->labels.push_back(label);
+  }
+  if (entry->labels.size() > kMaxLabels)
+    entry->labels.erase(entry->labels.begin(), entry->labels.end() - std::ptrdiff_t{kMaxLabels});
+}
+
+void QueueAgain(CatalogueEntry* entry) {
+  entry->state = CampaignState::kWaiting;
+  entry->code = 0;
+  entry->quarantined = 0;
+  entry->ended_unix_s = 0;
+  entry->attempts = 0;
+  entry->problem.clear();
+  entry->verdict.clear();
+  entry->engine.clear();
+  entry->requirements.clear();
+}
+
 void MakeDataFolder(const fs::path& directory) {
   std::error_code error;
   fs::create_directories(directory, error);

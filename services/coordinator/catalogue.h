@@ -58,6 +58,12 @@ inline constexpr std::size_t kMaxOutcomes = 20;
 /// The order of the queue: by priority, then by age.
 bool ComesBefore(const CatalogueEntry& a, const CatalogueEntry& b);
 
+/// Each is the last one now, and was no other before. Beyond kMaxLabels those that were given first go.
+void AddLabels(CatalogueEntry* entry, const std::vector<std::string>& labels);
+
+/// Into the queue, as if it had never ended: nothing of its report stands any more.
+void QueueAgain(CatalogueEntry* entry);
+
 /// Version of state.json. Version 2 has `seed`, `ended_unix_s` and `distrusted`. Version 3 has all members
 /// from `owner` on. Earlier versions, which lack them, can be read too.
 inline constexpr int kStateVersion = 3;

@@ -308,7 +308,7 @@ std::string FrontDesk::Launch(const Asker& asker, const std::string& arguments) 
   RefuseAnotherEngine(flight_id, entry);
   entry.priority = priority.value_or(0);
   entry.owner = asker.account;
-  entry.labels = labels;
+  AddLabels(&entry, labels);
   service_.Launch(std::move(entry), complete.text);
   return answer("waiting");
 }

@@ -1,5 +1,6 @@
 #include "services/coordinator/retention.h"
 
+#include <algorithm>
 #include <charconv>
 #include <cmath>
 #include <string_view>
@@ -9,6 +10,7 @@ namespace dispersa {
 namespace {
 
 constexpr std::pair<std::string_view, double> kSizes[] = {{"MB", 1e6}, {"GB", 1e9}, {"TB", 1e12}};
+constexpr double kSecondsOfDay = 86400.0;
 constexpr double kMost = 1e6;  // days, or units of size
 
 /// A number above zero and its unit.
@@ -21,6 +23,21 @@ std::optional<std::pair<double, std::string_view>> ReadAmount(const std::string&
 }
 
 }  // namespace
+
+void DeleteBeyond(const Retention& retention, std::vector<Stored> campaigns, std::int64_t now_unix_s,
+                  const std::function<bool(const std::string& id, bool is_old)>& remove) {
+  std::uint64_t total = 0;
+  for (const Stored& campaign : campaigns) total += campaign.bytes;
+  std::stable_sort(campaigns.begin(), campaigns.end(),
+                   [](const Stored& a, const Stored& b) { return a.ended_unix_s < b.ended_unix_s; });
+  for (const Stored& campaign : campaigns) {
+    if (!campaign.may_be_deleted) continue;
+    const bool is_old = retention.days && static_cast<double>(now_unix_s - campaign.ended_unix_s) >
+                                              kSecondsOfDay * *retention.days;
+    if (!is_old && !(retention.bytes && total > *retention.bytes)) break;
+    if (remove(campaign.id, is_old)) total -= campaign.bytes;
+  }
+}
 
 bool ReadRetention(const std::string& text, Retention* retention) {
   if (const auto amount = ReadAmount(text); amount && amount->second == "d") {

@@ -15,7 +15,9 @@
 #include "core/results/output_file.h"
 #include "services/coordinator/dump_any_text.h"
 #include "services/coordinator/epoch.h"
+#include "services/coordinator/outcomes.h"
 #include "services/coordinator/packed_files.h"
+#include "services/coordinator/queue.h"
 #include "services/ledger/campaign_attempt.h"
 #include "services/ledger/open_book.h"
 #include "services/ledger/result_exit_code.h"
@@ -27,7 +29,6 @@ namespace dispersa {
 namespace {
 
 constexpr double kMeasure_s = 1.0;
-constexpr std::size_t kRateOver = 10;  // measurements
 constexpr std::size_t kMaxProblem = 1000;
 constexpr std::size_t kRemembered = 16;  // tallies of campaigns that fly no more
 
@@ -171,33 +172,15 @@ bool Service::StartReport() {
           const CampaignSummary summary = WriteReports(folder, campaign, options);
           NoteEndedIn(root, folder, campaign, summary);
           TryToPack(results);
-          return OutcomeOf(summary);
+          return Reported{summary.standing.verdict, summary.engine,
+                          static_cast<std::int64_t>(summary.standing.attempts.size()), OutcomesOf(summary),
+                          summary.nominal ? NominalLoss(*summary.nominal) : std::string()};
         });
     reporting_.push_back({id, std::move(reported)});
   } catch (...) {
     Fail(entry, std::current_exception());
   }
   return true;
-}
-
-Service::Reported Service::OutcomeOf(const CampaignSummary& summary) {
-  Reported reported{summary.standing.verdict,
-                    summary.engine,
-                    static_cast<std::int64_t>(summary.standing.attempts.size()),
-                    {},
-                    summary.nominal ? NominalLoss(*summary.nominal) : std::string()};
-  for (std::size_t i = 0; i < std::min(summary.requirements.size(), kMaxOutcomes); ++i) {
-    const RequirementSummary& one = summary.requirements[i];
-    const auto& standing = summary.standing.requirements;
-    reported.requirements.push_back({one.metric, RequirementWords(one), one.probability, one.n, one.failures,
-                                     one.success_lower, one.success_upper,
-                                     i < standing.size() ? standing[i].verdict : one.verdict});
-  }
-  for (const LoadCheck& check : summary.load_checks)
-    if (check.failures > 0)
-      reported.requirements.push_back(
-          {check.metric, LoadCheckSentence(check), 0.0, check.n, check.failures, {}, {}, "fail"});
-  return reported;
 }
 
 void Service::FinishReports() {
@@ -232,46 +215,14 @@ std::optional<std::uint64_t> Service::free_bytes() const {
   return error ? std::nullopt : std::optional<std::uint64_t>(space.available);
 }
 
-// Of campaigns of the same flights one after the other: the later takes over what the earlier has flown. What
-// lacks its report alone, when the coordinator is started again, comes after all that is to be flown.
-const CatalogueEntry* Service::NextToOpen() const {
-  std::set<std::string> busy;
-  std::map<std::string, std::uint64_t> flying;  // by owner
-  for (const std::string& id : catalogue_.open()) {
-    const CatalogueEntry& entry = catalogue_.entries().at(id);
-    if (entry.state == CampaignState::kFlying || entry.state == CampaignState::kReporting)
-      busy.insert(entry.flight_id);
-    if (entry.state == CampaignState::kFlying) ++flying[entry.owner];
-  }
-  const auto has_no_place = [&](const CatalogueEntry& entry) {
-    const auto places = options_.quotas.Of(entry.owner).places;
-    return places && flying[entry.owner] >= *places;
-  };
-  const CatalogueEntry* next = nullptr;
-  const auto comes_before = [](const CatalogueEntry& a, const CatalogueEntry& b) {
-    const auto is_flown = [](const CatalogueEntry& entry) {
-      return entry.done + entry.quarantined >= entry.cases;
-    };
-    return is_flown(a) == is_flown(b) ? ComesBefore(a, b) : is_flown(b);
-  };
-  for (const std::string& id : catalogue_.open()) {
-    const CatalogueEntry& entry = catalogue_.entries().at(id);
-    if (entry.state != CampaignState::kWaiting || busy.contains(entry.flight_id) || IsDelayed(id) ||
-        has_no_place(entry))
-      continue;
-    if (next == nullptr || comes_before(entry, *next)) next = &entry;
-  }
-  return next;
-}
-
 // One that flies goes back into the queue if this one has a higher priority.
 bool Service::MakeRoomFor(const CatalogueEntry& entry) {
   if (flying_.size() < options_.flying_at_once) return true;
-  const auto last = std::max_element(flying_.begin(), flying_.end(), [this](const auto& a, const auto& b) {
-    return ComesBefore(catalogue_.At(a.first), catalogue_.At(b.first));
-  });
-  CatalogueEntry& lowest = catalogue_.At(last->first);
-  if (lowest.priority >= entry.priority || !last->second.book->TryFlush()) return false;
+  std::vector<const CatalogueEntry*> flying;
+  for (const auto& [id, each] : flying_) flying.push_back(&catalogue_.At(id));
+  const CatalogueEntry* last = WhoGivesWayTo(entry, flying);
+  if (last == nullptr || !flying_.at(last->id).book->TryFlush()) return false;
+  CatalogueEntry& lowest = catalogue_.At(last->id);
   TakeBack(lowest.id);
   lowest.state = CampaignState::kWaiting;
   Save(lowest);
@@ -281,7 +232,10 @@ bool Service::MakeRoomFor(const CatalogueEntry& entry) {
 
 void Service::StartOpening() {
   if (opening_) return;
-  const CatalogueEntry* entry = NextToOpen();
+  std::vector<const CatalogueEntry*> open;
+  for (const std::string& id : catalogue_.open()) open.push_back(&catalogue_.At(id));
+  const CatalogueEntry* entry =
+      NextOf(open, options_.quotas, [this](const std::string& id) { return IsDelayed(id); });
   if (entry == nullptr || !MakeRoomFor(*entry)) return;
   const std::string id = entry->id;
   try {
@@ -392,8 +346,7 @@ void Service::Measure() {
   for (auto& [id, flying] : flying_) {
     CatalogueEntry& entry = catalogue_.At(id);
     if (counts) entry.bytes = catalogue_.CountBytes(id);
-    flying.past.emplace_back(now_s, flying.book->ledger().Progress().done);
-    if (flying.past.size() > kRateOver) flying.past.pop_front();
+    flying.pace.Measure(now_s, flying.book->ledger().Progress().done);
     NoteConflicts(entry, flying);
     NoteRemoved(entry, flying);
     Publish(entry);
@@ -506,13 +459,8 @@ CampaignView Service::View(const std::string& id) const {
     view.problem = "no worker here can fly it: " + *refusal;
   if (const std::string& pause = flying->second.book->pause(); !pause.empty()) view.problem = Waiting(pause);
   view.progress = flying->second.book->ledger().Progress();
-  const auto& past = flying->second.past;
-  if (past.size() < 2) return view;
-  const double seconds = past.back().first - past.front().first;
-  view.rate_per_s = static_cast<double>(past.back().second - past.front().second) / seconds;
-  if (view.rate_per_s > 0.0) {
-    view.eta_s = static_cast<double>(view.progress.waiting + view.progress.assigned) / view.rate_per_s;
-  }
+  view.rate_per_s = flying->second.pace.PerSecond();
+  view.eta_s = TimeLeft(view.progress, view.rate_per_s);
   return view;
 }
 
@@ -580,19 +528,10 @@ void Service::RequireQuota(const CatalogueEntry& entry) const {
 void Service::Relaunch(const std::string& id, int priority, const std::vector<std::string>& labels) {
   CatalogueEntry entry = catalogue_.At(id);
   entry.priority = priority;
-  for (const std::string& label : labels) {
-    std::erase(entry.labels, label);
-    entry.labels.push_back(label);
-  }
-  if (entry.labels.size() > kMaxLabels)
-    entry.labels.erase(entry.labels.begin(), entry.labels.end() - std::ptrdiff_t{kMaxLabels});
+  AddLabels(&entry, labels);
   if (IsContinuedByLaunch(entry)) {
     RequireQuota(entry);
-    entry.state = CampaignState::kWaiting;
-    entry.quarantined = 0;
-    entry.ended_unix_s = 0;
-    entry.problem.clear();
-    entry.verdict.clear();
+    QueueAgain(&entry);
   }
   catalogue_.Write(entry);
   catalogue_.At(id) = entry;
@@ -639,7 +578,9 @@ void Service::Remember(const CatalogueEntry& entry) const {
   std::string verdict;
   try {
     std::ifstream stream(catalogue_.ResultsOf(entry.id) / "summary.json");
-    if (stream) verdict = nlohmann::json::parse(stream).value("verdict", "");
+    // Of a campaign that was repaired and then cancelled, it is the report of results that are gone.
+    if (stream && entry.state == CampaignState::kDone)
+      verdict = nlohmann::json::parse(stream).value("verdict", "");
   } catch (const nlohmann::json::exception&) {
     // A damaged summary has no verdict.
   }
@@ -661,27 +602,20 @@ void Service::DeleteOld() {
   const Retention& keep = options_.retention;
   if ((!keep.days && !keep.bytes) || workforce_.now_s() - retained_s_ < kRetention_s) return;
   retained_s_ = workforce_.now_s();
-  std::vector<const CatalogueEntry*> ended;
-  std::map<std::string, std::uint64_t> sizes;
-  std::uint64_t total = 0;
-  for (const auto& [id, entry] : catalogue_.entries()) {
-    if (MayBeDeleted(id)) ended.push_back(&entry);
-    if (keep.bytes) total += sizes[id] = entry.bytes;
-  }
-  std::sort(ended.begin(), ended.end(),
-            [](const auto* a, const auto* b) { return a->ended_unix_s < b->ended_unix_s; });
-  const std::int64_t now = options_.unix_time_s();
-  for (const CatalogueEntry* entry : ended) {
-    const std::string id = entry->id;
-    const bool is_old = keep.days && static_cast<double>(now - entry->ended_unix_s) > 86400.0 * *keep.days;
-    if (!is_old && !(keep.bytes && total > *keep.bytes)) break;
-    try {
-      if (keep.bytes) total -= sizes[id];
-      Delete(id, is_old ? ": it ended long ago (--keep)" : ": the campaigns take too much space (--keep)");
-    } catch (const ResultError& error) {
-      LogError("campaign {} cannot be deleted: {}", id.substr(0, 8), error.what());
-    }
-  }
+  std::vector<Stored> campaigns;
+  for (const auto& [id, entry] : catalogue_.entries())
+    campaigns.push_back({id, entry.ended_unix_s, entry.bytes, MayBeDeleted(id)});
+  DeleteBeyond(
+      keep, std::move(campaigns), options_.unix_time_s(), [this](const std::string& id, bool is_old) {
+        try {
+          Delete(id,
+                 is_old ? ": it ended long ago (--keep)" : ": the campaigns take too much space (--keep)");
+          return true;
+        } catch (const ResultError& error) {
+          LogError("campaign {} cannot be deleted: {}", id.substr(0, 8), error.what());
+          return false;
+        }
+      });
 }
 
 void Service::Repair(const std::string& id, const std::string& worker) {
@@ -692,12 +626,9 @@ void Service::Repair(const std::string& id, const std::string& worker) {
                               entry.state == CampaignState::kReporting ? "reporting" : "being opened"));
   }
   CatalogueEntry repaired = entry;
-  repaired.state = CampaignState::kWaiting;
+  QueueAgain(&repaired);
   repaired.distrusted.push_back(worker);
-  repaired.quarantined = repaired.conflicts = 0;
-  repaired.ended_unix_s = 0;
-  repaired.problem.clear();
-  repaired.verdict.clear();
+  repaired.conflicts = 0;
   catalogue_.Write(repaired);
   if (flying_.contains(id)) {
     TakeBack(id);

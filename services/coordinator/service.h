@@ -19,6 +19,7 @@
 #include <vector>
 
 #include "services/coordinator/catalogue.h"
+#include "services/coordinator/pace.h"
 #include "services/coordinator/quota.h"
 #include "services/coordinator/retention.h"
 #include "services/coordinator/workforce.h"
@@ -118,7 +119,7 @@ class Service {
   struct Flying {
     Book book;
     std::uint64_t conflicts_noted = 0;
-    std::deque<std::pair<double, std::uint64_t>> past;  ///< time, cases done: of the last seconds
+    Pace pace;
   };
   struct Opening {
     std::string id;
@@ -136,7 +137,6 @@ class Service {
     std::string id;
     std::future<Reported> reported;
   };
-  static Reported OutcomeOf(const CampaignSummary& summary);
 
   void CloseBroken();
   void CloseRefused();
@@ -147,7 +147,6 @@ class Service {
   void FinishOpening();
   void StartOpening();
   void BeginToOpen(const CatalogueEntry& entry);
-  const CatalogueEntry* NextToOpen() const;
   /// Throws Refused if its owner may not have it fly besides its other campaigns.
   void RequireQuota(const CatalogueEntry& entry) const;
   bool MakeRoomFor(const CatalogueEntry& entry);

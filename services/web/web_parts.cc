@@ -3,6 +3,8 @@
 #include <fmt/chrono.h>
 #include <fmt/format.h>
 
+#include <algorithm>
+
 #include "core/pages/embedded.h"
 #include "core/pages/html_parts.h"
 #include "core/results/text.h"
@@ -55,6 +57,13 @@ std::string BytesText(std::uint64_t bytes) {
   if (value >= 1e9) return fmt::format("{:.1f} GB", value / 1e9);
   if (value >= 1e6) return fmt::format("{:.1f} MB", value / 1e6);
   return fmt::format("{:.0f} kB", value / 1e3);
+}
+
+std::string LocalPath(const std::string& next) {
+  const bool is_local =
+      next.starts_with('/') && !next.starts_with("//") &&
+      std::all_of(next.begin(), next.end(), [](char c) { return c > ' ' && c <= '~' && c != '\\'; });
+  return is_local ? next : "/";
 }
 
 std::string UrlText(const std::string& text) {

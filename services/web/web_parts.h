@@ -22,6 +22,9 @@ std::string LabelsOf(const CampaignRow& row);
 std::string TimeText(std::int64_t unix_s);
 /// "1.2 GB".
 std::string BytesText(std::uint64_t bytes);
+/// Where a login goes on: `next` if it is a path of this server in printable ASCII, else "/". A browser drops
+/// tabs and line ends and takes '\' for '/', so that what follows them could be another host.
+std::string LocalPath(const std::string& next);
 /// A part of a query.
 std::string UrlText(const std::string& text);
 

@@ -63,14 +63,6 @@ std::string CookieOf(const httplib::Request& request) {
   return "";
 }
 
-/// Where a login goes on: on this server and nowhere else.
-std::string LocalPath(const std::string& next) {
-  const bool is_local = next.starts_with('/') && !next.starts_with("//") &&
-                        next.find('\\') == std::string::npos &&
-                        next.find_first_of("\r\n") == std::string::npos;
-  return is_local ? next : "/";
-}
-
 void Answer(httplib::Response& response, int status, const std::string& html) {
   response.status = status;
   response.set_content(html, kHtml);

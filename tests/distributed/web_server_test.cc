@@ -110,7 +110,8 @@ TEST_F(WebServerTest, WithATokenWhoeverLacksItIsAskedForIt) {
   const std::size_t at = right.find("dispersa=");
   const std::string cookie = right.substr(at, right.find(';', at) - at);
   EXPECT_THAT(Get("/", "Cookie: other=1; " + cookie + "\r\n"), HasSubstr("table3"));
-  for (const char* next : {"%2F%2Fevil.example", "https%3A%2F%2Fevil.example", "%2F%5Cevil.example"})
+  for (const char* next :
+       {"%2F%2Fevil.example", "%2F%09%2Fevil.example", "https%3A%2F%2Fevil.example", "%2F%5Cevil.example"})
     EXPECT_THAT(Post("/login", std::string("next=") + next + "&token=" + kToken),
                 HasSubstr("Location: /\r\n"))
         << next;

@@ -10,6 +10,16 @@
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
+#include "core/flight/engine_version.h"
+#include "core/flight/flight_inputs.h"
+#include "core/flight/metrics.h"
+#include "core/results/attempt_ledger.h"
+#include "services/ledger/audit.h"
+#include "services/ledger/campaign_attempt.h"
+#include "services/ledger/running_tally.h"
+#include "tests/distributed/memory_store.h"
+#include "tests/distributed/temporary_folder.h"
+
 namespace dispersa::coordinator_ledger_test {
 namespace {
 
@@ -104,6 +114,34 @@ TEST(Ledger, BatchesCasesThatFlySideBySideInWholePacks) {
   // Eight at once last as long as one; the largest batch and, later, half of what waits bound them.
   EXPECT_THAT(SizesOf({.batch_duration_s = 0.25, .max_batch = 60, .side_by_side = 8}),
               ElementsAre(8, 56, 56, 40, 16, 8, 8, 4, 2, 1, 1));
+}
+
+// One case in a hundred that ends at once, or that takes long, says little of the others.
+TEST(Ledger, BatchesFollowTheMeanOfManyCasesAndNotTheLastOne) {
+  const auto next_after = [](double last_s) {
+    Ledger ledger("1", 4000, {.batch_duration_s = 1.0, .max_batch = 1000, .side_by_side = 1});
+    ledger.Join("w", {.engine_version = "1", .slots = 1, .credits = 1}, 0.0);
+    double now_s = 0.0;
+    const auto fly = [&](double seconds) {
+      const auto given = ledger.Assign(now_s);
+      for (const std::uint64_t i : given.at(0).cases) {
+        ledger.Started("w", i, given[0].attempt, now_s);
+        now_s += seconds;
+        ledger.Finished("w", i, given[0].attempt, ResultOf(i), now_s);
+      }
+    };
+    for (int i = 0; i < 3; ++i) fly(1.0 / 64);
+    const auto given = ledger.GiveTo("w", 0, now_s);
+    ledger.Started("w", given->cases[0], given->attempt, now_s);
+    now_s += last_s;
+    ledger.Finished("w", given->cases[0], given->attempt, ResultOf(given->cases[0]), now_s);
+    ledger.Join("v", {.engine_version = "1", .slots = 1, .credits = 1}, now_s);
+    return ledger.GiveTo("v", 0, now_s)->cases.size();
+  };
+  EXPECT_EQ(next_after(1.0 / 64), 64u);
+  // The newest one has a weight of a tenth: 0.9 + 0.1 * 0 and 0.9 + 0.1 * 11 of a 64th.
+  EXPECT_EQ(next_after(0.0), 71u);
+  EXPECT_EQ(next_after(11.0 / 64), 32u);
 }
 
 TEST(Ledger, AResultIsAcceptedOnceAndComparedEverAfter) {
@@ -379,6 +417,227 @@ TEST(Ledger, SlotsAreThoseOfWorkersThatAreHere) {
               ledger.Lost("v", WorkerEnd::kLeft, "it left");
             }),
             99u / 2);
+}
+
+// Two workers with one case each, of two; "quick" has returned its own after a second.
+class Overdue : public testing::Test {
+ protected:
+  Overdue() {
+    Come("a");
+    Come("quick");
+    given_ = ledger_.Assign(0.0);
+    ledger_.Started("quick", 1, given_.at(1).attempt, 0.0);
+    ledger_.Finished("quick", 1, given_.at(1).attempt, ResultOf(1), longest_s_);
+  }
+  void Come(const std::string& worker, double now_s = 0.0) {
+    ledger_.Join(worker, {.engine_version = "1", .slots = 1, .credits = 1}, now_s);
+  }
+  bool IsTakenFrom(const std::string& worker, double now_s) {
+    ledger_.Expire(now_s);
+    return ledger_.Batches(worker) == 0;
+  }
+  /// The worker that gets the case that waits; empty: nobody.
+  std::string WhoGetsIt(double now_s) {
+    const auto given = ledger_.Assign(now_s);
+    return given.empty() ? "" : given[0].worker;
+  }
+
+  const double longest_s_ = 1.0;
+  Ledger ledger_{"1", 2, {.lease_s = 1000.0, .overdue_s = 30.0, .side_by_side = 1}};
+  std::vector<Assignment> given_;
+};
+
+TEST_F(Overdue, ACaseIsTakenFromOneThatReturnsNothingForAnIdleOne) {
+  EXPECT_FALSE(IsTakenFrom("a", 30.0));
+  EXPECT_TRUE(IsTakenFrom("a", 30.1)) << "more than 20 times the longest case";
+  EXPECT_EQ(WhoGetsIt(30.1), "quick") << "although a comes first";
+  EXPECT_TRUE(ledger_.WasGiven("a", 0)) << "its result is still welcome";
+}
+
+TEST_F(Overdue, NotBeforeTwentyTimesTheLongestCase) {
+  ledger_.Extend(3);
+  ledger_.Assign(1.0);
+  ledger_.Started("quick", 2, 3, 1.0);
+  ledger_.Finished("quick", 2, 3, ResultOf(2), 4.0);
+  EXPECT_FALSE(IsTakenFrom("a", 59.0)) << "the longest took 3 s";
+  EXPECT_TRUE(IsTakenFrom("a", 61.0));
+}
+
+TEST_F(Overdue, NotWhileAnotherCaseWaits) {
+  ledger_.Extend(3);
+  EXPECT_FALSE(IsTakenFrom("a", 40.0));
+}
+
+TEST_F(Overdue, ACaseIsTakenOnceAndThenLeftToItsSecondWorker) {
+  ASSERT_TRUE(IsTakenFrom("a", 31.0));
+  ASSERT_EQ(WhoGetsIt(31.0), "quick");
+  Come("c", 32.0);
+  EXPECT_FALSE(IsTakenFrom("quick", 100.0));
+}
+
+TEST_F(Overdue, ASlowWorkerGetsCasesWhenNoQuickOneIsHere) {
+  ASSERT_TRUE(IsTakenFrom("a", 31.0));
+  ledger_.Withdraw("quick", {});
+  EXPECT_EQ(WhoGetsIt(32.0), "a") << "the other one leaves";
+}
+
+TEST_F(Overdue, ASlowWorkerThatReturnsItsCaseIsQuickAgain) {
+  ASSERT_TRUE(IsTakenFrom("a", 31.0));
+  ledger_.Finished("a", 0, given_[0].attempt, ResultOf(0), 32.0);
+  ledger_.Extend(3);
+  EXPECT_EQ(WhoGetsIt(32.0), "a");
+}
+
+TEST(Ledger, RemembersTheLastFourWorkersThatHeldACase) {
+  Ledger ledger("1", 1);
+  for (const char* worker : {"a", "b", "c", "d", "e"}) {
+    ledger.Join(worker, kHello, 0.0);
+    ASSERT_THAT(ledger.Assign(0.0), SizeIs(1));
+    ledger.Lost(worker, WorkerEnd::kLeft, "it left");
+  }
+  EXPECT_FALSE(ledger.WasGiven("a", 0));
+  for (const char* worker : {"b", "c", "d", "e"}) EXPECT_TRUE(ledger.WasGiven(worker, 0)) << worker;
+}
+
+TEST(Ledger, AWorkerHoldsFewUntilItHasReturnedSome) {
+  Ledger ledger("1", 100, {.first_assignments = 2, .side_by_side = 1});
+  ledger.Join("w", {.engine_version = "1", .slots = 1, .credits = 5}, 0.0);
+  EXPECT_THAT(ledger.Assign(0.0), SizeIs(2));
+  ledger.Finished("w", 0, 1, ResultOf(0), 1.0);
+  EXPECT_THAT(ledger.Assign(1.0), SizeIs(2)) << "it holds one, and may hold three";
+  for (const std::uint64_t i : {1, 2, 3}) ledger.Finished("w", i, i + 1, ResultOf(i), 2.0);
+  EXPECT_THAT(ledger.Assign(2.0), SizeIs(5)) << "its credits";
+}
+
+TEST(Ledger, OfTheCasesOfAStuckWorkerOnlyThoseThatFlewTooLongAreBlamed) {
+  Ledger ledger("1", 3, {.lease_s = 10.0, .blames_to_quarantine = 1, .side_by_side = 1});
+  ledger.Join("w", {.engine_version = "1", .slots = 3, .credits = 3}, 0.0);
+  ASSERT_THAT(ledger.Assign(0.0), SizeIs(3));
+  ledger.Started("w", 0, 1, 0.0);
+  ledger.Started("w", 1, 2, 8.0);
+  EXPECT_THAT(ledger.Expire(10.5), ElementsAre("w"));
+  EXPECT_THAT(ledger.Quarantined(), ElementsAre(CaseBlames{0, {"no result within its lease"}, false}));
+  EXPECT_EQ(ledger.Progress().waiting, 2u);
+}
+
+// Of two workers, the first result of each and the share of all.
+std::vector<std::uint64_t> AuditedOf(double share) {
+  Audit audit({share, 5});
+  for (std::uint64_t i = 0; i < 1000; ++i)
+    audit.Consider({i % 2 == 0 ? "node1_a" : "node2_b", i, ResultOf(i)});
+  std::vector<std::uint64_t> cases;
+  for (const Claim& claim : audit.Take()) cases.push_back(claim.case_index);
+  return cases;
+}
+
+TEST(Audit, TakesTheFirstOfEachWorkerAndAShareOfAll) {
+  EXPECT_THAT(AuditedOf(0.0), ElementsAre(0, 1));
+  const std::vector<std::uint64_t> tenth = AuditedOf(0.1);
+  EXPECT_THAT(tenth, ::testing::IsSupersetOf({0u, 1u}));
+  EXPECT_THAT(tenth.size(), ::testing::AllOf(::testing::Gt(70u), ::testing::Lt(130u)));
+  EXPECT_EQ(AuditedOf(1.0).size(), 1000u);
+}
+
+TEST(Audit, ForgetsTheResultsOfOneWorkerAlone) {
+  Audit audit({1.0, 5});
+  for (const char* worker : {"node1_a", "node2_b", "node1_c", "node10_d"}) audit.Consider({worker, 0, {}});
+  audit.Drop("node1");
+  std::vector<std::string> left;
+  for (const Claim& claim : audit.Take()) left.push_back(claim.worker);
+  EXPECT_THAT(left, ElementsAre("node2_b", "node10_d"));
+  EXPECT_FALSE(audit.IsSettled());
+  audit.Settle();
+  EXPECT_FALSE(audit.IsSettled()) << "one of two";
+  audit.Settle();
+  EXPECT_TRUE(audit.IsSettled());
+}
+
+// Two requirements with other limits, probabilities and failures.
+class TallyOfTwo : public testing::Test {
+ protected:
+  TallyOfTwo() {
+    Requirement peak, pressure;
+    peak.metric = "pitch_error_peak_deg";
+    peak.below = 0.5;
+    peak.probability = 0.9;
+    peak.consumer_risk = 0.1;
+    pressure.metric = "q_max_pa";
+    pressure.above = 100.0;
+    pressure.probability = 0.5;
+    pressure.consumer_risk = 0.05;
+    campaign_.name = "two";
+    campaign_.id = std::string(64, 'a');
+    campaign_.flight_id = std::string(64, 'f');
+    campaign_.design_id = std::string(64, 'd');
+    campaign_.requirements = {peak, pressure};
+    campaign_.sampling.cases = 100;
+  }
+  static CaseResult Flown(std::uint64_t case_index, double peak_deg, double pressure_pa,
+                          Outcome outcome = Outcome::kCompleted) {
+    CaseResult result;
+    result.case_index = case_index;
+    result.outcome = outcome;
+    result.inputs = InputValues({});
+    result.metrics.resize(MetricCount(kUsualStages));
+    result.metrics[MetricColumn("pitch_error_peak_deg")] = peak_deg;
+    result.metrics[MetricColumn("q_max_pa")] = pressure_pa;
+    return result;
+  }
+  static std::string Line(const RequirementStanding& one) {
+    return one.metric + " " + std::to_string(one.failures) + "/" + std::to_string(one.n) + " " + one.so_far;
+  }
+
+  Campaign campaign_;
+};
+
+TEST_F(TallyOfTwo, EachIsJudgedByItsOwnMetricLimitProbabilityAndRisk) {
+  RunningTally tally(campaign_);
+  const auto standings = [&] {
+    std::vector<std::string> lines;
+    for (const RequirementStanding& one : tally.Standings()) lines.push_back(Line(one));
+    return lines;
+  };
+  // 0.5^5 is the first power below its risk of 0.05; of 0.9 it is the 22nd, below 0.1.
+  for (std::uint64_t i = 0; i < 4; ++i) tally.Add(Flown(i, 0.1, 200.0));
+  EXPECT_THAT(standings(), ElementsAre("pitch_error_peak_deg 0/4 inconclusive", "q_max_pa 0/4 inconclusive"));
+  tally.Add(Flown(4, 0.1, 200.0));
+  EXPECT_THAT(standings(), ElementsAre("pitch_error_peak_deg 0/5 inconclusive", "q_max_pa 0/5 pass"));
+  tally.Add(Flown(5, 0.6, 200.0));
+  tally.Add(Flown(6, 0.6, 200.0));
+  EXPECT_THAT(standings(), ElementsAre("pitch_error_peak_deg 2/7 inconclusive", "q_max_pa 0/7 pass"));
+  tally.Add(Flown(7, 0.6, 50.0));
+  EXPECT_THAT(standings(), ElementsAre("pitch_error_peak_deg 3/8 fail", "q_max_pa 1/8 pass"));
+}
+
+TEST_F(TallyOfTwo, AHistogramHasTheLimitsOfItsOwnRequirement) {
+  const RunningTally tally(campaign_);
+  ASSERT_GE(tally.histograms().size(), 2u);
+  EXPECT_EQ(tally.histograms()[0].limits.high, 0.5);
+  EXPECT_EQ(tally.histograms()[1].metric, "q_max_pa");
+  EXPECT_EQ(tally.histograms()[1].limits.low, 100.0);
+}
+
+// Of ten cases two wait, one flies, seven are flown, one of them is lost.
+TEST_F(TallyOfTwo, OfACancelledAttemptCasesWithoutAResultAreFailuresOfEach) {
+  campaign_.sampling.cases = 10;
+  CampaignBook book(campaign_, std::make_unique<MemoryStore>(), {.side_by_side = 1});
+  book.KeepTally();
+  for (std::uint64_t i = 0; i < 7; ++i)
+    book.Accept("w", "host", 0,
+                Flown(i, i < 2 ? 0.7 : 0.1, i < 4 ? 50.0 : 200.0,
+                      i == 6 ? Outcome::kLostControl : Outcome::kCompleted),
+                1.0);
+  book.ledger().Join("v", {EngineVersion(), 1, 1}, 1.0);
+  ASSERT_THAT(book.ledger().Assign(1.0), SizeIs(1));
+  const TemporaryFolder folder;
+  std::filesystem::create_directories(folder / "results");
+  NoteCancelledIn(folder.path(), folder / "results", book);
+  const std::vector<AttemptRecord> noted = AttemptLedger(folder / "results" / kFolderLedgerName).Read();
+  ASSERT_THAT(noted, SizeIs(1));
+  EXPECT_EQ(noted[0].cases, 8) << "up to the last that was assigned";
+  ASSERT_THAT(noted[0].requirements, SizeIs(2));
+  EXPECT_EQ(noted[0].requirements[0].failures, 2 + 1 + 1) << "beyond the limit, lost, without a result";
+  EXPECT_EQ(noted[0].requirements[1].failures, 4 + 1 + 1);
 }
 
 // Cases that two workers shall fly.

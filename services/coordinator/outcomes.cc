@@ -1,0 +1,28 @@
+#include "services/coordinator/outcomes.h"
+
+#include <algorithm>
+#include <cstddef>
+
+#include "core/analysis/load_check.h"
+#include "core/analysis/requirement_summary.h"
+#include "services/coordinator/catalogue.h"
+
+namespace dispersa {
+
+std::vector<RequirementOutcome> OutcomesOf(const CampaignSummary& summary) {
+  std::vector<RequirementOutcome> outcomes;
+  const auto& standing = summary.standing.requirements;
+  for (std::size_t i = 0; i < std::min(summary.requirements.size(), kMaxOutcomes); ++i) {
+    const RequirementSummary& one = summary.requirements[i];
+    outcomes.push_back({one.metric, RequirementWords(one), one.probability, one.n, one.failures,
+                        one.success_lower, one.success_upper,
+                        i < standing.size() ? standing[i].verdict : one.verdict});
+  }
+  for (const LoadCheck& check : summary.load_checks)
+    if (check.failures > 0)
+      outcomes.push_back(
+          {check.metric, LoadCheckSentence(check), 0.0, check.n, check.failures, {}, {}, "fail"});
+  return outcomes;
+}
+
+}  // namespace dispersa

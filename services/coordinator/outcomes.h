@@ -1,0 +1,15 @@
+// What a coordinator keeps of a campaign's report.
+#pragma once
+
+#include <vector>
+
+#include "core/analysis/campaign_summary.h"
+#include "services/web/campaign_row.h"
+
+namespace dispersa {
+
+/// The first kMaxOutcomes requirements, each with the verdict that stands, and every load check that has
+/// failures.
+std::vector<RequirementOutcome> OutcomesOf(const CampaignSummary& summary);
+
+}  // namespace dispersa
