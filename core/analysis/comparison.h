@@ -23,7 +23,7 @@ struct ComparedCampaign {
   std::string folder;  ///< as the user named it: where the replay commands find it
   std::string engine;
   const Campaign& campaign;
-  const CaseColumns& cases;  ///< with all inputs
+  const CaseColumns& cases;                  ///< with all inputs
   std::optional<std::uint64_t> to_fly = {};  ///< CasesToFly(); none: all of the campaign's cases
 };
 

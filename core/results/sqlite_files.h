@@ -1,4 +1,4 @@
-// SQLite's files on disks that are full and on file systems that lack something. Only database.cc includes it.
+// SQLite's files on full disks and on file systems that lack something. Only database.cc includes it.
 #pragma once
 
 namespace dispersa {

@@ -1,10 +1,11 @@
+// The words for a disk that is full for this process.
 #include "core/input/disk_full.h"
 
 #include <gtest/gtest.h>
 
 #include <cerrno>
 
-namespace dispersa {
+namespace dispersa::input_disk_full_test {
 namespace {
 
 TEST(DiskFull, HasTheSameWordsForEachLimitAndNamesIt) {
@@ -12,8 +13,9 @@ TEST(DiskFull, HasTheSameWordsForEachLimitAndNamesIt) {
   EXPECT_EQ(DiskFullWords(EDQUOT), "no space left on the disk: the quota is used up");
   EXPECT_EQ(DiskFullWords(EFBIG),
             "no space left on the disk: a file has reached its limit (`ulimit -f`, or the file system's)");
-  for (const int other : {0, EIO, EACCES, EROFS, ENOENT, ENOMEM}) EXPECT_EQ(DiskFullWords(other), std::nullopt);
+  for (const int other : {0, EIO, EACCES, EROFS, ENOENT, ENOMEM})
+    EXPECT_EQ(DiskFullWords(other), std::nullopt);
 }
 
 }  // namespace
-}  // namespace dispersa
+}  // namespace dispersa::input_disk_full_test
