@@ -77,6 +77,18 @@ void PackReports(const fs::path& results) {
   }
 }
 
+void RemoveReports(const fs::path& results) {
+  for (const char* name : {"cases.csv", "summary.json", "report.html", "histories"}) {
+    for (const fs::path& file : {results / name, Packed(results / name)}) {
+      std::error_code error;
+      fs::remove_all(file, error);
+      if (error)
+        throw ResultError(ResultError::Kind::kFile,
+                          file.string() + ": cannot be removed: " + error.message());
+    }
+  }
+}
+
 std::vector<fs::path> StoredFilesIn(const fs::path& results) {
   std::vector<fs::path> files;
   if (!fs::is_directory(results)) return files;

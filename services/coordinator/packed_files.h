@@ -13,6 +13,10 @@ namespace dispersa {
 /// process leaves both or one of them. Throws ResultError; then the rest stays as it was.
 void PackReports(const std::filesystem::path& results);
 
+/// Removes what a report has written, packed or not: cases.csv, summary.json, report.html, histories/. The
+/// results stay. Throws ResultError.
+void RemoveReports(const std::filesystem::path& results);
+
 /// Files of a result folder that a client may have, by path within it. X.gz is listed as X.
 std::vector<std::filesystem::path> FilesIn(const std::filesystem::path& results);
 /// The same files as they lie on the disk: X.gz is X.gz.

@@ -49,6 +49,15 @@ void TryToPack(const std::filesystem::path& results) {
   }
 }
 
+// They are of results that are removed, and may have more cases than are left.
+void TryToRemoveReports(const std::filesystem::path& results) {
+  try {
+    RemoveReports(results);
+  } catch (const ResultError& error) {
+    LogWarning("a report of results that are removed: {}", error.what());
+  }
+}
+
 std::string Gigabytes(std::uint64_t bytes) {
   return fmt::format("{:.3g} GB", static_cast<double>(bytes) / 1e9);
 }
@@ -635,6 +644,7 @@ void Service::Repair(const std::string& id, const std::string& worker) {
     repaired.done = entry.done;
   }
   entry = repaired;
+  TryToRemoveReports(catalogue_.ResultsOf(id));
   LogInfo("campaign {} ({}): the results of {} are flown again", entry.name, id.substr(0, 8), worker);
 }
 

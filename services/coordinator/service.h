@@ -108,8 +108,8 @@ class Service {
   void Launch(CatalogueEntry entry, const std::string& text);
   /// Ends it. Stored results stay. Called again it does nothing. Throws Refused if it has ended already.
   void Cancel(const std::string& id);
-  /// Results of the workers that `worker` means (IsMeantBy) are removed and flown again, and contradictions
-  /// are forgotten: they were with these. Throws Refused while its report is written.
+  /// Results of the workers that `worker` means (IsMeantBy) are removed and flown again. Contradictions,
+  /// verdict and report are forgotten: they were with these. Throws Refused while its report is written.
   void Repair(const std::string& id, const std::string& worker);
   /// Deletes its folder. DATA/deleted.jsonl keeps a line of it. Throws Refused unless it is at rest.
   void Delete(const std::string& id);

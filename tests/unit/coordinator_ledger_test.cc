@@ -609,6 +609,14 @@ TEST_F(TallyOfTwo, EachIsJudgedByItsOwnMetricLimitProbabilityAndRisk) {
   EXPECT_THAT(standings(), ElementsAre("pitch_error_peak_deg 3/8 fail", "q_max_pa 1/8 pass"));
 }
 
+TEST_F(TallyOfTwo, ChosenPointsAreAStudyHoweverManyAreFlown) {
+  campaign_.sampling.method = SamplingMethod::kSobol;
+  RunningTally tally(campaign_);
+  for (std::uint64_t i = 0; i < 30; ++i) tally.Add(Flown(i, 0.1, 50.0));
+  EXPECT_EQ(Line(tally.Standings()[0]), "pitch_error_peak_deg 0/30 study");
+  EXPECT_EQ(Line(tally.Standings()[1]), "q_max_pa 30/30 study");
+}
+
 TEST_F(TallyOfTwo, AHistogramHasTheLimitsOfItsOwnRequirement) {
   const RunningTally tally(campaign_);
   ASSERT_GE(tally.histograms().size(), 2u);

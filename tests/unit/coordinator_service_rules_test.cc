@@ -9,6 +9,7 @@
 #include <nlohmann/json.hpp>
 #include <vector>
 
+#include "services/coordinator/packed_files.h"
 #include "services/coordinator/prometheus_text.h"
 #include "services/coordinator/web_rows.h"
 #include "tests/distributed/made_up_service.h"
@@ -171,6 +172,22 @@ TEST_F(ServiceRules, ARepairedCampaignHasNoVerdictAndTheOthersKeepTheirs) {
   }
   service_->Repair(Id('a'), "node2");
   EXPECT_THAT(At('a').distrusted, ElementsAre("node1", "node2")) << "the first one's results are still there";
+}
+
+// Whoever cancels it then must not fetch a verdict on results that are gone.
+TEST_F(ServiceRules, ARepairedCampaignHasNoReportAndTheOthersKeepTheirs) {
+  Put({Passed('a'), Passed('b')});
+  const auto results = [&](char letter) { return folder_ / "data" / Id(letter) / "results"; };
+  for (const char letter : {'a', 'b'}) {
+    std::filesystem::create_directories(results(letter) / "histories");
+    for (const char* name : {"campaign.yaml", "results.sqlite", "attempts.jsonl", "cases.csv", "summary.json",
+                             "report.html.gz", "histories/nominal.csv.gz"})
+      std::ofstream(results(letter) / name) << "text";
+  }
+  Start();
+  service_->Repair(Id('a'), "node1");
+  EXPECT_THAT(StoredFilesIn(results('a')), ElementsAre("attempts.jsonl", "campaign.yaml", "results.sqlite"));
+  EXPECT_EQ(StoredFilesIn(results('b')).size(), 7u);
 }
 
 TEST_F(ServiceRules, ACampaignThatIsLaunchedAgainHasNoVerdictAndItsNewLabels) {

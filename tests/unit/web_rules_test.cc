@@ -1,14 +1,17 @@
-// Rules of the web application that need no server: where a login goes on, which label names a version, what
-// is found, in which order.
+// Rules of the web application: where a login goes on, which label names a version, what is found, in which
+// order.
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
 #include <cstdio>
+#include <memory>
 #include <string>
 #include <vector>
 
 #include "services/web/pages.h"
 #include "services/web/web_parts.h"
+#include "services/web/web_server.h"
+#include "tests/distributed/http_client.h"
 
 namespace dispersa::web_rules_test {
 namespace {
@@ -217,6 +220,77 @@ TEST(Difference, HasTheRequirementsOfBothEachOnce) {
   EXPECT_EQ(page.find("both", second + 1), std::string::npos);
   EXPECT_LT(page.find("2 of 10 fail"), page.find("3 of 10 fail"));
   EXPECT_THAT(page, HasSubstr("4 of 10 fail"));
+}
+
+// Over a socket on loopback.
+class ServerRules : public testing::Test {
+ protected:
+  void Start(const std::vector<CampaignRow>& rows, const std::string& token = "") {
+    port_ = FreePort();
+    server_ = std::make_unique<WebServer>(
+        WebOptions{{"127.0.0.1", port_}, token, false}, [](const std::string& id, const std::string& name) {
+          return name == "report.html" ? std::optional("<p>report of " + id.substr(0, 1) + "</p>")
+                                       : std::nullopt;
+        });
+    server_->Set(std::make_shared<CampaignIndex>(IndexOf(rows)));
+  }
+  std::string Get(const std::string& path, const std::string& header = "") {
+    return AskHttp(port_,
+                   "GET " + path + " HTTP/1.1\r\nHost: localhost\r\n" + header + "Connection: close\r\n\r\n");
+  }
+
+  std::uint16_t port_ = 0;
+  std::unique_ptr<WebServer> server_;
+};
+
+TEST_F(ServerRules, APageHasAsManyDigitsAsItNeeds) {
+  std::vector<CampaignRow> rows;
+  for (std::uint64_t order = 1; order <= 600; ++order) rows.push_back(Row(order));
+  Start(rows);
+  EXPECT_THAT(Get("/?page=12"), HasSubstr("page 12 of 12"));
+  EXPECT_THAT(Get("/?page=3"), HasSubstr("page 3 of 12"));
+  EXPECT_THAT(Get("/?page=1x"), HasSubstr("page 1 of 12"));
+}
+
+TEST_F(ServerRules, ADifferenceIsFromTheOlderToTheYounger) {
+  Start({Row(1), Row(2)});
+  for (const char* path : {"/difference?id=1&id=2", "/difference?id=2&id=1"}) {
+    const std::string page = Get(path);
+    EXPECT_LT(page.find("name1"), page.find("name2")) << path;
+    EXPECT_NE(page.find("name2"), std::string::npos) << path;
+  }
+}
+
+TEST_F(ServerRules, OnlyACampaignThatIsDoneHasAReport) {
+  CampaignRow done = Row(1), cancelled = Row(2), flying = Row(3);
+  cancelled.state = "cancelled";
+  flying.state = "flying";
+  flying.has_ended = false;
+  Start({done, cancelled, flying});
+  EXPECT_THAT(Get("/campaign/" + done.id), HasSubstr("Open the report"));
+  EXPECT_THAT(Get("/campaign/" + done.id + "/report"), HasSubstr("<p>report of 1</p>"));
+  for (const CampaignRow& row : {cancelled, flying}) {
+    EXPECT_THAT(Get("/campaign/" + row.id), Not(HasSubstr("Open the report"))) << row.state;
+    EXPECT_THAT(Get("/campaign/" + row.id + "/report"), HasSubstr("This campaign has no report"))
+        << row.state;
+  }
+}
+
+TEST_F(ServerRules, ASessionIsFoundAmongOtherCookies) {
+  const std::string token = "0123456789abcdef";
+  Start({Row(1)}, token);
+  const std::string body = "next=%2F%09%2Fevil.example&token=" + token;
+  const std::string answer =
+      AskHttp(port_,
+              "POST /login HTTP/1.1\r\nHost: localhost\r\nContent-Type: "
+              "application/x-www-form-urlencoded\r\nConnection: close\r\nContent-Length: " +
+                  std::to_string(body.size()) + "\r\n\r\n" + body);
+  EXPECT_THAT(answer, HasSubstr("Location: /\r\n"));
+  const std::size_t at = answer.find("dispersa=");
+  ASSERT_NE(at, std::string::npos);
+  const std::string cookie = answer.substr(at, answer.find(';', at) - at);
+  EXPECT_THAT(Get("/", "Cookie: a=1;b=2;  " + cookie + "; c=3\r\n"), HasSubstr("name1"));
+  EXPECT_THAT(Get("/", "Cookie: x" + cookie + "\r\n"), Not(HasSubstr("name1")));
 }
 
 }  // namespace
