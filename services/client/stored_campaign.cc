@@ -10,7 +10,7 @@
 
 namespace dispersa {
 
-StoredCampaign OpenStored(const std::string& directory) {
+StoredCampaign OpenStored(const std::string& directory, bool may_be_empty) {
   ResultFolder folder = ResultFolder::Open(directory);
   Campaign campaign = ReadFlownCampaign((folder.directory() / "campaign.yaml").string());
   // The text was changed after the flights.
@@ -24,7 +24,7 @@ StoredCampaign OpenStored(const std::string& directory) {
                                   ? CasesToFly(folder, campaign, ReadColumns(folder, {}))
                                   : campaign.sampling.cases;
   std::string incomplete = flown < cases ? "incomplete: " + MissingWords(flown, cases) : "";
-  if (flown == 0)
+  if (flown == 0 && !may_be_empty)
     throw ResultError(ResultError::Kind::kFewer,
                       fmt::format("{}: {}; copy results.sqlite-wal too if this is a copy, or fly the cases: "
                                   "`dispersa run CAMPAIGN --out {} --resume`",

@@ -17,7 +17,7 @@ struct StoredCampaign {
 };
 
 /// InputError if the directory is no result folder, or its campaign.yaml cannot be read. ResultError (kFewer)
-/// if no case has a result.
-StoredCampaign OpenStored(const std::string& directory);
+/// if no case has a result, unless the folder `may_be_empty`: for a caller that says so by its exit code.
+StoredCampaign OpenStored(const std::string& directory, bool may_be_empty = false);
 
 }  // namespace dispersa

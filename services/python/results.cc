@@ -113,7 +113,8 @@ py::dict Results(const std::string& directory) {
   std::optional<ResultColumns> columns;
   {
     const py::gil_scoped_release free;
-    const StoredCampaign stored = OpenStored(directory);
+    // A run that flew no case, or one that goes on, has results too.
+    const StoredCampaign stored = OpenStored(directory, /*may_be_empty=*/true);
     columns.emplace(stored.folder.metric_list(), stored.folder.metrics());
     stored.folder.ForEach([&](const CaseResult& result) { columns->Add(result); });
     engine = stored.folder.Provenance("engine");
