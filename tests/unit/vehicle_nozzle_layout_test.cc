@@ -3,6 +3,7 @@
 
 #include <gtest/gtest.h>
 
+#include <algorithm>
 #include <cmath>
 #include <string>
 #include <vector>
@@ -180,6 +181,49 @@ TEST(NozzleLayout, WeighsDeflectionsByTheirLimits) {
   // Of pitch the narrow nozzle is at its 3 deg when 6 are commanded.
   EXPECT_NEAR(layout.allocation[1][1], 0.5, 1e-12);
   EXPECT_NEAR(layout.pitch_share, 0.5, 1e-12);
+}
+
+// To the pseudo-inverse a group is as weak as its weakest nozzle, which may stand anywhere in it. By hand: a
+// group of half the thrust with half the limit, and a nozzle with the other half, have the effects 0.5 and
+// the weights 0.25 and 1, so 0.4 and 1.6 of a command each; the nozzle reaches its limit first.
+TEST(NozzleLayout, AGroupIsAsWeakAsItsWeakestNozzle) {
+  const std::vector<double> both = {90.0 * kDeg, 180.0 * kDeg};
+  for (const std::size_t weak : {0u, 1u}) {
+    std::vector<Nozzle> nozzles = {{"a", 0.0, 0.0, 0.25, both, 6.0 * kDeg},
+                                   {"b", 0.0, 0.0, 0.25, both, 6.0 * kDeg},
+                                   {"c", 0.0, 0.0, 0.5, both, 6.0 * kDeg}};
+    nozzles[weak].limit_rad = 3.0 * kDeg;
+    nozzles[0].group = nozzles[1].group = "pair";
+    const NozzleLayout layout = BuildNozzleLayout(With(nozzles));
+    for (const int axis : {1, 2}) {
+      const int hinge = axis - 1;
+      EXPECT_NEAR(layout.allocation[DriveOf(0, hinge)][axis], 0.25, 1e-12) << weak << axis;
+      EXPECT_NEAR(layout.allocation[DriveOf(1, hinge)][axis], 0.25, 1e-12) << weak << axis;
+      EXPECT_NEAR(layout.allocation[DriveOf(2, hinge)][axis], 1.0, 1e-12) << weak << axis;
+    }
+    EXPECT_NEAR(layout.pitch_share, 0.625, 1e-12) << weak;
+  }
+}
+
+// A booster turns the vehicle by its own lever. By hand: beside a nozzle with effect 1, two of half its
+// thrust have the effect 0.5 times the ratio of levers, e, and get as much of a command as they effect.
+TEST(NozzleLayout, ABoosterTurnsByItsOwnLever) {
+  for (const double booster_lever_m : {4.0, 12.0}) {
+    Boosters boosters;
+    boosters.count = 2;
+    boosters.angles_rad = {0.0, kPi};
+    boosters.radius_m = 2.0;
+    boosters.towards_rad = {90.0 * kDeg, 180.0 * kDeg};
+    boosters.gimbal.limit_rad = 6.0 * kDeg;
+    const double effect = 0.5 * booster_lever_m / 8.0;
+    const NozzleLayout layout = BuildBoostLayout(One(), boosters, {0.5, 8.0, booster_lever_m});
+    const double scale = (1.0 + 2.0 * effect * effect) / std::max(1.0, effect);
+    EXPECT_NEAR(layout.pitch_share, scale, 1e-12) << booster_lever_m;
+    EXPECT_NEAR(layout.allocation[DriveOf(0, 0)][1], 1.0 / std::max(1.0, effect), 1e-12) << booster_lever_m;
+    for (const int k : {kNozzles, kNozzles + 1})
+      EXPECT_NEAR(layout.allocation[DriveOf(k, 0)][1], effect / std::max(1.0, effect), 1e-12)
+          << booster_lever_m << k;
+  }
 }
 
 // The flow leaves at its nozzles, each with its share: the radius of gyration of unlike ones.

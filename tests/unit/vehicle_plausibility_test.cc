@@ -685,6 +685,253 @@ INSTANTIATE_TEST_SUITE_P(
             "of gravity, at lift-off, by -0.01 diameters | 0 diameters or more"}),
     [](const auto& edge) { return std::string(edge.param.name); });
 
+// Figures that follow from several values: the setters move one and leave the others.
+void SetImpulse(Vehicle& v, double x) {
+  v.stages[0].motor.burning_time_s *= x / FiguresOf(v)[0].specific_impulse_s;
+}
+void Push(Stage& stage, double factor) {
+  stage.motor.thrust_n *= factor;
+  stage.motor.burning_time_s /= factor;
+}
+void SetLiftOff(Vehicle& v, double x) { Push(v.stages[0], x / FiguresOf(v)[0].thrust_to_weight); }
+void SetIgnition(Vehicle& v, double x) { Push(v.stages[1], x / FiguresOf(v)[1].thrust_to_weight); }
+void SetBurnoutLoad(Vehicle& v, double x) { Push(v.stages[1], x / FiguresOf(v)[1].burnout_load_g); }
+void SetDryPart(Vehicle& v, double x) {
+  v.stages[0].liftoff_mass_kg = v.stages[1].liftoff_mass_kg + v.stages[0].propellant_mass_kg / (1.0 - x);
+}
+void SetLastDryPart(Vehicle& v, double x) {
+  v.stages[1].motor.thrust_n = 15e3;
+  v.stages[1].motor.burning_time_s = 400.0;
+  v.stages[1].liftoff_mass_kg = v.stages[1].propellant_mass_kg / (1.0 - x);
+}
+void SetGrainDensity(Vehicle& v, double x) {
+  Grain& g = v.stages[1].grain;
+  g.top_station_m =
+      g.bottom_station_m - (g.bottom_station_m - g.top_station_m) * PropellantDensity(v.stages[1]) / x;
+}
+void SetGrainDiameter(Vehicle& v, double x) {
+  v.stages[1].grain.outer_diameter_m = x * v.stages[1].diameter_m;
+  v.stages[1].grain.inner_diameter_m = 0.0;
+  SetGrainDensity(v, 1700.0);
+}
+void SetUpperDiameter(Vehicle& v, double x) { v.stages[1].diameter_m = 1.2 * x; }
+void SetOffAxis(Vehicle& v, double x) {
+  v.stages[0].gimbal.nozzles = {{"centre"}, {"ring"}};
+  v.stages[0].gimbal.nozzles[1].ring = {8, 0.6 * x};
+}
+void SetNozzleInertia(Vehicle& v, double x) {
+  for (Stage& stage : v.stages) {
+    stage.gimbal.nozzle_mass_kg = 20.0;
+    stage.gimbal.nozzle_cg_m = 0.5;
+    stage.gimbal.nozzle_inertia_kg_m2 = 8.0;
+  }
+  v.stages[1].gimbal.nozzle_inertia_kg_m2 = 20.0 * 0.25 * x;
+}
+void SetDeltaV(Vehicle& v, double x) {
+  double sum_m_s = 0.0;
+  for (const StageFigures& one : FiguresOf(v)) sum_m_s += one.ideal_delta_v_m_s;
+  for (Stage& stage : v.stages) stage.motor.burning_time_s *= x / sum_m_s;
+}
+void SetTurning(Vehicle& v, double x) {
+  const StackMass stack = BuildStackMasses(v).back();
+  v.reaction_control.thrust_n = x * kRadPerDeg * stack.At(stack.propellant_mass_kg).transverse_inertia_kg_m2 /
+                                (2.0 * v.reaction_control.pitch_yaw_arm_m);
+}
+// Of two lighter tables the second, and of its two Mach numbers one.
+void SetLighterAxial(Vehicle& v, double x) {
+  AeroTable lighter = v.aerodynamics[0];
+  v.aerodynamics[0].lighter.assign(2, {});
+  for (auto& one : v.aerodynamics[0].lighter) one.table = lighter;
+  v.aerodynamics[0].lighter[1].table.ca = {0.3, 0.3, x, 0.3};
+}
+void SetYawDamping(Vehicle& v, double x) {
+  AeroTable yaw = v.aerodynamics[1];
+  yaw.cmq_per_rad = {-1.0, x};
+  v.aerodynamics[1].yaw_plane = {yaw};
+}
+
+INSTANTIATE_TEST_SUITE_P(
+    Rows, VehicleEdges,
+    testing::Values(
+        Edge{"LeastImpulse", SetImpulse, 180.1, 179.9,
+             "unusual stages[0].propellant_mass_kg implies with thrust and burning time a specific impulse "
+             "of 179.9 s | 180 to 470 s"},
+        Edge{"GreatestImpulse", SetImpulse, 469.9, 470.1,
+             "unusual stages[0].propellant_mass_kg implies with thrust and burning time a specific impulse "
+             "of 470.1 s | 180 to 470 s"},
+        Edge{"LeastLiftOff", SetLiftOff, 1.151, 1.149,
+             "unusual stages[0].motor.thrust_n implies a thrust to weight at lift-off of 1.149 | 1.15 to "
+             "12"},
+        Edge{"LeastIgnition", SetIgnition, 0.0501, 0.0499,
+             "unusual stages[1].motor.thrust_n implies a thrust to weight at ignition of 0.0499 | 0.05 to "
+             "12"},
+        Edge{"GreatestBurnoutLoad", SetBurnoutLoad, 19.9, 20.1,
+             "unusual stages[1].motor.thrust_n implies towards burnout a load of 20.1 g | 0.05 to 20 g"},
+        Edge{"LeastDryPart", SetDryPart, 0.0301, 0.0299,
+             "unusual stages[0].liftoff_mass_kg implies a dry mass of the stage, as part of its own, of "
+             "0.0299 | 0.03 to 0.35"},
+        Edge{"GreatestDryPart", SetDryPart, 0.349, 0.351,
+             "unusual stages[0].liftoff_mass_kg implies a dry mass of the stage, as part of its own, of "
+             "0.351 | 0.03 to 0.35"},
+        Edge{"LeastDryPartOfTheLast", SetLastDryPart, 0.0501, 0.0499,
+             "unusual stages[1].liftoff_mass_kg implies a dry mass of the last stage with payload, as part "
+             "of its own, of 0.0499 | 0.05 to 0.95"},
+        Edge{"LightestGrain", SetGrainDensity, 1501.0, 1499.0,
+             "unusual stages[1].grain implies a propellant density of 1499 kg/m3 | 1500 to 1950 kg/m3"},
+        Edge{"DensestGrain", SetGrainDensity, 1949.0, 1951.0,
+             "unusual stages[1].grain implies a propellant density of 1951 kg/m3 | 1500 to 1950 kg/m3"},
+        Edge{"ThinnestGrain", SetGrainDiameter, 0.501, 0.499,
+             "unusual stages[1].grain.outer_diameter_m is, as part of the stage's diameter_m, 0.499 | 0.5 to "
+             "1"},
+        Edge{"UpperStageInItsProfile", SetUpperDiameter, 1.019, 1.021,
+             "unusual stages[1].diameter_m is, as part of the profile's largest diameter about this stage's "
+             "propellant, 1.021 | 0.4 to 1.02"},
+        Edge{"FirstStageInAThinnerProfile", SetProfile, 1.019, 1.021,
+             "unusual stages[0].diameter_m is, as part of the profile's largest diameter about the first "
+             "stage's propellant, 1.021 | 0.7 to 1.02"},
+        Edge{"NozzlesOffTheAxis", SetOffAxis, 1.49, 1.51,
+             "unusual stages[0].gimbal.nozzles are, as part of half the stage's diameter_m, off the axis by "
+             "up to 1.51 | up to 1.5"},
+        Edge{"GreatestNozzleInertia", SetNozzleInertia, 9.9, 10.1,
+             "unusual nozzles[1].inertia_about_hinge_kg_m2 is the nozzle's mass at its centre of gravity, "
+             "about the hinge, times 10.1 | 1 to 10"},
+        Edge{"LeastNozzleInertia", SetNozzleInertia, 1.01, 0.99,
+             "impossible nozzles[1].inertia_about_hinge_kg_m2 is the nozzle's mass at its centre of "
+             "gravity, about the hinge, times 0.99, which cannot be | 1 or more"},
+        Edge{"GreatestDeltaV", SetDeltaV, 13990.0, 14010.0,
+             "unusual stages imply together an ideal change of velocity, without losses, of 14010 m/s | 500 "
+             "to 14000 m/s"},
+        Edge{"SlowestTurning", SetTurning, 0.0101, 0.0099,
+             "unusual reaction_control.thrust_n turns the last stage in pitch and yaw by 0.0099 deg/s2 | "
+             "0.01 to 60 deg/s2"},
+        Edge{"FastestTurning", SetTurning, 59.9, 60.1,
+             "unusual reaction_control.thrust_n turns the last stage in pitch and yaw by 60.1 deg/s2 | 0.01 "
+             "to 60 deg/s2"},
+        Edge{"OfTheSecondLighterTable", SetLighterAxial, 2.0, 2.001,
+             "unusual aerodynamics.tables[0].lighter[1].table.ca is at most, at the smallest incidence, "
+             "2.001 | up to 2"},
+        Edge{"GreatestYawDamping", SetYawDamping, 0.0, 0.001,
+             "impossible aerodynamics.tables[1].table.cnr_per_rad is at most 0.001, which cannot be | up to "
+             "0"},
+        Edge{"LeastReferenceLength", SetReferenceLength, 0.501, 0.499,
+             "unusual aerodynamics.tables[0].reference_length_m is the diameter of the stack's lowest stage "
+             "times 0.499 | 0.5 to 2"},
+        Edge{"GreatestLastMach", SetLastMach, 50.0, 50.1,
+             "unusual aerodynamics.tables[1].table.mach end at 50.1 | 2 to 50"},
+        Edge{"LeastGimbalLimit", SetGimbalLimit, 1.01, 0.99,
+             "unusual stages[1].gimbal.limit_rad lets a nozzle turn by 0.99 deg | 1 to 15 deg"},
+        Edge{"GreatestBandwidth", SetBandwidth, 250.0, 251.0,
+             "unusual stages[1].gimbal.bandwidth_rad_s is 251 rad/s | 6 to 250 rad/s"},
+        Edge{"LeastRateLimit", SetRateLimit, 2.01, 1.99,
+             "unusual stages[1].gimbal.rate_limit_rad_s lets a nozzle turn at 1.99 deg/s | 2 to 120 deg/s"},
+        Edge{"LeastPublishedFlow", SetPublishedFlow, 0.81, 0.79,
+             "unusual stages[0].motor.published_mass_flow_kg_s is the flow that propellant and burning time "
+             "give times 0.79 | 0.8 to 1.25"},
+        Edge{"GreatestExitArea", SetExitArea, 0.99, 1.01,
+             "unusual stages[1].motor.nozzle_exit_area_m2 is, as part of the stage's cross-section, 1.01 | "
+             "0.02 to 1"},
+        Edge{"LatestJettison", SetJettisonTime, 1000.0, 1001.0,
+             "unusual stages[1].jettisoned[1].at.time_s comes 1001 s after lift-off | 90 to 1000 s after "
+             "lift-off"},
+        Edge{"LowestJettison", SetJettisonAltitude, 60.0, 59.0,
+             "unusual stages[1].jettisoned[1].at.altitude_m comes at 59 km | 60 to 200 km"},
+        Edge{"GreatestJettisonFlux", SetJettisonFlux, 9999.0, 10010.0,
+             "unusual stages[1].jettisoned[1].at.heat_flux_w_m2 waits for a free-molecular heating of 10010 "
+             "W/m2 | 10 to 10000 W/m2"},
+        Edge{"GreatestPressureLimit", SetPressureLimit, 300e3, 301e3,
+             "unusual limits.q_max_pa is 301000 Pa | 5000 to 300000 Pa"},
+        Edge{"GreatestProductLimit", SetProductLimit, 30e3, 30100.0,
+             "unusual limits.q_alpha_pa_rad is 30100 Pa rad | 200 to 30000 Pa rad"},
+        Edge{"LeastAxialLimit", SetAxialLimit, 2.0, 1.99,
+             "unusual limits.axial_load_g is 1.99 g | 2 to 50 g"},
+        Edge{"LeastThrusterImpulse", SetThrusterImpulse, 30.0, 29.9,
+             "unusual reaction_control.specific_impulse_s is 29.9 s | 30 to 340 s"}),
+    [](const auto& edge) { return std::string(edge.param.name); });
+
+// Rows of liquid stages and of boosters, on launchers of the gallery.
+struct GalleryEdge {
+  const char* name;
+  const char* vehicle;
+  void (*set)(Vehicle&, double);
+  double inside, outside;
+  std::string text;
+};
+void PrintTo(const GalleryEdge& edge, std::ostream* out) { *out << edge.name; }
+
+class GalleryEdges : public testing::TestWithParam<GalleryEdge> {};
+
+TEST_P(GalleryEdges, AreWhereTheTableSays) {
+  const Vehicle usual =
+      LoadVehicle(std::string(DISPERSA_CAMPAIGNS "/gallery/") + GetParam().vehicle + "/vehicle.yaml");
+  Vehicle inside = usual, outside = usual;
+  GetParam().set(inside, GetParam().inside);
+  EXPECT_EQ(Texts(inside), std::vector<std::string>{});
+  GetParam().set(outside, GetParam().outside);
+  const std::vector<std::string> texts = Texts(outside);
+  ASSERT_EQ(texts.size(), 1u) << testing::PrintToString(texts);
+  EXPECT_EQ(texts[0].substr(0, GetParam().text.size() + 2), GetParam().text + " (");
+}
+
+void SetResidual(Vehicle& v, double x) {
+  v.stages[0].motor.residual_mass_kg = x * v.stages[0].propellant_mass_kg;
+}
+void SetTankFill(Vehicle& v, double x) {
+  Tank& tank = v.stages[0].tanks[1];
+  tank.propellant_mass_kg = x * tank.density_kg_m3 * tank.Volume();
+}
+void SetTankDensity(Vehicle& v, double x) {
+  Tank& tank = v.stages[0].tanks[1];
+  tank.propellant_mass_kg *= x / tank.density_kg_m3;
+  tank.density_kg_m3 = x;
+}
+void SetCutOffVelocity(Vehicle& v, double x) {
+  v.stages[2].motor.cut_off = CutOff::kAtVelocity;
+  v.stages[2].motor.cut_off_velocity_m_s = x;
+}
+void SetBoostersBottom(Vehicle& v, double x) {
+  Boosters& b = v.boosters;
+  const double part = b.nozzle_station_m / b.bottom_station_m;
+  b.bottom_station_m = x * v.stages[0].bottom_station_m;
+  b.nozzle_station_m = part * b.bottom_station_m;
+}
+void SetBoostersNozzle(Vehicle& v, double x) {
+  v.boosters.nozzle_station_m = x * v.boosters.bottom_station_m;
+}
+
+INSTANTIATE_TEST_SUITE_P(
+    Rows, GalleryEdges,
+    testing::Values(
+        GalleryEdge{"Residual", "falcon9", SetResidual, 0.0499, 0.0501,
+                    "unusual stages[0].motor.liquid.residual_mass_kg is, as part of the propellant, 0.0501 | "
+                    "up to 0.05"},
+        GalleryEdge{"FullestTank", "falcon9", SetTankFill, 0.989, 0.991,
+                    "unusual stages[0].tanks[1].propellant_mass_kg fills of the tank 0.991 | 0.5 to 0.99"},
+        GalleryEdge{"EmptiestTank", "falcon9", SetTankFill, 0.501, 0.499,
+                    "unusual stages[0].tanks[1].propellant_mass_kg fills of the tank 0.499 | 0.5 to 0.99"},
+        GalleryEdge{"LightestLiquid", "falcon9", SetTankDensity, 60.1, 59.9,
+                    "unusual stages[0].tanks[1].density_kg_m3 is 59.9 kg/m3 | 60 to 1700 kg/m3"},
+        GalleryEdge{"DensestLiquid", "falcon9", SetTankDensity, 1699.0, 1701.0,
+                    "unusual stages[0].tanks[1].density_kg_m3 is 1701 kg/m3 | 60 to 1700 kg/m3"},
+        GalleryEdge{"SlowestCutOff", "falcon9", SetCutOffVelocity, 1500.0, 1499.0,
+                    "unusual stages[2].cut_off.velocity_m_s is, as an inertial speed, 1499 m/s | 1500 to "
+                    "12500 m/s"},
+        GalleryEdge{"FastestCutOff", "falcon9", SetCutOffVelocity, 12500.0, 12510.0,
+                    "unusual stages[2].cut_off.velocity_m_s is, as an inertial speed, 12510 m/s | 1500 to "
+                    "12500 m/s"},
+        GalleryEdge{"BoostersAhead", "ariane5", SetBoostersBottom, 0.401, 0.399,
+                    "unusual boosters.bottom_station_m is, as part of the first stage's, 0.399 | 0.4 to "
+                    "1.15"},
+        GalleryEdge{"BoostersBehind", "ariane5", SetBoostersBottom, 1.149, 1.151,
+                    "unusual boosters.bottom_station_m is, as part of the first stage's, 1.151 | 0.4 to "
+                    "1.15"},
+        GalleryEdge{"BoostersNozzleAhead", "ariane5", SetBoostersNozzle, 0.501, 0.499,
+                    "unusual boosters.nozzle_station_m is, as part of the boosters' bottom_station_m, 0.499 "
+                    "| 0.5 to 1.05"},
+        GalleryEdge{"BoostersNozzleBehind", "ariane5", SetBoostersNozzle, 1.049, 1.051,
+                    "unusual boosters.nozzle_station_m is, as part of the boosters' bottom_station_m, 1.051 "
+                    "| 0.5 to 1.05"}),
+    [](const auto& edge) { return std::string(edge.param.name); });
+
 TEST(VehiclePlausibility, FinsBehindTheBodyCannotBe) {
   Vehicle vehicle = UsualVehicle();
   SetFinsBegin(vehicle, 1.01);
