@@ -20,8 +20,10 @@ AeroTable With(double ca, double off, double cn, double xcp_m, double part) {
   table.xcp_station_m.assign(4, xcp_m);
   table.cmq_per_rad = {-cn, -cn};
   table.clp_per_rad = {-ca, -ca};
-  table.uncertainty = {std::vector<double>(4, part), std::vector<double>(4, 2.0 * part),
-                       std::vector<double>(4, 3.0 * part), {4.0 * part, 4.0 * part}};
+  table.uncertainty = {std::vector<double>(4, part),
+                       std::vector<double>(4, 2.0 * part),
+                       std::vector<double>(4, 3.0 * part),
+                       {4.0 * part, 4.0 * part}};
   return table;
 }
 
