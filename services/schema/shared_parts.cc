@@ -2,6 +2,7 @@
 
 #include <functional>
 #include <map>
+#include <set>
 #include <string>
 #include <utility>
 
@@ -69,7 +70,10 @@ class Sharing {
       if (!child.is_object()) return;
       const std::string whole = child.dump(), part = PartOf(child);
       const bool is_known = ++counts_[part] > 1 && IsShared(before, part, kDescribed);
-      if (whole != part) ++counts_[whole];
+      if (whole != part) {
+        ++counts_[whole];
+        if (IsShared(counts_, whole, kReference)) wholes_[part].insert(whole);
+      }
       if (!is_known) CountParts(child, before);
     });
   }
@@ -81,25 +85,38 @@ class Sharing {
     const bool is_whole = IsShared(counts_, part, kReference);
     if (!is_whole) part = PartOf(json);
     if (!is_whole && !IsShared(counts_, part, kDescribed)) return ReplaceParts(json, name);
-    auto [found, is_new] = names_.try_emplace(part);
-    if (is_new) {
-      const int number = ++uses_[name];
-      found->second = number == 1 ? name : "part_" + std::to_string(++parts_);
-      const std::string own = found->second;
-      Json shared = Json::parse(part);
+    Json reference = {{"$ref", "#/$defs/" + NameOf(part, name)}};
+    json = !is_whole && json.contains("description") ? Beside(json["description"], reference) : reference;
+  }
+
+  // Nothing is read beside a $ref.
+  static Json Beside(const Json& description, const Json& reference) {
+    return {{"description", description}, {"allOf", Json::array({reference})}};
+  }
+
+  // The name under "$defs" of the part with this text.
+  std::string NameOf(const std::string& text, const std::string& name) {
+    if (const auto known = names_.find(text); known != names_.end()) return known->second;
+    const int number = ++uses_[name];
+    const std::string own = number == 1 ? name : "part_" + std::to_string(++parts_);
+    names_[text] = own;
+    Json shared = Json::parse(text);
+    // Several that differ in their descriptions alone have the rest in common.
+    const std::string part = PartOf(shared);
+    const auto wholes = part == text ? wholes_.end() : wholes_.find(part);
+    if (wholes != wholes_.end() && IsShared({{part, wholes->second.size()}}, part, kDescribed))
+      shared = Beside(shared["description"], {{"$ref", "#/$defs/" + NameOf(part, name)}});
+    else
       ReplaceParts(shared, name);
-      defs_[own] = std::move(shared);
-    }
-    Json reference = {{"$ref", "#/$defs/" + names_.at(part)}};
-    if (!is_whole && json.contains("description"))  // nothing is read beside a $ref
-      reference = {{"description", json["description"]}, {"allOf", Json::array({reference})}};
-    json = std::move(reference);
+    defs_[own] = std::move(shared);
+    return own;
   }
   void ReplaceParts(Json& schema, const std::string& name) {
     VisitParts(schema, [&](Json& part, const std::string& key) { Replace(part, key.empty() ? name : key); });
   }
 
   Counts counts_;                             // of each schema, and of what it says whoever holds it
+  std::map<std::string, std::set<std::string>> wholes_;  // shared schemas by what they say without a description
   std::map<std::string, std::string> names_;  // of each shared part
   std::map<std::string, int> uses_;           // of each name
   int parts_ = 0;                             // so many whose name was taken
