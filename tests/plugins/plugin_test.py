@@ -405,7 +405,8 @@ class PluginTest(unittest.TestCase):
         path = self.autopilot("pid_filtered", ", parameters: {integral_time_s: 2, filter_rad: 200}")
         checked = self.dispersa("validate", path)
         self.assertEqual(checked.returncode, 2)
-        self.assertIn("plugin.parameters.filter_rad: the unit of 'filter_rad' is not known here, allowed: filter_rad_s", checked.stdout + checked.stderr)
+        self.assertIn("plugin.parameters.filter_rad: the unit of 'filter_rad' is not known here, allowed: filter_rad_s",
+                      checked.stdout + checked.stderr)
 
     def test_commands_that_fly_here_refuse(self):
         self.compile("pd", SOURCE / "campaigns/control_laws/c/pd.c", flags=["-std=c99"])
