@@ -115,8 +115,9 @@ class Sharing {
     VisitParts(schema, [&](Json& part, const std::string& key) { Replace(part, key.empty() ? name : key); });
   }
 
-  Counts counts_;                             // of each schema, and of what it says whoever holds it
-  std::map<std::string, std::set<std::string>> wholes_;  // shared schemas by what they say without a description
+  Counts counts_;  // of each schema, and of what it says whoever holds it
+  std::map<std::string, std::set<std::string>>
+      wholes_;                                // shared schemas by what they say without a description
   std::map<std::string, std::string> names_;  // of each shared part
   std::map<std::string, int> uses_;           // of each name
   int parts_ = 0;                             // so many whose name was taken

@@ -180,6 +180,7 @@ TEST_F(HostileFiles, CampaignsAreReadOrRefused) {
 // A row that is read has the bits that were stored.
 TEST_F(HostileFiles, NoWrongNumberComesOutOfADamagedDatabase) {
   Campaign campaign;
+  campaign.vehicle.limits.axial_load_g = 1e9;  // with one, every metric is stored
   campaign.name = "made up";
   campaign.id = std::string(64, '1');
   campaign.flight_id = std::string(64, '2');
