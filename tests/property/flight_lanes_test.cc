@@ -101,7 +101,8 @@ FlightDefinition Definition(const std::string& law, bool with_winds, bool guided
   }
   if (law == "listed_pid_aac") {  // one nozzle, three, and crosses among them
     std::vector<Stage>& stages = definition.vehicle.stages;
-    stages[0].gimbal.nozzles = {
+    // The single one, which holds no roll, where the air turns nothing.
+    stages[2].gimbal.nozzles = {
         {"main", 0.0, 0.0, 1.0, {90.0 * kRadPerDeg, 180.0 * kRadPerDeg}, 5.0 * kRadPerDeg}};
     const double r = stages[1].gimbal.radius_m;
     for (const double at : {0.0, 120.0 * kRadPerDeg, 240.0 * kRadPerDeg})
