@@ -224,6 +224,14 @@ std::vector<std::string> Warnings(const CampaignSummary& summary) {
   return warnings;
 }
 
+std::vector<std::string> WithWarnings(std::vector<std::string> notes, const CampaignSummary& summary) {
+  for (std::string& warning : Warnings(summary)) {
+    const bool is_first = summary.nominal && warning == NominalLoss(*summary.nominal);
+    notes.insert(is_first ? notes.begin() : notes.end(), std::move(warning));
+  }
+  return notes;
+}
+
 std::string JointRiskSentence(const CampaignSummary& summary) {
   if (summary.requirements.empty() || !IsIndependent(summary.sampling)) return "";
   std::string sentence =

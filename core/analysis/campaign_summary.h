@@ -134,6 +134,9 @@ std::string MissingWords(std::uint64_t flown, std::uint64_t cases);
 /// studies, lost flights.
 std::vector<std::string> Warnings(const CampaignSummary& summary);
 
+/// The notes, and the warnings after them. A lost nominal flight goes before all of them.
+std::vector<std::string> WithWarnings(std::vector<std::string> notes, const CampaignSummary& summary);
+
 /// The sentence for each requirement's verdict taken together.
 std::string JointRiskSentence(const CampaignSummary& summary);
 

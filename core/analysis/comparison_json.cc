@@ -24,7 +24,7 @@ Json SideJson(const Comparison::Side& side) {
           {"cases", side.cases},
           {"flown", side.flown},
           {"completed", side.completed},
-          {"nominal_loss", side.nominal_loss.empty() ? Json() : Json(side.nominal_loss)}};
+          {"nominal_loss", TextOrNull(side.nominal_loss)}};
 }
 
 Json PairingJson(const Pairing& pairing) {
@@ -38,8 +38,7 @@ Json PairingJson(const Pairing& pairing) {
 }
 
 Json ReplayJson(const Comparison::Side& side, std::uint64_t case_index) {
-  const std::string command = ReplayCommand(side, case_index);
-  return command.empty() ? Json(nullptr) : Json(command);
+  return TextOrNull(ReplayCommand(side, case_index));
 }
 
 Json PairsJson(const std::vector<MetricComparison::Pair>& pairs, const Comparison& comparison) {
@@ -160,8 +159,8 @@ std::string ComparisonJson(const Comparison& comparison) {
   json["pairing"] = PairingJson(comparison.pairing);
   json["changes"] = Json::array();
   for (const CampaignChange& change : comparison.changes) {
-    const auto text = [](const std::string& value) { return value.empty() ? Json(nullptr) : Json(value); };
-    json["changes"].push_back({{"path", change.path}, {"a", text(change.a)}, {"b", text(change.b)}});
+    json["changes"].push_back(
+        {{"path", change.path}, {"a", TextOrNull(change.a)}, {"b", TextOrNull(change.b)}});
   }
   json["metrics"] = Json::array();
   for (const MetricComparison& metric : comparison.metrics)

@@ -4,6 +4,7 @@
 
 #include <algorithm>
 #include <fstream>
+#include <functional>
 #include <map>
 #include <nlohmann/json.hpp>
 #include <sstream>
@@ -11,6 +12,7 @@
 
 #include "core/analysis/campaign_summary.h"
 #include "core/flight/engine_version.h"
+#include "core/results/json_number.h"
 #include "core/results/output_file.h"
 #include "core/results/requirement_text.h"
 #include "core/results/text.h"
@@ -39,6 +41,11 @@ bool Holds(const std::vector<std::pair<std::string, std::string>>& lines, const 
   return std::any_of(lines.begin(), lines.end(), [&](const auto& one) { return one.first == line; });
 }
 
+bool IsRequired(const Campaign& campaign, const std::string& line) {
+  return std::any_of(campaign.requirements.begin(), campaign.requirements.end(),
+                     [&](const Requirement& requirement) { return RequirementLine(requirement) == line; });
+}
+
 /// Earlier attempts that count: from the last one on that started anew.
 std::vector<AttemptRecord> Counted(std::vector<AttemptRecord> earlier) {
   const auto fresh = std::find_if(earlier.rbegin(), earlier.rend(),
@@ -58,17 +65,12 @@ Registered RegisteredIn(const ResultFolder& folder, const Campaign& campaign,
     registered.lines.emplace_back(line, verdict);
   }
   registered.is_known = true;
-  const auto is_required = [&](const std::string& line) {
-    return std::any_of(campaign.requirements.begin(), campaign.requirements.end(),
-                       [&](const Requirement& requirement) { return RequirementLine(requirement) == line; });
-  };
+  const auto is_required = [&](const auto& one) { return IsRequired(campaign, one.first); };
   // Earlier engines required the vehicle's limits by themselves. Where the file requires what it did then,
   // such a line is the only one that it does not give.
-  if (id == campaign.requirements_id)
-    std::erase_if(registered.lines, [&](const auto& one) { return !is_required(one.first); });
+  if (id == campaign.requirements_id) std::erase_if(registered.lines, std::not_fn(is_required));
   const bool same = registered.lines.size() == campaign.requirements.size() &&
-                    std::all_of(registered.lines.begin(), registered.lines.end(),
-                                [&](const auto& one) { return is_required(one.first); });
+                    std::all_of(registered.lines.begin(), registered.lines.end(), is_required);
   registered.is_judged_otherwise = same && id != campaign.requirements_id;
   if (!same || registered.is_judged_otherwise) return registered;
   // The folder is as it began: were its cases flown before, under other requirements?
@@ -282,10 +284,7 @@ Standing StandingOf(const ResultFolder& folder, const Campaign& campaign, const 
   const std::vector<LookRecord> looks = folder.Looks();
   const Registered registered = RegisteredIn(folder, campaign, looks, counted);
   for (const auto& [line, verdict] : registered.lines) {
-    const bool kept = std::any_of(
-        campaign.requirements.begin(), campaign.requirements.end(),
-        [&, &text = line](const Requirement& requirement) { return RequirementLine(requirement) == text; });
-    if (!kept) standing.dropped.push_back({line, LineWords(line), verdict});
+    if (!IsRequired(campaign, line)) standing.dropped.push_back({line, LineWords(line), verdict});
   }
   standing.is_post_hoc = !standing.dropped.empty() || registered.is_judged_otherwise;
   const std::int64_t planned_first = folder.PlannedCases();
@@ -372,7 +371,7 @@ void WriteStanding(const ResultFolder& folder, const CampaignSummary& summary) {
   json["attempts"] = StandingJson::array();
   for (const Standing::AttemptLine& one : standing.attempts) {
     StandingJson line = {{"id", one.id}, {"seed", one.seed}, {"cases", one.cases}};
-    line["verdict"] = one.verdict.empty() ? StandingJson(nullptr) : StandingJson(one.verdict);
+    line["verdict"] = TextOrNull(one.verdict);
     if (!one.fresh.empty()) line["fresh"] = one.fresh;
     json["attempts"].push_back(std::move(line));
   }

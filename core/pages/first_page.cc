@@ -186,11 +186,7 @@ std::vector<std::string> Notes(const CampaignSummary& summary) {
         "another "
         "seed can show that they are met.");
   for (std::string& note : CampaignNotes(standing)) notes.push_back(std::move(note));
-  for (std::string& warning : Warnings(summary)) {
-    const bool is_first = summary.nominal && warning == NominalLoss(*summary.nominal);
-    notes.insert(is_first ? notes.begin() : notes.end(), std::move(warning));
-  }
-  return notes;
+  return WithWarnings(std::move(notes), summary);
 }
 
 std::string List(const char* list_class, const std::vector<std::string>& items) {

@@ -45,16 +45,6 @@ std::string NextStep(const CampaignSummary& summary) {
   return "";
 }
 
-/// A lost nominal flight first, then the standing, then the rest.
-std::vector<std::string> NotesOf(const CampaignSummary& summary) {
-  std::vector<std::string> notes = StandingNotes(summary.standing, summary);
-  for (std::string& warning : Warnings(summary)) {
-    const bool is_first = summary.nominal && warning == NominalLoss(*summary.nominal);
-    notes.insert(is_first ? notes.begin() : notes.end(), std::move(warning));
-  }
-  return notes;
-}
-
 }  // namespace
 
 void AddReflownOptions(CLI::App& command, ReflownFlights& flights) {
@@ -108,7 +98,8 @@ void PrintSummary(const CampaignSummary& summary, const std::filesystem::path& d
   }
   if (!summary.quarantined.empty()) fmt::print(", {} quarantined", summary.quarantined.size());
   fmt::print("\n");
-  for (const std::string& note : NotesOf(summary)) fmt::print("warning: {}\n", note);
+  for (const std::string& note : WithWarnings(StandingNotes(summary.standing, summary), summary))
+    fmt::print("warning: {}\n", note);
   for (std::size_t i = 0; i < summary.requirements.size(); ++i) {
     const RequirementSummary& requirement = summary.requirements[i];
     std::string verdict = summary.standing.requirements[i].verdict;

@@ -127,10 +127,6 @@ nlohmann::ordered_json MarginsJson(const LeastMargins& m) {
           {"delay_ms", Number(1e3 * m.delay_s)}};
 }
 
-nlohmann::ordered_json MissedJson(const std::string& missed) {
-  return missed.empty() ? nlohmann::ordered_json() : nlohmann::ordered_json(missed);
-}
-
 nlohmann::ordered_json ResultJson(const TuneOptions& options, const TuningResult& result,
                                   const std::vector<TuningRecord>& log) {
   auto stages = nlohmann::ordered_json::array();
@@ -148,7 +144,7 @@ nlohmann::ordered_json ResultJson(const TuneOptions& options, const TuningResult
                       {"pitch_error_peak_deg", Number(stage.peak_deg)},
                       {"frozen", MarginsJson(stage.frozen)},
                       {"adapting", MarginsJson(stage.adapting)},
-                      {"missed", MissedJson(stage.missed)}});
+                      {"missed", TextOrNull(stage.missed)}});
     if (stage.surplus) stages.back()["surplus"] = Number(*stage.surplus);
   }
   auto skipped = nlohmann::ordered_json::array();
@@ -176,13 +172,12 @@ nlohmann::ordered_json ResultJson(const TuneOptions& options, const TuningResult
                     {"maximum_total_gain", tuned.design.maximum_total_gain},
                     {"pitch_error_rms_mean_deg", Number(tuned.mean_rms_deg)},
                     {"pitch_error_peak_deg", Number(tuned.peak_deg)},
-                    {"missed", MissedJson(tuned.missed)}};
+                    {"missed", TextOrNull(tuned.missed)}};
   }
   return {{"schema", "dispersa/tune/1"},
           {"autopilot", options.out},
           {"feasible", result.feasible},
-          {"nominal_loss", result.nominal_loss.empty() ? nlohmann::ordered_json()
-                                                       : nlohmann::ordered_json(result.nominal_loss)},
+          {"nominal_loss", TextOrNull(result.nominal_loss)},
           {"seed", options.tuning.seed},
           {"cases", options.tuning.cases},
           {"evaluations", result.evaluations},

@@ -79,12 +79,12 @@ Json ToJson(const CampaignView& view, std::size_t most) {
           {"rate_per_s", view.rate_per_s},
           {"eta_s", view.eta_s ? Json(*view.eta_s) : Json(nullptr)},
           {"priority", entry.priority},
-          {"owner", entry.owner.empty() ? Json(nullptr) : Json(entry.owner)},
+          {"owner", TextOrNull(entry.owner)},
           {"labels", entry.labels},
           {"bytes", entry.bytes},
-          {"verdict", entry.verdict.empty() ? Json(nullptr) : Json(entry.verdict)},
+          {"verdict", TextOrNull(entry.verdict)},
           {"code", HasEnded(entry.state) ? Json(entry.code) : Json(nullptr)},
-          {"problem", view.problem.empty() ? Json(nullptr) : Json(view.problem)},
+          {"problem", TextOrNull(view.problem)},
           {"requirements", std::move(standings)},
           {"requirements_unlisted", view.standings.size() - std::min(most, view.standings.size())}};
 }

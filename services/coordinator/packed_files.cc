@@ -10,6 +10,7 @@
 #include <memory>
 #include <system_error>
 
+#include "core/results/file_system.h"
 #include "core/results/output_file.h"
 #include "core/results/result_error.h"
 
@@ -82,9 +83,7 @@ void RemoveReports(const fs::path& results) {
     for (const fs::path& file : {results / name, Packed(results / name)}) {
       std::error_code error;
       fs::remove_all(file, error);
-      if (error)
-        throw ResultError(ResultError::Kind::kFile,
-                          file.string() + ": cannot be removed: " + error.message());
+      if (error) FailFile(file.string(), "cannot be removed", error.value());
     }
   }
 }
