@@ -22,39 +22,38 @@ bool IsRequired(const Campaign& campaign, const StructuralLimit& one) {
       });
 }
 
-/// For each row whether fails(load, limit, outcome) of any checked limit; empty if there is none to check.
-template <typename Fails>
-std::vector<bool> AnyLimit(const Campaign& campaign, const CaseColumns& cases, Fails fails) {
-  std::vector<bool> any;
+enum class Held { kYes, kNotMeasured, kNo };
+
+/// For each row the worst of all checked limits; empty if there is none to check.
+std::vector<Held> HeldLimits(const Campaign& campaign, const CaseColumns& cases) {
+  std::vector<Held> held;
   for (const StructuralLimit& one : AllStructuralLimits()) {
     const double limit = campaign.vehicle.limits.*one.limit;
     if (!(limit > 0.0) || IsRequired(campaign, one)) continue;
     const std::vector<double> loads = cases.metrics.at(MetricColumn(one.metric));
-    any.resize(loads.size());
-    for (std::size_t i = 0; i < loads.size(); ++i)
-      any[i] = any[i] || fails(loads[i], limit, cases.outcome[i]);
+    held.resize(loads.size(), Held::kYes);
+    for (std::size_t i = 0; i < loads.size(); ++i) {
+      const bool is_open = cases.outcome[i] == Outcome::kCompleted && std::isnan(loads[i]);
+      held[i] = std::max(held[i], loads[i] > limit ? Held::kNo : is_open ? Held::kNotMeasured : Held::kYes);
+    }
   }
-  return any;
-}
-
-bool IsNotMeasured(double load, double, Outcome outcome) {
-  return outcome == Outcome::kCompleted && std::isnan(load);
+  return held;
 }
 
 }  // namespace
 
 std::vector<bool> BeyondCheckedLimits(const Campaign& campaign, const CaseColumns& cases) {
-  return AnyLimit(campaign, cases, [](double load, double limit, Outcome outcome) {
-    return load > limit || IsNotMeasured(load, limit, outcome);
-  });
+  std::vector<bool> beyond;
+  for (const Held held : HeldLimits(campaign, cases)) beyond.push_back(held != Held::kYes);
+  return beyond;
 }
 
 std::vector<LoadCheck> CheckLoads(const Campaign& campaign, const CaseColumns& cases) {
-  const std::vector<bool> beyond = BeyondCheckedLimits(campaign, cases);
-  if (beyond.empty()) return {};
-  const std::vector<bool> not_measured = AnyLimit(campaign, cases, IsNotMeasured);
-  return {{kAllLimits, std::ssize(beyond), std::count(beyond.begin(), beyond.end(), true),
-           std::count(not_measured.begin(), not_measured.end(), true)}};
+  const std::vector<Held> held = HeldLimits(campaign, cases);
+  if (held.empty()) return {};
+  const std::int64_t not_measured = std::count(held.begin(), held.end(), Held::kNotMeasured);
+  const std::int64_t beyond = std::count(held.begin(), held.end(), Held::kNo);
+  return {{kAllLimits, std::ssize(held), beyond + not_measured, not_measured}};
 }
 
 std::string LoadCheckSentence(const LoadCheck& check) {

@@ -16,7 +16,8 @@ struct LoadCheck {
   std::string metric;  ///< "structural_limit_exceeded"
   std::int64_t n = 0;  ///< flights that were checked, lost ones with their loads until the loss
   std::int64_t failures = 0;
-  std::int64_t not_measured = 0;  ///< completed flights among the failures that do not define a checked load
+  std::int64_t not_measured =
+      0;  ///< completed flights among the failures, within all limits whose load they define
 };
 
 /// For each row whether the flight fails: it went beyond a checked limit, or completed without the load that

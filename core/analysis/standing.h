@@ -14,6 +14,7 @@
 namespace dispersa {
 
 struct CampaignSummary;
+struct RequirementSummary;
 
 enum class StandingVerdict {
   kPass,           ///< every requirement is met as it was planned

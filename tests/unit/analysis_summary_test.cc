@@ -834,12 +834,15 @@ TEST(StructuralLimits, AreNotKeptByLoadsThatWereNotMeasured) {
   open.Set(4, "q_max_pa", std::numeric_limits<double>::quiet_NaN());
   open.results[4].outcome = Outcome::kLostControl;
   open.Set(5, "q_max_pa", 110e3);
+  // One load is not measured, the other one is beyond its limit: it counts once, as what is known.
+  open.Set(6, "q_max_pa", std::numeric_limits<double>::quiet_NaN());
+  open.Set(6, "axial_load_max_g", 9.5);
   const CampaignSummary summary = open.Summary();
-  EXPECT_EQ(summary.load_checks[0].failures, 2);
+  EXPECT_EQ(summary.load_checks[0].failures, 3);
   EXPECT_EQ(summary.load_checks[0].not_measured, 1);
   EXPECT_EQ(
       LoadCheckSentence(summary.load_checks[0]),
-      "Load check: 1 of 20 flights went beyond a limit of the vehicle, and in 1 completed its load is not "
+      "Load check: 2 of 20 flights went beyond a limit of the vehicle, and in 1 completed its load is not "
       "measured. No flight may.");
 }
 
