@@ -397,7 +397,9 @@ struct LoadsOf {
 template <class T>
 DISPERSA_INLINE void BendThrust(const LauncherPlantLanes<T>& plant, const LauncherPhaseLanes<T>& phase,
                                 const TimedMasses<T>& masses, const BentBody<T>& bent, Thrust<T>& thrust) {
-  const Bent<T> at = BentAtPivot(*bent.bending, *bent.state);
+  const Vector<T> offset{T(0.0), plant.thrust_offset_y_m, plant.thrust_offset_z_m};
+  const Bent<T> at = BentAtPivot(*bent.bending, *bent.state, thrust.force_n,
+                                 thrust.couple_n_m + Cross(offset, thrust.force_n));
   const Vector<T> turn{T(0.0), at.about_y_rad, at.about_z_rad};
   const Vector<T> turned_n = Cross(turn, thrust.force_n);
   const Vector<T> arm{masses.cg_station_m - plant.pivot_station_m, plant.thrust_offset_y_m - masses.cg_y_m,
@@ -405,7 +407,6 @@ DISPERSA_INLINE void BendThrust(const LauncherPlantLanes<T>& plant, const Launch
   const Vector<T> moved{T(0.0), at.y_m, at.z_m};
   thrust.moment_n_m = thrust.moment_n_m + Cross(arm, turned_n) + Cross(moved, thrust.force_n);
   thrust.force_n = thrust.force_n + turned_n;
-  const Vector<T> offset{T(0.0), plant.thrust_offset_y_m, plant.thrust_offset_z_m};
   ModalForce<T> driven = *bent.modal;
   DriveAtPivot(*bent.bending, thrust.force_n, thrust.couple_n_m + Cross(offset, thrust.force_n), driven);
   Blend<T>(phase.burning, driven, *bent.modal);

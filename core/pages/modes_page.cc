@@ -109,6 +109,12 @@ std::string BeamText(const StructureBeam& beam) {
                      beam.rotary_inertia ? "with" : "without");
 }
 
+std::string MeshText(const StackModes& stack, std::size_t plane) {
+  if (!stack.basis) return "";
+  return fmt::format("{} elements; twice as long, they change no mode by more than {:.2g} %",
+                     stack.station_m[plane].size() - 1, 100.0 * stack.mesh_difference[plane]);
+}
+
 std::string ModesPage(const Vehicle& vehicle, const std::vector<StackModes>& stacks) {
   const std::string title = vehicle.name + ": bending modes";
   std::string page =
@@ -125,6 +131,9 @@ std::string ModesPage(const Vehicle& vehicle, const std::vector<StackModes>& sta
     for (std::size_t plane = 0; plane < PlanesOf(stack); ++plane)
       page += ShapeFigure(vehicle, stack, plane) + FrequencyFigure(stack, plane);
     page += "</div>\n" + ModeTable(vehicle, stack);
+    for (std::size_t plane = 0; plane < PlanesOf(stack); ++plane)
+      if (const std::string mesh = MeshText(stack, plane); !mesh.empty())
+        page += fmt::format("<p>Plane {}: {}.</p>\n", PlaneText(stack, plane), mesh);
   }
   return page + "</main>\n</body>\n</html>\n";
 }

@@ -4,9 +4,11 @@
 // functions of the station s, and theta = dw/ds without shear. Between two nodes w is the cubic that they
 // give, and theta the parabola that belongs to it. This is the exact static shape of a uniform element, in
 // the theory of Euler and Bernoulli (shear ratio 0: Hermite's cubics) and in Timoshenko's (Z. Friedman and J.
-// B. Kosmatka, Computers & Structures 47, 1993). The elements are conforming, so frequencies converge from
-// above: with the fourth power of the element's length without shear, with the second power with shear, since
-// an element's shear strain is constant.
+// B. Kosmatka, Computers & Structures 47, 1993). Such an element has one shear strain. An element's own
+// inertia changes the shear along it, so each element has a third kind of shape: its bow, the shape that an
+// even load gives it between clamped ends. With it frequencies converge with the fourth power of the element's
+// length or better, without it only with the second where the beam shears. Rotary inertia leaves a small error of
+// the second power. Of a uniform beam they converge from above.
 #pragma once
 
 #include <Eigen/Core>
@@ -18,10 +20,16 @@
 
 namespace dispersa {
 
-/// Shares of the four end values at a place: w_top, theta_top, w_bottom, theta_bottom.
+/// The rows of a node in shapes and masses: its deflection, its rotation, and the bow of the element behind it
+/// (none behind the last).
+inline constexpr int kNodeRows = 3;
+/// The rows of an element: those of its upper node, and the deflection and the rotation of its lower one.
+inline constexpr int kElementRows = 5;
+
+/// Shares of an element's rows at a place: w_top, theta_top, bow, w_bottom, theta_bottom.
 struct BeamShape {
-  std::array<double, 4> deflection;
-  std::array<double, 4> rotation;
+  std::array<double, kElementRows> deflection;
+  std::array<double, kElementRows> rotation;
 };
 /// `fraction` of the element from its top. The shear ratio is 12 EI / (kappa G A h²).
 BeamShape ShapeAt(double fraction, double length_m, double shear_ratio);
@@ -34,29 +42,24 @@ struct Beam {
   bool rotary_inertia = true;
 };
 
-/// Stations of the nodes: every end of a section and of a spread mass, and every station of a fixed mass.
-/// Further nodes between them keep elements no longer than the beam's length over `elements`.
-std::vector<double> MeshStations(const std::vector<BeamSection>& sections, const BeamMasses& masses,
-                                 int elements);
-
 /// The node that is nearest to a station.
 std::size_t NearestNode(const std::vector<double>& stations, double station_m);
 
 /// Elastic energy of an element is e' flexural_stiffness e / 2, e the rotations of its two ends relative to
-/// the chord.
+/// the chord, and its bow.
 struct BeamElement {
   double length_m = 0.0;
   double shear_ratio = 0.0;
-  Eigen::Matrix2d flexural_stiffness_n_m;
+  Eigen::Matrix3d flexural_stiffness;
 };
 std::vector<BeamElement> BuildElements(const Beam& beam, BeamPlane plane,
                                        const std::vector<double>& stations);
 
-/// Consistent masses, of two rows a node. A mass model's masses are integrated exactly (Gauss, 5 points).
+/// Consistent masses, of three rows a node. A mass model's masses are integrated exactly (Gauss, 5 points).
 Eigen::MatrixXd MassMatrix(const Beam& beam, const std::vector<double>& stations,
                            const std::vector<BeamElement>& elements);
 
-/// The whole stiffness matrix, of two rows a node. For checks: FreeFreeModes does without it.
+/// The whole stiffness matrix, of three rows a node. For checks: FreeFreeModes does without it.
 Eigen::MatrixXd StiffnessMatrix(const std::vector<BeamElement>& elements);
 
 /// The mass matrix times shapes. It couples a node with its neighbours alone, so this takes a tenth of a

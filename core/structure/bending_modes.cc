@@ -6,6 +6,7 @@
 #include <utility>
 
 #include "core/structure/beam_elements.h"
+#include "core/structure/beam_mesh.h"
 #include "core/structure/free_free_modes.h"
 #include "core/structure/mode_tracking.h"
 #include "core/structure/near_modes.h"
@@ -36,7 +37,7 @@ struct Level {
 void Scale(Level& level) {
   for (Eigen::Index mode = 0; mode < level.shape.cols(); ++mode) {
     double largest = 0.0;
-    for (Eigen::Index row = 0; row < level.shape.rows(); row += 2)
+    for (Eigen::Index row = 0; row < level.shape.rows(); row += kNodeRows)
       largest = std::max(largest, std::fabs(level.shape(row, mode)));
     level.shape.col(mode) /= largest;
     level.generalized_mass_kg[mode] /= largest * largest;
@@ -95,9 +96,10 @@ void Append(const Level& level, std::vector<BendingLevel>& levels) {
     m.frequency_rad_s = level.frequency_rad_s[mode];
     m.generalized_mass_kg = level.generalized_mass_kg[mode];
     m.mac = level.mac[mode];
-    for (Eigen::Index row = 0; row < level.shape.rows(); row += 2) {
+    for (Eigen::Index row = 0; row < level.shape.rows(); row += kNodeRows) {
       m.deflection.push_back(level.shape(row, mode));
       m.slope_1_m.push_back(level.shape(row + 1, mode));
+      m.bow.push_back(level.shape(row + 2, mode));
     }
     out.modes.push_back(std::move(m));
   }
@@ -143,10 +145,14 @@ std::optional<FreeFreeModes> ShapesNear(const Level& level, const FreeFreeModes&
   return shapes;
 }
 
+BeamPlace PivotOf(const Vehicle& vehicle, BeamPlane plane, const StackModes& stack) {
+  return PlaceAt(stack, plane,
+                 vehicle.stages[static_cast<std::size_t>(stack.stage)].gimbal.pivot_station_m);
+}
+
 // `basis` takes what the modes of other masses are sought near.
 void SolvePlane(const Vehicle& vehicle, BeamPlane plane, StackModes& stack, ModeBasis& basis) {
   const StructureBeam& structure = *vehicle.structure_beam;
-  const double full_kg = vehicle.stages[static_cast<std::size_t>(stack.stage)].propellant_mass_kg;
   Beam beam;
   beam.timoshenko = structure.timoshenko;
   beam.rotary_inertia = structure.rotary_inertia;
@@ -154,10 +160,15 @@ void SolvePlane(const Vehicle& vehicle, BeamPlane plane, StackModes& stack, Mode
     const std::vector<BeamSection>& sections = structure.stages[static_cast<std::size_t>(i)].sections;
     beam.sections.insert(beam.sections.end(), sections.begin(), sections.end());
   }
-  beam.masses = BuildBeamMasses(vehicle, stack.stage, full_kg, stack.gone);
+  const std::vector<double> levels_kg = LevelsOf(vehicle, stack.stage, stack.gone);
   // One mesh for all levels, so that shapes can be compared node by node.
-  const std::vector<double> stations = MeshStations(beam.sections, beam.masses, structure.elements);
-  const std::vector<BeamElement> elements = BuildElements(beam, plane, stations);
+  const BeamMesh mesh =
+      RefinedMesh(beam, plane,
+                  {BuildBeamMasses(vehicle, stack.stage, levels_kg.front(), stack.gone),
+                   BuildBeamMasses(vehicle, stack.stage, levels_kg.back(), stack.gone)},
+                  structure.elements, structure.modes);
+  const auto& [stations, elements, difference] = mesh;
+  stack.mesh_difference[Index(plane)] = difference;
   stack.station_m[Index(plane)] = stations;
   for (const BeamElement& element : elements) stack.shear_ratio[Index(plane)].push_back(element.shear_ratio);
   auto near = std::make_unique<NearModes>(stations, elements, beam.rotary_inertia);
@@ -178,13 +189,15 @@ void SolvePlane(const Vehicle& vehicle, BeamPlane plane, StackModes& stack, Mode
     Scale(level);
     return level;
   };
+  const BeamPlace pivot = PivotOf(vehicle, plane, stack);
+  bool has_shapes = true;
   const auto keep = [&](const Level& level) {
     Append(level, stack.levels[Index(plane)]);
+    stack.levels[Index(plane)].back().by_pivot_load = near->ByLoadsAt(pivot, beam.masses);
     const std::optional<FreeFreeModes> shapes = ShapesNear(level, lowest);
-    if (!shapes) near = nullptr;
-    if (near) near->AddLevel(*shapes);
+    has_shapes = has_shapes && shapes;
+    if (has_shapes) near->AddLevel(*shapes);
   };
-  const std::vector<double> levels_kg = LevelsOf(vehicle, stack.stage, stack.gone);
   Level level = solve(levels_kg.front());
   Begin(level, structure.modes);
   keep(level);
@@ -192,7 +205,7 @@ void SolvePlane(const Vehicle& vehicle, BeamPlane plane, StackModes& stack, Mode
     level = Follow(level, levels_kg[i], solve, kHalvings);
     keep(level);
   }
-  basis.planes[Index(plane)] = std::move(near);
+  if (has_shapes) basis.planes[Index(plane)] = std::move(near);
 }
 
 // The first modes of a plane, sought near nominal ones; false if they are not found there.
@@ -201,15 +214,17 @@ bool SolvePlaneNear(const Vehicle& vehicle, BeamPlane plane, const StackModes& n
   const std::vector<double> levels_kg = LevelsOf(vehicle, stack.stage, stack.gone);
   const NearModes* const near = nominal.basis ? nominal.basis->planes[Index(plane)].get() : nullptr;
   if (!near) return false;
+  const BeamPlace pivot = PivotOf(vehicle, plane, nominal);
   std::vector<BendingLevel> levels;
   for (const double propellant_kg : levels_kg) {
-    std::optional<std::vector<BendingMode>> found = near->Find(
-        levels.size(), BuildBeamMasses(vehicle, stack.stage, propellant_kg, stack.gone), modes, kSureMac);
+    const BeamMasses masses = BuildBeamMasses(vehicle, stack.stage, propellant_kg, stack.gone);
+    std::optional<std::vector<BendingMode>> found = near->Find(levels.size(), masses, modes, kSureMac);
     if (!found) return false;
-    levels.push_back({propellant_kg, std::move(*found)});
+    levels.push_back({propellant_kg, std::move(*found), near->ByLoadsAt(pivot, masses)});
   }
   stack.station_m[Index(plane)] = nominal.station_m[Index(plane)];
   stack.shear_ratio[Index(plane)] = nominal.shear_ratio[Index(plane)];
+  stack.mesh_difference[Index(plane)] = nominal.mesh_difference[Index(plane)];
   stack.levels[Index(plane)] = std::move(levels);
   return true;
 }
@@ -226,7 +241,7 @@ bool TakePlane(const Vehicle& vehicle, BeamPlane plane, StackModes& stack) {
     if (stations.empty()) {
       stations = m.station_m;
       for (std::size_t i = 0; i + 1 < stations.size(); ++i)
-        elements.push_back({stations[i + 1] - stations[i], 0.0, Eigen::Matrix2d::Zero()});
+        elements.push_back({stations[i + 1] - stations[i], 0.0, Eigen::Matrix3d::Zero()});
       stack.shear_ratio[Index(plane)].assign(elements.size(), 0.0);
     }
     if (levels.empty() || levels.back().propellant_kg != m.propellant_kg) {
@@ -234,7 +249,7 @@ bool TakePlane(const Vehicle& vehicle, BeamPlane plane, StackModes& stack) {
       Level level;
       level.propellant_kg = m.propellant_kg;
       level.mass = MassMatrix(beam, stations, elements);
-      level.shape.resize(2 * static_cast<Eigen::Index>(stations.size()), 0);
+      level.shape.resize(kNodeRows * static_cast<Eigen::Index>(stations.size()), 0);
       levels.push_back(std::move(level));
     }
     Level& level = levels.back();
@@ -245,8 +260,8 @@ bool TakePlane(const Vehicle& vehicle, BeamPlane plane, StackModes& stack) {
     level.frequency_rad_s[column] = m.frequency_rad_s;
     level.generalized_mass_kg[column] = m.generalized_mass_kg;
     for (std::size_t i = 0; i < stations.size(); ++i) {
-      level.shape(2 * static_cast<Eigen::Index>(i), column) = m.deflection[i];
-      level.shape(2 * static_cast<Eigen::Index>(i) + 1, column) = m.slope_1_m[i];
+      level.shape.block<kNodeRows, 1>(kNodeRows * static_cast<Eigen::Index>(i), column) << m.deflection[i],
+          m.slope_1_m[i], 0.0;
     }
   }
   for (std::size_t i = 0; i < levels.size(); ++i) {
@@ -264,6 +279,7 @@ bool TakePlane(const Vehicle& vehicle, BeamPlane plane, StackModes& stack) {
 void CopyPlaneY(StackModes& stack) {
   stack.station_m[1] = stack.station_m[0];
   stack.shear_ratio[1] = stack.shear_ratio[0];
+  stack.mesh_difference[1] = stack.mesh_difference[0];
   stack.levels[1] = stack.levels[0];
 }
 
@@ -282,9 +298,9 @@ BeamPlace PlaceAt(const StackModes& stack, BeamPlane plane, double station_m) {
   const std::vector<double>& stations = stack.station_m[Index(plane)];
   const std::size_t last = stations.size() - 1;
   if (station_m <= stations.front())
-    return {0, {1.0, station_m - stations.front(), 0.0, 0.0}, {0.0, 1.0, 0.0, 0.0}};
+    return {0, {1.0, station_m - stations.front()}, {0.0, 1.0}};
   if (station_m >= stations.back())
-    return {last - 1, {0.0, 0.0, 1.0, station_m - stations[last]}, {0.0, 0.0, 0.0, 1.0}};
+    return {last - 1, {0.0, 0.0, 0.0, 1.0, station_m - stations[last]}, {0.0, 0.0, 0.0, 0.0, 1.0}};
   const auto above = std::upper_bound(stations.begin(), stations.end(), station_m);
   const std::size_t i = static_cast<std::size_t>(above - stations.begin()) - 1;
   const double length = stations[i + 1] - stations[i];
@@ -293,8 +309,8 @@ BeamPlace PlaceAt(const StackModes& stack, BeamPlane plane, double station_m) {
   return {i, shape.deflection, shape.rotation};
 }
 
-StationShape ShapeOf(const StackModes& stack, BeamPlane plane, const BendingMode& mode, double station_m) {
-  return PlaceAt(stack, plane, station_m).Of(mode);
+StationShape ShapeOf(const StackModes& stack, BeamPlane plane, const BentShape& shape, double station_m) {
+  return PlaceAt(stack, plane, station_m).Of(shape);
 }
 
 StackModes BuildStackModes(const Vehicle& vehicle, int stage, unsigned gone) {

@@ -15,6 +15,7 @@
 #include <string>
 #include <vector>
 
+#include "core/structure/beam_elements.h"
 #include "core/structure/bending_mode.h"
 #include "core/vehicle/vehicle.h"
 
@@ -24,6 +25,9 @@ namespace dispersa {
 struct BendingLevel {
   double propellant_kg = 0.0;
   std::vector<BendingMode> modes;
+  /// The free beam under a steady force of 1 N at the nozzle pivot, and under a couple of 1 N m there, in mean axes:
+  /// m and rad (empty: the modes come from a table).
+  std::array<BentShape, 2> by_pivot_load{};
 };
 
 struct ModeBasis;  ///< near_modes.h
@@ -34,6 +38,7 @@ struct StackModes {
   bool axisymmetric = true;                         ///< plane z is plane y
   std::array<std::vector<double>, 2> station_m;     ///< of the nodes, by plane
   std::array<std::vector<double>, 2> shear_ratio;   ///< of the elements between them
+  std::array<double, 2> mesh_difference{};          ///< of elements twice as long (beam_mesh.h), by plane
   std::array<std::vector<BendingLevel>, 2> levels;  ///< by plane, in order of falling propellant
   /// For the modes of other masses (null: the modes come from a table, or are of other masses themselves).
   std::shared_ptr<const ModeBasis> basis;
@@ -45,24 +50,24 @@ struct StationShape {
   double slope_1_m = 0.0;
 };
 /// A station of the beam, found once for all modes and levels: its element, and the shares of what the
-/// element's two nodes do.
+/// element's two nodes and its bow do.
 struct BeamPlace {
   std::size_t node = 0;
-  std::array<double, 4> deflection{}, rotation{};
+  std::array<double, kElementRows> deflection{}, rotation{};
 
-  StationShape Of(const BendingMode& mode) const {
-    const double ends[4] = {mode.deflection[node], mode.slope_1_m[node], mode.deflection[node + 1],
-                            mode.slope_1_m[node + 1]};
+  StationShape Of(const BentShape& mode) const {
+    const double rows[kElementRows] = {mode.deflection[node], mode.slope_1_m[node], mode.bow[node],
+                                       mode.deflection[node + 1], mode.slope_1_m[node + 1]};
     StationShape at;
-    for (std::size_t k = 0; k < 4; ++k) {
-      at.deflection += deflection[k] * ends[k];
-      at.slope_1_m += rotation[k] * ends[k];
+    for (std::size_t k = 0; k < kElementRows; ++k) {
+      at.deflection += deflection[k] * rows[k];
+      at.slope_1_m += rotation[k] * rows[k];
     }
     return at;
   }
 };
 BeamPlace PlaceAt(const StackModes& stack, BeamPlane plane, double station_m);
-StationShape ShapeOf(const StackModes& stack, BeamPlane plane, const BendingMode& mode, double station_m);
+StationShape ShapeOf(const StackModes& stack, BeamPlane plane, const BentShape& shape, double station_m);
 
 /// The modes of the stack of a stage that is no restart.
 ///

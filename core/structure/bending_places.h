@@ -19,11 +19,11 @@ struct FourStations {
 };
 /// A place's values in four modes, in the order in which BeamPlace::Of() adds them for one.
 inline FourStations FourAt(const BeamPlace& place, const FourShapes* modes) {
-  const FourShapes* const ends = modes + 2 * place.node;
+  const FourShapes* const rows = modes + kNodeRows * place.node;
   FourStations at{0.0, 0.0};
-  for (std::size_t k = 0; k < 4; ++k) {
-    at.deflection = at.deflection + FourShapes(place.deflection[k]) * ends[k];
-    at.slope_1_m = at.slope_1_m + FourShapes(place.rotation[k]) * ends[k];
+  for (std::size_t k = 0; k < kElementRows; ++k) {
+    at.deflection = at.deflection + FourShapes(place.deflection[k]) * rows[k];
+    at.slope_1_m = at.slope_1_m + FourShapes(place.rotation[k]) * rows[k];
   }
   return at;
 }

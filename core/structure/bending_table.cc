@@ -5,6 +5,7 @@
 #include <memory>
 #include <optional>
 
+#include "core/math/functions.h"
 #include "core/structure/bending_places.h"
 #include "core/structure/free_body.h"
 #include "core/vehicle/beam_masses.h"
@@ -26,13 +27,14 @@ using FourColumns = std::array<FourShapes, BendingTable::kRowSize>;
 // The values of a level's first modes at the nodes, side by side.
 ShapeColumns SideBySide(const BendingLevel& level, std::size_t modes) {
   const std::size_t nodes = level.modes[0].deflection.size();
-  ShapeColumns columns(2 * nodes, (modes + 3) / 4);
+  ShapeColumns columns(kNodeRows * nodes, (modes + 3) / 4);
   std::fill_n(columns.Four(0), columns.rows * columns.fours, FourShapes(0.0));
   for (std::size_t k = 0; k < modes; ++k) {
-    double* const at = Values(columns.Four(k / 4)) + k % 4;
     for (std::size_t i = 0; i < nodes; ++i) {
-      at[8 * i] = level.modes[k].deflection[i];
-      at[8 * i + 4] = level.modes[k].slope_1_m[i];
+      FourShapes* const at = columns.Four(k / 4) + kNodeRows * i;
+      Values(at)[k % 4] = level.modes[k].deflection[i];
+      Values(at + 1)[k % 4] = level.modes[k].slope_1_m[i];
+      Values(at + 2)[k % 4] = level.modes[k].bow[i];
     }
   }
   return columns;
@@ -283,8 +285,27 @@ void AppendRows(const BendingLevel& level, std::size_t four, std::size_t count, 
   }
 }
 
+// Of the modes whose rows begin at `row`.
+void SetResidual(const BendingLevel& level, const PlaneParts& parts, std::size_t row, std::size_t count,
+                 BendingTable& table) {
+  if (level.by_pivot_load[0].deflection.empty()) return;
+  const StationShape by_force = parts.pivot.Of(level.by_pivot_load[0]),
+                     by_couple = parts.pivot.Of(level.by_pivot_load[1]);
+  double residual[3] = {by_force.deflection, by_force.slope_1_m, by_couple.slope_1_m};
+  for (std::size_t mode = 0; mode < count; ++mode) {
+    const double* const of = table.rows.data() + row + BendingTable::kRowSize * mode;
+    const double deflection = of[BendingTable::kPivotDeflection], slope = of[BendingTable::kPivotSlope];
+    const double softness = of[BendingTable::kInverseMass] / Square(of[BendingTable::kFrequency]);
+    residual[0] -= softness * deflection * deflection;
+    residual[1] -= softness * deflection * slope;
+    residual[2] -= softness * slope * slope;
+  }
+  for (std::size_t i = 0; i < 3; ++i) table.rows[row + BendingTable::kResidual + i] = residual[i];
+}
+
 void AppendLevel(const LoadTable& loads, const BendingLevel& level, const PlaneParts& parts,
                  const LevelShapes& of, std::size_t count, BendingTable& table) {
+  const std::size_t row = table.rows.size();
   for (std::size_t four = 0; four < of.shapes.fours; ++four) {
     const FourShapes* const modes = of.shapes.Four(four);
     FourColumns columns;
@@ -298,6 +319,7 @@ void AppendLevel(const LoadTable& loads, const BendingLevel& level, const PlaneP
     SetMoments(loads, of, modes, columns);
     AppendRows(level, four, count, columns, table);
   }
+  SetResidual(level, parts, row, count, table);
 }
 
 }  // namespace

@@ -44,6 +44,10 @@ struct BendingTable {
   /// of the mode. If there is a stage above: mean displacement of its centre of gravity, and mean rotation,
   /// for a unit of the mode. If there are boosters: deflection at the station of their nozzles and slope,
   /// both of their rigid link, and the shortening of the beam behind the link with each mode.
+  ///
+  /// Of the first mode's row alone, residual flexibility at the pivot: what a steady load there moves it by beyond the
+  /// modes that fly. Deflection by a force (m/N), slope by a force, which is deflection by a couple (rad/N, 1/N),
+  /// and slope by a couple (rad/(N m)).
   enum Column : int {
     kFrequency = 0,
     kInverseMass = 1,
@@ -61,12 +65,14 @@ struct BendingTable {
     kBoosterDeflection = 80,
     kBoosterSlope = 81,
     kBehindBoosters = 82,
-    kRowSize = 88
+    kResidual = 87,
+    kRowSize = 92
   };
   static_assert(kGyroSlope + kRateGyros == kShortening && kShortening + kModes == kStraightLift &&
                 kLiftAt + int{kLiftCauses} * int{kSectionEffects} == kSectionsAt &&
                 kSectionsAt + int{kLiftCauses} * kLoadStations == kMomentAt &&
-                kMomentAt + kLoadStations == kUpperTurn && kBehindBoosters + kModes <= kRowSize &&
+                kMomentAt + kLoadStations == kUpperTurn && kBehindBoosters + kModes == kResidual &&
+                kResidual + 3 <= kRowSize &&
                 kRowSize % 4 == 0);
   static constexpr int LiftColumn(int cause, int effect) {
     return effect < kSectionEffects ? kLiftAt + kSectionEffects * cause + effect

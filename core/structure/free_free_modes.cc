@@ -14,20 +14,20 @@ namespace {
 // C L'^-1: displacements of the nodes, the first one held, for unit energies of the elements.
 Eigen::MatrixXd DisplacementsByEnergy(const std::vector<BeamElement>& elements) {
   const Eigen::Index count = static_cast<Eigen::Index>(elements.size());
-  Eigen::MatrixXd displacement = Eigen::MatrixXd::Zero(2 * count + 2, 2 * count);
+  Eigen::MatrixXd displacement = Eigen::MatrixXd::Zero(kNodeRows * (count + 1), 3 * count);
   for (Eigen::Index i = 0; i < count; ++i) {
     const BeamElement& element = elements[static_cast<std::size_t>(i)];
     const double h = element.length_m;
-    const Eigen::Index top = 2 * i, bottom = top + 2;
+    const Eigen::Index top = kNodeRows * i, bottom = top + kNodeRows;
     // The elements before turn the whole element.
     displacement.row(bottom) = displacement.row(top) + h * displacement.row(top + 1);
     displacement.row(bottom + 1) = displacement.row(top + 1);
     // Its own ends: the chord turns by theta_top - e_top.
-    const Eigen::Matrix2d upper = element.flexural_stiffness_n_m.llt().matrixU();
-    Eigen::Matrix2d inverse;
-    inverse << 1.0 / upper(0, 0), -upper(0, 1) / (upper(0, 0) * upper(1, 1)), 0.0, 1.0 / upper(1, 1);
-    displacement.block<1, 2>(bottom, top) -= h * inverse.row(0);
-    displacement.block<1, 2>(bottom + 1, top) += inverse.row(1) - inverse.row(0);
+    const Eigen::Matrix3d upper = element.flexural_stiffness.llt().matrixU();
+    const Eigen::Matrix3d own = upper.triangularView<Eigen::Upper>().solve(Eigen::Matrix3d::Identity());
+    displacement.block<1, 3>(bottom, 3 * i) -= h * own.row(0);
+    displacement.block<1, 3>(bottom + 1, 3 * i) += own.row(1) - own.row(0);
+    displacement.block<1, 3>(top + 2, 3 * i) = own.row(2);
   }
   return displacement;
 }

@@ -28,9 +28,10 @@ struct RigidMotion {
     // About the middle of the beam first, so that nothing cancels.
     double first = 0.0;
     for (std::size_t i = 0; i < arms_m.size(); ++i) {
-      mass_kg += push[2 * i];
-      first += turn[2 * i];
-      inertia_kg_m2 += turn[2 * i] * arms_m[i] + turn[2 * i + 1];
+      const double* const turned = &turn[kNodeRows * i];
+      mass_kg += push[kNodeRows * i];
+      first += turned[0];
+      inertia_kg_m2 += turned[0] * arms_m[i] + turned[1];
     }
     const double arm = first / mass_kg;
     inertia_kg_m2 -= first * arm;
@@ -44,8 +45,9 @@ struct RigidMotion {
       FourShapes* const f = loads.Four(k);
       FourShapes force = 0.0, moment = 0.0;
       for (std::size_t i = 0; i < turn_m.size(); ++i) {
-        force = force + f[2 * i];
-        moment = Fma(FourShapes(turn_m[i]), f[2 * i], moment + f[2 * i + 1]);
+        const FourShapes* const of_node = f + kNodeRows * i;
+        force = force + of_node[0];
+        moment = Fma(FourShapes(turn_m[i]), of_node[0], moment + of_node[1]);
       }
       const FourShapes pushed = force / FourShapes(-mass_kg), turned = moment / FourShapes(-inertia_kg_m2);
       for (std::size_t row = 0; row < loads.rows; ++row)
@@ -64,8 +66,9 @@ struct RigidMotion {
       }
       const FourShapes pushed = force / FourShapes(-mass_kg), turned = moment / FourShapes(-inertia_kg_m2);
       for (std::size_t i = 0; i < turn_m.size(); ++i) {
-        x[2 * i] = Fma(FourShapes(turn_m[i]), turned, x[2 * i] + pushed);
-        x[2 * i + 1] = x[2 * i + 1] + turned;
+        FourShapes* const of_node = x + kNodeRows * i;
+        of_node[0] = Fma(FourShapes(turn_m[i]), turned, of_node[0] + pushed);
+        of_node[1] = of_node[1] + turned;
       }
     }
   }
@@ -187,6 +190,16 @@ std::vector<ModeMatch> MatchesOf(const Eigen::MatrixXd& product, const RitzModes
   return PairByFallingMac(std::move(mac), of_modes);
 }
 
+// A column over a unit, at all nodes.
+void AppendNodes(const ShapeColumns& columns, std::size_t column, double unit, BentShape& shape) {
+  const double* const at = Values(columns.Four(column / 4)) + column % 4;
+  for (std::size_t row = 0; row < columns.rows; row += kNodeRows) {
+    shape.deflection.push_back(at[4 * row] / unit);
+    shape.slope_1_m.push_back(at[4 * (row + 1)] / unit);
+    shape.bow.push_back(at[4 * (row + 2)] / unit);
+  }
+}
+
 // The matched modes, scaled to a largest deflection of 1.
 std::optional<std::vector<BendingMode>> ModesOf(const ShapeColumns& bent, const RitzModes& found,
                                                 const std::vector<ModeMatch>& matches, double least_mac) {
@@ -203,17 +216,12 @@ std::optional<std::vector<BendingMode>> ModesOf(const ShapeColumns& bent, const 
     BendingMode& m = modes[mode];
     const double* const at = Values(sought.Four(mode / 4)) + mode % 4;
     double largest = 0.0;
-    for (std::size_t row = 0; row < sought.rows; row += 2)
+    for (std::size_t row = 0; row < sought.rows; row += kNodeRows)
       largest = std::max(largest, std::fabs(at[4 * row]));
     m.frequency_rad_s = std::sqrt(found.stiffness[matches[mode].index]);
     m.generalized_mass_kg = 1.0 / Square(largest);
     m.mac = matches[mode].mac;
-    m.deflection.resize(sought.rows / 2);
-    m.slope_1_m.resize(sought.rows / 2);
-    for (std::size_t i = 0; i < sought.rows / 2; ++i) {
-      m.deflection[i] = at[8 * i] / largest;
-      m.slope_1_m[i] = at[8 * i + 4] / largest;
-    }
+    AppendNodes(sought, mode, largest, m);
   }
   return modes;
 }
@@ -223,9 +231,8 @@ std::optional<std::vector<BendingMode>> ModesOf(const ShapeColumns& bent, const 
 NearModes::NearModes(std::vector<double> stations, std::vector<BeamElement> elements, bool rotary_inertia)
     : masses_(std::move(stations), std::move(elements), rotary_inertia) {
   for (const BeamElement& element : masses_.elements()) {
-    const Eigen::Matrix2d& k = element.flexural_stiffness_n_m;
-    const double determinant = k(0, 0) * k(1, 1) - k(0, 1) * k(1, 0);
-    flexibility_.push_back({k(1, 1) / determinant, -k(0, 1) / determinant, k(0, 0) / determinant});
+    const Eigen::Matrix3d f = element.flexural_stiffness.inverse();
+    flexibility_.push_back({f(0, 0), f(0, 1), f(0, 2), f(1, 1), f(1, 2), f(2, 2)});
   }
   const double middle_m = 0.5 * (this->stations().front() + this->stations().back());
   for (const double station_m : this->stations()) arms_m_.push_back(station_m - middle_m);
@@ -235,7 +242,7 @@ int NearModes::ShapesFor(int modes) { return (modes + kFurtherShapes + 3) / 4 * 
 
 void NearModes::AddLevel(const FreeFreeModes& nominal) {
   const std::size_t columns = static_cast<std::size_t>(nominal.shape.cols());
-  Level level{ShapeColumns(2 * arms_m_.size(), columns / 4), nominal.frequency_rad_s.cwiseAbs2()};
+  Level level{ShapeColumns(kNodeRows * arms_m_.size(), columns / 4), nominal.frequency_rad_s.cwiseAbs2()};
   for (std::size_t j = 0; j < columns; ++j) {
     const Eigen::Index from = static_cast<Eigen::Index>(j);
     for (std::size_t row = 0; row < level.shapes.rows; ++row)
@@ -247,32 +254,57 @@ void NearModes::AddLevel(const FreeFreeModes& nominal) {
 // Of the beam held at its first node. Loads that leave neither force nor moment bend it so.
 ShapeColumns NearModes::Bent(const ShapeColumns& loads) const {
   ShapeColumns bent(loads.rows, loads.fours);
-  std::vector<std::array<FourShapes, 2>> turned(flexibility_.size());
+  std::vector<std::array<FourShapes, 3>> own(flexibility_.size());  // ends' rotations and bow
   for (std::size_t k = 0; k < loads.fours; ++k) {
     const FourShapes* const f = loads.Four(k);
     FourShapes* const x = bent.Four(k);
-    // The force and the moment of the loads behind turn the ends of an element against its chord.
+    // The force and the moment of the loads behind turn the ends of an element against its chord. Its own
+    // loads bow it.
     FourShapes force = 0.0, moment = 0.0;
     for (std::size_t i = flexibility_.size(); i-- > 0;) {
-      force = force + f[2 * i + 2];
-      moment = moment + f[2 * i + 3];
+      const FourShapes* const of_node = f + kNodeRows * i;
+      force = force + of_node[kNodeRows];
+      moment = moment + of_node[kNodeRows + 1];
       const FourShapes ahead = Fma(FourShapes(masses_.elements()[i].length_m), force, moment);
-      const std::array<double, 3>& by = flexibility_[i];
-      turned[i][0] = Fma(FourShapes(by[1]), moment, -(FourShapes(by[0]) * ahead));
-      turned[i][1] = Fma(FourShapes(by[2]), moment, -(FourShapes(by[1]) * ahead));
+      const std::array<double, 6>& by = flexibility_[i];
+      const auto by_loads = [&](std::size_t of_ahead, std::size_t of_moment, std::size_t of_bow) {
+        return Fma(FourShapes(by[of_moment]), moment,
+                   Fma(FourShapes(by[of_bow]), of_node[2], -(FourShapes(by[of_ahead]) * ahead)));
+      };
+      own[i] = {by_loads(0, 1, 2), by_loads(1, 3, 4), by_loads(2, 4, 5)};
       moment = ahead;
     }
     FourShapes deflection = 0.0, rotation = 0.0;
-    x[0] = x[1] = 0.0;
-    for (std::size_t i = 0; i < flexibility_.size(); ++i) {
-      const FourShapes chord = rotation - turned[i][0];
+    for (std::size_t i = 0; i <= flexibility_.size(); ++i) {
+      FourShapes* const of_node = x + kNodeRows * i;
+      of_node[0] = deflection;
+      of_node[1] = rotation;
+      of_node[2] = 0.0;
+      if (i == flexibility_.size()) break;
+      const FourShapes chord = rotation - own[i][0];
       deflection = Fma(FourShapes(masses_.elements()[i].length_m), chord, deflection);
-      rotation = chord + turned[i][1];
-      x[2 * i + 2] = deflection;
-      x[2 * i + 3] = rotation;
+      rotation = chord + own[i][1];
+      of_node[2] = own[i][2];
     }
   }
   return bent;
+}
+
+std::array<BentShape, 2> NearModes::ByLoadsAt(const BeamPlace& place, const BeamMasses& masses) const {
+  const RigidMotion rigid(masses_.Of(masses), arms_m_);
+  ShapeColumns loads(kNodeRows * arms_m_.size(), 1);
+  std::fill_n(loads.Four(0), loads.rows, FourShapes(0.0));
+  for (std::size_t k = 0; k < kElementRows; ++k) {
+    double* const of_row = Values(loads.Four(0) + kNodeRows * place.node + k);
+    of_row[0] = place.deflection[k];
+    of_row[1] = place.rotation[k];
+  }
+  rigid.Balance(loads);
+  ShapeColumns bent = Bent(loads);
+  rigid.TakeFrom(bent);
+  std::array<BentShape, 2> shapes;
+  for (std::size_t load = 0; load < shapes.size(); ++load) AppendNodes(bent, load, 1.0, shapes[load]);
+  return shapes;
 }
 
 std::optional<std::vector<BendingMode>> NearModes::Find(std::size_t level, const BeamMasses& masses,

@@ -7,6 +7,7 @@
 #include <vector>
 
 #include "core/structure/bending_mode.h"
+#include "core/structure/bending_modes.h"
 #include "core/structure/free_free_modes.h"
 #include "core/structure/mode_tracking.h"
 #include "core/structure/node_masses.h"
@@ -46,6 +47,9 @@ class NearModes {
   std::optional<std::vector<BendingMode>> Find(std::size_t level, const BeamMasses& masses, int count,
                                                double least_mac) const;
 
+  /// What 1 N at a place, and 1 N m there, bend the beam of these masses by when its rigid motion is taken from it.
+  std::array<BentShape, 2> ByLoadsAt(const BeamPlace& place, const BeamMasses& masses) const;
+
   const std::vector<double>& stations() const { return masses_.stations(); }
 
  private:
@@ -56,7 +60,8 @@ class NearModes {
   ShapeColumns Bent(const ShapeColumns& loads) const;
 
   NodeMassMaker masses_;
-  std::vector<std::array<double, 3>> flexibility_;  ///< by element: of its ends' rotations, 11, 12, 22
+  /// By element: of its ends' rotations and its bow, 11, 12, 13, 22, 23, 33.
+  std::vector<std::array<double, 6>> flexibility_;
   std::vector<double> arms_m_;                      ///< of the nodes from the middle of the beam
   std::vector<Level> levels_;
 };

@@ -11,11 +11,11 @@ namespace dispersa {
 namespace {
 
 // Products of an element's shares, upper triangle row by row.
-std::array<double, 10> ProductsOf(const std::array<double, 4>& share) {
-  std::array<double, 10> products;
+std::array<double, 15> ProductsOf(const std::array<double, kElementRows>& share) {
+  std::array<double, 15> products;
   std::size_t k = 0;
-  for (std::size_t i = 0; i < 4; ++i)
-    for (std::size_t j = i; j < 4; ++j) products[k++] = share[i] * share[j];
+  for (std::size_t i = 0; i < share.size(); ++i)
+    for (std::size_t j = i; j < share.size(); ++j) products[k++] = share[i] * share[j];
   return products;
 }
 
@@ -27,31 +27,44 @@ ShapeColumns NodeMasses::Times(const ShapeColumns& shapes) const {
     const FourShapes* x = shapes.Four(k);
     FourShapes* y = product.Four(k);
     FourShapes from_before_w = 0.0, from_before_theta = 0.0;
-    for (std::size_t i = 0; i < at.size(); ++i, x += 2, y += 2) {
-      y[0] = Fma(FourShapes(at[i][0]), x[0], Fma(FourShapes(at[i][1]), x[1], from_before_w));
-      y[1] = Fma(FourShapes(at[i][1]), x[0], Fma(FourShapes(at[i][2]), x[1], from_before_theta));
+    for (std::size_t i = 0; i < at.size(); ++i, x += kNodeRows, y += kNodeRows) {
+      const std::array<double, 6>& own = at[i];
+      y[0] = Fma(FourShapes(own[0]), x[0], Fma(FourShapes(own[1]), x[1], from_before_w));
+      y[1] = Fma(FourShapes(own[1]), x[0], Fma(FourShapes(own[2]), x[1], from_before_theta));
+      y[2] = 0.0;
       if (i == to_next.size()) break;
-      const std::array<double, 4>& next = to_next[i];
-      y[0] = Fma(FourShapes(next[0]), x[2], Fma(FourShapes(next[1]), x[3], y[0]));
-      y[1] = Fma(FourShapes(next[2]), x[2], Fma(FourShapes(next[3]), x[3], y[1]));
-      from_before_w = Fma(FourShapes(next[0]), x[0], FourShapes(next[2]) * x[1]);
-      from_before_theta = Fma(FourShapes(next[1]), x[0], FourShapes(next[3]) * x[1]);
+      const std::array<double, 6>& next = to_next[i];
+      const auto with_next = [&](std::size_t from, FourShapes sum) {
+        return Fma(FourShapes(next[from]), x[3], Fma(FourShapes(next[from + 1]), x[4], sum));
+      };
+      y[0] = with_next(0, Fma(FourShapes(own[3]), x[2], y[0]));
+      y[1] = with_next(2, Fma(FourShapes(own[4]), x[2], y[1]));
+      y[2] = with_next(4, Fma(FourShapes(own[3]), x[0],
+                              Fma(FourShapes(own[4]), x[1], FourShapes(own[5]) * x[2])));
+      const auto to = [&](std::size_t from) {
+        return Fma(FourShapes(next[from]), x[0],
+                   Fma(FourShapes(next[from + 2]), x[1], FourShapes(next[from + 4]) * x[2]));
+      };
+      from_before_w = to(0);
+      from_before_theta = to(1);
     }
   }
   return product;
 }
 
 std::vector<double> NodeMasses::Times(const std::vector<double>& deflection, double rotation) const {
-  std::vector<double> product(2 * at.size());
+  std::vector<double> product(kNodeRows * at.size());
   for (std::size_t i = 0; i < at.size(); ++i) {
-    product[2 * i] += at[i][0] * deflection[i] + at[i][1] * rotation;
-    product[2 * i + 1] += at[i][1] * deflection[i] + at[i][2] * rotation;
+    double* const y = &product[kNodeRows * i];
+    y[0] += at[i][0] * deflection[i] + at[i][1] * rotation;
+    y[1] += at[i][1] * deflection[i] + at[i][2] * rotation;
     if (i == to_next.size()) break;
-    const std::array<double, 4>& next = to_next[i];
-    product[2 * i] += next[0] * deflection[i + 1] + next[1] * rotation;
-    product[2 * i + 1] += next[2] * deflection[i + 1] + next[3] * rotation;
-    product[2 * i + 2] += next[0] * deflection[i] + next[2] * rotation;
-    product[2 * i + 3] += next[1] * deflection[i] + next[3] * rotation;
+    const std::array<double, 6>& next = to_next[i];
+    y[0] += next[0] * deflection[i + 1] + next[1] * rotation;
+    y[1] += next[2] * deflection[i + 1] + next[3] * rotation;
+    y[2] += at[i][3] * deflection[i] + at[i][4] * rotation + next[4] * deflection[i + 1] + next[5] * rotation;
+    y[3] += next[0] * deflection[i] + next[2] * rotation;
+    y[4] += next[1] * deflection[i] + next[3] * rotation;
   }
   return product;
 }
@@ -75,23 +88,16 @@ NodeMassMaker::NodeMassMaker(std::vector<double> stations, std::vector<BeamEleme
 }
 
 void NodeMassMaker::Add(double factor, const Triangle& part, std::size_t element, NodeMasses& masses) {
-  std::array<double, 3>&top = masses.at[element], &bottom = masses.at[element + 1];
-  std::array<double, 4>& next = masses.to_next[element];
-  top[0] += factor * part[0];
-  top[1] += factor * part[1];
-  next[0] += factor * part[2];
-  next[1] += factor * part[3];
-  top[2] += factor * part[4];
-  next[2] += factor * part[5];
-  next[3] += factor * part[6];
-  bottom[0] += factor * part[7];
-  bottom[1] += factor * part[8];
-  bottom[2] += factor * part[9];
+  std::array<double, 6>&top = masses.at[element], &bottom = masses.at[element + 1];
+  std::array<double, 6>& next = masses.to_next[element];
+  double* const sums[15] = {&top[0],  &top[1], &top[3],  &next[0], &next[1],   &top[2],    &top[4],   &next[2],
+                            &next[3], &top[5], &next[4], &next[5], &bottom[0], &bottom[1], &bottom[2]};
+  for (std::size_t k = 0; k < part.size(); ++k) *sums[k] += factor * part[k];
 }
 
 NodeMasses NodeMassMaker::Of(const BeamMasses& masses) const {
-  NodeMasses sum{std::vector<std::array<double, 3>>(stations_.size()),
-                 std::vector<std::array<double, 4>>(elements_.size())};
+  NodeMasses sum{std::vector<std::array<double, 6>>(stations_.size()),
+                 std::vector<std::array<double, 6>>(elements_.size())};
   for (const SpreadMass& m : masses.spread) {
     const auto first = std::upper_bound(stations_.begin(), stations_.end(), m.top_station_m);
     std::size_t i = first == stations_.begin() ? 0 : static_cast<std::size_t>(first - stations_.begin()) - 1;
@@ -114,7 +120,7 @@ NodeMasses NodeMassMaker::Of(const BeamMasses& masses) const {
   for (const FixedMass& m : masses.fixed) {
     const std::size_t node = NearestNode(stations_, m.station_m);
     const double arm = m.cg_station_m - stations_[node];
-    std::array<double, 3>& at = sum.at[node];
+    std::array<double, 6>& at = sum.at[node];
     at[0] += m.mass_kg;
     at[1] += m.mass_kg * arm;
     at[2] += m.mass_kg * arm * arm + m.inertia_kg_m2;

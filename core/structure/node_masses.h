@@ -17,8 +17,7 @@ using FourShapes = lanes::Pack<4>;
 inline double* Values(FourShapes* shapes) { return reinterpret_cast<double*>(shapes); }
 inline const double* Values(const FourShapes* shapes) { return reinterpret_cast<const double*>(shapes); }
 
-/// Shapes in fours: the values of the first four at all rows (two a node: deflection, rotation), then those
-/// of the next four.
+/// Shapes in fours: the values of the first four at all rows (kNodeRows a node), then those of the next four.
 class ShapeColumns {
  public:
   /// Values are undefined until they are set.
@@ -39,12 +38,14 @@ class ShapeColumns {
 /// The mass matrix of MassMatrix() (beam_elements.h) by its blocks: a node has mass of its own and is coupled
 /// with the next.
 struct NodeMasses {
-  std::vector<std::array<double, 3>> at;       ///< by node: ww, w theta, theta theta
-  std::vector<std::array<double, 4>> to_next;  ///< by element: ww, w theta, theta w, theta theta
+  /// By node: ww, w theta, theta theta, and with the bow b behind it w b, theta b, bb.
+  std::vector<std::array<double, 6>> at;
+  /// By element, of its upper node's values with its lower node's: ww, w theta, theta w, theta theta, b w, b theta.
+  std::vector<std::array<double, 6>> to_next;
 
   /// The matrix times shapes.
   ShapeColumns Times(const ShapeColumns& shapes) const;
-  /// The matrix times the motion of the nodes by `deflection` and `rotation`, two rows a node.
+  /// The matrix times the motion of the nodes by `deflection` and `rotation`, without bows.
   std::vector<double> Times(const std::vector<double>& deflection, double rotation) const;
 };
 
@@ -60,7 +61,7 @@ class NodeMassMaker {
 
  private:
   /// Upper triangle of an element's matrix, row by row.
-  using Triangle = std::array<double, 10>;
+  using Triangle = std::array<double, 15>;
   static void Add(double factor, const Triangle& part, std::size_t element, NodeMasses& masses);
 
   std::vector<double> stations_;

@@ -278,7 +278,8 @@ void Describe(Fields& fields, StructureBeam& beam, std::size_t stages, std::size
                     fields.Integer("modes", 1, 10, beam.modes, "in each plane", 3);
                     fields.Integer("propellant_levels", 2, 101, beam.propellant_levels,
                                    "evenly spaced from full to empty", 11);
-                    fields.Integer("elements", 20, 400, beam.elements, "least number along a stack", 60);
+                    fields.Integer("elements", 20, 400, beam.elements,
+                                   "least number along a stack; as many more as 0.1 % of its modes needs", 40);
                     fields.List(
                         "stages", std::max<std::size_t>(bodies, 1), bodies > 0 ? bodies : kMaxStages,
                         beam.stages,

@@ -96,7 +96,7 @@ struct StructureBeam {
   bool rotary_inertia = true;
   int modes = 3;
   int propellant_levels = 11;
-  int elements = 60;
+  int elements = 40;
   int flown_modes = 3;
   double damping_ratio = 0.01;
   std::vector<BeamSensor> sensors;

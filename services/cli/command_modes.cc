@@ -73,7 +73,8 @@ nlohmann::ordered_json StacksJson(const Vehicle& vehicle, const std::vector<Stac
     std::sort(levels.begin(), levels.end(), std::greater<>());
     levels.erase(std::unique(levels.begin(), levels.end()), levels.end());
     for (const double propellant_kg : levels) {
-      auto modes = nlohmann::ordered_json::array();
+      auto modes = nlohmann::ordered_json::array(), elements = modes;
+      for (const std::vector<double>& nodes_m : stack.station_m) elements.push_back(nodes_m.size() - 1);
       for (const BeamPlane plane : kBeamPlanes) {
         for (const BendingLevel& level : stack.levels[plane == BeamPlane::kY ? 0 : 1]) {
           if (level.propellant_kg != propellant_kg) continue;
@@ -94,6 +95,8 @@ nlohmann::ordered_json StacksJson(const Vehicle& vehicle, const std::vector<Stac
                       {"propellant_kg", propellant_kg},
                       {"mass_kg", rigid.mass_kg},
                       {"cg_station_m", rigid.cg_station_m},
+                      {"elements", elements},
+                      {"mesh_difference", stack.mesh_difference},
                       {"modes", std::move(modes)}});
     }
   }
@@ -125,6 +128,7 @@ void PrintStack(const Vehicle& vehicle, const StackModes& stack, BeamPlane plane
       fmt::print("\n");
     }
   }
+  if (const std::string mesh = MeshText(stack, plane == BeamPlane::kY ? 0 : 1); !mesh.empty()) fmt::print("{}\n", mesh);
 }
 
 // A name that ends in .html is the page's, any other a folder's. Folders are made.

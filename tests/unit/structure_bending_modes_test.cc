@@ -8,6 +8,7 @@
 #include "core/campaign_yaml/load.h"
 #include "core/math/constants.h"
 #include "core/structure/beam_elements.h"
+#include "core/structure/beam_mesh.h"
 #include "core/structure/bending_modes.h"
 #include "core/structure/free_free_modes.h"
 #include "core/structure/mode_tracking.h"

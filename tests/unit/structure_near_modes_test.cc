@@ -10,6 +10,7 @@
 
 #include "core/campaign_yaml/load.h"
 #include "core/flight/dispersed_vehicle.h"
+#include "core/structure/beam_mesh.h"
 #include "core/structure/bending_table.h"
 #include "core/structure/load_table.h"
 #include "core/structure/near_modes.h"
@@ -97,7 +98,7 @@ TEST(NodeMasses, AreTheMassMatrix) {
         const Eigen::MatrixXd whole = MassMatrix(beam, stations, elements);
         const NodeMasses masses = maker.Of(beam.masses);
         const double largest = whole.maxCoeff();
-        ShapeColumns unit(2 * stations.size(), 1);
+        ShapeColumns unit(kNodeRows * stations.size(), 1);
         double worst = 0.0;
         for (std::size_t row = 0; row < unit.rows; ++row) {
           std::fill_n(unit.Four(0), unit.rows, FourShapes(0.0));

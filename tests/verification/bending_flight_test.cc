@@ -19,6 +19,7 @@
 #include "core/margins/flight_margins.h"
 #include "core/margins/linear_axis.h"
 #include "core/structure/beam_elements.h"
+#include "core/structure/beam_mesh.h"
 #include "core/structure/mass_points.h"
 #include "tests/bending_in_space.h"
 #include "tests/slv4_flight.h"
@@ -53,8 +54,8 @@ double ElasticSlope(const Vehicle& vehicle, double propellant_kg, double force_n
   const Eigen::MatrixXd rigid = RigidShapes(stations, 0.0);
   // The pivot lies 0.1 m behind the beam's end: a couple goes with the force.
   Eigen::VectorXd force = Eigen::VectorXd::Zero(mass.rows());
-  force[mass.rows() - 2] = force_n;
-  force[mass.rows() - 1] = force_n * (vehicle.stages[0].gimbal.pivot_station_m - stations.back());
+  force[mass.rows() - 3] = force_n;
+  force[mass.rows() - 2] = force_n * (vehicle.stages[0].gimbal.pivot_station_m - stations.back());
   const Eigen::Matrix2d of_rigid = rigid.transpose() * mass * rigid;
   const Eigen::VectorXd relieved =
       force - mass * rigid * (of_rigid.inverse() * (rigid.transpose() * force)).eval();
@@ -66,7 +67,7 @@ double ElasticSlope(const Vehicle& vehicle, double propellant_kg, double force_n
   const auto node = std::min_element(stations.begin(), stations.end(), [&](double a, double b) {
     return std::fabs(a - at_station_m) < std::fabs(b - at_station_m);
   });
-  return x[2 * (node - stations.begin()) + 1];
+  return x[kNodeRows * (node - stations.begin()) + 1];
 }
 
 TEST(BendingFlight, ASteadyForceBendsTheBodyAsItBendsTheBeam) {

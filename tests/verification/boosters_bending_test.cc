@@ -19,6 +19,7 @@
 #include "core/flight/tick_sample.h"
 #include "core/margins/linear_axis.h"
 #include "core/structure/beam_elements.h"
+#include "core/structure/beam_mesh.h"
 #include "core/structure/free_body.h"
 #include "core/trajectory/ascent.h"
 #include "core/vehicle/mass.h"
@@ -119,7 +120,7 @@ Eigen::VectorXd Frequencies(const Vehicle& vehicle, double core_kg, double grain
   const std::vector<BeamElement> elements = BuildElements(beam, BeamPlane::kY, stations);
   Eigen::MatrixXd mass = MassMatrix(beam, stations, elements);
   const auto hang = [&](double kg, double at_m, double inertia_kg_m2) {
-    const Eigen::Index row = 2 * NodeAt(stations, kLink_m);
+    const Eigen::Index row = kNodeRows * NodeAt(stations, kLink_m);
     const Eigen::Vector2d moves(1.0, at_m - kLink_m), turns(0.0, 1.0);
     mass.block<2, 2>(row, row) += kg * moves * moves.transpose() + inertia_kg_m2 * turns * turns.transpose();
   };
@@ -131,8 +132,10 @@ Eigen::VectorXd Frequencies(const Vehicle& vehicle, double core_kg, double grain
   // The nose has nodes without mass, so K + s M stands in the place of M: its values are 1 / (omega² + s).
   // The greatest two are those of the rigid motions.
   constexpr double kShift_1_s2 = 300.0;
-  const Eigen::GeneralizedSelfAdjointEigenSolver<Eigen::MatrixXd> solver(
-      mass, StiffnessMatrix(elements) + kShift_1_s2 * mass);
+  const Eigen::Index rows = mass.rows() - 1;  // no bow behind the last node
+  const Eigen::MatrixXd shifted = StiffnessMatrix(elements) + kShift_1_s2 * mass;
+  const Eigen::GeneralizedSelfAdjointEigenSolver<Eigen::MatrixXd> solver(mass.topLeftCorner(rows, rows),
+                                                                         shifted.topLeftCorner(rows, rows));
   const Eigen::VectorXd values = solver.eigenvalues().reverse().segment(2, 3);
   return (values.cwiseInverse().array() - kShift_1_s2).sqrt();
 }
@@ -248,7 +251,7 @@ double ElasticSlope(const Vehicle& vehicle, double propellant_kg, double force_n
   const Eigen::MatrixXd mass = MassMatrix(beam, stations, elements), stiffness = StiffnessMatrix(elements);
   const Eigen::MatrixXd rigid = RigidShapes(stations, 0.0);
   Eigen::VectorXd force = Eigen::VectorXd::Zero(mass.rows());
-  const Eigen::Index link = 2 * NodeAt(stations, kLink_m);
+  const Eigen::Index link = kNodeRows * NodeAt(stations, kLink_m);
   force[link] = force_n;
   force[link + 1] = force_n * (kNozzle_m - kLink_m);
   const Eigen::Matrix2d of_rigid = rigid.transpose() * mass * rigid;
@@ -258,7 +261,7 @@ double ElasticSlope(const Vehicle& vehicle, double propellant_kg, double force_n
   Eigen::VectorXd x = Eigen::VectorXd::Zero(mass.rows());
   x.tail(free) = stiffness.bottomRightCorner(free, free).ldlt().solve(relieved.tail(free));
   x -= rigid * (of_rigid.inverse() * (rigid.transpose() * (mass * x))).eval();
-  return x[2 * NodeAt(stations, at_station_m) + 1];
+  return x[kNodeRows * NodeAt(stations, at_station_m) + 1];
 }
 
 TEST(BoostersBending, ASteadyForceOfTheirNozzlesBendsTheBodyAsItBendsTheBeam) {
