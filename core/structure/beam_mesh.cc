@@ -5,7 +5,7 @@
 #include <utility>
 
 #include "core/structure/element_masses.h"
-#include "core/structure/free_free_modes.h"
+#include "core/structure/near_modes.h"
 
 namespace dispersa {
 
@@ -71,12 +71,8 @@ BeamMesh RefinedMesh(const Beam& beam, BeamPlane plane, const std::vector<BeamMa
   };
   const auto modes_of = [&](const BeamMesh& mesh) {
     std::vector<FreeFreeModes> solved;
-    for (const BeamMasses& of : masses) {
-      Beam loaded = beam;
-      loaded.masses = of;
-      solved.push_back(SolveFreeFree(mesh.stations, mesh.elements,
-                                     MassMatrix(loaded, mesh.stations, mesh.elements), modes));
-    }
+    const NearModes near(mesh.stations, mesh.elements, beam.rotary_inertia);
+    for (const BeamMasses& of : masses) solved.push_back(near.Lowest(of, modes));
     return solved;
   };
   BeamMesh mesh = mesh_at(MeshStations(beam.sections, masses.front(), (elements + 1) / 2));

@@ -180,8 +180,8 @@ void SolvePlane(const Vehicle& vehicle, BeamPlane plane, StackModes& stack, Mode
     Level level;
     level.propellant_kg = propellant_kg;
     level.mass = MassMatrix(beam, stations, elements);
-    lowest = SolveFreeFree(stations, elements, level.mass,
-                           std::max(count, NearModes::ShapesFor(structure.modes) + structure.modes));
+    lowest = near->Lowest(beam.masses,
+                          std::max(count, NearModes::ShapesFor(structure.modes) + structure.modes));
     const Eigen::Index wanted = std::min<Eigen::Index>(count, lowest.frequency_rad_s.size());
     level.frequency_rad_s = lowest.frequency_rad_s.head(wanted);
     level.shape = lowest.shape.leftCols(wanted);

@@ -4,6 +4,7 @@
 #include <cmath>
 #include <utility>
 
+#include "core/math/constants.h"
 #include "core/math/functions.h"
 #include "core/math/matrices.h"
 
@@ -13,7 +14,7 @@ namespace {
 
 /// Shapes beyond those that are sought: they carry the error of these.
 constexpr int kFurtherShapes = 3;
-constexpr int kMostTurns = 10;
+constexpr int kMostTurns = 10, kMostWholeTurns = 40;
 
 // The motion of a free beam as a rigid body: by 1 m, and about its centre of gravity by 1 rad.
 struct RigidMotion {
@@ -180,6 +181,37 @@ ShapeColumns Combined(const ShapeColumns& columns, const Eigen::MatrixXd& share,
   return combined;
 }
 
+// Turns of subspace iteration from shapes of about these stiffnesses, until `accept(bent, found, error_of)`: the bent
+// shapes of a turn, the modes among them, and the estimated error of one. `bend` bends the beam by balanced loads.
+template <typename Bend, typename Accept>
+void Iterate(const NodeMasses& mass, const RigidMotion& rigid, const ShapeColumns& start,
+             Eigen::VectorXd stiffness, int most_turns, const Bend& bend, const Accept& accept) {
+  ShapeColumns loads = mass.Times(start);
+  rigid.Balance(loads);
+  Eigen::MatrixXd before = ProductOf(start, loads, true);  // masses of the shapes of a turn
+  for (int turn = 1; turn <= most_turns; ++turn) {
+    // Scaled to shapes that are about those of the turn before.
+    ShapeColumns bent = bend(loads);
+    rigid.TakeFrom(bent);
+    const Eigen::MatrixXd energy =
+        stiffness.asDiagonal() * ProductOf(bent, loads, true) * stiffness.asDiagonal();
+    ScaleColumns(stiffness.data(), bent);
+    const std::optional<RitzModes> found = FindAmong(energy, ProductOf(bent, mass.Times(bent), true));
+    if (!found) return;
+    before = stiffness.asDiagonal() * before * stiffness.asDiagonal();
+    const double highest = found->stiffness[found->stiffness.size() - 1];
+    const auto error_of = [&](Eigen::Index mode) {
+      return ChangeOf(*found, mode, before) * found->stiffness[mode] / highest;
+    };
+    if (accept(bent, *found, error_of)) return;
+    stiffness = found->stiffness;
+    const ShapeColumns shapes = Combined(bent, found->share, bent.fours);
+    loads = mass.Times(shapes);
+    rigid.Balance(loads);
+    before = ProductOf(shapes, loads, true);
+  }
+}
+
 // The found mode of each of the first `count` nominal ones. `product`: inertia of the nominal shapes times
 // the shapes that `found` combines.
 std::vector<ModeMatch> MatchesOf(const Eigen::MatrixXd& product, const RitzModes& found,
@@ -229,7 +261,7 @@ std::optional<std::vector<BendingMode>> ModesOf(const ShapeColumns& bent, const 
 }  // namespace
 
 NearModes::NearModes(std::vector<double> stations, std::vector<BeamElement> elements, bool rotary_inertia)
-    : masses_(std::move(stations), std::move(elements), rotary_inertia) {
+    : masses_(std::move(stations), std::move(elements), rotary_inertia), rotary_inertia_(rotary_inertia) {
   for (const BeamElement& element : masses_.elements()) {
     const Eigen::Matrix3d f = element.flexural_stiffness.inverse();
     flexibility_.push_back({f(0, 0), f(0, 1), f(0, 2), f(1, 1), f(1, 2), f(2, 2)});
@@ -314,36 +346,59 @@ std::optional<std::vector<BendingMode>> NearModes::Find(std::size_t level, const
   const ShapeColumns& nominal = levels_[level].shapes;
   ShapeColumns nominal_loads = mass.Times(nominal);
   rigid.Balance(nominal_loads);
-  Eigen::MatrixXd before = ProductOf(nominal, nominal_loads, true);  // masses of the shapes of a turn
-  const Eigen::VectorXd nominal_mass = before.diagonal();
-  Eigen::VectorXd stiffness = levels_[level].stiffness;
-  const ShapeColumns* loads = &nominal_loads;
-  std::optional<ShapeColumns> next_loads;
-  for (int turn = 1; turn <= kMostTurns; ++turn) {
-    // Scaled to shapes that are about those of the turn before.
-    ShapeColumns bent = Bent(*loads);
-    rigid.TakeFrom(bent);
-    const Eigen::MatrixXd energy =
-        stiffness.asDiagonal() * ProductOf(bent, *loads, true) * stiffness.asDiagonal();
-    ScaleColumns(stiffness.data(), bent);
-    const std::optional<RitzModes> found = FindAmong(energy, ProductOf(bent, mass.Times(bent), true));
-    if (!found) return {};
-    before = stiffness.asDiagonal() * before * stiffness.asDiagonal();
-    const std::vector<ModeMatch> matches =
-        MatchesOf(ProductOf(nominal_loads, bent, false), *found, nominal_mass, count);
-    double error = 0.0;
-    for (const ModeMatch& match : matches)
-      error = std::max(error, ChangeOf(*found, match.index, before) * found->stiffness[match.index] /
-                                  found->stiffness[found->stiffness.size() - 1]);
-    if (error <= kShapeError) return ModesOf(bent, *found, matches, least_mac);
-    stiffness = found->stiffness;
-    const ShapeColumns shapes = Combined(bent, found->share, bent.fours);
-    next_loads = mass.Times(shapes);
-    rigid.Balance(*next_loads);
-    loads = &*next_loads;
-    before = ProductOf(shapes, *loads, true);
-  }
-  return {};
+  const Eigen::VectorXd nominal_mass = ProductOf(nominal, nominal_loads, true).diagonal();
+  std::optional<std::vector<BendingMode>> modes;
+  Iterate(
+      mass, rigid, nominal, levels_[level].stiffness, kMostTurns,
+      [&](const ShapeColumns& loads) { return Bent(loads); },
+      [&](const ShapeColumns& bent, const RitzModes& found, const auto& error_of) {
+        const std::vector<ModeMatch> matches =
+            MatchesOf(ProductOf(nominal_loads, bent, false), found, nominal_mass, count);
+        double error = 0.0;
+        for (const ModeMatch& match : matches) error = std::max(error, error_of(match.index));
+        if (error > kShapeError) return false;
+        modes = ModesOf(bent, found, matches, least_mac);
+        return true;
+      });
+  return modes;
+}
+
+FreeFreeModes NearModes::Lowest(const BeamMasses& masses, int count) const {
+  const NodeMasses mass = masses_.Of(masses);
+  const std::size_t shapes = static_cast<std::size_t>(2 * count + 4);
+  ShapeColumns cosines(kNodeRows * arms_m_.size(), (shapes + 3) / 4);
+  const double top_m = stations().front(), length_m = stations().back() - top_m;
+  for (std::size_t k = 0; k < 4 * cosines.fours; ++k)
+    for (std::size_t i = 0; i < arms_m_.size(); ++i) {
+      FourShapes* const node = cosines.Four(k / 4) + kNodeRows * i;
+      const double wave_1_m = kPi * static_cast<double>(k + 2) / length_m;
+      const double angle = wave_1_m * (stations()[i] - top_m);
+      Values(node)[k % 4] = Cos(angle);
+      Values(node + 1)[k % 4] = -wave_1_m * Sin(angle);
+      Values(node + 2)[k % 4] = 0.0;
+    }
+  std::optional<FreeFreeModes> modes;
+  Iterate(
+      mass, RigidMotion(mass, arms_m_), cosines,
+      Eigen::VectorXd::Ones(static_cast<Eigen::Index>(4 * cosines.fours)), kMostWholeTurns,
+      [&](const ShapeColumns& loads) { return Bent(loads); },
+      [&](const ShapeColumns& bent, const RitzModes& found, const auto& error_of) {
+        for (Eigen::Index mode = 0; mode < count; ++mode)
+          if (!(error_of(mode) <= kWholeError)) return false;
+        const ShapeColumns own = Combined(bent, found.share, bent.fours);
+        modes = FreeFreeModes{found.stiffness.head(count).cwiseSqrt(),
+                              Eigen::MatrixXd(static_cast<Eigen::Index>(own.rows), count)};
+        for (Eigen::Index mode = 0; mode < count; ++mode) {
+          const double* const at = Values(own.Four(static_cast<std::size_t>(mode) / 4)) + mode % 4;
+          for (Eigen::Index row = 0; row < modes->shape.rows(); ++row) modes->shape(row, mode) = at[4 * row];
+        }
+        return true;
+      });
+  if (modes) return *std::move(modes);
+  Beam beam;
+  beam.masses = masses;
+  beam.rotary_inertia = rotary_inertia_;
+  return SolveFreeFree(stations(), masses_.elements(), MassMatrix(beam, stations(), masses_.elements()), count);
 }
 
 }  // namespace dispersa
