@@ -174,16 +174,17 @@ struct Bent {
   T y_m, z_m;
   T about_y_rad, about_z_rad;
 };
-/// `force_n` and `couple_n_m` act there. The modes that do not fly answer them at once (residual flexibility: R. H.
-/// MacNeal, A hybrid method of component mode synthesis, Computers & Structures 1, 1971).
+/// `force_n` and `couple_n_m` act there. The modes that do not fly answer them at once (residual flexibility:
+/// R. H. MacNeal, A hybrid method of component mode synthesis, Computers & Structures 1, 1971).
 template <class T>
-DISPERSA_INLINE Bent<T> BentAtPivot(const BendingTableLanes<T>& b, const BendingState<T>& s, Vector<T> force_n,
-                                    Vector<T> couple_n_m) {
+DISPERSA_INLINE Bent<T> BentAtPivot(const BendingTableLanes<T>& b, const BendingState<T>& s,
+                                    Vector<T> force_n, Vector<T> couple_n_m) {
   const OfPlanes<T> moved = b.ColumnsAt(0, BendingTable::kResidual),
                     both = b.ColumnsAt(0, BendingTable::kResidual + 1),
                     turned = b.ColumnsAt(0, BendingTable::kResidual + 2);
   Bent<T> o{Fma(moved.y, force_n.y, -(both.y * couple_n_m.z)), Fma(moved.z, force_n.z, both.z * couple_n_m.y),
-            Fma(both.z, force_n.z, turned.z * couple_n_m.y), Fma(-both.y, force_n.y, turned.y * couple_n_m.z)};
+            Fma(both.z, force_n.z, turned.z * couple_n_m.y),
+            Fma(-both.y, force_n.y, turned.y * couple_n_m.z)};
   for (int mode = 0; mode < b.modes; ++mode) {
     const ModeNow<T>&y = b.At(0, mode), &z = b.At(1, mode);
     o.y_m = Fma(y.pivot_deflection, s.q_m[0][mode], o.y_m);

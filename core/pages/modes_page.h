@@ -13,8 +13,8 @@ std::string ModesPage(const Vehicle& vehicle, const std::vector<StackModes>& sta
 
 /// The kind of the beam, in words.
 std::string BeamText(const StructureBeam& beam);
-/// How fine the mesh of a plane is, from 0 ("": a table's): "64 elements; twice as long, they change no mode by more
-/// than 0.02 %".
+/// How fine the mesh of a plane is, from 0 ("": a table's): "64 elements; twice as long, they change no mode
+/// by more than 0.02 %".
 std::string MeshText(const StackModes& stack, std::size_t plane);
 
 }  // namespace dispersa

@@ -61,8 +61,8 @@ std::vector<BeamElement> BuildElements(const Beam& beam, BeamPlane plane,
     const double h = stations[i + 1] - stations[i];
     BeamElement element;
     element.length_m = h;
-    // The shapes are those of a uniform element: its moments and shear forces, for a moment on either end and for
-    // an even load, act on the real one (a flexibility method: exact for loads at the nodes).
+    // The shapes are those of a uniform element: its moments and shear forces, for a moment on either end and
+    // for an even load, act on the real one (a flexibility method: exact for loads at the nodes).
     const Stiffness middle = StiffnessAt(beam, plane, stations[i] + 0.5 * h);
     element.shear_ratio = middle.shear_n > 0.0 ? 12.0 * middle.bending_n_m2 / (middle.shear_n * h * h) : 0.0;
     const double phi = element.shear_ratio;

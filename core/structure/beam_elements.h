@@ -6,9 +6,9 @@
 // the theory of Euler and Bernoulli (shear ratio 0: Hermite's cubics) and in Timoshenko's (Z. Friedman and J.
 // B. Kosmatka, Computers & Structures 47, 1993). Such an element has one shear strain. An element's own
 // inertia changes the shear along it, so each element has a third kind of shape: its bow, the shape that an
-// even load gives it between clamped ends. With it frequencies converge with the fourth power of the element's
-// length or better, without it only with the second where the beam shears. Rotary inertia leaves a small error of
-// the second power. Of a uniform beam they converge from above.
+// even load gives it between clamped ends. With it frequencies converge with the fourth power of the
+// element's length or better, without it only with the second where the beam shears. Rotary inertia leaves a
+// small error of the second power. Of a uniform beam they converge from above.
 #pragma once
 
 #include <Eigen/Core>
@@ -20,8 +20,8 @@
 
 namespace dispersa {
 
-/// The rows of a node in shapes and masses: its deflection, its rotation, and the bow of the element behind it
-/// (none behind the last).
+/// The rows of a node in shapes and masses: its deflection, its rotation, and the bow of the element behind
+/// it (none behind the last).
 inline constexpr int kNodeRows = 3;
 /// The rows of an element: those of its upper node, and the deflection and the rotation of its lower one.
 inline constexpr int kElementRows = 5;

@@ -146,8 +146,7 @@ std::optional<FreeFreeModes> ShapesNear(const Level& level, const FreeFreeModes&
 }
 
 BeamPlace PivotOf(const Vehicle& vehicle, BeamPlane plane, const StackModes& stack) {
-  return PlaceAt(stack, plane,
-                 vehicle.stages[static_cast<std::size_t>(stack.stage)].gimbal.pivot_station_m);
+  return PlaceAt(stack, plane, vehicle.stages[static_cast<std::size_t>(stack.stage)].gimbal.pivot_station_m);
 }
 
 // `basis` takes what the modes of other masses are sought near.
@@ -162,11 +161,10 @@ void SolvePlane(const Vehicle& vehicle, BeamPlane plane, StackModes& stack, Mode
   }
   const std::vector<double> levels_kg = LevelsOf(vehicle, stack.stage, stack.gone);
   // One mesh for all levels, so that shapes can be compared node by node.
-  const BeamMesh mesh =
-      RefinedMesh(beam, plane,
-                  {BuildBeamMasses(vehicle, stack.stage, levels_kg.front(), stack.gone),
-                   BuildBeamMasses(vehicle, stack.stage, levels_kg.back(), stack.gone)},
-                  structure.elements, structure.modes);
+  const BeamMesh mesh = RefinedMesh(beam, plane,
+                                    {BuildBeamMasses(vehicle, stack.stage, levels_kg.front(), stack.gone),
+                                     BuildBeamMasses(vehicle, stack.stage, levels_kg.back(), stack.gone)},
+                                    structure.elements, structure.modes);
   const auto& [stations, elements, difference] = mesh;
   stack.mesh_difference[Index(plane)] = difference;
   stack.station_m[Index(plane)] = stations;
@@ -180,8 +178,8 @@ void SolvePlane(const Vehicle& vehicle, BeamPlane plane, StackModes& stack, Mode
     Level level;
     level.propellant_kg = propellant_kg;
     level.mass = MassMatrix(beam, stations, elements);
-    lowest = near->Lowest(beam.masses,
-                          std::max(count, NearModes::ShapesFor(structure.modes) + structure.modes));
+    lowest =
+        near->Lowest(beam.masses, std::max(count, NearModes::ShapesFor(structure.modes) + structure.modes));
     const Eigen::Index wanted = std::min<Eigen::Index>(count, lowest.frequency_rad_s.size());
     level.frequency_rad_s = lowest.frequency_rad_s.head(wanted);
     level.shape = lowest.shape.leftCols(wanted);
@@ -297,8 +295,7 @@ bool IsAxisymmetric(const StructureBeam& beam, int stage) {
 BeamPlace PlaceAt(const StackModes& stack, BeamPlane plane, double station_m) {
   const std::vector<double>& stations = stack.station_m[Index(plane)];
   const std::size_t last = stations.size() - 1;
-  if (station_m <= stations.front())
-    return {0, {1.0, station_m - stations.front()}, {0.0, 1.0}};
+  if (station_m <= stations.front()) return {0, {1.0, station_m - stations.front()}, {0.0, 1.0}};
   if (station_m >= stations.back())
     return {last - 1, {0.0, 0.0, 0.0, 1.0, station_m - stations[last]}, {0.0, 0.0, 0.0, 0.0, 1.0}};
   const auto above = std::upper_bound(stations.begin(), stations.end(), station_m);

@@ -25,8 +25,8 @@ namespace dispersa {
 struct BendingLevel {
   double propellant_kg = 0.0;
   std::vector<BendingMode> modes;
-  /// The free beam under a steady force of 1 N at the nozzle pivot, and under a couple of 1 N m there, in mean axes:
-  /// m and rad (empty: the modes come from a table).
+  /// The free beam under a steady force of 1 N at the nozzle pivot, and under a couple of 1 N m there, in
+  /// mean axes: m and rad (empty: the modes come from a table).
   std::array<BentShape, 2> by_pivot_load{};
 };
 

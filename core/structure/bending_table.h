@@ -45,9 +45,9 @@ struct BendingTable {
   /// for a unit of the mode. If there are boosters: deflection at the station of their nozzles and slope,
   /// both of their rigid link, and the shortening of the beam behind the link with each mode.
   ///
-  /// Of the first mode's row alone, residual flexibility at the pivot: what a steady load there moves it by beyond the
-  /// modes that fly. Deflection by a force (m/N), slope by a force, which is deflection by a couple (rad/N, 1/N),
-  /// and slope by a couple (rad/(N m)).
+  /// Of the first mode's row alone, residual flexibility at the pivot: what a steady load there moves it by
+  /// beyond the modes that fly. Deflection by a force (m/N), slope by a force, which is deflection by a
+  /// couple (rad/N, 1/N), and slope by a couple (rad/(N m)).
   enum Column : int {
     kFrequency = 0,
     kInverseMass = 1,
@@ -72,8 +72,7 @@ struct BendingTable {
                 kLiftAt + int{kLiftCauses} * int{kSectionEffects} == kSectionsAt &&
                 kSectionsAt + int{kLiftCauses} * kLoadStations == kMomentAt &&
                 kMomentAt + kLoadStations == kUpperTurn && kBehindBoosters + kModes == kResidual &&
-                kResidual + 3 <= kRowSize &&
-                kRowSize % 4 == 0);
+                kResidual + 3 <= kRowSize && kRowSize % 4 == 0);
   static constexpr int LiftColumn(int cause, int effect) {
     return effect < kSectionEffects ? kLiftAt + kSectionEffects * cause + effect
                                     : kSectionsAt + kLoadStations * cause + effect - kSectionEffects;

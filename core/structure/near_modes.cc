@@ -181,8 +181,9 @@ ShapeColumns Combined(const ShapeColumns& columns, const Eigen::MatrixXd& share,
   return combined;
 }
 
-// Turns of subspace iteration from shapes of about these stiffnesses, until `accept(bent, found, error_of)`: the bent
-// shapes of a turn, the modes among them, and the estimated error of one. `bend` bends the beam by balanced loads.
+// Turns of subspace iteration from shapes of about these stiffnesses, until `accept(bent, found, error_of)`:
+// the bent shapes of a turn, the modes among them, and the estimated error of one. `bend` bends the beam by
+// balanced loads.
 template <typename Bend, typename Accept>
 void Iterate(const NodeMasses& mass, const RigidMotion& rigid, const ShapeColumns& start,
              Eigen::VectorXd stiffness, int most_turns, const Bend& bend, const Accept& accept) {
@@ -398,7 +399,8 @@ FreeFreeModes NearModes::Lowest(const BeamMasses& masses, int count) const {
   Beam beam;
   beam.masses = masses;
   beam.rotary_inertia = rotary_inertia_;
-  return SolveFreeFree(stations(), masses_.elements(), MassMatrix(beam, stations(), masses_.elements()), count);
+  return SolveFreeFree(stations(), masses_.elements(), MassMatrix(beam, stations(), masses_.elements()),
+                       count);
 }
 
 }  // namespace dispersa

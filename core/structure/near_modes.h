@@ -37,8 +37,8 @@ class NearModes {
 
   NearModes(std::vector<double> stations, std::vector<BeamElement> elements, bool rotary_inertia);
 
-  /// The `count` lowest elastic modes, as SolveFreeFree() gives them: by the same iteration from cosines along the beam,
-  /// in a tenth of the time. Where it does not converge, SolveFreeFree() takes its place.
+  /// The `count` lowest elastic modes, as SolveFreeFree() gives them: by the same iteration from cosines
+  /// along the beam, in a tenth of the time. Where it does not converge, SolveFreeFree() takes its place.
   FreeFreeModes Lowest(const BeamMasses& masses, int count) const;
 
   /// Number of nominal modes that AddLevel takes, for so many `modes` that are sought.
@@ -53,7 +53,8 @@ class NearModes {
   std::optional<std::vector<BendingMode>> Find(std::size_t level, const BeamMasses& masses, int count,
                                                double least_mac) const;
 
-  /// What 1 N at a place, and 1 N m there, bend the beam of these masses by when its rigid motion is taken from it.
+  /// What 1 N at a place, and 1 N m there, bend the beam of these masses by when its rigid motion is taken
+  /// from it.
   std::array<BentShape, 2> ByLoadsAt(const BeamPlace& place, const BeamMasses& masses) const;
 
   const std::vector<double>& stations() const { return masses_.stations(); }
@@ -69,7 +70,7 @@ class NearModes {
   bool rotary_inertia_;
   /// By element: of its ends' rotations and its bow, 11, 12, 13, 22, 23, 33.
   std::vector<std::array<double, 6>> flexibility_;
-  std::vector<double> arms_m_;                      ///< of the nodes from the middle of the beam
+  std::vector<double> arms_m_;  ///< of the nodes from the middle of the beam
   std::vector<Level> levels_;
 };
 

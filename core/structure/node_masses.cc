@@ -39,8 +39,8 @@ ShapeColumns NodeMasses::Times(const ShapeColumns& shapes) const {
       };
       y[0] = with_next(0, Fma(FourShapes(own[3]), x[2], y[0]));
       y[1] = with_next(2, Fma(FourShapes(own[4]), x[2], y[1]));
-      y[2] = with_next(4, Fma(FourShapes(own[3]), x[0],
-                              Fma(FourShapes(own[4]), x[1], FourShapes(own[5]) * x[2])));
+      y[2] = with_next(
+          4, Fma(FourShapes(own[3]), x[0], Fma(FourShapes(own[4]), x[1], FourShapes(own[5]) * x[2])));
       const auto to = [&](std::size_t from) {
         return Fma(FourShapes(next[from]), x[0],
                    Fma(FourShapes(next[from + 2]), x[1], FourShapes(next[from + 4]) * x[2]));
@@ -90,8 +90,9 @@ NodeMassMaker::NodeMassMaker(std::vector<double> stations, std::vector<BeamEleme
 void NodeMassMaker::Add(double factor, const Triangle& part, std::size_t element, NodeMasses& masses) {
   std::array<double, 6>&top = masses.at[element], &bottom = masses.at[element + 1];
   std::array<double, 6>& next = masses.to_next[element];
-  double* const sums[15] = {&top[0],  &top[1], &top[3],  &next[0], &next[1],   &top[2],    &top[4],   &next[2],
-                            &next[3], &top[5], &next[4], &next[5], &bottom[0], &bottom[1], &bottom[2]};
+  double* const sums[15] = {&top[0],  &top[1],  &top[3],    &next[0],   &next[1],
+                            &top[2],  &top[4],  &next[2],   &next[3],   &top[5],
+                            &next[4], &next[5], &bottom[0], &bottom[1], &bottom[2]};
   for (std::size_t k = 0; k < part.size(); ++k) *sums[k] += factor * part[k];
 }
 

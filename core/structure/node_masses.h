@@ -40,7 +40,8 @@ class ShapeColumns {
 struct NodeMasses {
   /// By node: ww, w theta, theta theta, and with the bow b behind it w b, theta b, bb.
   std::vector<std::array<double, 6>> at;
-  /// By element, of its upper node's values with its lower node's: ww, w theta, theta w, theta theta, b w, b theta.
+  /// By element, of its upper node's values with its lower node's: ww, w theta, theta w, theta theta, b w, b
+  /// theta.
   std::vector<std::array<double, 6>> to_next;
 
   /// The matrix times shapes.

@@ -128,7 +128,8 @@ void PrintStack(const Vehicle& vehicle, const StackModes& stack, BeamPlane plane
       fmt::print("\n");
     }
   }
-  if (const std::string mesh = MeshText(stack, plane == BeamPlane::kY ? 0 : 1); !mesh.empty()) fmt::print("{}\n", mesh);
+  if (const std::string mesh = MeshText(stack, plane == BeamPlane::kY ? 0 : 1); !mesh.empty())
+    fmt::print("{}\n", mesh);
 }
 
 // A name that ends in .html is the page's, any other a folder's. Folders are made.

@@ -40,22 +40,24 @@ struct InSpace : BendingInSpace {
   explicit InSpace(const Vehicle& v) : BendingInSpace(v, 20.0) {}
 };
 
-// What a lateral force at the pivot bends the beam of finite elements by: its slope at a station against that
-// of the motion as a rigid body.
-double ElasticSlope(const Vehicle& vehicle, double propellant_kg, double force_n, double at_station_m) {
+// What a lateral force and a couple at the pivot bend the beam of finite elements by: its deflection and
+// slope at a station against those of the motion as a rigid body. Beyond the beam's end it goes on straight.
+StationShape ElasticShape(const Vehicle& vehicle, double propellant_kg, double force_n, double couple_n_m,
+                          double at_station_m) {
   Beam beam;
   beam.timoshenko = vehicle.structure_beam->timoshenko;
   for (const BeamStage& stage : vehicle.structure_beam->stages)
     beam.sections.insert(beam.sections.end(), stage.sections.begin(), stage.sections.end());
   beam.masses = BuildBeamMasses(vehicle, 0, propellant_kg);
-  std::vector<double> stations = MeshStations(beam.sections, beam.masses, vehicle.structure_beam->elements);
+  std::vector<double> stations = MeshStations(beam.sections, beam.masses, 120);
   const std::vector<BeamElement> elements = BuildElements(beam, BeamPlane::kZ, stations);
   const Eigen::MatrixXd mass = MassMatrix(beam, stations, elements), stiffness = StiffnessMatrix(elements);
   const Eigen::MatrixXd rigid = RigidShapes(stations, 0.0);
   // The pivot lies 0.1 m behind the beam's end: a couple goes with the force.
+  const Eigen::Index end = mass.rows() - kNodeRows;
   Eigen::VectorXd force = Eigen::VectorXd::Zero(mass.rows());
-  force[mass.rows() - 3] = force_n;
-  force[mass.rows() - 2] = force_n * (vehicle.stages[0].gimbal.pivot_station_m - stations.back());
+  force[end] = force_n;
+  force[end + 1] = couple_n_m + force_n * (vehicle.stages[0].gimbal.pivot_station_m - stations.back());
   const Eigen::Matrix2d of_rigid = rigid.transpose() * mass * rigid;
   const Eigen::VectorXd relieved =
       force - mass * rigid * (of_rigid.inverse() * (rigid.transpose() * force)).eval();
@@ -64,10 +66,74 @@ double ElasticSlope(const Vehicle& vehicle, double propellant_kg, double force_n
   Eigen::VectorXd x = Eigen::VectorXd::Zero(mass.rows());
   x.tail(free) = stiffness.bottomRightCorner(free, free).ldlt().solve(relieved.tail(free));
   x -= rigid * (of_rigid.inverse() * (rigid.transpose() * (mass * x))).eval();
-  const auto node = std::min_element(stations.begin(), stations.end(), [&](double a, double b) {
-    return std::fabs(a - at_station_m) < std::fabs(b - at_station_m);
-  });
-  return x[kNodeRows * (node - stations.begin()) + 1];
+  const Eigen::Index row = kNodeRows * static_cast<Eigen::Index>(NearestNode(stations, at_station_m));
+  const double behind_m = std::max(at_station_m - stations.back(), 0.0);
+  return {x[row] + behind_m * x[row + 1], x[row + 1]};
+}
+
+// The modes that do not fly answer at once: a steady load at the pivot moves and turns it as it does the
+// beam, however few modes fly.
+TEST(BendingFlight, ALoadAtThePivotTurnsItAsTheBeamHoweverFewModesFly) {
+  for (const int modes : {1, 3, 5}) {
+    const InSpace flight(Flexible(modes));
+    const double pivot_m = flight.plant.stacks[0].gimbal.pivot_station_m;
+    const StationShape by_force = ElasticShape(flight.vehicle, flight.propellant_kg(), 1.0, 0.0, pivot_m),
+                       by_couple = ElasticShape(flight.vehicle, flight.propellant_kg(), 0.0, 1.0, pivot_m);
+    ASSERT_NEAR(by_couple.deflection / by_force.slope_1_m, 1.0, 1e-6);
+    double found[3], of_modes[3] = {};
+    for (int i = 0; i < 3; ++i)
+      found[i] = flight.At(0, static_cast<BendingTable::Column>(BendingTable::kResidual + i));
+    for (int mode = 0; mode < modes; ++mode) {
+      const double deflection = flight.At(mode, BendingTable::kPivotDeflection),
+                   slope = flight.At(mode, BendingTable::kPivotSlope),
+                   softness = flight.At(mode, BendingTable::kInverseMass) /
+                              std::pow(flight.At(mode, BendingTable::kFrequency), 2);
+      of_modes[0] += softness * deflection * deflection;
+      of_modes[1] += softness * deflection * slope;
+      of_modes[2] += softness * slope * slope;
+    }
+    const double exact[3] = {by_force.deflection, by_force.slope_1_m, by_couple.slope_1_m};
+    for (int i = 0; i < 3; ++i) {
+      // Both are linear between two levels of propellant: their squares are not.
+      EXPECT_NEAR((found[i] + of_modes[i]) / exact[i], 1.0, 2e-3) << modes << " modes, " << i;
+      if (modes == 1) {
+        EXPECT_LT(of_modes[i], 0.9 * exact[i]) << i;
+      }
+    }
+  }
+}
+
+// The thrust acts along the axis that the load has turned, and where it has moved it.
+TEST(BendingFlight, ResidualFlexibilityTurnsAndMovesTheThrust) {
+  const InSpace flight(Flexible());
+  const double thrust = flight.plant.stacks[0].burn.vacuum_thrust_n;
+  const MassProperties mass = flight.plant.stacks[0].mass.At(flight.propellant_kg());
+  const double lever = flight.plant.stacks[0].gimbal.pivot_station_m - mass.cg_station_m;
+  const double angle = 0.02;
+  for (const int plane : {0, 1}) {
+    InSpace tilted = flight;
+    for (const std::size_t pair : {0u, 1u}) {
+      const std::size_t nozzle = pair + (plane == 1 ? 0u : 2u);
+      tilted.y[kNozzleAngle + nozzle] = tilted.phase.command_rad[nozzle] = angle;
+    }
+    InSpace stiff = tilted;
+    BendingTable without = tilted.table();
+    for (std::size_t row = 0; row < without.rows.size(); row += BendingTable::kRowSize)
+      for (std::size_t i = 0; i < 3; ++i) without.rows[row + BendingTable::kResidual + i] = 0.0;
+    stiff.plant.stacks[0].bending = std::make_shared<const BendingTable>(std::move(without));
+    const auto rates = tilted.Rates(), before = stiff.Rates();
+    const std::size_t across = plane == 1 ? 5 : 4, about = plane == 1 ? 11 : 12;
+    const double side = 0.5 * thrust * std::sin(angle) * (plane == 1 ? 1.0 : -1.0);
+    const double along = 0.5 * thrust * (1.0 + std::cos(angle));
+    const double moved = side * flight.At(0, static_cast<BendingTable::Column>(BendingTable::kResidual)),
+                 turned = side * flight.At(0, static_cast<BendingTable::Column>(BendingTable::kResidual + 1));
+    const double turned_n = -along * turned;
+    EXPECT_GT(std::fabs(turned_n), 1e-3 * std::fabs(side));
+    EXPECT_NEAR((rates[across] - before[across]) / (turned_n / mass.mass_kg), 1.0, 1e-3) << plane;
+    const double moment = (lever * turned_n + moved * along) * (plane == 1 ? 1.0 : -1.0);
+    EXPECT_NEAR((rates[about] - before[about]) / (moment / mass.transverse_inertia_kg_m2), 1.0, 1e-3)
+        << plane;
+  }
 }
 
 TEST(BendingFlight, ASteadyForceBendsTheBodyAsItBendsTheBeam) {
@@ -78,7 +144,7 @@ TEST(BendingFlight, ASteadyForceBendsTheBodyAsItBendsTheBeam) {
     // So small a thrust that neither its own turning nor compression counts.
     flight.plant.stacks[0].burn.vacuum_thrust_n = 1e3;
     const double angle_rad = 0.05, force_n = 0.5 * 1e3 * std::sin(angle_rad);
-    const double exact = ElasticSlope(flight.vehicle, flight.propellant_kg(), force_n, 1.65);
+    const double exact = ElasticShape(flight.vehicle, flight.propellant_kg(), force_n, 0.0, 1.65).slope_1_m;
     const auto centred = flight.y;
     for (const int plane : {0, 1}) {
       // Right and left turn the force to +z, bottom and top to -y.
@@ -225,10 +291,10 @@ TEST(BendingFlight, TheStepConvergesToCvode) {
     if (steps != 100) continue;
     // As shipped: of 0.04 rad/s, 0.01 m and 0.3 m/s. The last is mode 3's, whose air swings through an eighth
     // of a period in a step and is taken as a parabola: in proportion to what the flow does by the
-    // modes, 1.6e-6 without it, 1.09e-5 with half of it, 2.42e-5 with all.
+    // modes, 2.6e-6 without it, 1.34e-5 with half of it, 2.80e-5 with all.
     EXPECT_LT(error[0], 2e-8);
     EXPECT_LT(error[1], 1e-6);
-    EXPECT_LT(error[2], 2.5e-5);
+    EXPECT_LT(error[2], 2.9e-5);
   }
 }
 
@@ -239,6 +305,7 @@ TEST(BendingFlight, TurningNozzlesPushTheirPivotsAndTurnTheBody) {
   gimbal.nozzle_cg_m = 0.3;
   gimbal.nozzle_inertia_kg_m2 = 8.0;
   InSpace flight(vehicle);
+  flight.plant.stacks[0].burn.vacuum_thrust_n = 0.0;  // the reaction alone
   // Centred, at rest, all commanded alike: pitch and yaw at once.
   flight.phase.command_rad.fill(0.01);
   const auto moved = flight.Rates();
@@ -411,8 +478,8 @@ TEST(BendingFlight, ASeparationLeavesTheUpperStackItsMomentum) {
       const Vector3 along = plane == 0 ? Vector3::UnitY() : Vector3::UnitZ(),
                     about = plane == 0 ? Vector3(-Vector3::UnitZ()) : Vector3(Vector3::UnitY());
       const double move = momentum / mass.mass_kg, turn = angular / mass.transverse_inertia_kg_m2;
-      EXPECT_GT(std::fabs(move), 1e-3);
-      EXPECT_GT(std::fabs(turn), 1e-3);
+      EXPECT_GT(std::fabs(move), 5e-4);
+      EXPECT_GT(std::fabs(turn), 5e-4);
       const auto expect = [&](const Vector3& found, const Vector3& wanted, const char* what) {
         EXPECT_LT((found - wanted).norm(), 2e-3 * wanted.norm())
             << what << ", plane " << plane << ", mode " << mode;
