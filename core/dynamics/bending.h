@@ -345,7 +345,7 @@ DISPERSA_OUT_OF_LINE SectionMoments<T> MomentsByBending(const BendingTableLanes<
                                                         const LoadTableLanes<T>& body,
                                                         const NormalForce<T>& air, const SideForce<T>* side) {
   SectionMoments<T> o;
-  for (int i = 0; i < kLoadStations; ++i) o.y_n_m[i] = o.z_n_m[i] = T(0.0);
+  for (int i = 0; i < body.stations; ++i) o.y_n_m[i] = o.z_n_m[i] = T(0.0);
   const LiftPlanes<T> planes = LiftPlanesOf(b, body, air, side);
   const T by_rate_n = air.slope_n / Max(air.airspeed_m_s, T(1e-30));
   const T side_slope_n = side ? side->slope_n : air.slope_n;
@@ -359,7 +359,7 @@ DISPERSA_OUT_OF_LINE SectionMoments<T> MomentsByBending(const BendingTableLanes<
     const OfPlanes<T> moved{acceleration(0), acceleration(1)};
     const OfPlanes<T> slope_n{side_slope_n * s.q_m[0][mode], air.slope_n * s.q_m[1][mode]};
     const OfPlanes<T> rate_n{side_by_rate_n * s.rate_m_s[0][mode], by_rate_n * s.rate_m_s[1][mode]};
-    for (int i = 0; i < kLoadStations; ++i) {
+    for (int i = 0; i < body.stations; ++i) {
       T &y_n_m = o.y_n_m[i], &z_n_m = o.z_n_m[i];
       AddLift(b, mode, kSectionEffects + i, planes, slope_n, rate_n, y_n_m, z_n_m);
       const OfPlanes<T> inertia = b.ColumnsAt(mode, BendingTable::kMomentAt + i);

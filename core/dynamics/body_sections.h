@@ -13,6 +13,7 @@ inline namespace DISPERSA_ISA {
 template <class T>
 struct LoadTableLanes {
   T slender_station_m;
+  int stations = 0;  ///< of any lane; a lane with fewer has no moment at the others
   T station_m[kLoadStations], first_kg_m[kLoadStations][3], second_kg_m2[kLoadStations][3];
   T slender_arm_m[kLoadStations], shift_arm[kLoadStations];  ///< lever of the shares ahead of each station
 };
@@ -21,6 +22,7 @@ template <class T>
 DISPERSA_INLINE void SetLane(LoadTableLanes<T>& s, int lane, const LoadTable* table) {
   const LoadTable& from = table ? *table : NoLoads();
   Lane(s.slender_station_m, lane) = from.lift.slender_station_m;
+  s.stations = s.stations > from.stations ? s.stations : from.stations;
   for (int i = 0; i < kLoadStations; ++i) {
     Lane(s.station_m[i], lane) = from.station_m.data()[i];
     for (int k = 0; k < 3; ++k) Lane(s.first_kg_m[i][k], lane) = from.first_kg_m.data()[i].data()[k];
@@ -64,7 +66,7 @@ DISPERSA_INLINE LargestMoment<T> LargestOfPlanes(const LoadTableLanes<T>& body, 
     side_aft = side->xcp_station_m - body.slender_station_m;
   }
   const T y_n = side_n * air.across_y, z_n = air.normal_n * air.across_z;
-  for (int i = 0; i < kLoadStations; ++i) {
+  for (int i = 0; i < body.stations; ++i) {
     const T* f = body.first_kg_m[i];
     const T* s = body.second_kg_m2[i];
     const T first = Fma(m.propellant_kg, Fma(m.propellant_kg, f[2], f[1]), f[0]);

@@ -210,7 +210,8 @@ void SetMasses(const Vehicle& vehicle, LauncherPlant& plant) {
     if (vehicle.stages[i].restarts)
       stack.loads = plant.stacks[i - 1].loads;
     else if (HasSectionLoads(vehicle, i))
-      stack.loads = std::make_shared<const LoadTable>(BuildLoadTable(vehicle, static_cast<int>(i)));
+      stack.loads =
+          std::make_shared<const LoadTable>(BuildLoadTable(vehicle, static_cast<int>(i), stack.loads.get()));
     else if (vehicle.structure_beam)
       stack.loads = std::make_shared<const LoadTable>(BuildLiftTable(vehicle, static_cast<int>(i)));
   }

@@ -198,7 +198,7 @@ constexpr Row kRows[] = {
      "burnouts included",
      kLarger, [](const Measured& m) { return Largest(m.sums.lateral_load_max_g); }},
     {"bending_moment_max", kNewtonMetres, "max M", kLoads, "Bending moment, maximum",
-     "largest at the cross-sections at eighths of the stack's length, from inertia and flow ahead of them, "
+     "largest at the cross-sections where it can be largest (0.1 %), from inertia and flow ahead of them, "
      "with bending; outside the coast",
      kLarger,
      [](const Measured& m) {

@@ -18,7 +18,7 @@ PlanePlaces::PlanePlaces(const StackModes& stack, BeamPlane plane, const LoadTab
         return 0.0;
       },
       [](double, double, double) {});
-  cuts_m_.insert(cuts_m_.end(), loads.station_m.begin(), loads.station_m.end());
+  cuts_m_.insert(cuts_m_.end(), loads.station_m.begin(), loads.station_m.begin() + loads.stations);
   std::sort(cuts_m_.begin(), cuts_m_.end());
   // Where the points of a mass along the whole beam lie, and bodies that are fixed at a node.
   BeamMasses anywhere;

@@ -121,7 +121,7 @@ void AddLift(const LoadTable& loads, const LiftShapes& four, const std::vector<L
     add(kWorkEffects + static_cast<int>(j), pieces.size(),
         [&](std::size_t i) { return all[j / 4].Deflection(i, j % 4); });
   std::size_t ahead = 0;  // pieces ahead of a station
-  for (std::size_t s = 0; s < kLoadStations; ++s) {
+  for (std::size_t s = 0; s < static_cast<std::size_t>(loads.stations); ++s) {
     while (ahead < pieces.size() && pieces[ahead].Middle() < loads.station_m[s]) ++ahead;
     add(kSectionEffects + static_cast<int>(s), ahead,
         [&](std::size_t i) { return loads.station_m[s] - pieces[i].Middle(); });
@@ -269,7 +269,7 @@ void SetMoments(const LoadTable& loads, const LevelShapes& level, const FourShap
   const auto of_points = std::make_unique_for_overwrite<FourStations[]>(points);
   for (std::size_t i = 0; i < points; ++i) of_points[i] = FourAt(level.at_points[i]->place, modes);
   const auto at_point = [&](const MassPoint&, std::size_t i) { return of_points[i]; };
-  for (std::size_t i = 0; i < kLoadStations && loads.station_m[i] > 0.0; ++i)
+  for (std::size_t i = 0; i < static_cast<std::size_t>(loads.stations); ++i)
     columns[BendingTable::kMomentAt + i] = InertiaMoment(level.points, loads.station_m[i], at_point);
 }
 

@@ -39,11 +39,11 @@ struct BendingTable {
   /// lift, by slender-body theory and by shift.
   ///
   /// From kLiftAt on: effects of the lift by a unit of the mode, by cause and effect, for a normal force of 1
-  /// per radian. These are the columns of each step. From kSectionsAt on: the same effects about each load
-  /// station, and from kMomentAt on the bending moment of the mode's inertia there, for a unit acceleration
-  /// of the mode. If there is a stage above: mean displacement of its centre of gravity, and mean rotation,
-  /// for a unit of the mode. If there are boosters: deflection at the station of their nozzles and slope,
-  /// both of their rigid link, and the shortening of the beam behind the link with each mode.
+  /// per radian. These are the columns of each step. If there is a stage above: mean displacement of its
+  /// centre of gravity, and mean rotation, for a unit of the mode. If there are boosters: deflection at the
+  /// station of their nozzles and slope, both of their rigid link, and the shortening of the beam behind the
+  /// link with each mode. From kMomentAt on the bending moment of the mode's inertia about each load station,
+  /// for a unit acceleration of the mode, and from kSectionsAt on the effects of the lift about each.
   ///
   /// Of the first mode's row alone, residual flexibility at the pivot: what a steady load there moves it by
   /// beyond the modes that fly. Deflection by a force (m/N), slope by a force, which is deflection by a
@@ -59,20 +59,18 @@ struct BendingTable {
     kStraightLift = 13,
     kUpperShift = 15,
     kLiftAt = 16,
-    kSectionsAt = 44,
-    kMomentAt = 72,
-    kUpperTurn = 79,
-    kBoosterDeflection = 80,
-    kBoosterSlope = 81,
-    kBehindBoosters = 82,
-    kResidual = 87,
-    kRowSize = 92
+    kUpperTurn = 44,
+    kBoosterDeflection = 45,
+    kBoosterSlope = 46,
+    kBehindBoosters = 47,
+    kResidual = 52,
+    kMomentAt = 56,
+    kSectionsAt = kMomentAt + kLoadStations,
+    kRowSize = kSectionsAt + int{kLiftCauses} * kLoadStations
   };
   static_assert(kGyroSlope + kRateGyros == kShortening && kShortening + kModes == kStraightLift &&
-                kLiftAt + int{kLiftCauses} * int{kSectionEffects} == kSectionsAt &&
-                kSectionsAt + int{kLiftCauses} * kLoadStations == kMomentAt &&
-                kMomentAt + kLoadStations == kUpperTurn && kBehindBoosters + kModes == kResidual &&
-                kResidual + 3 <= kRowSize && kRowSize % 4 == 0);
+                kLiftAt + int{kLiftCauses} * int{kSectionEffects} == kUpperTurn &&
+                kBehindBoosters + kModes == kResidual && kResidual + 3 <= kMomentAt && kRowSize % 4 == 0);
   static constexpr int LiftColumn(int cause, int effect) {
     return effect < kSectionEffects ? kLiftAt + kSectionEffects * cause + effect
                                     : kSectionsAt + kLoadStations * cause + effect - kSectionEffects;

@@ -1,6 +1,7 @@
 #include "core/structure/lift_distribution.h"
 
 #include <algorithm>
+#include <cmath>
 
 #include "core/math/functions.h"
 #include "core/vehicle/mould_line.h"
@@ -19,12 +20,15 @@ LiftDistribution DistributeLift(const Vehicle& vehicle, int stage, const std::ve
     for (const double cut : cuts_m)
       if (cut > section.start_m && cut < section.end_m) edges.push_back(cut);
     std::sort(edges.begin(), edges.end());
+    const double longest_m = std::min(section.end_m - section.start_m, bottom_m / 8.0) / pieces;
     for (std::size_t edge = 1; edge < edges.size(); ++edge) {
-      const double step = (edges[edge] - edges[edge - 1]) / pieces;
-      for (int i = 0; i < pieces; ++i) {
+      const double length_m = edges[edge] - edges[edge - 1];
+      const int count = std::max(static_cast<int>(std::ceil(length_m / longest_m - 1e-9)), 1);
+      const double step = length_m / count;
+      for (int i = 0; i < count; ++i) {
         LiftPiece piece;
         piece.from_m = edges[edge - 1] + step * i;
-        piece.to_m = i + 1 < pieces ? piece.from_m + step : edges[edge];
+        piece.to_m = i + 1 < count ? piece.from_m + step : edges[edge];
         piece.area_from = area;
         piece.area_to = area = Square(section.Radius(piece.to_m)) / base2;
         const double side = section.Radius(piece.Middle()) * (piece.to_m - piece.from_m);

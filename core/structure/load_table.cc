@@ -4,20 +4,25 @@
 #include <vector>
 
 #include "core/math/functions.h"
+#include "core/structure/load_stations.h"
 #include "core/structure/mass_points.h"
 #include "core/vehicle/beam_masses.h"
 
 namespace dispersa {
 
-LoadTable BuildLoadTable(const Vehicle& vehicle, int stage) {
+LoadTable BuildLoadTable(const Vehicle& vehicle, int stage, const LoadTable* nominal) {
   const Stage& lowest = vehicle.stages[static_cast<std::size_t>(stage)];
   LoadTable table;
-  for (std::size_t i = 0; i < kLoadStations; ++i)
-    table.station_m[i] = lowest.bottom_station_m / (kLoadStations + 1) * static_cast<double>(i + 1);
-  table.lift = DistributeLift(vehicle, stage, {table.station_m.begin(), table.station_m.end()});
+  const std::vector<double> stations =
+      nominal
+          ? std::vector<double>(nominal->station_m.begin(), nominal->station_m.begin() + nominal->stations)
+          : ChooseLoadStations(vehicle, stage, kLoadStations);
+  table.stations = static_cast<int>(stations.size());
+  std::copy(stations.begin(), stations.end(), table.station_m.begin());
+  table.lift = DistributeLift(vehicle, stage, stations);
   table.lift.ForEach([](double) { return 1.0; },
                      [&](double at_m, double slender, double shift) {
-                       for (std::size_t i = 0; i < kLoadStations; ++i) {
+                       for (std::size_t i = 0; i < stations.size(); ++i) {
                          const double ahead_m = std::max(table.station_m[i] - at_m, 0.0);
                          table.slender_arm_m[i] += slender * ahead_m;
                          table.shift_arm[i] += shift * ahead_m;
@@ -25,12 +30,11 @@ LoadTable BuildLoadTable(const Vehicle& vehicle, int stage) {
                      });
   const double full = lowest.propellant_mass_kg;
   const auto masses_at = [&](double propellant_kg) {
-    return MassPointsOf(BuildBeamMasses(vehicle, stage, propellant_kg),
-                        {table.station_m.begin(), table.station_m.end()});
+    return MassPointsOf(BuildBeamMasses(vehicle, stage, propellant_kg), stations);
   };
   const std::vector<MassPoint> masses[3] = {masses_at(0.0), masses_at(0.5 * full), masses_at(full)};
-  for (std::size_t i = 0; i < kLoadStations; ++i) {
-    const double station = table.station_m[i];
+  for (std::size_t i = 0; i < stations.size(); ++i) {
+    const double station = stations[i];
     // The body accelerated sideways, and turning about the nose.
     double first[3], second[3];
     for (int k = 0; k < 3; ++k) {

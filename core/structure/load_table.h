@@ -8,8 +8,8 @@
 
 namespace dispersa {
 
-/// The cross-sections that are looked at, at equal distances along the stack.
-inline constexpr int kLoadStations = 7;
+/// The most cross-sections that are looked at (load_stations.h).
+inline constexpr int kLoadStations = 40;
 
 struct LoadTable {
   LiftDistribution lift;
@@ -22,14 +22,16 @@ struct LoadTable {
   /// + first[2] p². The integral of m (s - x) x - m g² is second[0] + second[1] p + second[2] p². For a grain
   /// this is exact, with first[2] = 0. For liquids with a surface that passes the station, it is the parabola
   /// through full, half full and empty.
+  int stations = 0;
   std::array<double, kLoadStations> station_m{};
   std::array<std::array<double, 3>, kLoadStations> first_kg_m{};
   std::array<std::array<double, 3>, kLoadStations> second_kg_m2{};
 };
 
 /// The table for the stack of stages `stage` (from 0) and above. Masses are those of the finite-element beam
-/// (beam_masses.h).
-LoadTable BuildLoadTable(const Vehicle& vehicle, int stage);
+/// (beam_masses.h). `nominal`: a table of the same stack with other masses, whose stations it takes (null: it
+/// chooses its own).
+LoadTable BuildLoadTable(const Vehicle& vehicle, int stage, const LoadTable* nominal = nullptr);
 
 /// The same without loads of cross-sections: what boosters do to these is not modelled.
 LoadTable BuildLiftTable(const Vehicle& vehicle, int stage);

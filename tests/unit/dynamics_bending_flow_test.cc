@@ -215,7 +215,7 @@ TEST(BendingSections, CarryTheMassesAheadLessTheirAir) {
         acceleration[mode] = driven.drive_m_s2[plane][mode] - 2.0 * kDamping * w * s.rate_m_s[plane][mode] -
                              w * w * s.q_m[plane][mode];
       }
-      for (int station = 0; station < kLoadStations; ++station) {
+      for (int station = 0; station < body.stations; ++station) {
         const double at_m = 2.5 * (station + 1);
         double carried = 0.0;
         for (int strip = 0; strip <= station; ++strip) {
@@ -273,7 +273,7 @@ TEST(BendingFlow, OfTwoPlanesIsThatOfEach) {
     const lanes::SectionMoments<double> of_both = moments(both.normal, &side),
                                         of_y = moments(along_y.normal, kRound),
                                         of_z = moments(along_z.normal, kRound);
-    for (int station = 0; station < kLoadStations; ++station) {
+    for (int station = 0; station < body.stations; ++station) {
       EXPECT_EQ(of_both.y_n_m[station], of_y.y_n_m[station]);
       EXPECT_EQ(of_both.z_n_m[station], of_z.z_n_m[station]);
     }
@@ -348,7 +348,7 @@ TEST(BendingPlanes, AreOneAnotherTurnedByAQuarterAboutX) {
     EXPECT_NEAR(after.later.q_m[1][mode], before.later.q_m[0][mode], kRounding);
     EXPECT_NEAR(after.later.q_m[0][mode], -before.later.q_m[1][mode], kRounding);
   }
-  for (int i = 0; i < kLoadStations; ++i) {
+  for (int i = 0; i < BodySections().stations; ++i) {
     EXPECT_NEAR(after.sections.z_n_m[i], before.sections.y_n_m[i], 1e-7);
     EXPECT_NEAR(after.sections.y_n_m[i], -before.sections.z_n_m[i], 1e-7);
   }

@@ -45,7 +45,8 @@ inline LoadTable MadeUpLoads() {
     loads.lift.pieces.push_back(strip);
   }
   for (LiftPiece& strip : loads.lift.pieces) strip.shift_1_m /= squares;
-  for (std::size_t i = 0; i < kLoadStations; ++i) loads.station_m[i] = 2.5 * (1.0 + static_cast<double>(i));
+  loads.stations = kStrips - 1;
+  for (std::size_t i = 0; i + 1 < kStrips; ++i) loads.station_m[i] = 2.5 * (1.0 + static_cast<double>(i));
   return loads;
 }
 
@@ -92,7 +93,7 @@ inline std::array<double, BendingTable::kRowSize> RowOf(const std::vector<MadeUp
         effects[kFirstEffect] += force * place_m;
         for (std::size_t j = 0; j < modes.size(); ++j)
           effects[kWorkEffects + j] += force * modes[j].Deflection(place_m);
-        for (std::size_t k = i; k < kLoadStations; ++k)
+        for (std::size_t k = i; k + 1 < kStrips; ++k)
           row[static_cast<std::size_t>(BendingTable::LiftColumn(cause, kSectionEffects)) + k] +=
               force * (loads.station_m[k] - place_m);
       };
@@ -100,7 +101,7 @@ inline std::array<double, BendingTable::kRowSize> RowOf(const std::vector<MadeUp
       add(with_shift[i] - slender[i], by_rate ? kRateShift : kSlopeShift);
     }
   }
-  for (std::size_t i = 0; i < kLoadStations; ++i)
+  for (std::size_t i = 0; i + 1 < kStrips; ++i)
     for (std::size_t k = 0; k <= i; ++k) {
       const double place_m = loads.lift.pieces[k].Middle();
       row[BendingTable::kMomentAt + i] +=

@@ -85,7 +85,8 @@ TEST(BeamMesh, LowestModesAreThoseOfTheWholeSolution) {
     EXPECT_NEAR(found.frequency_rad_s[mode] / whole.frequency_rad_s[mode], 1.0, 1e-11) << mode;
     const double sign = found.shape(0, mode) * whole.shape(0, mode) < 0.0 ? -1.0 : 1.0;
     const double largest = whole.shape.col(mode).cwiseAbs().maxCoeff();
-    EXPECT_LT((sign * found.shape.col(mode) - whole.shape.col(mode)).cwiseAbs().maxCoeff(), 1e-7 * largest) << mode;
+    EXPECT_LT((sign * found.shape.col(mode) - whole.shape.col(mode)).cwiseAbs().maxCoeff(), 1e-7 * largest)
+        << mode;
   }
 }
 

@@ -78,8 +78,9 @@ TEST(LiftDistribution, ConvergesAsTheSquareOfItsPieces) {
   for (std::size_t stage = 0; stage < 2; ++stage) {
     const auto table_of = [&](int pieces) {
       LoadTable loads = BuildLoadTable(vehicle, static_cast<int>(stage));
-      loads.lift = DistributeLift(vehicle, static_cast<int>(stage),
-                                  {loads.station_m.begin(), loads.station_m.end()}, pieces);
+      loads.lift =
+          DistributeLift(vehicle, static_cast<int>(stage),
+                         {loads.station_m.begin(), loads.station_m.begin() + loads.stations}, pieces);
       return BuildBendingTable(vehicle, stacks[stage], loads, 3);
     };
     const BendingTable fine = table_of(4 * kLiftPieces);

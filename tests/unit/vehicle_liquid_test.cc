@@ -246,7 +246,7 @@ TEST(LoadTable, FollowsDrainingTanksWithinAFewPerCent) {
   }();
   for (const double part : {0.25, 0.75}) {
     const double kg = part * 4000.0;
-    for (std::size_t i = 0; i < kLoadStations; ++i) {
+    for (std::size_t i = 0; i < static_cast<std::size_t>(table.stations); ++i) {
       const double s = table.station_m[i];
       double first_kg_m = 0.0, full_kg_m = 0.0;
       for (const double of_kg : {kg, 4000.0}) {

@@ -52,7 +52,7 @@ std::vector<Tube> Tubes(const Vehicle& vehicle, double propellant_kg) {
 lanes::LoadTableLanes<double> Only(const LoadTable& table, int station) {
   lanes::LoadTableLanes<double> s{};
   lanes::SetLane(s, 0, &table);
-  for (int i = 0; i < kLoadStations; ++i) {
+  for (int i = 0; i < s.stations; ++i) {
     if (i == station) continue;
     for (double& value : s.first_kg_m[i]) value = 0.0;
     for (double& value : s.second_kg_m2[i]) value = 0.0;
@@ -84,7 +84,7 @@ void ExpectBalance(const Vehicle& vehicle, const std::vector<double>& parts) {
     const double acceleration = (side_n - normal_n) / mass.mass_kg;
     const double turn = (side_n * (mass.cg_station_m - pivot_m) - normal_n * (mass.cg_station_m - xcp_m)) /
                         mass.transverse_inertia_kg_m2;
-    for (int station = 0; station < kLoadStations; ++station) {
+    for (int station = 0; station < table.stations; ++station) {
       const double s = table.station_m[static_cast<std::size_t>(station)];
       double behind = side_n * (s - pivot_m);
       for (const LiftPiece& piece : table.lift.pieces)
@@ -151,7 +151,7 @@ void ExpectRinging(const Vehicle& vehicle, std::size_t at_level) {
     const double omega2 = std::pow(level.modes[mode].frequency_rad_s, 2);
     double most = 0.0;
     std::vector<double> held, loaded;
-    for (std::size_t i = 0; i < kLoadStations; ++i) {
+    for (std::size_t i = 0; i < static_cast<std::size_t>(loads.stations); ++i) {
       const double s = loads.station_m[i];
       double stiffness = 0.0;
       for (const BeamStage& stage : vehicle.structure_beam->stages)

@@ -1,0 +1,130 @@
+#include "core/structure/load_stations.h"
+
+#include <algorithm>
+#include <cmath>
+
+#include "core/math/constants.h"
+#include "core/math/functions.h"
+#include "core/structure/free_body.h"
+#include "core/structure/lift_distribution.h"
+#include "core/structure/mass_points.h"
+#include "core/vehicle/beam_masses.h"
+
+namespace dispersa {
+
+namespace {
+
+constexpr int kEvenCandidates = 240;
+constexpr double kAhead_m = 1e-3;
+constexpr int kProportions = 36;
+// Of the propellant, and of the length by which the centre of pressure lies aft of slender-body theory's.
+constexpr double kLevels[] = {0.0, 0.25, 0.5, 0.75, 1.0}, kAft[] = {-0.1, -0.05, 0.0, 0.05, 0.1};
+
+// Moments along the candidates, over the largest of each.
+using Moments = std::vector<double>;
+
+void ScaleToLargest(Moments& moments) {
+  double largest = 0.0;
+  for (const double m : moments) largest = std::max(largest, std::fabs(m));
+  if (largest > 0.0)
+    for (double& m : moments) m /= largest;
+}
+
+// Ahead of the pivot: behind it no section carries anything but the nozzle.
+std::vector<double> Candidates(const BeamMasses& masses, double bottom_m, double pivot_m) {
+  const double end_m = std::min(bottom_m, pivot_m);
+  std::vector<double> stations;
+  for (int i = 1; i < kEvenCandidates; ++i) stations.push_back(end_m * i / kEvenCandidates);
+  const auto add = [&](double station_m) {
+    if (station_m > 0.0 && station_m < end_m) stations.push_back(station_m);
+  };
+  for (const SpreadMass& m : masses.spread) add(m.top_station_m), add(m.bottom_station_m);
+  // A body's moment about its station comes in at once.
+  for (const FixedMass& m : masses.fixed) add(m.station_m), add(m.station_m - kAhead_m);
+  std::sort(stations.begin(), stations.end());
+  stations.erase(std::unique(stations.begin(), stations.end()), stations.end());
+  return stations;
+}
+
+// A force at a station and the body's answer: the moments of the mass ahead. Plus `applied`.
+Moments Answer(const std::vector<double>& stations, const FreeBody& body, double force_at_m,
+               const Moments& applied) {
+  const double push = 1.0 / body.mass_kg,
+               turn = (body.cg_station_m - force_at_m) / body.inertia_kg_m2;  // its growth per metre ahead
+  Moments moments(stations.size());
+  double force_n = 0.0, about_nose_n_m = 0.0;  // of the mass ahead
+  std::size_t next = 0;
+  for (std::size_t i = 0; i < stations.size(); ++i) {
+    for (; next < body.points.size() && body.points[next].fixed_at_m <= stations[i]; ++next) {
+      const MassPoint& m = body.points[next];
+      const double carried_n = m.mass_kg * (push + turn * (body.cg_station_m - m.cg_station_m));
+      force_n += carried_n;
+      about_nose_n_m += carried_n * m.cg_station_m - m.inertia_kg_m2 * turn;
+    }
+    moments[i] = force_n * stations[i] - about_nose_n_m - applied[i];
+  }
+  ScaleToLargest(moments);
+  return moments;
+}
+
+// The moments of a unit normal force ahead of each station, with the centre of pressure `aft_m` of slender-body
+// theory's.
+Moments LiftAhead(const LiftDistribution& lift, const std::vector<double>& stations, double aft_m) {
+  Moments moments(stations.size());
+  lift.ForEach([](double) { return 1.0; },
+               [&](double at_m, double slender, double shift) {
+                 for (std::size_t i = stations.size(); i-- > 0 && stations[i] > at_m;)
+                   moments[i] += (slender + aft_m * shift) * (stations[i] - at_m);
+               });
+  return moments;
+}
+
+std::vector<Moments> FamilyOf(const Vehicle& vehicle, int stage, const std::vector<double>& stations) {
+  const Stage& lowest = vehicle.stages[static_cast<std::size_t>(stage)];
+  const LiftDistribution lift = DistributeLift(vehicle, stage);
+  std::vector<Moments> family;
+  for (const double part : kLevels) {
+    const FreeBody body(BuildBeamMasses(vehicle, stage, part * lowest.propellant_mass_kg), stations);
+    const Moments by_pivot =
+        Answer(stations, body, lowest.gimbal.pivot_station_m, Moments(stations.size(), 0.0));
+    for (const double aft : kAft) {
+      const double aft_m = aft * lowest.bottom_station_m;
+      const Moments by_air = Answer(stations, body, lift.slender_station_m + aft_m, LiftAhead(lift, stations, aft_m));
+      for (int k = 0; k < kProportions; ++k) {
+        const double angle = kPi * k / kProportions;
+        Moments both(stations.size());
+        for (std::size_t i = 0; i < both.size(); ++i)
+          both[i] = std::fabs(Cos(angle) * by_air[i] + Sin(angle) * by_pivot[i]);
+        ScaleToLargest(both);
+        family.push_back(std::move(both));
+      }
+    }
+  }
+  return family;
+}
+
+}  // namespace
+
+std::vector<double> ChooseLoadStations(const Vehicle& vehicle, int stage, std::size_t most) {
+  const Stage& lowest = vehicle.stages[static_cast<std::size_t>(stage)];
+  const std::vector<double> stations =
+      Candidates(BuildBeamMasses(vehicle, stage, lowest.propellant_mass_kg), lowest.bottom_station_m,
+                 lowest.gimbal.pivot_station_m);
+  std::vector<Moments> missed = FamilyOf(vehicle, stage, stations);
+  std::vector<double> chosen;
+  // The station that has the largest of most moments, then that of most of the rest.
+  while (!missed.empty() && chosen.size() < most) {
+    std::size_t best = 0, of_best = 0;
+    for (std::size_t i = 0; i < stations.size(); ++i) {
+      std::size_t seen = 0;
+      for (const Moments& moments : missed) seen += moments[i] >= 1.0 - kMissedMoment;
+      if (seen > of_best) best = i, of_best = seen;
+    }
+    std::erase_if(missed, [&](const Moments& moments) { return moments[best] >= 1.0 - kMissedMoment; });
+    chosen.push_back(stations[best]);
+  }
+  std::sort(chosen.begin(), chosen.end());
+  return chosen;
+}
+
+}  // namespace dispersa

@@ -1,0 +1,127 @@
+// The chosen cross-sections see the largest bending moment of loads that they were not chosen by.
+#include "core/structure/load_stations.h"
+
+#include <gtest/gtest.h>
+
+#include <algorithm>
+#include <cmath>
+
+#include "core/campaign_yaml/load.h"
+#include "core/math/constants.h"
+#include "core/structure/free_body.h"
+#include "core/structure/lift_distribution.h"
+#include "core/structure/load_table.h"
+
+namespace dispersa::structure_load_stations_test {
+namespace {
+
+/// The moments on sections of a body that a unit force at `at_m` accelerates; the force acts behind all of them.
+std::vector<double> Carried(const std::vector<double>& stations, const FreeBody& body, double at_m) {
+  std::vector<double> moments;
+  for (const double s : stations) {
+    double sum = 0.0;
+    for (const MassPoint& m : body.points) {
+      if (m.fixed_at_m > s) break;
+      const double turn = (body.cg_station_m - at_m) / body.inertia_kg_m2;
+      sum += m.mass_kg * (1.0 / body.mass_kg + turn * (body.cg_station_m - m.cg_station_m)) * (s - m.cg_station_m) +
+             m.inertia_kg_m2 * turn;
+    }
+    moments.push_back(sum);
+  }
+  return moments;
+}
+
+struct Missed {
+  double worst = 0.0, mean = 0.0;
+};
+
+/// By how much `chosen` stations see less than a fine row of stations, over proportions of the two forces, levels of
+/// propellant and centres of pressure between those that the choice looks at.
+Missed MissedBy(const Vehicle& vehicle, int stage, const std::vector<double>& chosen) {
+  const Stage& lowest = vehicle.stages[static_cast<std::size_t>(stage)];
+  const double end_m = std::min(lowest.bottom_station_m, lowest.gimbal.pivot_station_m);
+  std::vector<double> stations = chosen;
+  for (int i = 1; i < 1000; ++i) stations.push_back(end_m * i / 1000.0);
+  for (const FixedMass& m : BuildBeamMasses(vehicle, stage, 0.0).fixed)
+    if (m.station_m < end_m) stations.push_back(m.station_m);
+  std::sort(stations.begin(), stations.end());
+  const LiftDistribution lift = DistributeLift(vehicle, stage);
+  Missed missed;
+  int cases = 0;
+  for (const double part : {0.0, 0.2, 0.35, 0.5, 0.8, 1.0}) {
+    const FreeBody body(BuildBeamMasses(vehicle, stage, part * lowest.propellant_mass_kg), stations);
+    std::vector<double> by_pivot = Carried(stations, body, lowest.gimbal.pivot_station_m);
+    for (const double of_length : {-0.06, 0.0, 0.05}) {
+      const double aft_m = of_length * lowest.bottom_station_m;
+      std::vector<double> by_air = Carried(stations, body, lift.slender_station_m + aft_m);
+      lift.ForEach([](double) { return 1.0; },
+                   [&](double at_m, double slender, double shift) {
+                     for (std::size_t i = 0; i < stations.size(); ++i)
+                       by_air[i] -= (slender + aft_m * shift) * std::max(stations[i] - at_m, 0.0);
+                   });
+      const auto largest = [](const std::vector<double>& of) {
+        return std::fabs(*std::max_element(of.begin(), of.end(), [](double a, double b) { return std::fabs(a) < std::fabs(b); }));
+      };
+      const double air = largest(by_air), pivot = largest(by_pivot);
+      for (int k = 0; k < 37; ++k) {
+        double all = 0.0, seen = 0.0;
+        for (std::size_t i = 0; i < stations.size(); ++i) {
+          const double m = std::fabs(std::cos(kPi * k / 37) * by_air[i] / air + std::sin(kPi * k / 37) * by_pivot[i] / pivot);
+          all = std::max(all, m);
+          if (std::binary_search(chosen.begin(), chosen.end(), stations[i])) seen = std::max(seen, m);
+        }
+        missed.worst = std::max(missed.worst, 1.0 - seen / all);
+        missed.mean += 1.0 - seen / all;
+        ++cases;
+      }
+    }
+  }
+  missed.mean /= cases;
+  return missed;
+}
+
+TEST(LoadStations, SeeTheLargestMoment) {
+  for (const char* file : {"/vehicles/slv4.yaml", "/gallery/falcon9/vehicle.yaml", "/gallery/vega/vehicle.yaml"}) {
+    const Vehicle vehicle = LoadVehicle(std::string(DISPERSA_CAMPAIGNS) + file);
+    for (const int stage : {0, 1}) {
+      const std::vector<double> chosen = ChooseLoadStations(vehicle, stage, kLoadStations);
+      EXPECT_TRUE(std::is_sorted(chosen.begin(), chosen.end()));
+      const Missed missed = MissedBy(vehicle, stage, chosen);
+      RecordProperty(std::string(file) + std::to_string(stage), std::to_string(missed.worst) + ", mean " + std::to_string(missed.mean));
+      EXPECT_LT(missed.worst, 0.005) << file << stage << ", " << chosen.size() << " stations";
+      EXPECT_LT(missed.mean, 0.0004) << file << stage;
+      // As many even ones see less.
+      std::vector<double> even;
+      const Stage& lowest = vehicle.stages[static_cast<std::size_t>(stage)];
+      const double end_m = std::min(lowest.bottom_station_m, lowest.gimbal.pivot_station_m);
+      for (std::size_t i = 1; i <= chosen.size(); ++i)
+        even.push_back(end_m * static_cast<double>(i) / static_cast<double>(chosen.size() + 1));
+      EXPECT_GT(MissedBy(vehicle, stage, even).worst, 2.0 * missed.worst) << file << stage;
+    }
+  }
+}
+
+TEST(LoadStations, AreAtMostAsManyAsThereIsRoomFor) {
+  const Vehicle vehicle = LoadVehicle(DISPERSA_CAMPAIGNS "/vehicles/slv4.yaml");
+  const std::vector<double> few = ChooseLoadStations(vehicle, 0, 5), all = ChooseLoadStations(vehicle, 0, 100);
+  EXPECT_EQ(few.size(), 5u);
+  EXPECT_LE(all.size(), static_cast<std::size_t>(kLoadStations));
+  EXPECT_GT(MissedBy(vehicle, 0, few).worst, MissedBy(vehicle, 0, all).worst);
+}
+
+// Drawn masses are looked at where the nominal ones are.
+TEST(LoadStations, OfDrawnMassesAreTheNominalOnes) {
+  const Vehicle vehicle = LoadVehicle(DISPERSA_CAMPAIGNS "/vehicles/slv4.yaml");
+  Vehicle lighter = vehicle;
+  lighter.stages[0].propellant_mass_kg *= 0.7;
+  lighter.stages[0].liftoff_mass_kg -= 0.3 * vehicle.stages[0].propellant_mass_kg;
+  const LoadTable nominal = BuildLoadTable(vehicle, 0), own = BuildLoadTable(lighter, 0),
+                  of_nominal = BuildLoadTable(lighter, 0, &nominal);
+  EXPECT_EQ(of_nominal.station_m, nominal.station_m);
+  EXPECT_EQ(of_nominal.stations, nominal.stations);
+  EXPECT_NE(own.station_m, nominal.station_m);
+  EXPECT_NE(of_nominal.first_kg_m, nominal.first_kg_m);
+}
+
+}  // namespace
+}  // namespace dispersa::structure_load_stations_test
