@@ -354,6 +354,7 @@ std::vector<FailureDrivers> FindFailureDrivers(const Campaign& campaign, const C
   FeaturesOfRows known(campaign, cases);
   std::vector<Requirement> requirements = campaign.requirements;
   const std::size_t required = requirements.size();
+  const std::vector<bool> beyond = BeyondCheckedLimits(campaign, cases);
   for (const LoadCheck& check : CheckLoads(campaign, cases))
     if (check.failures > 0)
       requirements.push_back({.metric = check.metric, .below = 1.0, .above = std::nullopt});
@@ -367,7 +368,7 @@ std::vector<FailureDrivers> FindFailureDrivers(const Campaign& campaign, const C
     std::vector<std::size_t> rows;
     std::vector<bool> marked;
     for (std::size_t i = 0; i < values.size() && rows.size() < 2 * kCauseFlights; ++i) {
-      const bool failed = !limits.Meets(values[i]);
+      const bool failed = which < required ? !limits.Meets(values[i]) : beyond[i];
       if (i >= kCauseFlights && !failed) continue;
       rows.push_back(i);
       marked.push_back(failed);

@@ -67,8 +67,8 @@ Moments Answer(const std::vector<double>& stations, const FreeBody& body, double
   return moments;
 }
 
-// The moments of a unit normal force ahead of each station, with the centre of pressure `aft_m` of slender-body
-// theory's.
+// The moments of a unit normal force ahead of each station, with the centre of pressure `aft_m` of
+// slender-body theory's.
 Moments LiftAhead(const LiftDistribution& lift, const std::vector<double>& stations, double aft_m) {
   Moments moments(stations.size());
   lift.ForEach([](double) { return 1.0; },
@@ -89,7 +89,8 @@ std::vector<Moments> FamilyOf(const Vehicle& vehicle, int stage, const std::vect
         Answer(stations, body, lowest.gimbal.pivot_station_m, Moments(stations.size(), 0.0));
     for (const double aft : kAft) {
       const double aft_m = aft * lowest.bottom_station_m;
-      const Moments by_air = Answer(stations, body, lift.slender_station_m + aft_m, LiftAhead(lift, stations, aft_m));
+      const Moments by_air =
+          Answer(stations, body, lift.slender_station_m + aft_m, LiftAhead(lift, stations, aft_m));
       for (int k = 0; k < kProportions; ++k) {
         const double angle = kPi * k / kProportions;
         Moments both(stations.size());
@@ -107,9 +108,8 @@ std::vector<Moments> FamilyOf(const Vehicle& vehicle, int stage, const std::vect
 
 std::vector<double> ChooseLoadStations(const Vehicle& vehicle, int stage, std::size_t most) {
   const Stage& lowest = vehicle.stages[static_cast<std::size_t>(stage)];
-  const std::vector<double> stations =
-      Candidates(BuildBeamMasses(vehicle, stage, lowest.propellant_mass_kg), lowest.bottom_station_m,
-                 lowest.gimbal.pivot_station_m);
+  const std::vector<double> stations = Candidates(BuildBeamMasses(vehicle, stage, lowest.propellant_mass_kg),
+                                                  lowest.bottom_station_m, lowest.gimbal.pivot_station_m);
   std::vector<Moments> missed = FamilyOf(vehicle, stage, stations);
   std::vector<double> chosen;
   // The station that has the largest of most moments, then that of most of the rest.

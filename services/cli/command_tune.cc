@@ -178,6 +178,7 @@ nlohmann::ordered_json ResultJson(const TuneOptions& options, const TuningResult
           {"autopilot", options.out},
           {"feasible", result.feasible},
           {"nominal_loss", TextOrNull(result.nominal_loss)},
+          {"start_loss", TextOrNull(result.start_loss)},
           {"seed", options.tuning.seed},
           {"cases", options.tuning.cases},
           {"evaluations", result.evaluations},

@@ -293,7 +293,7 @@ Everything Of(const BendingTableLanes<double>& b, const BendingState<double>& s,
               lanes::Vector<double> force, lanes::Vector<double> couple) {
   const LoadTableLanes<double> body = BodySections();
   Everything o{};
-  o.pivot = lanes::BentAtPivot(b, s);
+  o.pivot = lanes::BentAtPivot(b, s, lanes::Zero<double>(), lanes::Zero<double>());
   o.unit = lanes::UnitTurn(b, s);
   o.unit_rate = lanes::TurnRate(b, s, -1);
   o.gyro_rate = lanes::TurnRate(b, s, 1);

@@ -49,12 +49,39 @@ class BendingMotion : public testing::Test {
 constexpr double kRounding = 1e-14;  // of numbers below 10
 
 TEST_F(BendingMotion, DisplacesAndTurnsThePivot) {
-  const lanes::Bent<double> at = lanes::BentAtPivot(bending_, state_);
+  const lanes::Bent<double> at =
+      lanes::BentAtPivot(bending_, state_, lanes::Zero<double>(), lanes::Zero<double>());
   const Turned turned = TurnedAt(kBodyPivot_m, state_.q_m[0], state_.q_m[1]);
   EXPECT_NEAR(at.y_m, Sum(0, state_.q_m[0], &MadeUpMode::Deflection, kBodyPivot_m), kRounding);
   EXPECT_NEAR(at.z_m, Sum(1, state_.q_m[1], &MadeUpMode::Deflection, kBodyPivot_m), kRounding);
   EXPECT_NEAR(at.about_y_rad, turned.about_y, kRounding);
   EXPECT_NEAR(at.about_z_rad, turned.about_z, kRounding);
+}
+
+// Each load at the pivot moves and turns it by its plane's residual flexibility: work is positive, and a
+// couple moves it by as much as a force turns it.
+TEST_F(BendingMotion, LoadsAtThePivotBendWhatDoesNotFly) {
+  BendingTable table = MadeUpTable(TwoPlanes());
+  const double residual[kPlanes][3] = {{2e-8, 3e-9, 5e-9}, {7e-8, 1.1e-8, 1.3e-8}};
+  for (int plane = 0; plane < kPlanes; ++plane)
+    for (int i = 0; i < 3; ++i)
+      table.rows[static_cast<std::size_t>(table.Row(plane, 0, 0) - table.rows.data() +
+                                          BendingTable::kResidual + i)] = residual[plane][i];
+  const BendingTableLanes<double> bending = BendingOf(table, 0.0);
+  const auto at = [&](lanes::Vector<double> force, lanes::Vector<double> couple) {
+    return lanes::BentAtPivot(bending, BendingState<double>{}, force, couple);
+  };
+  const lanes::Vector<double> none = lanes::Zero<double>(), y{0.0, 1.0, 0.0}, z{0.0, 0.0, 1.0};
+  EXPECT_DOUBLE_EQ(at(y, none).y_m, residual[0][0]);
+  EXPECT_DOUBLE_EQ(at(z, none).z_m, residual[1][0]);
+  EXPECT_DOUBLE_EQ(at(z, none).about_y_rad, residual[1][1]);
+  EXPECT_DOUBLE_EQ(at(y, none).about_z_rad, -residual[0][1]);
+  EXPECT_DOUBLE_EQ(at(none, y).z_m, residual[1][1]);
+  EXPECT_DOUBLE_EQ(at(none, z).y_m, -residual[0][1]);
+  EXPECT_DOUBLE_EQ(at(none, y).about_y_rad, residual[1][2]);
+  EXPECT_DOUBLE_EQ(at(none, z).about_z_rad, residual[0][2]);
+  EXPECT_EQ(at(z, none).y_m, 0.0);
+  EXPECT_EQ(at(none, y).about_z_rad, 0.0);
 }
 
 TEST_F(BendingMotion, TurnsTheInertialUnitAndEachGyro) {
@@ -97,7 +124,8 @@ TEST_F(BendingMotion, AForceAtThePivotDrivesAModeByItsWork) {
     for (int mode = 0; mode < 2; ++mode) {
       BendingState<double> unit{};
       unit.q_m[plane][mode] = 1.0;
-      const lanes::Bent<double> at = lanes::BentAtPivot(bending_, unit);
+      const lanes::Bent<double> at =
+          lanes::BentAtPivot(bending_, unit, lanes::Zero<double>(), lanes::Zero<double>());
       const double work =
           force.y * at.y_m + force.z * at.z_m + couple.y * at.about_y_rad + couple.z * at.about_z_rad;
       EXPECT_NEAR(driven.drive_m_s2[plane][mode] - before.drive_m_s2[plane][mode], work, 1e-9)

@@ -15,7 +15,8 @@
 namespace dispersa::structure_load_stations_test {
 namespace {
 
-/// The moments on sections of a body that a unit force at `at_m` accelerates; the force acts behind all of them.
+/// The moments on sections of a body that a unit force at `at_m` accelerates; the force acts behind all of
+/// them.
 std::vector<double> Carried(const std::vector<double>& stations, const FreeBody& body, double at_m) {
   std::vector<double> moments;
   for (const double s : stations) {
@@ -23,7 +24,8 @@ std::vector<double> Carried(const std::vector<double>& stations, const FreeBody&
     for (const MassPoint& m : body.points) {
       if (m.fixed_at_m > s) break;
       const double turn = (body.cg_station_m - at_m) / body.inertia_kg_m2;
-      sum += m.mass_kg * (1.0 / body.mass_kg + turn * (body.cg_station_m - m.cg_station_m)) * (s - m.cg_station_m) +
+      sum += m.mass_kg * (1.0 / body.mass_kg + turn * (body.cg_station_m - m.cg_station_m)) *
+                 (s - m.cg_station_m) +
              m.inertia_kg_m2 * turn;
     }
     moments.push_back(sum);
@@ -35,8 +37,8 @@ struct Missed {
   double worst = 0.0, mean = 0.0;
 };
 
-/// By how much `chosen` stations see less than a fine row of stations, over proportions of the two forces, levels of
-/// propellant and centres of pressure between those that the choice looks at.
+/// By how much `chosen` stations see less than a fine row of stations, over proportions of the two forces,
+/// levels of propellant and centres of pressure between those that the choice looks at.
 Missed MissedBy(const Vehicle& vehicle, int stage, const std::vector<double>& chosen) {
   const Stage& lowest = vehicle.stages[static_cast<std::size_t>(stage)];
   const double end_m = std::min(lowest.bottom_station_m, lowest.gimbal.pivot_station_m);
@@ -60,13 +62,15 @@ Missed MissedBy(const Vehicle& vehicle, int stage, const std::vector<double>& ch
                        by_air[i] -= (slender + aft_m * shift) * std::max(stations[i] - at_m, 0.0);
                    });
       const auto largest = [](const std::vector<double>& of) {
-        return std::fabs(*std::max_element(of.begin(), of.end(), [](double a, double b) { return std::fabs(a) < std::fabs(b); }));
+        return std::fabs(*std::max_element(of.begin(), of.end(),
+                                           [](double a, double b) { return std::fabs(a) < std::fabs(b); }));
       };
       const double air = largest(by_air), pivot = largest(by_pivot);
       for (int k = 0; k < 37; ++k) {
         double all = 0.0, seen = 0.0;
         for (std::size_t i = 0; i < stations.size(); ++i) {
-          const double m = std::fabs(std::cos(kPi * k / 37) * by_air[i] / air + std::sin(kPi * k / 37) * by_pivot[i] / pivot);
+          const double m = std::fabs(std::cos(kPi * k / 37) * by_air[i] / air +
+                                     std::sin(kPi * k / 37) * by_pivot[i] / pivot);
           all = std::max(all, m);
           if (std::binary_search(chosen.begin(), chosen.end(), stations[i])) seen = std::max(seen, m);
         }
@@ -81,13 +85,15 @@ Missed MissedBy(const Vehicle& vehicle, int stage, const std::vector<double>& ch
 }
 
 TEST(LoadStations, SeeTheLargestMoment) {
-  for (const char* file : {"/vehicles/slv4.yaml", "/gallery/falcon9/vehicle.yaml", "/gallery/vega/vehicle.yaml"}) {
+  for (const char* file :
+       {"/vehicles/slv4.yaml", "/gallery/falcon9/vehicle.yaml", "/gallery/vega/vehicle.yaml"}) {
     const Vehicle vehicle = LoadVehicle(std::string(DISPERSA_CAMPAIGNS) + file);
     for (const int stage : {0, 1}) {
       const std::vector<double> chosen = ChooseLoadStations(vehicle, stage, kLoadStations);
       EXPECT_TRUE(std::is_sorted(chosen.begin(), chosen.end()));
       const Missed missed = MissedBy(vehicle, stage, chosen);
-      RecordProperty(std::string(file) + std::to_string(stage), std::to_string(missed.worst) + ", mean " + std::to_string(missed.mean));
+      RecordProperty(std::string(file) + std::to_string(stage),
+                     std::to_string(missed.worst) + ", mean " + std::to_string(missed.mean));
       EXPECT_LT(missed.worst, 0.005) << file << stage << ", " << chosen.size() << " stations";
       EXPECT_LT(missed.mean, 0.0004) << file << stage;
       // As many even ones see less.
@@ -103,7 +109,8 @@ TEST(LoadStations, SeeTheLargestMoment) {
 
 TEST(LoadStations, AreAtMostAsManyAsThereIsRoomFor) {
   const Vehicle vehicle = LoadVehicle(DISPERSA_CAMPAIGNS "/vehicles/slv4.yaml");
-  const std::vector<double> few = ChooseLoadStations(vehicle, 0, 5), all = ChooseLoadStations(vehicle, 0, 100);
+  const std::vector<double> few = ChooseLoadStations(vehicle, 0, 5),
+                            all = ChooseLoadStations(vehicle, 0, 100);
   EXPECT_EQ(few.size(), 5u);
   EXPECT_LE(all.size(), static_cast<std::size_t>(kLoadStations));
   EXPECT_GT(MissedBy(vehicle, 0, few).worst, MissedBy(vehicle, 0, all).worst);
