@@ -154,10 +154,17 @@ void ExpectRinging(const Vehicle& vehicle, std::size_t at_level) {
     for (std::size_t i = 0; i < static_cast<std::size_t>(loads.stations); ++i) {
       const double s = loads.station_m[i];
       double stiffness = 0.0;
+      // At a node curvature may jump. Where the stiffness tapers, an element has the curvature of a uniform one.
+      bool skip = false;
       for (const BeamStage& stage : vehicle.structure_beam->stages)
         for (const BeamSection& section : stage.sections)
-          if (s > section.top_station_m && s < section.bottom_station_m)
+          if (s > section.top_station_m && s < section.bottom_station_m) {
             stiffness += section.BendingStiffness(BeamPlane::kY, s);
+            skip = skip || section.outer_diameter_m.top != section.outer_diameter_m.bottom;
+          }
+      for (const double node_m : stacks[0].station_m[0])
+        skip = skip || std::fabs(s - node_m) < kStep_m;
+      if (skip) continue;
       const auto slope = [&](double at) {
         return ShapeOf(stacks[0], BeamPlane::kY, level.modes[mode], at).slope_1_m;
       };
@@ -166,6 +173,7 @@ void ExpectRinging(const Vehicle& vehicle, std::size_t at_level) {
                                           static_cast<int>(mode))[BendingTable::kMomentAt + i]);
       most = std::max(most, std::fabs(held.back()));
     }
+    EXPECT_GT(held.size(), 10u);
     for (std::size_t i = 0; i < held.size(); ++i) {
       largest = std::max(largest, std::fabs(std::fabs(held[i]) - std::fabs(loaded[i])) / most);
       EXPECT_GT(held[i] * loaded[i] * held[3] * loaded[3], 0.0) << "one sign along the beam";
