@@ -181,9 +181,9 @@ ShapeColumns Combined(const ShapeColumns& columns, const Eigen::MatrixXd& share,
   return combined;
 }
 
-// Turns of subspace iteration from shapes of about these stiffnesses, until `accept(bent, found, error_of)`:
-// the bent shapes of a turn, the modes among them, and the estimated error of one. `bend` bends the beam by
-// balanced loads.
+// Turns of subspace iteration from shapes of about these stiffnesses, until `accept(bent, found, change_of)`:
+// the bent shapes of a turn, the modes among them, and by how much the turn has changed one. `bend` bends the
+// beam by balanced loads.
 template <typename Bend, typename Accept>
 void Iterate(const NodeMasses& mass, const RigidMotion& rigid, const ShapeColumns& start,
              Eigen::VectorXd stiffness, int most_turns, const Bend& bend, const Accept& accept) {
@@ -200,11 +200,7 @@ void Iterate(const NodeMasses& mass, const RigidMotion& rigid, const ShapeColumn
     const std::optional<RitzModes> found = FindAmong(energy, ProductOf(bent, mass.Times(bent), true));
     if (!found) return;
     before = stiffness.asDiagonal() * before * stiffness.asDiagonal();
-    const double highest = found->stiffness[found->stiffness.size() - 1];
-    const auto error_of = [&](Eigen::Index mode) {
-      return ChangeOf(*found, mode, before) * found->stiffness[mode] / highest;
-    };
-    if (accept(bent, *found, error_of)) return;
+    if (accept(bent, *found, [&](Eigen::Index mode) { return ChangeOf(*found, mode, before); })) return;
     stiffness = found->stiffness;
     const ShapeColumns shapes = Combined(bent, found->share, bent.fours);
     loads = mass.Times(shapes);
@@ -352,11 +348,13 @@ std::optional<std::vector<BendingMode>> NearModes::Find(std::size_t level, const
   Iterate(
       mass, rigid, nominal, levels_[level].stiffness, kMostTurns,
       [&](const ShapeColumns& loads) { return Bent(loads); },
-      [&](const ShapeColumns& bent, const RitzModes& found, const auto& error_of) {
+      [&](const ShapeColumns& bent, const RitzModes& found, const auto& change_of) {
         const std::vector<ModeMatch> matches =
             MatchesOf(ProductOf(nominal_loads, bent, false), found, nominal_mass, count);
         double error = 0.0;
-        for (const ModeMatch& match : matches) error = std::max(error, error_of(match.index));
+        for (const ModeMatch& match : matches)
+          error = std::max(error, change_of(match.index) * found.stiffness[match.index] /
+                                      found.stiffness[found.stiffness.size() - 1]);
         if (error > kShapeError) return false;
         modes = ModesOf(bent, found, matches, least_mac);
         return true;
@@ -383,9 +381,9 @@ FreeFreeModes NearModes::Lowest(const BeamMasses& masses, int count) const {
       mass, RigidMotion(mass, arms_m_), cosines,
       Eigen::VectorXd::Ones(static_cast<Eigen::Index>(4 * cosines.fours)), kMostWholeTurns,
       [&](const ShapeColumns& loads) { return Bent(loads); },
-      [&](const ShapeColumns& bent, const RitzModes& found, const auto& error_of) {
+      [&](const ShapeColumns& bent, const RitzModes& found, const auto& change_of) {
         for (Eigen::Index mode = 0; mode < count; ++mode)
-          if (!(error_of(mode) <= kWholeError)) return false;
+          if (!(change_of(mode) <= kWholeChange)) return false;
         const ShapeColumns own = Combined(bent, found.share, bent.fours);
         modes = FreeFreeModes{found.stiffness.head(count).cwiseSqrt(),
                               Eigen::MatrixXd(static_cast<Eigen::Index>(own.rows), count)};

@@ -32,8 +32,9 @@ class NearModes {
  public:
   /// Estimated error of a shape, as the root of the generalised mass of what is wrong over that of the mode.
   static constexpr double kShapeError = 5e-5;
-  /// The same of Lowest(): with it a frequency is right to rounding.
-  static constexpr double kWholeError = 1e-8;
+  /// By how much the last turn of Lowest() may change a shape, in the same sense: a frequency is then right
+  /// to rounding.
+  static constexpr double kWholeChange = 3e-7;
 
   NearModes(std::vector<double> stations, std::vector<BeamElement> elements, bool rotary_inertia);
 

@@ -54,7 +54,7 @@ TEST(FlexibleDispersions, ModesOfAHeavierVehicleAreSlowerByTheRoot) {
         EXPECT_NEAR(to[BendingTable::kFrequency] / from[BendingTable::kFrequency], 1.0 / std::sqrt(kFactor),
                     kSame);
         EXPECT_NEAR(to[BendingTable::kInverseMass] / from[BendingTable::kInverseMass], 1.0 / kFactor, kSame);
-        for (int column = BendingTable::kPivotDeflection; column < BendingTable::kMomentAt; ++column)
+        for (int column = BendingTable::kPivotDeflection; column < BendingTable::kUpperTurn; ++column)
           EXPECT_NEAR(to[column], from[column], kSame) << column;
       }
     }
@@ -74,11 +74,14 @@ TEST(FlexibleDispersions, AreThoseOfAVehicleOfThoseMasses) {
   second.motor.burning_time_s *= 1.05;
   second.grain.inner_diameter_m = std::sqrt(0.81 - 1.05 * (0.81 - 0.09));
   const LauncherPlant dispersed = FlightModel(Flexible()).PlantFor(inputs),
-                      expected = FlightModel(built).PlantFor({}),
                       nominal = FlightModel(Flexible()).PlantFor({});
   for (std::size_t stack = 0; stack < 2; ++stack) {
-    const BendingTable &is = *dispersed.stacks[stack].bending, &should_be = *expected.stacks[stack].bending,
-                       &was = *nominal.stacks[stack].bending;
+    const BendingTable &is = *dispersed.stacks[stack].bending, &was = *nominal.stacks[stack].bending;
+    // Sections are looked at where the nominal masses have them.
+    const LoadTable should_carry =
+        BuildLoadTable(built.vehicle, static_cast<int>(stack), nominal.stacks[stack].loads.get());
+    const BendingTable should_be = BuildBendingTable(
+        built.vehicle, BuildStackModes(built.vehicle, static_cast<int>(stack)), should_carry, is.modes);
     ASSERT_EQ(is.rows.size(), should_be.rows.size());
     double moved = 0.0;
     for (std::size_t i = 0; i < is.rows.size(); ++i) {
@@ -87,7 +90,7 @@ TEST(FlexibleDispersions, AreThoseOfAVehicleOfThoseMasses) {
       moved = std::max(moved, std::fabs(is.rows[i] - was.rows[i]));
     }
     EXPECT_GT(moved, 1e-3);
-    const LoadTable &carries = *dispersed.stacks[stack].loads, &should_carry = *expected.stacks[stack].loads;
+    const LoadTable& carries = *dispersed.stacks[stack].loads;
     for (std::size_t i = 0; i < static_cast<std::size_t>(carries.stations); ++i)
       for (std::size_t k = 0; k < 3; ++k) {
         EXPECT_NEAR(carries.first_kg_m[i][k], should_carry.first_kg_m[i][k], 1e-6);

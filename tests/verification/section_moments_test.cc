@@ -154,7 +154,8 @@ void ExpectRinging(const Vehicle& vehicle, std::size_t at_level) {
     for (std::size_t i = 0; i < static_cast<std::size_t>(loads.stations); ++i) {
       const double s = loads.station_m[i];
       double stiffness = 0.0;
-      // At a node curvature may jump. Where the stiffness tapers, an element has the curvature of a uniform one.
+      // At a node curvature may jump. Where the stiffness tapers, an element has the curvature of a uniform
+      // one.
       bool skip = false;
       for (const BeamStage& stage : vehicle.structure_beam->stages)
         for (const BeamSection& section : stage.sections)
@@ -162,8 +163,7 @@ void ExpectRinging(const Vehicle& vehicle, std::size_t at_level) {
             stiffness += section.BendingStiffness(BeamPlane::kY, s);
             skip = skip || section.outer_diameter_m.top != section.outer_diameter_m.bottom;
           }
-      for (const double node_m : stacks[0].station_m[0])
-        skip = skip || std::fabs(s - node_m) < kStep_m;
+      for (const double node_m : stacks[0].station_m[0]) skip = skip || std::fabs(s - node_m) < kStep_m;
       if (skip) continue;
       const auto slope = [&](double at) {
         return ShapeOf(stacks[0], BeamPlane::kY, level.modes[mode], at).slope_1_m;
