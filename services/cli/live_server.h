@@ -5,23 +5,23 @@
 #include <cstdint>
 #include <map>
 #include <memory>
+#include <optional>
 #include <string>
 
+#include "services/http/http_message.h"
 #include "services/program/mutex.h"
 
-namespace httplib {
-class Server;
-}
-
 namespace dispersa {
+
+class HttpServer;
 
 /// HTML by the id of its element; for "title" a text.
 using LiveParts = std::map<std::string, std::string>;
 
-/// Serves one page to the browsers of this machine and sends them its changes. It listens on 127.0.0.1 only,
-/// and answers only under the names of this machine. So a page from another site cannot reach it under
-/// another name. It keeps the present page for any number of browsers. A browser that stops reading is
-/// dropped.
+/// Serves one page to its user's browsers on this machine and sends them its changes. It listens on 127.0.0.1
+/// only, answers no other user, and answers only under the names of this machine. So a page from another site
+/// cannot reach it under another name. It keeps the present page for up to 32 browsers. A browser that stops
+/// reading is dropped.
 class LiveServer {
  public:
   /// `page` connects to "events" (LivePage()). Port 0: any that is free. Throws std::runtime_error.
@@ -41,23 +41,21 @@ class LiveServer {
     std::string html;
     std::uint64_t version = 0;
   };
-  struct Serving;
+  struct Viewer;
 
-  /// The parts that a browser at state `seen` lacks, or a sign of life. Waits for them. Empty if nothing
+  HttpAnswer Answer(const HttpRequest& request);
+  /// The parts of the page that a browser lacks, or a sign of life now and then. Empty: neither. None: nothing
   /// follows.
-  std::string NextEvent(std::uint64_t* seen, bool* told_end);
-  void AddRoutes();
+  std::optional<std::string> NextEvent(Viewer* viewer);
 
   std::string page_;
-  int port_ = 0;
   Mutex mutex_;
-  std::condition_variable changed_;
+  std::condition_variable changed_;  ///< viewers_
   std::map<std::string, Part> parts_ DISPERSA_GUARDED_BY(mutex_);
   std::uint64_t version_ DISPERSA_GUARDED_BY(mutex_) = 0;
   int viewers_ DISPERSA_GUARDED_BY(mutex_) = 0;
   bool ended_ DISPERSA_GUARDED_BY(mutex_) = false;
-  bool closing_ DISPERSA_GUARDED_BY(mutex_) = false;
-  std::unique_ptr<Serving> serving_;
+  std::unique_ptr<HttpServer> server_;  // ends before what it reads
 };
 
 }  // namespace dispersa

@@ -4,10 +4,12 @@
 #include <memory>
 #include <string>
 
+#include "services/http/http_address.h"
 #include "services/program/mutex.h"
-#include "services/web/http_address.h"
 
 namespace dispersa {
+
+class HttpServer;
 
 /// Answers GET of / and /metrics with the last text set. Throws NetworkError if the port is taken, or the
 /// address is none of this machine.
@@ -22,11 +24,9 @@ class PrometheusPort {
   void Set(std::string text);
 
  private:
-  struct Serving;
-
   Mutex mutex_;
   std::string text_ DISPERSA_GUARDED_BY(mutex_);
-  std::unique_ptr<Serving> serving_;
+  std::unique_ptr<HttpServer> server_;  // ends before what it reads
 };
 
 }  // namespace dispersa

@@ -1,33 +1,29 @@
 #include "services/web/web_server.h"
 
-#include <httplib.h>
 #include <openssl/crypto.h>
-#include <sys/socket.h>
+#include <openssl/evp.h>
+#include <openssl/hmac.h>
 #include <sys/stat.h>
 
-#include <cerrno>
+#include <array>
+#include <charconv>
 #include <chrono>
-#include <cstring>
 #include <fstream>
-#include <set>
 #include <stdexcept>
-#include <thread>
 #include <utility>
 
-#include "core/campaign_yaml/sha256.h"
 #include "core/input/input_error.h"
+#include "services/http/http_server.h"
 #include "services/web/web_parts.h"
 
 namespace dispersa {
 namespace {
 
-constexpr std::size_t kWebThreads = 8;
-constexpr int kWebPatience_s = 5;
-constexpr std::size_t kMaxWebBody = 4096;
+constexpr int kWebThreads = 4;
+constexpr std::size_t kConnectionsOfPeer = 32;
 constexpr std::size_t kLeastToken = 16;
 constexpr std::chrono::milliseconds kWrongToken(300);  // whoever tries tokens waits
 constexpr char kCookie[] = "dispersa";
-constexpr char kHtml[] = "text/html; charset=utf-8";
 constexpr char kPolicy[] =
     "default-src 'none'; style-src 'self'; script-src 'self'; connect-src 'self'; img-src 'self' data:; "
     "form-action "
@@ -43,29 +39,51 @@ bool IsSame(const std::string& a, const std::string& b) {
   return a.size() == b.size() && CRYPTO_memcmp(a.data(), b.data(), a.size()) == 0;
 }
 
-bool IsOfThisMachine(const httplib::Request& request) {
-  if (request.get_header_value_count("Host") != 1) return false;
-  const std::string host = request.get_header_value("Host");
-  return std::set<std::string>{"127.0.0.1", "localhost"}.contains(host.substr(0, host.find(':')));
+HttpAnswer Html(std::string html, int status = 200) {
+  HttpAnswer answer;
+  answer.status = status;
+  answer.body = std::move(html);
+  return answer;
 }
 
-std::string CookieOf(const httplib::Request& request) {
-  const std::string all = request.get_header_value("Cookie"), wanted = std::string(kCookie) + "=";
-  std::size_t at = 0;
-  while (at < all.size()) {
-    std::size_t end = all.find(';', at);
-    if (end == std::string::npos) end = all.size();
-    while (at < end && all[at] == ' ') ++at;
-    if (all.compare(at, wanted.size(), wanted) == 0)
-      return all.substr(at + wanted.size(), end - at - wanted.size());
-    at = end + 1;
+HttpAnswer Problem(int status, const std::string& title, const std::string& text) {
+  return Html(ErrorPage(title, text), status);
+}
+
+HttpAnswer NoSuchCampaign() {
+  return Problem(404, "No such campaign", "No campaign, or more than one, has an id that begins so.");
+}
+
+std::int64_t Now_s() {
+  return std::chrono::duration_cast<std::chrono::seconds>(std::chrono::system_clock::now().time_since_epoch())
+      .count();
+}
+
+/// Only whoever has the token can make it.
+std::string Signature(const std::string& token, const std::string& text) {
+  std::array<unsigned char, EVP_MAX_MD_SIZE> bytes{};
+  unsigned size = 0;
+  HMAC(EVP_sha256(), token.data(), static_cast<int>(token.size()),
+       reinterpret_cast<const unsigned char*>(text.data()), text.size(), bytes.data(), &size);
+  constexpr char kDigits[] = "0123456789abcdef";
+  std::string hex;
+  for (unsigned i = 0; i < size; ++i) {
+    hex += kDigits[bytes[i] >> 4];
+    hex += kDigits[bytes[i] & 15];
   }
-  return "";
+  return hex;
 }
 
-void Answer(httplib::Response& response, int status, const std::string& html) {
-  response.status = status;
-  response.set_content(html, kHtml);
+/// Value of the cookie of a session that ends at `end_s`: "1790000000.<signature>".
+std::string SessionUntil(const std::string& token, std::int64_t end_s) {
+  const std::string end = std::to_string(end_s);
+  return end + "." + Signature(token, "session until " + end);
+}
+
+bool IsSession(const std::string& cookie, const std::string& token) {
+  std::int64_t end_s = 0;
+  const auto read = std::from_chars(cookie.data(), cookie.data() + cookie.size(), end_s);
+  return read.ec == std::errc() && IsSame(cookie, SessionUntil(token, end_s)) && Now_s() < end_s;
 }
 
 std::size_t PageNumber(const std::string& text) {
@@ -99,48 +117,30 @@ std::string ReadWebToken(const std::string& file) {
   return token;
 }
 
-struct WebServer::Serving {
-  httplib::Server server;
-  std::thread thread;
-};
-
 WebServer::WebServer(const WebOptions& options, CampaignFile file)
-    : options_(options),
-      file_(std::move(file)),
-      session_(options.token.empty() ? "" : Sha256Hex("session of " + options.token)),
-      serving_(std::make_unique<Serving>()) {
-  httplib::Server& server = serving_->server;
-  server.new_task_queue = [] { return new httplib::ThreadPool(kWebThreads); };
-  // By default httplib lets other programs listen on the same port.
-  server.set_socket_options([](int socket) {
-    const int yes = 1;
-    setsockopt(socket, SOL_SOCKET, SO_REUSEADDR, &yes, sizeof yes);
-  });
-  server.set_tcp_nodelay(true);
-  server.set_keep_alive_timeout(1);
-  server.set_read_timeout(kWebPatience_s);
-  server.set_write_timeout(kWebPatience_s);
-  server.set_payload_max_length(kMaxWebBody);
-  server.set_default_headers({{"X-Content-Type-Options", "nosniff"},
-                              {"Cross-Origin-Resource-Policy", "same-origin"},
-                              {"Referrer-Policy", "same-origin"},
-                              {"Cache-Control", "no-store"}});
-  AddGuard();
-  AddLogin();
-  AddRoutes();
-  errno = 0;
-  if (!server.bind_to_port(options.address.host, options.address.port)) {
-    throw std::runtime_error("web: port " + std::to_string(options.address.port) + " of " +
-                             options.address.host + ": " + std::strerror(errno == 0 ? EADDRINUSE : errno));
+    : options_(options), file_(std::move(file)) {
+  HttpOptions http;
+  http.address = options.address;
+  http.owner_alone = options.token.empty();
+  http.threads = kWebThreads;
+  // Behind a proxy all peers are the proxy.
+  if (!options.behind_tls) http.limits.connections_of_peer = kConnectionsOfPeer;
+  http.headers = {{"X-Content-Type-Options", "nosniff"},
+                  {"Cross-Origin-Resource-Policy", "same-origin"},
+                  {"Referrer-Policy", "same-origin"},
+                  {"Cache-Control", "no-store"},
+                  {"Content-Security-Policy", kPolicy}};
+  try {
+    server_ = std::make_unique<HttpServer>(http, [this](const HttpRequest& request) {
+      auto refusal = Refusal(request);
+      return refusal ? *std::move(refusal) : Answer(request);
+    });
+  } catch (const std::runtime_error& error) {
+    throw std::runtime_error(std::string("web: ") + error.what());
   }
-  serving_->thread = std::thread([&server] { server.listen_after_bind(); });
-  while (!server.is_running()) std::this_thread::yield();  // else stop() would stop nothing
 }
 
-WebServer::~WebServer() {
-  serving_->server.stop();
-  serving_->thread.join();
-}
+WebServer::~WebServer() = default;
 
 void WebServer::Set(std::shared_ptr<const CampaignIndex> index) {
   const Lock lock(mutex_);
@@ -152,110 +152,91 @@ std::shared_ptr<const CampaignIndex> WebServer::index() {
   return index_;
 }
 
-void WebServer::AddGuard() {
-  serving_->server.set_pre_routing_handler([this](const httplib::Request& request,
-                                                  httplib::Response& response) {
-    using Handled = httplib::Server::HandlerResponse;
-    response.set_header("Content-Security-Policy", kPolicy);
-    if (options_.behind_tls && request.get_header_value("X-Forwarded-Proto") != "https") {
-      Answer(response, 403,
-             ErrorPage("Over TLS alone", "This address answers only what a proxy has received over TLS."));
-      return Handled::Handled;
-    }
-    if (options_.token.empty()) {
-      if (IsOfThisMachine(request)) return Handled::Unhandled;
-      Answer(response, 403,
-             ErrorPage("On this machine alone", "These pages are at 127.0.0.1 and localhost."));
-      return Handled::Handled;
-    }
-    if (request.path == "/login" || request.path == "/style.css") return Handled::Unhandled;
-    if (IsSame(request.get_header_value("Authorization"), "Bearer " + options_.token) ||
-        IsSame(CookieOf(request), session_))
-      return Handled::Unhandled;
-    if (request.method == "GET" && !request.has_param("part")) {
-      response.set_redirect("/login?next=" + UrlText(request.target));
-    } else {
-      Answer(response, 401, ErrorPage("Sign in", "These pages need a token."));
-    }
-    return Handled::Handled;
-  });
-  serving_->server.set_error_handler([](const httplib::Request&, httplib::Response& response) {
-    if (response.body.empty()) response.set_content(ErrorPage("Not here", "There is no such page."), kHtml);
-  });
+std::optional<HttpAnswer> WebServer::Refusal(const HttpRequest& request) const {
+  if (options_.behind_tls && request.Header("x-forwarded-proto") != "https")
+    return Problem(403, "Over TLS alone", "This address answers only what a proxy has received over TLS.");
+  if (options_.token.empty()) {
+    if (request.NamesThisMachine()) return std::nullopt;
+    return Problem(403, "On this machine alone", "These pages are at 127.0.0.1 and localhost.");
+  }
+  if (request.path == "/login" || request.path == "/style.css") return std::nullopt;
+  if (IsSame(request.Header("authorization"), "Bearer " + options_.token) ||
+      IsSession(request.Cookie(kCookie), options_.token))
+    return std::nullopt;
+  if (request.method == "GET" && !request.HasParameter("part"))
+    return RedirectTo("/login?next=" + UrlText(request.target));
+  return Problem(401, "Sign in", "These pages need a token.");
 }
 
-void WebServer::AddLogin() {
-  serving_->server.Get("/login", [](const httplib::Request& request, httplib::Response& response) {
-    response.set_content(LoginPage(LocalPath(request.get_param_value("next")), false), kHtml);
-  });
-  serving_->server.Post("/login", [this](const httplib::Request& request, httplib::Response& response) {
-    const std::string next = LocalPath(request.get_param_value("next"));
-    if (options_.token.empty() || !IsSame(request.get_param_value("token"), options_.token)) {
-      std::this_thread::sleep_for(kWrongToken);
-      Answer(response, 403, LoginPage(next, true));
-      return;
-    }
-    response.set_header("Set-Cookie", std::string(kCookie) + "=" + session_ +
-                                          "; Path=/; HttpOnly; SameSite=Lax; Max-Age=2592000" +
-                                          (options_.behind_tls ? "; Secure" : ""));
-    response.set_redirect(next, 303);
-  });
+HttpAnswer WebServer::LogIn(const HttpRequest& request) const {
+  const std::string next = LocalPath(request.Parameter("next"));
+  if (options_.token.empty() || !IsSame(request.Parameter("token"), options_.token)) {
+    HttpAnswer answer = Html(LoginPage(next, true), 403);
+    answer.delay = kWrongToken;
+    return answer;
+  }
+  HttpAnswer answer = RedirectTo(next, 303);
+  const std::int64_t length_s = options_.session.count();
+  answer.headers.emplace_back("Set-Cookie", std::string(kCookie) + "=" +
+                                                SessionUntil(options_.token, Now_s() + length_s) +
+                                                "; Path=/; HttpOnly; SameSite=Lax; Max-Age=" +
+                                                std::to_string(length_s) + (options_.behind_tls ? "; Secure" : ""));
+  return answer;
 }
 
-void WebServer::AddRoutes() {
-  httplib::Server& server = serving_->server;
-  server.Get("/style.css", [](const httplib::Request&, httplib::Response& response) {
-    response.set_content(WebStyleSheet(), "text/css; charset=utf-8");
-  });
-  server.Get("/script.js", [](const httplib::Request&, httplib::Response& response) {
-    response.set_content(std::string(WebScript()), "text/javascript; charset=utf-8");
-  });
-  server.Get("/", [this](const httplib::Request& request, httplib::Response& response) {
-    response.set_content(
-        ListPage(*index(), request.get_param_value("q"), PageNumber(request.get_param_value("page"))), kHtml);
-  });
-  const auto none = [](httplib::Response& response) {
-    Answer(response, 404,
-           ErrorPage("No such campaign", "No campaign, or more than one, has an id that begins so."));
-  };
-  server.Get("/campaign/([0-9a-f]{1,64})",
-             [this, none](const httplib::Request& request, httplib::Response& response) {
-               const auto all = index();
-               const CampaignRow* row = all->Find(request.matches[1]);
-               if (row == nullptr) return none(response);
-               if (row->id != request.matches[1].str()) return response.set_redirect(LinkTo(*row));
-               const bool has_report = row->state == "done";
-               if (row->has_ended) response.set_header("X-Campaign-Ended", "1");
-               response.set_content(request.has_param("part") ? CampaignPart(*all, *row, has_report)
-                                                              : CampaignPage(*all, *row, has_report),
-                                    kHtml);
-             });
-  server.Get("/campaign/([0-9a-f]{64})/report",
-             [this, none](const httplib::Request& request, httplib::Response& response) {
-               const auto all = index();
-               const CampaignRow* row = all->Find(request.matches[1]);
-               if (row == nullptr) return none(response);
-               auto report = row->state == "done" ? file_(row->id, "report.html") : std::nullopt;
-               if (!report)
-                 return Answer(response, 404, ErrorPage("No report", "This campaign has no report."));
-               response.headers.erase("Content-Security-Policy");
-               response.set_header("Content-Security-Policy", kReportPolicy);
-               response.set_content(*std::move(report), kHtml);
-             });
-  server.Get("/difference", [this](const httplib::Request& request, httplib::Response& response) {
-    const auto all = index();
-    const CampaignRow* a = all->Find(request.get_param_value("id", 0));
-    const CampaignRow* b = all->Find(request.get_param_value("id", 1));
-    if (a == nullptr || b == nullptr)
-      return Answer(response, 404,
-                    ErrorPage("Two campaigns", "Mark two campaigns in the list to see what differs."));
-    response.set_content(a->order <= b->order ? DifferencePage(*a, *b, file_) : DifferencePage(*b, *a, file_),
-                         kHtml);
-  });
-  server.Get("/trend", [this](const httplib::Request& request, httplib::Response& response) {
-    response.set_content(TrendPage(*index(), request.get_param_value("metric"), request.get_param_value("q")),
-                         kHtml);
-  });
+HttpAnswer WebServer::Answer(const HttpRequest& request) {
+  const std::string& path = request.path;
+  if (request.method == "POST" && path == "/login") return LogIn(request);
+  if (request.method != "GET") return Problem(404, "Not here", "There is no such page.");
+  if (path == "/login") return Html(LoginPage(LocalPath(request.Parameter("next")), false));
+  if (path == "/style.css") return {200, WebStyleSheet(), "text/css; charset=utf-8", {}, {}, {}};
+  if (path == "/script.js")
+    return {200, std::string(WebScript()), "text/javascript; charset=utf-8", {}, {}, {}};
+  if (path == "/")
+    return Html(ListPage(*index(), request.Parameter("q"), PageNumber(request.Parameter("page"))));
+  if (path == "/trend")
+    return Html(TrendPage(*index(), request.Parameter("metric"), request.Parameter("q")));
+  if (path == "/difference") return Difference(request);
+  const std::string before = "/campaign/", after = "/report";
+  if (!path.starts_with(before)) return Problem(404, "Not here", "There is no such page.");
+  std::string id = path.substr(before.size());
+  const bool is_report = id.ends_with(after);
+  if (is_report) id.resize(id.size() - after.size());
+  if (id.empty() || id.size() > 64 || id.find_first_not_of("0123456789abcdef") != std::string::npos)
+    return Problem(404, "Not here", "There is no such page.");
+  return is_report ? Report(id) : Campaign(id, request.HasParameter("part"));
+}
+
+HttpAnswer WebServer::Campaign(const std::string& id, bool part) {
+  const auto all = index();
+  const CampaignRow* row = all->Find(id);
+  if (row == nullptr) return NoSuchCampaign();
+  if (row->id != id) return RedirectTo(LinkTo(*row));
+  const bool has_report = row->state == "done";
+  HttpAnswer answer =
+      Html(part ? CampaignPart(*all, *row, has_report) : CampaignPage(*all, *row, has_report));
+  if (row->has_ended) answer.headers.emplace_back("X-Campaign-Ended", "1");
+  return answer;
+}
+
+HttpAnswer WebServer::Report(const std::string& id) {
+  const auto all = index();
+  const CampaignRow* row = all->Find(id);
+  if (row == nullptr) return NoSuchCampaign();
+  auto report = row->state == "done" ? file_(row->id, "report.html") : std::nullopt;
+  if (!report) return Problem(404, "No report", "This campaign has no report.");
+  HttpAnswer answer = Html(*std::move(report));
+  answer.headers.emplace_back("Content-Security-Policy", kReportPolicy);
+  return answer;
+}
+
+HttpAnswer WebServer::Difference(const HttpRequest& request) {
+  const auto all = index();
+  const CampaignRow* a = all->Find(request.Parameter("id", 0));
+  const CampaignRow* b = all->Find(request.Parameter("id", 1));
+  if (a == nullptr || b == nullptr)
+    return Problem(404, "Two campaigns", "Mark two campaigns in the list to see what differs.");
+  return Html(a->order <= b->order ? DifferencePage(*a, *b, file_) : DifferencePage(*b, *a, file_));
 }
 
 }  // namespace dispersa

@@ -1,5 +1,5 @@
 // Where the HTTP servers of a coordinator listen.
-#include "services/web/http_address.h"
+#include "services/http/http_address.h"
 
 #include <gtest/gtest.h>
 

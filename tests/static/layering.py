@@ -17,6 +17,7 @@ OWNED = [
     (r"(seccomp\.h|linux/landlock\.h)", {"containment"}),
     (r"sqlite3\.h", {"results"}),
     (r"zlib\.h", {"coordinator"}),
+    (r"boost/(asio|beast)", {"http"}),
     (r"CLI/", {"program", "cli", "coordinator", "worker"}),
     (r"(pybind11/|Python\.h)", {"python"}),
 ]

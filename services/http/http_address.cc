@@ -1,4 +1,4 @@
-#include "services/web/http_address.h"
+#include "services/http/http_address.h"
 
 #include <arpa/inet.h>
 
