@@ -47,7 +47,8 @@ LiveServer::LiveServer(std::uint16_t port, std::string page) : page_(std::move(p
                      {"Cross-Origin-Resource-Policy", "same-origin"},
                      {"Referrer-Policy", "no-referrer"},
                      {"Cache-Control", "no-store"}};
-  server_ = std::make_unique<HttpServer>(options, [this](const HttpRequest& request) { return Answer(request); });
+  server_ =
+      std::make_unique<HttpServer>(options, [this](const HttpRequest& request) { return Answer(request); });
 }
 
 LiveServer::~LiveServer() = default;

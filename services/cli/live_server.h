@@ -44,8 +44,8 @@ class LiveServer {
   struct Viewer;
 
   HttpAnswer Answer(const HttpRequest& request);
-  /// The parts of the page that a browser lacks, or a sign of life now and then. Empty: neither. None: nothing
-  /// follows.
+  /// The parts of the page that a browser lacks, or a sign of life now and then. Empty: neither. None:
+  /// nothing follows.
   std::optional<std::string> NextEvent(Viewer* viewer);
 
   std::string page_;

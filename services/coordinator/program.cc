@@ -1,5 +1,7 @@
 #include "services/coordinator/program.h"
 
+#include <sys/stat.h>
+
 #include <CLI/CLI.hpp>
 #include <exception>
 #include <optional>
@@ -70,9 +72,11 @@ int RunCoordinator(int argc, char** argv) {
       ->check(IsHttpAddress());
   std::string web, web_token;
   bool behind_tls = false;
-  app.add_option("--web", web,
-                 "with --data: PORT of 127.0.0.1, or ADDRESS:PORT, of web pages to read campaigns by; beyond "
-                 "127.0.0.1 they\nneed --web-token and --web-behind-tls")
+  app.add_option(
+         "--web", web,
+         "with --data: PORT of 127.0.0.1, or ADDRESS:PORT, of web pages to read campaigns by; without a "
+         "token for the\nuser of the coordinator alone; beyond 127.0.0.1 they need --web-token and "
+         "--web-behind-tls")
       ->type_name("TEXT")
       ->check(IsHttpAddress());
   app.add_option("--web-token", web_token, "with --web: file whose first line readers have to know")
@@ -164,7 +168,10 @@ int RunCoordinator(int argc, char** argv) {
     std::vector<std::string> again(argv, argv + argc);
     if (data.empty() && !request.resume) again.emplace_back("--resume");
     const ServeOptions options{network, audit, std::move(again)};
-    if (!data.empty()) return ServeClients(options, clients);
+    if (!data.empty()) {
+      umask(0077);  // what clients have launched is nobody else's on this machine
+      return ServeClients(options, clients);
+    }
     return EndOutput(ServeCampaign(options, request, patience_s));
   } catch (const InputError& error) {
     return EndFor(error, json);

@@ -38,7 +38,8 @@ std::string HttpRequest::Parameter(std::string_view name, std::size_t n) const {
 }
 
 bool HttpRequest::HasParameter(std::string_view name) const {
-  return std::any_of(parameters.begin(), parameters.end(), [&](const auto& each) { return each.first == name; });
+  return std::any_of(parameters.begin(), parameters.end(),
+                     [&](const auto& each) { return each.first == name; });
 }
 
 std::string HttpRequest::Header(std::string_view name) const {
@@ -48,7 +49,8 @@ std::string HttpRequest::Header(std::string_view name) const {
 }
 
 bool HttpRequest::NamesThisMachine() const {
-  if (std::count_if(headers.begin(), headers.end(), [](const auto& each) { return each.first == "host"; }) != 1)
+  if (std::count_if(headers.begin(), headers.end(), [](const auto& each) { return each.first == "host"; }) !=
+      1)
     return false;
   const std::string host = Header("host"), name = host.substr(0, host.find(':'));
   return name == "127.0.0.1" || name == "localhost";

@@ -14,10 +14,10 @@ namespace dispersa {
 using HttpPairs = std::vector<std::pair<std::string, std::string>>;
 
 struct HttpRequest {
-  std::string method;   ///< "GET" for HEAD too: the server drops the body of the answer
-  std::string target;   ///< "/trend?metric=M"
-  std::string path;     ///< "/trend", decoded
-  HttpPairs headers;    ///< names in small letters
+  std::string method;    ///< "GET" for HEAD too: the server drops the body of the answer
+  std::string target;    ///< "/trend?metric=M"
+  std::string path;      ///< "/trend", decoded
+  HttpPairs headers;     ///< names in small letters
   HttpPairs parameters;  ///< of the target and of a form, decoded
 
   /// Empty if there is none. `n`: of several with this name, from 0.

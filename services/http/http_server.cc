@@ -43,6 +43,8 @@ constexpr std::chrono::milliseconds kPatienceOfMore(5000);  // for one part of a
 constexpr std::chrono::milliseconds kFarewell(500);
 constexpr std::size_t kFarewellBytes = 1 << 20;
 constexpr std::chrono::milliseconds kNoFile(100);
+constexpr std::chrono::milliseconds kAllHandled(5);
+constexpr int kPatienceOfAdmission = 200;  // times kAllHandled
 constexpr std::size_t kPiece = 4096;
 constexpr std::chrono::milliseconds kAnswerPerMb(20000);
 
@@ -105,19 +107,23 @@ class HttpServer::Serving {
   std::uint16_t port() const { return port_; }
 
  private:
+  struct Peer {
+    std::uint64_t key;           // of an address, or on loopback of a user
+    std::optional<uid_t> owner;  // on loopback
+  };
   enum class Stage { kReads, kIsLate, kIsHandled, kWaits, kWrites, kGoesOn, kLeaves };
 
   struct Connection {
-    Connection(asio::io_context& io, const HttpLimits& limits, std::uint64_t peer_key)
-        : socket(io), deadline(io), pause(io), peer(peer_key), buffer(limits.head) {
+    Connection(asio::io_context& io, const HttpLimits& limits, asio::ip::tcp::socket its_socket,
+               const Peer& its_peer)
+        : socket(std::move(its_socket)), deadline(io), pause(io), peer(its_peer), buffer(limits.head) {
       parser.header_limit(static_cast<std::uint32_t>(limits.head));
       parser.body_limit(limits.body);
     }
 
     asio::ip::tcp::socket socket;
     asio::steady_timer deadline, pause;
-    std::uint64_t peer;
-    std::optional<uid_t> owner;  // on loopback
+    Peer peer;
     Stage stage = Stage::kReads;
     boost::beast::flat_buffer buffer;
     http::request_parser<http::string_body> parser;
@@ -132,7 +138,9 @@ class HttpServer::Serving {
   void Run();
   void Listen();
   void Accept();
-  void Admit(int descriptor, const sockaddr_in& peer);
+  void Admit(asio::ip::tcp::socket socket, const Peer& peer, int patience);
+  static Peer PeerOf(int descriptor, const sockaddr_in& peer);
+  static bool MayRead(const Peer& peer) { return peer.owner == geteuid() || peer.owner == uid_t{0}; }
   bool MakeRoom(std::uint64_t peer);
   bool CutOldest(std::uint64_t peer);
   void Cut(const Shared& connection);
@@ -181,11 +189,11 @@ void HttpServer::Serving::Listen() {
   where.sin_port = htons(address.port);
   where.sin_addr.s_addr = htonl(made.to_uint());
   socklen_t size = sizeof where;
-  const bool listens =
-      descriptor >= 0 && setsockopt(descriptor, SOL_SOCKET, SO_REUSEADDR, &yes, sizeof yes) == 0 &&
-      bind(descriptor, reinterpret_cast<const sockaddr*>(&where), size) == 0 &&
-      listen(descriptor, SOMAXCONN) == 0 &&
-      getsockname(descriptor, reinterpret_cast<sockaddr*>(&where), &size) == 0;
+  const bool listens = descriptor >= 0 &&
+                       setsockopt(descriptor, SOL_SOCKET, SO_REUSEADDR, &yes, sizeof yes) == 0 &&
+                       bind(descriptor, reinterpret_cast<const sockaddr*>(&where), size) == 0 &&
+                       listen(descriptor, SOMAXCONN) == 0 &&
+                       getsockname(descriptor, reinterpret_cast<sockaddr*>(&where), &size) == 0;
   if (!listens) {
     const std::string why = std::strerror(errno);
     if (descriptor >= 0) close(descriptor);
@@ -204,46 +212,54 @@ void HttpServer::Serving::Accept() {
     const int descriptor = accept4(acceptor_.native_handle(), reinterpret_cast<sockaddr*>(&peer), &size,
                                    SOCK_CLOEXEC | SOCK_NONBLOCK);
     if (descriptor >= 0) {
-      Admit(descriptor, peer);
+      const int yes = 1;
+      setsockopt(descriptor, IPPROTO_TCP, TCP_NODELAY, &yes, sizeof yes);
+      const Peer who = PeerOf(descriptor, peer);
+      Admit(asio::ip::tcp::socket(io_, asio::ip::tcp::v4(), descriptor), who, kPatienceOfAdmission);
     } else if (errno == EMFILE || errno == ENFILE || errno == ENOBUFS || errno == ENOMEM) {
       pause_.expires_after(kNoFile);
       pause_.async_wait([this](const Failing& stopped) {
         if (!stopped) Accept();
       });
-      return;
+    } else {
+      Accept();
     }
-    Accept();
   });
 }
 
-void HttpServer::Serving::Admit(int descriptor, const sockaddr_in& peer) {
+HttpServer::Serving::Peer HttpServer::Serving::PeerOf(int descriptor, const sockaddr_in& peer) {
   sockaddr_in own{};
   socklen_t size = sizeof own;
   getsockname(descriptor, reinterpret_cast<sockaddr*>(&own), &size);
-  const bool is_near = IsLoopback(own);
-  const auto owner = is_near ? PeerOwner(own, peer) : std::nullopt;
-  // Addresses have 32 bits.
-  const std::uint64_t key = is_near ? (owner ? *owner : 0xFFFFFFFFU) + (std::uint64_t{1} << 32)
-                                    : std::uint64_t{ntohl(peer.sin_addr.s_addr)};
-  if (!MakeRoom(key)) {
-    close(descriptor);
-    return;
-  }
-  const auto connection = std::make_shared<Connection>(io_, options_.limits, key);
-  connection->owner = owner;
-  connection->socket.assign(asio::ip::tcp::v4(), descriptor);
-  const int yes = 1;
-  setsockopt(descriptor, IPPROTO_TCP, TCP_NODELAY, &yes, sizeof yes);
-  connections_.push_back(connection);
-  ++of_peer_[key];
-  LimitTime(connection, options_.limits.request);
-  Receive(connection);
+  if (!IsLoopback(own)) return {ntohl(peer.sin_addr.s_addr), std::nullopt};
+  constexpr std::uint64_t kUsers = std::uint64_t{1} << 32;  // beyond all addresses
+  const std::optional<uid_t> owner = PeerOwner(own, peer);
+  return {kUsers + owner.value_or(~uid_t{0}), owner};
 }
 
-/// False: everybody is being answered.
+/// The next is accepted when this one has its place. `patience`: how often to look for one.
+void HttpServer::Serving::Admit(asio::ip::tcp::socket socket, const Peer& peer, int patience) {
+  if (!MakeRoom(peer.key)) {
+    if (patience == 0) return Accept();
+    pause_.expires_after(kAllHandled);
+    return pause_.async_wait(
+        [this, socket = std::move(socket), peer, patience](const Failing& error) mutable {
+          if (!error) Admit(std::move(socket), peer, patience - 1);
+        });
+  }
+  const auto connection = std::make_shared<Connection>(io_, options_.limits, std::move(socket), peer);
+  connections_.push_back(connection);
+  ++of_peer_[peer.key];
+  LimitTime(connection, options_.limits.request);
+  Receive(connection);
+  Accept();
+}
+
+/// False: the answers of all are being made, which takes milliseconds, or go on.
 bool HttpServer::Serving::MakeRoom(std::uint64_t peer) {
   const auto own = of_peer_.find(peer);
-  if (own != of_peer_.end() && own->second >= options_.limits.connections_of_peer && !CutOldest(peer)) return false;
+  if (own != of_peer_.end() && own->second >= options_.limits.connections_of_peer && !CutOldest(peer))
+    return false;
   if (connections_.size() < options_.limits.connections) return true;
   const auto most = std::max_element(of_peer_.begin(), of_peer_.end(),
                                      [](const auto& a, const auto& b) { return a.second < b.second; });
@@ -256,7 +272,7 @@ bool HttpServer::Serving::CutOldest(std::uint64_t peer) {
     for (const Shared& each : connections_) {
       const bool is_idle =
           each->stage == Stage::kReads || each->stage == Stage::kWaits || each->stage == Stage::kLeaves;
-      if (each->peer != peer || !(is_idle || (may_write && each->stage == Stage::kWrites))) continue;
+      if (each->peer.key != peer || !(is_idle || (may_write && each->stage == Stage::kWrites))) continue;
       Cut(Shared(each));
       return true;
     }
@@ -273,7 +289,7 @@ void HttpServer::Serving::Cut(const Shared& connection) {
   answers_bytes_ -= connection->answer.body.size();
   connection->answer = {};
   connections_.remove(connection);
-  const auto peer = of_peer_.find(connection->peer);
+  const auto peer = of_peer_.find(connection->peer.key);
   if (--peer->second == 0) of_peer_.erase(peer);
 }
 
@@ -315,7 +331,7 @@ void HttpServer::Serving::Handle(const Shared& connection) {
   connection->is_head = message.method() == http::verb::head;
   if (message.target().size() > options_.limits.request_line)
     return Send(connection, InWords(414, "The request's address is too long."));
-  if (options_.owner_alone && connection->owner != geteuid() && connection->owner != uid_t{0})
+  if (options_.owner_alone && !MayRead(connection->peer))
     return Send(connection, InWords(403, "Only the user who has started this program reads these pages."));
   auto request = Read(message);
   if (!request) return Send(connection, InWords(400, "The request has a wrong escape (%)."));

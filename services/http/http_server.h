@@ -13,18 +13,18 @@ namespace dispersa {
 
 /// Totals, whatever a peer sends and in whichever pieces.
 struct HttpLimits {
-  std::size_t request_line = 4096;                ///< bytes of the target
-  std::size_t head = 8192;                        ///< bytes of request line and headers
-  std::size_t body = 4096;                        ///< bytes, also of a body in chunks
-  std::chrono::milliseconds request{5000};        ///< from the connection to the request's last byte
-  std::chrono::milliseconds answer{10000};        ///< until the peer has read the answer, and 20 s per MB
-  std::size_t answers = std::size_t{64} << 20;    ///< bytes of all answers that are being read
-  std::size_t connections = 64;                   ///< at once
-  std::size_t connections_of_peer = 64;           ///< of an address; on loopback of a user
+  std::size_t request_line = 4096;              ///< bytes of the target
+  std::size_t head = 8192;                      ///< bytes of request line and headers
+  std::size_t body = 4096;                      ///< bytes, also of a body in chunks
+  std::chrono::milliseconds request{5000};      ///< from the connection to the request's last byte
+  std::chrono::milliseconds answer{10000};      ///< until the peer has read the answer, and 20 s per MB
+  std::size_t answers = std::size_t{64} << 20;  ///< bytes of all answers that are being read
+  std::size_t connections = 64;                 ///< at once
+  std::size_t connections_of_peer = 64;         ///< of an address; on loopback of a user
 };
 
 struct HttpOptions {
-  HttpAddress address;       ///< port 0: any that is free
+  HttpAddress address;  ///< port 0: any that is free
   HttpLimits limits;
   bool owner_alone = false;  ///< answers the user of this process and root; needs an address on loopback
   int threads = 1;           ///< on which the handler runs

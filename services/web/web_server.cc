@@ -177,10 +177,10 @@ HttpAnswer WebServer::LogIn(const HttpRequest& request) const {
   }
   HttpAnswer answer = RedirectTo(next, 303);
   const std::int64_t length_s = options_.session.count();
-  answer.headers.emplace_back("Set-Cookie", std::string(kCookie) + "=" +
-                                                SessionUntil(options_.token, Now_s() + length_s) +
-                                                "; Path=/; HttpOnly; SameSite=Lax; Max-Age=" +
-                                                std::to_string(length_s) + (options_.behind_tls ? "; Secure" : ""));
+  answer.headers.emplace_back("Set-Cookie",
+                              std::string(kCookie) + "=" + SessionUntil(options_.token, Now_s() + length_s) +
+                                  "; Path=/; HttpOnly; SameSite=Lax; Max-Age=" + std::to_string(length_s) +
+                                  (options_.behind_tls ? "; Secure" : ""));
   return answer;
 }
 
@@ -194,8 +194,7 @@ HttpAnswer WebServer::Answer(const HttpRequest& request) {
     return {200, std::string(WebScript()), "text/javascript; charset=utf-8", {}, {}, {}};
   if (path == "/")
     return Html(ListPage(*index(), request.Parameter("q"), PageNumber(request.Parameter("page"))));
-  if (path == "/trend")
-    return Html(TrendPage(*index(), request.Parameter("metric"), request.Parameter("q")));
+  if (path == "/trend") return Html(TrendPage(*index(), request.Parameter("metric"), request.Parameter("q")));
   if (path == "/difference") return Difference(request);
   const std::string before = "/campaign/", after = "/report";
   if (!path.starts_with(before)) return Problem(404, "Not here", "There is no such page.");

@@ -19,7 +19,8 @@ struct WebOptions {
   HttpAddress address;
   std::string token;        ///< who reads has to know it; empty: the user of this process alone reads
   bool behind_tls = false;  ///< a proxy stands before it: what has not come to it over TLS is refused
-  std::chrono::seconds session = std::chrono::hours(12);  ///< after which a browser is asked for the token again
+  std::chrono::seconds session =
+      std::chrono::hours(12);  ///< after which a browser is asked for the token again
 };
 
 /// Why these options are too open: beyond loopback a token and a proxy with TLS are needed. Empty: they are

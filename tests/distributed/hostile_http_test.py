@@ -9,7 +9,6 @@ import re
 import select
 import socket
 import stat
-import subprocess
 import sys
 import time
 
@@ -19,7 +18,7 @@ from service_case import ServiceCase
 WEB, FIGURES = 9475, 9476
 TOKEN = "0123456789abcdef"
 MORE_KB = 16 * 1024    # memory that a server may take under attack
-FLOOD_S = float(os.environ.get("DISPERSA_FLOOD_S", "2"))          # for which an attacker sends as fast as it can
+FLOOD_S = float(os.environ.get("DISPERSA_FLOOD_S", "0.5"))          # for which an attacker sends as fast as it can
 ANSWERED_S = 1.0       # a good request meanwhile
 REQUEST_S = 8.0        # until every connection of an attacker is closed: 5 s and a loaded machine
 CROWD = 1000
@@ -122,20 +121,17 @@ class HostileHttpTest(ServiceCase):
 
     def flood(self, head, block):
         def each(name, port, page):
-            connection = connect(port)
-            connection.setblocking(True)
-            connection.settimeout(0.2)
-            end = time.monotonic() + FLOOD_S
-            sent = send(connection, head.replace(b"PAGE", page.encode()))
-            while sent and time.monotonic() < end:
-                try:
-                    connection.sendall(block)
-                except TimeoutError:
-                    break
-                except OSError:
-                    break
-            answered_s = self.good_request_s(name)
-            connection.close()
+            begun, answered_s = time.monotonic(), 0.0
+            while time.monotonic() < begun + FLOOD_S:
+                with connect(port) as connection:
+                    connection.settimeout(0.2)
+                    try:
+                        connection.sendall(head.replace(b"PAGE", page.encode()))
+                        while time.monotonic() < begun + FLOOD_S:
+                            connection.sendall(block)
+                    except OSError:
+                        pass  # refused: once more
+                    answered_s = max(answered_s, self.good_request_s(name))
             return answered_s
         return each
 
@@ -219,22 +215,33 @@ class HostileHttpTest(ServiceCase):
         self.attack("1000 that begin", each(b"GET / HTTP/1.1\r\nHost: local"))
 
     def test_pages_are_their_owners_alone(self):
-        """Without a token no other user of this machine reads them. What the coordinator stores is its own, too."""
+        """Without a token no other user of this machine reads them."""
         if os.geteuid() != 0:
             self.skipTest("only root can ask as another user")
         own = self.start_another("--data", self.root / "own", "--web", WEB + 10)
         self.servers["own"] = (WEB + 10, own, "/", "/")
         wait_for(lambda: self.answers("own"), "pages without a token")
-        ask = ("import http.client, sys\nc = http.client.HTTPConnection('127.0.0.1', int(sys.argv[1]), timeout=20)\n"
-               "c.request('GET', sys.argv[2])\na = c.getresponse()\nprint(a.status, a.read().decode())")
 
-        def as_nobody(port, path):
-            return subprocess.run([sys.executable, "-c", ask, str(port), path], user=NOBODY, group=NOBODY, extra_groups=[],
-                                  capture_output=True, text=True, timeout=PATIENCE_S).stdout
+        def as_nobody(port, path, family=socket.AF_INET, host="127.0.0.1"):
+            """A socket belongs to the user that made it."""
+            os.seteuid(NOBODY)
+            try:
+                connection = socket.socket(family)
+            finally:
+                os.seteuid(0)
+            connection.settimeout(PATIENCE_S)
+            connection.connect((host, port))
+            connection.sendall(f"GET {path} HTTP/1.1\r\nHost: localhost\r\n\r\n".encode())
+            answer = b""
+            while part := connection.recv(65536):
+                answer += part
+            connection.close()
+            return answer.decode().partition(" ")[2]
         for port, path in ((WEB + 10, "/"), (self.servers["live"][0], "/"), (self.servers["live"][0], "/events")):
             answer = as_nobody(port, path)
             self.assertTrue(answer.startswith("403 "), answer)
             self.assertNotIn("smoke", answer)
+        self.assertTrue(as_nobody(WEB + 10, "/", socket.AF_INET6, "::ffff:127.0.0.1").startswith("403 "))
         self.assertTrue(as_nobody(FIGURES, "/metrics").startswith("200 "))
         self.assertIn("Sign in", as_nobody(WEB, "/login"))
 

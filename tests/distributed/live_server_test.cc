@@ -157,7 +157,7 @@ TEST_F(LiveServerTest, APortIsOneServersAlone) {
     const LiveServer second(port_, "<style></style><script></script>");
     FAIL() << "no error";
   } catch (const std::runtime_error& error) {
-    EXPECT_EQ(std::string(error.what()), fmt::format("port {} of 127.0.0.1 is not free", port_));
+    EXPECT_EQ(std::string(error.what()), fmt::format("port {} of 127.0.0.1: Address already in use", port_));
   }
 }
 

@@ -5,7 +5,9 @@
 #include <gtest/gtest.h>
 #include <sys/stat.h>
 
+#include <chrono>
 #include <fstream>
+#include <thread>
 
 #include "core/input/input_error.h"
 #include "http_client.h"
@@ -22,11 +24,13 @@ constexpr char kToken[] = "0123456789abcdef";
 
 class WebServerTest : public testing::Test {
  protected:
-  void Start(const std::string& token = "", bool behind_tls = false) {
+  void Start(const std::string& token = "", bool behind_tls = false,
+             std::chrono::seconds session = std::chrono::hours(12)) {
     server_.reset();
     port_ = FreePort();
     server_ = std::make_unique<WebServer>(
-        WebOptions{{"127.0.0.1", port_}, token, behind_tls}, [](const std::string&, const std::string& name) {
+        WebOptions{{"127.0.0.1", port_}, token, behind_tls, session},
+        [](const std::string&, const std::string& name) {
           return name == "report.html" ? std::optional<std::string>("<p>report</p>") : std::nullopt;
         });
     auto row = std::make_shared<CampaignRow>();
@@ -54,7 +58,7 @@ class WebServerTest : public testing::Test {
   std::unique_ptr<WebServer> server_;
 };
 
-TEST_F(WebServerTest, OnLoopbackEverybodyOfThisMachineReads) {
+TEST_F(WebServerTest, OnLoopbackItsOwnUserReads) {
   Start();
   EXPECT_THAT(Get("/"), HasSubstr("table3"));
   EXPECT_THAT(Get("/campaign/" + kId), HasSubstr("Open the report"));
@@ -115,6 +119,20 @@ TEST_F(WebServerTest, WithATokenWhoeverLacksItIsAskedForIt) {
     EXPECT_THAT(Post("/login", std::string("next=") + next + "&token=" + kToken),
                 HasSubstr("Location: /\r\n"))
         << next;
+}
+
+TEST_F(WebServerTest, ASessionEnds) {
+  Start(kToken, false, std::chrono::seconds(2));
+  const std::string right = Post("/login", std::string("next=%2F&token=") + kToken);
+  EXPECT_THAT(right, HasSubstr("; Max-Age=2"));
+  const std::size_t at = right.find("dispersa=");
+  const std::string cookie = right.substr(at, right.find(';', at) - at);
+  EXPECT_THAT(Get("/", "Cookie: " + cookie + "\r\n"), HasSubstr("table3"));
+  const std::size_t dot = cookie.find('.');
+  const std::string longer = "dispersa=9999999999" + cookie.substr(dot);
+  EXPECT_THAT(Get("/", "Cookie: " + longer + "\r\n"), StartsWith("HTTP/1.1 302")) << "its end is signed";
+  std::this_thread::sleep_for(std::chrono::milliseconds(2100));
+  EXPECT_THAT(Get("/", "Cookie: " + cookie + "\r\n"), StartsWith("HTTP/1.1 302"));
 }
 
 TEST_F(WebServerTest, BehindAProxyOnlyWhatCameOverTls) {

@@ -196,7 +196,7 @@ class WebTest(ServiceCase):
         self.assertIn(f"0100007F:{self.port:04X}", listening)
         self.assertNotIn(f"00000000:{self.port:04X}", listening)
         taken = self.start("dispersa", "watch", identity, "--web", "--port", self.port, stderr=subprocess.PIPE, text=True)
-        self.assertEqual(taken.communicate(timeout=PATIENCE_S)[1], f"--port: port {self.port} of 127.0.0.1 is not free\n")
+        self.assertEqual(taken.communicate(timeout=PATIENCE_S)[1], f"--port: port {self.port} of 127.0.0.1: Address already in use\n")
         self.assertEqual(taken.returncode, 2)
         # Interrupted, it lets go.
         viewer = self.viewer()
