@@ -28,6 +28,7 @@ class Viewer:
         self.parts, self.events, self.connected = {}, [], False
         self.connection = http.client.HTTPConnection("127.0.0.1", port, timeout=PATIENCE_S)
         self.connection.request("GET", "/events")
+        self.socket = self.connection.sock  # which the connection forgets: each has one answer
         self.answer = self.connection.getresponse()
         if self.answer.status == 200:
             self.connected = True
@@ -53,7 +54,7 @@ class Viewer:
         self.close()
 
     def go_away(self):
-        self.connection.sock.shutdown(socket.SHUT_RDWR)
+        self.socket.shutdown(socket.SHUT_RDWR)
         self.thread.join(timeout=PATIENCE_S)
 
     def close(self):
