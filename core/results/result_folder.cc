@@ -641,11 +641,11 @@ void ResultFolder::AppendAudits(std::span<const Claim> claims) {
 
 void ResultFolder::ForEachUnaudited(const std::function<void(const Claim&)>& callback) const {
   Statement select = database_->Prepare(
-      "SELECT e.worker, c.case_index, c.row_digest FROM execution e JOIN cases c USING (case_index) "
+      "SELECT e.worker, c.case_index, c.row_digest, e.host FROM execution e JOIN cases c USING (case_index) "
       "LEFT JOIN audits a USING (case_index, worker) WHERE a.worker IS NULL");
   while (select.Step()) {
     callback({select.Text(0), static_cast<std::uint64_t>(select.Integer(1)),
-              ParseDigest(select.Text(2)).value_or(Digest{}), false});
+              ParseDigest(select.Text(2)).value_or(Digest{}), false, select.Text(3)});
   }
 }
 
@@ -653,13 +653,14 @@ std::vector<std::uint64_t> ResultFolder::Disown(const std::string& worker) {
   Transaction transaction(*database_);
   std::vector<std::uint64_t> cases;
   {
-    // As IsMeantBy: the worker's own name, or that of its keys.
-    Statement select = database_->Prepare(
-        "SELECT DISTINCT case_index FROM execution WHERE worker = ?1 OR substr(worker, 1, length(?1) + 1) = "
-        "?1 || '_'");
-    select.BindText(1, worker);
-    while (select.Step()) cases.push_back(static_cast<std::uint64_t>(select.Integer(0)));
+    Statement select = database_->Prepare("SELECT DISTINCT case_index, worker, host FROM execution");
+    while (select.Step()) {
+      if (IsMeantBy(worker, select.Text(1), select.Text(2)))
+        cases.push_back(static_cast<std::uint64_t>(select.Integer(0)));
+    }
   }
+  std::sort(cases.begin(), cases.end());
+  cases.erase(std::unique(cases.begin(), cases.end()), cases.end());
   Remove(cases);
   transaction.Commit();
   return cases;

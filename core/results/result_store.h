@@ -26,9 +26,15 @@ struct ExecutionRecord {
 /// Name of an unknown worker. Cases in a folder of an older release have it.
 inline constexpr char kUnknownWorker[] = "unknown";
 
-/// Whether `name` denotes the worker: by its full name, or by the name of its keys ("node1" for
-/// "node1_5f3a...").
-inline bool IsMeantBy(const std::string& name, const std::string& worker) {
+/// "node1@rack7": the workers with these keys on this host.
+inline std::string NameOnHost(const std::string& keys, const std::string& host) { return keys + "@" + host; }
+
+/// Whether `name` denotes the worker "node1_5f3a..." on `host`: by its full name, by its keys and host
+/// ("node1@rack7"), or by its keys ("node1").
+inline bool IsMeantBy(const std::string& name, const std::string& worker, const std::string& host) {
+  const std::size_t at = name.find('@');  // in no worker's name, and in no name of keys
+  if (at != std::string::npos)
+    return name.substr(at + 1) == host && worker.starts_with(name.substr(0, at) + "_");
   return worker == name || worker.starts_with(name + "_");
 }
 
@@ -38,6 +44,7 @@ struct Claim {
   std::uint64_t case_index = 0;
   Digest fingerprint;
   bool is_dispute = false;  ///< true: another worker's result of this case, with other bits, was accepted
+  std::string host = {};    ///< of the worker; empty: unknown
 };
 
 /// A case that killed or hung its workers: it has no result and is not flown any more.

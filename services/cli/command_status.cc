@@ -1,4 +1,4 @@
-// dispersa list, status, cancel, delete, repair: what a coordinator's campaigns do.
+// dispersa list, status, cancel, delete, repair, readmit: what a coordinator's campaigns do.
 #include <fmt/format.h>
 
 #include <memory>
@@ -41,6 +41,24 @@ ExitCode Do(const std::string& method, const Json& arguments, const char* done, 
     fmt::print("{}\n", object.dump(2));
   } else {
     fmt::print("{}: {}\n", done, answer.at("id").get<std::string>());
+  }
+  return kExitDone;
+}
+
+ExitCode Readmit(const std::string& name, Session& session, const GlobalOptions& global) {
+  const Json answer = Json::parse(
+      session.Ask(name.empty() ? "expelled" : "readmit", name.empty() ? Json::object() : Json{{"name", name}})
+          .text);
+  if (global.json) {
+    Json object = {{"schema", "dispersa/readmit/1"}};
+    object.update(answer);
+    fmt::print("{}\n", object.dump(2));
+  } else if (!name.empty()) {
+    fmt::print("readmitted: {}\n", name);
+  } else {
+    for (const Json& each : answer.at("expelled"))
+      fmt::print("{}  {}\n", each.at("name").get<std::string>(), each.at("reason").get<std::string>());
+    if (answer.at("expelled").empty()) fmt::print("nobody is expelled\n");
   }
   return kExitDone;
 }
@@ -93,6 +111,18 @@ void AddStatusCommand(CLI::App& app, Invocation& invocation) {
               [id = AddIdOption(repair), worker](Session& session, const GlobalOptions& global) {
                 return Do("repair", {{"id", *id}, {"worker", *worker}}, "flown again", session, global);
               });
+
+  CLI::App* readmit = app.add_subcommand("readmit", "let workers fly again that returned false results");
+  const auto name = std::make_shared<std::string>();
+  readmit->add_option("name", *name,
+                      "keys (node1), keys on a host (node1@rack7), or a process; without: list them");
+  readmit->footer(
+      "Example: dispersa readmit node1 --peer coordinator-host\n"
+      "Find and mend the cause first: memory, processor, build. Their processes have ended; start them "
+      "again.");
+  BindSession(readmit, invocation, [name](Session& session, const GlobalOptions& global) {
+    return Readmit(*name, session, global);
+  });
 }
 
 }  // namespace dispersa

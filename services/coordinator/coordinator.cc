@@ -5,6 +5,7 @@
 #include <utility>
 
 #include "core/flight/engine_version.h"
+#include "services/coordinator/service.h"
 #include "services/program/exit_code.h"
 
 namespace dispersa {
@@ -64,10 +65,16 @@ void Coordinator::LookForRevocations() {
   if (!revocations_ || now_s_ - looked_s_ < kRevocations_s) return;
   looked_s_ = now_s_;
   if (!revocations_->Refresh()) return;
-  std::map<std::string, std::string> workers;
+  ExpulsionMap workers;
   if (const auto names = revocations_->revoked().find(Role::kWorker); names != revocations_->revoked().end())
-    for (const std::string& name : names->second) workers[name] = "its keys are revoked";
+    for (const std::string& name : names->second) workers[name].reason = "its keys are revoked";
   dispatcher_.Expel(workers);
+}
+
+std::vector<std::string> Coordinator::Readmit(const std::string& name) {
+  if (revocations_ && revocations_->Contains(Role::kWorker, name))
+    throw Refused(kExitBadInput, "the keys '" + name + "' are revoked, allowed: new keys under another name");
+  return dispatcher_.Readmit(name);
 }
 
 void Coordinator::Answer(const Request& request) {

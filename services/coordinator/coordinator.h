@@ -59,8 +59,9 @@ class Coordinator : public Workforce {
   const std::optional<std::string>& refusal() const { return dispatcher_.refusal(); }
   const AuditOptions& audit() const override { return dispatcher_.audit(); }
   std::uint64_t audits() const override { return dispatcher_.audits(); }
-  const std::map<std::string, std::string>& expelled() const override { return dispatcher_.expelled(); }
-  void Expel(const std::map<std::string, std::string>& names) override { dispatcher_.Expel(names, false); }
+  const ExpulsionMap& expelled() const override { return dispatcher_.expelled(); }
+  void Expel(const ExpulsionMap& names) override { dispatcher_.Expel(names, false); }
+  std::vector<std::string> Readmit(const std::string& name) override;
   /// Without the seconds for which this process or machine stood still.
   double now_s() const override { return now_s_; }
 

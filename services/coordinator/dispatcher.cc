@@ -47,8 +47,8 @@ void Dispatcher::EndCampaign(const std::string& flight_id) {
 
 void Dispatcher::On(const std::string& sender, const WorkerStatus& status, double now_s) {
   if (ended_.contains(status.worker)) return;
-  if (const auto expelled = expelled_.find(AccountOf(status.worker)); expelled != expelled_.end()) {
-    TellRefusal(status.worker, expelled->second);
+  if (const auto why = WhyExpelled(expelled_, status.worker, status.host)) {
+    TellRefusal(status.worker, *why);
     return;
   }
   if (const auto refused = refused_.find(status.worker); refused != refused_.end()) {
@@ -155,26 +155,28 @@ void Dispatcher::Audited(const std::string& flight_id, const Claim& claim, const
   if (campaign == campaigns_.end()) return;  // closed meanwhile
   ++audits_;
   if (campaign->second.book->Settle(claim, truth)) return;
-  Expel(claim.worker, "case " + std::to_string(claim.case_index) + " of campaign " +
-                          campaign->second.book->campaign().name +
-                          ", flown again by the coordinator, gives other bits than the worker returned");
+  Expel(Sentence(expelled_, claim.worker, claim.host.empty() ? HostOf(claim.worker) : claim.host,
+                 "case " + std::to_string(claim.case_index) + " of campaign " +
+                     campaign->second.book->campaign().name +
+                     ", flown again by the coordinator, gives other bits than the worker returned"));
 }
 
-void Dispatcher::Expel(const std::string& worker, const std::string& reason) {
-  Expel({{AccountOf(worker), reason}});
+std::string Dispatcher::HostOf(const std::string& worker) const {
+  const auto known = workers_.find(worker);
+  return known == workers_.end() || known->second.host.empty() ? "unknown" : known->second.host;
 }
 
-void Dispatcher::Expel(const std::map<std::string, std::string>& names, bool is_news) {
-  for (const auto& [name, reason] : names) {
-    if (!expelled_.emplace(name, reason).second) continue;
-    if (is_news) LogError("{} may not fly here any more: {}", name, reason);
-    refusal_ = reason;
+void Dispatcher::Expel(const ExpulsionMap& names, bool is_news) {
+  for (const auto& [name, expulsion] : names) {
+    if (!expelled_.emplace(name, expulsion).second) continue;
+    if (is_news) LogError("{} may not fly here any more: {}", Printable(name), expulsion.reason);
+    refusal_ = expulsion.reason;
     std::vector<std::string> workers;
     for (const auto& [id, worker] : workers_) {
-      if (IsMeantBy(name, id)) workers.push_back(id);
+      if (IsMeantBy(name, id, worker.host)) workers.push_back(id);
     }
     for (const std::string& worker : workers) {
-      TellRefusal(worker, reason);
+      TellRefusal(worker, expulsion.reason);
       Lose(worker, WorkerEnd::kKilled, "expelled");
     }
     for (auto& [flight_id, campaign] : campaigns_) campaign.book->Disown(name);
@@ -293,9 +295,10 @@ bool Dispatcher::MayReturn(const std::string& sender, const Report& report, cons
   if (is_drawn_so && book.HasItsMetrics(flown.result)) return true;
   Disagree(sender, is_drawn_so ? "a result has other metrics than its campaign"
                                : "a result has other inputs than its case");
-  Expel(report.worker, "case " + std::to_string(case_index) + " of campaign " + book.campaign().name +
-                           (is_drawn_so ? ": its metrics are not those of the campaign"
-                                        : ": its inputs are not those that the campaign draws"));
+  Expel(Sentence(expelled_, report.worker, HostOf(report.worker),
+                 "case " + std::to_string(case_index) + " of campaign " + book.campaign().name +
+                     (is_drawn_so ? ": its metrics are not those of the campaign"
+                                  : ": its inputs are not those that the campaign draws")));
   return false;
 }
 

@@ -11,6 +11,7 @@
 #include <utility>
 #include <vector>
 
+#include "services/coordinator/expulsions.h"
 #include "services/ledger/campaign_book.h"
 #include "services/transport/messages.h"
 
@@ -53,8 +54,8 @@ class Dispatcher {
   /// Calls `fly` for each campaign with the results to be flown again.
   using OnClaims = std::function<void(const Campaign&, std::vector<Claim>)>;
   void TakeClaims(const OnClaims& fly);
-  /// The audit's result. A worker that returned another result is expelled: neither it nor another worker
-  /// with its keys may fly here any more. All its results are flown again.
+  /// The audit's result. A worker that returned another result is expelled, and others as Sentence() says.
+  /// All results of those that are expelled are flown again.
   void Audited(const std::string& flight_id, const Claim& claim, const Digest& truth);
 
   /// WorkerEnded will report the end of this worker. It is a local process, and its exit status says more
@@ -95,11 +96,12 @@ class Dispatcher {
   std::uint64_t refused_messages() const { return refused_messages_; }
   const AuditOptions& audit() const { return options_.audit; }
   std::uint64_t audits() const { return audits_; }
-  /// Names of expelled keys, and of expelled workers without keys, each with the reason.
-  const std::map<std::string, std::string>& expelled() const { return expelled_; }
+  const ExpulsionMap& expelled() const { return expelled_; }
   /// Expels workers from now on, if they are not expelled yet: those that an earlier coordinator expelled, or
   /// that the issuer of keys revoked. `is_news`: the log tells them one by one.
-  void Expel(const std::map<std::string, std::string>& names, bool is_news = true);
+  void Expel(const ExpulsionMap& names, bool is_news = true);
+  /// See Readmit() of expulsions.h.
+  std::vector<std::string> Readmit(const std::string& name) { return dispersa::Readmit(&expelled_, name); }
 
  private:
   struct FlyingCampaign {
@@ -139,7 +141,8 @@ class Dispatcher {
   void Refuse(const std::string& worker, const std::string& reason);
   /// Whether a result that it returned is to be looked at any further.
   bool MayReturn(const std::string& sender, const Report& report, const FlownCase& flown, CampaignBook& book);
-  void Expel(const std::string& worker, const std::string& reason);
+  /// "unknown" if the worker says none: a process that lied has a host.
+  std::string HostOf(const std::string& worker) const;
   void TellRefusal(const std::string& worker, const std::string& reason);
   void Compare(Worker& worker, const WorkerStatus& status, double now_s);
   void GiveOrder(Worker& worker, const std::string& flight_id, std::uint64_t attempt,
@@ -166,10 +169,10 @@ class Dispatcher {
   std::map<std::string, FlyingCampaign> campaigns_;  ///< by flight id
   std::map<std::string, Worker> workers_;
   std::set<std::string> supervised_;
-  std::set<std::string> led_by_younger_;         ///< workers that follow a coordinator of a larger epoch
-  std::optional<double> led_s_;                  ///< when one of them was heard last
-  std::map<std::string, std::string> refused_;   ///< worker -> why; told again whenever it speaks
-  std::map<std::string, std::string> expelled_;  ///< the name of its keys, or of a worker without keys -> why
+  std::set<std::string> led_by_younger_;        ///< workers that follow a coordinator of a larger epoch
+  std::optional<double> led_s_;                 ///< when one of them was heard last
+  std::map<std::string, std::string> refused_;  ///< worker -> why; told again whenever it speaks
+  ExpulsionMap expelled_;
   std::set<std::string> ended_;  ///< supervised workers that ended: later messages from them are old
   std::set<std::string> unresponsive_;
   std::vector<std::string> forgotten_;

@@ -134,7 +134,7 @@ void RequireOwner(const Asker& asker, const CatalogueEntry& entry, const char* c
 Right RightFor(const Request& request) {
   if (request.method == "launch" || request.method == "upload") return Right::kRun;
   // A copy of all that the coordinator has.
-  if (request.method == "ids") return Right::kAdminister;
+  if (request.method == "ids" || request.method == "readmit") return Right::kAdminister;
   if (request.method == "files" || request.method == "read") {
     const Json json = Json::parse(request.arguments);
     if (json.at("id") == "" || json.value("snapshot", "") != "") return Right::kAdminister;
@@ -145,7 +145,9 @@ Right RightFor(const Request& request) {
 void RequireRight(const Asker& asker, const Request& request) {
   const Right least = RightFor(request);
   if (asker.right >= least) return;
-  const std::string what = least == Right::kAdminister ? "backup" : "launch";
+  const std::string what = least != Right::kAdminister   ? "launch"
+                           : request.method == "readmit" ? "readmit"
+                                                         : "backup";
   throw Refused(
       kExitBadInput,
       fmt::format("the keys of '{0}' may {1}, and `dispersa {2}` needs the right to {3}, allowed: keys that "
@@ -195,6 +197,10 @@ Reply FrontDesk::Answer(const Request& request) {
       reply.text = Cancel(asker, request.arguments);
     } else if (request.method == "repair") {
       reply.text = Repair(asker, request.arguments);
+    } else if (request.method == "readmit") {
+      reply.text = Readmit(request.arguments);
+    } else if (request.method == "expelled") {
+      reply.text = Expelled();
     } else if (request.method == "delete") {
       reply.text = Delete(asker, request.arguments);
     } else if (request.method == "ids") {
@@ -348,6 +354,32 @@ std::string FrontDesk::Repair(const Asker& asker, const std::string& arguments) 
   copies_.Forget(service_.catalogue().ResultsOf(id));
   service_.Repair(id, worker);
   return Json{{"id", id}}.dump();
+}
+
+std::string FrontDesk::Readmit(const std::string& arguments) {
+  const std::string name = Json::parse(arguments).at("name");
+  if (!service_.Readmit(name).empty()) {
+    readmitted_.insert(name);
+  } else if (!readmitted_.contains(name)) {
+    throw Refused(kExitBadInput, "nobody with the name '" + Printable(name) +
+                                     "' is expelled, allowed: names that `dispersa "
+                                     "readmit` without a name prints");
+  }
+  return Json{{"name", name}}.dump();
+}
+
+std::string FrontDesk::Expelled() const {
+  Json expelled = Json::array();
+  std::size_t unlisted = 0;
+  for (const auto& [name, expulsion] : workforce_.expelled()) {
+    if (expulsion.is_forgiven) continue;
+    if (expelled.size() >= kMaxListed) {
+      ++unlisted;
+    } else {
+      expelled.push_back({{"name", Printable(name)}, {"reason", expulsion.reason}});
+    }
+  }
+  return DumpAnyText({{"expelled", std::move(expelled)}, {"unlisted", unlisted}});
 }
 
 std::string FrontDesk::Delete(const Asker& asker, const std::string& arguments) {

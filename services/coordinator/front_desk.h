@@ -55,6 +55,8 @@ class FrontDesk {
                           const std::vector<std::string>& labels);
   std::string Cancel(const Asker& asker, const std::string& arguments);
   std::string Repair(const Asker& asker, const std::string& arguments);
+  std::string Readmit(const std::string& arguments);
+  std::string Expelled() const;
   std::string Delete(const Asker& asker, const std::string& arguments);
   std::string Ids(const std::string& arguments) const;
   std::string List(const std::string& arguments) const;
@@ -77,6 +79,7 @@ class FrontDesk {
   std::map<std::string, Upload> uploads_;  ///< by id
   DatabaseCopies copies_;
   std::map<std::string, CampaignSnapshot> snapshots_;  ///< by id: of the last backup
+  std::set<std::string> readmitted_;                   ///< names, for the same reason
   std::set<std::string> deleted_;                      ///< ids: a client whose answer got lost asks again
 };
 

@@ -120,8 +120,8 @@ std::string PrometheusText(const Service& service, const Workforce& workforce, c
   figures.Put("round_seconds_max", "gauge", "Longest round of the coordinator's loop in the last seconds.",
               times.longest_round_s);
   figures.Put("audits_total", "counter", "Results that were flown again.", workforce.audits());
-  figures.Put("expelled_total", "counter", "Keys, or workers without keys, that may not fly here any more.",
-              workforce.expelled().size());
+  figures.Put("expelled", "gauge", "Processes, hosts and keys that may not fly here any more.",
+              CountExpelled(workforce.expelled()));
   figures.Put("refused_total", "counter", "Datagrams and messages that were refused.", Complaints());
   PutCampaigns(figures, shown);
   return figures.Take();

@@ -371,30 +371,49 @@ void Service::NoteConflicts(CatalogueEntry& entry, Flying& flying) {
   Save(entry);
 }
 
-// Whoever was expelled stays so when the coordinator is started again, until its line is removed.
+// Whoever was expelled stays so when the coordinator is started again, until `dispersa readmit`.
 void Service::LoadExpelled() {
   std::ifstream stream(options_.data / kExpelledFile);
   if (!stream) return;
   try {
-    workforce_.Expel(nlohmann::json::parse(stream).get<std::map<std::string, std::string>>());
+    workforce_.Expel(ReadExpulsions({std::istreambuf_iterator<char>(stream), {}}));
   } catch (const nlohmann::json::exception& damage) {
     LogError("{}: is damaged and left alone: {}", (options_.data / kExpelledFile).string(), damage.what());
   }
-  expelled_noted_ = workforce_.expelled().size();
+  expelled_noted_ = workforce_.expelled();
   std::string names;
-  for (const auto& [name, reason] : workforce_.expelled()) names += (names.empty() ? "" : ", ") + name;
+  for (const auto& [name, expulsion] : workforce_.expelled()) {
+    if (!expulsion.is_forgiven) names += (names.empty() ? "" : ", ") + Printable(name);
+  }
   if (!names.empty()) LogInfo("expelled earlier ({}): {}", kExpelledFile, names);
 }
 
 void Service::NoteExpelled() {
-  if (workforce_.expelled().size() == expelled_noted_) return;
+  if (workforce_.expelled() == expelled_noted_) return;
   try {
-    WriteFile(options_.data / kExpelledFile,
-              DumpAnyText(nlohmann::ordered_json(workforce_.expelled()), 2) + "\n");
-    expelled_noted_ = workforce_.expelled().size();
+    WriteExpelled();
   } catch (const ResultError& error) {
     LogError("who was expelled cannot be stored, it is tried again: {}", error.what());
   }
+}
+
+void Service::WriteExpelled() {
+  WriteFile(options_.data / kExpelledFile, DumpAnyText(ToJson(workforce_.expelled()), 2) + "\n");
+  expelled_noted_ = workforce_.expelled();
+}
+
+std::vector<std::string> Service::Readmit(const std::string& name) {
+  const ExpulsionMap before = workforce_.expelled();
+  std::vector<std::string> readmitted = workforce_.Readmit(name);
+  try {
+    // A client whose answer got lost asks again: nothing is left to do then, and it is on the disk.
+    if (!readmitted.empty()) WriteExpelled();
+  } catch (const ResultError&) {
+    workforce_.Expel(before);
+    throw;
+  }
+  for (const std::string& each : readmitted) LogWarning("{} is readmitted", Printable(each));
+  return readmitted;
 }
 
 // An expelled worker's results: whoever cancels the campaign after a restart must not be promised them.

@@ -111,6 +111,8 @@ class Service {
   /// Results of the workers that `worker` means (IsMeantBy) are removed and flown again. Contradictions,
   /// verdict and report are forgotten: they were with these. Throws Refused while its report is written.
   void Repair(const std::string& id, const std::string& worker);
+  /// Lets expelled workers fly again (Readmit() of expulsions.h). The names that changed.
+  std::vector<std::string> Readmit(const std::string& name);
   /// Deletes its folder. DATA/deleted.jsonl keeps a line of it. Throws Refused unless it is at rest.
   void Delete(const std::string& id);
 
@@ -158,6 +160,7 @@ class Service {
   void Remember(const CatalogueEntry& entry) const;
   bool MayBeDeleted(const std::string& id) const;
   void LoadExpelled();
+  void WriteExpelled();
   void NoteExpelled();
   void NoteRemoved(CatalogueEntry& entry, const Flying& flying);
   Book TakeBack(const std::string& id);
@@ -190,8 +193,8 @@ class Service {
   std::map<std::string, Delayed> delayed_;  ///< by id: the disk was full
   std::set<std::string> unsaved_;           ///< ids whose state is not on the disk
   std::uint64_t opened_ = 0;
-  std::size_t expelled_noted_ = 0;
-  double retained_s_ = -1e9;  ///< when what is old was looked for
+  ExpulsionMap expelled_noted_;  ///< what the disk has
+  double retained_s_ = -1e9;     ///< when what is old was looked for
   double measured_s_ = -1.0;
   double counted_s_ = -1e9;  ///< when the bytes of what flies were counted
 };

@@ -28,8 +28,10 @@ class Workforce {
   virtual std::optional<std::string> RefusalByAll(const std::string& flight_id) const = 0;
   virtual const AuditOptions& audit() const = 0;
   virtual std::uint64_t audits() const = 0;
-  virtual const std::map<std::string, std::string>& expelled() const = 0;
-  virtual void Expel(const std::map<std::string, std::string>& names) = 0;
+  virtual const ExpulsionMap& expelled() const = 0;
+  virtual void Expel(const ExpulsionMap& names) = 0;
+  /// The names that changed. Throws Refused for keys that their issuer revoked.
+  virtual std::vector<std::string> Readmit(const std::string& name) = 0;
   /// Seconds since the start.
   virtual double now_s() const = 0;
 };

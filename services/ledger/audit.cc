@@ -17,7 +17,7 @@ std::vector<Claim> Audit::Take() {
 }
 
 void Audit::Drop(const std::string& worker) {
-  std::erase_if(waiting_, [&](const Claim& claim) { return IsMeantBy(worker, claim.worker); });
+  std::erase_if(waiting_, [&](const Claim& claim) { return IsMeantBy(worker, claim.worker, claim.host); });
 }
 
 }  // namespace dispersa

@@ -224,7 +224,7 @@ void CampaignBook::Start(const std::string& worker, std::uint64_t case_index, st
 
 Acceptance CampaignBook::Accept(const std::string& worker, const std::string& host, std::uint64_t attempt,
                                 const CaseResult& result, double now_s) {
-  const Claim claim{worker, result.case_index, Fingerprint(result)};
+  const Claim claim{worker, result.case_index, Fingerprint(result), false, host};
   const Acceptance acceptance =
       ledger_.Finished(worker, result.case_index, attempt, claim.fingerprint, now_s);
   auto start = starts_.extract({worker, result.case_index});

@@ -89,7 +89,7 @@ void TakeOver(const ResultFolder& from, const Campaign& campaign, const std::vec
     }
     ExecutionRecord record = fliers.Of(result.case_index);
     if (std::any_of(distrusted.begin(), distrusted.end(),
-                    [&](const std::string& name) { return IsMeantBy(name, record.worker); }))
+                    [&](const std::string& name) { return IsMeantBy(name, record.worker, record.host); }))
       return;
     results.push_back(WithOwnMetrics(result, from.metric_list(), *own));
     records.push_back(std::move(record));

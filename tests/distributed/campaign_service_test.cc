@@ -284,7 +284,7 @@ TEST_F(CampaignServiceTest, ARepairedCampaignFliesAWorkersCasesAgain) {
 TEST_F(CampaignServiceTest, WhoWasExpelledStaysSoWhenTheCoordinatorIsStartedAgain) {
   StartService();
   workforce_.Join("node1_ab");
-  workforce_.Expel({{"node1", "case 4 gives other bits"}});
+  workforce_.Expel({{"node1", {"case 4 gives other bits"}}});
   workforce_.time_s += 2.0;
   service_->Step();
   const std::filesystem::path file = folder_ / "data" / "expelled.json";
@@ -292,7 +292,7 @@ TEST_F(CampaignServiceTest, WhoWasExpelledStaysSoWhenTheCoordinatorIsStartedAgai
   MadeUpWorkforce later;
   service_.reset();
   Service again({folder_ / "data"}, later);
-  EXPECT_THAT(later.expelled(), ElementsAre(testing::Pair("node1", "case 4 gives other bits")));
+  EXPECT_THAT(later.expelled(), ElementsAre(testing::Pair("node1", Expulsion{"case 4 gives other bits"})));
 }
 
 TEST_F(CampaignServiceTest, ACampaignThatHasEndedIsDeletedAndALineIsKept) {

@@ -428,7 +428,7 @@ TEST_F(ForgerTest, WhatWasTakenFromAWorkerIsStillItsToReturn) {
   EXPECT_EQ(dispatcher_.refused_messages(), refused);
 }
 
-TEST_F(ForgerTest, MetricsThatTheCampaignHasNotExpelTheKeys) {
+TEST_F(ForgerTest, MetricsThatTheCampaignHasNotExpelTheProcess) {
   Open(50);
   Come("node1_aa");
   const std::vector<Orders> all = dispatcher_.Tick(0.0);
@@ -436,13 +436,14 @@ TEST_F(ForgerTest, MetricsThatTheCampaignHasNotExpelTheKeys) {
   forged.metrics.push_back(1.0);
   Return("node1_aa", forged);
   EXPECT_EQ(Progress().done, 0u);
-  EXPECT_THAT(
-      dispatcher_.expelled(),
-      ElementsAre(testing::Pair("node1", "case " + std::to_string(forged.case_index) +
-                                             " of campaign : its metrics are not those of the campaign")));
+  EXPECT_THAT(dispatcher_.expelled(),
+              ElementsAre(testing::Pair(
+                  "node1_aa", Expulsion{"case " + std::to_string(forged.case_index) +
+                                            " of campaign : its metrics are not those of the campaign",
+                                        "host"})));
 }
 
-TEST_F(ForgerTest, InputsThatTheCampaignDoesNotDrawExpelTheKeysAndAllThatTheyReturned) {
+TEST_F(ForgerTest, InputsThatTheCampaignDoesNotDrawExpelTheProcessAndAllThatItReturned) {
   Open(50);
   for (const char* worker : {"node1_aa", "node1_bb", "node2_cc"}) Come(worker);
   const std::vector<Orders> all = dispatcher_.Tick(0.0);
@@ -457,24 +458,80 @@ TEST_F(ForgerTest, InputsThatTheCampaignDoesNotDrawExpelTheKeysAndAllThatTheyRet
   CaseResult forged = ResultOf(second.at("node1_bb"));
   forged.inputs[7] += 1e-12;
   Return("node1_bb", forged);
-  EXPECT_EQ(Progress().done, 1u) << "of node2";
-  EXPECT_EQ(dispatcher_.joined(), 1u);
+  EXPECT_EQ(Progress().done, 2u) << "of node2 and of node1's honest process";
+  EXPECT_EQ(dispatcher_.joined(), 2u);
   EXPECT_THAT(dispatcher_.expelled(),
               ElementsAre(testing::Pair(
-                  "node1", "case " + std::to_string(forged.case_index) +
-                               " of campaign : its inputs are not those that the campaign draws")));
-  // The same keys are not back at once.
-  Come("node1_dd", 0.5);
+                  "node1_bb", Expulsion{"case " + std::to_string(forged.case_index) +
+                                            " of campaign : its inputs are not those that the campaign draws",
+                                        "host"})));
+  Come("node1_bb", 0.5);
+  EXPECT_EQ(dispatcher_.joined(), 2u);
+  EXPECT_THAT(Tick(0.5, "node1_bb").refusal, testing::HasSubstr("its inputs are not those"));
+  Come("node1_dd", 0.6);
+  EXPECT_EQ(dispatcher_.joined(), 3u) << "another process of the same keys";
+}
+
+// Each host has two workers with the same keys. Of one host after the other a process lies.
+TEST_F(ForgerTest, AProcessThenItsHostThenItsKeysAreExpelled) {
+  Open(100);
+  const auto come = [&](const std::string& worker, const std::string& host) {
+    WorkerStatus status = Status(worker);
+    status.host = host;
+    dispatcher_.On(worker, status, 0.0);
+  };
+  const std::map<std::string, std::string> host_of = {{"node1_a", "rack1"}, {"node1_b", "rack1"},
+                                                      {"node1_c", "rack1"}, {"node1_d", "rack2"},
+                                                      {"node1_e", "rack2"}, {"node10_f", "rack1"}};
+  for (const auto& [worker, host] : host_of) come(worker, host);
+  std::map<std::string, std::vector<std::uint64_t>> given;
+  for (const Orders& orders : dispatcher_.Tick(0.0)) {
+    for (const FlyOrder& order : orders.assignments)
+      given[orders.worker].insert(given[orders.worker].end(), order.cases.begin(), order.cases.end());
+  }
+  for (const auto& [worker, host] : host_of) Return(worker, ResultOf(given.at(worker).at(0)));
+  EXPECT_EQ(Progress().done, 6u);
+  const auto lie = [&](const std::string& worker) {
+    CaseResult forged = ResultOf(given.at(worker).at(1));
+    forged.inputs[7] += 1e-12;
+    Return(worker, forged);
+  };
+  const auto names = [&] {
+    std::vector<std::string> all;
+    for (const auto& [name, expulsion] : dispatcher_.expelled()) all.push_back(name);
+    return all;
+  };
+  lie("node1_a");
+  EXPECT_THAT(names(), ElementsAre("node1_a"));
+  EXPECT_EQ(Progress().done, 5u);
+  EXPECT_EQ(dispatcher_.joined(), 5u);
+  lie("node1_b");
+  EXPECT_THAT(names(), ElementsAre("node1@rack1", "node1_a", "node1_b"));
+  EXPECT_EQ(Progress().done, 3u) << "of rack2, and of other keys on rack1";
+  EXPECT_EQ(dispatcher_.joined(), 3u);
+  come("node1_g", "rack1");
+  EXPECT_EQ(dispatcher_.joined(), 3u);
+  EXPECT_THAT(Tick(0.0, "node1_g").refusal,
+              testing::StartsWith("2 of its processes there returned false results, the last one: case "));
+  lie("node1_d");
+  EXPECT_THAT(names(), ElementsAre("node1", "node1@rack1", "node1_a", "node1_b", "node1_d"));
+  EXPECT_EQ(Progress().done, 1u) << "of other keys";
   EXPECT_EQ(dispatcher_.joined(), 1u);
-  EXPECT_THAT(Tick(0.5, "node1_dd").refusal, testing::HasSubstr("its inputs are not those"));
-  Come("node10_ee", 0.6);
-  EXPECT_EQ(dispatcher_.joined(), 2u) << "other keys";
+  // Whoever is readmitted begins anew; those that lied stay outside.
+  EXPECT_EQ(dispatcher_.Readmit("node2").size(), 0u);
+  EXPECT_THAT(dispatcher_.Readmit("node1"),
+              ElementsAre("node1", "node1@rack1", "node1_a", "node1_b", "node1_d"));
+  EXPECT_EQ(CountExpelled(dispatcher_.expelled()), 0u);
+  for (const auto& [worker, host] : host_of) come(worker, host);
+  EXPECT_EQ(dispatcher_.joined(), 3u) << "node1_c, node1_e, node10_f";
+  lie("node1_e");
+  EXPECT_EQ(CountExpelled(dispatcher_.expelled()), 1u) << "its first lie";
 }
 
 TEST_F(ForgerTest, KeysThatWereExpelledBeforeStayOutside) {
   Open(2);
   Come("node1_aa");
-  dispatcher_.Expel({{"node1", "its keys are revoked"}});
+  dispatcher_.Expel({{"node1", {"its keys are revoked"}}});
   EXPECT_EQ(dispatcher_.joined(), 0u);
   EXPECT_EQ(Progress().waiting, 2u);
   Come("node1_aa", 0.5);

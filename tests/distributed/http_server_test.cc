@@ -39,9 +39,8 @@ std::string Head(const std::string& line, const std::string& more = "") {
 }
 
 std::string Form(const std::string& body) {
-  return Head("POST /form",
-              "Content-Type: application/x-www-form-urlencoded\r\nContent-Length: " + std::to_string(body.size()) +
-                  "\r\n") +
+  return Head("POST /form", "Content-Type: application/x-www-form-urlencoded\r\nContent-Length: " +
+                                std::to_string(body.size()) + "\r\n") +
          body;
 }
 
@@ -55,7 +54,9 @@ std::string Rest(int connection) {
   return answer;
 }
 
-void Say(int connection, const std::string& text) { send(connection, text.data(), text.size(), MSG_NOSIGNAL); }
+void Say(int connection, const std::string& text) {
+  send(connection, text.data(), text.size(), MSG_NOSIGNAL);
+}
 
 TEST(HttpServer, ReadsTargetsAndForms) {
   const HttpServer server(SomeOptions(), Echo);
@@ -66,8 +67,9 @@ TEST(HttpServer, ReadsTargetsAndForms) {
   EXPECT_THAT(ask(Head("GET /?a=%g0")), StartsWith("HTTP/1.1 400 "));
   EXPECT_THAT(ask(Head("GET a")), StartsWith("HTTP/1.1 400 "));
   EXPECT_THAT(ask(Form("a=1&b=%3D")), EndsWith("\r\n\r\nPOST /form a=1 b=="));
-  EXPECT_THAT(ask(Head("POST /form", "Content-Type: application/x-www-form-urlencoded\r\n"
-                                     "Transfer-Encoding: chunked\r\n") +
+  EXPECT_THAT(ask(Head("POST /form",
+                       "Content-Type: application/x-www-form-urlencoded\r\n"
+                       "Transfer-Encoding: chunked\r\n") +
                   "3\r\na=1\r\n2\r\n&b\r\n0\r\n\r\n"),
               EndsWith("\r\n\r\nPOST /form a=1 b="));
   const std::string head = ask(Head("HEAD /abc"));
@@ -94,7 +96,8 @@ TEST(HttpServer, HasTotalsForAllThatIsSent) {
   EXPECT_THAT(ask(chunked(100)), StartsWith("HTTP/1.1 200 "));
   EXPECT_THAT(ask(chunked(101)), StartsWith("HTTP/1.1 413 "));
   const std::string in_chunks = Head("POST /", "Transfer-Encoding: chunked\r\n");
-  EXPECT_THAT(ask(in_chunks + "1;" + std::string(2000, 'a') + "\r\na\r\n0\r\n\r\n"), StartsWith("HTTP/1.1 431 "));
+  EXPECT_THAT(ask(in_chunks + "1;" + std::string(2000, 'a') + "\r\na\r\n0\r\n\r\n"),
+              StartsWith("HTTP/1.1 431 "));
   EXPECT_THAT(ask(in_chunks + "0\r\nA: " + std::string(2000, 'a') + "\r\n\r\n"), StartsWith("HTTP/1.1 431 "));
   EXPECT_THAT(ask(Head("GET /" + std::string(499, 'a'))), StartsWith("HTTP/1.1 200 "));
   EXPECT_THAT(ask(Head("GET /" + std::string(500, 'a'))), StartsWith("HTTP/1.1 414 "));
@@ -104,7 +107,8 @@ TEST(HttpServer, HasTotalsForAllThatIsSent) {
 
 TEST(HttpServer, ARequestHasItsTimeWhateverComes) {
   const HttpServer server(SomeOptions(), Echo);
-  for (const std::string& begin : {Head("GET /", "A: b"), Head("POST /", "Content-Length: 9\r\n"), std::string()}) {
+  for (const std::string& begin :
+       {Head("GET /", "A: b"), Head("POST /", "Content-Length: 9\r\n"), std::string()}) {
     const auto begun = Clock::now();
     const int connection = Connected(server.port());
     Say(connection, begin.substr(0, begin.size() - (begin.starts_with("GET") ? 2 : 0)));
@@ -191,7 +195,8 @@ TEST(HttpServer, AnAnswerThatGoesOnEndsOrLosesItsReader) {
     };
     return answer;
   });
-  EXPECT_THAT(AskHttp(server.port(), Head("GET /")), EndsWith("\r\n\r\n5\r\npart1\r\n5\r\npart2\r\n0\r\n\r\n"));
+  EXPECT_THAT(AskHttp(server.port(), Head("GET /")),
+              EndsWith("\r\n\r\n5\r\npart1\r\n5\r\npart2\r\n0\r\n\r\n"));
   const int browser = Connected(server.port());
   Say(browser, Head("GET /lasts"));
   const auto until = [&](int wanted) {
@@ -204,7 +209,8 @@ TEST(HttpServer, AnAnswerThatGoesOnEndsOrLosesItsReader) {
 }
 
 TEST(HttpServer, AFailedPageIsAnAnswer) {
-  const HttpServer server(SomeOptions(), [](const HttpRequest&) -> HttpAnswer { throw std::runtime_error("x"); });
+  const HttpServer server(SomeOptions(),
+                          [](const HttpRequest&) -> HttpAnswer { throw std::runtime_error("x"); });
   EXPECT_THAT(AskHttp(server.port(), Head("GET /")), StartsWith("HTTP/1.1 500 "));
 }
 

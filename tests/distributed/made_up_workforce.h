@@ -31,8 +31,9 @@ class MadeUpWorkforce : public Workforce {
   }
   const AuditOptions& audit() const override { return dispatcher.audit(); }
   std::uint64_t audits() const override { return dispatcher.audits(); }
-  const std::map<std::string, std::string>& expelled() const override { return dispatcher.expelled(); }
-  void Expel(const std::map<std::string, std::string>& names) override { dispatcher.Expel(names, false); }
+  const ExpulsionMap& expelled() const override { return dispatcher.expelled(); }
+  void Expel(const ExpulsionMap& names) override { dispatcher.Expel(names, false); }
+  std::vector<std::string> Readmit(const std::string& name) override { return dispatcher.Readmit(name); }
   double now_s() const override { return time_s; }
 
   void Join(const std::string& worker, std::uint32_t slots = 1) {

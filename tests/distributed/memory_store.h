@@ -22,6 +22,7 @@ class MemoryStore : public ResultStore {
     for (const CaseResult& result : results) rows[result.case_index] = result;
     for (const ExecutionRecord& record : records) {
       worker_of[record.case_index] = record.worker;
+      host_of[record.case_index] = record.host;
       seconds[record.case_index] = record.seconds;
     }
   }
@@ -48,15 +49,14 @@ class MemoryStore : public ResultStore {
   std::vector<std::uint64_t> Disown(const std::string& worker) override {
     std::vector<std::uint64_t> cases;
     for (const auto& [case_index, who] : worker_of) {
-      if (IsMeantBy(worker, who)) cases.push_back(case_index);
+      if (IsMeantBy(worker, who, host_of.at(case_index))) cases.push_back(case_index);
     }
-    std::erase_if(worker_of, [&](const auto& each) { return IsMeantBy(worker, each.second); });
-    for (const std::uint64_t case_index : cases) rows.erase(case_index);
+    for (const std::uint64_t case_index : cases) rows.erase(case_index), worker_of.erase(case_index);
     stored -= cases.size();
     return cases;
   }
   std::map<std::uint64_t, CaseResult> rows;
-  std::map<std::uint64_t, std::string> worker_of;
+  std::map<std::uint64_t, std::string> worker_of, host_of;
   std::map<std::uint64_t, double> seconds;  ///< that each took
   std::map<std::uint64_t, std::string> quarantined;
   std::set<std::uint64_t> audited;

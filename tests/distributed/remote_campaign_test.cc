@@ -366,7 +366,7 @@ TEST_F(RemoteCampaign, ABackupIsADataFolderFromWhichAnotherCoordinatorGoesOn) {
     session_.Ask("cancel", {{"id", campaign.id}});
   }
   session_.Ask("delete", {{"id", deleted.id}});
-  workforce_.Expel({{"node1", "case 4 gives other bits"}});
+  workforce_.Expel({{"node1", {"case 4 gives other bits"}}});
   workforce_.time_s += 2.0;
   Launch(flying);
   ASSERT_TRUE(Reaches(flying.id, CampaignState::kFlying));
@@ -383,7 +383,7 @@ TEST_F(RemoteCampaign, ABackupIsADataFolderFromWhichAnotherCoordinatorGoesOn) {
 
   MadeUpWorkforce others;
   Service there(ServiceOptions{backup}, others);
-  EXPECT_THAT(others.expelled(), ElementsAre(testing::Pair("node1", "case 4 gives other bits")));
+  EXPECT_THAT(others.expelled(), ElementsAre(testing::Pair("node1", Expulsion{"case 4 gives other bits"})));
   const auto& entries = there.catalogue().entries();
   ASSERT_EQ(entries.size(), 2u);
   EXPECT_EQ(entries.at(ended.id).state, CampaignState::kCancelled);

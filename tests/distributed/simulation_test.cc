@@ -78,7 +78,7 @@ class DiskStore : public ResultStore {
   std::vector<std::uint64_t> Disown(const std::string& worker) override {
     std::vector<std::uint64_t> cases;
     for (const auto& [case_index, who] : disk_.worker_of) {
-      if (IsMeantBy(worker, who)) cases.push_back(case_index);
+      if (IsMeantBy(worker, who, "")) cases.push_back(case_index);
     }
     for (const std::uint64_t case_index : cases)
       disk_.rows.erase(case_index), disk_.worker_of.erase(case_index);

@@ -180,7 +180,7 @@ TEST_F(DispatchRules, AnExpelledWorkersResultsLeaveEachCampaign) {
   Return("node1_x", 'a', 0);
   Return("node1_x", 'b', 0);
   EXPECT_EQ(Progress('a').done + Progress('b').done, 2u);
-  dispatcher_.Expel({{"node1", "case 4 gives other bits"}});
+  dispatcher_.Expel({{"node1", {"case 4 gives other bits"}}});
   EXPECT_EQ(Progress('a').waiting, 2u);
   EXPECT_EQ(Progress('b').waiting, 2u);
 }
@@ -194,7 +194,7 @@ TEST_F(DispatchRules, OfTwoThatAreExpelledNeithersResultsStay) {
   Return("node2_y", 'a', 1);
   Return("node3_z", 'a', 2);
   flying_.at('a').store->is_full = true;
-  dispatcher_.Expel({{"node1", "a reason"}, {"node3", "another"}});
+  dispatcher_.Expel({{"node1", {"a reason"}}, {"node3", {"another"}}});
   EXPECT_EQ(Progress('a').done, 3u);
   EXPECT_FALSE(flying_.at('a').book->Complete());
   flying_.at('a').store->is_full = false;

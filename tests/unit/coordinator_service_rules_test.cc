@@ -428,7 +428,7 @@ TEST_F(FlyingRules, AnExpelledWorkersResultsGiveNoRateBelowZero) {
   ASSERT_TRUE(Reaches(Launch(campaign), CampaignState::kFlying));
   for (std::uint64_t i = 0; i < 5; ++i) Return(campaign, i);
   Second();
-  workforce_.Expel({{"node1", "case 4 gives other bits"}});
+  workforce_.Expel({{"node1", {"case 4 gives other bits"}}});
   Second();
   EXPECT_EQ(service_->View(campaign.id).progress.done, 0u);
   EXPECT_EQ(service_->View(campaign.id).rate_per_s, 0.0);
@@ -463,7 +463,7 @@ TEST_F(FlyingRules, AnEntryFollowsWhatTheLedgerFinds) {
   ASSERT_TRUE(Reaches(campaign.id, CampaignState::kFlying));
   EXPECT_EQ(service_->View(campaign.id).progress.done, 2u);
   service_->Cancel(campaign.id);
-  workforce_.Expel({{"node1", "case 1 gives other bits"}});
+  workforce_.Expel({{"node1", {"case 1 gives other bits"}}});
   service_->Relaunch(campaign.id, 0);
   ASSERT_TRUE(Reaches(campaign.id, CampaignState::kFlying));
   EXPECT_EQ(service_->View(campaign.id).progress.done, 0u) << "those of an expelled worker";

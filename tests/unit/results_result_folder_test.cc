@@ -255,6 +255,12 @@ TEST(ResultFolder, KnowsWhoReturnedWhatAndForgetsAllOfOneWorker) {
   EXPECT_THAT(folder.PresentCases(), ElementsAre(2u));
   EXPECT_EQ(folder.WorkerOf(1), std::nullopt);
   EXPECT_TRUE(folder.Disown("liar").empty());
+  folder.Store(
+      {{MakeCase(4), MakeCase(5), MakeCase(6)}},
+      {{{4, "node1_a", "h", "", kNaN}, {5, "node1_b", "g", "", kNaN}, {6, "node10_c", "h", "", kNaN}}});
+  EXPECT_THAT(folder.Disown("node1@h"), ElementsAre(4u));
+  EXPECT_THAT(folder.Disown("node1"), ElementsAre(5u));
+  EXPECT_THAT(folder.Disown("node10_c"), ElementsAre(6u));
   // That the liar's result of a case was right says nothing of the next one's.
   folder.Store({{MakeCase(3)}}, {{{3, "next", "h", "", kNaN}}});
   EXPECT_THAT(unaudited(), ElementsAre("next3"));
