@@ -30,7 +30,8 @@ ExpulsionMap Sentence(const ExpulsionMap& expelled, const std::string& worker, c
     of_host += each.second.host == host ? 1 : 0;
   }
   const auto words = [&](int processes, const std::string& where) {
-    return std::to_string(processes) + " of its processes" + where + " returned false results, the last one: " + reason;
+    return std::to_string(processes) + " of its processes" + where +
+           " returned false results, the last one: " + reason;
   };
   if (of_keys >= kLiarsOfKeys) {
     sentence[keys] = {words(of_keys, ""), ""};

@@ -1,5 +1,5 @@
-// Who may not fly here any more, and why: a process that returned a false result, and after repetition its host
-// and its keys.
+// Who may not fly here any more, and why: a process that returned a false result, and after repetition its
+// host and its keys.
 #pragma once
 
 #include <map>

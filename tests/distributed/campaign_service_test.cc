@@ -288,11 +288,20 @@ TEST_F(CampaignServiceTest, WhoWasExpelledStaysSoWhenTheCoordinatorIsStartedAgai
   workforce_.time_s += 2.0;
   service_->Step();
   const std::filesystem::path file = folder_ / "data" / "expelled.json";
-  EXPECT_EQ(TextOfFile(file), "{\n  \"node1\": \"case 4 gives other bits\"\n}\n");
-  MadeUpWorkforce later;
+  EXPECT_EQ(TextOfFile(file), "{\n  \"node1\": {\n    \"reason\": \"case 4 gives other bits\"\n  }\n}\n");
   service_.reset();
-  Service again({folder_ / "data"}, later);
-  EXPECT_THAT(later.expelled(), ElementsAre(testing::Pair("node1", Expulsion{"case 4 gives other bits"})));
+  {
+    MadeUpWorkforce later;
+    Service again({folder_ / "data"}, later);
+    EXPECT_THAT(later.expelled(), ElementsAre(testing::Pair("node1", Expulsion{"case 4 gives other bits"})));
+    EXPECT_THAT(again.Readmit("node2"), testing::IsEmpty());
+    EXPECT_THAT(again.Readmit("node1"), ElementsAre("node1"));
+    EXPECT_EQ(TextOfFile(file), "{}\n") << "at once";
+  }
+  std::ofstream(file) << "{\"node3\": \"of an earlier version\"}";
+  MadeUpWorkforce last;
+  Service third({folder_ / "data"}, last);
+  EXPECT_THAT(last.expelled(), ElementsAre(testing::Pair("node3", Expulsion{"of an earlier version"})));
 }
 
 TEST_F(CampaignServiceTest, ACampaignThatHasEndedIsDeletedAndALineIsKept) {

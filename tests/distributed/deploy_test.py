@@ -98,39 +98,60 @@ class DeployTest(unittest.TestCase):
         self.assertRegex(launched.stdout, "^[0-9a-f]{64}\n$", launched.stderr)
 
     def test_kubernetes(self):
-        documents = {d["kind"]: d for d in yaml.safe_load_all((DEPLOY / "kubernetes.yaml").read_text())}
-        self.assertEqual(set(documents), {"Service", "StatefulSet", "Deployment", "HorizontalPodAutoscaler"})
-        coordinator = documents["StatefulSet"]["spec"]["template"]["spec"]["containers"][0]
-        worker = documents["Deployment"]["spec"]["template"]["spec"]["containers"][0]
+        documents = {(d["kind"], d["metadata"]["name"]): d["spec"] for d in yaml.safe_load_all((DEPLOY / "kubernetes.yaml").read_text())}
+        sets = [name for kind, name in documents if kind == "StatefulSet"]
+        self.assertEqual(sets, ["dispersa-coordinator", "dispersa-worker"])
+        coordinators, workers = (documents["StatefulSet", name]["template"] for name in sets)
+        coordinator, worker = (template["spec"]["containers"][0] for template in (coordinators, workers))
         # Names that must agree.
-        service = documents["Service"]["metadata"]["name"]
-        self.assertEqual(documents["StatefulSet"]["spec"]["serviceName"], service)
+        for name in sets:
+            self.assertIn(("Service", documents["StatefulSet", name]["serviceName"]), documents)
         self.assertEqual(worker["command"][worker["command"].index("--peer") + 1],
-                         f"{documents['StatefulSet']['metadata']['name']}-0.{service}")
-        scaled = documents["HorizontalPodAutoscaler"]["spec"]
-        self.assertEqual(scaled["scaleTargetRef"]["name"], documents["Deployment"]["metadata"]["name"])
-        for kind in ("StatefulSet", "Deployment"):
-            spec = documents[kind]["spec"]
-            self.assertEqual(spec["selector"]["matchLabels"], spec["template"]["metadata"]["labels"])
-            pod = spec["template"]["spec"]
+                         f"dispersa-coordinator-0.{documents['StatefulSet', 'dispersa-coordinator']['serviceName']}")
+        scaled = documents["HorizontalPodAutoscaler", "dispersa-worker"]
+        self.assertEqual([scaled["scaleTargetRef"][key] for key in ("kind", "name")], ["StatefulSet", "dispersa-worker"])
+        for name, template in zip(sets, (coordinators, workers)):
+            self.assertEqual(documents["StatefulSet", name]["selector"]["matchLabels"], template["metadata"]["labels"])
+            pod = template["spec"]
             mounts = {mount["name"]: mount["mountPath"] for mount in pod["containers"][0]["volumeMounts"]}
             self.assertEqual(pod["containers"][0]["command"][pod["containers"][0]["command"].index("--keys") + 1], mounts["keys"])
             # Readable for the user of the container and nobody else.
-            self.assertEqual((pod["volumes"][0]["name"], pod["volumes"][0]["secret"]["defaultMode"]), ("keys", 0o440))
+            self.assertEqual([volume["secret"]["defaultMode"] for volume in pod["volumes"] if "secret" in volume], [0o440])
             self.assertEqual(pod["securityContext"]["fsGroup"], 1000)
+        self.assert_each_pod_has_its_own_keys(workers["spec"], scaled["maxReplicas"])
         self.assert_they_find_each_other(coordinator["command"], worker["command"],
                                          coordinator["readinessProbe"]["exec"]["command"])
         # As a monitor elsewhere in the cluster: not from the loopback address that the program would take by itself.
         address, port = coordinator["command"][coordinator["command"].index("--metrics") + 1].split(":")
         self.assertEqual(address, "0.0.0.0")
         for annotation, value in (("scrape", "true"), ("port", port), ("path", "/metrics")):
-            annotations = documents["StatefulSet"]["spec"]["template"]["metadata"]["annotations"]
+            annotations = coordinators["metadata"]["annotations"]
             self.assertEqual(annotations[f"prometheus.io/{annotation}"], value)
         self.assertEqual([p["containerPort"] for p in coordinator["ports"]], [int(port)])
         metrics = urllib.request.urlopen(f"http://127.0.0.3:{port}/metrics", timeout=PATIENCE_S).read().decode()
         self.assertIn(f"\n{scaled['metrics'][0]['external']['metric']['name']} 0\n", metrics)
         for line in metrics.splitlines():
             self.assertRegex(line, r'^(# (HELP|TYPE) dispersa_\w+ .+|dispersa_\w+(\{\w+="[^"]*"(,\w+="[^"]*")*\})? [\d.e+-]+)$')
+
+    def assert_each_pod_has_its_own_keys(self, pod, number):
+        """The commands of the file's head make a secret, of which the init container takes what is its pod's."""
+        self.assertEqual([mount["name"] for mount in pod["containers"][0]["volumeMounts"]], ["keys"])
+        head = re.sub(r"(?m)^# ?", "", (DEPLOY / "kubernetes.yaml").read_text().partition("apiVersion")[0])
+        issue, create = re.search(r"(for n in .*)\n +(kubectl create secret generic dispersa-worker-keys (?s:.*?done\)))", head).groups()
+        script = f'dispersa() {{ "{BINARIES}/dispersa" "$@"; }}; {issue}; kubectl() {{ printf "%s\\n" "$@"; }}; {create}'
+        words = subprocess.run(["bash", "-ec", script], cwd=self.data, capture_output=True, text=True, check=True).stdout
+        all_keys = pathlib.Path(self.data, "all-keys")
+        all_keys.mkdir()
+        for file, source in re.findall(r"(?m)^--from-file=(.*?)=(.*)$", words):
+            shutil.copy(pathlib.Path(self.data, source), all_keys / file)
+        for n in range(number):
+            own = pathlib.Path(self.data, f"keys-{n}")
+            own.mkdir()
+            init = [word.replace("/all-keys", str(all_keys)).replace('"/keys', f'"{own}') for word in pod["initContainers"][0]["command"]]
+            subprocess.run(init, check=True, env={**os.environ, "POD": f"dispersa-worker-{n}"})
+            issued = self.authority / f"issued/worker-dispersa-worker-{n}"
+            self.assertEqual({file.name: file.read_bytes() for file in own.iterdir()},
+                             {file.name: file.read_bytes() for file in issued.iterdir()})
 
     def test_systemd(self):
         coordinator, worker = unit("dispersa-coordinator.service"), unit("dispersa-worker.service")
@@ -156,7 +177,7 @@ class DeployTest(unittest.TestCase):
 
         def submitted():
             environment = {**os.environ, "PATH": f"{BINARIES}:{os.environ['PATH']}", "COORDINATOR": "127.0.0.1",
-                           "DISPERSA_KEYS": str(self.keys["dispersa-worker"])}
+                           "DISPERSA_KEYS": str(self.authority / "issued"), "SLURMD_NODENAME": "one"}
             self.processes.append(subprocess.Popen(["bash", script], env=environment, stderr=subprocess.DEVNULL))
             return self.processes[-1]
         self.assert_they_find_each_other(["dispersa-coordinator", "--data", self.data, "--keys", "/keys"], submitted,

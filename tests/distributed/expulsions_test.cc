@@ -37,7 +37,8 @@ TEST(Expulsions, ThreeProcessesOnThreeHostsAreTheKeys) {
   EXPECT_EQ(WhyExpelled(expelled, "node1_c", "h1"), std::nullopt);
   expelled = With(expelled, "node1_c", "h3");
   EXPECT_THAT(NamesOf(expelled), ElementsAre("node1", "node1_a", "node1_b", "node1_c"));
-  EXPECT_EQ(WhyExpelled(expelled, "node1_d", "h4"), "3 of its processes returned false results, the last one: why");
+  EXPECT_EQ(WhyExpelled(expelled, "node1_d", "h4"),
+            "3 of its processes returned false results, the last one: why");
   EXPECT_EQ(WhyExpelled(expelled, "node10_d", "h4"), std::nullopt);
 }
 
@@ -52,6 +53,8 @@ TEST(Expulsions, AHostIsThatOfTheKeysAlone) {
   EXPECT_TRUE(WhyExpelled(expelled, "node1_c", "h"));
   EXPECT_FALSE(WhyExpelled(expelled, "node1_c", "g"));
   EXPECT_FALSE(WhyExpelled(expelled, "node2_c", "h"));
+  EXPECT_THAT(NamesOf(With(With(With({}, "a_1", "h"), "b_2", "h"), "c_3", "h")),
+              ElementsAre("a_1", "b_2", "c_3"));
 }
 
 TEST(Expulsions, WhoIsReadmittedBeginsAnew) {
@@ -71,7 +74,8 @@ TEST(Expulsions, FilesAreReadAsTheyAreWritten) {
   ExpulsionMap expelled = With(With({}, "node1_a", "h"), "node1_b", "h");
   Readmit(&expelled, "node1_a");
   EXPECT_EQ(ReadExpulsions(ToJson(expelled).dump()), expelled);
-  EXPECT_EQ(ReadExpulsions(R"({"node1": "why"})"), (ExpulsionMap{{"node1", {"why"}}})) << "of an earlier version";
+  EXPECT_EQ(ReadExpulsions(R"({"node1": "why"})"), (ExpulsionMap{{"node1", {"why"}}}))
+      << "of an earlier version";
   EXPECT_THROW(ReadExpulsions("{\"a\": 1}"), nlohmann::json::exception);
 }
 

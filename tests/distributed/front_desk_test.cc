@@ -504,6 +504,25 @@ TEST_F(OwnersTest, OnlyOwnerAndAdministratorChangeACampaign) {
   EXPECT_FALSE(service_->catalogue().entries().contains(campaign.id));
 }
 
+TEST_F(OwnersTest, AdministratorsReadmitAndEverybodySeesWhoIsExpelled) {
+  workforce_.Expel({{"node1", {"case 4 gives other bits"}}, {"node1_a", {"a lie", "rack7"}}});
+  const Json expelled = {{{"name", "node1"}, {"reason", "case 4 gives other bits"}},
+                         {{"name", "node1_a"}, {"reason", "a lie"}}};
+  EXPECT_EQ(Json::parse(As(eve_, "expelled", Json::object())).at("expelled"), expelled);
+  EXPECT_EQ(As(ann_, "readmit", {{"name", "node1"}}),
+            "2: the keys of 'ann' may run, and `dispersa readmit` needs the right to administer, allowed: "
+            "keys that "
+            "`dispersa keys issue --may administer` made");
+  EXPECT_EQ(As(root_, "readmit", {{"name", "node2"}}),
+            "2: nobody with the name 'node2' is expelled, allowed: names that `dispersa readmit` without a "
+            "name prints");
+  for (int answer_got_lost = 0; answer_got_lost < 2; ++answer_got_lost)
+    EXPECT_EQ(As(root_, "readmit", {{"name", "node1"}}), Json({{"name", "node1"}}).dump());
+  EXPECT_EQ(Json::parse(As(eve_, "expelled", Json::object())).at("expelled"), Json::array());
+  EXPECT_EQ(Json::parse(TextOfFile(folder_ / "data" / "expelled.json")),
+            Json({{"node1_a", {{"reason", "a lie"}, {"host", "rack7"}, {"forgiven", true}}}}));
+}
+
 TEST_F(OwnersTest, ACampaignOfAnotherOwnerIsFoundAndNotChanged) {
   const Campaign campaign = Smoke(2);
   LaunchAs(ann_, campaign, {{"priority", 3}});

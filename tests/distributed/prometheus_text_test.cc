@@ -49,8 +49,7 @@ TEST_F(PrometheusTextTest, AnEmptyServiceIsAllZeros) {
         metric("dispersa_report_wait_seconds", "gauge", "Time for which the first of them has waited.", 0),
         metric("dispersa_disk_bytes", "gauge", "Bytes of all campaigns' folders.", 0),
         metric("dispersa_audits_total", "counter", "Results that were flown again.", 0),
-        metric("dispersa_expelled", "gauge", "Keys, or workers without keys, that may not fly here any more.",
-               0),
+        metric("dispersa_expelled", "gauge", "Processes, hosts and keys that may not fly here any more.", 0),
         metric("dispersa_refused_total", "counter", "Datagrams and messages that were refused.",
                Complaints())})
     EXPECT_THAT(text, testing::HasSubstr(part));

@@ -3,6 +3,7 @@
 
 #include <CLI/CLI.hpp>
 #include <chrono>
+#include <cstdlib>
 #include <cstdint>
 #include <optional>
 #include <string>
@@ -68,7 +69,8 @@ void Work(const NetworkOptions& network, const std::vector<Peer>& peers, std::ui
     const FlightDesk::Due due = desk.Tick(now_s());
     if (due.status) {
       WorkerStatus status = *due.status;
-      status.host = "nowhere";
+      const char* const host = std::getenv("DISPERSA_NOOP_HOST");
+      status.host = host == nullptr ? "nowhere" : host;
       link->Send(status);
     }
     for (const Report& report : due.reports) link->Send(report);
