@@ -3,6 +3,7 @@
 #include <fmt/format.h>
 #include <unistd.h>
 
+#include <algorithm>
 #include <cstdio>
 #include <utility>
 
@@ -14,10 +15,18 @@ namespace {
 
 constexpr std::chrono::milliseconds kBarPeriod(100);
 constexpr std::chrono::seconds kLinePeriod(5);
-constexpr int kBarWidth = 30;
+constexpr std::size_t kBarWidth = 30;
 constexpr std::size_t kUsualProgressWidth = 80;
 
 }  // namespace
+
+std::string ProgressBar(std::uint64_t done, std::uint64_t total) {
+  // More may be done than there is: the total of a campaign that stops when decided changes.
+  const double fraction =
+      static_cast<double>(std::min(done, total)) / static_cast<double>(std::max<std::uint64_t>(total, 1));
+  const auto filled = static_cast<std::size_t>(fraction * kBarWidth);
+  return std::string(filled, '#') + std::string(kBarWidth - filled, '.');
+}
 
 std::string DurationText(double seconds) {
   const auto whole = static_cast<long>(seconds + 0.5);
@@ -57,8 +66,7 @@ void Progress::Show(std::uint64_t done, std::uint64_t total, const std::string& 
   }
   if (!note.empty()) line += ", " + note;
   if (terminal_) {
-    const auto filled = static_cast<std::size_t>(fraction * kBarWidth);
-    const std::string bar = std::string(filled, '#') + std::string(kBarWidth - filled, '.');
+    const std::string bar = ProgressBar(done, total);
     // A line that wraps cannot be drawn over: "\r" returns to the start of its last row only. The last column
     // stays free, because some terminals wrap as soon as it is filled.
     const std::size_t columns = TerminalWidth(STDERR_FILENO, kUsualProgressWidth);

@@ -30,6 +30,8 @@ class Progress {
   std::chrono::steady_clock::time_point shown_;
 };
 
+/// "######....": 30 characters.
+std::string ProgressBar(std::uint64_t done, std::uint64_t total);
 /// "1h02m", "3m05s", "12s"
 std::string DurationText(double seconds);
 

@@ -366,7 +366,8 @@ void Service::Measure() {
 void Service::NoteConflicts(CatalogueEntry& entry, Flying& flying) {
   const std::uint64_t seen = flying.book->ledger().Progress().conflicts;
   if (seen == flying.conflicts_noted) return;
-  entry.conflicts += seen - flying.conflicts_noted;
+  // One that is settled counts no more, so `seen` falls too.
+  entry.conflicts = entry.conflicts + seen - std::min(entry.conflicts, flying.conflicts_noted);
   flying.conflicts_noted = seen;
   Save(entry);
 }
@@ -435,7 +436,8 @@ Service::Book Service::TakeBack(const std::string& id) {
   std::erase_if(flew_, [&](const auto& each) { return each.first == id; });
   flew_.emplace_back(id, book->tally());
   if (flew_.size() > kRemembered) flew_.pop_front();
-  entry.done = book->ledger().Progress().done - book->unstored();
+  const std::uint64_t done = book->ledger().Progress().done;
+  entry.done = done - std::min(done, book->unstored());
   entry.quarantined = book->ledger().Progress().quarantined;
   flying_.erase(found);
   return book;

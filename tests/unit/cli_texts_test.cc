@@ -131,6 +131,14 @@ nlohmann::ordered_json SampleCampaign() {
           {"requirements", nlohmann::ordered_json::array()}};
 }
 
+TEST(ProgressBar, IsThirtyWideWhateverTheCounts) {
+  EXPECT_EQ(ProgressBar(0, 10), std::string(30, '.'));
+  EXPECT_EQ(ProgressBar(5, 10), std::string(15, '#') + std::string(15, '.'));
+  EXPECT_EQ(ProgressBar(10, 10), std::string(30, '#'));
+  EXPECT_EQ(ProgressBar(11, 10), std::string(30, '#')) << "results of a total that fell";
+  EXPECT_EQ(ProgressBar(1, 0), std::string(30, '.'));
+}
+
 TEST(CampaignStatusText, SaysHowFarACampaignIs) {
   nlohmann::ordered_json campaign = SampleCampaign();
   EXPECT_EQ(CampaignStatusText(campaign), "0123456789ab  flying            40/100       trial\n");
