@@ -332,7 +332,10 @@ void HttpServer::Serving::Handle(const Shared& connection) {
   if (message.target().size() > options_.limits.request_line)
     return Send(connection, InWords(414, "The request's address is too long."));
   if (options_.owner_alone && !MayRead(connection->peer))
-    return Send(connection, InWords(403, "Only the user who has started this program reads these pages."));
+    return Send(connection, InWords(403,
+                                    "Only the user who has started this program reads these pages. A "
+                                    "coordinator with --web-token FILE "
+                                    "lets in whoever has the token."));
   auto request = Read(message);
   if (!request) return Send(connection, InWords(400, "The request has a wrong escape (%)."));
   connection->stage = Stage::kIsHandled;

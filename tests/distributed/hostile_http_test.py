@@ -9,10 +9,11 @@ import re
 import select
 import socket
 import stat
+import subprocess
 import sys
 import time
 
-from processes import BINARIES, CAMPAIGN, PATIENCE_S, main, wait_for
+from processes import CAMPAIGN, ISOLATED, PATIENCE_S, main, wait_for
 from service_case import ServiceCase
 
 WEB, FIGURES = 9475, 9476
@@ -213,6 +214,47 @@ class HostileHttpTest(ServiceCase):
             return attack
         self.attack("1000 that say nothing", each(b""))
         self.attack("1000 that begin", each(b"GET / HTTP/1.1\r\nHost: local"))
+
+    def test_no_peer_takes_the_places_of_another(self):
+        """Users on loopback, addresses elsewhere: 300 connections of one leave those of the other."""
+        if os.geteuid() != 0 or ISOLATED not in os.environ:
+            self.skipTest("needs another user, and addresses of its own")
+        for address in ("198.51.100.1", "198.51.100.2"):
+            subprocess.run(["ip", "address", "add", f"{address}/32", "dev", "lo"], check=True)
+        figures = self.start_another("--data", self.root / "open", "--metrics", f"0.0.0.0:{FIGURES + 10}")
+        self.servers["open"] = (FIGURES + 10, figures, "/metrics", "/metrics")
+        wait_for(lambda: self.answers("open"), "figures on all addresses")
+
+        def from_address(address):
+            connection = socket.socket()
+            connection.bind((address, 0))
+            return connection, ("198.51.100.1", FIGURES + 10)
+
+        def from_user(user):
+            os.seteuid(user)
+            try:
+                return socket.socket(), ("127.0.0.1", FIGURES)
+            finally:
+                os.seteuid(0)
+        for peer_of, good, bad in ((from_address, "198.51.100.1", "198.51.100.2"), (from_user, 0, NOBODY)):
+            connection, server = peer_of(good)
+            connection.connect(server)
+            crowd = []
+            for _ in range(300):
+                other, _ = peer_of(bad)
+                other.settimeout(PATIENCE_S)
+                other.connect(server)
+                crowd.append(other)
+            connection.sendall(b"GET /metrics HTTP/1.1\r\nHost: localhost\r\n\r\n")
+            connection.settimeout(PATIENCE_S)
+            self.assertTrue(connection.recv(100).startswith(b"HTTP/1.1 200 "), good)
+            open_ones = 0
+            for other in crowd:
+                other.setblocking(False)
+                open_ones += not is_closed(other)
+                other.close()
+            self.assertLessEqual(open_ones, 8)
+            connection.close()
 
     def test_pages_are_their_owners_alone(self):
         """Without a token no other user of this machine reads them."""
