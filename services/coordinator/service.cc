@@ -379,7 +379,8 @@ void Service::LoadExpelled() {
   try {
     workforce_.Expel(ReadExpulsions({std::istreambuf_iterator<char>(stream), {}}));
   } catch (const nlohmann::json::exception& damage) {
-    LogError("{}: is damaged and left alone: {}", (options_.data / kExpelledFile).string(), damage.what());
+    throw InputError((options_.data / kExpelledFile).string() + ": is damaged: " + damage.what(),
+                     "the file of a backup; or none, which readmits everybody");
   }
   expelled_noted_ = workforce_.expelled();
   std::string names;

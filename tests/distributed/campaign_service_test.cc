@@ -304,6 +304,21 @@ TEST_F(CampaignServiceTest, WhoWasExpelledStaysSoWhenTheCoordinatorIsStartedAgai
   EXPECT_THAT(last.expelled(), ElementsAre(testing::Pair("node3", Expulsion{"of an earlier version"})));
 }
 
+TEST_F(CampaignServiceTest, ADamagedListOfTheExpelledReadmitsNobody) {
+  StartService();
+  service_.reset();
+  const std::filesystem::path file = folder_ / "data" / "expelled.json";
+  for (const char* damaged : {"", "{\"node1\": {\"reason\": \"a li", "{\"node1\": 3}", "[]"}) {
+    std::ofstream(file) << damaged;
+    EXPECT_THAT([&] { Service again({folder_ / "data"}, workforce_); },
+                testing::ThrowsMessage<InputError>(testing::AllOf(
+                    testing::HasSubstr("expelled.json: is damaged: "),
+                    testing::HasSubstr("allowed: the file of a backup; or none, which readmits everybody"))))
+        << damaged;
+    EXPECT_EQ(TextOfFile(file), damaged);
+  }
+}
+
 TEST_F(CampaignServiceTest, ACampaignThatHasEndedIsDeletedAndALineIsKept) {
   StartService();
   const Campaign campaign = Smoke(4, 7);
