@@ -29,6 +29,7 @@ class One(unittest.TestCase):
         undefined = {name: (math.nan if value is None else value) for name, value in said["metrics"].items()}
         self.assertEqual((flight.outcome, flight.end_time_s, flight.end_stage, flight.reason, flight.digest),
                          tuple(said[key] for key in ("outcome", "end_time_s", "end_stage", "reason", "digest")))
+        self.assertEqual(flight.completed, said["outcome"] == "completed")
         self.assertEqual(flight.inputs, said["inputs"])
         # The program says too what no target of this campaign names.
         numpy.testing.assert_array_equal([flight.metrics.get(name, math.nan) for name in undefined], list(undefined.values()))

@@ -84,6 +84,8 @@ class Plots(unittest.TestCase):
     def test_history_and_ground_track(self):
         axes = dispersa.plot.history(self.flights, ["altitude_m", "qbar_pa"])
         self.assertEqual([ax.get_ylabel() for ax in axes], ["altitude, m", "qbar, Pa"])
+        ax, = dispersa.plot.history(self.flights[0], "altitude_m", labels=["damped"])
+        self.assertEqual([text.get_text() for text in ax.get_legend().get_texts()], ["damped"])
         ax = dispersa.plot.ground_track(self.flights[0])
         self.assertEqual([text.get_text() for text in ax.get_legend().get_texts()], ["end", "lift-off"])
         with self.assertRaisesRegex(dispersa.BadInput, "a flight without a history"):

@@ -156,6 +156,26 @@ TEST(CliProgram, ModesTellsAStackWithItsBoostersAndWithout) {
   EXPECT_LT(double(stacks[kLevels]["propellant_kg"]), burnt_out);
 }
 
+TEST(CliProgram, ModesShowsEachPlaneOfAStackThatIsStifferInOne) {
+  const InputFiles files;
+  std::string vehicle = ReadWholeFile(DISPERSA_CAMPAIGNS "/vehicles/slv4_flexible.yaml");
+  for (const auto& [from, to] : {std::pair{"based_on: ", "based_on: " DISPERSA_CAMPAIGNS "/vehicles/"},
+                                 {"poisson_ratio: 0.3}", "poisson_ratio: 0.3, z_to_y_stiffness: 2}"}})
+    vehicle.replace(vehicle.find(from), std::string(from).size(), to);
+  files.Write("stiffer.yaml", vehicle);
+  const std::vector<std::string> lines = Lines(Dispersa("modes " + files.Path("stiffer.yaml")).text);
+  const auto first_hz = [&](const std::string& head) {
+    const auto at = std::find(lines.begin(), lines.end(), head);
+    if (lines.end() - at < 3) return 0.0;
+    std::istringstream row(at[2]);
+    double propellant_kg = 0.0, hz = 0.0;
+    row >> propellant_kg >> hz;
+    return hz;
+  };
+  EXPECT_GT(first_hz("stage 1 and above, plane y"), 1.0);
+  EXPECT_GT(first_hz("stage 1 and above, plane z"), 1.02 * first_hz("stage 1 and above, plane y"));
+}
+
 TEST(CliProgram, ModesOfARigidOrWrongVehicleAreBadInput) {
   const InputFiles files;
   const Output rigid = Dispersa("modes " + files.Path("vehicle.yaml"));
@@ -448,6 +468,8 @@ TEST(CliProgram, ReportTakesItsEnvelopeFromAsManyFlightsAsItIsTold) {
   };
   EXPECT_EQ(flights("4"), 4);
   EXPECT_EQ(flights("all"), 9);
+  EXPECT_THAT(Dispersa("replay --json --case 0 " + out).text,
+              StartsWith("{\n  \"schema\": \"dispersa/replay/1\",\n"));
   EXPECT_EQ(Dispersa("report --envelope 0 " + out).code, 2);
   EXPECT_EQ(Dispersa("report --envelope many " + out).code, 2);
 }
@@ -531,8 +553,13 @@ TEST(CliProgram, MarginsOfAPublishedLauncher) {
       if (m["place"] == "stage 1 burnout" && m["axis"] == "pitch") return m["frozen"];
     return nlohmann::json();
   };
-  const Output passed = Dispersa("margins " + campaign + " --frequency-band 0 --drift --json");
+  const Output passed = Dispersa("margins " + campaign + " --frequency-band 0 --drift --cases 2 --json");
   EXPECT_EQ(passed.code, 0) << passed.error;
+  const auto dispersed = nlohmann::json::parse(passed.text)["dispersed"];
+  EXPECT_EQ(dispersed["cases"], 2);
+  ASSERT_EQ(dispersed["least"].size(), 3u);  // axes of the one stage
+  EXPECT_EQ(dispersed["least"][2]["stage"], 1);
+  EXPECT_EQ(dispersed["least"][2]["axis"], "roll");
   EXPECT_EQ(nlohmann::json::parse(passed.text)["drift"], true);
   EXPECT_EQ(nlohmann::json::parse(passed.text)["frequency_band_percent"], 0.0);
   const auto notch = at_end(passed);
@@ -560,15 +587,20 @@ TEST(CliProgram, TuneWritesAnAutopilotThatSaysWhereItComesFrom) {
   // The smallest budget that there is.
   const std::string budget = " --seed 9 --cases 1 --evaluations 64";
   const Output tuned =
-      Dispersa("--quiet tune " + kSmoke + " --autopilot " DISPERSA_CAMPAIGNS "/autopilots/pd.yaml --out " +
-               file + budget);
+      Dispersa("--quiet tune " + kSmoke +
+               " --autopilot " DISPERSA_CAMPAIGNS "/autopilots/adaptive_fuzzy.yaml --out " + file + budget);
   ASSERT_EQ(tuned.code, 0) << tuned.error;
   EXPECT_THAT(tuned.text, HasSubstr("generation  feasible  best rms deg"));
   EXPECT_THAT(tuned.text, HasSubstr("\nautopilot: " + file + "\n"));
   const std::string text = ReadWholeFile(file);
   EXPECT_THAT(text, HasSubstr("# Tuned by\n#   dispersa tune " + kSmoke + " --autopilot "));
   EXPECT_THAT(text, HasSubstr(" --out " + file + budget + "\n"));
-  EXPECT_THAT(text, HasSubstr("\nname: pd\n"));
+  EXPECT_THAT(text, HasSubstr("\nname: adaptive_fuzzy\n"));
+  for (const std::string& line : Lines(text)) {
+    if (!line.starts_with("#   dispersa")) {
+      EXPECT_LE(line.size(), 108u) << line;
+    }
+  }
   EXPECT_EQ(Dispersa("validate " + file).code, 0);
 }
 
@@ -579,15 +611,21 @@ TEST(CliProgram, MarginsAndTuneNameWhatTheySkip) {
   const Output margins = Dispersa("margins " + campaign);
   EXPECT_THAT(margins.text, HasSubstr("Skipped, with less than 20 % of full thrust:\n(between) "));
   EXPECT_THAT(margins.text, HasSubstr("stage 4 burnout"));
+  EXPECT_THAT(margins.text, HasSubstr("\nRIGID-BODY MARGINS: no bending modes, no slosh.\n"));
   const InputFiles folder;
   const std::string file = folder.Path("tuned.yaml");
-  const Output tuned = Dispersa("--quiet tune " + campaign +
-                                " --autopilot " DISPERSA_CAMPAIGNS
-                                "/autopilots/pd.yaml --seed 9 --cases 1 --evaluations 64 --out " +
-                                file);
+  const std::string tune = "tune " + campaign +
+                           " --autopilot " DISPERSA_CAMPAIGNS
+                           "/autopilots/pd.yaml --seed 9 --cases 1 --evaluations 64 --out " +
+                           file;
+  const Output tuned = Dispersa("--quiet " + tune);
   EXPECT_EQ(tuned.code, 0) << tuned.error << tuned.text;
   EXPECT_THAT(tuned.text, HasSubstr("No margins are required below 20 % of full thrust:\n"));
   EXPECT_THAT(ReadWholeFile(file), HasSubstr(" instants with less than 20 % of full thrust.\n"));
+  const auto skipped = nlohmann::json::parse(Dispersa("--quiet --json " + tune).text)["skipped"];
+  ASSERT_EQ(skipped.size(), 5u);
+  EXPECT_EQ(skipped[0]["stage"], 1);
+  EXPECT_NEAR(skipped[0]["thrust_percent"].get<double>(), 13.697, 1e-3);
 }
 
 // Pitch's nozzles answer after a third of a second.

@@ -63,6 +63,20 @@ class Columns(ExportTest):
                          (2, "--columns: only a CSV file can leave columns out, allowed: --format csv\n"))
 
 
+class Compared(ExportTest):
+    def test_the_tail_of_each_metric_is_that_on_its_worse_side(self):
+        sides = [self.folder / seed for seed in ("5", "6")]
+        for side in sides:
+            dispersa("run", CAMPAIGNS / "smoke.yaml", "--cases", "120", "--seed", side.name, "--workers", "0", "--no-histories", "--quiet",
+                     "--out", side)
+        shown = {line.partition(" ")[0]: line[99:110].strip() for line in reversed(dispersa("compare", *sides).stdout.splitlines())}
+        metrics = json.loads(dispersa("compare", *sides, "--json").stdout)["metrics"]
+        for metric in metrics:
+            worse = "p01" if metric["worse"] == "smaller" else "p99"
+            tail = next(each for each in metric["tails"] if each["percentile"] == worse)
+            self.assertAlmostEqual(float(shown[metric["metric"]]), tail["difference"], delta=1e-3 * abs(tail["difference"]))
+
+
 class Incomplete(ExportTest):
     """The folder of a run that was killed, and a copy of it without the database's log."""
     CASES = 30000

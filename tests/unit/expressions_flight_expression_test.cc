@@ -45,6 +45,12 @@ std::string Problem(const std::string& text) {
   return "none";
 }
 
+std::string Repeated(const std::string& text, int times) {
+  std::string all;
+  while (times-- > 0) all += text;
+  return all;
+}
+
 double Scalar(const std::string& text) {
   const double values[] = {0.25, 3.0, -2.0, 1.0};
   return ParseExpression(text, Find).Evaluate(values);
@@ -142,13 +148,17 @@ TEST(Expressions, EveryErrorSaysWhereAndWhatIsAllowed) {
        "at character 7: the exponent is not a whole number from 2 to 9 | 2 to 9; else exp() and log()"},
       {"max(x^10)",
        "at character 7: the exponent is not a whole number from 2 to 9 | 2 to 9; else exp() and log()"},
+      {"max(x)^22",
+       "at character 8: the exponent is not a whole number from 2 to 9 | 2 to 9; else exp() and log()"},
       {"max(larger(x))", "at character 13: ')' stands where ',' is expected | ','"},
       {"max(x) & 1",
        "at character 8: '&' stands where an operator or the end is expected | an operator or the end"},
       {"max(x) + while", "at character 10: 'w' stands where a value is expected | a value"},
       {std::string(1001, ' '), "at character 1001: the expression is too long | up to 1000 characters"},
       {"max(" + std::string(40, '(') + "x" + std::string(40, ')') + ")",
-       "at character 34: the expression is nested too deeply | fewer brackets"}};
+       "at character 34: the expression is nested too deeply | fewer brackets"},
+      {Repeated("1 - -2 * (", 20) + "3" + Repeated(")", 20),
+       "at character 163: the expression is nested too deeply | fewer brackets"}};
   for (const auto& [text, expected] : problems) EXPECT_EQ(Problem(text), expected) << text;
 }
 

@@ -1,4 +1,5 @@
 // The charts of a report: what they draw, and over which range.
+#include <fmt/format.h>
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
@@ -9,7 +10,9 @@
 
 #include "core/pages/distribution_charts.h"
 #include "core/pages/flight_charts.h"
+#include "core/pages/vehicle_drawing.h"
 #include "tests/unit/made_up_results.h"
+#include "tests/unit/sample_vehicle.h"
 
 namespace dispersa::pages_charts_test {
 namespace {
@@ -88,6 +91,24 @@ TEST(DistributionFigures, DrawALimitOnTheValuesSideOfTheCut) {
     const auto [low, high] = AxisOf(html, "Histogram of", "x");
     EXPECT_LT(high - low, 1.0);
     EXPECT_GE(sign > 0.0 ? low : -high, 179.8);
+  }
+}
+
+// Charts beside each other in a section.
+TEST(ScatterFigures, AreOfOneSize) {
+  const std::string html = InjectionFigures({}, Values("apogee_km", {400, 500}));
+  EXPECT_EQ(CountOf(html, "<svg class=\"chart\" viewBox=\"0 0 520 300\""), 2u);
+}
+
+// 1, 2 or 5 times a power of ten, and at most a fifth of the vehicle, which is 1080 px long.
+TEST(VehicleDrawing, HasABarOfAFifthOfTheVehicle) {
+  for (const auto& [length_m, bar_m] : {std::pair{3.0, 0.5}, {27.0, 5.0}, {60.0, 10.0}, {120.0, 20.0}}) {
+    Vehicle vehicle = SampleVehicle();
+    vehicle.stages[0].bottom_station_m = length_m;
+    const double end_px = 60.0 + 1080.0 * bar_m / length_m;
+    EXPECT_THAT(VehicleDrawing(vehicle),
+                HasSubstr(fmt::format("<text class=\"soft\" x=\"{:.2f}\"", end_px + 10.0)))
+        << length_m;
   }
 }
 

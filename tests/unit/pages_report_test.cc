@@ -8,6 +8,7 @@
 #include <regex>
 
 #include "core/pages/glossary.h"
+#include "core/pages/html_parts.h"
 #include "core/pages/report_sections.h"
 #include "core/results/metric_catalogue.h"
 #include "core/results/text.h"
@@ -133,9 +134,12 @@ TEST_F(ReportPageTest, ShowsTheNumbersOfTheSummary) {
   }
   EXPECT_THAT(page_,
               HasSubstr(ScatterText(summary_.dispersions[0].drawn.mean, summary_.dispersions[0].drawn.std)));
-  EXPECT_THAT(page_, HasSubstr(summary_.id));
-  EXPECT_THAT(page_, HasSubstr(summary_.flight_id));
-  EXPECT_THAT(page_, HasSubstr(summary_.engine));
+  for (const auto& [name, text] : {std::pair{"Campaign id", Code(summary_.id)},
+                                   {"Flight id", Code(summary_.flight_id)},
+                                   {"Engine", Code(summary_.engine)},
+                                   {"Vehicle", HtmlText(summary_.vehicle) + ", "},
+                                   {"Autopilot", HtmlText(summary_.autopilot) + ", tick "}})
+    EXPECT_THAT(page_, HasSubstr("<th scope=\"row\">" + std::string(name) + "</th><td>" + text));
 }
 
 TEST_F(ReportPageTest, NumbersItsPrintedPagesAndNamesTheCampaignOnEach) {

@@ -120,6 +120,10 @@ TEST(CasesCsv, DoesNotDependOnTheOrderOfArrival) {
   std::string expected = Header();
   for (std::uint64_t k = 0; k < 50; ++k) expected += CasesCsvLine(MakeCase(k), AllColumns());
   EXPECT_EQ(csv, expected);
+  CasesCsv again(temporary / "again.csv", ascending, StoredColumns(ascending));
+  again.Write(MakeCase(7));
+  again.Write(MakeCase(8));
+  EXPECT_EQ(again.rows(), 2u);
 }
 
 TEST(CasesCsv, LeavesOutWhatIsTheSameInAllCases) {

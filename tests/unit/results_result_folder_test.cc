@@ -520,6 +520,7 @@ TEST(OutputFile, ReportsAFullDisk) {
 
 TEST(OutputFile, KeepsLinksAndPermissions) {
   TemporaryFolder temporary;
+  const mode_t mask = umask(022);
   std::ofstream(temporary / "file") << "old";
   std::filesystem::permissions(temporary / "file", std::filesystem::perms(0600));
   std::filesystem::create_symlink("file", temporary / "link");
@@ -531,6 +532,10 @@ TEST(OutputFile, KeepsLinksAndPermissions) {
   EXPECT_EQ(std::filesystem::status(temporary / "file").permissions(), std::filesystem::perms(0600));
   EXPECT_TRUE(std::filesystem::is_symlink(temporary / "dangling"));
   EXPECT_EQ(ReadText(temporary / "not yet"), "made");
+  AppendLine(temporary / "lines", "first");
+  for (const char* made : {"not yet", "lines"})
+    EXPECT_EQ(std::filesystem::status(temporary / made).permissions(), std::filesystem::perms(0644)) << made;
+  umask(mask);
 }
 
 TEST(OutputFile, WritesToAPipeThatIsThere) {

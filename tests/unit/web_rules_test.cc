@@ -104,6 +104,8 @@ TEST(Trend, EachPointHasItsOwnShareAndItsOwnLimit) {
   EXPECT_THAT(page, HasSubstr("<path class=\"limit\" d=\"M280.0 " + y(0.5)));
   EXPECT_THAT(page, HasSubstr("<path class=\"limit\" d=\"M744.0 " + y(0.95)));
   EXPECT_THAT(page, HasSubstr("d=\"M294.0 " + y(0.8) + "V" + y(0.95)));
+  for (const double share : {0.475, 0.60625, 0.7375, 0.86875, 1.0})
+    EXPECT_THAT(page, HasSubstr("<path class=\"grid\" d=\"M62 " + y(share) + "H990\"/>")) << share;
   EXPECT_THAT(page, HasSubstr("id=" + first.id + "&amp;id=" + second.id + "\">to the one before"));
 }
 
@@ -142,11 +144,13 @@ TEST(List, HasAPageForEachFiftyThatAreFound) {
     rows.push_back(Row(order));
     rows.back().owner = order <= 51 ? "ann" : "bob";
   }
+  rows[0].attempts = 7;
   const CampaignIndex index = IndexOf(rows);
   const std::string page = ListPage(index, "ann", 2);
   EXPECT_THAT(page, HasSubstr("page 2 of 2"));
   EXPECT_THAT(page, HasSubstr("name1<"));
   EXPECT_THAT(page, Not(HasSubstr("name2<")));
+  EXPECT_THAT(page, HasSubstr("<td class=\"n\">7</td>"));
   EXPECT_THAT(page, HasSubstr("/?q=ann&amp;page=1")) << "the other page of what was searched for";
   EXPECT_THAT(ListPage(index, "bob", 1), HasSubstr("page 1 of 2"));
   EXPECT_THAT(ListPage(index, "name14", 1), Not(HasSubstr("class=\"pages\"")));
@@ -160,6 +164,7 @@ TEST(Campaign, IsNoneOfTheOthersOfItsDesign) {
   const std::string part = CampaignPart(index, one, false);
   EXPECT_THAT(part, HasSubstr(">1 here; the report counts"));
   EXPECT_THAT(part, HasSubstr("name2"));
+  EXPECT_THAT(part, HasSubstr("dispersa fetch 1aaaaaaaaaaa --out DIR"));
   EXPECT_THAT(CampaignPart(index, unlike, false), Not(HasSubstr("Other campaigns")));
 }
 
