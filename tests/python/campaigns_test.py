@@ -67,6 +67,8 @@ class Loading(unittest.TestCase):
         self.assertEqual(dispersa.load(folder / "edited.yaml").id, edited.id)
         self.assertEqual(printed("plan", folder / "edited.yaml")["id"], edited.id)
         self.assertEqual(edited.name, "edited.true")
+        dispersa.write({"a": [1.5]}, folder / "small.yaml")
+        self.assertEqual((folder / "small.yaml").read_text(), '{\n "a": [\n  1.5\n ]\n}\n')
 
     def test_names_in_a_dict_are_relative_to_base(self):
         plain = dict(dispersa.read(SMOKE))
