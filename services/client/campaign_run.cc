@@ -82,7 +82,6 @@ class CampaignRun {
                           fmt::format("{}:{}", kLoopback, CoordinatorPort(domain.domain()))},
                          count, ToText(pass));
     std::optional<std::string> reason;
-    double joined_s = Now();
     while (!book_.refusal() && !book_.Complete() && !reason) {
       if (observer_.ShouldStop()) {
         workers.End(0.0);
@@ -96,8 +95,8 @@ class CampaignRun {
         workers.Kill(uuid);
       }
       ShowProgress(fmt::format("{} worker{}", workers.alive(), workers.alive() == 1 ? "" : "s"));
-      if (coordinator.joined() > 0) joined_s = Now();
-      reason = ReasonToEnd(coordinator, workers, Now() - joined_s);
+      workers.NoteJoined(coordinator.joined(), Now());
+      reason = ReasonToEnd(coordinator, workers);
     }
     book_.Flush();
     coordinator.Dismiss();
@@ -209,8 +208,7 @@ class CampaignRun {
     if (!changes.ended.empty() || !changes.started.empty()) Note(workers);
   }
 
-  std::optional<std::string> ReasonToEnd(const Coordinator& coordinator, const LocalWorkers& workers,
-                                         double nobody_joined_s) const {
+  std::optional<std::string> ReasonToEnd(const Coordinator& coordinator, const LocalWorkers& workers) const {
     if (coordinator.joined() == 0 && coordinator.refusal()) {
       return "no worker may fly this campaign: " + *coordinator.refusal();
     }
@@ -227,7 +225,7 @@ class CampaignRun {
       return fmt::format("the first {} cases ended every worker that flew them, the last one with {}",
                          quarantined, LastEnd(workers));
     }
-    if (nobody_joined_s > kJoinPatience_s) {
+    if (workers.NobodyJoined_s(Now()) > kJoinPatience_s) {
       return fmt::format("no worker has joined for {:.0f} s", kJoinPatience_s);
     }
     return std::nullopt;

@@ -76,6 +76,7 @@ LocalWorkers::~LocalWorkers() {
 
 LocalWorkers::Changes LocalWorkers::Poll(double now_s, std::uint64_t progress) {
   Changes changes;
+  if (history_.empty()) joined_s_ = now_s;
   if (progress != progress_) {
     progress_ = progress;
     fruitless_ends_ = 0;
@@ -94,6 +95,10 @@ LocalWorkers::Changes LocalWorkers::Poll(double now_s, std::uint64_t progress) {
     changes.started.push_back(history_.back());
   }
   return changes;
+}
+
+void LocalWorkers::NoteJoined(std::size_t joined, double now_s) {
+  if (joined > 0) joined_s_ = now_s;
 }
 
 void LocalWorkers::Kill(const std::string& uuid) {

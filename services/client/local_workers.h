@@ -47,6 +47,11 @@ class LocalWorkers {
   /// Ends in a row without progress.
   int fruitless_ends() const { return fruitless_ends_; }
 
+  /// `joined`: how many the coordinator has now.
+  void NoteJoined(std::size_t joined, double now_s);
+  /// Since the last time that one had joined, or since the first Poll().
+  double NobodyJoined_s(double now_s) const { return now_s - joined_s_; }
+
   void Kill(const std::string& uuid);
   /// Waits at most `patience_s` for them to end by themselves, then sends SIGKILL.
   void End(double patience_s);
@@ -69,6 +74,7 @@ class LocalWorkers {
   std::uint64_t progress_ = 0;
   int fruitless_ends_ = 0;
   double start_due_s_ = 0.0;
+  double joined_s_ = 0.0;
 };
 
 }  // namespace dispersa

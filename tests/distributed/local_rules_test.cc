@@ -64,6 +64,15 @@ TEST_F(EndingWorkers, AreReplacedEverLaterUnlessSomethingGetsDone) {
   EXPECT_THAT(workers_.history(), SizeIs(4));
 }
 
+TEST_F(EndingWorkers, AreWaitedForSinceOneHadJoined) {
+  workers_.Poll(3.0, 0);
+  workers_.NoteJoined(0, 10.0);
+  EXPECT_EQ(workers_.NobodyJoined_s(10.0), 7.0) << "since the first was started";
+  workers_.NoteJoined(1, 12.0);
+  workers_.Poll(14.0, 0);
+  EXPECT_EQ(workers_.NobodyJoined_s(20.0), 8.0);
+}
+
 TEST(ExecutionFile, SaysHowEachWorkerEndedOnceItHas) {
   const TemporaryFolder folder;
   ExecutionFile file;
