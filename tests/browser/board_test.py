@@ -152,6 +152,8 @@ class BoardInABrowser(BrowserCase):
         self.browser.keys("ArrowRight", "ArrowDown", "End")
         text = self.said()
         self.assertTrue(text.startswith("cases: share of cases beyond this "), text)
+        self.browser.keys("ArrowRight")  # nothing is beyond the last
+        self.assertEqual(self.said(), text)
         summary = json.loads((self.root / "undecided/r/summary.json").read_text(encoding="utf-8"))
         largest = summary["metrics"]["pitch_error_peak_deg"]["max"]
         self.assertAlmostEqual(float(re.search(r"at Pitch error, peak, ° ([\d.]+)", text).group(1)), largest, delta=0.01 * largest)
