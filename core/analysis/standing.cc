@@ -141,6 +141,11 @@ std::string SpentReason(const RequirementSummary& shown, const AttemptsVerdict& 
                             *verdict.pool_needed);
 }
 
+std::string TogetherReason(const AttemptsVerdict& verdict) {
+  return fmt::format("All attempts together decide: {} show {} failure{}.", FlightsText(verdict.pool_cases),
+                     verdict.pool_failures, verdict.pool_failures == 1 ? "" : "s");
+}
+
 std::string SeenReason(const AttemptsVerdict& verdict) {
   return fmt::format(
       "You added flights after seeing results; the stricter any-time rule now applies: {} flights with {} "
@@ -165,6 +170,10 @@ void Judge(const Requirement& requirement, const RequirementSummary& shown, cons
   standing.pool_failures = verdict.pool_failures;
   if (standing.verdict == "fail") return;
   if (standing.verdict == "pass") {
+    if (verdict.passed && !verdict.by_plan && verdict.pool_cases > shown.n)
+      standing.reason = TogetherReason(verdict);  // the plan's risk is spent
+    else if (!verdict.passed && verdict.passed_before)
+      standing.reason = "An earlier attempt at this design passed, and that stands.";
     if (verdict.passed || verdict.passed_before) return;
     standing.verdict = verdict.is_spent ? "not_evidence" : "inconclusive";
     standing.reason =
@@ -178,9 +187,7 @@ void Judge(const Requirement& requirement, const RequirementSummary& shown, cons
   }
   if (verdict.passed && !shown.contradicted) {
     standing.verdict = "pass";
-    standing.reason =
-        fmt::format("All attempts together decide: {} show {} failure{}.", FlightsText(verdict.pool_cases),
-                    verdict.pool_failures, verdict.pool_failures == 1 ? "" : "s");
+    standing.reason = TogetherReason(verdict);
   } else if (attempts.size() > 1 && verdict.pool_needed) {
     standing.reason = SeenReason(verdict);
   }

@@ -263,29 +263,28 @@ void Describe(Fields& fields, StructureBeam& beam, std::size_t stages, std::size
                  "modes flown per plane; 0: rigid; none from half the autopilot's sampling frequency on", 3);
   fields.Number("damping_ratio", Between(0.0, 0.5), beam.damping_ratio, "of every mode in flight", 0.01);
   ModeRows rows;
-  fields.Either(
-      {{Has("modes_table"),
-        [&] {
-          fields.Table("modes_table", "a CSV file",
-                       "a CSV file of a finite-element model's modes, instead of the keys below",
-                       [&](Fields& columns) {
-                         Describe(columns, rows, stages);
-                         columns.Check([&] { beam.table = ModeTable(columns, rows).Modes(); });
-                       });
-        }},
-       {Else(), [&] {
-          fields.Choice<bool>("theory", {{"euler_bernoulli", false}, {"timoshenko", true}}, beam.timoshenko,
-                              "a beam without shear, or with shear", false);
-          fields.Integer("modes", 1, 10, beam.modes, "in each plane", 3);
-          fields.Integer("propellant_levels", 2, 101, beam.propellant_levels,
-                         "evenly spaced from full to empty", 11);
-          fields.Integer("elements", 20, 400, beam.elements,
-                         "least number along a stack; as many more as 0.1 % of its modes needs", 40);
-          fields.List("stages", std::max<std::size_t>(bodies, 1), bodies > 0 ? bodies : kMaxStages,
-                      beam.stages,
-                      "one per stage, none for a restart; its sections fly while the stage is attached",
-                      [&](Fields& stage, BeamStage& value) { Describe(stage, value, beam.timoshenko); });
-        }}});
+  fields.Either({{Has("modes_table"),
+                  [&] {
+                    fields.Table("modes_table", "a CSV file",
+                                 "a CSV file of a finite-element model's modes, instead of the keys below",
+                                 [&](Fields& columns) {
+                                   Describe(columns, rows, stages);
+                                   columns.Check([&] { beam.table = ModeTable(columns, rows).Modes(); });
+                                 });
+                  }},
+                 {Else(), [&] {
+                    fields.Choice<bool>("theory", {{"euler_bernoulli", false}, {"timoshenko", true}},
+                                        beam.timoshenko, "a beam without shear, or with shear", false);
+                    fields.Integer("modes", 1, 10, beam.modes, "in each plane", 3);
+                    fields.Integer("propellant_levels", 2, 101, beam.propellant_levels,
+                                   "evenly spaced from full to empty", 11);
+                    fields.Integer("elements", 20, 400, beam.elements, "least; more if 0.1 % needs it", 40);
+                    fields.List(
+                        "stages", std::max<std::size_t>(bodies, 1), bodies > 0 ? bodies : kMaxStages,
+                        beam.stages,
+                        "one per stage, none for a restart; its sections fly while the stage is attached",
+                        [&](Fields& stage, BeamStage& value) { Describe(stage, value, beam.timoshenko); });
+                  }}});
 }
 
 }  // namespace dispersa

@@ -50,7 +50,12 @@ struct Row {
   StandingVerdict standing;
   std::int64_t pool_cases, pool_failures;
   bool is_post_hoc = false;
+  std::string reason = "";  ///< of a pass: what decided, if not the campaign's own flights
 };
+
+constexpr auto kPass = StandingVerdict::kPass;
+constexpr auto kNotEvidence = StandingVerdict::kNotEvidence;
+constexpr auto kIncomplete = StandingVerdict::kIncomplete;
 
 class StandingOfAttempts : public testing::TestWithParam<Row> {};
 
@@ -88,11 +93,12 @@ TEST_P(StandingOfAttempts, IsAsExpected) {
   ASSERT_EQ(standing.requirements.size(), 1u);
   EXPECT_EQ(standing.requirements[0].pool_cases, row.pool_cases);
   EXPECT_EQ(standing.requirements[0].pool_failures, row.pool_failures);
+  if (row.standing == kPass) {
+    EXPECT_EQ(standing.requirements[0].reason, row.reason);
+  }
 }
 
-constexpr auto kPass = StandingVerdict::kPass;
-constexpr auto kNotEvidence = StandingVerdict::kNotEvidence;
-constexpr auto kIncomplete = StandingVerdict::kIncomplete;
+constexpr char kEarlier[] = "An earlier attempt at this design passed, and that stands.";
 
 // An earlier pass lets a later pass stand only if what it passed was at least as strict. Its four failures
 // keep the pool of all flights from passing, so that the pass itself decides.
@@ -100,8 +106,26 @@ INSTANTIATE_TEST_SUITE_P(
     Strictness, StandingOfAttempts,
     testing::Values(
         Row{"NoneBefore", {}, 0, {}, kPass, 40, 0},
-        Row{"AsStrict", {{8, 40, 40, 4, "pass"}}, 0, {}, kPass, 80, 4},
-        Row{"StricterInBoth", {{8, 40, 40, 4, "pass", 0.5, 0.95, 0.05}}, 0, {}, kPass, 80, 4},
+        Row{"AsStrict", {{8, 40, 40, 4, "pass"}}, 0, {}, kPass, 80, 4, false, kEarlier},
+        Row{"StricterInBoth",
+            {{8, 40, 40, 4, "pass", 0.5, 0.95, 0.05}},
+            0,
+            {},
+            kPass,
+            80,
+            4,
+            false,
+            kEarlier},
+        // The plan's risk is spent: the pool decides, and says so.
+        Row{"SpentThenTogether",
+            {{8, 40, 40, 0, "inconclusive"}},
+            0,
+            {},
+            kPass,
+            80,
+            0,
+            false,
+            "All attempts together decide: 80 flights show 0 failures."},
         Row{"LaxerProbability", {{8, 40, 40, 4, "pass", 0.5, 0.8, 0.1}}, 0, {}, kNotEvidence, 80, 4},
         Row{"LaxerRisk", {{8, 40, 40, 4, "pass", 0.5, 0.9, 0.5}}, 0, {}, kNotEvidence, 80, 4},
         Row{"StricterProbabilityLaxerRisk",
