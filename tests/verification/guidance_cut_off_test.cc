@@ -96,7 +96,8 @@ TEST_P(GuidedFromAnEnergy, MeetsThePerigeeThatOpenLoopMissesByKilometres) {
 // reserve makes up for.
 TEST_P(GuidedLauncher, IsNoWorseThanOpenLoopWhateverAStageLacks) {
   for (std::size_t stage = 0; stage < campaign_.vehicle.stages.size(); ++stage) {
-    // Not -3 %: there Falcon 9 has hardly the propellant left, and one flight of ten ignites late (core/guidance).
+    // Not -3 %: there Falcon 9 has hardly the propellant left, and one flight of ten ignites late
+    // (core/guidance).
     for (const double percent : {-6.0, -2.0, -1.0, 1.0, 3.0}) {
       SCOPED_TRACE("stage " + std::to_string(stage + 1) + ", " + std::to_string(percent) + " %");
       FlightInputs inputs;
