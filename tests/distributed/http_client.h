@@ -23,17 +23,22 @@ inline int Connected(std::uint16_t port) {
   return connection;
 }
 
-// All that is answered to a request, until the connection ends.
-inline std::string AskHttp(std::uint16_t port, const std::string& request) {
-  const int connection = Connected(port);
-  EXPECT_EQ(send(connection, request.data(), request.size(), MSG_NOSIGNAL),
-            static_cast<ssize_t>(request.size()));
+// All that comes until the server closes.
+inline std::string Rest(int connection) {
   std::string answer;
   char part[4096];
   for (ssize_t count; (count = recv(connection, part, sizeof part, 0)) > 0;)
     answer.append(part, static_cast<std::size_t>(count));
   close(connection);
   return answer;
+}
+
+// All that is answered to a request, until the connection ends.
+inline std::string AskHttp(std::uint16_t port, const std::string& request) {
+  const int connection = Connected(port);
+  EXPECT_EQ(send(connection, request.data(), request.size(), MSG_NOSIGNAL),
+            static_cast<ssize_t>(request.size()));
+  return Rest(connection);
 }
 
 // A port that nobody has.

@@ -44,16 +44,6 @@ std::string Form(const std::string& body) {
          body;
 }
 
-/// All that comes until the server closes.
-std::string Rest(int connection) {
-  std::string answer;
-  char part[4096];
-  for (ssize_t count; (count = recv(connection, part, sizeof part, 0)) > 0;)
-    answer.append(part, static_cast<std::size_t>(count));
-  close(connection);
-  return answer;
-}
-
 void Say(int connection, const std::string& text) {
   send(connection, text.data(), text.size(), MSG_NOSIGNAL);
 }
