@@ -14,6 +14,7 @@ template <class T>
 struct LoadTableLanes {
   T slender_station_m;
   int stations = 0;  ///< of any lane; a lane with fewer has no moment at the others
+  T scouts_see;
   T station_m[kLoadStations], first_kg_m[kLoadStations][3], second_kg_m2[kLoadStations][3];
   T slender_arm_m[kLoadStations], shift_arm[kLoadStations];  ///< lever of the shares ahead of each station
 };
@@ -23,6 +24,7 @@ DISPERSA_INLINE void SetLane(LoadTableLanes<T>& s, int lane, const LoadTable* ta
   const LoadTable& from = table ? *table : NoLoads();
   Lane(s.slender_station_m, lane) = from.lift.slender_station_m;
   s.stations = s.stations > from.stations ? s.stations : from.stations;
+  Lane(s.scouts_see, lane) = from.scouts_see;
   for (int i = 0; i < kLoadStations; ++i) {
     Lane(s.station_m[i], lane) = from.station_m.data()[i];
     for (int k = 0; k < 3; ++k) Lane(s.first_kg_m[i][k], lane) = from.first_kg_m.data()[i].data()[k];
@@ -44,6 +46,9 @@ struct BodyMotion {
   T propellant_kg, cg_station_m;
   T lateral_y_m_s2, lateral_z_m_s2, turn_y_1_s2, turn_z_1_s2;
 };
+/// Of what the scouts see: drawn masses and air are not quite those of the family (load_stations.h).
+inline constexpr double kScoutMargin = 0.9;
+
 /// The largest bending moment, and where.
 template <class T>
 struct LargestMoment {
@@ -53,10 +58,11 @@ struct LargestMoment {
 /// Bending moments at all load stations. A section carries the force for the acceleration of the mass ahead,
 /// minus the flow's force there, plus `further` (force summation: R. L. Bisplinghoff, H. Ashley, R. L.
 /// Halfman, "Aeroelasticity", 1955). Left out: the flow's damping moment, forces of the propellant flow, and
-/// the axial force on the bent axis. `side`: of the yaw plane, with kTwoPlanes.
+/// the axial force on the bent axis. `side`: of the yaw plane, with kTwoPlanes. A lane looks beyond its
+/// scouts where their moment says that the largest may be above `seen_n_m`; bent ones always do.
 template <class T, bool kTwoPlanes, class... Further>
 DISPERSA_INLINE LargestMoment<T> LargestOfPlanes(const LoadTableLanes<T>& body, const NormalForce<T>& air,
-                                                 const SideForce<T>* side, const BodyMotion<T>& m,
+                                                 const SideForce<T>* side, const BodyMotion<T>& m, T seen_n_m,
                                                  const Further&... further) {
   T largest2(0.0), station(0.0);
   const T aft = air.xcp_station_m - body.slender_station_m;
@@ -66,22 +72,34 @@ DISPERSA_INLINE LargestMoment<T> LargestOfPlanes(const LoadTableLanes<T>& body, 
     side_aft = side->xcp_station_m - body.slender_station_m;
   }
   const T y_n = side_n * air.across_y, z_n = air.normal_n * air.across_z;
-  for (int i = 0; i < body.stations; ++i) {
-    const T* f = body.first_kg_m[i];
-    const T* s = body.second_kg_m2[i];
-    const T first = Fma(m.propellant_kg, Fma(m.propellant_kg, f[2], f[1]), f[0]);
-    const T turned =
-        Fma(m.cg_station_m, first, -Fma(m.propellant_kg, Fma(m.propellant_kg, s[2], s[1]), s[0]));
-    const T arm = Fma(aft, body.shift_arm[i], body.slender_arm_m[i]);
-    T side_arm = arm;
-    if constexpr (kTwoPlanes) side_arm = Fma(side_aft, body.shift_arm[i], body.slender_arm_m[i]);
-    T y = Fma(m.lateral_y_m_s2, first, Fma(m.turn_z_1_s2, turned, y_n * side_arm));
-    T z = Fma(m.lateral_z_m_s2, first, Fma(-m.turn_y_1_s2, turned, z_n * arm));
-    ((y = y + further.y_n_m[i], z = z + further.z_n_m[i]), ...);
-    const T size2 = Fma(y, y, z * z);
-    const auto is_larger = size2 > largest2;
-    largest2 = Select(is_larger, size2, largest2);
-    station = Select(is_larger, body.station_m[i], station);
+  const auto look = [&](int begin, int end, const auto& lanes) __attribute__((always_inline)) {
+    for (int i = begin; i < end; ++i) {
+      const T* f = body.first_kg_m[i];
+      const T* s = body.second_kg_m2[i];
+      const T first = Fma(m.propellant_kg, Fma(m.propellant_kg, f[2], f[1]), f[0]);
+      const T turned =
+          Fma(m.cg_station_m, first, -Fma(m.propellant_kg, Fma(m.propellant_kg, s[2], s[1]), s[0]));
+      const T arm = Fma(aft, body.shift_arm[i], body.slender_arm_m[i]);
+      T side_arm = arm;
+      if constexpr (kTwoPlanes) side_arm = Fma(side_aft, body.shift_arm[i], body.slender_arm_m[i]);
+      T y = Fma(m.lateral_y_m_s2, first, Fma(m.turn_z_1_s2, turned, y_n * side_arm));
+      T z = Fma(m.lateral_z_m_s2, first, Fma(-m.turn_y_1_s2, turned, z_n * arm));
+      ((y = y + further.y_n_m[i], z = z + further.z_n_m[i]), ...);
+      const T size2 = Fma(y, y, z * z);
+      const auto is_larger = lanes & (size2 > largest2);
+      largest2 = Select(is_larger, size2, largest2);
+      station = Select(is_larger, body.station_m[i], station);
+    }
+  };
+  const auto all = T(0.0) < T(1.0);
+  if constexpr (sizeof...(Further) > 0) {
+    look(0, body.stations, all);
+  } else {
+    const int scouts = body.stations < kScoutStations ? body.stations : kScoutStations;
+    look(0, scouts, all);
+    const T enough = T(kScoutMargin) * body.scouts_see * seen_n_m;
+    const auto may_be_larger = largest2 > enough * enough;
+    if (Any(may_be_larger)) look(scouts, body.stations, may_be_larger);
   }
   return {Sqrt(largest2), station};
 }
@@ -90,17 +108,18 @@ DISPERSA_INLINE LargestMoment<T> LargestOfPlanes(const LoadTableLanes<T>& body, 
 template <class T, class... Further>
 DISPERSA_OUT_OF_LINE LargestMoment<T> LargestOfTwoPlanes(const LoadTableLanes<T>& body,
                                                          const NormalForce<T>& air, const SideForce<T>& side,
-                                                         const BodyMotion<T>& m, const Further&... further) {
-  return LargestOfPlanes<T, true>(body, air, &side, m, further...);
+                                                         const BodyMotion<T>& m, T seen_n_m,
+                                                         const Further&... further) {
+  return LargestOfPlanes<T, true>(body, air, &side, m, seen_n_m, further...);
 }
 
 /// `side`: of the yaw plane (null: as the pitch plane).
 template <class T, class... Further>
 DISPERSA_INLINE LargestMoment<T> LargestOf(const LoadTableLanes<T>& body, const NormalForce<T>& air,
-                                           const SideForce<T>* side, const BodyMotion<T>& m,
+                                           const SideForce<T>* side, const BodyMotion<T>& m, T seen_n_m,
                                            const Further&... further) {
-  return side ? LargestOfTwoPlanes(body, air, *side, m, further...)
-              : LargestOfPlanes<T, false>(body, air, side, m, further...);
+  return side ? LargestOfTwoPlanes(body, air, *side, m, seen_n_m, further...)
+              : LargestOfPlanes<T, false>(body, air, side, m, seen_n_m, further...);
 }
 
 }  // namespace DISPERSA_ISA

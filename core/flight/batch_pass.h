@@ -21,7 +21,7 @@ void Batch<T>::Pass() {
   if (cuts_off_in_flight_) CutOff();
   if (definition_.guidance.closed_loop) Guide();
   metrics_.AddLoads(live_ & !coasting_, step_.now());
-  metrics_.AddMoment(live_ & !coasting_, step_.LargestMomentNow());
+  metrics_.AddMoment(live_ & !coasting_, step_.LargestMomentNow(metrics_.sums.bending_moment_max_n_m));
   M metered = live_ & step_.phase().burning;
   if (has_free_stage_) {
     metered = metered & !unsteered_;

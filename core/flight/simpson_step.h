@@ -255,8 +255,8 @@ class StepState {
   const T& cg_station_m() const { return start_->masses.cg_station_m; }
   /// Of the lanes' lowest stages.
   const T& propellant_kg() const { return start_->masses.propellant_kg; }
-  /// The largest bending moment of the lanes' bodies now.
-  LargestMoment<T> LargestMomentNow() const {
+  /// The largest bending moment of the lanes' bodies now; what is below `seen_n_m` may be a smaller one.
+  LargestMoment<T> LargestMomentNow(T seen_n_m) const {
     const Point& now = *start_;
     const Vector<T>&w = motion_.w, &dw = now.rates.dw;
     const T per_kg = now.masses.inverse_mass_1_kg;
@@ -265,8 +265,8 @@ class StepState {
                               Fma(-w.x, w.z, dw.y),           Fma(w.x, w.y, dw.z)};
     const NormalForce<T>& air = now.instant.normal;
     const SideForce<T>* const side = plant_.aero.has_yaw_plane ? &now.instant.side : nullptr;
-    if (bending_.modes == 0) return LargestOf(plant_.sections, air, side, moved);
-    return LargestOf(plant_.sections, air, side, moved,
+    if (bending_.modes == 0) return LargestOf(plant_.sections, air, side, moved, seen_n_m);
+    return LargestOf(plant_.sections, air, side, moved, seen_n_m,
                      MomentsByBending(bending_, bending_state_, now.modal, plant_.sections, air, side));
   }
 

@@ -120,10 +120,11 @@ void AddLift(const LoadTable& loads, const LiftShapes& four, const std::vector<L
   for (std::size_t j = 0; j < modes; ++j)
     add(kWorkEffects + static_cast<int>(j), pieces.size(),
         [&](std::size_t i) { return all[j / 4].Deflection(i, j % 4); });
-  std::size_t ahead = 0;  // pieces ahead of a station
   for (std::size_t s = 0; s < static_cast<std::size_t>(loads.stations); ++s) {
-    while (ahead < pieces.size() && pieces[ahead].Middle() < loads.station_m[s]) ++ahead;
-    add(kSectionEffects + static_cast<int>(s), ahead,
+    const auto behind = std::partition_point(pieces.begin(), pieces.end(), [&](const LiftPiece& piece) {
+      return piece.Middle() < loads.station_m[s];
+    });
+    add(kSectionEffects + static_cast<int>(s), static_cast<std::size_t>(behind - pieces.begin()),
         [&](std::size_t i) { return loads.station_m[s] - pieces[i].Middle(); });
   }
 }

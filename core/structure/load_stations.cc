@@ -7,6 +7,7 @@
 #include "core/math/functions.h"
 #include "core/structure/free_body.h"
 #include "core/structure/lift_distribution.h"
+#include "core/structure/load_table.h"
 #include "core/structure/mass_points.h"
 #include "core/vehicle/beam_masses.h"
 
@@ -104,14 +105,31 @@ std::vector<Moments> FamilyOf(const Vehicle& vehicle, int stage, const std::vect
   return family;
 }
 
+/// Puts first those that see most of every moment: again and again the best one for the moment of which least
+/// is seen. `chosen`: indices into the moments.
+double PutScoutsFirst(const std::vector<Moments>& family, std::vector<std::size_t>& chosen) {
+  std::vector<double> seen(family.size(), 0.0);
+  const std::size_t scouts = std::min<std::size_t>(kScoutStations, chosen.size());
+  for (std::size_t scout = 0; scout < scouts; ++scout) {
+    const auto least = static_cast<std::size_t>(std::min_element(seen.begin(), seen.end()) - seen.begin());
+    const auto best =
+        std::max_element(chosen.begin() + static_cast<std::ptrdiff_t>(scout), chosen.end(),
+                         [&](std::size_t a, std::size_t b) { return family[least][a] < family[least][b]; });
+    std::iter_swap(chosen.begin() + static_cast<std::ptrdiff_t>(scout), best);
+    for (std::size_t i = 0; i < family.size(); ++i) seen[i] = std::max(seen[i], family[i][chosen[scout]]);
+  }
+  return seen.empty() ? 0.0 : *std::min_element(seen.begin(), seen.end());
+}
+
 }  // namespace
 
-std::vector<double> ChooseLoadStations(const Vehicle& vehicle, int stage, std::size_t most) {
+LoadStations ChooseLoadStations(const Vehicle& vehicle, int stage, std::size_t most) {
   const Stage& lowest = vehicle.stages[static_cast<std::size_t>(stage)];
   const std::vector<double> stations = Candidates(BuildBeamMasses(vehicle, stage, lowest.propellant_mass_kg),
                                                   lowest.bottom_station_m, lowest.gimbal.pivot_station_m);
-  std::vector<Moments> missed = FamilyOf(vehicle, stage, stations);
-  std::vector<double> chosen;
+  const std::vector<Moments> family = FamilyOf(vehicle, stage, stations);
+  std::vector<Moments> missed = family;
+  std::vector<std::size_t> chosen;
   // The station that has the largest of most moments, then that of most of the rest.
   while (!missed.empty() && chosen.size() < most) {
     std::size_t best = 0, of_best = 0;
@@ -121,10 +139,12 @@ std::vector<double> ChooseLoadStations(const Vehicle& vehicle, int stage, std::s
       if (seen > of_best) best = i, of_best = seen;
     }
     std::erase_if(missed, [&](const Moments& moments) { return moments[best] >= 1.0 - kMissedMoment; });
-    chosen.push_back(stations[best]);
+    chosen.push_back(best);
   }
-  std::sort(chosen.begin(), chosen.end());
-  return chosen;
+  LoadStations all;
+  all.scouts_see = PutScoutsFirst(family, chosen);
+  for (const std::size_t station : chosen) all.station_m.push_back(stations[station]);
+  return all;
 }
 
 }  // namespace dispersa

@@ -13,11 +13,13 @@ namespace dispersa {
 LoadTable BuildLoadTable(const Vehicle& vehicle, int stage, const LoadTable* nominal) {
   const Stage& lowest = vehicle.stages[static_cast<std::size_t>(stage)];
   LoadTable table;
-  const std::vector<double> stations =
-      nominal
-          ? std::vector<double>(nominal->station_m.begin(), nominal->station_m.begin() + nominal->stations)
-          : ChooseLoadStations(vehicle, stage, kLoadStations);
+  const LoadStations chosen =
+      nominal ? LoadStations{{nominal->station_m.begin(), nominal->station_m.begin() + nominal->stations},
+                             nominal->scouts_see}
+              : ChooseLoadStations(vehicle, stage, kLoadStations);
+  const std::vector<double>& stations = chosen.station_m;
   table.stations = static_cast<int>(stations.size());
+  table.scouts_see = chosen.scouts_see;
   std::copy(stations.begin(), stations.end(), table.station_m.begin());
   table.lift = DistributeLift(vehicle, stage, stations);
   table.lift.ForEach([](double) { return 1.0; },

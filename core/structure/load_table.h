@@ -10,6 +10,8 @@ namespace dispersa {
 
 /// The most cross-sections that are looked at (load_stations.h).
 inline constexpr int kLoadStations = 40;
+/// The first ones, which tell whether the others need a look.
+inline constexpr int kScoutStations = 8;
 
 struct LoadTable {
   LiftDistribution lift;
@@ -23,6 +25,7 @@ struct LoadTable {
   /// this is exact, with first[2] = 0. For liquids with a surface that passes the station, it is the parabola
   /// through full, half full and empty.
   int stations = 0;
+  double scouts_see = 0.0;  ///< LoadStations::scouts_see
   std::array<double, kLoadStations> station_m{};
   std::array<std::array<double, 3>, kLoadStations> first_kg_m{};
   std::array<std::array<double, 3>, kLoadStations> second_kg_m2{};
