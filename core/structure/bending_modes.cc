@@ -160,9 +160,11 @@ void SolvePlane(const Vehicle& vehicle, BeamPlane plane, StackModes& stack, Mode
     beam.sections.insert(beam.sections.end(), sections.begin(), sections.end());
   }
   const std::vector<double> levels_kg = LevelsOf(vehicle, stack.stage, stack.gone);
+  const double half_kg = levels_kg[levels_kg.size() / 2];
   // One mesh for all levels, so that shapes can be compared node by node.
   const BeamMesh mesh = RefinedMesh(beam, plane,
                                     {BuildBeamMasses(vehicle, stack.stage, levels_kg.front(), stack.gone),
+                                     BuildBeamMasses(vehicle, stack.stage, half_kg, stack.gone),
                                      BuildBeamMasses(vehicle, stack.stage, levels_kg.back(), stack.gone)},
                                     structure.elements, structure.modes);
   const auto& [stations, elements, difference] = mesh;
