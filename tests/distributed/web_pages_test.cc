@@ -190,20 +190,20 @@ TEST(WebDifference, NamesInputsRequirementsEngineAndDriversThatDiffer) {
 
 TEST(WebTrend, FollowsOneRequirementOverVersionsOldestFirst) {
   CampaignRow first = Row(1), second = Row(2), other = Row(3), flying = Row(4);
-  first.labels = {"commit=aaaa", "branch=main"};
-  second.labels = {"commit=bbbb", "branch=main"};
-  other.labels = {"commit=cccc", "branch=try"};
+  first.labels = {"commit=v001", "branch=main"};
+  second.labels = {"commit=v002", "branch=main"};
+  other.labels = {"commit=v003", "branch=try"};
   flying.has_ended = false;
-  flying.labels = {"commit=dddd"};
+  flying.labels = {"commit=v004"};
   const CampaignIndex index = IndexOf({first, second, other, flying});
   const std::string page = TrendPage(index, "q_max_pa", "branch=main");
   const std::size_t chart = page.find("<svg"), end = page.find("</svg>");
   const std::string svg = page.substr(chart, end - chart);
-  EXPECT_LT(svg.find("aaaa"), svg.find("bbbb"));
+  EXPECT_LT(svg.find("v001"), svg.find("v002"));
   EXPECT_EQ(Count(svg, "<circle"), 2u);
   EXPECT_EQ(Count(svg, "class=\"range\""), 2u);
-  EXPECT_THAT(page, Not(HasSubstr("cccc")));
-  EXPECT_THAT(TrendPage(index, "q_max_pa", ""), Not(HasSubstr("dddd"))) << "it has judged nothing";
+  EXPECT_THAT(page, Not(HasSubstr("v003")));
+  EXPECT_THAT(TrendPage(index, "q_max_pa", ""), Not(HasSubstr("v004"))) << "it has judged nothing";
   EXPECT_THAT(page, HasSubstr("/difference?id=" + first.id + "&amp;id=" + second.id));
   EXPECT_THAT(TrendPage(index, "", ""), HasSubstr("/trend?metric=q_max_pa"));
   EXPECT_THAT(TrendPage(index, "alpha", ""), HasSubstr("No campaign that has ended requires it"));
