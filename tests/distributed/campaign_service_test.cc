@@ -385,6 +385,7 @@ TEST_F(CampaignServiceTest, OldCampaignsAndThoseBeyondTheSizeAreDeletedTheOldest
   }
   const std::string flying = Launch(Smoke(2, 9));
   const auto left = [&] {
+    EXPECT_TRUE(Reaches(flying, CampaignState::kFlying));
     workforce_.time_s += 61.0;
     service_->Step();
     std::vector<bool> are_there;
@@ -539,6 +540,7 @@ TEST_F(ServiceTroubleTest, AFullDiskPausesCampaignsAndTheyGoOnByThemselves) {
       return "the opening is not delayed";
     note(Failure(flying.id));
     note(Failure(opening.id));
+    workforce_.Join("another");
     note(std::to_string(MadeUpWorkforce::CasesIn(workforce_.Tick())) + " assigned");
     try {
       Launch(launching);
@@ -614,6 +616,13 @@ TEST_F(OpeningTest, TakesOverCasesOfTheCampaignAlone) {
 TEST_F(OpeningTest, TakesNothingOverOfOtherFlights) {
   const auto other = Flown("other", Smoke(4, 2), {0, 1});
   EXPECT_THAT(Open(Smoke(4, 1), {other})->folder().PresentCases(), ElementsAre());
+  // Also of those that draw the same inputs.
+  const Campaign all = Smoke(4, 1);
+  std::string text = all.canonical_yaml;
+  const std::string before = "spread_1_s: 60", after = "spread_1_s: 61";
+  text.replace(text.find(before), before.size(), after);
+  const auto alike = Flown("alike", ParseCampaign(text, "alike"), {0, 1});
+  EXPECT_THAT(Open(all, {alike})->folder().PresentCases(), ElementsAre());
 }
 
 TEST_F(OpeningTest, ACampaignThatStopsByItselfTakesNothingOver) {

@@ -7,6 +7,7 @@
 
 #include <cmath>
 #include <fstream>
+#include <nlohmann/json.hpp>
 
 #include "core/flight/metrics.h"
 #include "core/input/input_error.h"
@@ -92,11 +93,13 @@ TEST_F(CatalogueTest, EachStartHasALargerNumberAlsoWhenTheClockIsSetBack) {
 }
 
 TEST_F(CatalogueTest, AStateOfALaterVersionIsLeftAlone) {
-  fs::create_directories(root_ / "data" / "a1");
+  Catalogue(root_ / "data").Add(Entry("a1"), "text");
+  EXPECT_EQ(Catalogue(root_ / "data").entries().size(), 1u);
   const fs::path file = root_ / "data" / "a1" / "state.json";
-  std::ofstream(file) << "{\"version\": 4, \"id\": \"a1\"}";
-  Catalogue catalogue(root_ / "data");
-  EXPECT_TRUE(catalogue.entries().empty());
+  nlohmann::json state = nlohmann::json::parse(std::ifstream(file));
+  state["version"] = state["version"].get<int>() + 1;
+  std::ofstream(file) << state;
+  EXPECT_TRUE(Catalogue(root_ / "data").entries().empty());
   EXPECT_TRUE(fs::exists(file));
 }
 

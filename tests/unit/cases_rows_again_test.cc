@@ -5,6 +5,7 @@
 #include <cmath>
 #include <cstring>
 #include <filesystem>
+#include <initializer_list>
 #include <string>
 #include <vector>
 
@@ -46,25 +47,30 @@ std::vector<CaseResult> DrawnRows(const Campaign& campaign, const CaseDesign& de
   return rows;
 }
 
-// The same campaign whose cases are the table's rows; by the rows alone, or beside the dispersions that drew
-// them.
-Campaign Listed(const Campaign& campaign, const std::string& table, bool alone) {
-  std::string text = "\n" + campaign.canonical_yaml;
-  const auto cut = [&text](const std::string& key) {
+std::string Without(std::string text, std::initializer_list<const char*> keys) {
+  for (const std::string key : keys) {
     const std::size_t at = text.find("\n" + key + ":");
-    if (at == std::string::npos) return;
+    if (at == std::string::npos) continue;
     std::size_t end = text.find('\n', at + 1);
     while (end + 1 < text.size() && text[end + 1] == ' ') end = text.find('\n', end + 1);
     text.erase(at, end - at);
-  };
-  for (const char* key : {"sampling", "requirements", "verdicts"}) cut(key);
-  if (alone)
-    for (const char* key : {"dispersions", "derived", "correlations"}) cut(key);
+  }
+  return text;
+}
+
+// The campaign of a text without `sampling`, whose cases are the table's rows.
+Campaign Listed(const std::string& text, const std::string& table, std::uint64_t seed = 1) {
   const InputFiles files;
   files.Write("cases.csv", table);
-  files.Write("again.yaml", text + "sampling: {method: list, cases: " + std::to_string(kRows) + ", seed: " +
-                                std::to_string(campaign.sampling.seed) + ", table: cases.csv}\n");
+  files.Write("again.yaml", text + "sampling: {method: list, cases: " + std::to_string(kRows) +
+                                ", seed: " + std::to_string(seed) + ", table: cases.csv}\n");
   return LoadCampaign(files.Path("again.yaml"));
+}
+// The same campaign; by the rows alone, or beside the dispersions that drew them.
+Campaign Listed(const Campaign& campaign, const std::string& table, bool alone) {
+  std::string text = Without("\n" + campaign.canonical_yaml, {"sampling", "requirements", "verdicts"});
+  if (alone) text = Without(text, {"dispersions", "derived", "correlations"});
+  return Listed(text, table, campaign.sampling.seed);
 }
 
 void ExpectSameInputs(const CaseDesign& first, const CaseDesign& again, const std::string& what) {
@@ -97,6 +103,25 @@ TEST(RowsAgain, HaveTheSameInputsInEveryShippedCampaign) {
     ++campaigns;
   }
   EXPECT_GE(campaigns, 15);
+}
+
+// One draw moves thrust and mass flow of all stages.
+TEST(RowsAgain, AListedInputLeavesTheOthersOfItsDraw) {
+  const std::string smoke = "\n" + LoadCampaign(DISPERSA_CAMPAIGNS "/smoke.yaml").canonical_yaml;
+  const Campaign listed =
+      Listed(Without(smoke, {"sampling", "dispersions", "requirements", "verdicts"}) +
+                 "dispersions: {propellant_temperature: {distribution: normal, three_sigma_k: 45, "
+                 "sensitivity_percent_per_k: 0.2, per: vehicle}}\n",
+             "thrust_factor_stage1\n1.01\n0.98\n1\n");
+  const CaseDesign design(listed);
+  const double rows[] = {1.01, 0.98, 1.0};
+  for (std::uint64_t i = 0; i < kRows; ++i) {
+    FlightInputs in = design.Draw(i);
+    const auto input = [&](const char* name) { return InputValue(in, FindInput(name)); };
+    EXPECT_EQ(input("thrust_factor_stage1"), rows[i]);
+    EXPECT_NE(input("thrust_factor_stage2"), 1.0);
+    EXPECT_EQ(input("thrust_factor_stage2"), input("mass_flow_factor_stage1"));
+  }
 }
 
 // Winds by level, gusts, turbulence, noise, angles, factors, delays: all that `full` draws.
