@@ -102,7 +102,7 @@ def with_switches(text, changes):
         for number, begin, end, new in choices:
             faulty, line = text[first:begin] + new + text[end:after], written.count("\n") + 1
             written += f"if (dispersa_fault({number})) {{{faulty}\n}} else " if is_body else \
-                f"(dispersa_fault({number}) ? ({faulty}) : "
+                f"(dispersa_fault_of_value({number}) ? ({faulty}) : "
             lines.append((line, written.count("\n") + 1, [number]))
         written += f"{{{text[first:after]}\n}}" if is_body else f"({text[first:after]})" + ")" * len(choices)
         lines.append((start, written.count("\n") + 1, [choice[0] for choice in choices]))

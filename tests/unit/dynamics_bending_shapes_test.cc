@@ -166,6 +166,19 @@ TEST(BendingShapes, OfAModeThatDoesNotFlyAreNone) {
   }
 }
 
+// At the same propellant too, which is between the same levels.
+TEST(BendingShapes, AreThoseOfAnotherStackAtOnce) {
+  BendingTable another = NumberTable(2);
+  for (double& value : another.rows) value *= 3.0;
+  lanes::BendingTableLanes<double> bending = BendingOf(NumberTable(2), 80.0);
+  lanes::SetTable(bending, 0, &another);
+  lanes::ShapesAt(bending, 80.0);
+  for (int plane = 0; plane < kPlanes; ++plane)
+    for (int mode = 0; mode < 2; ++mode)
+      ExpectColumns(bending, plane, mode,
+                    [&](int column) { return 3.0 * Expected(kPlaces[2], plane, mode, column); });
+}
+
 // Side by side: stacks of their own, at propellants of their own.
 TEST(BendingShapes, OfALaneAreThoseOfItsStackAlone) {
   using Four = lanes::Pack<4>;

@@ -148,12 +148,12 @@ TEST(BendingTable, ShorteningCountsTheMassAhead) {
   last.structure = {{"all", 0.5, 1.0, 10.5, 1.0, 0.9}, {"payload", 0.5, 1.0, 1.5, 0.8, 0.0}};
   LumpedMass payload;
   payload.name = payload.element = "payload";
-  payload.station_m = 1.25;
+  payload.station_m = 2.0;  // its middle is at 1.25 m
   vehicle.structure_beam->stages[1].lumped_masses = {payload};
   const std::vector<StackModes> stacks = BuildBendingModes(vehicle);
   const LoadTable loads{};
   const BendingTable table = BuildBendingTable(vehicle, stacks[1], loads, 2);
-  // Empty: 1 t payload at 1.25 m, 1 t evenly from 1 to 10.5 m.
+  // Empty: 1 t payload fixed at 2 m, 1 t evenly from 1 to 10.5 m.
   const BendingLevel& empty = stacks[1].levels[0].back();
   ASSERT_EQ(empty.propellant_kg, 0.0);
   for (int j = 0; j < 2; ++j)
@@ -162,7 +162,7 @@ TEST(BendingTable, ShorteningCountsTheMassAhead) {
       constexpr int kPlaces = 20000;
       for (int i = 0; i < kPlaces; ++i) {
         const double x = 1.0 + 9.5 * (i + 0.5) / kPlaces;
-        const double ahead = 0.5 * (x - 1.0) / 9.5 + (x > 1.25 ? 0.5 : 0.0);
+        const double ahead = 0.5 * (x - 1.0) / 9.5 + (x > 2.0 ? 0.5 : 0.0);
         const auto slope = [&](int mode) {
           return ShapeOf(stacks[1], BeamPlane::kY, empty.modes[static_cast<std::size_t>(mode)], x).slope_1_m;
         };

@@ -93,6 +93,12 @@ TEST(JettisonedBending, LeavesTheMassesTheirMomentum) {
       state.q_IB = FromRotationVector(Vector3(0.3, -0.7, 1.1));
       const RigidBodyState before = state;
       LetGoBent(stack, 0u, 1u, 0.0, modal, state);
+      const ModalPassage passage = stack.lighter_bending->Passage(0u, 1u, 0.0);
+      for (int k = 0; k < 3; ++k) {
+        const double onto = passage.onto[plane][k][mode];
+        EXPECT_DOUBLE_EQ(modal[plane * kModes + k], onto * q_m);
+        EXPECT_DOUBLE_EQ(modal[(kPlanes + plane) * kModes + k], onto * rate_m_s);
+      }
       const Vector3 along = plane == 0 ? Vector3::UnitY() : Vector3::UnitZ(),
                     about = plane == 0 ? Vector3(-Vector3::UnitZ()) : Vector3(Vector3::UnitY());
       const double move = momentum / mass.mass_kg, turn = angular / mass.transverse_inertia_kg_m2;
@@ -176,6 +182,8 @@ TEST(JettisonedBending, FliesAsCvodeFliesIt) {
   };
   ASSERT_EQ(Fly(model, Table3Inputs(), options).outcome, Outcome::kCompleted);
   ASSERT_EQ(flown.size(), by_cvode.size());
+  EXPECT_NE(model.nominal_plant().stacks[0].BendingWithout(1u),
+            model.nominal_plant().stacks[0].bending.get());
   double largest = 0.0, departure = 0.0, jump = 0.0;
   bool has_left = false;
   for (std::size_t i = 1; i < flown.size(); ++i) {
