@@ -73,11 +73,11 @@ TEST(DistributionFigures, HaveAChartForEachSideThatHasALimit) {
 
 /// The range of the axis of the first chart that says `what`: "low high from to ...".
 std::pair<double, double> AxisOf(const std::string& html, const std::string& what, const char* axis) {
-  const std::size_t chart = html.rfind("<svg", html.find(what));
+  const std::size_t chart = html.rfind("<svg class=\"chart\"", html.find(what));
   const std::string name = std::string(" data-") + axis + "=\"";
   std::istringstream text(html.substr(html.find(name, chart) + name.size(), 60));
   std::pair<double, double> range;
-  text >> range.first >> range.second;
+  EXPECT_TRUE(text >> range.first >> range.second) << what;
   return range;
 }
 
