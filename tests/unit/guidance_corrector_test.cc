@@ -265,6 +265,19 @@ TEST(OrbitMiss, WantsTheBestShapeOfTheEnergyThereIs) {
   EXPECT_NEAR(ellipse.shape_m_s, 0.0, 0.1) << "of -20 if the shape of the target were wanted";
 }
 
+// At its perigee, 0.2 rad behind where the target has one.
+TEST(OrbitMiss, CountsAPlaceFromThePerigeeThatIsWanted) {
+  GuidanceMission mission = ReachableMission();
+  const double argument_rad = 0.7, radius_m = 6.8e6, speed_m_s = 8000.0, inclination_rad = 1.0;
+  mission.orbit = TargetOrbit{7.5e6, 0.1, argument_rad - 0.2, 0.25};
+  mission.target.velocity_m_s = speed_m_s;
+  const Vector3 node = Vector3::UnitX(), upward(0.0, std::cos(inclination_rad), std::sin(inclination_rad));
+  Injection reached{{radius_m - 6378137.0, speed_m_s, 0.0, inclination_rad}, 0.0, radius_m};
+  reached.p_EoC_I = radius_m * (std::cos(argument_rad) * node + std::sin(argument_rad) * upward);
+  reached.v_IC_I = speed_m_s * (std::cos(argument_rad) * upward - std::sin(argument_rad) * node);
+  EXPECT_NEAR(OrbitMissOf(mission, reached).place_m_s, -0.05 * speed_m_s, 1e-6);
+}
+
 template <int count, int misses>
 void ExpectLeastWithinBounds() {
   for (std::uint64_t draw = 0; draw < 200; ++draw) {

@@ -87,8 +87,9 @@ TEST(RefineProgram, FindsATransferOrbitFromWideBoundsBesideACutOff) {
   }
 }
 
-// Electron with a frozen coast and pitch-over, far off: with the variables that come first the refinement ends
-// at a bound (10 degrees), or they do nothing for what is missing (15). It goes on with all that is free.
+// Electron with a frozen coast and pitch-over, far off: with the variables that come first the refinement
+// ends at a bound (10 degrees), or they do nothing for what is missing (15). It goes on with all that is
+// free.
 TEST(RefineProgram, GoesOnWithAllVariablesWhereTheFirstAreNotEnough) {
   const AscentModel model =
       BuildAscentModel(LoadVehicle(DISPERSA_CAMPAIGNS "/gallery/electron/vehicle.yaml"), 0.01);
