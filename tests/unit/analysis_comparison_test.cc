@@ -381,6 +381,20 @@ TEST(ReportComparison, OfEqualNamesTheFoldersAndWhatDiffersAreNamed) {
   EXPECT_THAT(ComparisonPage(other, cases, cases), HasSubstr("<h1>beta against alpha</h1>"));
 }
 
+// Before all tables, and each side its own.
+TEST(ReportComparison, ALostNominalFlightIsSaidOfItsSide) {
+  const CaseColumns cases = Columns({0, 1, 2}, {0.1, 0.2, 0.3}, {1, 2, 3});
+  for (const bool of_a : {true, false}) {
+    Comparison lost = CompareColumns(cases, cases, {}, {kMetric});
+    (of_a ? lost.a : lost.b).nominal_loss = "The nominal flight itself is lost: impact at 9.37 s in stage 1.";
+    const std::string page = ComparisonPage(lost, cases, cases), letter = of_a ? "A" : "B";
+    EXPECT_LT(page.find("<li>" + letter + ": The nominal flight itself is lost"), page.find("<table"));
+    const auto json = nlohmann::json::parse(ComparisonJson(lost));
+    EXPECT_EQ(json[of_a ? "a" : "b"]["nominal_loss"], (of_a ? lost.a : lost.b).nominal_loss);
+    EXPECT_TRUE(json[of_a ? "b" : "a"]["nominal_loss"].is_null());
+  }
+}
+
 // B minus A is the short way around the circle, from either side.
 TEST(ReportComparison, LongitudesAreComparedAcrossTheCut) {
   constexpr char kLongitude[] = "impact_longitude_deg";
