@@ -5,6 +5,7 @@ Environment as of processes.py; DISPERSA_SOURCE: the repository.
 import json
 import os
 import pathlib
+import resource
 import shutil
 import subprocess
 import tempfile
@@ -97,7 +98,7 @@ class LawsTest(ServiceCase):
     def test_a_campaign_that_no_worker_can_fly_says_so(self):
         _, campaign = self.campaign(CRASHES_IN_WORKERS)
         self.start_coordinator()
-        self.start_worker()
+        self.start_worker(preexec_fn=lambda: resource.setrlimit(resource.RLIMIT_NOFILE, (777, 777)))
         identity = self.dispersa("launch", campaign).strip()
         wait_for(lambda: self.status(identity)["problem"], "why it does not go on")
         self.assertRegex(self.status(identity)["problem"],

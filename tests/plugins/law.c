@@ -4,7 +4,7 @@
 #include <math.h>
 #include <stdlib.h>
 #include <string.h>
-#include <sys/prctl.h>
+#include <sys/resource.h>
 #include <sys/socket.h>
 #include <time.h>
 #include <unistd.h>
@@ -48,6 +48,9 @@
 #ifndef DISPERSA_MISBEHAVES
 #define DISPERSA_MISBEHAVES 0
 #endif
+#ifndef USERS_FILE
+#define USERS_FILE ""
+#endif
 
 struct memory {
   double kp_1_s2[DISPERSA_LAW_AXES], kd_1_s[DISPERSA_LAW_AXES];
@@ -77,17 +80,16 @@ int dispersa_law_create(const dispersa_law_setup* setup, void* memory) {
   (void)setup;
   (void)memory;
   if (DISPERSA_MISBEHAVES == CRASHES_IN_WORKERS) {
-    char name[16] = "";
-    if (prctl(PR_GET_NAME, name) != 0) return 1;
-    if (strncmp(name, "dispersa-worker", 15) == 0) abort();
+    struct rlimit files;
+    if (getrlimit(RLIMIT_NOFILE, &files) != 0) return 1;
+    if (files.rlim_cur == 777) abort(); /* the limit that the test gives to workers */
   }
   if (DISPERSA_MISBEHAVES == COUNTS_FLIGHTS) {
     static const char words[] = "a flight begins\n";
     if (write(2, words, sizeof words - 1) < 0) return 1;
   }
-  if (DISPERSA_MISBEHAVES == READS_A_FILE && open(getenv("USERS_FILE"), O_RDONLY) >= 0) abort();
-  if (DISPERSA_MISBEHAVES == WRITES_A_FILE && open(getenv("USERS_FILE"), O_WRONLY | O_CREAT, 0600) >= 0)
-    abort();
+  if (DISPERSA_MISBEHAVES == READS_A_FILE && open(USERS_FILE, O_RDONLY) >= 0) abort();
+  if (DISPERSA_MISBEHAVES == WRITES_A_FILE && open(USERS_FILE, O_WRONLY | O_CREAT, 0600) >= 0) abort();
   return 0;
 }
 
