@@ -77,7 +77,11 @@ std::vector<CaseResult> CompareFlights(const CampaignFlights& flights, std::uint
   return results;
 }
 
+const std::string kTheLaw = "the control law ";
+
 }  // namespace
+
+bool IsOfTheLaw(const std::string& reason) { return reason.starts_with(kTheLaw); }
 
 std::vector<CaseResult> CheckPluginIsDeterministic(const CampaignFlights& flights, std::uint64_t cases,
                                                    const StopCheck& should_stop, std::chrono::seconds limit) {
@@ -93,11 +97,10 @@ std::vector<CaseResult> CheckPluginIsDeterministic(const CampaignFlights& flight
     return CompareFlights(flights, cases, stop);
   } catch (const Interrupted&) {
     if (!is_late) throw;
-    throw InputError("the control law " + plugin->config().name +
-                     " is too slow: its check flights took more than " + std::to_string(limit.count()) +
-                     " s");
+    throw InputError(kTheLaw + plugin->config().name + " is too slow: its check flights took more than " +
+                     std::to_string(limit.count()) + " s");
   } catch (const PluginError& error) {
-    throw InputError("the control law " + plugin->config().name + " " + error.what());
+    throw InputError(kTheLaw + plugin->config().name + " " + error.what());
   }
 }
 

@@ -3,6 +3,7 @@
 
 #include <chrono>
 #include <cstdint>
+#include <string>
 #include <vector>
 
 #include "core/cases/campaign_flights.h"
@@ -12,6 +13,9 @@ namespace dispersa {
 
 /// Of the flights of a check together. A flight with a law of usual cost takes some 10 ms.
 inline constexpr std::chrono::seconds kPluginCheckLimit{120};
+
+/// Whether a refusal of a campaign is that of its check: it begins as the InputError of one.
+bool IsOfTheLaw(const std::string& reason);
 
 /// Flies the nominal flight and the first two cases twice, side by side and each alone, and
 /// compares them tick by tick. Returns the results of those cases: every later result of one of them must

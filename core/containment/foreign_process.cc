@@ -8,7 +8,7 @@
 #include <unistd.h>
 
 #include <algorithm>
-#include <array>
+#include <atomic>
 #include <cerrno>
 #include <csignal>
 #include <cstdlib>
@@ -34,8 +34,10 @@ constexpr std::size_t kMostBytes = std::size_t{1} << 31;
 // In dispersa-foreign itself.
 bool is_foreign_program = false;
 
-// Beside the program or library that has this function, or in the folder bin of one above it: the programs of a
-// build or an installation, its tests and its Python package lie so.
+std::atomic<bool> is_ending = false;
+
+// Beside the program or library that has this function, or in the folder bin of one above it: the programs of
+// a build or an installation, its tests and its Python package lie so.
 fs::path FindProgram() {
   Dl_info here{};
   std::error_code error;
@@ -125,12 +127,13 @@ void ForeignProcess::Fail(const std::string& why) {
 void ForeignProcess::Ask(const std::string& order, const Say& hear, const StopCheck& should_stop) {
   is_usable_ = false;
   const std::uint64_t size = order.size();
-  const std::string head = std::string(1, kSaid) + std::string(reinterpret_cast<const char*>(&size), sizeof size);
+  const std::string head =
+      std::string(1, kSaid) + std::string(reinterpret_cast<const char*>(&size), sizeof size);
   if (!SendAll(socket_, head.data(), head.size()) || !SendAll(socket_, order.data(), order.size()))
     Fail(std::string(kProgram) + " does not listen");
   FrameReader frames(kMostBytes);
   for (bool is_open = true; is_open && !frames.is_spoilt();) {
-    if (should_stop && should_stop()) throw Interrupted();
+    if (is_ending || (should_stop && should_stop())) throw Interrupted();
     pollfd ready{socket_, POLLIN, 0};
     if (poll(&ready, 1, 100) <= 0) continue;
     is_open = frames.ReadFrom(socket_);
@@ -150,10 +153,11 @@ void ForeignProcess::Ask(const std::string& order, const Say& hear, const StopCh
   }
   int status = 0;
   if (waitpid(pid_, &status, WNOHANG) == pid_) pid_ = -1;
-  Fail(WIFEXITED(status) && WEXITSTATUS(status) == kExecFailed
-           ? std::string(kProgram) + " cannot be executed"
-           : std::string(kProgram) + " ended");
+  Fail(WIFEXITED(status) && WEXITSTATUS(status) == kExecFailed ? std::string(kProgram) + " cannot be executed"
+                                                               : std::string(kProgram) + " ended");
 }
+
+void EndForeignProcesses() { is_ending = true; }
 
 PluginDescription DescribePlugin(const PluginConfig& config) {
   if (is_foreign_program) return DescribeContained(config);
@@ -165,7 +169,8 @@ PluginDescription DescribePlugin(const PluginConfig& config) {
 
 void ServeOrders(const AnswerOrder& answer) {
   is_foreign_program = true;
-  // The parent decides what an interrupt means: its end, or the end of the socket, is the end of this process.
+  // The parent decides what an interrupt means: its end, or the end of the socket, is the end of this
+  // process.
   setpgid(0, 0);
   for (const int signal : {SIGINT, SIGTERM, SIGHUP, SIGPIPE}) std::signal(signal, SIG_IGN);
   sigset_t none;

@@ -1,6 +1,6 @@
 // Foreign code runs in processes of the program dispersa-foreign. This process starts one by exec and speaks
-// with it through a socket. So nothing that this process has read or made, such as keys and other campaigns, was
-// ever in that one's memory. It forks a contained child (contained.h) for each order.
+// with it through a socket. So nothing that this process has read or made, such as keys and other campaigns,
+// was ever in that one's memory. It forks a contained child (contained.h) for each order.
 #pragma once
 
 #include <sys/types.h>
@@ -27,6 +27,7 @@ class ForeignProcess {
   /// PluginError and ContainedEnd the process is of no further use, and is_usable() says so.
   void Ask(const std::string& order, const Say& hear, const StopCheck& should_stop = nullptr);
   bool is_usable() const { return is_usable_; }
+  pid_t pid() const { return pid_; }
 
  private:
   [[noreturn]] void Fail(const std::string& why);
@@ -35,6 +36,10 @@ class ForeignProcess {
   int socket_ = -1;
   bool is_usable_ = true;
 };
+
+/// From now on every Ask() of this process, also one under way, throws Interrupted: this process ends,
+/// whatever a law is doing.
+void EndForeignProcesses();
 
 /// A plug-in's description of itself, asked in such a process. Throws PluginError, ContainedEnd, NoChild.
 PluginDescription DescribePlugin(const PluginConfig& config);

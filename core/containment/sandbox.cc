@@ -114,14 +114,15 @@ std::optional<int> LoadFilter(std::uint32_t of_paths) {
   return holds ? std::optional(listener) : std::nullopt;
 }
 
-std::optional<int> FilterCalls(void (*refused)(int call)) {
+std::optional<int> FilterCalls(void (*refused)(int call), bool listens) {
   call_refused = refused;
   struct sigaction action {};
   action.sa_sigaction = OnRefusedCall;
   action.sa_flags = SA_SIGINFO;
   sigaction(SIGSYS, &action, nullptr);
   // A container may have a listener already, and there is one at most: then Landlock alone keeps files.
-  if (const std::optional<int> listener = LoadFilter(SCMP_ACT_NOTIFY)) return listener;
+  if (listens)
+    if (const std::optional<int> listener = LoadFilter(SCMP_ACT_NOTIFY)) return listener;
   return LoadFilter(SCMP_ACT_ALLOW);
 }
 
@@ -177,7 +178,8 @@ SandboxParts EnterSandbox(const SandboxParts& wanted, void (*refused)(int call),
   // Both others ask for this.
   const bool is_meek = prctl(PR_SET_NO_NEW_PRIVS, 1, 0, 0, 0) == 0;
   holds.landlock = wanted.landlock && is_meek && ShutFiles();
-  const std::optional<int> filter = wanted.seccomp && is_meek ? FilterCalls(refused) : std::nullopt;
+  const std::optional<int> filter =
+      wanted.seccomp && is_meek ? FilterCalls(refused, wanted.paths) : std::nullopt;
   holds.seccomp = filter.has_value();
   *listener = filter.value_or(-1);
   holds.paths = *listener >= 0;

@@ -1,5 +1,5 @@
-// dispersa-foreign: runs foreign code for one process, which starts it (core/containment/foreign_process.h). It
-// knows one campaign.
+// dispersa-foreign: runs foreign code for one process, which starts it (core/containment/foreign_process.h).
+// It knows one campaign.
 #include <sys/stat.h>
 #include <unistd.h>
 
@@ -53,8 +53,10 @@ void Serve() {
 int main() {
   struct stat file {};
   if (fstat(3, &file) != 0 || !S_ISSOCK(file.st_mode)) {
-    std::fputs("dispersa-foreign is started by the other programs of dispersa, for control laws from shared objects\n",
-               stderr);
+    std::fputs(
+        "dispersa-foreign is started by the other programs of dispersa, for control laws from shared "
+        "objects\n",
+        stderr);
     return 2;
   }
   dispersa::Serve();

@@ -4,6 +4,7 @@ theirs is contained and named.
 Environment: DISPERSA_BINARIES, DISPERSA_CAMPAIGNS; DISPERSA_SOURCE: the repository.
 """
 import hashlib
+import html
 import json
 import os
 import pathlib
@@ -265,6 +266,16 @@ class PluginTest(unittest.TestCase):
             "throws", ", parameters: {integral_time_s: 2, filter_rad_s: 200}"))
         self.assertEqual(flown.returncode, 5, flown.stderr)
         self.assertRegex(flown.stderr, r"^the control law threw (\\x0a){250}\.\.\. at 3\.0\d+ s, in stage 1\n$")
+
+    def test_what_a_law_says_of_itself_is_bounded_text(self):
+        out, ended = self.campaign_run("steers", self.law("STEERS_THE_TERMINAL"), cases=2)
+        self.assertEqual(ended.returncode, 4, ended.stderr)
+        shown = ended.stdout + ended.stderr + (out / "report.html").read_text()
+        for raw in ("\x1b", "\x07", "\x9b", "\u202e", "<script>alert"):
+            self.assertNotIn(raw, shown)
+        said = html.unescape(shown)
+        self.assertIn(r"\x1b]0;taken\x07<script>alert(1)</script>\x0a\xc2\x9b31m", said)
+        self.assertIn(r"\xe2\x80\xae 1\x0d2 01234567890123456789012345678901234567890123...", said)
 
     def test_memory_without_bound_is_contained(self):
         self.quarantined("ALLOCATES", r"ended by signal 11 \(SIGSEGV\), in a process that may allocate 1024 MiB")
