@@ -18,6 +18,7 @@
 #include <ctime>
 #include <memory>
 #include <optional>
+#include <string_view>
 #include <utility>
 #include <vector>
 
@@ -89,8 +90,8 @@ void TellAskedCall(int call) {
   _exit(1);
 }
 
-[[noreturn]] void BeChild(int out, pid_t parent, volatile PluginMark* mark, const ContainmentLimits& limits,
-                          const std::function<void(const Say& say)>& work) {
+[[noreturn]] void BeChild(int out, int prints, pid_t parent, volatile PluginMark* mark,
+                          const ContainmentLimits& limits, const std::function<void(const Say& say)>& work) {
   MarkPluginCallsIn(mark);
   setpgid(0, 0);
   // An exit within a call destroys nothing of the parent's: handlers run in the reverse order of their
@@ -104,12 +105,13 @@ void TellAskedCall(int call) {
   sigemptyset(&none);
   pthread_sigmask(SIG_SETMASK, &none, nullptr);
   // The plug-in gets no file of this process, and its printed output is no result.
+  dup2(prints, STDOUT_FILENO);
+  dup2(prints, STDERR_FILENO);
   if (out != kAnswers) dup2(out, kAnswers);
   fcntl(kAnswers, F_SETFD, FD_CLOEXEC);
   close_range(kAnswers + 1, ~0u, 0);
   const int nothing = open("/dev/null", O_RDONLY | O_CLOEXEC);
   if (nothing >= 0) dup2(nothing, STDIN_FILENO), close(nothing);
-  dup2(STDERR_FILENO, STDOUT_FILENO);
   Limit(RLIMIT_CORE, 0);
   Limit(RLIMIT_AS, VirtualBytes() + limits.memory_bytes);
   int listener = -1;
@@ -213,12 +215,20 @@ class Child {
     int ends[2];
     if (socketpair(AF_UNIX, SOCK_STREAM | SOCK_CLOEXEC, 0, ends) != 0) Refuse();
     in_ = ends[0];
+    int prints[2];
+    if (pipe2(prints, O_CLOEXEC) != 0) {
+      close(ends[1]);
+      Refuse();
+    }
+    prints_ = prints[0];
+    fcntl(prints_, F_SETFL, O_NONBLOCK);
     const pid_t parent = getpid();
     std::fflush(nullptr);
     pid_ = fork();
-    if (pid_ == 0) BeChild(ends[1], parent, mark_, limits, work);
+    if (pid_ == 0) BeChild(ends[1], prints[1], parent, mark_, limits, work);
     const int error = errno;
     close(ends[1]);
+    close(prints[1]);
     errno = error;
     if (pid_ < 0) Refuse();
     setpgid(pid_, pid_);  // whichever of the two comes first: signals of a terminal are the parent's
@@ -230,6 +240,8 @@ class Child {
 
   pid_t pid() const { return pid_; }
   int in() const { return in_; }
+  /// What it prints, to be read without waiting.
+  int prints() const { return prints_; }
   /// Of its calls with a path (sandbox.h). -1: none.
   int listener() const { return listener_; }
   const volatile PluginMark& mark() const { return *mark_; }
@@ -253,7 +265,7 @@ class Child {
       kill(pid_, SIGKILL);
       while (waitpid(pid_, nullptr, 0) < 0 && errno == EINTR) continue;
     }
-    for (const int file : {in_, listener_})
+    for (const int file : {in_, prints_, listener_})
       if (file >= 0) close(file);
     if (mark_ != nullptr) munmap(const_cast<PluginMark*>(mark_), sizeof(PluginMark));
   }
@@ -261,7 +273,56 @@ class Child {
   volatile PluginMark* mark_ = nullptr;
   pid_t pid_ = -1;
   int in_ = -1;
+  int prints_ = -1;
   int listener_ = -1;
+};
+
+// Shows what a child prints on the standard error: whole lines of printable ASCII, and not without end.
+class Prints {
+ public:
+  explicit Prints(int file) : file_(file) {}
+  ~Prints() {
+    Read();
+    if (!line_.empty()) Show(line_);
+  }
+  Prints(const Prints&) = delete;
+  Prints& operator=(const Prints&) = delete;
+
+  /// -1 at its end.
+  int file() const { return file_; }
+  /// What is there.
+  void Read() {
+    char part[4096];
+    ssize_t size = 1;
+    // At most what a pipe holds: the child may write on for ever.
+    for (int parts = 0; file_ >= 0 && parts < 16 && size > 0; ++parts) {
+      size = read(file_, part, sizeof part);
+      if (size <= 0) break;
+      for (const char c : std::string_view(part, static_cast<std::size_t>(size))) {
+        if (c == '\n') {
+          Show(std::exchange(line_, {}));
+        } else if (line_.size() <= kLine) {
+          line_ += c;
+        }
+      }
+    }
+    if (size == 0) file_ = -1;
+  }
+
+ private:
+  static constexpr std::size_t kLine = 1000, kAll = 64 << 10;
+
+  void Show(const std::string& line) {
+    if (shown_ > kAll) return;
+    std::string text = Printable(line, kLine) + "\n";
+    shown_ += text.size();
+    if (shown_ > kAll) text = "the control law prints more, which is not shown\n";
+    std::fwrite(text.data(), 1, text.size(), stderr);
+  }
+
+  int file_;
+  std::string line_;
+  std::size_t shown_ = 0;
 };
 
 }  // namespace
@@ -270,6 +331,7 @@ void RunContained(const std::function<void(const Say& say)>& work, const Say& he
                   const StopCheck& should_stop, const ContainmentLimits& limits) {
   Child child(work, limits);
   CallWatch watch(child.pid(), child.mark(), limits);
+  Prints prints(child.prints());
   FrameReader frames(limits.memory_bytes);  // no answer is larger than the child's memory
   bool is_open = true;                      // the child may close it
   for (;;) {
@@ -277,8 +339,9 @@ void RunContained(const std::function<void(const Say& say)>& work, const Say& he
     const std::optional<int> ended = child.Ended();
     // After the child's end all that is left is read; before, only what has arrived.
     for (int patience_ms = ended ? 0 : 100; is_open; patience_ms = 0) {
-      pollfd ready[] = {{child.in(), POLLIN, 0}, {child.listener(), POLLIN, 0}};
-      if (poll(ready, 2, patience_ms) <= 0) break;
+      pollfd ready[] = {{child.in(), POLLIN, 0}, {child.listener(), POLLIN, 0}, {prints.file(), POLLIN, 0}};
+      if (poll(ready, 3, patience_ms) <= 0) break;
+      if (ready[2].revents != 0) prints.Read();
       if ((ready[1].revents & POLLIN) != 0) AnswerPathCall(child.listener());
       if (ready[0].revents != 0) is_open = frames.ReadFrom(child.in());
       if (!ended || ready[0].revents == 0) break;
@@ -318,7 +381,8 @@ SandboxParts SandboxHere() {
     RunContained(
         [](const Say& say) {
           say({static_cast<char>(sandbox.seccomp), static_cast<char>(sandbox.landlock),
-               static_cast<char>(sandbox.paths), static_cast<char>(sandbox.namespaces)});
+               static_cast<char>(sandbox.paths && access("/proc/self/exe", F_OK) != 0),
+               static_cast<char>(sandbox.namespaces)});
         },
         [&](const std::string& message) {
           holds = {message.at(0) == 1, message.at(1) == 1, message.at(2) == 1, message.at(3) == 1};

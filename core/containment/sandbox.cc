@@ -201,15 +201,19 @@ bool IsForLoader(const std::string& path) {
          });
 }
 
-// A text of another process: what is longer than any path, or cannot be read, is none.
-std::string TextOf(pid_t process, std::uint64_t address) {
+// A text of another process: what is longer than any path, or not there, is none. Nothing if the system keeps
+// that process's memory from this one, so that Landlock alone keeps files.
+std::optional<std::string> TextOf(pid_t process, std::uint64_t address) {
   std::string text;
   char part[256];
   while (text.size() < PATH_MAX) {
     // To the end of a page at most: the next one may not be there.
     const std::size_t size = std::min<std::size_t>(sizeof part, 4096 - address % 4096);
     iovec here{part, size}, there{reinterpret_cast<void*>(address), size};
-    if (process_vm_readv(process, &here, 1, &there, 1, 0) != static_cast<ssize_t>(size)) break;
+    if (process_vm_readv(process, &here, 1, &there, 1, 0) != static_cast<ssize_t>(size)) {
+      if (errno == EPERM || errno == ENOSYS) return std::nullopt;
+      break;
+    }
     const std::size_t length = strnlen(part, size);
     text.append(part, length);
     if (length < size) return text;
@@ -229,8 +233,8 @@ void AnswerPathCall(int listener) {
                                    [&](const auto& each) { return each.call == asked->data.nr; });
     const bool is_known = call != std::end(kPathCalls);
     // The process has one thread, so the path stays what it is.
-    const bool may =
-        is_known && IsForLoader(TextOf(static_cast<pid_t>(asked->pid), asked->data.args[call->path]));
+    const auto path = is_known ? TextOf(static_cast<pid_t>(asked->pid), asked->data.args[call->path]) : "?";
+    const bool may = !path || IsForLoader(*path);
     *answer = {};
     answer->id = asked->id;
     answer->error = may ? 0 : -ENOENT;

@@ -31,7 +31,8 @@ std::string TextOf(const fs::path& file) {
 // A PD whose flight takes a minute (tests/plugins/law.c).
 Campaign SlowCampaign() {
   std::string text = TextOf(DISPERSA_CAMPAIGNS "/autopilots/pd.yaml");
-  for (std::size_t at = 0; (at = text.find("law: pd", at)) != std::string::npos;) text.replace(at, 7, "law: plugin");
+  for (std::size_t at = 0; (at = text.find("law: pd", at)) != std::string::npos;)
+    text.replace(at, 7, "law: plugin");
   text.insert(text.find("tick_s:"), "plugin: {library: " DISPERSA_SLOW_LAW "}\n");
   const std::string file = ::testing::TempDir() + "slow_law.yaml";
   std::ofstream(file) << text;
@@ -50,7 +51,8 @@ TEST(ForeignProcess, HasNothingOfItsParent) {
   setenv("DISPERSA_TEST_SECRET", "of the parent", 1);
   const int file = open("/etc/passwd", O_RDONLY);  // which a program inherits
   ForeignProcess process;
-  EXPECT_THROW(process.Ask(std::string(1, kDescribeOrder) + "no library", [](const std::string&) {}), PluginError);
+  EXPECT_THROW(process.Ask(std::string(1, kDescribeOrder) + "no library", [](const std::string&) {}),
+               PluginError);
   EXPECT_TRUE(process.is_usable());
   const fs::path foreign = "/proc/" + std::to_string(process.pid());
   EXPECT_EQ(TextOf(foreign / "environ").find("TEST_SECRET"), std::string::npos);

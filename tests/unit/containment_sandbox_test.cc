@@ -147,6 +147,26 @@ TEST(Sandbox, LandlockKeepsTheUsersFilesAndGivesTheSystemsObjects) {
   EXPECT_EQ(OutcomeOf(read("/lib/x86_64-linux-gnu/libm.so.6"), files), "it worked");
 }
 
+TEST(Sandbox, WhatIsPrintedIsLinesOfPrintableText) {
+  const auto shown = [](const std::function<void()>& print) {
+    ::testing::internal::CaptureStderr();
+    EXPECT_EQ(Outcome([&] { return print(), std::string("done"); }, {}), "done");
+    return ::testing::internal::GetCapturedStderr();
+  };
+  const auto print = [](const std::string& text, int file = 2) {
+    if (write(file, text.data(), text.size()) < 0) abort();
+  };
+  EXPECT_EQ(shown([&] { print("one\ntwo", 1); }), "one\ntwo\n");
+  EXPECT_EQ(shown([&] { print("\x1b[2J\r\xff\n\n"); }), "\\x1b[2J\\x0d\\xff\n\n");
+  EXPECT_EQ(shown([&] { print(std::string(5000, 'a')); }), std::string(1000, 'a') + "...\n");
+  const std::string many = shown([&] {
+    for (int i = 0; i < 5000; ++i) print("a line of fifty characters, which is said too often\n");
+  });
+  EXPECT_LT(many.size(), 70'000u);
+  EXPECT_EQ(many.substr(many.rfind('\n', many.size() - 2) + 1),
+            "the control law prints more, which is not shown\n");
+}
+
 TEST(Sandbox, NoCallTellsWhichFilesExist) {
   if (!SandboxHere().paths) GTEST_SKIP() << "the kernel gives no listener";
   using Ask = std::function<long(const char* path)>;
