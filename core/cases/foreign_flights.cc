@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <chrono>
+#include <mutex>
 #include <optional>
 #include <string>
 #include <thread>
@@ -27,39 +28,59 @@ struct ForeignFlights::BrokenOff {
   std::uint64_t case_index;
 };
 
-std::unique_ptr<ForeignProcess> ForeignFlights::Take() const {
-  {
-    const std::lock_guard lock(mutex_);
-    if (!idle_.empty()) {
-      std::unique_ptr<ForeignProcess> process = std::move(idle_.back());
-      idle_.pop_back();
-      return process;
-    }
+struct ForeignFlights::Pool {
+  explicit Pool(const std::string& canonical_yaml) : text(canonical_yaml) {}
+
+  /// The one of a campaign: the last one again, if it is of this.
+  static std::shared_ptr<Pool> Of(const std::string& canonical_yaml) {
+    static std::mutex last_mutex;
+    static std::shared_ptr<Pool> last;
+    const std::lock_guard lock(last_mutex);
+    if (last == nullptr || last->text != canonical_yaml) last = std::make_shared<Pool>(canonical_yaml);
+    return last;
   }
-  auto process = std::make_unique<ForeignProcess>();
-  Packer order;
-  order.Text(EngineVersion());
-  order.Text(canonical_yaml_);
-  process->Ask(kCampaignOrder + order.Take(), [](const std::string&) {});
-  return process;
-}
+
+  std::unique_ptr<ForeignProcess> Take() {
+    {
+      const std::lock_guard lock(mutex);
+      if (!idle.empty()) {
+        std::unique_ptr<ForeignProcess> process = std::move(idle.back());
+        idle.pop_back();
+        return process;
+      }
+    }
+    auto process = std::make_unique<ForeignProcess>();
+    Packer order;
+    order.Text(EngineVersion());
+    order.Text(text);
+    process->Ask(kCampaignOrder + order.Take(), [](const std::string&) {});
+    return process;
+  }
+  void GiveBack(std::unique_ptr<ForeignProcess> process) {
+    const std::lock_guard lock(mutex);
+    if (process->is_usable()) idle.push_back(std::move(process));
+  }
+
+  const std::string text;
+  std::mutex mutex;
+  std::vector<std::unique_ptr<ForeignProcess>> idle;
+};
+
+ForeignFlights::ForeignFlights(const std::string& canonical_yaml, const FlightsHere& here)
+    : pool_(Pool::Of(canonical_yaml)), here_(here) {}
 
 void ForeignFlights::Fly(const std::string& order, const std::function<void(FlownOnce flown)>& hear,
                          const StopCheck& should_stop) const {
-  std::unique_ptr<ForeignProcess> process = Take();
-  const auto give_back = [&] {
-    const std::lock_guard lock(mutex_);
-    if (process->is_usable()) idle_.push_back(std::move(process));
-  };
+  std::unique_ptr<ForeignProcess> process = pool_->Take();
   try {
     process->Ask(
         kFlightOrder + order, [&](const std::string& message) { hear(TakeAnswer(here_, message)); },
         should_stop);
   } catch (...) {
-    give_back();
+    pool_->GiveBack(std::move(process));
     throw;
   }
-  give_back();
+  pool_->GiveBack(std::move(process));
 }
 
 // Takes those from `cases` that are flown.

@@ -2,8 +2,9 @@
 // the plug-in ends this process or reads its memory.
 #pragma once
 
+#include <functional>
 #include <memory>
-#include <mutex>
+#include <optional>
 #include <string>
 #include <vector>
 
@@ -13,12 +14,12 @@
 namespace dispersa {
 
 /// The processes that fly one campaign, and know no other. Thread-safe: there are as many as there were
-/// threads that ordered at the same time.
+/// threads that ordered at the same time. They stay for the next object of the same campaign, until one of
+/// another is made: to read a campaign takes as long as dozens of its flights.
 class ForeignFlights {
  public:
   /// `canonical_yaml`: Campaign::canonical_yaml, of the flights `here`, which this object does not outlive.
-  ForeignFlights(std::string canonical_yaml, const FlightsHere& here)
-      : canonical_yaml_(std::move(canonical_yaml)), here_(here) {}
+  ForeignFlights(const std::string& canonical_yaml, const FlightsHere& here);
 
   /// Flies an order. Throws PluginError, ContainedEnd, NoChild, Interrupted, and the exceptions of `hear`.
   void Fly(const std::string& order, const std::function<void(FlownOnce flown)>& hear,
@@ -29,13 +30,11 @@ class ForeignFlights {
 
  private:
   struct BrokenOff;
-  std::unique_ptr<ForeignProcess> Take() const;
+  struct Pool;
   std::optional<BrokenOff> FlyTogether(std::vector<std::uint64_t>& cases, CaseQueue& queue) const;
 
-  const std::string canonical_yaml_;
+  const std::shared_ptr<Pool> pool_;
   const FlightsHere& here_;
-  mutable std::mutex mutex_;
-  mutable std::vector<std::unique_ptr<ForeignProcess>> idle_;
 };
 
 }  // namespace dispersa
