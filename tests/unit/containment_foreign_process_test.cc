@@ -49,7 +49,8 @@ double SecondsOf(const std::function<void()>& work) {
 
 TEST(ForeignProcess, HasNothingOfItsParent) {
   setenv("DISPERSA_TEST_SECRET", "of the parent", 1);
-  const int file = open("/etc/passwd", O_RDONLY);  // which a program inherits
+  const int first = open("/etc/passwd", O_RDONLY),
+            file = fcntl(first, F_DUPFD, 20);  // which a program inherits
   ForeignProcess process;
   EXPECT_THROW(process.Ask(std::string(1, kDescribeOrder) + "no library", [](const std::string&) {}),
                PluginError);
@@ -62,6 +63,7 @@ TEST(ForeignProcess, HasNothingOfItsParent) {
   EXPECT_EQ(files, (std::set<std::string>{"0", "1", "2", "3"}));
   EXPECT_EQ(fs::read_symlink(foreign / "fd/0"), "/dev/null");
   close(file);
+  close(first);
 }
 
 TEST(ForeignProcess, EndsWithItsParent) {
