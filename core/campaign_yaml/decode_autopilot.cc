@@ -3,20 +3,12 @@
 #include "core/campaign_yaml/describe_file.h"
 #include "core/campaign_yaml/load.h"
 #include "core/campaign_yaml/sha256.h"
-#include "core/campaign_yaml/text_problems.h"
-#include "core/containment/contained.h"
+#include "core/containment/foreign_process.h"
 #include "core/control/law_here.h"
 #include "core/input/struct_problems.h"
 
 namespace dispersa {
 namespace {
-
-bool IsUtf8(const PluginDescription& description) {
-  std::string all = description.name + description.version;
-  for (const std::string& name : description.parameters) all += name;
-  std::vector<InputProblem> ignored;
-  return CheckUtf8(all, "", ignored);
-}
 
 // What a campaign that was flown under a law in Python says of it. No file of a user's own has it.
 void OpenPythonLaw(Fields& fields, PythonLaws laws, PluginConfig& plugin) {
@@ -41,16 +33,13 @@ std::optional<PluginDescription> DescribeLibrary(Fields& fields, PluginConfig& p
   };
   if (const std::string refusal = PluginRefusal(plugin.sha256); !refusal.empty()) return refuse(refusal);
   try {
-    PluginDescription description = DescribeContained(plugin);
-    if (!IsUtf8(description))
-      return refuse("describes itself in bytes that are no UTF-8", "name, version, parameters in UTF-8");
-    return description;
+    return DescribePlugin(plugin);
   } catch (const std::runtime_error& error) {
     return refuse(error.what(), "a shared object with the functions of dispersa/control_law.h");
   }
 }
 
-// Asks a plug-in, in a child process, what it says of itself.
+// Asks a plug-in, in a process of its own, what it says of itself.
 OpenPlugin PluginOpener(PythonLaws laws) {
   return [laws](Fields& fields, const std::string& base64,
                 PluginConfig& plugin) -> std::optional<std::vector<std::string>> {

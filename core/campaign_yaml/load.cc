@@ -111,6 +111,10 @@ auto Decode(const InputSource& source, F decode) {
   return value;
 }
 
+// Of a campaign that flies nothing but its nominal flight.
+constexpr char kCheckFlight[] =
+    "schema: dispersa/campaign/1\nsampling: {method: monte_carlo, cases: 1, seed: 1}\n";
+
 }  // namespace
 
 Campaign LoadCampaign(const InputSource& source, const CampaignOverrides& overrides,
@@ -150,8 +154,20 @@ OptimizationInput LoadOptimization(const InputSource& source, std::optional<std:
   input.problem = decoded.optimize.value_or(decoded.campaign.reference.problem);
   if (seed) input.problem.seed = *seed;
   input.tick_s = decoded.campaign.autopilot.tick_s;
-  if (root.Find("autopilot") != nullptr) input.autopilot = std::move(decoded.campaign.autopilot);
+  if (root.Find("autopilot") == nullptr) return input;
+  InputNode flown = ParseYaml(kCheckFlight, source.name, problems);
+  for (const char* key : {"name", "vehicle", "autopilot"}) SetMember(flown, key, *root.Find(key));
+  input.canonical_yaml = CanonicalText(flown);
   return input;
+}
+
+std::optional<Campaign> CampaignOf(const OptimizationInput& input, const Reference& reference) {
+  if (input.canonical_yaml.empty()) return std::nullopt;
+  ProblemList problems;
+  InputNode root = ParseYaml(input.canonical_yaml, input.name, problems);
+  SetMember(root, "reference", ParseYaml(WriteReference(reference), input.name, problems));
+  return FinishCampaign(std::move(root), FileNames::kRefused, {}, CampaignUse::kFly, std::move(problems),
+                        nullptr);
 }
 
 Vehicle LoadVehicle(const InputSource& source, std::vector<InputProblem>* warnings) {

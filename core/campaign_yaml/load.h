@@ -55,11 +55,16 @@ struct OptimizationInput {
   std::string vehicle_sha256;  ///< of the canonical vehicle
   TrajectoryProblem problem;
   double tick_s = 0.01;  ///< of the campaign's autopilot, if it has one: burnout is detected on ticks
-  std::optional<AutopilotConfig> autopilot;  ///< the campaign's, if it has one: to fly what was found
+  /// Of the campaign with its autopilot, without a reference; empty if it has no autopilot.
+  std::string canonical_yaml;
 };
 /// `seed` replaces the problem's.
 OptimizationInput LoadOptimization(const InputSource& source, std::optional<std::uint64_t> seed = {},
                                    std::vector<InputProblem>* warnings = nullptr);
+
+/// The campaign that flies a reference that was found, with the autopilot and nothing else of the input's
+/// campaign. None if that has no autopilot.
+std::optional<Campaign> CampaignOf(const OptimizationInput& input, const Reference& reference);
 
 Vehicle LoadVehicle(const InputSource& source, std::vector<InputProblem>* warnings = nullptr);
 AutopilotConfig LoadAutopilot(const InputSource& source);

@@ -6,7 +6,7 @@
 #include <mutex>
 #include <thread>
 
-#include "core/cases/contained_flights.h"
+#include "core/cases/foreign_flights.h"
 #include "core/control/law_here.h"
 #include "core/flight/engine_version.h"
 #include "core/flight/flight_model.h"
@@ -15,9 +15,12 @@
 namespace dispersa {
 
 CampaignFlights::CampaignFlights(const Campaign& campaign) : here_(campaign) {
-  HistoryColumns();  // made here: a child may be forked while another thread would make them
-  MetricNames();
+  const auto& plugin = campaign.autopilot.plugin;
+  if (plugin && FunctionsHere(*plugin) == nullptr)
+    foreign_ = std::make_unique<ForeignFlights>(campaign.canonical_yaml, here_);
 }
+
+CampaignFlights::~CampaignFlights() = default;
 
 CaseResult CampaignFlights::FlyCase(std::uint64_t case_index, History* history) const {
   return Fly(Draw(case_index), case_index, history);
@@ -27,8 +30,24 @@ CaseResult CampaignFlights::FlyNominal(History* history) const { return Fly(Flig
 
 CaseResult CampaignFlights::Fly(const FlightInputs& inputs, std::uint64_t case_index, History* history,
                                 Scheme scheme) const {
-  if (NeedsChild()) return FlyContained(here_, inputs, case_index, history, scheme);
-  return here_.Fly(inputs, case_index, history, scheme);
+  if (foreign_ == nullptr) return here_.Fly(inputs, case_index, history, scheme);
+  const auto step_s = history != nullptr ? std::optional(history->step_s) : std::nullopt;
+  std::vector<FlownOnce> flown = FlyOrdered(OrderFlight(inputs, case_index, step_s, scheme));
+  if (flown.size() != 1) throw ContainedEnd("returned no valid result", PluginMark{});
+  if (history != nullptr) history->values = std::move(flown[0].history);
+  return std::move(flown[0].result);
+}
+
+std::vector<FlownOnce> CampaignFlights::FlyOrdered(const std::string& order,
+                                                   const StopCheck& should_stop) const {
+  std::vector<FlownOnce> all;
+  if (foreign_ != nullptr) {
+    foreign_->Fly(
+        order, [&](FlownOnce flown) { all.push_back(std::move(flown)); }, should_stop);
+  } else {
+    CarryOut(here_, order, [&](const std::string& message) { all.push_back(TakeAnswer(here_, message)); });
+  }
+  return all;
 }
 
 namespace {
@@ -116,13 +135,8 @@ void FlyOneByOne(SharedOrders& shared) {
 
 }  // namespace
 
-bool CampaignFlights::NeedsChild() const {
-  const PluginLaw* const plugin = model().autopilot().plugin.get();
-  return plugin != nullptr && FunctionsHere(plugin->config()) == nullptr;
-}
-
 void CampaignFlights::FlyCases(CaseQueue& queue) const {
-  if (NeedsChild()) return FlyContained(here_, queue);
+  if (foreign_ != nullptr) return foreign_->FlyCases(queue);
   here_.FlyCases(queue);
 }
 
@@ -130,7 +144,7 @@ void CampaignFlights::FlyCases(const std::vector<CaseOrder>& orders, int threads
                                const CaseObserver& done) const {
   SharedOrders shared{*this, orders, done};
   const auto fly = [&] {
-    if (NeedsChild()) return FlyOneByOne(shared);
+    if (foreign_ != nullptr) return FlyOneByOne(shared);
     FlyingOrders flying(shared);
     ChosenEngine().fly(model(), flying);
   };

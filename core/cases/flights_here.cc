@@ -53,7 +53,9 @@ class FlyingCases : public FlightQueue {
 }  // namespace
 
 FlightsHere::FlightsHere(const Campaign& campaign)
-    : design_(WithItsLaw(campaign)), model_(std::make_unique<FlightModel>(DefinitionOf(campaign))) {}
+    : design_(WithItsLaw(campaign)),
+      model_(std::make_unique<FlightModel>(DefinitionOf(campaign))),
+      metrics_(MetricsOf(campaign).size()) {}
 
 FlightsHere::~FlightsHere() = default;
 
@@ -69,6 +71,14 @@ CaseResult FlightsHere::Fly(const FlightInputs& inputs, std::uint64_t case_index
 void FlightsHere::FlyCases(CaseQueue& queue) const {
   FlyingCases flying(*this, queue);
   ChosenEngine().fly(*model_, flying);
+}
+
+bool FlightsHere::IsResult(const CaseResult& result) const {
+  const int outcome = static_cast<int>(result.outcome);
+  const auto& stages = model_->definition().vehicle.stages;
+  return outcome >= 0 && outcome < kOutcomeCount && result.end_stage >= 0 &&
+         result.end_stage <= static_cast<int>(stages.size()) && result.metrics.size() == metrics_ &&
+         result.inputs.size() == InputValues({}, ColumnClass(model_->definition().vehicle)).size();
 }
 
 }  // namespace dispersa

@@ -41,10 +41,13 @@ class FlightsHere {
   CaseResult Fly(const FlightInputs& inputs, std::uint64_t case_index, History* history, Scheme scheme) const;
   /// Flies the queue's cases side by side on this thread until it has none.
   void FlyCases(CaseQueue& queue) const;
+  /// Whether a result has the form of these flights' results, whoever made it.
+  bool IsResult(const CaseResult& result) const;
 
  private:
   CaseDesign design_;
   std::unique_ptr<FlightModel> model_;
+  std::size_t metrics_;
 };
 
 }  // namespace dispersa

@@ -4,6 +4,7 @@
 #include <poll.h>
 #include <sys/mman.h>
 #include <sys/resource.h>
+#include <sys/socket.h>
 #include <sys/wait.h>
 #include <unistd.h>
 
@@ -21,50 +22,50 @@
 #include <utility>
 #include <vector>
 
+#include "core/containment/frames.h"
+#include "core/input/printable.h"
+
 namespace dispersa {
 namespace {
 
 std::string refusal;
 std::set<std::string> not_refused;
 
-// Kinds of frames in the pipe: a byte, the size as 8 bytes, the bytes.
-constexpr char kSaid = 's', kProblem = 'p', kThrew = 't', kDone = 'd', kAsked = 'a', kUnheld = 'u';
-constexpr std::string_view kKinds = "sptdau";
-
-// Descriptor to which a child writes its frames.
-constexpr int kPipe = 3;
-
 // The restrictions that the kernel granted to this process. Read in a child.
 SandboxParts sandbox;
 
-// A plug-in's text may hold anything. At most `limit` bytes of it are shown, in whole characters, on one
-// line.
-std::string Clean(const std::string& text, std::size_t limit = 1000) {
-  std::size_t end = std::min(text.size(), limit);
-  if (end < text.size())
-    while (end > 0 && (static_cast<unsigned char>(text[end]) & 0xC0) == 0x80) --end;
-  std::string clean = text.substr(0, end);
-  for (char& c : clean)
-    if (static_cast<unsigned char>(c) < 0x20 || c == 0x7f) c = '?';
-  return text.size() > limit ? clean + "..." : clean;
+// Nobody listens any more: the process has nothing to do.
+void Tell(char kind, const std::string& bytes) {
+  if (!WriteFrame(kAnswers, kind, bytes)) _exit(1);
 }
 
-void WriteAll(int file, const void* bytes, std::size_t size) {
-  const char* at = static_cast<const char*>(bytes);
-  while (size > 0) {
-    const ssize_t part = write(file, at, size);
-    if (part < 0 && errno == EINTR) continue;
-    if (part <= 0) _exit(1);  // nobody listens any more
-    at += part;
-    size -= static_cast<std::size_t>(part);
+// One byte, and with it a file if there is one. In a socket.
+struct FileMessage {
+  char byte = 0;
+  iovec data{&byte, 1};
+  alignas(cmsghdr) char control[CMSG_SPACE(sizeof(int))] = {};
+  msghdr head{nullptr, 0, &data, 1, control, sizeof control, 0};
+};
+
+bool SendFile(int socket, int file) {
+  FileMessage message;
+  if (file < 0) {
+    message.head.msg_controllen = 0;
+  } else {
+    cmsghdr* const about = CMSG_FIRSTHDR(&message.head);
+    *about = {CMSG_LEN(sizeof file), SOL_SOCKET, SCM_RIGHTS};
+    std::memcpy(CMSG_DATA(about), &file, sizeof file);
   }
+  return sendmsg(socket, &message.head, MSG_NOSIGNAL) == 1;
 }
 
-void WriteFrame(int file, char kind, const std::string& bytes) {
-  const std::uint64_t size = bytes.size();
-  WriteAll(file, &kind, 1);
-  WriteAll(file, &size, sizeof size);
-  WriteAll(file, bytes.data(), bytes.size());
+int ReceiveFile(int socket) {
+  FileMessage message;
+  int file = -1;
+  while (recvmsg(socket, &message.head, MSG_CMSG_CLOEXEC) < 0 && errno == EINTR) continue;
+  const cmsghdr* const about = CMSG_FIRSTHDR(&message.head);
+  if (about != nullptr && about->cmsg_type == SCM_RIGHTS) std::memcpy(&file, CMSG_DATA(about), sizeof file);
+  return file;
 }
 
 std::size_t VirtualBytes() {
@@ -83,17 +84,14 @@ void Limit(int resource, rlim_t value) {
   setrlimit(static_cast<__rlimit_resource>(resource), &limit);
 }
 
-// In a signal handler: nothing is allocated.
+// In a signal handler: a text so short is not allocated.
 void TellAskedCall(int call) {
-  const std::uint64_t size = sizeof call;
-  WriteAll(kPipe, &kAsked, 1);
-  WriteAll(kPipe, &size, sizeof size);
-  WriteAll(kPipe, &call, sizeof call);
+  Tell(kAsked, std::string(reinterpret_cast<const char*>(&call), sizeof call));
   _exit(1);
 }
 
-[[noreturn]] void BeChild(int out, pid_t parent, volatile PluginMark* mark, const ContainmentLimits& limits,
-                          const std::function<void(const Say& say)>& work) {
+[[noreturn]] void BeChild(int out, int prints, pid_t parent, volatile PluginMark* mark,
+                          const ContainmentLimits& limits, const std::function<void(const Say& say)>& work) {
   MarkPluginCallsIn(mark);
   setpgid(0, 0);
   // An exit within a call destroys nothing of the parent's: handlers run in the reverse order of their
@@ -107,29 +105,33 @@ void TellAskedCall(int call) {
   sigemptyset(&none);
   pthread_sigmask(SIG_SETMASK, &none, nullptr);
   // The plug-in gets no file of this process, and its printed output is no result.
-  if (out != kPipe) dup2(out, kPipe);
-  fcntl(kPipe, F_SETFD, FD_CLOEXEC);
-  close_range(kPipe + 1, ~0u, 0);
+  dup2(prints, STDOUT_FILENO);
+  dup2(prints, STDERR_FILENO);
+  if (out != kAnswers) dup2(out, kAnswers);
+  fcntl(kAnswers, F_SETFD, FD_CLOEXEC);
+  close_range(kAnswers + 1, ~0u, 0);
   const int nothing = open("/dev/null", O_RDONLY | O_CLOEXEC);
   if (nothing >= 0) dup2(nothing, STDIN_FILENO), close(nothing);
-  dup2(STDERR_FILENO, STDOUT_FILENO);
   Limit(RLIMIT_CORE, 0);
   Limit(RLIMIT_AS, VirtualBytes() + limits.memory_bytes);
-  sandbox = EnterSandbox(limits.sandbox, TellAskedCall);
+  int listener = -1;
+  sandbox = EnterSandbox(limits.sandbox, TellAskedCall, &listener);
+  if (!SendFile(kAnswers, listener)) _exit(1);
+  close(listener);
   if (!sandbox.seccomp) {
-    WriteFrame(kPipe, kUnheld, std::strerror(errno));
+    Tell(kUnheld, std::strerror(errno));
     _exit(1);
   }
   if (getppid() != parent) _exit(1);
   try {
-    work([](const std::string& message) { WriteFrame(kPipe, kSaid, message); });
-    WriteFrame(kPipe, kDone, "");
+    work([](const std::string& message) { Tell(kSaid, message); });
+    Tell(kDone, "");
   } catch (const PluginError& error) {
-    WriteFrame(kPipe, kProblem, error.what());
+    Tell(kProblem, error.what());
   } catch (const std::exception& error) {
-    WriteFrame(kPipe, kThrew, error.what());
+    Tell(kThrew, error.what());
   } catch (...) {
-    WriteFrame(kPipe, kThrew, "no std::exception");
+    Tell(kThrew, "no std::exception");
   }
   _exit(0);  // nothing of the parent's is destroyed here
 }
@@ -211,17 +213,26 @@ class Child {
     if (shared == MAP_FAILED) Refuse();
     mark_ = new (shared) PluginMark();
     int ends[2];
-    if (pipe2(ends, O_CLOEXEC) != 0) Refuse();
+    if (socketpair(AF_UNIX, SOCK_STREAM | SOCK_CLOEXEC, 0, ends) != 0) Refuse();
     in_ = ends[0];
+    int prints[2];
+    if (pipe2(prints, O_CLOEXEC) != 0) {
+      close(ends[1]);
+      Refuse();
+    }
+    prints_ = prints[0];
+    fcntl(prints_, F_SETFL, O_NONBLOCK);
     const pid_t parent = getpid();
     std::fflush(nullptr);
     pid_ = fork();
-    if (pid_ == 0) BeChild(ends[1], parent, mark_, limits, work);
+    if (pid_ == 0) BeChild(ends[1], prints[1], parent, mark_, limits, work);
     const int error = errno;
     close(ends[1]);
+    close(prints[1]);
     errno = error;
     if (pid_ < 0) Refuse();
     setpgid(pid_, pid_);  // whichever of the two comes first: signals of a terminal are the parent's
+    listener_ = ReceiveFile(in_);
   }
   ~Child() { End(); }
   Child(const Child&) = delete;
@@ -229,6 +240,10 @@ class Child {
 
   pid_t pid() const { return pid_; }
   int in() const { return in_; }
+  /// What it prints, to be read without waiting.
+  int prints() const { return prints_; }
+  /// Of its calls with a path (sandbox.h). -1: none.
+  int listener() const { return listener_; }
   const volatile PluginMark& mark() const { return *mark_; }
   PluginMark At() const { return {mark_->case_index, mark_->calls, mark_->time_s, mark_->stage}; }
   /// How it has ended; none while it runs.
@@ -250,13 +265,64 @@ class Child {
       kill(pid_, SIGKILL);
       while (waitpid(pid_, nullptr, 0) < 0 && errno == EINTR) continue;
     }
-    if (in_ >= 0) close(in_);
+    for (const int file : {in_, prints_, listener_})
+      if (file >= 0) close(file);
     if (mark_ != nullptr) munmap(const_cast<PluginMark*>(mark_), sizeof(PluginMark));
   }
 
   volatile PluginMark* mark_ = nullptr;
   pid_t pid_ = -1;
   int in_ = -1;
+  int prints_ = -1;
+  int listener_ = -1;
+};
+
+// Shows what a child prints on the standard error: whole lines of printable ASCII, and not without end.
+class Prints {
+ public:
+  explicit Prints(int file) : file_(file) {}
+  ~Prints() {
+    Read();
+    if (!line_.empty()) Show(line_);
+  }
+  Prints(const Prints&) = delete;
+  Prints& operator=(const Prints&) = delete;
+
+  /// -1 at its end.
+  int file() const { return file_; }
+  /// What is there.
+  void Read() {
+    char part[4096];
+    ssize_t size = 1;
+    // At most what a pipe holds: the child may write on for ever.
+    for (int parts = 0; file_ >= 0 && parts < 16 && size > 0; ++parts) {
+      size = read(file_, part, sizeof part);
+      if (size <= 0) break;
+      for (const char c : std::string_view(part, static_cast<std::size_t>(size))) {
+        if (c == '\n') {
+          Show(std::exchange(line_, {}));
+        } else if (line_.size() <= kLine) {
+          line_ += c;
+        }
+      }
+    }
+    if (size == 0) file_ = -1;
+  }
+
+ private:
+  static constexpr std::size_t kLine = 1000, kAll = 64 << 10;
+
+  void Show(const std::string& line) {
+    if (shown_ > kAll) return;
+    std::string text = Printable(line, kLine) + "\n";
+    shown_ += text.size();
+    if (shown_ > kAll) text = "the control law prints more, which is not shown\n";
+    std::fwrite(text.data(), 1, text.size(), stderr);
+  }
+
+  int file_;
+  std::string line_;
+  std::size_t shown_ = 0;
 };
 
 }  // namespace
@@ -265,42 +331,35 @@ void RunContained(const std::function<void(const Say& say)>& work, const Say& he
                   const StopCheck& should_stop, const ContainmentLimits& limits) {
   Child child(work, limits);
   CallWatch watch(child.pid(), child.mark(), limits);
-  std::string bytes;
-  bool is_open = true;  // the child may close it
+  Prints prints(child.prints());
+  FrameReader frames(limits.memory_bytes);  // no answer is larger than the child's memory
+  bool is_open = true;                      // the child may close it
   for (;;) {
     if (should_stop && should_stop()) throw Interrupted();
     const std::optional<int> ended = child.Ended();
     // After the child's end all that is left is read; before, only what has arrived.
     for (int patience_ms = ended ? 0 : 100; is_open; patience_ms = 0) {
-      pollfd ready{child.in(), POLLIN, 0};
-      if (poll(&ready, 1, patience_ms) <= 0) break;
-      char part[65536];
-      const ssize_t size = read(child.in(), part, sizeof part);
-      if (size > 0) bytes.append(part, static_cast<std::size_t>(size));
-      if (size == 0 || (size < 0 && errno != EINTR)) is_open = false;
-      if (!ended) break;
+      pollfd ready[] = {{child.in(), POLLIN, 0}, {child.listener(), POLLIN, 0}, {prints.file(), POLLIN, 0}};
+      if (poll(ready, 3, patience_ms) <= 0) break;
+      if (ready[2].revents != 0) prints.Read();
+      if ((ready[1].revents & POLLIN) != 0) AnswerPathCall(child.listener());
+      if (ready[0].revents != 0) is_open = frames.ReadFrom(child.in());
+      if (!ended || ready[0].revents == 0) break;
     }
-    std::size_t at = 0;
-    for (;;) {
-      std::uint64_t length = 0;
-      if (bytes.size() - at < 1 + sizeof length) break;
-      std::memcpy(&length, bytes.data() + at + 1, sizeof length);
-      const char kind = bytes[at];
-      // A law can write into the pipe, too. No answer is larger than the child's memory.
-      if (length > limits.memory_bytes || kKinds.find(kind) == std::string_view::npos)
-        throw ContainedEnd("answered with what is no result" + Place(child.At()), child.At());
-      if (bytes.size() - at - 1 - sizeof length < length) break;
-      const std::string message = bytes.substr(at + 1 + sizeof length, length);
-      at += 1 + sizeof length + length;
-      if (kind == kDone) return;
-      if (kind == kProblem) throw PluginError(Clean(message));
-      if (kind == kThrew) throw ContainedEnd("threw " + Clean(message) + Place(child.At()), child.At());
-      if (kind == kAsked) throw ContainedEnd(AskedCall(message) + Place(child.At()), child.At());
-      if (kind == kUnheld)
-        throw NoChild("the kernel gives no seccomp filter for a control law: " + Clean(message));
-      if (kind == kSaid) hear(message);
+    while (const std::optional<Frame> frame = frames.Next()) {
+      const std::string& message = frame->bytes;
+      if (frame->kind == kDone) return;
+      if (frame->kind == kProblem) throw PluginError(Printable(message, 1000));
+      if (frame->kind == kThrew)
+        throw ContainedEnd("threw " + Printable(message, 1000) + Place(child.At()), child.At());
+      if (frame->kind == kAsked) throw ContainedEnd(AskedCall(message) + Place(child.At()), child.At());
+      if (frame->kind == kUnheld)
+        throw NoChild("the kernel gives no seccomp filter for a control law: " + Printable(message, 1000));
+      if (frame->kind == kSaid) hear(message);
     }
-    bytes.erase(0, at);
+    // A law can write into the pipe, too.
+    if (frames.is_spoilt())
+      throw ContainedEnd("answered with what is no result" + Place(child.At()), child.At());
     if (ended) throw ContainedEnd(HowItEnded(*ended, limits) + Place(child.At()), child.At());
     if (!is_open) {
       watch.AwaitEnd();
@@ -317,15 +376,16 @@ void RunContained(const std::function<void(const Say& say)>& work, const Say& he
 }
 
 SandboxParts SandboxHere() {
-  SandboxParts holds{false, false, false};
+  SandboxParts holds{false, false, false, false};
   try {
     RunContained(
         [](const Say& say) {
           say({static_cast<char>(sandbox.seccomp), static_cast<char>(sandbox.landlock),
+               static_cast<char>(sandbox.paths && access("/proc/self/exe", F_OK) != 0),
                static_cast<char>(sandbox.namespaces)});
         },
         [&](const std::string& message) {
-          holds = {message.at(0) == 1, message.at(1) == 1, message.at(2) == 1};
+          holds = {message.at(0) == 1, message.at(1) == 1, message.at(2) == 1, message.at(3) == 1};
         });
   } catch (const NoChild&) {
     // None of them.
@@ -340,6 +400,9 @@ void RefusePlugins(const std::string& why, std::set<std::string> but) {
 std::string PluginRefusal(const std::string& sha256) { return not_refused.contains(sha256) ? "" : refusal; }
 
 PluginDescription DescribeContained(const PluginConfig& config) {
+  // Shorter than the five seconds in which a coordinator that is told to end has to.
+  ContainmentLimits limits;
+  limits.call_wait_s = 3.0;
   std::vector<std::string> texts;
   RunContained(
       [&](const Say& say) {
@@ -348,9 +411,20 @@ PluginDescription DescribeContained(const PluginConfig& config) {
         say(description.version);
         for (const std::string& name : description.parameters) say(name);
       },
-      [&](const std::string& text) { texts.push_back(Clean(text, 200)); });
+      [&](const std::string& text) { texts.push_back(text); }, nullptr, limits);
+  return DescriptionOf(texts);
+}
+
+PluginDescription DescriptionOf(const std::vector<std::string>& texts) {
   if (texts.size() < 2) throw PluginError("describes nothing");
-  return {texts[0], texts[1], {texts.begin() + 2, texts.end()}};
+  PluginDescription description{Printable(texts[0], 64), Printable(texts[1], 64), {}};
+  for (std::size_t i = 2; i < texts.size(); ++i) {
+    if (Printable(texts[i], 64) != texts[i])
+      throw PluginError("has a parameter with the name '" + Printable(texts[i], 64) +
+                        "', which is not up to 64 printable ASCII characters");
+    description.parameters.push_back(texts[i]);
+  }
+  return description;
 }
 
 }  // namespace dispersa

@@ -1,14 +1,16 @@
 // Runs work that may crash, hang, end the process or allocate without limit, in a child process.
 //
-// The child is forked without a new program. It has all that this process has prepared, and no files of it
-// but the streams for output. It runs on one thread, and must take no lock that another thread may hold here.
-// It is shut in (sandbox.h): it computes, and reaches no file, network or process.
+// The child is forked without a new program. It has all that this process has in memory, so foreign code is
+// run only by dispersa-foreign (foreign_process.h). It has no files of this process but the streams for
+// output. It runs on one thread, and must take no lock that another thread may hold here. It is shut in
+// (sandbox.h): it computes, and reaches no file, network or process.
 #pragma once
 
 #include <functional>
 #include <set>
 #include <stdexcept>
 #include <string>
+#include <vector>
 
 #include "core/containment/interrupted.h"
 #include "core/containment/sandbox.h"
@@ -51,6 +53,9 @@ void RunContained(const std::function<void(const Say& say)>& work, const Say& he
 
 /// A plug-in's description of itself, asked in a child. Throws PluginError, ContainedEnd.
 PluginDescription DescribeContained(const PluginConfig& config);
+/// What a plug-in says of itself (name, version, parameters), bounded and in printable ASCII. Throws
+/// PluginError.
+PluginDescription DescriptionOf(const std::vector<std::string>& texts);
 
 /// Which parts of the sandbox hold for children of this process.
 SandboxParts SandboxHere();

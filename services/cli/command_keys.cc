@@ -49,8 +49,8 @@ ExitCode Issue(const KeysOptions& options, const GlobalOptions& global) {
 
 ExitCode Revoke(const KeysOptions& options, const GlobalOptions& global) {
   const auto file = RevokeKeys(options.directory, *ParseRole(options.role), options.name);
-  return TellMade("revoked; copy this list into the folder of each coordinator's keys", file.string(),
-                  global);
+  return TellMade("revoked; copy this list into the folders of all coordinators' and workers' keys",
+                  file.string(), global);
 }
 
 void AddRoleAndName(CLI::App* command, const std::shared_ptr<KeysOptions>& options,

@@ -1,6 +1,7 @@
 // dispersa launch: gives a campaign to a coordinator.
 #include <fmt/format.h>
 
+#include <chrono>
 #include <memory>
 #include <optional>
 #include <string>
@@ -9,12 +10,16 @@
 #include "services/cli/session_options.h"
 #include "services/cli/warn.h"
 #include "services/client/remote_campaign.h"
+#include "services/log/log.h"
 #include "services/program/option_values.h"
 
 namespace dispersa {
 namespace {
 
 using Json = nlohmann::ordered_json;
+
+// A worker checks a control law from a shared object before it flies.
+constexpr std::chrono::seconds kCheckPatience(30);
 
 struct LaunchOptions {
   std::string campaign;
@@ -26,14 +31,17 @@ struct LaunchOptions {
 ExitCode Launch(const LaunchOptions& options, Session& session, const GlobalOptions& global) {
   const Campaign campaign = LoadAndWarn(options.campaign, options.overrides);
   const std::string state = LaunchCampaign(session, campaign, options.priority, options.labels);
+  const bool is_checked = !campaign.autopilot.plugin || AwaitCheck(session, campaign.id, kCheckPatience);
   if (global.json) {
     const Json object = {{"schema", "dispersa/launch/1"},
                          {"id", campaign.id},
                          {"flight_id", campaign.flight_id},
-                         {"state", state}};
+                         {"state", state},
+                         {"checked", is_checked}};
     fmt::print("{}\n", object.dump(2));
   } else {
     fmt::print("{}\n", campaign.id);
+    if (!is_checked) Tell("waiting for a check\n");
   }
   return kExitDone;
 }

@@ -41,12 +41,9 @@ TrajectoryOptions SearchOptions(const OptimizationInput& input, int threads) {
 }
 
 std::optional<CheckFlight> FlyReference(const OptimizationInput& input, const Reference& reference) {
-  if (!input.autopilot) return std::nullopt;
-  Campaign campaign;
-  campaign.vehicle = input.vehicle;
-  campaign.autopilot = *input.autopilot;
-  campaign.reference = reference;
-  const CaseResult result = CampaignFlights(campaign).FlyNominal();
+  const std::optional<Campaign> campaign = CampaignOf(input, reference);
+  if (!campaign) return std::nullopt;
+  const CaseResult result = CampaignFlights(*campaign).FlyNominal();
   CheckFlight flight{result.outcome, result.end_time_s, result.reason};
   if (!flight.completed()) return flight;
   const auto metric = [&](const char* name) { return result.metrics[MetricColumn(name)]; };

@@ -97,6 +97,18 @@ std::string LaunchCampaign(Session& session, const Campaign& campaign, std::opti
   }
 }
 
+bool AwaitCheck(Session& session, const std::string& id, std::chrono::seconds patience) {
+  const auto latest = std::chrono::steady_clock::now() + patience;
+  do {
+    const Json campaign = Json::parse(session.Ask("list", {{"id", id}}).text).at("campaigns").at(0);
+    if (campaign.at("state") == "refused") throw Failure{kExitBadInput, campaign.at("problem")};
+    if (campaign.at("checked") || !campaign.at("code").is_null()) return true;
+    if (!campaign.at("problem").is_null()) return false;
+    std::this_thread::sleep_for(kAskAgain);
+  } while (std::chrono::steady_clock::now() < latest);
+  return false;
+}
+
 ExitCode FollowCampaign(Session& session, const std::string& id, Observer& observer) {
   for (;;) {
     if (observer.ShouldStop()) throw Interrupted();

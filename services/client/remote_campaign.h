@@ -1,6 +1,7 @@
 // A campaign that a coordinator flies: launch, watch, fetch.
 #pragma once
 
+#include <chrono>
 #include <filesystem>
 #include <optional>
 #include <string>
@@ -16,6 +17,10 @@ namespace dispersa {
 /// and adds labels ("KEY=VALUE"). Returns the campaign's state ("waiting", "flying", ...). Throws Failure.
 std::string LaunchCampaign(Session& session, const Campaign& campaign, std::optional<int> priority,
                            const std::vector<std::string>& labels = {});
+
+/// Waits until a worker has checked the control law of a campaign that was launched, a plug-in. False: none
+/// has for `patience`, or the campaign's problem keeps it from that. Throws Failure if it is refused.
+bool AwaitCheck(Session& session, const std::string& id, std::chrono::seconds patience);
 
 /// Waits until the campaign has ended and returns its exit code. Waits for an absent coordinator. Throws
 /// Failure, and Interrupted: then the campaign goes on.

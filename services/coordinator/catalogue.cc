@@ -23,8 +23,7 @@ namespace {
 namespace fs = std::filesystem;
 using Json = nlohmann::ordered_json;
 
-constexpr std::array<const char*, 6> kStates = {"waiting", "flying",    "reporting",
-                                                "done",    "cancelled", "failed"};
+constexpr std::array kStates = {"waiting", "flying", "reporting", "done", "cancelled", "failed", "refused"};
 
 std::string ReadWhole(const fs::path& file) {
   std::ifstream stream(file, std::ios::binary);
@@ -125,7 +124,7 @@ const char* CampaignStateName(CampaignState state) { return kStates[static_cast<
 
 bool HasEnded(CampaignState state) {
   return state == CampaignState::kDone || state == CampaignState::kCancelled ||
-         state == CampaignState::kFailed;
+         state == CampaignState::kFailed || state == CampaignState::kRefused;
 }
 
 bool ComesBefore(const CatalogueEntry& a, const CatalogueEntry& b) {

@@ -15,9 +15,9 @@
 
 namespace dispersa {
 
-enum class CampaignState { kWaiting, kFlying, kReporting, kDone, kCancelled, kFailed };
+enum class CampaignState { kWaiting, kFlying, kReporting, kDone, kCancelled, kFailed, kRefused };
 
-/// "waiting", "flying", "reporting", "done", "cancelled", "failed".
+/// "waiting", "flying", "reporting", "done", "cancelled", "failed", "refused".
 const char* CampaignStateName(CampaignState state);
 /// Nothing more happens to it by itself.
 bool HasEnded(CampaignState state);
@@ -34,7 +34,7 @@ struct CatalogueEntry {
   std::uint64_t conflicts = 0;  ///< results that contradicted others, ever
   CampaignState state = CampaignState::kWaiting;
   int code = 0;         ///< exit code of a campaign that has ended
-  std::string problem;  ///< of a failed one
+  std::string problem;  ///< of one that failed or was refused
   std::uint64_t seed = 0;
   std::int64_t ended_unix_s = 0;        ///< when it ended (0: it has not)
   std::vector<std::string> distrusted;  ///< workers whose results are still to be removed (dispersa repair)

@@ -4,6 +4,7 @@
 #include <limits>
 #include <utility>
 
+#include "core/cases/plugin_check.h"
 #include "core/results/fingerprint.h"
 #include "services/log/log.h"
 #include "services/transport/complaints.h"
@@ -331,7 +332,12 @@ std::optional<std::string> Dispatcher::RefusalByAll(const std::string& flight_id
   const std::map<std::string, std::string>& refused_by = campaign->second.refused_by;
   const bool by_all = std::all_of(workers_.begin(), workers_.end(),
                                   [&](const auto& worker) { return refused_by.contains(worker.first); });
-  return by_all ? std::optional(refused_by.at(workers_.begin()->first)) : std::nullopt;
+  if (!by_all) return std::nullopt;
+  // Others may lack leave to fly any law.
+  const auto of_law = std::find_if(workers_.begin(), workers_.end(), [&](const auto& worker) {
+    return IsOfTheLaw(refused_by.at(worker.first));
+  });
+  return refused_by.at((of_law == workers_.end() ? workers_.begin() : of_law)->first);
 }
 
 std::optional<TextPart> Dispatcher::On(const TextRequest& request, std::size_t limit, double now_s) {

@@ -11,7 +11,6 @@
 
 #include "core/analysis/requirement_summary.h"
 #include "core/campaign_yaml/load.h"
-#include "core/cases/plugin_check.h"
 #include "core/results/json_number.h"
 #include "services/coordinator/dump_any_text.h"
 #include "services/coordinator/packed_files.h"
@@ -46,8 +45,6 @@ CatalogueEntry Parse(const std::string& text, std::uint64_t max_cases) {
         fmt::format("campaign {} has {} cases, allowed: at most {} (dispersa-coordinator --max-cases)",
                     campaign.id.substr(0, 8), campaign.sampling.cases, max_cases));
   }
-  if (campaign.autopilot.plugin)
-    CheckPluginIsDeterministic(CampaignFlights(campaign), campaign.sampling.cases);
   CatalogueEntry entry;
   entry.id = campaign.id;
   entry.flight_id = campaign.flight_id;
@@ -76,6 +73,7 @@ Json ToJson(const CampaignView& view, std::size_t most) {
           {"done", view.progress.done},
           {"total", view.progress.total},
           {"quarantined", view.progress.quarantined},
+          {"checked", view.is_checked},
           {"rate_per_s", view.rate_per_s},
           {"eta_s", view.eta_s ? Json(*view.eta_s) : Json(nullptr)},
           {"priority", entry.priority},
@@ -324,7 +322,8 @@ std::string FrontDesk::LaunchAgain(const Asker& asker, const CatalogueEntry& ent
                                    std::optional<int> priority, const std::vector<std::string>& labels) {
   const std::string id = entry.id;
   if (priority && *priority != entry.priority) RequireOwner(asker, entry, "change the priority of");
-  if (entry.state == CampaignState::kCancelled || entry.state == CampaignState::kFailed)
+  if (entry.state == CampaignState::kCancelled || entry.state == CampaignState::kFailed ||
+      entry.state == CampaignState::kRefused)
     RequireOwner(asker, entry, "continue");
   for (const std::string& label : labels) {
     if (std::find(entry.labels.begin(), entry.labels.end(), label) == entry.labels.end())

@@ -8,6 +8,7 @@
 #include <chrono>
 #include <utility>
 
+#include "core/containment/foreign_process.h"
 #include "core/pages/reports.h"
 #include "services/coordinator/attendance.h"
 #include "services/coordinator/catalogue.h"
@@ -206,6 +207,7 @@ int ServeClients(const ServeOptions& options, const ClientOptions& clients) {
     times.longest_round_s = std::max(times.longest_round_s, round.elapsed_s());
   }
   watchdog.reset();
+  EndForeignProcesses();  // a slow control law keeps nobody
   service.Flush();
   LogInfo("stopped; campaigns that have not ended continue when the coordinator starts again");
   return 0;

@@ -11,6 +11,7 @@
 #include <set>
 
 #include "core/campaign_yaml/load.h"
+#include "core/cases/plugin_check.h"
 #include "core/pages/reports.h"
 #include "core/results/output_file.h"
 #include "services/coordinator/dump_any_text.h"
@@ -75,6 +76,7 @@ bool IsReady(const std::future<T>& future) {
 
 bool IsContinuedByLaunch(const CatalogueEntry& entry) {
   return entry.state == CampaignState::kCancelled || entry.state == CampaignState::kFailed ||
+         entry.state == CampaignState::kRefused ||
          (entry.state == CampaignState::kDone && entry.quarantined > 0);
 }
 
@@ -122,15 +124,21 @@ void Service::CloseBroken() {
   }
 }
 
-// Its results stay where they are, without a report.
+// Its control law is not fit to fly: its results differ, or no worker's check lets it fly. Results stay where
+// they are, without a report.
 void Service::CloseRefused() {
-  std::vector<std::string> refused;
+  std::map<std::string, std::string> refused;  // reason by id
   for (const auto& [id, flying] : flying_) {
-    if (flying.book->refusal()) refused.push_back(id);
+    if (flying.book->refusal()) {
+      refused[id] = *flying.book->refusal();
+    } else if (const auto reason = workforce_.RefusalByAll(flying.book->campaign().result_id());
+               reason && IsOfTheLaw(*reason)) {
+      refused[id] = *reason;
+    }
   }
-  for (const std::string& id : refused) {
+  for (const auto& [id, reason] : refused) {
     const Book book = TakeBack(id);
-    End(catalogue_.At(id), CampaignState::kFailed, kExitBadInput, *book->refusal());
+    End(catalogue_.At(id), CampaignState::kRefused, kExitBadInput, reason);
   }
 }
 
@@ -478,6 +486,7 @@ CampaignView Service::View(const std::string& id) const {
   const auto flying = flying_.find(id);
   if (const auto delayed = delayed_.find(id); delayed != delayed_.end())
     view.problem = Waiting(delayed->second.problem);
+  view.is_checked = entry.done + entry.quarantined > 0;
   if (flying == flying_.end()) {
     view.progress.total = entry.cases;
     view.progress.done = entry.done;
@@ -490,6 +499,7 @@ CampaignView Service::View(const std::string& id) const {
     view.problem = "no worker here can fly it: " + *refusal;
   if (const std::string& pause = flying->second.book->pause(); !pause.empty()) view.problem = Waiting(pause);
   view.progress = flying->second.book->ledger().Progress();
+  view.is_checked = view.progress.done + view.progress.quarantined > 0;
   view.rate_per_s = flying->second.pace.PerSecond();
   view.eta_s = TimeLeft(view.progress, view.rate_per_s);
   return view;

@@ -56,8 +56,10 @@ struct CampaignView {
   LedgerProgress progress;
   double rate_per_s = 0.0;
   std::optional<double> eta_s;
+  bool is_checked = false;  ///< some worker has found its control law fit to fly: it has begun a case
   std::vector<RequirementStanding> standings;  ///< until it has ended
-  std::string problem;  ///< of one that failed, that no worker here can fly, or that waits for the disk
+  std::string problem;  ///< of one that failed or was refused, that no worker here can fly, or that waits for
+                        ///< the disk
 };
 
 /// Everything that a client was told survives a restart: a campaign is on the disk before its id is answered.

@@ -5,6 +5,7 @@
 #include <optional>
 #include <utility>
 
+#include "core/containment/interrupted.h"
 #include "core/results/fingerprint.h"
 #include "services/log/log.h"
 
@@ -114,7 +115,11 @@ std::shared_ptr<const CampaignFlights> Auditor::FlightsOf(const std::string& fli
 void Auditor::FlyForEver() {
   for (std::string flight_id = Await(); !flight_id.empty(); flight_id = Await()) {
     Queue queue(*this, flight_id);
-    FlightsOf(flight_id)->FlyCases(queue);
+    try {
+      FlightsOf(flight_id)->FlyCases(queue);
+    } catch (const Interrupted&) {
+      return;  // this process ends
+    }
     const Lock lock(mutex_);
     work_.at(flight_id).is_flown = false;
   }

@@ -13,14 +13,16 @@ std::string VersionText(const std::string& program) { return program + " " + std
 std::string VersionJson() {
   const std::string engine(EngineVersion());
   const SandboxParts sandbox = SandboxHere();
-  const nlohmann::ordered_json json = {
-      {"schema", "dispersa/version/1"},
-      {"version", engine.substr(0, engine.find('+'))},
-      {"engine", engine},
-      {"isa", ChosenEngine().isa},
-      {"lanes", ChosenEngine().lanes},
-      {"sandbox",
-       {{"seccomp", sandbox.seccomp}, {"landlock", sandbox.landlock}, {"namespaces", sandbox.namespaces}}}};
+  const nlohmann::ordered_json json = {{"schema", "dispersa/version/1"},
+                                       {"version", engine.substr(0, engine.find('+'))},
+                                       {"engine", engine},
+                                       {"isa", ChosenEngine().isa},
+                                       {"lanes", ChosenEngine().lanes},
+                                       {"sandbox",
+                                        {{"seccomp", sandbox.seccomp},
+                                         {"landlock", sandbox.landlock},
+                                         {"paths", sandbox.paths},
+                                         {"namespaces", sandbox.namespaces}}}};
   return json.dump(2);
 }
 

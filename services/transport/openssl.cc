@@ -1,5 +1,6 @@
 #include "services/transport/openssl.h"
 
+#include <fmt/format.h>
 #include <openssl/err.h>
 #include <openssl/pem.h>
 #include <openssl/rand.h>
@@ -60,6 +61,12 @@ void AddToName(X509_NAME* name, const char* field, const std::string& value) {
         "the name in a certificate");
 }
 
+void Fill(X509_NAME* name, const Subject& subject) {
+  AddToName(name, "O", "dispersa");
+  AddToName(name, "OU", subject.unit);
+  AddToName(name, "CN", subject.name);
+}
+
 std::string FieldOf(X509* certificate, int field) {
   std::array<char, 256> text{};
   X509_NAME_get_text_by_NID(X509_get_subject_name(certificate), field, text.data(), text.size());
@@ -87,9 +94,7 @@ Certificate MakeCertificate(const CertificateContents& contents, EVP_PKEY* key, 
   std::uint64_t serial = 0;
   Check(RAND_bytes(reinterpret_cast<unsigned char*>(&serial), sizeof serial) == 1, "random numbers");
   X509_NAME* name = X509_get_subject_name(made.get());
-  AddToName(name, "O", "dispersa");
-  AddToName(name, "OU", contents.subject.unit);
-  AddToName(name, "CN", contents.subject.name);
+  Fill(name, contents.subject);
   Check(X509_set_version(made.get(), X509_VERSION_3) == 1 &&
             ASN1_INTEGER_set_uint64(X509_get_serialNumber(made.get()), serial >> 1) == 1 &&
             ASN1_TIME_set(X509_getm_notBefore(made.get()), contents.not_before) != nullptr &&
@@ -154,6 +159,23 @@ std::string SubjectText(X509* certificate) {
   Check(X509_NAME_print_ex(out.get(), X509_get_subject_name(certificate), 0, XN_FLAG_RFC2253) >= 0,
         "the name in a certificate");
   return TextOf(out.get());
+}
+
+// DDS Security 1.1, 9.3.3: a bit 1, and the first 47 bits of the SHA-256 of the name.
+std::string ParticipantsOf(const Subject& subject) {
+  const std::unique_ptr<X509_NAME, OpenSslFree<X509_NAME_free>> name(X509_NAME_new());
+  Check(name != nullptr, "no memory");
+  Fill(name.get(), subject);
+  std::array<unsigned char, EVP_MAX_MD_SIZE> hash{};
+  Check(X509_NAME_digest(name.get(), EVP_sha256(), hash.data(), nullptr) == 1, "the hash of a name");
+  std::string text;
+  unsigned carried = 1;
+  for (int i = 0; i < 6; ++i) {
+    const unsigned byte = hash[static_cast<std::size_t>(i)];
+    text += fmt::format("{:02x}", (carried << 7 | byte >> 1) & 0xffu);
+    carried = byte & 1u;
+  }
+  return text;
 }
 
 std::time_t EndOf(X509* certificate) { return TimeOf(X509_get0_notAfter(certificate)); }

@@ -54,6 +54,9 @@ PrivateKey ReadPrivateKey(const std::string& pem);
 Subject SubjectOf(X509* certificate);
 /// "CN=node1,OU=worker,O=dispersa": the form in which permissions name their owner.
 std::string SubjectText(X509* certificate);
+/// The first 12 digits of the names of participants (ParticipantOf) with keys of this owner: the middleware
+/// checks that a participant's name and its certificate agree.
+std::string ParticipantsOf(const Subject& subject);
 std::time_t EndOf(X509* certificate);
 std::time_t BeginOf(X509* certificate);
 /// Whether `authority` has signed it. Its dates are not checked.

@@ -1,5 +1,6 @@
 #include "services/transport/revocations.h"
 
+#include <algorithm>
 #include <sstream>
 #include <stdexcept>
 #include <system_error>
@@ -60,6 +61,14 @@ bool Revocations::Refresh() {
 bool Revocations::Contains(Role role, const std::string& name) const {
   const auto found = revoked_.find(role);
   return found != revoked_.end() && found->second.contains(name);
+}
+
+bool Revocations::IsOf(Role role, const std::string& participant) const {
+  const auto names = revoked_.find(role);
+  return names != revoked_.end() &&
+         std::any_of(names->second.begin(), names->second.end(), [&](const std::string& name) {
+           return participant.starts_with(ParticipantsOf({name, Name(role)}));
+         });
 }
 
 }  // namespace dispersa

@@ -31,6 +31,8 @@ class Revocations {
   bool Refresh();
   const Revoked& revoked() const { return revoked_; }
   bool Contains(Role role, const std::string& name) const;
+  /// Whether a participant has revoked keys of this role, which is no client's.
+  bool IsOf(Role role, const std::string& participant) const;
 
  private:
   std::filesystem::path directory_;

@@ -1,8 +1,6 @@
 #include "services/transport/validity.h"
 
 #include <algorithm>
-#include <array>
-#include <cstdio>
 
 #include "core/campaign_yaml/sha256.h"
 #include "core/flight/flight_inputs.h"
@@ -114,22 +112,6 @@ std::string WhyInvalid(const Request& request) {
 
 std::string WhyInvalid(const Reply& reply) {
   return FirstOf({{!IsName(reply.client, kMaxClient), "the client's name is no identifier"}});
-}
-
-std::string Printable(const std::string& text, std::size_t limit) {
-  std::string clean;
-  for (const char c : text) {
-    if (clean.size() >= limit) return clean + "...";
-    if (c >= ' ' && c <= '~') {
-      clean += c;
-    } else {
-      std::array<char, 5> code{};
-      std::snprintf(code.data(), code.size(), "\\x%02x",
-                    static_cast<unsigned>(static_cast<unsigned char>(c)));
-      clean += code.data();
-    }
-  }
-  return clean;
 }
 
 }  // namespace dispersa

@@ -4,6 +4,7 @@
 
 #include <string>
 
+#include "core/input/printable.h"
 #include "services/transport/messages.h"
 
 namespace dispersa {
@@ -22,9 +23,5 @@ std::string WhyInvalid(const Reply& reply);
 /// Largest text of a campaign.
 inline constexpr std::uint64_t kMaxTextBytes = std::uint64_t{64} << 20;
 inline constexpr std::size_t kMaxSlots = 1024;
-
-/// At most `limit` bytes of a text from elsewhere, fit for a log or a terminal. Bytes that are not printable
-/// ASCII are written as \xNN.
-std::string Printable(const std::string& text, std::size_t limit = 200);
 
 }  // namespace dispersa

@@ -5,6 +5,7 @@
 #include "services/transport/convert.h"
 #include "services/transport/endpoints.h"
 #include "services/transport/event_queue.h"
+#include "services/transport/revocations.h"
 #include "services/transport/topics.h"
 
 namespace dispersa {
@@ -12,18 +13,26 @@ namespace {
 
 namespace dds = eprosima::fastdds::dds;
 
+constexpr std::chrono::seconds kRevocations(5);  // a new list is looked for so often
+
 }  // namespace
 
 struct WorkerLink::Impl {
+  struct Heard {
+    std::string sender;
+    WorkerEvent what;
+  };
+
   Impl(const NetworkOptions& network, const std::vector<Peer>& peers, const std::string& worker)
       : participant({network, "dispersa-worker", std::nullopt, peers}),
         publisher(participant.MakePublisher(PartitionOf(worker))),
         subscriber(participant.MakeSubscriber({PartitionOf(worker)})) {
+    if (network.keys) revocations.emplace(*network.keys);
     // This includes messages of the coordinator to another worker that a third party repeats here.
     const auto push = [this, worker](auto&& message, const std::string& sender) {
       if (message.worker != worker) {
         Complain("message", sender, "it is for another worker");
-      } else if (!events.Push(std::move(message)))
+      } else if (!events.Push({sender, std::move(message)}))
         Complain("message", sender, "too many wait already");
     };
     orders.emplace(participant, subscriber, kOrdersTopic, push);
@@ -34,7 +43,27 @@ struct WorkerLink::Impl {
     statuses.emplace(participant, publisher, kStatusTopic, 1);
   }
 
-  EventQueue<WorkerEvent> events;
+  /// Those that are not of a coordinator with revoked keys.
+  std::vector<WorkerEvent> Believed(std::vector<Heard> heard) {
+    const auto now = std::chrono::steady_clock::now();
+    if (revocations && now - looked > kRevocations) {
+      looked = now;
+      revocations->Refresh();
+    }
+    std::vector<WorkerEvent> believed;
+    for (Heard& each : heard) {
+      if (revocations && revocations->IsOf(Role::kCoordinator, each.sender)) {
+        Complain("message", each.sender, "the keys of this coordinator are revoked");
+      } else {
+        believed.push_back(std::move(each.what));
+      }
+    }
+    return believed;
+  }
+
+  EventQueue<Heard> events;
+  std::optional<Revocations> revocations;
+  std::chrono::steady_clock::time_point looked;
   Participant participant;
   dds::Publisher* publisher;
   dds::Subscriber* subscriber;
@@ -53,7 +82,7 @@ WorkerLink::~WorkerLink() = default;
 
 std::vector<WorkerEvent> WorkerLink::Wait(std::chrono::milliseconds timeout) {
   impl_->participant.LogSilent();
-  return impl_->events.Wait(timeout);
+  return impl_->Believed(impl_->events.Wait(timeout));
 }
 
 void WorkerLink::Send(const WorkerStatus& status) { impl_->statuses->Write(ToIdl(status)); }

@@ -412,6 +412,23 @@ TEST_F(CampaignServiceTest, ACampaignThatNoWorkerCanFlySaysWhy) {
   workforce_.dispatcher.On("w", CampaignRefusal{"w", MadeUpWorkforce::kEpoch, campaign.flight_id, "no law"},
                            workforce_.time_s);
   EXPECT_EQ(service_->View(id).problem, "no worker here can fly it: no law");
+  // A worker of which the law does not pass the check speaks for those that have no leave to check it.
+  for (const char* worker : {"a", "z"}) workforce_.Join(worker);
+  workforce_.dispatcher.On("z",
+                           CampaignRefusal{"z", MadeUpWorkforce::kEpoch, campaign.flight_id,
+                                           "the control law pd is not deterministic"},
+                           workforce_.time_s);
+  service_->Step();
+  EXPECT_EQ(service_->View(id).entry->state, CampaignState::kFlying) << "one may still accept it";
+  workforce_.dispatcher.On("a", CampaignRefusal{"a", MadeUpWorkforce::kEpoch, campaign.flight_id, "no leave"},
+                           workforce_.time_s);
+  service_->Step();
+  const CatalogueEntry& entry = *service_->View(id).entry;
+  EXPECT_EQ(
+      std::string(CampaignStateName(entry.state)) + " " + std::to_string(entry.code) + ": " + entry.problem,
+      "refused 2: the control law pd is not deterministic");
+  EXPECT_TRUE(HasEnded(entry.state));
+  EXPECT_TRUE(IsContinuedByLaunch(entry));
 }
 
 // What goes wrong with one campaign is that one's matter: the others fly on.

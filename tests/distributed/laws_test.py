@@ -2,14 +2,19 @@
 
 Environment as of processes.py; DISPERSA_SOURCE: the repository.
 """
+import hashlib
 import json
 import os
 import pathlib
+import re
+import resource
 import shutil
 import subprocess
 import tempfile
+import time
+import unittest.mock
 
-from processes import BINARIES, CAMPAIGN, PATIENCE_S, Run, main, stored, wait_for
+from processes import BINARIES, CAMPAIGN, PATIENCE_S, Run, main, parent_and_name, stored, wait_for
 from service_case import ServiceCase
 
 SOURCE = pathlib.Path(os.environ["DISPERSA_SOURCE"])
@@ -18,6 +23,42 @@ DIFFERS_BY_WORKER = 20
 CRASHES_IN_WORKERS = 27
 REFUSAL = (r"the control law pd_test is not deterministic: of case \d+, flown (by worker \S+|here before the campaign) and again by \S+, "
            r"metric_\w+ is '\S+' once and '\S+' again")
+
+
+IS_SLOW = 28
+NEIGHBOUR = "a-neighbours-campaign"  # its name
+
+
+def carriers(of):
+    """Processes below a process that have a law loaded."""
+    found, parents = [], {}
+    for folder in pathlib.Path("/proc").iterdir():
+        if not folder.name.isdigit():
+            continue
+        try:
+            parents[int(folder.name)] = parent_and_name(folder.name)[0]
+            if "dispersa-control-law" in (folder / "maps").read_text():
+                found.append(int(folder.name))
+        except OSError:
+            continue
+
+    def is_below(pid):
+        return pid == of or (pid in parents and is_below(parents[pid]))
+    return list(filter(is_below, found))
+
+
+def found_in(pid, secrets):
+    """Which secrets are anywhere in a process's memory."""
+    found = set()
+    with open(f"/proc/{pid}/mem", "rb", 0) as memory:
+        for begin, end, rights in re.findall(r"^(\w+)-(\w+) (\S+)", pathlib.Path(f"/proc/{pid}/maps").read_text(), re.MULTILINE):
+            try:
+                memory.seek(int(begin, 16))
+                part = memory.read(int(end, 16) - int(begin, 16)) if "r" in rights else b""
+            except (OSError, OverflowError, ValueError):
+                continue
+            found |= {name for name, forms in secrets.items() if any(form in part for form in forms)}
+    return found
 
 
 class LawsTest(ServiceCase):
@@ -88,21 +129,30 @@ class LawsTest(ServiceCase):
         for _ in range(2):
             self.start_worker()
         wait_for(lambda: len(json.loads(self.dispersa("status", "--json"))["workers"]) == 2, "two workers")
-        identity = self.dispersa("launch", campaign).strip()
+        identity = self.launch(campaign)
         self.assertRegex(self.dispersa("watch", identity, code=2), REFUSAL)
-        self.assertEqual(self.status(identity)["state"], "failed")
+        self.assertEqual(self.status(identity)["state"], "refused")
         self.assertRegex(self.status(identity)["problem"], REFUSAL)
         self.assertFalse((self.fetch(identity) / "report.html").exists())
 
-    def test_a_campaign_that_no_worker_can_fly_says_so(self):
+    def test_a_worker_refuses_a_law_that_does_not_pass_its_check(self):
         _, campaign = self.campaign(CRASHES_IN_WORKERS)
         self.start_coordinator()
-        self.start_worker()
+        # Nobody is there to check it: the launch does not wait for ever.
+        began = time.monotonic()
         identity = self.dispersa("launch", campaign).strip()
-        wait_for(lambda: self.status(identity)["problem"], "why it does not go on")
-        self.assertRegex(self.status(identity)["problem"],
-                         r"^no worker here can fly it: the control law pd_test cannot fly the nominal flight: it ended by signal 6")
-        self.assertEqual(self.status(identity)["state"], "flying")
+        self.assertEqual(self.error, "waiting for a check\n")
+        self.assertTrue(30 <= time.monotonic() - began < 60)
+        self.assertEqual((self.status(identity)["state"], self.status(identity)["checked"]), ("flying", False))
+        watch = self.start("dispersa", "watch", identity)
+        self.start_worker(preexec_fn=lambda: resource.setrlimit(resource.RLIMIT_NOFILE, (777, 777)))
+        self.assertEqual(watch.wait(timeout=PATIENCE_S), 2)
+        words = "the control law pd_test cannot fly the nominal flight: it ended by signal 6"
+        self.assertEqual(self.status(identity)["state"], "refused")
+        self.assertTrue(self.status(identity)["problem"].startswith(words))
+        # Launched again it is checked again; the launch hears of it.
+        self.dispersa("launch", campaign, code=2)
+        self.assertTrue(self.error.startswith(words), self.error)
 
     def test_a_campaigns_own_coordinator_compares_with_its_own_flights(self):
         _, campaign = self.campaign(DIFFERS_BY_WORKER)
@@ -118,6 +168,74 @@ class LawsTest(ServiceCase):
         self.assertEqual(run.code, 2, run.stderr)
         self.assertRegex(run.stderr, REFUSAL)
         self.assertNotIn("result:", run.stdout)
+
+    def launch(self, campaign):
+        """Its id. The launch waits for the check, and may learn of a refusal."""
+        done = subprocess.run([BINARIES / "dispersa", "launch", campaign, *self.NETWORK], capture_output=True, text=True,
+                              timeout=PATIENCE_S)
+        self.assertIn(done.returncode, (0, 2), done.stderr)
+        return hashlib.sha256(campaign.read_bytes()).hexdigest()
+
+    # ---- secrets ----
+
+    def slow_campaign(self, name, autopilot):
+        text = re.sub(r": ((?:vehicles|references|autopilots)/)", rf": {SOURCE}/campaigns/\1", pathlib.Path(CAMPAIGN).read_text())
+        text = re.sub(r"(?m)^autopilot: .*$", f"autopilot: {autopilot}", re.sub(r"(?m)^name: .*$", f"name: {name}", text))
+        path = self.root / f"{name}.yaml"
+        path.write_text(text)
+        return path
+
+    def keyed(self):
+        """The arguments of coordinator, worker and client with keys, and the scalars of both daemons' keys."""
+        authority, folders, secrets = self.data / "authority", {}, {}
+        subprocess.run([BINARIES / "dispersa", "keys", "init", authority], check=True, capture_output=True)
+        for role in ("coordinator", "worker", "client"):
+            subprocess.run([BINARIES / "dispersa", "keys", "issue", authority, "--role", role, "--name", "one"], check=True,
+                           capture_output=True)
+            folders[role] = ["--keys", authority / "issued" / f"{role}-one"]
+            key = authority / "issued" / f"{role}-one/identity.key"
+            der = subprocess.run(["openssl", "pkey", "-in", key, "-outform", "DER"], check=True, capture_output=True).stdout
+            scalar = re.search(b"\x04\x20(.{32})", der, re.DOTALL)[1]
+            # As in the file, as a number of limbs, as text.
+            if role != "client":
+                secrets[role] = (scalar, scalar[::-1], key.read_bytes().splitlines()[2])
+        return folders, secrets
+
+    def search_the_memory_of_a_law(self, folders, secrets):
+        slow, pd = self.autopilot(IS_SLOW), SOURCE / "campaigns/autopilots/pd.yaml"
+        coordinator = self.start("dispersa-coordinator", "--data", self.data, *self.DAEMON, *folders["coordinator"])
+        worker = self.start_worker(*folders["worker"])
+        self.dispersa("launch", self.slow_campaign(NEIGHBOUR, pd), "--cases", 200000, *folders["client"])
+        wait_for(lambda: '"done": 0' not in self.dispersa("list", "--json", *folders["client"]), "the neighbour flies")
+        secrets = {**secrets, "neighbour": (NEIGHBOUR.encode(),)}
+        # The daemons have them: so the search finds what is there.
+        self.assertEqual(found_in(coordinator.pid, secrets), set(secrets) - {"worker"})
+        self.assertEqual(found_in(worker.pid, secrets), set(secrets) - {"coordinator"})
+        launch = self.start("dispersa", "launch", self.slow_campaign("slow", slow), *folders["client"])
+        wait_for(lambda: carriers(os.getpid()), "a law runs")
+        seen = set()
+        for _ in range(50):
+            for pid in carriers(os.getpid()):
+                self.assertEqual(found_in(pid, secrets), set(), pathlib.Path(f"/proc/{pid}/cmdline").read_bytes())
+                seen.add(pid)
+            time.sleep(0.1)
+        self.assertTrue(seen)
+        launch.kill()
+        # A check under way keeps nobody from ending.
+        coordinator.terminate()
+        self.assertEqual(coordinator.wait(timeout=5), 0)
+
+    def test_no_law_finds_a_key_in_its_memory(self):
+        self.search_the_memory_of_a_law(*self.keyed())
+
+    def test_no_law_finds_the_users_secret_in_its_memory(self):
+        home = pathlib.Path(tempfile.mkdtemp(dir=self.root))
+        (home / ".dispersa").mkdir(mode=0o700)
+        (home / ".dispersa/secret").touch(mode=0o600)
+        (home / ".dispersa/secret").write_bytes(os.urandom(32))
+        self.enterContext(unittest.mock.patch.dict(os.environ, HOME=str(home)))
+        self.search_the_memory_of_a_law({role: [] for role in ("coordinator", "worker", "client")},
+                                        {"user": ((home / ".dispersa/secret").read_bytes(),)})
 
     def test_without_leave_it_is_refused_on_the_loopback_interface_too(self):
         _, campaign = self.campaign(0)

@@ -105,6 +105,19 @@ class SecurityTest(unittest.TestCase):
         self.assertEqual(done.returncode, code, f"{done.stdout}{done.stderr}\n{self.log.read_text()[-3000:]}")
         return done.stdout
 
+    def test_a_worker_does_not_follow_a_coordinator_with_revoked_keys(self):
+        keys("issue", self.authority, "--role", "coordinator", "--name", "stolen")
+        self.start("dispersa-coordinator", "--data", self.data, "--keys", self.folder("coordinator", "stolen"))
+        own = self.copy("worker")
+        worker = self.start("dispersa-worker", "--peer", "127.0.0.1", "--keys", own)
+        self.client("launch", CAMPAIGN, "--cases", 1000000)
+        done = lambda: json.loads(self.client("list", "--json"))["campaigns"][0]["done"]
+        wait_for(done, "results")
+        shutil.copy(keys("revoke", self.authority, "--role", "coordinator", "--name", "stolen"), own)
+        wait_for(lambda: "the keys of this coordinator are revoked" in self.log.read_text(), "what the worker says")
+        wait_for(lambda: done() == (time.sleep(2), done())[1], "it flies nothing more")
+        self.assertIsNone(worker.poll())
+
     def stranger(self, *arguments):
         # Of one kind of complaint one a second is logged.
         time.sleep(max(0.0, self.log.stat().st_mtime + 1.5 - time.time()))

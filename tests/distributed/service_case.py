@@ -48,8 +48,8 @@ class ServiceCase(unittest.TestCase):
     def start_coordinator(self):
         return self.start("dispersa-coordinator", "--data", self.data, *self.DAEMON)
 
-    def start_worker(self, *arguments):
-        return self.start("dispersa-worker", *self.DAEMON, *arguments)
+    def start_worker(self, *arguments, **options):
+        return self.start("dispersa-worker", *self.DAEMON, *arguments, **options)
 
     def dispersa(self, *arguments, code=0):
         """Runs a client command; its standard output."""

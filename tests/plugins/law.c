@@ -4,7 +4,7 @@
 #include <math.h>
 #include <stdlib.h>
 #include <string.h>
-#include <sys/prctl.h>
+#include <sys/resource.h>
 #include <sys/socket.h>
 #include <time.h>
 #include <unistd.h>
@@ -27,26 +27,30 @@
 #define DEFLECTS 14 /* commands deflections */
 #define SLEEPS 15   /* in step, of one flight in four */
 #define FORKS 16
-#define CLOSES_FILES 17       /* all of them, in step, and hangs */
-#define HANGS_AT_THE_END 18   /* where objects are unloaded */
-#define COUNTS_FLIGHTS 19     /* a line each on the standard error */
-#define DIFFERS_BY_WORKER 20  /* by the process that flies it: its parent's number */
-#define COMMANDS_INFINITY 21  /* of one flight in four, in yaw */
-#define DEFLECTS_FAR 22       /* of one flight in four, in roll: finite, but no finite acceleration */
-#define COMMANDS_MUCH 23      /* of one flight in four, in pitch: finite, but no filter could take it */
-#define TELLS_NAN 24          /* as telemetry */
-#define WRITES_BEFORE 25      /* its memory, some way */
-#define WRITES_BEHIND 26      /* its memory, a byte */
-#define CRASHES_IN_WORKERS 27 /* when it is created there */
-#define IS_SLOW 28            /* a minute a flight */
-#define CONNECTS 29           /* a socket, in step, of one flight in four */
-#define EXECUTES 30           /* a program, in step, of one flight in four */
-#define READS_A_FILE 31       /* of the user, that USERS_FILE names: it aborts if it can */
-#define WRITES_A_FILE 32      /* that USERS_FILE names */
-#define TALKS_WITHOUT_END 33  /* to whoever reads its results, in step, of one flight in four */
+#define CLOSES_FILES 17        /* all of them, in step, and hangs */
+#define HANGS_AT_THE_END 18    /* where objects are unloaded */
+#define COUNTS_FLIGHTS 19      /* a line each on the standard error */
+#define DIFFERS_BY_WORKER 20   /* by the process that flies it: its parent's number */
+#define COMMANDS_INFINITY 21   /* of one flight in four, in yaw */
+#define DEFLECTS_FAR 22        /* of one flight in four, in roll: finite, but no finite acceleration */
+#define COMMANDS_MUCH 23       /* of one flight in four, in pitch: finite, but no filter could take it */
+#define TELLS_NAN 24           /* as telemetry */
+#define WRITES_BEFORE 25       /* its memory, some way */
+#define WRITES_BEHIND 26       /* its memory, a byte */
+#define CRASHES_IN_WORKERS 27  /* when it is created there */
+#define IS_SLOW 28             /* a minute a flight */
+#define CONNECTS 29            /* a socket, in step, of one flight in four */
+#define EXECUTES 30            /* a program, in step, of one flight in four */
+#define READS_A_FILE 31        /* of the user, that USERS_FILE names: it aborts if it can */
+#define WRITES_A_FILE 32       /* that USERS_FILE names */
+#define TALKS_WITHOUT_END 33   /* to whoever reads its results, in step, of one flight in four */
+#define STEERS_THE_TERMINAL 34 /* and the page, by its name and version */
 
 #ifndef DISPERSA_MISBEHAVES
 #define DISPERSA_MISBEHAVES 0
+#endif
+#ifndef USERS_FILE
+#define USERS_FILE ""
 #endif
 
 struct memory {
@@ -61,6 +65,13 @@ static char* volatile nowhere; /* the compiler must not know */
 const dispersa_law_description* dispersa_law_describe(void) {
   static dispersa_law_description description = {
       DISPERSA_LAW_ABI, sizeof(struct memory), DISPERSA_LAW_ANGULAR_ACCELERATION, 0, "pd_test", "1", 0};
+  if (DISPERSA_MISBEHAVES == STEERS_THE_TERMINAL) {
+    description.name =
+        "\x1b]0;taken\x07<script>alert(1)</script>\n\xc2\x9b"
+        "31m";
+    description.version =
+        "\xe2\x80\xae 1\r2 0123456789012345678901234567890123456789012345678901234567890123456789";
+  }
   if (DISPERSA_MISBEHAVES == OTHER_ABI) description.abi = 77;
   if (DISPERSA_MISBEHAVES == DEFLECTS || DISPERSA_MISBEHAVES == DEFLECTS_FAR)
     description.command = DISPERSA_LAW_DEFLECTION;
@@ -77,17 +88,16 @@ int dispersa_law_create(const dispersa_law_setup* setup, void* memory) {
   (void)setup;
   (void)memory;
   if (DISPERSA_MISBEHAVES == CRASHES_IN_WORKERS) {
-    char name[16] = "";
-    if (prctl(PR_GET_NAME, name) != 0) return 1;
-    if (strncmp(name, "dispersa-worker", 15) == 0) abort();
+    struct rlimit files;
+    if (getrlimit(RLIMIT_NOFILE, &files) != 0) return 1;
+    if (files.rlim_cur == 777) abort(); /* the limit that the test gives to workers */
   }
   if (DISPERSA_MISBEHAVES == COUNTS_FLIGHTS) {
     static const char words[] = "a flight begins\n";
     if (write(2, words, sizeof words - 1) < 0) return 1;
   }
-  if (DISPERSA_MISBEHAVES == READS_A_FILE && open(getenv("USERS_FILE"), O_RDONLY) >= 0) abort();
-  if (DISPERSA_MISBEHAVES == WRITES_A_FILE && open(getenv("USERS_FILE"), O_WRONLY | O_CREAT, 0600) >= 0)
-    abort();
+  if (DISPERSA_MISBEHAVES == READS_A_FILE && open(USERS_FILE, O_RDONLY) >= 0) abort();
+  if (DISPERSA_MISBEHAVES == WRITES_A_FILE && open(USERS_FILE, O_WRONLY | O_CREAT, 0600) >= 0) abort();
   return 0;
 }
 

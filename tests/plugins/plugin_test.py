@@ -4,6 +4,7 @@ theirs is contained and named.
 Environment: DISPERSA_BINARIES, DISPERSA_CAMPAIGNS; DISPERSA_SOURCE: the repository.
 """
 import hashlib
+import html
 import json
 import os
 import pathlib
@@ -15,6 +16,7 @@ import subprocess
 import tempfile
 import time
 import unittest
+import unittest.mock
 
 BINARIES = pathlib.Path(os.environ["DISPERSA_BINARIES"])
 CAMPAIGNS = pathlib.Path(os.environ["DISPERSA_CAMPAIGNS"])
@@ -32,6 +34,8 @@ def built_in(law):
 
 
 class PluginTest(unittest.TestCase):
+    programs = BINARIES
+
     @classmethod
     def setUpClass(cls):
         cls.folder = pathlib.Path(tempfile.mkdtemp())
@@ -46,7 +50,7 @@ class PluginTest(unittest.TestCase):
 
     @classmethod
     def dispersa(cls, *arguments):
-        return subprocess.run([BINARIES / "dispersa", *map(str, arguments)], cwd=cls.folder, text=True,
+        return subprocess.run([cls.programs / "dispersa", *map(str, arguments)], cwd=cls.folder, text=True,
                               capture_output=True, timeout=TIMEOUT_S)
 
     @classmethod
@@ -67,11 +71,11 @@ class PluginTest(unittest.TestCase):
         return path
 
     @classmethod
-    def law(cls, behaviour):
+    def law(cls, behaviour, *flags):
         """An autopilot file with the misbehaving law."""
         name = behaviour.lower()
         cls.compile(name, SOURCE / "tests/plugins/law.c",
-                    flags=[f"-DDISPERSA_MISBEHAVES={BEHAVIOURS[behaviour]}"])
+                    flags=[f"-DDISPERSA_MISBEHAVES={BEHAVIOURS[behaviour]}", *flags])
         return cls.autopilot(name)
 
     @classmethod
@@ -224,15 +228,14 @@ class PluginTest(unittest.TestCase):
         held = json.loads(self.dispersa("--version", "--json").stdout)["sandbox"]
         self.assertTrue(held["seccomp"])
         users = self.folder / "users.txt"
-        os.environ["USERS_FILE"] = str(users)
-        self.addCleanup(os.environ.pop, "USERS_FILE")
-        _, ended = self.campaign_run("writes", self.law("WRITES_A_FILE"))
+        named = f'-DUSERS_FILE="{users}"'
+        _, ended = self.campaign_run("writes", self.law("WRITES_A_FILE", named))
         self.assertEqual(ended.returncode, 2, ended.stderr)
         self.assertIn("it was refused the system call 'openat'\n", ended.stderr)
         self.assertFalse(users.exists())
         users.write_text("a secret\n")
         if held["landlock"]:
-            self.assertEqual(self.run_cases("reads", self.law("READS_A_FILE")).read_bytes(), self.pd)
+            self.assertEqual(self.run_cases("reads", self.law("READS_A_FILE", named)).read_bytes(), self.pd)
 
     def test_what_a_law_writes_into_its_pipe_is_bounded(self):
         self.quarantined("TALKS_WITHOUT_END", "answered with what is no result")
@@ -262,7 +265,17 @@ class PluginTest(unittest.TestCase):
         flown = self.dispersa("fly", CAMPAIGNS / "table3.yaml", "--autopilot", self.autopilot(
             "throws", ", parameters: {integral_time_s: 2, filter_rad_s: 200}"))
         self.assertEqual(flown.returncode, 5, flown.stderr)
-        self.assertRegex(flown.stderr, r"^the control law threw \?{1000}\.\.\. at 3\.0\d+ s, in stage 1\n$")
+        self.assertRegex(flown.stderr, r"^the control law threw (\\x0a){250}\.\.\. at 3\.0\d+ s, in stage 1\n$")
+
+    def test_what_a_law_says_of_itself_is_bounded_text(self):
+        out, ended = self.campaign_run("steers", self.law("STEERS_THE_TERMINAL"), cases=2)
+        self.assertEqual(ended.returncode, 4, ended.stderr)
+        shown = ended.stdout + ended.stderr + (out / "report.html").read_text()
+        for raw in ("\x1b", "\x07", "\x9b", "\u202e", "<script>alert"):
+            self.assertNotIn(raw, shown)
+        said = html.unescape(shown)
+        self.assertIn(r"\x1b]0;taken\x07<script>alert(1)</script>\x0a\xc2\x9b31m", said)
+        self.assertIn(r"\xe2\x80\xae 1\x0d2 01234567890123456789012345678901234567890123...", said)
 
     def test_memory_without_bound_is_contained(self):
         self.quarantined("ALLOCATES", r"ended by signal 11 \(SIGSEGV\), in a process that may allocate 1024 MiB")
@@ -337,6 +350,13 @@ class PluginTest(unittest.TestCase):
             self.assertIn("interrupted before the first case", log.read_text())
 
     def test_workers_that_all_refuse_it_end_the_run(self):
+        programs = self.folder / "programs"
+        programs.mkdir()
+        for name in ("dispersa", "dispersa-foreign"):
+            shutil.copy(BINARIES / name, programs)
+        (programs / "dispersa-worker").write_text(f'#!/bin/sh\nulimit -n 777\nexec {BINARIES}/dispersa-worker "$@"\n')
+        (programs / "dispersa-worker").chmod(0o755)
+        self.enterContext(unittest.mock.patch.object(PluginTest, "programs", programs))
         for workers in (1, 2):
             _, ended = self.campaign_run(f"refused{workers}", self.law("CRASHES_IN_WORKERS"), workers=workers)
             self.assertEqual(ended.returncode, 5, ended.stderr)

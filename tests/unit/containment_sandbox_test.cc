@@ -12,6 +12,7 @@
 #include <cerrno>
 #include <csignal>
 #include <cstdlib>
+#include <filesystem>
 #include <fstream>
 #include <functional>
 #include <string>
@@ -131,11 +132,14 @@ TEST(Sandbox, WhatComputesGoesOn) {
 TEST(Sandbox, LandlockKeepsTheUsersFilesAndGivesTheSystemsObjects) {
   // A kernel without Landlock refuses nothing, and the sandbox says so.
   const std::string outcome = SandboxHere().landlock ? "refused: 13" : "it worked";
-  const ContainmentLimits files = With({.seccomp = true, .landlock = true, .namespaces = false});
+  const ContainmentLimits files =
+      With({.seccomp = true, .landlock = true, .paths = false, .namespaces = false});
+  const ContainmentLimits neither =
+      With({.seccomp = true, .landlock = false, .paths = false, .namespaces = false});
   const std::string own = ::testing::TempDir() + "users_file";
   std::ofstream(own) << "a secret\n";
   const auto read = [](const std::string& path) { return [path] { return open(path.c_str(), O_RDONLY); }; };
-  EXPECT_EQ(OutcomeOf(read(own)), "it worked");  // of the file, without Landlock
+  EXPECT_EQ(OutcomeOf(read(own), neither), "it worked");
   EXPECT_EQ(OutcomeOf(read(own), files), outcome);
   EXPECT_EQ(OutcomeOf(read("/etc/passwd"), files), outcome);
   EXPECT_EQ(OutcomeOf(read("/proc/self/environ"), files), outcome);
@@ -143,16 +147,82 @@ TEST(Sandbox, LandlockKeepsTheUsersFilesAndGivesTheSystemsObjects) {
   EXPECT_EQ(OutcomeOf(read("/lib/x86_64-linux-gnu/libm.so.6"), files), "it worked");
 }
 
+TEST(Sandbox, WhatIsPrintedIsLinesOfPrintableText) {
+  const auto shown = [](const std::function<void()>& print) {
+    ::testing::internal::CaptureStderr();
+    EXPECT_EQ(Outcome([&] { return print(), std::string("done"); }, {}), "done");
+    return ::testing::internal::GetCapturedStderr();
+  };
+  const auto print = [](const std::string& text, int file = 2) {
+    if (write(file, text.data(), text.size()) < 0) abort();
+  };
+  EXPECT_EQ(shown([&] { print("one\ntwo", 1); }), "one\ntwo\n");
+  EXPECT_EQ(shown([&] { print("\x1b[2J\r\xff\n\n"); }), "\\x1b[2J\\x0d\\xff\n\n");
+  EXPECT_EQ(shown([&] { print(std::string(5000, 'a')); }), std::string(1000, 'a') + "...\n");
+  const std::string many = shown([&] {
+    for (int i = 0; i < 5000; ++i) print("a line of fifty characters, which is said too often\n");
+  });
+  EXPECT_LT(many.size(), 70'000u);
+  EXPECT_EQ(many.substr(many.rfind('\n', many.size() - 2) + 1),
+            "the control law prints more, which is not shown\n");
+}
+
+TEST(Sandbox, NoCallTellsWhichFilesExist) {
+  if (!SandboxHere().paths) GTEST_SKIP() << "the kernel gives no listener";
+  using Ask = std::function<long(const char* path)>;
+  struct stat out {};
+  char text[64];
+  const std::vector<std::pair<const char*, Ask>> calls = {
+      {"access", [](const char* path) { return syscall(SYS_access, path, F_OK); }},
+      {"faccessat", [](const char* path) { return syscall(SYS_faccessat, AT_FDCWD, path, F_OK); }},
+      {"faccessat2", [](const char* path) { return syscall(SYS_faccessat2, AT_FDCWD, path, F_OK, 0); }},
+      {"stat", [&](const char* path) { return syscall(SYS_stat, path, &out); }},
+      {"lstat", [&](const char* path) { return syscall(SYS_lstat, path, &out); }},
+      {"newfstatat",
+       [&](const char* path) { return syscall(SYS_newfstatat, AT_FDCWD, path, &out, AT_EMPTY_PATH); }},
+      {"open", [](const char* path) { return syscall(SYS_open, path, O_RDONLY); }},
+      {"openat", [](const char* path) { return syscall(SYS_openat, AT_FDCWD, path, O_PATH); }},
+      {"readlink", [&](const char* path) { return syscall(SYS_readlink, path, text, sizeof text); }}};
+  for (const auto& [name, ask] : calls) {
+    for (const char* path : {"/etc/passwd", "/nowhere", "/proc/1/exe", "/proc/self/fd/../environ",
+                             "/usr/lib/../../etc/passwd", "."})
+      EXPECT_EQ(OutcomeOf([&] { return ask(path); }), "refused: 2") << name << " " << path;
+    // As a loader asks. A file is no link.
+    EXPECT_EQ(OutcomeOf([&] { return ask("/etc/ld.so.cache"); }),
+              name == std::string("readlink") ? "refused: 22" : "it worked")
+        << name;
+  }
+  // Across the end of a page, and where nothing is.
+  EXPECT_EQ(OutcomeOf([] { return syscall(SYS_access, std::string(5000, '/').c_str(), F_OK); }),
+            "refused: 2");
+  EXPECT_EQ(OutcomeOf([] { return syscall(SYS_access, nullptr, F_OK); }), "refused: 2");
+  // Others may look into a library's folder, and not list it.
+  EXPECT_EQ(OutcomeOf([] { return syscall(SYS_getdents64, 0, nullptr, 0); }),
+            "was refused the system call 'getdents64'");
+}
+
+// Seen from outside while the child lives.
+std::string NamespaceOf(const std::string& kind, const ContainmentLimits& limits) {
+  std::string name = "?";
+  RunContained(
+      [](const Say& say) {
+        say(std::to_string(getpid()));
+        const timespec moment{0, 200'000'000};
+        nanosleep(&moment, nullptr);
+      },
+      [&](const std::string& pid) {
+        name = std::filesystem::read_symlink("/proc/" + pid + "/ns/" + kind).string();
+      },
+      nullptr, limits);
+  return name;
+}
+
 TEST(Sandbox, NamespacesAreOfItsOwn) {
   for (const std::string kind : {"net", "user"}) {
-    const auto read = [&] {
-      char name[64] = "";
-      const std::string path = "/proc/self/ns/" + kind;
-      return readlink(path.c_str(), name, sizeof name - 1) > 0 ? std::string(name) : "?";
-    };
-    const std::string here = read();
-    EXPECT_EQ(Outcome(read, kFloor), here);
-    const std::string inside = Outcome(read, With({.seccomp = true, .landlock = false, .namespaces = true}));
+    const std::string here = std::filesystem::read_symlink("/proc/self/ns/" + kind).string();
+    EXPECT_EQ(NamespaceOf(kind, kFloor), here);
+    const std::string inside =
+        NamespaceOf(kind, With({.seccomp = true, .landlock = false, .namespaces = true}));
     EXPECT_EQ(inside != here, SandboxHere().namespaces) << inside;  // else the kernel gives none
   }
 }

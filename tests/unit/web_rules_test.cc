@@ -197,7 +197,7 @@ TEST(Campaign, OneAttemptAndOneQuarantinedCaseAreShown) {
 TEST(Parts, AVerdictStandsWhenACampaignIsDone) {
   CampaignRow row = Row(1);
   EXPECT_THAT(StandingOfRow(row), HasSubstr("pass"));
-  for (const char* state : {"waiting", "flying", "reporting", "cancelled", "failed"}) {
+  for (const char* state : {"waiting", "flying", "reporting", "cancelled", "failed", "refused"}) {
     row.state = state;
     EXPECT_THAT(StandingOfRow(row), HasSubstr(state));
     EXPECT_THAT(StandingOfRow(row), Not(HasSubstr("pass"))) << state;

@@ -53,7 +53,7 @@ Json ToJson(const dispersa_idl_ResultV1& result) {
 }
 
 bool HasEnded(const std::string& state) {
-  return state == "done" || state == "cancelled" || state == "failed";
+  return state == "done" || state == "cancelled" || state == "failed" || state == "refused";
 }
 
 }  // namespace
