@@ -1,7 +1,9 @@
 #include "services/transport/sieve.h"
 
+#include <algorithm>
 #include <cstring>
 #include <limits>
+#include <utility>
 
 #include <fastdds/rtps/transport/ChainingTransport.h>
 #include <fastdds/rtps/transport/ChainingTransportDescriptor.h>
@@ -152,10 +154,32 @@ const char* HarmOfPlain(std::uint8_t kind, const Submessage& what) {
   }
 }
 
+/// The participant's name in its announcement, a list of parameters; empty without one.
+std::string NameOf(const std::uint8_t* announcement, std::size_t size) {
+  constexpr std::size_t kEncapsulation = 4;
+  constexpr std::uint16_t kEnd = 0x0001, kEntityName = 0x0062;
+  if (size < kEncapsulation) return "";
+  const bool little_endian = (announcement[1] & 1) != 0;
+  for (std::size_t at = kEncapsulation; at + 4 <= size;) {
+    const Submessage parameter(announcement + at, size - at, little_endian);
+    const std::size_t length = parameter.U16(2);
+    if (parameter.U16(0) == kEnd || length > size - at - 4) return "";
+    if (parameter.U16(0) == kEntityName && length >= 4) {
+      const std::size_t with_zero = parameter.U32(4);
+      if (with_zero == 0 || with_zero > length - 4) return "";
+      return {reinterpret_cast<const char*>(announcement) + at + 8, with_zero - 1};
+    }
+    at += 4 + length;
+  }
+  return "";
+}
+
 class Sieve : public transport::ChainingTransport {
  public:
-  Sieve(const transport::ChainingTransportDescriptor& descriptor, bool with_keys)
-      : ChainingTransport(descriptor), descriptor_(descriptor, with_keys), with_keys_(with_keys) {}
+  Sieve(const transport::ChainingTransportDescriptor& descriptor, bool with_keys, Door door)
+      : ChainingTransport(descriptor),
+        descriptor_(descriptor, with_keys, std::move(door)),
+        with_keys_(with_keys) {}
 
   transport::TransportDescriptorInterface* get_configuration() override { return &descriptor_; }
 
@@ -171,25 +195,33 @@ class Sieve : public transport::ChainingTransport {
       Complain("datagram", rtps::IPLocator::ip_to_string(remote), harm);
       return;
     }
+    if (const auto& [doors, number] = descriptor_.door; doors) {
+      const auto greeting = GreetingIn(data, size);
+      if (greeting && !doors->Admits(number, *greeting, data, size, rtps::IPLocator::ip_to_string(remote)))
+        return;
+    }
     next->OnDataReceived(data, size, local, remote);
   }
 
  private:
   struct Descriptor : transport::ChainingTransportDescriptor {
-    Descriptor(std::shared_ptr<TransportDescriptorInterface> inner, bool keys)
-        : ChainingTransportDescriptor(std::move(inner)), with_keys(keys) {}
-    Descriptor(const ChainingTransportDescriptor& other, bool keys)
-        : ChainingTransportDescriptor(other), with_keys(keys) {}
-    transport::TransportInterface* create_transport() const override { return new Sieve(*this, with_keys); }
+    Descriptor(std::shared_ptr<TransportDescriptorInterface> inner, bool keys, Door which)
+        : ChainingTransportDescriptor(std::move(inner)), with_keys(keys), door(std::move(which)) {}
+    Descriptor(const ChainingTransportDescriptor& other, bool keys, Door which)
+        : ChainingTransportDescriptor(other), with_keys(keys), door(std::move(which)) {}
+    transport::TransportInterface* create_transport() const override {
+      return new Sieve(*this, with_keys, door);
+    }
     // Fast DDS 2.9 takes it for the bytes after which a writer asks all its readers what they lack, and
     // counts the bytes that its sending thread has sent since it began. So from the first megabyte on, each
     // endpoint told to one new participant was followed by a question to all: 300 workers never came to rest.
     // Without these questions the periodic ones serve.
     uint32_t min_send_buffer_size() const override { return std::numeric_limits<std::int32_t>::max(); }
     bool with_keys;
+    Door door;
   };
   friend std::shared_ptr<transport::TransportDescriptorInterface> dispersa::Sieved(
-      std::shared_ptr<transport::TransportDescriptorInterface>, bool);
+      std::shared_ptr<transport::TransportDescriptorInterface>, bool, const Door&);
 
   Descriptor descriptor_;
   bool with_keys_;
@@ -225,9 +257,30 @@ const char* HarmOf(const std::uint8_t* datagram, std::size_t size, bool with_key
   return nullptr;
 }
 
+std::optional<Greeting> GreetingIn(const std::uint8_t* datagram, std::size_t size) {
+  constexpr std::size_t kPrefixAt = 8, kDataHead = 20;
+  constexpr std::uint8_t kHasQos = 0x02, kHasData = 0x04;
+  for (std::size_t at = kMessageHeader; at + 4 <= size;) {
+    const std::uint8_t kind = datagram[at], flags = datagram[at + 1];
+    const bool little_endian = (flags & 1) != 0;
+    std::size_t length = Submessage(datagram + at, 4, little_endian).U16(2);
+    if (length == 0 && kind != 0x01 && kind != 0x09) length = size - at - 4;
+    const std::uint8_t* const body = datagram + at + 4;
+    if (kind == kData && (flags & kHasData) != 0 && length >= kDataHead &&
+        Submessage(body, length, little_endian).BigEndianU32(8) == kGreeting) {
+      Greeting greeting;
+      std::copy_n(datagram + kPrefixAt, greeting.from.size(), greeting.from.begin());
+      if ((flags & kHasQos) == 0) greeting.name = NameOf(body + kDataHead, length - kDataHead);
+      return greeting;
+    }
+    at += 4 + length;
+  }
+  return std::nullopt;
+}
+
 std::shared_ptr<transport::TransportDescriptorInterface> Sieved(
-    std::shared_ptr<transport::TransportDescriptorInterface> inner, bool with_keys) {
-  return std::make_shared<Sieve::Descriptor>(std::move(inner), with_keys);
+    std::shared_ptr<transport::TransportDescriptorInterface> inner, bool with_keys, const Door& door) {
+  return std::make_shared<Sieve::Descriptor>(std::move(inner), with_keys, door);
 }
 
 }  // namespace dispersa

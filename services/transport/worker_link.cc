@@ -1,6 +1,7 @@
 #include "services/transport/worker_link.h"
 
 #include <optional>
+#include <utility>
 
 #include "services/transport/convert.h"
 #include "services/transport/endpoints.h"
@@ -16,7 +17,7 @@ namespace dds = eprosima::fastdds::dds;
 
 struct WorkerLink::Impl {
   Impl(const NetworkOptions& network, const std::vector<Peer>& peers, const std::string& worker)
-      : participant({network, "dispersa-worker", std::nullopt, peers}),
+      : participant({network, kWorkerParticipant, std::nullopt, peers}),
         publisher(participant.MakePublisher(PartitionOf(worker))),
         subscriber(participant.MakeSubscriber({PartitionOf(worker)})) {
     // This includes messages of the coordinator to another worker that a third party repeats here.
@@ -36,6 +37,7 @@ struct WorkerLink::Impl {
 
   EventQueue<WorkerEvent> events;
   Participant participant;
+  long met = 0;  ///< participants that the worker knows of
   dds::Publisher* publisher;
   dds::Subscriber* subscriber;
   std::optional<Writer<idl::ReportV2PubSubType>> reports;
@@ -60,6 +62,11 @@ void WorkerLink::Send(const WorkerStatus& status) { impl_->statuses->Write(ToIdl
 void WorkerLink::Send(const Report& report) { impl_->reports->Write(ToIdl(report)); }
 void WorkerLink::Send(const TextRequest& request) { impl_->text_requests->Write(ToIdl(request)); }
 void WorkerLink::Send(const CampaignRefusal& refusal) { impl_->campaign_refusals->Write(ToIdl(refusal)); }
+
+bool WorkerLink::HasMet() {
+  const long found = impl_->participant.found();
+  return std::exchange(impl_->met, found) != found;
+}
 
 void WorkerLink::Drain(std::chrono::milliseconds timeout) {
   impl_->statuses->Drain(static_cast<int>(timeout.count()));
