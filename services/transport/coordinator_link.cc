@@ -5,6 +5,7 @@
 #include <optional>
 #include <utility>
 
+#include "services/log/log.h"
 #include "services/transport/convert.h"
 #include "services/transport/doors.h"
 #include "services/transport/endpoints.h"
@@ -61,7 +62,7 @@ struct CoordinatorLink::Impl {
   /// One participant with its readers and writers.
   struct OpenDoor {
     OpenDoor(const NetworkOptions& network, Door door, std::uint16_t port, EventQueue<Heard>& events)
-        : participant({network, "dispersa-coordinator", port, {}, door}),
+        : participant({network, kCoordinatorParticipant, port, {}, door}),
           publisher(participant.MakePublisher("")),
           subscriber(participant.MakeSubscriber({"", PartitionOf("*")})),
           progress(participant, publisher, kProgressTopic, 16),
@@ -108,8 +109,19 @@ struct CoordinatorLink::Impl {
   void Open(std::uint16_t port) {
     const Door door{doors, static_cast<int>(open.size())};
     open.push_back(std::make_unique<OpenDoor>(network, door, port, events));
-    doors->Open(port);
     if (pulse) pulse->Expect(static_cast<int>(open.size()));
+  }
+
+  /// Later, if it cannot be opened now: another program may have taken its port meanwhile.
+  void OpenAnother() {
+    const auto now = std::chrono::steady_clock::now();
+    if (now < next_try) return;
+    try {
+      Open(FreePort(network));
+    } catch (const NetworkError& error) {
+      LogWarning("no further participant can be made now: {}", error.what());
+      next_try = now + std::chrono::seconds(1);
+    }
   }
 
   /// Through the door at which it was heard last.
@@ -132,6 +144,7 @@ struct CoordinatorLink::Impl {
   std::vector<std::unique_ptr<OpenDoor>> open;
   std::map<std::string, int> routes;  ///< doors, by worker or client
   std::shared_ptr<Pulse> pulse;
+  std::chrono::steady_clock::time_point next_try = {};
 };
 
 CoordinatorLink::CoordinatorLink(const NetworkOptions& network) : impl_(std::make_unique<Impl>(network)) {}
@@ -139,7 +152,7 @@ CoordinatorLink::~CoordinatorLink() = default;
 
 std::vector<CoordinatorEvent> CoordinatorLink::Wait(std::chrono::milliseconds timeout) {
   for (const auto& door : impl_->open) door->participant.LogSilent();
-  if (impl_->doors->IsShort()) impl_->Open(FreePort(impl_->network));
+  if (impl_->doors->IsShort()) impl_->OpenAnother();
   std::vector<CoordinatorEvent> events;
   for (Impl::Heard& heard : impl_->events.Wait(timeout)) {
     if (!heard.who.empty()) {

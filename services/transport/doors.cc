@@ -31,10 +31,10 @@ Doors::Doors(const std::string& address)
 
 Doors::~Doors() { close(socket_); }
 
-int Doors::Open(std::uint16_t port) {
+void Doors::Open(int door, std::uint16_t port) {
   const Lock lock(mutex_);
-  ports_.push_back(port);
-  return static_cast<int>(ports_.size()) - 1;
+  ports_.resize(std::max(ports_.size(), static_cast<std::size_t>(door) + 1));
+  ports_[static_cast<std::size_t>(door)] = port;
 }
 
 // One burst of kAtOnce finds its places while the next door opens.
@@ -46,6 +46,7 @@ bool Doors::IsShort() const {
 Doors::Answer Doors::DoorOf(const Greeting& greeting, double now_s) {
   const Lock lock(mutex_);
   if (const auto known = peers_.find(greeting.from); known != peers_.end()) return {known->second.door};
+  if (greeting.is_farewell || greeting.name == kCoordinatorParticipant) return {};
   std::erase_if(peers_, [&](const auto& each) {
     return !each.second.is_found && now_s - each.second.since_s > kFind_s;
   });

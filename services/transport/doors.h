@@ -16,13 +16,15 @@ namespace dispersa {
 /// The 12 bytes that name a participant.
 using ParticipantPrefix = std::array<std::uint8_t, 12>;
 
-/// The name of each worker's participant.
+/// The names of participants.
 inline constexpr char kWorkerParticipant[] = "dispersa-worker";
+inline constexpr char kCoordinatorParticipant[] = "dispersa-coordinator";
 
 /// The announcement of a participant, which it repeats every second.
 struct Greeting {
   ParticipantPrefix from{};
   std::string name;  ///< as the sender wants it; of our programs that of the program
+  bool is_farewell = false;
 };
 
 /// A coordinator has one participant of Fast DDS for each kPlaces peers, a door. All peers greet at the first
@@ -50,8 +52,8 @@ class Doors {
   Doors(const Doors&) = delete;
   Doors& operator=(const Doors&) = delete;
 
-  /// A door whose participant is discovered at `port`. Its number, from 0 on.
-  int Open(std::uint16_t port);
+  /// The participant of this door is discovered at `port`. Doors are numbered from 0 on.
+  void Open(int door, std::uint16_t port);
   /// Few places are left, and another door may be opened.
   bool IsShort() const;
 

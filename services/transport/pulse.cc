@@ -17,6 +17,8 @@ namespace {
 
 /// Between two questions, and until one is repeated to the doors that have not answered.
 constexpr std::chrono::seconds kQuestion(1);
+/// A new door has this time to answer for the first time, while hundreds of workers join.
+constexpr std::chrono::seconds kFirstAnswer(60);
 constexpr char kThisMachine[] = "127.0.0.1";
 
 }  // namespace
@@ -44,7 +46,11 @@ struct Pulse::Impl {
       std::uint64_t question = 0;
       {
         const Lock lock(mutex);
-        if (doors > 0 && answered.size() >= static_cast<std::size_t>(doors)) {
+        const std::size_t before = known.size();
+        known.insert(answered.begin(), answered.end());
+        const auto now = std::chrono::steady_clock::now();
+        if (known.size() != before || known.size() >= static_cast<std::size_t>(doors)) grown = now;
+        if (!known.empty() && answered.size() == known.size() && now - grown < kFirstAnswer) {
           ++beats;
           ++number;
           answered.clear();
@@ -61,6 +67,8 @@ struct Pulse::Impl {
   Mutex mutex;
   std::uint64_t number DISPERSA_GUARDED_BY(mutex) = 1;
   std::set<std::string> answered DISPERSA_GUARDED_BY(mutex);  ///< doors that have answered the question
+  std::set<std::string> known DISPERSA_GUARDED_BY(mutex);     ///< those that ever have answered
+  std::chrono::steady_clock::time_point grown DISPERSA_GUARDED_BY(mutex) = std::chrono::steady_clock::now();
   int doors DISPERSA_GUARDED_BY(mutex) = 0;
   std::atomic<long> beats = 0;
   Participant participant;

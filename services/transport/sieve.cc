@@ -154,24 +154,33 @@ const char* HarmOfPlain(std::uint8_t kind, const Submessage& what) {
   }
 }
 
-/// The participant's name in its announcement, a list of parameters; empty without one.
-std::string NameOf(const std::uint8_t* announcement, std::size_t size) {
-  constexpr std::size_t kEncapsulation = 4;
-  constexpr std::uint16_t kEnd = 0x0001, kEntityName = 0x0062;
-  if (size < kEncapsulation) return "";
-  const bool little_endian = (announcement[1] & 1) != 0;
-  for (std::size_t at = kEncapsulation; at + 4 <= size;) {
-    const Submessage parameter(announcement + at, size - at, little_endian);
-    const std::size_t length = parameter.U16(2);
-    if (parameter.U16(0) == kEnd || length > size - at - 4) return "";
-    if (parameter.U16(0) == kEntityName && length >= 4) {
-      const std::size_t with_zero = parameter.U32(4);
-      if (with_zero == 0 || with_zero > length - 4) return "";
-      return {reinterpret_cast<const char*>(announcement) + at + 8, with_zero - 1};
-    }
-    at += 4 + length;
+/// The first parameter of this kind in a list, behind its head; after the list's end: where it ends. Past the
+/// bytes: none.
+std::size_t FindParameter(const Submessage& list, std::size_t at, std::uint16_t kind) {
+  constexpr std::uint16_t kEnd = 0x0001;
+  while (at + 4 <= list.size()) {
+    const std::uint16_t found = list.U16(at);
+    at += 4;
+    if (found == kind || found == kEnd) return at;
+    at += list.U16(at - 2);
   }
-  return "";
+  return list.size();
+}
+
+/// The participant's name in the DATA of its announcement; empty without one.
+std::string NameIn(const std::uint8_t* body, std::size_t size, std::uint8_t flags) {
+  constexpr std::uint8_t kHasQos = 0x02;
+  constexpr std::size_t kDataHead = 20, kEncapsulation = 4;
+  constexpr std::uint16_t kEnd = 0x0001, kEntityName = 0x0062;
+  std::size_t at = kDataHead;
+  if ((flags & kHasQos) != 0) at = FindParameter({body, size, (flags & 1) != 0}, at, kEnd);
+  if (at + kEncapsulation > size) return "";
+  const Submessage announcement(body, size, (body[at + 1] & 1) != 0);
+  at = FindParameter(announcement, at + kEncapsulation, kEntityName);
+  if (announcement.size() < at + 4 || announcement.U16(at - 4) != kEntityName) return "";
+  const std::size_t with_zero = announcement.U32(at);
+  if (with_zero == 0 || with_zero > size - at - 4) return "";
+  return {reinterpret_cast<const char*>(body) + at + 4, with_zero - 1};
 }
 
 class Sieve : public transport::ChainingTransport {
@@ -189,15 +198,25 @@ class Sieve : public transport::ChainingTransport {
     return inner->send(data, size, begin, end, timeout);
   }
 
+  // The first channel is that of discovery. Its port is another one than asked for if somebody took that.
+  bool OpenInputChannel(const rtps::Locator_t& local, transport::TransportReceiverInterface* receiver,
+                        uint32_t max_size) override {
+    if (!ChainingTransport::OpenInputChannel(local, receiver, max_size)) return false;
+    if (const auto& [doors, number] = descriptor_.door; doors && !std::exchange(has_channel_, true))
+      doors->Open(number, rtps::IPLocator::getPhysicalPort(local));
+    return true;
+  }
+
   void receive(transport::TransportReceiverInterface* next, const rtps::octet* data, uint32_t size,
                const rtps::Locator_t& local, const rtps::Locator_t& remote) override {
     if (const char* harm = HarmOf(data, size, with_keys_)) {
       Complain("datagram", rtps::IPLocator::ip_to_string(remote), harm);
       return;
     }
-    if (const auto& [doors, number] = descriptor_.door; doors) {
-      const auto greeting = GreetingIn(data, size);
-      if (greeting && !doors->Admits(number, *greeting, data, size, rtps::IPLocator::ip_to_string(remote)))
+    if (const auto greeting = GreetingIn(data, size)) {
+      const auto& [doors, number] = descriptor_.door;
+      if (doors ? !doors->Admits(number, *greeting, data, size, rtps::IPLocator::ip_to_string(remote))
+                : !greeting->is_farewell && greeting->name != kCoordinatorParticipant)
         return;
     }
     next->OnDataReceived(data, size, local, remote);
@@ -225,6 +244,7 @@ class Sieve : public transport::ChainingTransport {
 
   Descriptor descriptor_;
   bool with_keys_;
+  bool has_channel_ = false;
 };
 
 }  // namespace
@@ -259,18 +279,19 @@ const char* HarmOf(const std::uint8_t* datagram, std::size_t size, bool with_key
 
 std::optional<Greeting> GreetingIn(const std::uint8_t* datagram, std::size_t size) {
   constexpr std::size_t kPrefixAt = 8, kDataHead = 20;
-  constexpr std::uint8_t kHasQos = 0x02, kHasData = 0x04;
+  constexpr std::uint8_t kHasData = 0x04;
   for (std::size_t at = kMessageHeader; at + 4 <= size;) {
     const std::uint8_t kind = datagram[at], flags = datagram[at + 1];
     const bool little_endian = (flags & 1) != 0;
     std::size_t length = Submessage(datagram + at, 4, little_endian).U16(2);
     if (length == 0 && kind != 0x01 && kind != 0x09) length = size - at - 4;
     const std::uint8_t* const body = datagram + at + 4;
-    if (kind == kData && (flags & kHasData) != 0 && length >= kDataHead &&
+    if (kind == kData && length >= kDataHead &&
         Submessage(body, length, little_endian).BigEndianU32(8) == kGreeting) {
       Greeting greeting;
       std::copy_n(datagram + kPrefixAt, greeting.from.size(), greeting.from.begin());
-      if ((flags & kHasQos) == 0) greeting.name = NameOf(body + kDataHead, length - kDataHead);
+      greeting.is_farewell = (flags & kHasData) == 0;
+      if (!greeting.is_farewell) greeting.name = NameIn(body, length, flags);
       return greeting;
     }
     at += 4 + length;

@@ -22,7 +22,7 @@ namespace dispersa {
 /// handshake.
 const char* HarmOf(const std::uint8_t* datagram, std::size_t size, bool with_keys = false);
 
-/// The greeting in a harmless datagram, if there is one. A farewell is none.
+/// The greeting in a harmless datagram, if there is one.
 std::optional<Greeting> GreetingIn(const std::uint8_t* datagram, std::size_t size);
 
 /// One of a coordinator's participants, or (without doors) any other program's.
@@ -32,7 +32,8 @@ struct Door {
 };
 
 /// `inner` behind the sieve. Dropped datagrams are counted and logged with their sender, at most once a
-/// second. Greetings pass as the doors want it.
+/// second. At a door greetings pass as the doors want it. Elsewhere only a coordinator's pass: the port may
+/// have been that of a coordinator before, to which all workers go on to greet.
 std::shared_ptr<eprosima::fastdds::rtps::TransportDescriptorInterface> Sieved(
     std::shared_ptr<eprosima::fastdds::rtps::TransportDescriptorInterface> inner, bool with_keys,
     const Door& door);
