@@ -71,6 +71,14 @@ class Submessage {
   bool little_;
 };
 
+/// Bytes of the submessage with this head of 4 bytes; `rest`: those of the datagram behind the head.
+std::size_t LengthOf(const std::uint8_t* head, std::size_t rest) {
+  const std::uint8_t kind = head[0];
+  const std::size_t length = Submessage(head, 4, (head[1] & 1) != 0).U16(2);
+  // 0: up to the end, but for the two kinds that may be empty (PAD, INFO_TS).
+  return (length == 0 && kind != 0x01 && kind != 0x09) ? rest : length;
+}
+
 const char* HarmOfSubmessage(std::uint8_t kind, const Submessage& what) {
   // Reader and writer (4 bytes each) come first, in DATA and DATA_FRAG behind flags and an offset.
   switch (kind) {
@@ -257,10 +265,8 @@ const char* HarmOf(const std::uint8_t* datagram, std::size_t size, bool with_key
     const std::uint8_t kind = datagram[at];
     const bool little_endian = (datagram[at + 1] & 1) != 0;
     const std::size_t rest = size - at - 4;
-    std::size_t length = Submessage(datagram + at, 4, little_endian).U16(2);
+    const std::size_t length = LengthOf(datagram + at, rest);
     if (length > rest) return "a submessage that is cut off";
-    // 0: up to the end, but for the two kinds that may be empty (PAD, INFO_TS).
-    if (length == 0 && kind != 0x01 && kind != 0x09) length = rest;
     const Submessage what(datagram + at + 4, length, little_endian);
     const char* harm = nullptr;
     if (IsSecure(kind)) {
@@ -282,12 +288,10 @@ std::optional<Greeting> GreetingIn(const std::uint8_t* datagram, std::size_t siz
   constexpr std::uint8_t kHasData = 0x04;
   for (std::size_t at = kMessageHeader; at + 4 <= size;) {
     const std::uint8_t kind = datagram[at], flags = datagram[at + 1];
-    const bool little_endian = (flags & 1) != 0;
-    std::size_t length = Submessage(datagram + at, 4, little_endian).U16(2);
-    if (length == 0 && kind != 0x01 && kind != 0x09) length = size - at - 4;
+    const std::size_t length = LengthOf(datagram + at, size - at - 4);
     const std::uint8_t* const body = datagram + at + 4;
     if (kind == kData && length >= kDataHead &&
-        Submessage(body, length, little_endian).BigEndianU32(8) == kGreeting) {
+        Submessage(body, length, true).BigEndianU32(8) == kGreeting) {
       Greeting greeting;
       std::copy_n(datagram + kPrefixAt, greeting.from.size(), greeting.from.begin());
       greeting.is_farewell = (flags & kHasData) == 0;
