@@ -11,18 +11,12 @@
 #include "services/transport/endpoints.h"
 #include "services/transport/event_queue.h"
 #include "services/transport/topics.h"
-#include "services/transport/udp_port.h"
 
 namespace dispersa {
 
 namespace {
 
 namespace dds = eprosima::fastdds::dds;
-
-std::uint16_t FreePort(const NetworkOptions& network) {
-  constexpr int kFirst = 10, kLast = 249;
-  return FreeUdpPort(network.address, PortOf(network.domain, kFirst), PortOf(network.domain, kLast));
-}
 
 }  // namespace
 
@@ -61,15 +55,16 @@ struct CoordinatorLink::Impl {
 
   /// One participant with its readers and writers.
   struct OpenDoor {
-    OpenDoor(const NetworkOptions& network, Door door, std::uint16_t port, EventQueue<Heard>& events)
-        : participant({network, kCoordinatorParticipant, port, {}, door}),
+    OpenDoor(const NetworkOptions& network, const Door& door, EventQueue<Heard>& events)
+        : participant(
+              {network, kCoordinatorParticipant, CoordinatorPort(network.domain, door.number), {}, door}),
           publisher(participant.MakePublisher("")),
           subscriber(participant.MakeSubscriber({"", PartitionOf("*")})),
           progress(participant, publisher, kProgressTopic, 16),
           results(participant, publisher, kResultTopic) {
-      const auto push = [&events, door](auto&& message, const std::string& sender) {
+      const auto push = [&events, number = door.number](auto&& message, const std::string& sender) {
         std::string who = NameIn(message);
-        if (!events.Push({{sender, std::move(message)}, std::move(who), door.number}))
+        if (!events.Push({{sender, std::move(message)}, std::move(who), number}))
           Complain("message", sender, "too many wait already");
       };
       reports.emplace(participant, subscriber, kReportTopic, push);
@@ -78,14 +73,12 @@ struct CoordinatorLink::Impl {
       requests.emplace(participant, subscriber, kRequestTopic, push);
       // Status messages have a socket of their own, so that they arrive even if many results wait in the other
       // one.
-      const int domain = network.domain;
-      const std::uint16_t status_port = door.number == 0 ? StatusPort(domain) : FreePort(network);
       statuses.emplace(
           participant, subscriber, kStatusTopic, push,
-          [&events, door](const std::string& sender) {
-            events.Push({{sender, SenderGone{}}, "", door.number});
+          [&events, number = door.number](const std::string& sender) {
+            events.Push({{sender, SenderGone{}}, "", number});
           },
-          MakeReaderQos(network.address, status_port));
+          MakeReaderQos(network.address, StatusPort(network.domain, door.number)));
     }
 
     Participant participant;
@@ -103,21 +96,22 @@ struct CoordinatorLink::Impl {
 
   explicit Impl(const NetworkOptions& options)
       : network(options), doors(std::make_shared<Doors>(options.address)) {
-    Open(CoordinatorPort(network.domain));
+    Open();
   }
 
-  void Open(std::uint16_t port) {
+  void Open() {
     const Door door{doors, static_cast<int>(open.size())};
-    open.push_back(std::make_unique<OpenDoor>(network, door, port, events));
+    open.push_back(std::make_unique<OpenDoor>(network, door, events));
+    doors->Open(CoordinatorPort(network.domain, door.number));
     if (pulse) pulse->Expect(static_cast<int>(open.size()));
   }
 
-  /// Later, if it cannot be opened now: another program may have taken its port meanwhile.
+  /// Later, if it cannot be opened now.
   void OpenAnother() {
     const auto now = std::chrono::steady_clock::now();
     if (now < next_try) return;
     try {
-      Open(FreePort(network));
+      Open();
     } catch (const NetworkError& error) {
       LogWarning("no further participant can be made now: {}", error.what());
       next_try = now + std::chrono::seconds(1);

@@ -31,10 +31,9 @@ Doors::Doors(const std::string& address)
 
 Doors::~Doors() { close(socket_); }
 
-void Doors::Open(int door, std::uint16_t port) {
+void Doors::Open(std::uint16_t port) {
   const Lock lock(mutex_);
-  ports_.resize(std::max(ports_.size(), static_cast<std::size_t>(door) + 1));
-  ports_[static_cast<std::size_t>(door)] = port;
+  ports_.push_back(port);
 }
 
 // One burst of kAtOnce finds its places while the next door opens.

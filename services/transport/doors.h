@@ -52,8 +52,8 @@ class Doors {
   Doors(const Doors&) = delete;
   Doors& operator=(const Doors&) = delete;
 
-  /// The participant of this door is discovered at `port`. Doors are numbered from 0 on.
-  void Open(int door, std::uint16_t port);
+  /// A door is open, whose participant is discovered at `port`. Doors are numbered from 0 on.
+  void Open(std::uint16_t port);
   /// Few places are left, and another door may be opened.
   bool IsShort() const;
 

@@ -28,8 +28,6 @@ namespace rtps = eprosima::fastrtps::rtps;
 
 constexpr std::uint32_t kReceiveBuffer = 4 << 20;
 constexpr std::uint32_t kSendBuffer = 1 << 20;
-// The ports of a domain that ordinary participants use: even ones for discovery, odd ones for the rest.
-constexpr int kFirstPort = 10, kLastPort = 249;
 
 class LogToSpdlog : public dds::LogConsumer {
  public:

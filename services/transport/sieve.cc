@@ -206,15 +206,6 @@ class Sieve : public transport::ChainingTransport {
     return inner->send(data, size, begin, end, timeout);
   }
 
-  // The first channel is that of discovery. Its port is another one than asked for if somebody took that.
-  bool OpenInputChannel(const rtps::Locator_t& local, transport::TransportReceiverInterface* receiver,
-                        uint32_t max_size) override {
-    if (!ChainingTransport::OpenInputChannel(local, receiver, max_size)) return false;
-    if (const auto& [doors, number] = descriptor_.door; doors && !std::exchange(has_channel_, true))
-      doors->Open(number, rtps::IPLocator::getPhysicalPort(local));
-    return true;
-  }
-
   void receive(transport::TransportReceiverInterface* next, const rtps::octet* data, uint32_t size,
                const rtps::Locator_t& local, const rtps::Locator_t& remote) override {
     if (const char* harm = HarmOf(data, size, with_keys_)) {
@@ -252,7 +243,6 @@ class Sieve : public transport::ChainingTransport {
 
   Descriptor descriptor_;
   bool with_keys_;
-  bool has_channel_ = false;
 };
 
 }  // namespace

@@ -19,10 +19,6 @@ Greeting From(std::size_t number, const std::string& name = kWorkerParticipant) 
 
 class DoorsTest : public testing::Test {
  protected:
-  void Open(std::size_t count) {
-    for (std::size_t door = 0; door < count; ++door)
-      doors_.Open(static_cast<int>(door), static_cast<std::uint16_t>(7405 + 2 * door));
-  }
   /// Whether it was let in, and then joined.
   bool Join(std::size_t number, double now_s) {
     if (!doors_.DoorOf(From(number), now_s).door) return false;
@@ -35,7 +31,7 @@ class DoorsTest : public testing::Test {
 };
 
 TEST_F(DoorsTest, FewJoinAtATimeAndTheOthersLater) {
-  Open(1);
+  doors_.Open(7405);
   for (std::size_t i = 0; i < Doors::kAtOnce; ++i) EXPECT_EQ(doors_.DoorOf(From(i), 0.0).door, 0) << i;
   const auto next = doors_.DoorOf(From(100), 0.0);
   EXPECT_FALSE(next.door);
@@ -54,7 +50,7 @@ TEST_F(DoorsTest, NoDoorHasMorePeersThanPlaces) {
   std::map<int, std::size_t> taken;
   std::size_t let_in = 0;
   for (std::size_t open = 1; open <= Doors::kMost; ++open) {
-    Open(open);
+    doors_.Open(7405);
     for (std::size_t i = 0; i < Doors::kPlaces; ++i) let_in += Join(let_in, 0.0) ? 1 : 0;
     EXPECT_EQ(let_in, std::min(open * Doors::kPlaces, Doors::kMostWorkers));
     EXPECT_EQ(doors_.IsShort(), open < Doors::kMost) << open;
@@ -68,7 +64,7 @@ TEST_F(DoorsTest, NoDoorHasMorePeersThanPlaces) {
 }
 
 TEST_F(DoorsTest, APeerThatTheMiddlewareDoesNotFindLosesItsPlace) {
-  Open(1);
+  doors_.Open(7405);
   for (std::size_t i = 0; i < Doors::kPlaces; ++i)
     ASSERT_TRUE(doors_.DoorOf(From(i), i < Doors::kAtOnce ? 0.0 : Doors::kJoin_s).door) << i;
   doors_.Found(From(0).from);
@@ -79,7 +75,7 @@ TEST_F(DoorsTest, APeerThatTheMiddlewareDoesNotFindLosesItsPlace) {
 }
 
 TEST_F(DoorsTest, FarewellsAndOtherCoordinatorsTakeNoPlace) {
-  Open(1);
+  doors_.Open(7405);
   Greeting farewell = From(1);
   farewell.is_farewell = true;
   EXPECT_FALSE(doors_.DoorOf(farewell, 0.0).door);

@@ -1,7 +1,7 @@
 """Three hundred real workers on three hosts, all started at once, and one coordinator: they join, and join again when it was
 killed. A campaign completes with the bytes of a run in one process, and clients get answers. Prints what all of it takes.
 
-Environment as of processes.py. DISPERSA_PARTICIPANTS: how many (default 300; a host has UDP ports for 120 programs).
+Environment as of processes.py. DISPERSA_PARTICIPANTS: how many (default 300; a host has UDP ports for 104 programs).
 DISPERSA_WITH_KEYS: everything is encrypted. DISPERSA_KILLS: how often the coordinator is killed (default 1).
 """
 import json
