@@ -55,9 +55,9 @@ struct CoordinatorLink::Impl {
 
   /// One participant with its readers and writers.
   struct OpenDoor {
-    OpenDoor(const NetworkOptions& network, const Door& door, EventQueue<Heard>& events)
-        : participant(
-              {network, kCoordinatorParticipant, CoordinatorPort(network.domain, door.number), {}, door}),
+    /// `ports`: which of the ports of doors.
+    OpenDoor(const NetworkOptions& network, const Door& door, int ports, EventQueue<Heard>& events)
+        : participant({network, kCoordinatorParticipant, CoordinatorPort(network.domain, ports), {}, door}),
           publisher(participant.MakePublisher("")),
           subscriber(participant.MakeSubscriber({"", PartitionOf("*")})),
           progress(participant, publisher, kProgressTopic, 16),
@@ -78,7 +78,10 @@ struct CoordinatorLink::Impl {
           [&events, number = door.number](const std::string& sender) {
             events.Push({{sender, SenderGone{}}, "", number});
           },
-          MakeReaderQos(network.address, StatusPort(network.domain, door.number)));
+          MakeReaderQos(network.address, StatusPort(network.domain, ports)));
+      for (const auto port : {CoordinatorPort(network.domain, ports), StatusPort(network.domain, ports)})
+        if (door.doors->WasRefused(port))
+          throw NetworkError("UDP port " + std::to_string(port) + " is not free");
     }
 
     Participant participant;
@@ -101,12 +104,14 @@ struct CoordinatorLink::Impl {
 
   void Open() {
     const Door door{doors, static_cast<int>(open.size())};
-    open.push_back(std::make_unique<OpenDoor>(network, door, events));
-    doors->Open(CoordinatorPort(network.domain, door.number));
+    const int ports = next_ports++;
+    if (next_ports >= kPorts) next_ports = 1;
+    open.push_back(std::make_unique<OpenDoor>(network, door, ports, events));
+    doors->Open(CoordinatorPort(network.domain, ports));
     if (pulse) pulse->Expect(static_cast<int>(open.size()));
   }
 
-  /// Later, if it cannot be opened now.
+  /// Later and with other ports, if it cannot be opened now.
   void OpenAnother() {
     const auto now = std::chrono::steady_clock::now();
     if (now < next_try) return;
@@ -138,6 +143,8 @@ struct CoordinatorLink::Impl {
   std::vector<std::unique_ptr<OpenDoor>> open;
   std::map<std::string, int> routes;  ///< doors, by worker or client
   std::shared_ptr<Pulse> pulse;
+  static constexpr int kPorts = static_cast<int>(Doors::kMost);
+  int next_ports = 0;
   std::chrono::steady_clock::time_point next_try = {};
 };
 

@@ -36,6 +36,16 @@ void Doors::Open(std::uint16_t port) {
   ports_.push_back(port);
 }
 
+void Doors::Refuse(std::uint16_t port) {
+  const Lock lock(mutex_);
+  refused_.insert(port);
+}
+
+bool Doors::WasRefused(std::uint16_t port) const {
+  const Lock lock(mutex_);
+  return refused_.contains(port);
+}
+
 // One burst of kAtOnce finds its places while the next door opens.
 bool Doors::IsShort() const {
   const Lock lock(mutex_);

@@ -6,6 +6,7 @@
 #include <cstdint>
 #include <map>
 #include <optional>
+#include <set>
 #include <string>
 #include <vector>
 
@@ -54,6 +55,9 @@ class Doors {
 
   /// A door is open, whose participant is discovered at `port`. Doors are numbered from 0 on.
   void Open(std::uint16_t port);
+  /// This port could not be bound: whether it was so.
+  void Refuse(std::uint16_t port);
+  bool WasRefused(std::uint16_t port) const;
   /// Few places are left, and another door may be opened.
   bool IsShort() const;
 
@@ -89,6 +93,7 @@ class Doors {
   int socket_;
   mutable Mutex mutex_;
   std::vector<std::uint16_t> ports_ DISPERSA_GUARDED_BY(mutex_);  ///< by door
+  std::set<std::uint16_t> refused_ DISPERSA_GUARDED_BY(mutex_);
   std::map<ParticipantPrefix, Peer> peers_ DISPERSA_GUARDED_BY(mutex_);
   std::optional<ParticipantPrefix> everywhere_ DISPERSA_GUARDED_BY(mutex_);
 };

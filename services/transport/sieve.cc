@@ -206,6 +206,14 @@ class Sieve : public transport::ChainingTransport {
     return inner->send(data, size, begin, end, timeout);
   }
 
+  // A port that another program took meanwhile, Fast DDS only logs.
+  bool OpenInputChannel(const rtps::Locator_t& local, transport::TransportReceiverInterface* receiver,
+                        uint32_t max_size) override {
+    if (ChainingTransport::OpenInputChannel(local, receiver, max_size)) return true;
+    if (const auto& doors = descriptor_.door.doors) doors->Refuse(rtps::IPLocator::getPhysicalPort(local));
+    return false;
+  }
+
   void receive(transport::TransportReceiverInterface* next, const rtps::octet* data, uint32_t size,
                const rtps::Locator_t& local, const rtps::Locator_t& remote) override {
     if (const char* harm = HarmOf(data, size, with_keys_)) {
