@@ -5,6 +5,7 @@
 #include <cstdint>
 #include <functional>
 #include <map>
+#include <memory>
 #include <optional>
 #include <string>
 #include <vector>
@@ -49,6 +50,9 @@ class Coordinator : public Workforce {
   /// Sets the function that answers clients.
   void Serve(std::function<Reply(const Request&)> answer) { answer_ = std::move(answer); }
   void Publish(CampaignProgress progress) override;
+
+  /// For a watchdog: see Pulse.
+  std::shared_ptr<const Pulse> StartPulse() { return link_.StartPulse(); }
 
   std::size_t joined() const { return dispatcher_.joined(); }
   bool ReceivesReports() const { return dispatcher_.ReceivesReports(now_s_); }

@@ -109,7 +109,7 @@ ExitCode ServeCampaign(const ServeOptions& options, const RunRequest& request,
           options.network.domain, CoordinatorPort(options.network.domain));
   Every progress_period(kProgress_s);
   Attendance attendance(options.network.domain, patience_s);
-  std::optional<Watchdog> watchdog(std::in_place, options.again);
+  std::optional<Watchdog> watchdog(std::in_place, options.again, coordinator.StartPulse());
   while (!book.refusal() && !book.Complete() && !StopRequested()) {
     coordinator.Step(kRound);
     watchdog->Note(coordinator.ReceivesReports(), true);
@@ -185,7 +185,7 @@ int ServeClients(const ServeOptions& options, const ClientOptions& clients) {
   Every web_period(kWeb_s), web_pause(kWebPause_s), prometheus_period(kPrometheus_s),
       counts_period(kLogCounts_s);
   Attendance attendance(options.network.domain, std::nullopt);
-  std::optional<Watchdog> watchdog(std::in_place, options.again);
+  std::optional<Watchdog> watchdog(std::in_place, options.again, coordinator.StartPulse());
   while (!StopRequested()) {
     const Stopwatch round;
     coordinator.Step(kRound);

@@ -1,7 +1,9 @@
 #include "services/coordinator/watchdog.h"
 #include "services/log/log.h"
+#include "services/program/exit_code.h"
 
 #include <linux/close_range.h>
+#include <pthread.h>
 #include <unistd.h>
 
 #include <chrono>
@@ -35,30 +37,34 @@ bool IsStartedByItself() {
   return is;
 }
 
-bool RestartRule::Check(double now_s, bool receives, bool has_work, long rounds) {
-  if (rounds != rounds_) {
-    rounds_ = rounds;
-    round_s_ = now_s;
+bool RestartRule::Check(double now_s, bool receives, bool has_work, long beats) {
+  if (beats != beats_) {
+    beats_ = beats;
+    beat_s_ = now_s;
   }
   has_received_ = has_received_ || receives;
   if (receives || !has_work) received_s_ = now_s;
-  return now_s - round_s_ > kHang_s || (has_received_ && now_s - received_s_ > kNoReports_s);
+  return now_s - beat_s_ > (beats_ == 0 ? kNoFirstBeat_s : kNoBeat_s) || (has_received_ && now_s - received_s_ > kNoReports_s);
 }
 
-Watchdog::Watchdog(std::vector<std::string> arguments)
-    : arguments_(std::move(arguments)), thread_([this](const std::stop_token& stop) { Watch(stop); }) {}
+Watchdog::Watchdog(std::vector<std::string> arguments, std::shared_ptr<const Pulse> pulse)
+    : arguments_(std::move(arguments)),
+      pulse_(std::move(pulse)),
+      thread_([this](const std::stop_token& stop) { Watch(stop); }) {}
 
 // The time is what the thread has slept, not the clock's: a program that was stopped, or a machine that
 // slept, has missed nothing.
 void Watchdog::Watch(const std::stop_token& stop) {
+  pthread_setname_np(pthread_self(), "watchdog");
   RestartRule rule;
   for (double awake_s = 0.0; !stop.stop_requested();
        awake_s += std::chrono::duration<double>(kPeriod).count()) {
     std::this_thread::sleep_for(kPeriod);
-    if (!rule.Check(awake_s, receives_, has_work_, rounds_)) continue;
+    if (!rule.Check(awake_s, receives_, has_work_, pulse_->beats())) continue;
     LogWarning("no messages arrive any more: the coordinator restarts");
     StartAgain(arguments_);
-    return;
+    // Whoever supervises this program starts it again.
+    std::_Exit(kExitInternalError);
   }
 }
 

@@ -1,16 +1,24 @@
 #include "services/transport/coordinator_link.h"
 
+#include <algorithm>
 #include <map>
 #include <optional>
+#include <utility>
 
+#include "services/log/log.h"
 #include "services/transport/convert.h"
+#include "services/transport/doors.h"
 #include "services/transport/endpoints.h"
 #include "services/transport/event_queue.h"
 #include "services/transport/topics.h"
 
 namespace dispersa {
 
+namespace {
+
 namespace dds = eprosima::fastdds::dds;
+
+}  // namespace
 
 struct CoordinatorLink::Impl {
   /// Messages to one participant have writers of their own, so that a stopped reader blocks no other.
@@ -38,55 +46,140 @@ struct CoordinatorLink::Impl {
     std::optional<Writer<idl::ReplyV1PubSubType>> replies;
   };
 
-  explicit Impl(const NetworkOptions& network)
-      : participant({network, "dispersa-coordinator", CoordinatorPort(network.domain), {}}),
-        publisher(participant.MakePublisher("")),
-        subscriber(participant.MakeSubscriber({"", PartitionOf("*")})) {
-    const auto push = [this](auto&& message, const std::string& sender) {
-      if (!events.Push({sender, std::move(message)})) Complain("message", sender, "too many wait already");
-    };
-    reports.emplace(participant, subscriber, kReportTopic, push);
-    text_requests.emplace(participant, subscriber, kTextRequestTopic, push);
-    campaign_refusals.emplace(participant, subscriber, kCampaignRefusalTopic, push);
-    requests.emplace(participant, subscriber, kRequestTopic, push);
-    // Status messages have a socket of their own, so that they arrive even if many results wait in the other
-    // one.
-    statuses.emplace(
-        participant, subscriber, kStatusTopic, push,
-        [this](const std::string& sender) {
-          events.Push({sender, SenderGone{}});
-        },
-        MakeReaderQos(network.address, StatusPort(network.domain)));
-    progress.emplace(participant, publisher, kProgressTopic, 16);
-    results.emplace(participant, publisher, kResultTopic);
+  /// An event, and who said it.
+  struct Heard {
+    CoordinatorEvent event;
+    std::string who;  ///< worker or client; empty: a participant that is gone
+    int door;
+  };
+
+  /// One participant with its readers and writers.
+  struct OpenDoor {
+    /// `ports`: which of the ports of doors.
+    OpenDoor(const NetworkOptions& network, const Door& door, int ports, EventQueue<Heard>& events)
+        : participant({network, kCoordinatorParticipant, CoordinatorPort(network.domain, ports), {}, door}),
+          publisher(participant.MakePublisher("")),
+          subscriber(participant.MakeSubscriber({"", PartitionOf("*")})),
+          progress(participant, publisher, kProgressTopic, 16),
+          results(participant, publisher, kResultTopic) {
+      const auto push = [&events, number = door.number](auto&& message, const std::string& sender) {
+        std::string who = NameIn(message);
+        if (!events.Push({{sender, std::move(message)}, std::move(who), number}))
+          Complain("message", sender, "too many wait already");
+      };
+      reports.emplace(participant, subscriber, kReportTopic, push);
+      text_requests.emplace(participant, subscriber, kTextRequestTopic, push);
+      campaign_refusals.emplace(participant, subscriber, kCampaignRefusalTopic, push);
+      requests.emplace(participant, subscriber, kRequestTopic, push);
+      // Status messages have a socket of their own, so that they arrive even if many results wait in the other
+      // one.
+      statuses.emplace(
+          participant, subscriber, kStatusTopic, push,
+          [&events, number = door.number](const std::string& sender) {
+            events.Push({{sender, SenderGone{}}, "", number});
+          },
+          MakeReaderQos(network.address, StatusPort(network.domain, ports)));
+      for (const auto port : {CoordinatorPort(network.domain, ports), StatusPort(network.domain, ports)})
+        if (door.doors->WasRefused(port))
+          throw NetworkError("UDP port " + std::to_string(port) + " is not free");
+    }
+
+    Participant participant;
+    dds::Publisher* publisher;
+    dds::Subscriber* subscriber;
+    std::map<std::string, std::unique_ptr<Channel>> channels;  ///< by worker or client
+    Writer<idl::ProgressV1PubSubType> progress;
+    Writer<idl::ResultV1PubSubType> results;
+    std::optional<Reader<idl::ReportV2PubSubType>> reports;
+    std::optional<Reader<idl::TextRequestV1PubSubType>> text_requests;
+    std::optional<Reader<idl::CampaignRefusalV1PubSubType>> campaign_refusals;
+    std::optional<Reader<idl::RequestV1PubSubType>> requests;
+    std::optional<Reader<idl::WorkerStatusV2PubSubType>> statuses;
+  };
+
+  explicit Impl(const NetworkOptions& options)
+      : network(options), doors(std::make_shared<Doors>(options.address)) {
+    Open();
   }
 
+  void Open() {
+    const Door door{doors, static_cast<int>(open.size())};
+    const int ports = next_ports++;
+    if (next_ports >= kPorts) next_ports = 1;
+    open.push_back(std::make_unique<OpenDoor>(network, door, ports, events));
+    doors->Open(CoordinatorPort(network.domain, ports));
+    if (pulse) pulse->Expect(static_cast<int>(open.size()));
+  }
+
+  /// Later and with other ports, if it cannot be opened now.
+  void OpenAnother() {
+    const auto now = std::chrono::steady_clock::now();
+    if (now < next_try) return;
+    try {
+      Open();
+    } catch (const NetworkError& error) {
+      LogWarning("no further participant can be made now: {}", error.what());
+      next_try = now + std::chrono::seconds(1);
+    }
+  }
+
+  /// Through the door at which it was heard last.
   Channel& ChannelTo(const std::string& who) {
-    auto& channel = channels[who];
-    if (!channel) channel = std::make_unique<Channel>(participant, who);
+    const auto found = routes.find(who);
+    OpenDoor& door = *open[found == routes.end() ? 0 : static_cast<std::size_t>(found->second)];
+    auto& channel = door.channels[who];
+    if (!channel) channel = std::make_unique<Channel>(door.participant, who);
     return *channel;
   }
 
-  EventQueue<CoordinatorEvent> events;
-  Participant participant;
-  dds::Publisher* publisher;
-  dds::Subscriber* subscriber;
-  std::map<std::string, std::unique_ptr<Channel>> channels;  ///< by worker or client
-  std::optional<Writer<idl::ProgressV1PubSubType>> progress;
-  std::optional<Writer<idl::ResultV1PubSubType>> results;
-  std::optional<Reader<idl::ReportV2PubSubType>> reports;
-  std::optional<Reader<idl::TextRequestV1PubSubType>> text_requests;
-  std::optional<Reader<idl::CampaignRefusalV1PubSubType>> campaign_refusals;
-  std::optional<Reader<idl::RequestV1PubSubType>> requests;
-  std::optional<Reader<idl::WorkerStatusV2PubSubType>> statuses;
+  void Forget(const std::string& who) {
+    for (const auto& door : open) door->channels.erase(who);
+    routes.erase(who);
+  }
+
+  NetworkOptions network;
+  std::shared_ptr<Doors> doors;
+  EventQueue<Heard> events;
+  std::vector<std::unique_ptr<OpenDoor>> open;
+  std::map<std::string, int> routes;  ///< doors, by worker or client
+  std::shared_ptr<Pulse> pulse;
+  static constexpr int kPorts = static_cast<int>(Doors::kMost);
+  int next_ports = 0;
+  std::chrono::steady_clock::time_point next_try = {};
 };
 
 CoordinatorLink::CoordinatorLink(const NetworkOptions& network) : impl_(std::make_unique<Impl>(network)) {}
 CoordinatorLink::~CoordinatorLink() = default;
 
 std::vector<CoordinatorEvent> CoordinatorLink::Wait(std::chrono::milliseconds timeout) {
-  impl_->participant.LogSilent();
-  return impl_->events.Wait(timeout);
+  for (const auto& door : impl_->open) door->participant.LogSilent();
+  if (impl_->doors->IsShort()) impl_->OpenAnother();
+  std::vector<CoordinatorEvent> events;
+  for (Impl::Heard& heard : impl_->events.Wait(timeout)) {
+    if (!heard.who.empty()) {
+      // A renewed connection may have come to another door.
+      const auto [route, is_new] = impl_->routes.try_emplace(heard.who, heard.door);
+      const bool asks_itself = impl_->pulse && heard.who == impl_->pulse->name();
+      if (route->second != heard.door) {
+        if (!asks_itself) impl_->open[static_cast<std::size_t>(route->second)]->channels.erase(heard.who);
+        route->second = heard.door;
+      }
+      if (asks_itself) {
+        if (const auto* question = std::get_if<Request>(&heard.event.what))
+          Send(Reply{heard.who, question->number, 0, "{}", ""});
+        continue;
+      }
+    }
+    events.push_back(std::move(heard.event));
+  }
+  return events;
+}
+
+std::shared_ptr<const Pulse> CoordinatorLink::StartPulse() {
+  impl_->pulse = std::make_shared<Pulse>(impl_->network);
+  impl_->doors->OpenAllTo(impl_->pulse->prefix());
+  impl_->pulse->Expect(static_cast<int>(impl_->open.size()));
+  return impl_->pulse;
 }
 
 void CoordinatorLink::Send(const Orders& orders) {
@@ -108,15 +201,21 @@ void CoordinatorLink::Drain(const std::string& worker, std::chrono::milliseconds
   if (auto& orders = impl_->ChannelTo(worker).orders) orders->Drain(static_cast<int>(timeout.count()));
 }
 
-void CoordinatorLink::Forget(const std::string& who) { impl_->channels.erase(who); }
+void CoordinatorLink::Forget(const std::string& who) { impl_->Forget(who); }
 
-void CoordinatorLink::Publish(const CampaignProgress& progress) { impl_->progress->Write(ToIdl(progress)); }
+void CoordinatorLink::Publish(const CampaignProgress& progress) {
+  for (const auto& door : impl_->open) door->progress.Write(ToIdl(progress));
+}
 
 void CoordinatorLink::Publish(const std::string& flight_id, const std::string& worker,
                               const FlownCase& flown) {
-  impl_->results->Write(ToIdl(flight_id, worker, flown));
+  for (const auto& door : impl_->open)
+    if (door->results.matched() > 0) door->results.Write(ToIdl(flight_id, worker, flown));
 }
 
-bool CoordinatorLink::HasResultObservers() const { return impl_->results->matched() > 0; }
+bool CoordinatorLink::HasResultObservers() const {
+  return std::any_of(impl_->open.begin(), impl_->open.end(),
+                     [](const auto& door) { return door->results.matched() > 0; });
+}
 
 }  // namespace dispersa

@@ -9,6 +9,7 @@
 
 #include "services/transport/messages.h"
 #include "services/transport/network.h"
+#include "services/transport/pulse.h"
 
 namespace dispersa {
 
@@ -21,6 +22,8 @@ struct CoordinatorEvent {
   std::variant<WorkerStatus, Report, TextRequest, CampaignRefusal, Request, SenderGone> what;
 };
 
+/// Opens a further participant when the last ones have few places left (doors.h).
+///
 /// Events are read by one thread, which also sends. Nothing that is sent is sure to arrive. Throws
 /// NetworkError.
 class CoordinatorLink {
@@ -31,6 +34,9 @@ class CoordinatorLink {
 
   /// All events so far, in order. Waits at most `timeout` for the first one.
   std::vector<CoordinatorEvent> Wait(std::chrono::milliseconds timeout);
+
+  /// Begins to ask itself. Its questions are answered in Wait.
+  std::shared_ptr<const Pulse> StartPulse();
 
   /// To one worker, which need not be matched yet.
   void Send(const Orders& orders);

@@ -5,6 +5,7 @@
 
 #include <fastdds/rtps/builtin/data/ParticipantProxyData.h>
 #include <fastdds/rtps/participant/ParticipantDiscoveryInfo.h>
+#include <fastdds/rtps/reader/ReaderDiscoveryInfo.h>
 #include <fastdds/rtps/writer/WriterDiscoveryInfo.h>
 #include <fastrtps/utils/IPLocator.h>
 
@@ -28,7 +29,18 @@ std::string WhoIs(const rtps::ParticipantProxyData& participant) {
          (addresses.empty() ? "" : " at " + rtps::IPLocator::ip_to_string(addresses.front()));
 }
 
+ParticipantPrefix PrefixOf(const rtps::GUID_t& guid) {
+  ParticipantPrefix prefix;
+  std::copy_n(guid.guidPrefix.value, prefix.size(), prefix.begin());
+  return prefix;
+}
+
 }  // namespace
+
+// Its readers and writers come last, after the handshake.
+void Neighbours::TellJoined(const rtps::GUID_t& endpoint) const {
+  if (doors_) doors_->Joined(PrefixOf(endpoint));
+}
 
 bool Neighbours::IsIn(const rtps::GUID_t& writer, const std::string& partition) const {
   const Lock lock(mutex_);
@@ -42,8 +54,11 @@ void Neighbours::on_participant_discovery(dds::DomainParticipant*, rtps::Partici
   const Lock lock(mutex_);
   if (found.status != Found::DISCOVERED_PARTICIPANT) {
     handshakes_.erase(found.info.m_guid);
+    if (doors_) doors_->Gone(PrefixOf(found.info.m_guid));
     return;
   }
+  ++found_;
+  if (doors_) doors_->Found(PrefixOf(found.info.m_guid));
   const bool it_has_keys = !found.info.identity_token_.class_id().empty();
   if (we_have_keys_ && it_has_keys) {
     if (handshakes_.size() < kMostHandshakes) {
@@ -51,6 +66,7 @@ void Neighbours::on_participant_discovery(dds::DomainParticipant*, rtps::Partici
                                         WhoIs(found.info)};
     }
   } else if (we_have_keys_ != it_has_keys) {
+    TellJoined(found.info.m_guid);  // it never will
     Complain("participant", WhoIs(found.info),
              we_have_keys_ ? "it has no keys" : "it has keys, and we have none to show (--keys)");
   }
@@ -61,6 +77,7 @@ void Neighbours::onParticipantAuthentication(dds::DomainParticipant*,
   const Lock lock(mutex_);
   handshakes_.erase(who.guid);
   if (who.status == rtps::ParticipantAuthenticationInfo::UNAUTHORIZED_PARTICIPANT) {
+    TellJoined(who.guid);  // it never will
     Complain("participant", ParticipantOf(who.guid), kBadKeys);
   }
 }
@@ -83,9 +100,14 @@ void Neighbours::on_publisher_discovery(dds::DomainParticipant*, rtps::WriterDis
     partitions_.erase(found.info.guid());
     return;
   }
+  TellJoined(found.info.guid());
   std::vector<std::string> now = found.info.m_qos.m_partition.getNames();
   const auto [known, is_new] = partitions_.try_emplace(found.info.guid(), now);
   if (!is_new && known->second != now) known->second.clear();
+}
+
+void Neighbours::on_subscriber_discovery(dds::DomainParticipant*, rtps::ReaderDiscoveryInfo&& found) {
+  if (found.status == rtps::ReaderDiscoveryInfo::DISCOVERED_READER) TellJoined(found.info.guid());
 }
 
 }  // namespace dispersa

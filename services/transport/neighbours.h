@@ -1,14 +1,18 @@
 // Other participants on the network, as the middleware finds them. Internal to this folder.
 #pragma once
 
+#include <atomic>
 #include <chrono>
 #include <map>
+#include <memory>
 #include <string>
+#include <utility>
 #include <vector>
 
 #include <fastdds/dds/domain/DomainParticipantListener.hpp>
 
 #include "services/program/mutex.h"
+#include "services/transport/doors.h"
 
 namespace dispersa {
 
@@ -16,13 +20,17 @@ namespace dispersa {
 /// partitions of others' writers. With keys, the permissions say who may be in which partition.
 class Neighbours : public eprosima::fastdds::dds::DomainParticipantListener {
  public:
-  explicit Neighbours(bool we_have_keys) : we_have_keys_(we_have_keys) {}
+  /// `doors`: those of a coordinator, which get to know what becomes of their peers.
+  explicit Neighbours(bool we_have_keys, std::shared_ptr<Doors> doors = nullptr)
+      : we_have_keys_(we_have_keys), doors_(std::move(doors)) {}
 
   /// Whether the writer is in this partition and never was in another.
   bool IsIn(const eprosima::fastrtps::rtps::GUID_t& writer, const std::string& partition) const;
   /// Logs, from time to time, participants that have shown no valid keys for some seconds. A participant that
   /// finds the other's keys bad falls silent, so the other side sees only silence.
   void LogSilent();
+  /// Number of participants that were found so far.
+  long found() const { return found_; }
 
  private:
   void on_participant_discovery(eprosima::fastdds::dds::DomainParticipant*,
@@ -32,12 +40,18 @@ class Neighbours : public eprosima::fastdds::dds::DomainParticipantListener {
   void on_publisher_discovery(eprosima::fastdds::dds::DomainParticipant*,
                               eprosima::fastrtps::rtps::WriterDiscoveryInfo&& found) override;
 
+  void on_subscriber_discovery(eprosima::fastdds::dds::DomainParticipant*,
+                               eprosima::fastrtps::rtps::ReaderDiscoveryInfo&& found) override;
+  void TellJoined(const eprosima::fastrtps::rtps::GUID_t& endpoint) const;
+
   struct Handshake {
     std::chrono::steady_clock::time_point due;
     std::string who;
   };
 
   bool we_have_keys_;
+  std::shared_ptr<Doors> doors_;
+  std::atomic<long> found_ = 0;
   mutable Mutex mutex_;
   std::map<eprosima::fastrtps::rtps::GUID_t, std::vector<std::string>> partitions_
       DISPERSA_GUARDED_BY(mutex_);

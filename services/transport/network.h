@@ -34,11 +34,13 @@ struct NetworkOptions {
 
 /// UDP ports of a domain: 7400 + 250 * domain + offset, 0 to 249.
 std::uint16_t PortOf(int domain, int offset);
-/// The fixed port at which the coordinator of a domain is discovered: 7400 + 250 * domain + 5. No participant
-/// without a fixed port takes it.
-std::uint16_t CoordinatorPort(int domain);
+/// Ordinary participants take ports of these offsets: even ones for discovery, odd ones for the rest.
+inline constexpr int kFirstPort = 10, kLastPort = 217;
+/// The fixed port at which the coordinator of a domain is discovered: 7400 + 250 * domain + 5. Its further
+/// participants (doors.h) have ports above those of ordinary ones. No other participant takes any of them.
+std::uint16_t CoordinatorPort(int domain, int door = 0);
 /// The port at which the coordinator receives workers' signs of life: CoordinatorPort + 1.
-std::uint16_t StatusPort(int domain);
+std::uint16_t StatusPort(int domain, int door = 0);
 
 /// 128 random bits: one for each start of a worker.
 std::string MakeUuid();

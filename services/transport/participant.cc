@@ -4,6 +4,7 @@
 #include <ifaddrs.h>
 #include <net/if.h>
 #include <netdb.h>
+#include <algorithm>
 #include <mutex>
 
 #include <fastdds/rtps/transport/UDPv4TransportDescriptor.h>
@@ -27,8 +28,6 @@ namespace rtps = eprosima::fastrtps::rtps;
 
 constexpr std::uint32_t kReceiveBuffer = 4 << 20;
 constexpr std::uint32_t kSendBuffer = 1 << 20;
-// The ports of a domain that ordinary participants use: even ones for discovery, odd ones for the rest.
-constexpr int kFirstPort = 10, kLastPort = 249;
 
 class LogToSpdlog : public dds::LogConsumer {
  public:
@@ -145,7 +144,7 @@ dds::DomainParticipantQos MakeQos(const ParticipantOptions& options) {
   // turn. The kernel gives at most net.core.rmem_max, see services/README.md.
   udp->receiveBufferSize = kReceiveBuffer;
   udp->sendBufferSize = kSendBuffer;
-  qos.transport().user_transports.push_back(Sieved(udp, options.network.keys.has_value()));
+  qos.transport().user_transports.push_back(Sieved(udp, options.network.keys.has_value(), options.door));
 
   auto& builtin = qos.wire_protocol().builtin;
   // Who is silent is known sooner from its messages. To find a participant again costs a message to and from
@@ -173,7 +172,7 @@ dds::DomainParticipantQos MakeQos(const ParticipantOptions& options) {
 Participant::Participant(const ParticipantOptions& options)
     : has_keys_(options.network.keys.has_value()),
       seal_(options.network.secret ? std::make_shared<const Seal>(*options.network.secret) : nullptr),
-      neighbours_(has_keys_) {
+      neighbours_(has_keys_, options.door.doors) {
   const int domain = options.network.domain;
   if (domain < 0 || domain > 99) {
     throw NetworkError("domain " + std::to_string(domain) + ": must be from 0 to 99");
@@ -203,6 +202,12 @@ Participant::~Participant() {
 
 bool Participant::MaySpeakFor(const rtps::InstanceHandle_t& writer, const std::string& name) const {
   return !has_keys_ || neighbours_.IsIn(rtps::iHandle2GUID(writer), PartitionOf(name));
+}
+
+ParticipantPrefix Participant::prefix() const {
+  ParticipantPrefix prefix;
+  std::copy_n(participant_->guid().guidPrefix.value, prefix.size(), prefix.begin());
+  return prefix;
 }
 
 dds::Topic* Participant::FindTopic(const std::string& name) {

@@ -15,6 +15,7 @@
 
 #include "services/transport/neighbours.h"
 #include "services/transport/network.h"
+#include "services/transport/sieve.h"
 #include "services/transport/topics.h"
 
 namespace dispersa {
@@ -24,6 +25,7 @@ struct ParticipantOptions {
   std::string name;
   std::optional<std::uint16_t> discovery_port;  ///< fixed: a coordinator's
   std::vector<Peer> peers;                      ///< whom to announce ourselves to
+  Door door = {};                               ///< a coordinator's
 };
 
 /// Owns the participant and everything made from it.
@@ -58,6 +60,10 @@ class Participant {
 
   /// Now and then: see Neighbours.
   void LogSilent() { neighbours_.LogSilent(); }
+
+  /// Number of participants that were found so far.
+  long found() const { return neighbours_.found(); }
+  ParticipantPrefix prefix() const;
 
   eprosima::fastdds::dds::DomainParticipant* get() { return participant_; }
 

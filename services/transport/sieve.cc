@@ -1,7 +1,9 @@
 #include "services/transport/sieve.h"
 
+#include <algorithm>
 #include <cstring>
 #include <limits>
+#include <utility>
 
 #include <fastdds/rtps/transport/ChainingTransport.h>
 #include <fastdds/rtps/transport/ChainingTransportDescriptor.h>
@@ -68,6 +70,14 @@ class Submessage {
   std::size_t size_;
   bool little_;
 };
+
+/// Bytes of the submessage with this head of 4 bytes; `rest`: those of the datagram behind the head.
+std::size_t LengthOf(const std::uint8_t* head, std::size_t rest) {
+  const std::uint8_t kind = head[0];
+  const std::size_t length = Submessage(head, 4, (head[1] & 1) != 0).U16(2);
+  // 0: up to the end, but for the two kinds that may be empty (PAD, INFO_TS).
+  return (length == 0 && kind != 0x01 && kind != 0x09) ? rest : length;
+}
 
 const char* HarmOfSubmessage(std::uint8_t kind, const Submessage& what) {
   // Reader and writer (4 bytes each) come first, in DATA and DATA_FRAG behind flags and an offset.
@@ -152,10 +162,41 @@ const char* HarmOfPlain(std::uint8_t kind, const Submessage& what) {
   }
 }
 
+/// The first parameter of this kind in a list, behind its head; after the list's end: where it ends. Past the
+/// bytes: none.
+std::size_t FindParameter(const Submessage& list, std::size_t at, std::uint16_t kind) {
+  constexpr std::uint16_t kEnd = 0x0001;
+  while (at + 4 <= list.size()) {
+    const std::uint16_t found = list.U16(at);
+    at += 4;
+    if (found == kind || found == kEnd) return at;
+    at += list.U16(at - 2);
+  }
+  return list.size();
+}
+
+/// The participant's name in the DATA of its announcement; empty without one.
+std::string NameIn(const std::uint8_t* body, std::size_t size, std::uint8_t flags) {
+  constexpr std::uint8_t kHasQos = 0x02;
+  constexpr std::size_t kDataHead = 20, kEncapsulation = 4;
+  constexpr std::uint16_t kEnd = 0x0001, kEntityName = 0x0062;
+  std::size_t at = kDataHead;
+  if ((flags & kHasQos) != 0) at = FindParameter({body, size, (flags & 1) != 0}, at, kEnd);
+  if (at + kEncapsulation > size) return "";
+  const Submessage announcement(body, size, (body[at + 1] & 1) != 0);
+  at = FindParameter(announcement, at + kEncapsulation, kEntityName);
+  if (announcement.size() < at + 4 || announcement.U16(at - 4) != kEntityName) return "";
+  const std::size_t with_zero = announcement.U32(at);
+  if (with_zero == 0 || with_zero > size - at - 4) return "";
+  return {reinterpret_cast<const char*>(body) + at + 4, with_zero - 1};
+}
+
 class Sieve : public transport::ChainingTransport {
  public:
-  Sieve(const transport::ChainingTransportDescriptor& descriptor, bool with_keys)
-      : ChainingTransport(descriptor), descriptor_(descriptor, with_keys), with_keys_(with_keys) {}
+  Sieve(const transport::ChainingTransportDescriptor& descriptor, bool with_keys, Door door)
+      : ChainingTransport(descriptor),
+        descriptor_(descriptor, with_keys, std::move(door)),
+        with_keys_(with_keys) {}
 
   transport::TransportDescriptorInterface* get_configuration() override { return &descriptor_; }
 
@@ -165,31 +206,48 @@ class Sieve : public transport::ChainingTransport {
     return inner->send(data, size, begin, end, timeout);
   }
 
+  // A port that another program took meanwhile, Fast DDS only logs.
+  bool OpenInputChannel(const rtps::Locator_t& local, transport::TransportReceiverInterface* receiver,
+                        uint32_t max_size) override {
+    if (ChainingTransport::OpenInputChannel(local, receiver, max_size)) return true;
+    if (const auto& doors = descriptor_.door.doors) doors->Refuse(rtps::IPLocator::getPhysicalPort(local));
+    return false;
+  }
+
   void receive(transport::TransportReceiverInterface* next, const rtps::octet* data, uint32_t size,
                const rtps::Locator_t& local, const rtps::Locator_t& remote) override {
     if (const char* harm = HarmOf(data, size, with_keys_)) {
       Complain("datagram", rtps::IPLocator::ip_to_string(remote), harm);
       return;
     }
+    if (const auto greeting = GreetingIn(data, size)) {
+      const auto& [doors, number] = descriptor_.door;
+      if (doors ? !doors->Admits(number, *greeting, data, size, rtps::IPLocator::ip_to_string(remote))
+                : !greeting->is_farewell && greeting->name != kCoordinatorParticipant)
+        return;
+    }
     next->OnDataReceived(data, size, local, remote);
   }
 
  private:
   struct Descriptor : transport::ChainingTransportDescriptor {
-    Descriptor(std::shared_ptr<TransportDescriptorInterface> inner, bool keys)
-        : ChainingTransportDescriptor(std::move(inner)), with_keys(keys) {}
-    Descriptor(const ChainingTransportDescriptor& other, bool keys)
-        : ChainingTransportDescriptor(other), with_keys(keys) {}
-    transport::TransportInterface* create_transport() const override { return new Sieve(*this, with_keys); }
+    Descriptor(std::shared_ptr<TransportDescriptorInterface> inner, bool keys, Door which)
+        : ChainingTransportDescriptor(std::move(inner)), with_keys(keys), door(std::move(which)) {}
+    Descriptor(const ChainingTransportDescriptor& other, bool keys, Door which)
+        : ChainingTransportDescriptor(other), with_keys(keys), door(std::move(which)) {}
+    transport::TransportInterface* create_transport() const override {
+      return new Sieve(*this, with_keys, door);
+    }
     // Fast DDS 2.9 takes it for the bytes after which a writer asks all its readers what they lack, and
     // counts the bytes that its sending thread has sent since it began. So from the first megabyte on, each
     // endpoint told to one new participant was followed by a question to all: 300 workers never came to rest.
     // Without these questions the periodic ones serve.
     uint32_t min_send_buffer_size() const override { return std::numeric_limits<std::int32_t>::max(); }
     bool with_keys;
+    Door door;
   };
   friend std::shared_ptr<transport::TransportDescriptorInterface> dispersa::Sieved(
-      std::shared_ptr<transport::TransportDescriptorInterface>, bool);
+      std::shared_ptr<transport::TransportDescriptorInterface>, bool, const Door&);
 
   Descriptor descriptor_;
   bool with_keys_;
@@ -205,10 +263,8 @@ const char* HarmOf(const std::uint8_t* datagram, std::size_t size, bool with_key
     const std::uint8_t kind = datagram[at];
     const bool little_endian = (datagram[at + 1] & 1) != 0;
     const std::size_t rest = size - at - 4;
-    std::size_t length = Submessage(datagram + at, 4, little_endian).U16(2);
+    const std::size_t length = LengthOf(datagram + at, rest);
     if (length > rest) return "a submessage that is cut off";
-    // 0: up to the end, but for the two kinds that may be empty (PAD, INFO_TS).
-    if (length == 0 && kind != 0x01 && kind != 0x09) length = rest;
     const Submessage what(datagram + at + 4, length, little_endian);
     const char* harm = nullptr;
     if (IsSecure(kind)) {
@@ -225,9 +281,29 @@ const char* HarmOf(const std::uint8_t* datagram, std::size_t size, bool with_key
   return nullptr;
 }
 
+std::optional<Greeting> GreetingIn(const std::uint8_t* datagram, std::size_t size) {
+  constexpr std::size_t kPrefixAt = 8, kDataHead = 20;
+  constexpr std::uint8_t kHasData = 0x04;
+  for (std::size_t at = kMessageHeader; at + 4 <= size;) {
+    const std::uint8_t kind = datagram[at], flags = datagram[at + 1];
+    const std::size_t length = LengthOf(datagram + at, size - at - 4);
+    const std::uint8_t* const body = datagram + at + 4;
+    if (kind == kData && length >= kDataHead &&
+        Submessage(body, length, true).BigEndianU32(8) == kGreeting) {
+      Greeting greeting;
+      std::copy_n(datagram + kPrefixAt, greeting.from.size(), greeting.from.begin());
+      greeting.is_farewell = (flags & kHasData) == 0;
+      if (!greeting.is_farewell) greeting.name = NameIn(body, length, flags);
+      return greeting;
+    }
+    at += 4 + length;
+  }
+  return std::nullopt;
+}
+
 std::shared_ptr<transport::TransportDescriptorInterface> Sieved(
-    std::shared_ptr<transport::TransportDescriptorInterface> inner, bool with_keys) {
-  return std::make_shared<Sieve::Descriptor>(std::move(inner), with_keys);
+    std::shared_ptr<transport::TransportDescriptorInterface> inner, bool with_keys, const Door& door) {
+  return std::make_shared<Sieve::Descriptor>(std::move(inner), with_keys, door);
 }
 
 }  // namespace dispersa

@@ -4,8 +4,11 @@
 #include <cstddef>
 #include <cstdint>
 #include <memory>
+#include <optional>
 
 #include <fastdds/rtps/transport/TransportDescriptorInterface.h>
+
+#include "services/transport/doors.h"
 
 namespace dispersa {
 
@@ -19,9 +22,20 @@ namespace dispersa {
 /// handshake.
 const char* HarmOf(const std::uint8_t* datagram, std::size_t size, bool with_keys = false);
 
+/// The greeting in a harmless datagram, if there is one.
+std::optional<Greeting> GreetingIn(const std::uint8_t* datagram, std::size_t size);
+
+/// One of a coordinator's participants, or (without doors) any other program's.
+struct Door {
+  std::shared_ptr<Doors> doors;
+  int number = 0;
+};
+
 /// `inner` behind the sieve. Dropped datagrams are counted and logged with their sender, at most once a
-/// second.
+/// second. At a door greetings pass as the doors want it. Elsewhere only a coordinator's pass: the port may
+/// have been that of a coordinator before, to which all workers go on to greet.
 std::shared_ptr<eprosima::fastdds::rtps::TransportDescriptorInterface> Sieved(
-    std::shared_ptr<eprosima::fastdds::rtps::TransportDescriptorInterface> inner, bool with_keys);
+    std::shared_ptr<eprosima::fastdds::rtps::TransportDescriptorInterface> inner, bool with_keys,
+    const Door& door);
 
 }  // namespace dispersa

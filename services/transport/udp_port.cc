@@ -40,8 +40,11 @@ bool IsUdpPortFree(const std::string& address, std::uint16_t port) {
 }
 
 std::uint16_t FreeUdpPort(const std::string& address, std::uint16_t first, std::uint16_t last) {
-  for (int port = first; port <= last; port += 2)
-    if (IsUdpPortFree(address, static_cast<std::uint16_t>(port))) return static_cast<std::uint16_t>(port);
+  const int count = (last - first) / 2 + 1;
+  for (int i = 0; i < count; ++i) {
+    const auto port = static_cast<std::uint16_t>(first + 2 * ((getpid() + i) % count));
+    if (IsUdpPortFree(address, port)) return port;
+  }
   const auto other = TryPort(address, 0);
   if (!other) throw NetworkError(std::string("no UDP port is free: ") + std::strerror(errno));
   LogWarning("UDP ports {} to {} are all taken; port {} is used, which a firewall may not let pass", first,

@@ -1,6 +1,7 @@
 #include "services/transport/worker_link.h"
 
 #include <optional>
+#include <utility>
 
 #include "services/transport/convert.h"
 #include "services/transport/endpoints.h"
@@ -24,7 +25,7 @@ struct WorkerLink::Impl {
   };
 
   Impl(const NetworkOptions& network, const std::vector<Peer>& peers, const std::string& worker)
-      : participant({network, "dispersa-worker", std::nullopt, peers}),
+      : participant({network, kWorkerParticipant, std::nullopt, peers}),
         publisher(participant.MakePublisher(PartitionOf(worker))),
         subscriber(participant.MakeSubscriber({PartitionOf(worker)})) {
     if (network.keys) revocations.emplace(*network.keys);
@@ -65,6 +66,7 @@ struct WorkerLink::Impl {
   std::optional<Revocations> revocations;
   std::chrono::steady_clock::time_point looked;
   Participant participant;
+  long met = 0;  ///< participants that the worker knows of
   dds::Publisher* publisher;
   dds::Subscriber* subscriber;
   std::optional<Writer<idl::ReportV2PubSubType>> reports;
@@ -89,6 +91,11 @@ void WorkerLink::Send(const WorkerStatus& status) { impl_->statuses->Write(ToIdl
 void WorkerLink::Send(const Report& report) { impl_->reports->Write(ToIdl(report)); }
 void WorkerLink::Send(const TextRequest& request) { impl_->text_requests->Write(ToIdl(request)); }
 void WorkerLink::Send(const CampaignRefusal& refusal) { impl_->campaign_refusals->Write(ToIdl(refusal)); }
+
+bool WorkerLink::HasMet() {
+  const long found = impl_->participant.found();
+  return std::exchange(impl_->met, found) != found;
+}
 
 void WorkerLink::Drain(std::chrono::milliseconds timeout) {
   impl_->statuses->Drain(static_cast<int>(timeout.count()));

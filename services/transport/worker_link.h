@@ -29,6 +29,8 @@ class WorkerLink {
   void Send(const Report& report);
   void Send(const TextRequest& request);
   void Send(const CampaignRefusal& refusal);
+  /// Whether a coordinator has let this worker in since the last call. It may be heard soon.
+  bool HasMet();
   /// Waits, at most so long, until the coordinator has the statuses that were sent.
   void Drain(std::chrono::milliseconds timeout);
 

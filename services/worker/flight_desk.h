@@ -56,6 +56,8 @@ class FlightDesk {
   /// Orders of an older coordinator are ignored while the followed one is heard. Epochs grow.
   void On(const Orders& orders, double now_s);
   void On(const TextPart& part, double now_s);
+  /// A coordinator has let us in, and may be heard soon.
+  void Met(double now_s) { connected_s_ = now_s; }
 
   /// A complete text that has not been taken, each once.
   std::optional<CampaignText> TakeText();

@@ -60,6 +60,7 @@ WorkerExit Worker::Run() {
           desk_.On(std::get<TextPart>(event), now_s);
         }
       }
+      if (link_ && link_->HasMet()) desk_.Met(now_s);
       due = desk_.Tick(now_s);
       text = desk_.TakeText();
       is_idle = desk_.IsIdle() && !desk_.draining();

@@ -1,8 +1,8 @@
-"""Three hundred real workers on three hosts and one coordinator: a campaign completes with the bytes of a run in one process,
-nobody is lost, and clients get answers meanwhile. Prints what a worker and the coordinator take.
+"""Three hundred real workers on three hosts, all started at once, and one coordinator: they join, and join again when it was
+killed. A campaign completes with the bytes of a run in one process, and clients get answers. Prints what all of it takes.
 
-Environment as of processes.py. DISPERSA_PARTICIPANTS: how many (default 300; a host has UDP ports for 120 programs).
-DISPERSA_WITH_KEYS: everything is encrypted.
+Environment as of processes.py. DISPERSA_PARTICIPANTS: how many (default 300; a host has UDP ports for 104 programs).
+DISPERSA_WITH_KEYS: everything is encrypted. DISPERSA_KILLS: how often the coordinator is killed (default 1).
 """
 import json
 import os
@@ -20,7 +20,8 @@ PARTICIPANTS = int(os.environ.get("DISPERSA_PARTICIPANTS", "300"))
 WITH_KEYS = bool(os.environ.get("DISPERSA_WITH_KEYS"))
 HOSTS = 3
 CASES = PARTICIPANTS // 5  # so many fly side by side at most: each flight would have a host of its own elsewhere
-AT_ONCE = 15        # programs that start side by side: a start is a burst of work, and the machine may have two cores
+KILLS = int(os.environ.get("DISPERSA_KILLS", "1"))
+JOIN_S = float(os.environ.get("DISPERSA_JOIN_S", "60"))  # until all have joined
 ANSWER_S = 8.0      # the patience of a health probe
 IDLE_S = 15.0
 MOST_PSS_MB = 40.0  # of a worker: its share of what it has loaded
@@ -93,20 +94,43 @@ class Participants(unittest.TestCase):
         self.assertEqual(done.returncode, 0, done.stderr)
         return time.monotonic() - begun
 
+    def start_coordinator(self):
+        return self.start(0, "dispersa-coordinator", "coordinator", "--data", self.root / "data")
+
+    def start_crowd(self):
+        self.workers = [self.start(number % HOSTS, "dispersa-worker", "worker", "--peer", self.hosts[0].address)
+                        for number in range(PARTICIPANTS)]
+
+    def await_crowd(self, coordinator, begun, what):
+        """Clients ask meanwhile, with keys of their own."""
+        before = sum(map(cpu_s, self.workers))
+        wait_for(lambda: coordinator.poll() is not None or self.joined() == PARTICIPANTS, f"{PARTICIPANTS} workers")
+        self.assertIsNone(coordinator.poll(), self.log()[-3000:])
+        took_s = time.monotonic() - begun
+        print(f"{what}: {PARTICIPANTS} workers joined after {took_s:.1f} s; the coordinator took {cpu_s(coordinator):.1f} s of a "
+              f"core and {memory_mb(coordinator, 'Rss'):.0f} MB, the workers {sum(map(cpu_s, self.workers)) - before:.1f} s")
+        self.assertEqual([worker.returncode for worker in self.workers if worker.poll() is not None], [])
+        self.assertLess(took_s, JOIN_S)
+
     def log(self):
         return (self.root / "coordinator.log").read_text(errors="replace")
 
+    def test_a_crowd_joins_at_once_and_again(self):
+        coordinator, begun = self.start_coordinator(), time.monotonic()
+        self.start_crowd()
+        self.await_crowd(coordinator, begun, "first start")
+        for _ in range(KILLS):
+            coordinator.kill()
+            coordinator.wait()
+            coordinator, begun = self.start_coordinator(), time.monotonic()
+            self.await_crowd(coordinator, begun, "after a kill")
+        self.assertNotIn("restarts", self.log())
+
     def test_a_campaign_of_three_hundred_workers(self):
         reference = Run(self.root / "reference", "--workers", 0, "--cases", CASES, "--no-histories").finish()
-        coordinator = self.start(0, "dispersa-coordinator", "coordinator", "--data", self.root / "data")
-        begun = time.monotonic()
-        for number in range(PARTICIPANTS):
-            self.workers.append(self.start(number % HOSTS, "dispersa-worker", "worker", "--peer", self.hosts[0].address))
-            if number % AT_ONCE == AT_ONCE - 1:
-                wait_for(lambda: self.joined() > number, f"{number + 1} workers joined")
-        wait_for(lambda: self.joined() == PARTICIPANTS, f"{PARTICIPANTS} workers")
-        print(f"{PARTICIPANTS} workers joined after {time.monotonic() - begun:.0f} s")
-
+        coordinator, begun = self.start_coordinator(), time.monotonic()
+        self.start_crowd()
+        self.await_crowd(coordinator, begun, "first start")
         before, at = [cpu_s(each) for each in (coordinator, *self.workers)], time.monotonic()
         time.sleep(IDLE_S)
         shares = [(cpu_s(each) - b) / (time.monotonic() - at)

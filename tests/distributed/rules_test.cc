@@ -114,22 +114,26 @@ TEST(Rules, ResumingWithFewerCasesDropsNoRow) {
 
 TEST(RestartRule, WhoHeardSomebodyAndHasWorkDoesNotHearNobodyForLong) {
   RestartRule rule;
-  long rounds = 0;
+  long beats = 0;
   for (double t = 0.0; t < 100.0; t += 1.0)
-    EXPECT_FALSE(rule.Check(t, false, true, ++rounds)) << "nobody came yet";
-  EXPECT_FALSE(rule.Check(100.0, true, true, ++rounds));
+    EXPECT_FALSE(rule.Check(t, false, true, ++beats)) << "nobody came yet";
+  EXPECT_FALSE(rule.Check(100.0, true, true, ++beats));
   for (double t = 101.0; t < 200.0; t += 1.0)
-    EXPECT_FALSE(rule.Check(t, false, false, ++rounds)) << "nothing to do";
-  for (double t = 200.0; t < 209.0; t += 1.0) EXPECT_FALSE(rule.Check(t, false, true, ++rounds)) << t;
-  EXPECT_TRUE(rule.Check(210.0, false, true, ++rounds));
+    EXPECT_FALSE(rule.Check(t, false, false, ++beats)) << "nothing to do";
+  for (double t = 200.0; t < 209.0; t += 1.0) EXPECT_FALSE(rule.Check(t, false, true, ++beats)) << t;
+  EXPECT_TRUE(rule.Check(210.0, false, true, ++beats));
 }
 
-TEST(RestartRule, AThreadThatMakesNoRoundHangs) {
-  RestartRule rule;
-  EXPECT_FALSE(rule.Check(0.0, true, true, 1));
-  EXPECT_FALSE(rule.Check(20.0, true, true, 1));
-  EXPECT_FALSE(rule.Check(20.5, true, true, 2)) << "it was slow";
-  EXPECT_TRUE(rule.Check(41.0, true, true, 2));
+TEST(RestartRule, ACoordinatorThatDoesNotHearItselfStartsAgain) {
+  for (const bool has_work : {true, false}) {
+    RestartRule rule;
+    EXPECT_FALSE(rule.Check(59.0, has_work, has_work, 0)) << "its middleware begins slowly";
+    EXPECT_FALSE(rule.Check(60.0, has_work, has_work, 1));
+    EXPECT_FALSE(rule.Check(80.0, has_work, has_work, 1));
+    EXPECT_FALSE(rule.Check(80.5, has_work, has_work, 2)) << "it was slow";
+    EXPECT_TRUE(rule.Check(101.0, has_work, has_work, 2)) << has_work;
+  }
+  EXPECT_TRUE(RestartRule().Check(61.0, false, false, 0)) << "it never heard itself";
 }
 
 }  // namespace

@@ -92,7 +92,7 @@ class ServiceTest(ServiceCase):
         self.start_coordinator()
         self.start_worker()
         identity = self.dispersa("launch", self.tiny, "--cases", 300).strip()
-        self.assertIn(f"UDP ports {first + 10} to {first + 249} are all taken; port ", self.error)
+        self.assertIn(f"UDP ports {first + 10} to {first + 217} are all taken; port ", self.error)
         self.dispersa("watch", identity, code=self.tiny_reference.code)
         self.assertEqual(subprocess.run([BINARIES / "dispersa-coordinator", "--health", *self.NETWORK]).returncode, 0)
 

@@ -4,6 +4,9 @@
 #include <gtest/gtest.h>
 
 #include <cstdint>
+#include <cstring>
+#include <iterator>
+#include <optional>
 #include <string>
 #include <vector>
 
@@ -44,6 +47,7 @@ struct Part {
   Body body;
   bool little_endian = true;
   bool to_the_end = false;  ///< its length is 0: whatever follows in the packet
+  std::uint8_t flags = 0;   ///< besides the byte order
 };
 
 Bytes Packet(const std::vector<Part>& parts) {
@@ -51,7 +55,7 @@ Bytes Packet(const std::vector<Part>& parts) {
   bytes.resize(20);
   for (const Part& part : parts) {
     const std::size_t size = part.to_the_end ? 0 : part.body.bytes.size();
-    bytes.insert(bytes.end(), {part.kind, std::uint8_t{part.little_endian}});
+    bytes.insert(bytes.end(), {part.kind, static_cast<std::uint8_t>(part.little_endian | part.flags)});
     Body length(part.little_endian);
     length.U16(static_cast<std::uint16_t>(size));
     bytes.insert(bytes.end(), length.bytes.begin(), length.bytes.end());
@@ -151,6 +155,45 @@ TEST(SieveLimits, AnAckNackHasAtMost256Bits) {
   EXPECT_EQ(Harm({AckNack(1, 256)}), "none");
   EXPECT_EQ(Harm({AckNack(1, 257)}), "an ACKNACK out of bounds");
   EXPECT_EQ(Harm({AckNack(std::uint64_t{1} << 62, 0)}), "an ACKNACK out of bounds");
+}
+
+constexpr std::uint8_t kQos = 2, kPayload = 4;
+
+/// An announcement with a name of `length` bytes, its end included, of which it has those of "worker".
+Part Announcement(bool little_endian, std::uint8_t flags, std::uint32_t length = 7) {
+  Body body(little_endian);
+  body.U16(0).U16(16).U32(0).U32(0).Number(1);
+  const std::uint32_t writer = 0xc2000100;  // in the order of this machine
+  std::memcpy(body.bytes.data() + 8, &writer, 4);
+  if ((flags & kQos) != 0) body.U16(0x800f).U16(4).U32(0x62).U16(1).U16(0);
+  const std::uint8_t encapsulation[] = {0, static_cast<std::uint8_t>(2 + little_endian), 0, 0};
+  body.bytes.insert(body.bytes.end(), std::begin(encapsulation), std::end(encapsulation));
+  body.U16(0x15).U16(4).U32(2).U16(0x62).U16(12).U32(length);
+  for (const char letter : {'w', 'o', 'r', 'k', 'e', 'r', '\0', '\0'}) body.bytes.push_back(letter);
+  return {kData, body.U16(1).U16(0), little_endian, false, flags};
+}
+std::optional<Greeting> GreetingOf(const std::vector<Part>& parts) {
+  Bytes bytes = Packet(parts);
+  for (std::size_t i = 0; i < 12; ++i) bytes[8 + i] = static_cast<std::uint8_t>(i);
+  return GreetingIn(bytes.data(), bytes.size());
+}
+
+TEST(Greetings, AreThoseOfParticipantsWithTheirNames) {
+  for (const bool little_endian : {true, false}) {
+    for (const std::uint8_t qos : {std::uint8_t{0}, kQos}) {
+      const std::uint8_t flags = kPayload | qos;
+      const auto greeting = GreetingOf({Time(), Announcement(little_endian, flags)});
+      ASSERT_TRUE(greeting);
+      EXPECT_EQ(greeting->name, "worker") << int{qos};
+      EXPECT_EQ(greeting->from[11], 11);
+      EXPECT_FALSE(greeting->is_farewell);
+      EXPECT_EQ(GreetingOf({Announcement(little_endian, flags, 13)})->name, "") << "longer than its datagram";
+      EXPECT_EQ(GreetingOf({Announcement(little_endian, flags, 0)})->name, "");
+    }
+    EXPECT_TRUE(GreetingOf({Announcement(little_endian, kQos)})->is_farewell);
+    EXPECT_FALSE(GreetingOf({Heartbeat(1, 2, little_endian)}));
+    EXPECT_FALSE(GreetingOf({{kData, Head(little_endian, 16).Fill(64), little_endian, false, kPayload}}));
+  }
 }
 
 TEST(SieveLimits, ASubmessageEndsWithinItsPacket) {

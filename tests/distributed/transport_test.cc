@@ -7,14 +7,18 @@
 #include <filesystem>
 #include <functional>
 #include <limits>
+#include <map>
 #include <memory>
 #include <optional>
 #include <set>
+#include <string>
+#include <thread>
 
 #include "core/flight/flight_inputs.h"
 #include "core/flight/metrics.h"
 #include "services/transport/complaints.h"
 #include "services/transport/coordinator_link.h"
+#include "services/transport/doors.h"
 #include "services/transport/private_domain.h"
 #include "services/transport/worker_link.h"
 
@@ -228,6 +232,38 @@ TEST_F(Transport, RefusesWhatMakesNoSense) {
   EXPECT_TRUE(is_refused(CampaignRefusal{"u1", 1, kFlight, std::string(5000, 'x')}));
   EXPECT_TRUE(AwaitFrom<WorkerStatus>(coordinator, [&] { worker->Send(StatusOf("u1")); }))
       << "it goes on listening";
+}
+
+TEST_F(Transport, MorePeersThanOneParticipantServesAreHeardAndAnswered) {
+  CoordinatorLink coordinator(Network());
+  const auto pulse = coordinator.StartPulse();
+  std::map<std::string, std::unique_ptr<WorkerLink>> workers;
+  for (std::size_t i = 0; i < Doors::kPlaces + 4; ++i) {
+    const std::string name = "u" + std::to_string(i);
+    workers[name] = MakeWorker(name);
+  }
+  std::set<std::string> heard, answered;
+  long beats = 0;
+  const auto deadline = std::chrono::steady_clock::now() + 2 * kPatience;
+  // Beats that follow the answers were answered by all participants.
+  while (std::chrono::steady_clock::now() < deadline && pulse->beats() < beats + 2) {
+    for (auto& [name, worker] : workers) {
+      if (!heard.contains(name)) worker->Send(StatusOf(name));
+      if (!worker->Wait(milliseconds(0)).empty()) answered.insert(name);
+    }
+    for (const auto& event : coordinator.Wait(milliseconds(100))) {
+      ASSERT_FALSE(std::holds_alternative<Request>(event.what)) << "its question to itself is nobody else's";
+      if (const auto* status = std::get_if<WorkerStatus>(&event.what)) heard.insert(status->worker);
+    }
+    for (const std::string& name : heard)
+      if (!answered.contains(name)) coordinator.Send(Orders{name, 1, {}, {}, {}, false, ""});
+    if (answered.size() < workers.size()) beats = pulse->beats();
+  }
+  EXPECT_EQ(answered.size(), workers.size());
+  EXPECT_GE(pulse->beats(), 2);
+  const long last = pulse->beats();
+  std::this_thread::sleep_for(seconds(3));
+  EXPECT_LE(pulse->beats(), last + 1) << "it beats although nobody answers";
 }
 
 TEST_F(Transport, ASecondCoordinatorInTheDomainIsRefused) {

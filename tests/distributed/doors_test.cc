@@ -1,0 +1,88 @@
+// Which of a coordinator's participants serves a peer, and when it may join.
+#include "services/transport/doors.h"
+
+#include <gtest/gtest.h>
+
+#include <algorithm>
+#include <map>
+#include <string>
+
+namespace dispersa::doors_test {
+namespace {
+
+Greeting From(std::size_t number, const std::string& name = kWorkerParticipant) {
+  Greeting greeting{.name = name};
+  greeting.from[0] = static_cast<std::uint8_t>(number >> 8);
+  greeting.from[1] = static_cast<std::uint8_t>(number);
+  return greeting;
+}
+
+class DoorsTest : public testing::Test {
+ protected:
+  /// Whether it was let in, and then joined.
+  bool Join(std::size_t number, double now_s) {
+    if (!doors_.DoorOf(From(number), now_s).door) return false;
+    doors_.Found(From(number).from);
+    doors_.Joined(From(number).from);
+    return true;
+  }
+
+  Doors doors_{"127.0.0.1"};
+};
+
+TEST_F(DoorsTest, FewJoinAtATimeAndTheOthersLater) {
+  doors_.Open(7405);
+  for (std::size_t i = 0; i < Doors::kAtOnce; ++i) EXPECT_EQ(doors_.DoorOf(From(i), 0.0).door, 0) << i;
+  const auto next = doors_.DoorOf(From(100), 0.0);
+  EXPECT_FALSE(next.door);
+  EXPECT_FALSE(next.is_full) << "it waits for others, not for a place";
+  EXPECT_EQ(doors_.DoorOf(From(3), 0.0).door, 0) << "whoever is in stays in";
+  EXPECT_EQ(doors_.DoorOf(From(200, "dispersa-client"), 0.0).door, 0) << "a client does not wait for workers";
+  doors_.Found(From(3).from);
+  EXPECT_FALSE(doors_.DoorOf(From(100), 0.0).door) << "it is found, but its handshake goes on";
+  doors_.Joined(From(3).from);
+  EXPECT_EQ(doors_.DoorOf(From(100), 0.0).door, 0);
+  EXPECT_FALSE(doors_.DoorOf(From(101), 0.0).door);
+  EXPECT_EQ(doors_.DoorOf(From(101), Doors::kJoin_s).door, 0) << "nobody holds up the others for ever";
+}
+
+TEST_F(DoorsTest, NoDoorHasMorePeersThanPlaces) {
+  std::map<int, std::size_t> taken;
+  std::size_t let_in = 0;
+  for (std::size_t open = 1; open <= Doors::kMost; ++open) {
+    doors_.Open(7405);
+    for (std::size_t i = 0; i < Doors::kPlaces; ++i) let_in += Join(let_in, 0.0) ? 1 : 0;
+    EXPECT_EQ(let_in, std::min(open * Doors::kPlaces, Doors::kMostWorkers));
+    EXPECT_EQ(doors_.IsShort(), open < Doors::kMost) << open;
+    EXPECT_EQ(doors_.DoorOf(From(let_in), 0.0).is_full, let_in == Doors::kMostWorkers) << open;
+  }
+  for (std::size_t i = 0; i < let_in; ++i) ++taken[*doors_.DoorOf(From(i), 0.0).door];
+  for (const auto& [door, peers] : taken) EXPECT_LE(peers, Doors::kPlaces) << door;
+  EXPECT_EQ(doors_.DoorOf(From(9999, "dispersa-client"), 0.0).door.value_or(-1), 15) << "places for clients";
+  doors_.Gone(From(7).from);
+  EXPECT_TRUE(Join(9000, 0.0)) << "a place is free again";
+}
+
+TEST_F(DoorsTest, APeerThatTheMiddlewareDoesNotFindLosesItsPlace) {
+  doors_.Open(7405);
+  for (std::size_t i = 0; i < Doors::kPlaces; ++i)
+    ASSERT_TRUE(doors_.DoorOf(From(i), i < Doors::kAtOnce ? 0.0 : Doors::kJoin_s).door) << i;
+  doors_.Found(From(0).from);
+  EXPECT_FALSE(doors_.DoorOf(From(100), 2 * Doors::kJoin_s).door) << "all places are taken";
+  for (std::size_t i = 0; i + 1 < Doors::kAtOnce; ++i)
+    EXPECT_TRUE(doors_.DoorOf(From(100 + i), 0.1 + Doors::kFind_s).door) << i;
+  EXPECT_FALSE(doors_.DoorOf(From(200), 0.1 + Doors::kFind_s).door) << "the first one was found and stays";
+}
+
+TEST_F(DoorsTest, FarewellsAndOtherCoordinatorsTakeNoPlace) {
+  doors_.Open(7405);
+  Greeting farewell = From(1);
+  farewell.is_farewell = true;
+  EXPECT_FALSE(doors_.DoorOf(farewell, 0.0).door);
+  EXPECT_FALSE(doors_.DoorOf(From(2, kCoordinatorParticipant), 0.0).door);
+  EXPECT_TRUE(doors_.DoorOf(From(1), 0.0).door);
+  EXPECT_TRUE(doors_.DoorOf(farewell, 0.0).door) << "its door has to know that it leaves";
+}
+
+}  // namespace
+}  // namespace dispersa::doors_test
