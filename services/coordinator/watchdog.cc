@@ -44,7 +44,8 @@ bool RestartRule::Check(double now_s, bool receives, bool has_work, long beats) 
   }
   has_received_ = has_received_ || receives;
   if (receives || !has_work) received_s_ = now_s;
-  return now_s - beat_s_ > (beats_ == 0 ? kNoFirstBeat_s : kNoBeat_s) || (has_received_ && now_s - received_s_ > kNoReports_s);
+  return now_s - beat_s_ > (beats_ == 0 ? kNoFirstBeat_s : kNoBeat_s) ||
+         (has_received_ && now_s - received_s_ > kNoReports_s);
 }
 
 Watchdog::Watchdog(std::vector<std::string> arguments, std::shared_ptr<const Pulse> pulse)

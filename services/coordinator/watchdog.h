@@ -15,8 +15,8 @@ namespace dispersa {
 class RestartRule {
  public:
   /// Restart after kNoReports_s without reports, if there is work and reports came before. Restart after
-  /// kNoBeat_s without a beat of the pulse (pulse.h), or kNoFirstBeat_s without the first one: the machine may
-  /// be busy with hundreds of handshakes.
+  /// kNoBeat_s without a beat of the pulse (pulse.h), or kNoFirstBeat_s without the first one: the machine
+  /// may be busy with hundreds of handshakes.
   static constexpr double kNoReports_s = 10.0, kNoBeat_s = 20.0, kNoFirstBeat_s = 60.0;
 
   /// Takes the present observations. True: restart.

@@ -71,8 +71,8 @@ struct CoordinatorLink::Impl {
       text_requests.emplace(participant, subscriber, kTextRequestTopic, push);
       campaign_refusals.emplace(participant, subscriber, kCampaignRefusalTopic, push);
       requests.emplace(participant, subscriber, kRequestTopic, push);
-      // Status messages have a socket of their own, so that they arrive even if many results wait in the other
-      // one.
+      // Status messages have a socket of their own, so that they arrive even if many results wait in the
+      // other one.
       statuses.emplace(
           participant, subscriber, kStatusTopic, push,
           [&events, number = door.number](const std::string& sender) {

@@ -124,9 +124,10 @@ bool Doors::Admits(int door, const Greeting& greeting, const std::uint8_t* datag
     const Lock lock(mutex_);
     HandOver(*answer.door, datagram, size);
   } else if (answer.is_full) {
-    Complain("greeting", sender,
-             fmt::format("this coordinator serves {} workers and {} others at most; it waits until one leaves",
-                         kMostWorkers, kPlaces * kMost - kMostWorkers));
+    Complain(
+        "greeting", sender,
+        fmt::format("this coordinator serves {} workers and {} others at most; it waits until one leaves",
+                    kMostWorkers, kPlaces * kMost - kMostWorkers));
   }
   return false;
 }

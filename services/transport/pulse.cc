@@ -26,10 +26,11 @@ constexpr char kThisMachine[] = "127.0.0.1";
 struct Pulse::Impl {
   explicit Impl(const NetworkOptions& network)
       : name(NameOnNetwork(network, MakeUuid())),
-        participant({network,
-                     "dispersa-pulse",
-                     std::nullopt,
-                     {{network.address.empty() ? kThisMachine : network.address, CoordinatorPort(network.domain)}}}),
+        participant(
+            {network,
+             "dispersa-pulse",
+             std::nullopt,
+             {{network.address.empty() ? kThisMachine : network.address, CoordinatorPort(network.domain)}}}),
         requests(participant, participant.MakePublisher(PartitionOf(name)), kRequestTopic, 1),
         replies(participant, participant.MakeSubscriber({PartitionOf(name)}), kReplyTopic,
                 [this](Reply&& reply, const std::string& door) {

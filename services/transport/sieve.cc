@@ -288,8 +288,7 @@ std::optional<Greeting> GreetingIn(const std::uint8_t* datagram, std::size_t siz
     const std::uint8_t kind = datagram[at], flags = datagram[at + 1];
     const std::size_t length = LengthOf(datagram + at, size - at - 4);
     const std::uint8_t* const body = datagram + at + 4;
-    if (kind == kData && length >= kDataHead &&
-        Submessage(body, length, true).BigEndianU32(8) == kGreeting) {
+    if (kind == kData && length >= kDataHead && Submessage(body, length, true).BigEndianU32(8) == kGreeting) {
       Greeting greeting;
       std::copy_n(datagram + kPrefixAt, greeting.from.size(), greeting.from.begin());
       greeting.is_farewell = (flags & kHasData) == 0;

@@ -1,5 +1,5 @@
 // Included before every source of the copy that faults.py makes: which fault of faults.yaml this process has.
-// No source of dispersa names it.
+// Of the product only what starts dispersa-foreign names it, so that a fault is in that program too.
 #pragma once
 
 #include <cstdlib>

@@ -118,7 +118,7 @@ TEST(Sandbox, WhatComputesGoesOn) {
                   std::vector<double> numbers(10'000'000, 1.0);
                   timespec now{}, moment{0, 1000};
                   clock_gettime(CLOCK_MONOTONIC, &now);
-                  nanosleep(&moment, nullptr);
+                  if (nanosleep(&moment, nullptr) != 0) return std::string("does not sleep");
                   rlimit limit{};
                   getrlimit(RLIMIT_AS, &limit);
                   return std::string(isatty(2) == 1 || numbers.back() == 1.0 ? "computed" : "");
@@ -228,6 +228,12 @@ TEST(Sandbox, NamespacesAreOfItsOwn) {
 }
 
 TEST(Sandbox, TheChildsInputIsEmptyAndItsPipeIsNoPlaceForAnythingElse) {
+  // The user types something.
+  int typed[2];
+  ASSERT_EQ(pipe(typed), 0);
+  ASSERT_EQ(write(typed[1], "secret", 6), 6);
+  const int own = dup(STDIN_FILENO);
+  dup2(typed[0], STDIN_FILENO);
   EXPECT_EQ(Outcome(
                 [] {
                   char byte;
@@ -235,6 +241,8 @@ TEST(Sandbox, TheChildsInputIsEmptyAndItsPipeIsNoPlaceForAnythingElse) {
                 },
                 {}),
             "0");
+  dup2(own, STDIN_FILENO);
+  for (const int file : {own, typed[0], typed[1]}) close(file);
   EXPECT_EQ(OutcomeOf([] { return write(3, "s\xff\xff\xff\xff\xff\xff\xff\x7f", 9); }, {}),
             "answered with what is no result");
   EXPECT_EQ(OutcomeOf([] { return write(3, "?\0\0\0\0\0\0\0\0", 9); }, {}),
