@@ -2,6 +2,7 @@
 // curvature of an oscillating beam.
 #include <gtest/gtest.h>
 
+#include <algorithm>
 #include <cmath>
 #include <vector>
 
@@ -48,16 +49,15 @@ std::vector<Tube> Tubes(const Vehicle& vehicle, double propellant_kg) {
   return tubes;
 }
 
-// One section alone, so that it is the largest.
+// One section alone.
 lanes::LoadTableLanes<double> Only(const LoadTable& table, int station) {
   lanes::LoadTableLanes<double> s{};
   lanes::SetLane(s, 0, &table);
-  for (int i = 0; i < s.stations; ++i) {
-    if (i == station) continue;
-    for (double& value : s.first_kg_m[i]) value = 0.0;
-    for (double& value : s.second_kg_m2[i]) value = 0.0;
-    s.slender_arm_m[i] = s.shift_arm[i] = 0.0;
-  }
+  std::copy_n(s.first_kg_m[station], 3, s.first_kg_m[0]);
+  std::copy_n(s.second_kg_m2[station], 3, s.second_kg_m2[0]);
+  s.slender_arm_m[0] = s.slender_arm_m[station];
+  s.shift_arm[0] = s.shift_arm[station];
+  s.stations = 1;
   return s;
 }
 
@@ -102,27 +102,54 @@ void ExpectBalance(const Vehicle& vehicle, const std::vector<double>& parts) {
       const lanes::NormalForce<double> along_y{normal_n, 0.0, xcp_m, 1.0, 0.0, 500.0},
           along_z{normal_n, 0.0, xcp_m, 0.0, 1.0, 500.0};
       const lanes::SideForce<double>* const round = nullptr;
-      const double y = lanes::LargestOf(body, along_y, round,
-                                        lanes::BodyMotion<double>{propellant, mass.cg_station_m, acceleration,
-                                                                  0.0, 0.0, turn})
-                           .moment_n_m;
+      const double y =
+          lanes::LargestOf(
+              body, along_y, round,
+              lanes::BodyMotion<double>{propellant, mass.cg_station_m, acceleration, 0.0, 0.0, turn}, 0.0)
+              .moment_n_m;
       // The yaw plane's air is its own.
       const lanes::SideForce<double> side{normal_n, 0.0, xcp_m};
       const lanes::NormalForce<double> other{2.0 * normal_n, 0.0, xcp_m + 1.0, 1.0, 0.0, 500.0};
-      EXPECT_EQ(lanes::LargestOf(
-                    body, other, &side,
-                    lanes::BodyMotion<double>{propellant, mass.cg_station_m, acceleration, 0.0, 0.0, turn})
-                    .moment_n_m,
-                y);
+      EXPECT_EQ(
+          lanes::LargestOf(
+              body, other, &side,
+              lanes::BodyMotion<double>{propellant, mass.cg_station_m, acceleration, 0.0, 0.0, turn}, 0.0)
+              .moment_n_m,
+          y);
       // Turning about -y moves what lies ahead along z.
-      const double z = lanes::LargestOf(body, along_z, round,
-                                        lanes::BodyMotion<double>{propellant, mass.cg_station_m, 0.0,
-                                                                  acceleration, -turn, 0.0})
-                           .moment_n_m;
+      const double z =
+          lanes::LargestOf(
+              body, along_z, round,
+              lanes::BodyMotion<double>{propellant, mass.cg_station_m, 0.0, acceleration, -turn, 0.0}, 0.0)
+              .moment_n_m;
       EXPECT_NEAR(y, std::fabs(behind), 1e-6) << station;  // of up to 1e5 N m
       EXPECT_NEAR(z, std::fabs(behind), 1e-6) << station;
     }
   }
+}
+
+// Scouts feel 1 N m and a further station 1.1: each lane looks there, unless the flight has seen so much more
+// that the scouts would know.
+TEST(SectionMoments, AreLookedForBeyondTheScoutsWhereTheyMayBeTheLargest) {
+  using Four = lanes::Pack<4>;
+  LoadTable table;
+  table.stations = kScoutStations + 2;
+  table.scouts_see = 0.9;
+  table.slender_arm_m.fill(1.0);
+  table.slender_arm_m[kScoutStations] = 1.1;
+  lanes::LoadTableLanes<Four> body{};
+  for (int lane = 0; lane < 4; ++lane) lanes::SetLane(body, lane, &table);
+  const double just = 1.0 / (lanes::kScoutMargin * table.scouts_see);
+  const double seen[4] = {0.0, 0.999 * just, 1.001 * just, 100.0}, found[4] = {1.1, 1.1, 1.0, 1.0};
+  Four seen_n_m(0.0);
+  for (int lane = 0; lane < 4; ++lane) lanes::Lane(seen_n_m, lane) = seen[lane];
+  const Four none(0.0), one(1.0);
+  const lanes::NormalForce<Four> air{one, none, none, one, none, Four(500.0)};
+  const lanes::SideForce<Four>* const round = nullptr;
+  const Four largest = lanes::LargestOf(body, air, round,
+                                        lanes::BodyMotion<Four>{none, none, none, none, none, none}, seen_n_m)
+                           .moment_n_m;
+  for (int lane = 0; lane < 4; ++lane) EXPECT_DOUBLE_EQ(lanes::Lane(largest, lane), found[lane]) << lane;
 }
 
 TEST(SectionMoments, HoldTheBalanceOfWhatLiesBehindTheSection) {
