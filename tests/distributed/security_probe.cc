@@ -134,7 +134,10 @@ int Main(const std::vector<std::string>& words) {
   if (!options.keys.empty()) how.network.keys = KeyFolder{options.keys, Role::kObserver, options.name};
   how.name = "probe";
   if (options.as_coordinator) {
+    how.name = kCoordinatorParticipant;  // workers do not even hear another's greeting
     how.discovery_port = CoordinatorPort(options.domain);
+    how.door.doors = std::make_shared<Doors>("127.0.0.1");
+    how.door.doors->Open(*how.discovery_port);
   } else {
     how.peers = {{"127.0.0.1", CoordinatorPort(options.domain)}};
   }
