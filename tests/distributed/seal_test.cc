@@ -298,8 +298,17 @@ TEST_F(SecretTest, WhatASiblingWasToldOrWasToldBeforeIsNotBelieved) {
   for (const auto& [order, times] : heard) EXPECT_EQ(times, 1) << "order " << order << " was believed again";
 }
 
+// Others would neither be listened to nor listen.
+ParticipantOptions InACoordinatorsPlace(const NetworkOptions& network, std::optional<std::uint16_t> port,
+                                        const std::vector<Peer>& peers) {
+  ParticipantOptions options{network, kCoordinatorParticipant, port, peers};
+  options.door.doors = std::make_shared<Doors>("127.0.0.1");
+  options.door.doors->Open(port.value_or(0));
+  return options;
+}
+
 TEST_F(SecretTest, AWorkerDoesNothingThatAnotherOneWasTold) {
-  Participant parent({Network(secret_), "dispersa-coordinator", CoordinatorPort(domain_.domain()), {}});
+  Participant parent(InACoordinatorsPlace(Network(secret_), CoordinatorPort(domain_.domain()), {}));
   Writer<idl::OrdersV1PubSubType> writer(parent, parent.MakePublisher(PartitionOf("w")), kOrdersTopic);
   WorkerLink worker(Network(secret_), {CoordinatorPeer()}, "w");
   Orders orders;
@@ -439,7 +448,7 @@ TEST(StrangerBesideARun, HasNoWordInIt) {
     if (std::sscanf(line.c_str(), " %*d: %x:%x", &address, &port) == 2)
       everybody.push_back({"127.0.0.1", static_cast<std::uint16_t>(port)});
   }
-  Participant stranger({{std::stoi(domain), "127.0.0.1"}, "stranger", std::nullopt, everybody});
+  Participant stranger(InACoordinatorsPlace({std::stoi(domain), "127.0.0.1"}, {}, everybody));
   Writer<idl::OrdersV1PubSubType> writer(stranger, stranger.MakePublisher(PartitionOf(uuid)), kOrdersTopic);
   Orders orders;
   orders.worker = uuid;
