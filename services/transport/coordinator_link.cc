@@ -11,6 +11,7 @@
 #include "services/transport/endpoints.h"
 #include "services/transport/event_queue.h"
 #include "services/transport/topics.h"
+#include "services/transport/udp_port.h"
 
 namespace dispersa {
 
@@ -53,11 +54,22 @@ struct CoordinatorLink::Impl {
     int door;
   };
 
+  struct Ports {
+    std::uint16_t discovery, statuses;
+  };
+
+  /// Between now and their use another program may take them.
+  static Ports FreePorts(const NetworkOptions& network) {
+    const auto free_port = [&](int first, int last) {
+      return FreeUdpPort(network.address, PortOf(network.domain, first), PortOf(network.domain, last));
+    };
+    return {free_port(kFirstDoorPort, kLastDoorPort - 1), free_port(kFirstDoorPort + 1, kLastDoorPort)};
+  }
+
   /// One participant with its readers and writers.
   struct OpenDoor {
-    /// `ports`: which of the ports of doors.
-    OpenDoor(const NetworkOptions& network, const Door& door, int ports, EventQueue<Heard>& events)
-        : participant({network, kCoordinatorParticipant, CoordinatorPort(network.domain, ports), {}, door}),
+    OpenDoor(const NetworkOptions& network, const Door& door, const Ports& ports, EventQueue<Heard>& events)
+        : participant({network, kCoordinatorParticipant, ports.discovery, {}, door}),
           publisher(participant.MakePublisher("")),
           subscriber(participant.MakeSubscriber({"", PartitionOf("*")})),
           progress(participant, publisher, kProgressTopic, 16),
@@ -78,8 +90,8 @@ struct CoordinatorLink::Impl {
           [&events, number = door.number](const std::string& sender) {
             events.Push({{sender, SenderGone{}}, "", number});
           },
-          MakeReaderQos(network.address, StatusPort(network.domain, ports)));
-      for (const auto port : {CoordinatorPort(network.domain, ports), StatusPort(network.domain, ports)})
+          MakeReaderQos(network.address, ports.statuses));
+      for (const auto port : {ports.discovery, ports.statuses})
         if (door.doors->WasRefused(port))
           throw NetworkError("UDP port " + std::to_string(port) + " is not free");
     }
@@ -104,14 +116,14 @@ struct CoordinatorLink::Impl {
 
   void Open() {
     const Door door{doors, static_cast<int>(open.size())};
-    const int ports = next_ports++;
-    if (next_ports >= kPorts) next_ports = 1;
+    const Ports ports = open.empty() ? Ports{CoordinatorPort(network.domain), StatusPort(network.domain)}
+                                     : FreePorts(network);
     open.push_back(std::make_unique<OpenDoor>(network, door, ports, events));
-    doors->Open(CoordinatorPort(network.domain, ports));
+    doors->Open(ports.discovery);
     if (pulse) pulse->Expect(static_cast<int>(open.size()));
   }
 
-  /// Later and with other ports, if it cannot be opened now.
+  /// Later, if it cannot be opened now.
   void OpenAnother() {
     const auto now = std::chrono::steady_clock::now();
     if (now < next_try) return;
@@ -143,8 +155,6 @@ struct CoordinatorLink::Impl {
   std::vector<std::unique_ptr<OpenDoor>> open;
   std::map<std::string, int> routes;  ///< doors, by worker or client
   std::shared_ptr<Pulse> pulse;
-  static constexpr int kPorts = static_cast<int>(Doors::kMost);
-  int next_ports = 0;
   std::chrono::steady_clock::time_point next_try = {};
 };
 

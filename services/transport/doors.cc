@@ -46,10 +46,13 @@ bool Doors::WasRefused(std::uint16_t port) const {
   return refused_.contains(port);
 }
 
-// One burst of kAtOnce finds its places while the next door opens.
+// One burst finds its places while the next door opens.
 bool Doors::IsShort() const {
   const Lock lock(mutex_);
-  return ports_.size() < kMost && ports_.size() * kPlaces < peers_.size() + kAtOnce;
+  const auto workers = static_cast<std::size_t>(
+      std::count_if(peers_.begin(), peers_.end(), [](const auto& each) { return each.second.is_worker; }));
+  return ports_.size() < kMost && (ports_.size() * kForWorkers < workers + kAtOnce ||
+                                   ports_.size() * kForOthers < peers_.size() - workers + kForOthers / 2);
 }
 
 Doors::Answer Doors::DoorOf(const Greeting& greeting, double now_s) {
@@ -60,19 +63,18 @@ Doors::Answer Doors::DoorOf(const Greeting& greeting, double now_s) {
     return !each.second.is_found && now_s - each.second.since_s > kFind_s;
   });
   const bool is_worker = greeting.name == kWorkerParticipant;
-  std::size_t workers = 0, joining = 0;
-  std::vector<std::size_t> taken(ports_.size(), 0);
+  std::size_t joining = 0;
+  // Places that this peer may take, by door.
+  std::vector<std::size_t> left(ports_.size(), is_worker ? kForWorkers : kForOthers);
   for (const auto& [prefix, peer] : peers_) {
-    ++taken[static_cast<std::size_t>(peer.door)];
-    if (peer.is_worker) ++workers;
+    if (peer.is_worker == is_worker) --left[static_cast<std::size_t>(peer.door)];
     if (peer.is_worker == is_worker && peer.is_joining && now_s - peer.since_s < kJoin_s) ++joining;
   }
-  const auto emptiest = std::min_element(taken.begin(), taken.end());
-  const bool has_place = emptiest != taken.end() && *emptiest < kPlaces;
-  if ((is_worker && workers >= kMostWorkers) || (!has_place && taken.size() >= kMost))
-    return {std::nullopt, true};
+  const auto emptiest = std::max_element(left.begin(), left.end());
+  const bool has_place = emptiest != left.end() && *emptiest > 0;
+  if (!has_place && left.size() >= kMost) return {std::nullopt, true};
   if (!has_place || joining >= kAtOnce) return {};
-  const int door = static_cast<int>(emptiest - taken.begin());
+  const int door = static_cast<int>(emptiest - left.begin());
   peers_[greeting.from] = {.door = door, .is_worker = is_worker, .since_s = now_s};
   return {door};
 }
@@ -127,7 +129,7 @@ bool Doors::Admits(int door, const Greeting& greeting, const std::uint8_t* datag
     Complain(
         "greeting", sender,
         fmt::format("this coordinator serves {} workers and {} others at most; it waits until one leaves",
-                    kMostWorkers, kPlaces * kMost - kMostWorkers));
+                    kForWorkers * kMost, kForOthers * kMost));
   }
   return false;
 }

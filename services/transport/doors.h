@@ -29,7 +29,8 @@ struct Greeting {
 };
 
 /// A coordinator has one participant of Fast DDS for each kPlaces peers, a door. All peers greet at the first
-/// one's port. The sieve hands each greeting over to the door of its sender, or drops it while others join.
+/// one's port, so the others may have any ports. The sieve hands each greeting over to the door of its
+/// sender, or drops it while others join.
 ///
 /// With keys Fast DDS 2.9 keeps one handshake message for each peer, at most 100: at the next peer it fails
 /// (`assert` in SecurityManager.cpp:1498), or lets nobody in. It also sends each peer's keys to all others of
@@ -38,9 +39,9 @@ struct Greeting {
 /// Thread-safe. Times are seconds from any origin.
 class Doors {
  public:
-  static constexpr std::size_t kPlaces = 32, kMost = 16;
-  /// Workers that the coordinator serves at most. The other places are for clients and observers.
-  static constexpr std::size_t kMostWorkers = kPlaces * (kMost - 1);
+  static constexpr std::size_t kMost = 16;
+  /// Workers of a door, and others (clients, observers): neither keeps the other out.
+  static constexpr std::size_t kForWorkers = 30, kForOthers = 6, kPlaces = kForWorkers + kForOthers;
   /// Workers that join at a time, and others that do.
   static constexpr std::size_t kAtOnce = 16;
   /// A peer that has not joined after this time lets the next one begin.

@@ -37,13 +37,9 @@ std::uint16_t PortOf(int domain, int offset) {
   return static_cast<std::uint16_t>(7400 + 250 * domain + offset);
 }
 
-std::uint16_t CoordinatorPort(int domain, int door) {
-  return PortOf(domain, door == 0 ? 5 : kLastPort - 1 + 2 * door);
-}
+std::uint16_t CoordinatorPort(int domain) { return PortOf(domain, 5); }
 
-std::uint16_t StatusPort(int domain, int door) {
-  return static_cast<std::uint16_t>(CoordinatorPort(domain, door) + 1);
-}
+std::uint16_t StatusPort(int domain) { return static_cast<std::uint16_t>(CoordinatorPort(domain) + 1); }
 
 std::string MakeUuid() {
   std::random_device device;

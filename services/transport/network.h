@@ -36,11 +36,13 @@ struct NetworkOptions {
 std::uint16_t PortOf(int domain, int offset);
 /// Ordinary participants take ports of these offsets: even ones for discovery, odd ones for the rest.
 inline constexpr int kFirstPort = 10, kLastPort = 217;
-/// The fixed port at which the coordinator of a domain is discovered: 7400 + 250 * domain + 5. Its further
-/// participants (doors.h) have ports above those of ordinary ones. No other participant takes any of them.
-std::uint16_t CoordinatorPort(int domain, int door = 0);
+/// The further participants of a coordinator (doors.h): two of these each, if they are free.
+inline constexpr int kFirstDoorPort = 218, kLastDoorPort = 249;
+/// The fixed port at which the coordinator of a domain is discovered: 7400 + 250 * domain + 5. No other
+/// participant takes it or the next one.
+std::uint16_t CoordinatorPort(int domain);
 /// The port at which the coordinator receives workers' signs of life: CoordinatorPort + 1.
-std::uint16_t StatusPort(int domain, int door = 0);
+std::uint16_t StatusPort(int domain);
 
 /// 128 random bits: one for each start of a worker.
 std::string MakeUuid();

@@ -52,20 +52,32 @@ TEST_F(DoorsTest, NoDoorHasMorePeersThanPlaces) {
   for (std::size_t open = 1; open <= Doors::kMost; ++open) {
     doors_.Open(7405);
     for (std::size_t i = 0; i < Doors::kPlaces; ++i) let_in += Join(let_in, 0.0) ? 1 : 0;
-    EXPECT_EQ(let_in, std::min(open * Doors::kPlaces, Doors::kMostWorkers));
+    EXPECT_EQ(let_in, open * Doors::kForWorkers);
     EXPECT_EQ(doors_.IsShort(), open < Doors::kMost) << open;
-    EXPECT_EQ(doors_.DoorOf(From(let_in), 0.0).is_full, let_in == Doors::kMostWorkers) << open;
+    EXPECT_EQ(doors_.DoorOf(From(let_in), 0.0).is_full, open == Doors::kMost) << open;
+    EXPECT_TRUE(doors_.DoorOf(From(9000 + open, "dispersa-client"), 0.0).door)
+        << "clients have places of their own";
   }
   for (std::size_t i = 0; i < let_in; ++i) ++taken[*doors_.DoorOf(From(i), 0.0).door];
-  for (const auto& [door, peers] : taken) EXPECT_LE(peers, Doors::kPlaces) << door;
-  EXPECT_EQ(doors_.DoorOf(From(9999, "dispersa-client"), 0.0).door.value_or(-1), 15) << "places for clients";
+  for (const auto& [door, workers] : taken) EXPECT_EQ(workers, Doors::kForWorkers) << door;
   doors_.Gone(From(7).from);
-  EXPECT_TRUE(Join(9000, 0.0)) << "a place is free again";
+  EXPECT_TRUE(Join(9900, 0.0)) << "a place is free again";
+}
+
+TEST_F(DoorsTest, ClientsAloneHaveDoorsOpenedToo) {
+  for (std::size_t client = 0; client < Doors::kMost * Doors::kForOthers; ++client) {
+    if (doors_.IsShort()) doors_.Open(7405);
+    ASSERT_TRUE(doors_.DoorOf(From(client, "dispersa-client"), 0.0).door) << client;
+    doors_.Found(From(client).from);
+    doors_.Joined(From(client).from);
+  }
+  EXPECT_TRUE(doors_.DoorOf(From(9999, "dispersa-client"), 0.0).is_full);
+  EXPECT_TRUE(Join(1, 0.0)) << "workers have their own";
 }
 
 TEST_F(DoorsTest, APeerThatTheMiddlewareDoesNotFindLosesItsPlace) {
   doors_.Open(7405);
-  for (std::size_t i = 0; i < Doors::kPlaces; ++i)
+  for (std::size_t i = 0; i < Doors::kForWorkers; ++i)
     ASSERT_TRUE(doors_.DoorOf(From(i), i < Doors::kAtOnce ? 0.0 : Doors::kJoin_s).door) << i;
   doors_.Found(From(0).from);
   EXPECT_FALSE(doors_.DoorOf(From(100), 2 * Doors::kJoin_s).door) << "all places are taken";

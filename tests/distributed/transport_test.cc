@@ -1,12 +1,16 @@
 // Messages over real sockets: every field arrives, doubles to the last bit, and a departure is noticed.
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
+#include <netinet/in.h>
+#include <sys/socket.h>
+#include <unistd.h>
 
 #include <bit>
 #include <chrono>
 #include <filesystem>
 #include <functional>
 #include <limits>
+#include <list>
 #include <map>
 #include <memory>
 #include <optional>
@@ -234,7 +238,29 @@ TEST_F(Transport, RefusesWhatMakesNoSense) {
       << "it goes on listening";
 }
 
+/// Holds a UDP port of 127.0.0.1, as another program does.
+class TakenPort {
+ public:
+  explicit TakenPort(std::uint16_t port) : socket_(socket(AF_INET, SOCK_DGRAM | SOCK_CLOEXEC, 0)) {
+    sockaddr_in where{};
+    where.sin_family = AF_INET;
+    where.sin_port = htons(port);
+    where.sin_addr.s_addr = htonl(INADDR_LOOPBACK);
+    EXPECT_EQ(bind(socket_, reinterpret_cast<const sockaddr*>(&where), sizeof where), 0) << port;
+  }
+  ~TakenPort() { close(socket_); }
+  TakenPort(const TakenPort&) = delete;
+  TakenPort& operator=(const TakenPort&) = delete;
+
+ private:
+  int socket_;
+};
+
 TEST_F(Transport, MorePeersThanOneParticipantServesAreHeardAndAnswered) {
+  // A crowd of programs on the coordinator's host takes even these.
+  std::list<TakenPort> taken;
+  for (int port = kFirstDoorPort; port <= kLastDoorPort; ++port)
+    taken.emplace_back(PortOf(domain_.domain(), port));
   CoordinatorLink coordinator(Network());
   const auto pulse = coordinator.StartPulse();
   std::map<std::string, std::unique_ptr<WorkerLink>> workers;
