@@ -37,7 +37,7 @@ struct ApartBooster {
 };
 template <class T>
 struct ApartBoosters {
-  int count, first_bank;  ///< of further banks, those of their nozzles
+  int count, first_bank;  ///< those of their nozzles
   bool turn_nozzles;
   MaskOf<T> attached;  ///< lanes that carry them
   T nozzle_station_m, dry_station_m;

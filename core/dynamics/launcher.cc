@@ -64,25 +64,21 @@ struct OneLane {
               now.expelled_mass_kg, ToLanes(now.control_torque_n_m)},
         motion{{y[0], y[1], y[2]}, {y[3], y[4], y[5]}, {y[6], y[7], y[8], y[9]}, {y[10], y[11], y[12]}},
         around(lanes::SurroundingsAt(earth, from.environment.Air(), plant.weather, motion.p)),
-        masses(lanes::MassesAt(plant, phase, time_s)),
-        nozzles(lanes::NozzlesAt(y + kNozzleAngle)),
-        second(lanes::NozzlesAt(y + kSecondAngle)) {
+        masses(lanes::MassesAt(plant, phase, time_s)) {
     const Gimbal& gimbal = from.stacks[static_cast<std::size_t>(now.stack)].gimbal;
-    lanes::SetLane(drives[0], 0, gimbal, now.stuck_nozzle);
-    Accelerate(0, now.command_rad.data(), y + kNozzleAngle, y + kNozzleRate, nozzles);
-    if (plant.nozzles_listed)
-      Accelerate(0, now.command_rad.data() + kNozzles, y + kSecondAngle, y + kSecondRate, second);
-    for (int bank = 1; bank <= plant.further_banks; ++bank) {
+    for (int bank = 0; bank < plant.banks; ++bank) {
       const bool is_boosters =
           now.stack == 0 && from.boosters_steer() && bank >= from.stacks[0].layout.banks();
       lanes::SetLane(drives[bank], 0, is_boosters ? from.boosters->gimbal : gimbal,
                      now.stuck_nozzle - bank * kNozzles);
-      const double* const command_rad = now.command_rad.data() + bank * kDrives;
-      for (const int hinge : {0, 1}) {
+      for (int hinge = 0; hinge < (plant.nozzles_listed ? 2 : 1); ++hinge) {
         const int first = DriveOf(bank * kNozzles, hinge);
-        lanes::Nozzles<double>& of = hinge == 0 ? further[bank - 1].first : further[bank - 1].second;
+        lanes::Nozzles<double>& of = hinge == 0 ? nozzles[bank].first : nozzles[bank].second;
         of = lanes::NozzlesAt(y + AngleOf(first));
-        Accelerate(bank, command_rad + hinge * kNozzles, y + AngleOf(first), y + RateOf(first), of);
+        lanes::DriveState<double> state;
+        std::copy_n(y + AngleOf(first), kNozzles, state.angle_rad);
+        std::copy_n(y + RateOf(first), kNozzles, state.rate_rad_s);
+        lanes::SetAccelerations(drives[bank], now.command_rad.data() + first, state, of);
       }
     }
     if (from.bending_modes() == 0) return;
@@ -143,8 +139,7 @@ struct OneLane {
   lanes::RigidBodyStateLanes<double> motion;
   lanes::Surroundings<double> around;
   lanes::TimedMasses<double> masses;
-  lanes::Nozzles<double> nozzles, second;
-  lanes::BankNozzles<double> further[kBanks - 1];
+  lanes::BankNozzles<double> nozzles[kBanks];  ///< of the plant's banks
   lanes::GimbalLanes<double> drives[kBanks]{};
   // Unset in a vehicle that does not bend.
   lanes::BendingTableLanes<double> bending;
@@ -152,21 +147,15 @@ struct OneLane {
   mutable lanes::ModalForce<double> modal;  ///< of the last evaluation
 
  private:
-  void Accelerate(int bank, const double* command_rad, const double* angle_rad, const double* rate_rad_s,
-                  lanes::Nozzles<double>& of) const {
-    lanes::DriveState<double> state;
-    std::copy_n(angle_rad, kNozzles, state.angle_rad);
-    std::copy_n(rate_rad_s, kNozzles, state.rate_rad_s);
-    lanes::SetAccelerations(drives[bank], command_rad, state, of);
-  }
-
   template <class Function>
-  auto WithBody(const Function& function) const -> decltype(function(nozzles, lanes::StraightBody{})) {
-    const lanes::ListedNozzles<double> listed{nozzles, second, further};
+  auto WithBody(const Function& function) const
+      -> decltype(function(nozzles[0].first, lanes::StraightBody{})) {
+    const lanes::ListedNozzles<double> listed{nozzles};
+    const lanes::Nozzles<double>& cross = nozzles[0].first;
     const lanes::BentBody<double> bent{&bending, &bending_state, &modal};
-    if (bending.modes > 0) return plant.nozzles_listed ? function(listed, bent) : function(nozzles, bent);
+    if (bending.modes > 0) return plant.nozzles_listed ? function(listed, bent) : function(cross, bent);
     return plant.nozzles_listed ? function(listed, lanes::StraightBody{})
-                                : function(nozzles, lanes::StraightBody{});
+                                : function(cross, lanes::StraightBody{});
   }
 };
 
@@ -231,7 +220,7 @@ void LauncherModel::Derivative(const LauncherPhase& phase, double time_s, const 
   if (most_drives > kDrives) std::fill(dydt + kListedLauncherSize, dydt + prepared_->plant.state_size(), 0.0);
   for (int i = 0; i < (one.plant.nozzles_listed ? most_drives : kNozzles); ++i) {
     const int bank = i / kDrives;
-    if (bank > one.plant.further_banks) break;
+    if (bank >= one.plant.banks) break;
     const std::size_t drive = static_cast<std::size_t>(i);
     const lanes::GimbalLanes<double>& drives = one.drives[bank];
     const double command = lanes::Followed(drives, phase.command_rad[drive]);

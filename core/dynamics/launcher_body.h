@@ -29,12 +29,12 @@ struct NozzleDepartureLanes {
   T offset_y_m, offset_z_m;
 };
 
-/// A further bank of listed nozzles (core/vehicle/nozzle_layout.h), of clusters of more than four engines.
+/// A bank of nozzles (core/vehicle/nozzle_layout.h).
 template <class T>
 struct NozzleBank {
-  MaskOf<T> there;   ///< lanes whose stage has nozzles in it
-  MaskOf<T> driven;  ///< or whose boosters have (apart_boosters.h)
-  ListedNozzle<T> listed[kNozzles];
+  MaskOf<T> there;                   ///< lanes whose stage has nozzles in it: of the first bank all
+  MaskOf<T> driven;                  ///< or whose boosters have (apart_boosters.h)
+  ListedNozzle<T> listed[kNozzles];  ///< unset unless nozzles are listed
   NozzleDepartureLanes<T> departs[kNozzles];
 };
 
@@ -57,9 +57,7 @@ struct LauncherPlantLanes {
   T nozzles_thrust;  ///< of all nozzles together, over that of the burn
   bool any_departs;  ///< some lane's nozzles are not all the same
   MaskOf<T> departs;
-  NozzleDepartureLanes<T> nozzles[kNozzles];
   bool nozzles_listed;  ///< of any stage: the same in all lanes. The cross is one of the lists then
-  ListedNozzle<T> listed[kNozzles];
   T lateral_moment_y_kg_m, lateral_moment_z_kg_m;
   bool has_boosters;  ///< that are all alike, of the vehicle: the same in all lanes, and stacks
   BesideStage<T> beside;
@@ -69,8 +67,8 @@ struct LauncherPlantLanes {
   T product_xy_kg_m2, product_xz_kg_m2, product_yz_kg_m2;
   ApartBoosters<T>* apart;  ///< null: the vehicle has no boosters, or has such that are all alike
   SideMasses<T>* sides;     ///< null: no table of a stage knows masses off the axis
-  int further_banks;        ///< that any lane's stage has
-  NozzleBank<T> further[kBanks - 1];
+  int banks;                ///< that any lane's stage has
+  NozzleBank<T> bank[kBanks];
 };
 
 /// Values that stay constant between two events of each lane (LauncherPhase).
@@ -178,11 +176,10 @@ template <class T>
 struct BankNozzles {
   Nozzles<T> first, second;
 };
-/// Both drives of each nozzle of a list.
+/// Those of a list, of the plant's banks.
 template <class T>
 struct ListedNozzles {
-  const Nozzles<T>&first, &second;
-  const BankNozzles<T>* further;  ///< of the plant's further banks
+  const BankNozzles<T>* bank;
 };
 
 /// Values of one instant for metrics and histories.
@@ -222,7 +219,7 @@ DISPERSA_INLINE void AddDepartures(const LauncherPlantLanes<T>& plant, const Noz
   const Vector<T> place[kNozzles] = {{none, r, none}, {none, -r, none}, {none, none, r}, {none, none, -r}};
   Vector<T> force = Zero<T>(), couple = Zero<T>();
   for (int i = 0; i < kNozzles; ++i) {
-    const NozzleDepartureLanes<T>& nozzle = plant.nozzles[i];
+    const NozzleDepartureLanes<T>& nozzle = plant.bank[0].departs[i];
     const bool pitches = i < 2;
     const Vector<T> nominal = quarter_n * Vector<T>{nozzles.cosine[i], pitches ? none : -nozzles.sine[i],
                                                     pitches ? nozzles.sine[i] : none};
@@ -268,13 +265,13 @@ DISPERSA_INLINE Thrust<T> ThrustOf(const LauncherPlantLanes<T>& plant, const Tim
 /// Adds force and couple of a bank of listed nozzles under a stage's thrust, with deviations of each nozzle
 /// from its nominal share.
 template <class T>
-DISPERSA_INLINE void AddBank(const LauncherPlantLanes<T>& plant, const ListedNozzle<T>* listed,
-                             const NozzleDepartureLanes<T>* departures, const Nozzles<T>& first,
-                             const Nozzles<T>& second, T thrust_n, Vector<T>& force_n,
+DISPERSA_INLINE void AddBank(const LauncherPlantLanes<T>& plant, const NozzleBank<T>& bank,
+                             const BankNozzles<T>& nozzles, T thrust_n, Vector<T>& force_n,
                              Vector<T>& couple_n_m) {
+  const Nozzles<T>&first = nozzles.first, &second = nozzles.second;
   for (int i = 0; i < kNozzles; ++i) {
-    const ListedNozzle<T>& nozzle = listed[i];
-    const NozzleDepartureLanes<T>& departs = departures[i];
+    const ListedNozzle<T>& nozzle = bank.listed[i];
+    const NozzleDepartureLanes<T>& departs = bank.departs[i];
     const T across = first.sine[i] * second.cosine[i], second_sine = second.sine[i];
     const Vector<T> turned{first.cosine[i] * second.cosine[i],
                            Fma(across, nozzle.first_y, second_sine * nozzle.second_y),
@@ -286,15 +283,15 @@ DISPERSA_INLINE void AddBank(const LauncherPlantLanes<T>& plant, const ListedNoz
     couple_n_m = couple_n_m + Cross(place, force);
   }
 }
-/// Adds the further banks of the lanes that have them. A function of its own: it is long, and few vehicles
-/// need it.
+/// Adds the banks after the first of the lanes that have them. A function of its own: it is long, and few
+/// vehicles need it.
 template <class T>
 DISPERSA_OUT_OF_LINE void AddFurtherBanks(const LauncherPlantLanes<T>& plant, const BankNozzles<T>* nozzles,
                                           T thrust_n, Vector<T>& force_n, Vector<T>& couple_n_m) {
-  for (int i = 0; i < plant.further_banks; ++i) {
-    const NozzleBank<T>& bank = plant.further[i];
+  for (int i = 1; i < plant.banks; ++i) {
+    const NozzleBank<T>& bank = plant.bank[i];
     Vector<T> force = force_n, couple = couple_n_m;
-    AddBank(plant, bank.listed, bank.departs, nozzles[i].first, nozzles[i].second, thrust_n, force, couple);
+    AddBank(plant, bank, nozzles[i], thrust_n, force, couple);
     force_n = Select(bank.there, force, force_n);
     couple_n_m = Select(bank.there, couple, couple_n_m);
   }
@@ -311,9 +308,8 @@ DISPERSA_INLINE Thrust<T> ThrustOf(const LauncherPlantLanes<T>& plant, const Tim
   o.thrust_n = Select(net_n < none, none, net_n);
   o.flow_kg_s = plant.burn.full_flow_kg_s * masses.flow_fraction;
   o.force_n = o.couple_n_m = Zero<T>();
-  AddBank(plant, plant.listed, plant.nozzles, nozzles.first, nozzles.second, o.thrust_n, o.force_n,
-          o.couple_n_m);
-  if (plant.further_banks > 0) AddFurtherBanks(plant, nozzles.further, o.thrust_n, o.force_n, o.couple_n_m);
+  AddBank(plant, plant.bank[0], nozzles.bank[0], o.thrust_n, o.force_n, o.couple_n_m);
+  if (plant.banks > 1) AddFurtherBanks(plant, nozzles.bank, o.thrust_n, o.force_n, o.couple_n_m);
   const Vector<T> arm{masses.cg_station_m - plant.pivot_station_m, plant.thrust_offset_y_m - masses.cg_y_m,
                       plant.thrust_offset_z_m - masses.cg_z_m};
   o.moment_n_m = Cross(arm, o.force_n) + o.couple_n_m;
@@ -339,12 +335,12 @@ DISPERSA_INLINE NozzleReaction<T> ReactionOf(const LauncherPlantLanes<T>& plant,
 }
 
 template <class T>
-DISPERSA_INLINE void AddReactions(const LauncherPlantLanes<T>& plant, const ListedNozzle<T>* listed,
-                                  const Nozzles<T>& first, const Nozzles<T>& second, NozzleReaction<T>& o) {
+DISPERSA_INLINE void AddReactions(const LauncherPlantLanes<T>& plant, const NozzleBank<T>& bank,
+                                  const BankNozzles<T>& nozzles, NozzleReaction<T>& o) {
   const T none(0.0);
   for (int i = 0; i < kNozzles; ++i) {
-    const ListedNozzle<T>& nozzle = listed[i];
-    const T a = first.acceleration_rad_s2[i], b = second.acceleration_rad_s2[i];
+    const ListedNozzle<T>& nozzle = bank.listed[i];
+    const T a = nozzles.first.acceleration_rad_s2[i], b = nozzles.second.acceleration_rad_s2[i];
     const Vector<T> towards{none, Fma(a, nozzle.first_y, b * nozzle.second_y),
                             Fma(a, nozzle.first_z, b * nozzle.second_z)};
     const Vector<T> force = plant.nozzle_moment_kg_m * towards;
@@ -357,12 +353,11 @@ template <class T>
 DISPERSA_INLINE NozzleReaction<T> ReactionOf(const LauncherPlantLanes<T>& plant,
                                              const ListedNozzles<T>& nozzles) {
   NozzleReaction<T> o{Zero<T>(), Zero<T>()};
-  AddReactions(plant, plant.listed, nozzles.first, nozzles.second, o);
-  for (int i = 0; i < plant.further_banks; ++i) {
+  for (int i = 0; i < plant.banks; ++i) {
     NozzleReaction<T> with = o;
-    AddReactions(plant, plant.further[i].listed, nozzles.further[i].first, nozzles.further[i].second, with);
-    o.force_n = Select(plant.further[i].there, with.force_n, o.force_n);
-    o.couple_n_m = Select(plant.further[i].there, with.couple_n_m, o.couple_n_m);
+    AddReactions(plant, plant.bank[i], nozzles.bank[i], with);
+    o.force_n = Select(plant.bank[i].there, with.force_n, o.force_n);
+    o.couple_n_m = Select(plant.bank[i].there, with.couple_n_m, o.couple_n_m);
   }
   return o;
 }
@@ -460,7 +455,7 @@ DISPERSA_INLINE T AddApartBoosters(const LauncherPlantLanes<T>& plant, const Lau
                                    const TimedMasses<T>& masses, T pressure_pa, const Turned& nozzles,
                                    const Vector<T>& w, const Body& body, Thrust<T>& thrust, LoadsOf<T>& o) {
   const BankNozzles<T>* banks = nullptr;
-  if constexpr (requires { nozzles.further; }) banks = nozzles.further;
+  if constexpr (requires { nozzles.bank; }) banks = nozzles.bank;
   const ApartLoads<T> beside = LoadsOfApart(*plant.apart, banks, pressure_pa, masses.cg_station_m,
                                             masses.cg_y_m, masses.cg_z_m, plant.jet_damping, w);
   const T none(0.0);

@@ -100,31 +100,36 @@ DISPERSA_INLINE void SetLane(ListedNozzle<T>& n, int lane, const NozzleLayout& l
   Lane(n.second_z, lane) = layout.towards_z[second];
 }
 
-/// Which banks after the first one have drives, of stages or of boosters. The vehicle has `most`.
+/// Which banks have drives, of stages or of boosters. The vehicle has `most`, of which the first counts
+/// always.
 template <class T>
 DISPERSA_INLINE void MarkDriven(LauncherPlantLanes<T>& p, int most) {
-  p.further_banks = 0;
-  for (int bank = 0; bank < most; ++bank) {
-    NozzleBank<T>& further = p.further[bank];
-    further.driven = further.there;
-    if (p.apart && p.apart->turn_nozzles && bank >= p.apart->first_bank &&
-        bank < p.apart->first_bank + (p.apart->count + kNozzles - 1) / kNozzles)
-      further.driven = further.driven | p.apart->attached;
-    if (Any(further.driven)) p.further_banks = bank + 1;
+  p.banks = 1;
+  for (int i = 0; i < most; ++i) {
+    NozzleBank<T>& bank = p.bank[i];
+    bank.driven = bank.there;
+    if (p.apart && p.apart->turn_nozzles && i >= p.apart->first_bank &&
+        i < p.apart->first_bank + (p.apart->count + kNozzles - 1) / kNozzles)
+      bank.driven = bank.driven | p.apart->attached;
+    if (Any(bank.driven)) p.banks = i + 1;
   }
 }
+/// Returns whether a nozzle of the first bank departs.
 template <class T>
-DISPERSA_INLINE void SetFurtherBanks(LauncherPlantLanes<T>& p, int lane, const LauncherStack& s, int most) {
-  for (int bank = 0; bank < most; ++bank) {
-    NozzleBank<T>& further = p.further[bank];
-    SetLane(further.there, lane, bank + 1 < s.layout.banks());
-    for (int i = 0; i < kNozzles; ++i) {
-      const int nozzle = (bank + 1) * kNozzles + i;
-      SetLane(further.listed[i], lane, s.layout, nozzle);
-      SetLane(further.departs[i], lane, s.nozzles.data()[nozzle]);
+DISPERSA_INLINE bool SetBanks(LauncherPlantLanes<T>& p, int lane, const LauncherStack& s, int most) {
+  bool departs = false;
+  for (int i = 0; i < most; ++i) {
+    NozzleBank<T>& bank = p.bank[i];
+    SetLane(bank.there, lane, i == 0 || i < s.layout.banks());
+    for (int k = 0; k < kNozzles; ++k) {
+      const int nozzle = i * kNozzles + k;
+      if (p.nozzles_listed) SetLane(bank.listed[k], lane, s.layout, nozzle);
+      const bool one_departs = SetLane(bank.departs[k], lane, s.nozzles.data()[nozzle]);
+      departs |= i == 0 && one_departs;
     }
   }
   MarkDriven(p, most);
+  return departs;
 }
 
 /// The plant of a lane on its stack with nothing jettisoned. `p.apart` points to values of its own where the
@@ -163,18 +168,14 @@ DISPERSA_INLINE void SetLane(LauncherPlantLanes<T>& p, int lane, const LauncherP
   for (int i = 0; i < s.layout.nozzles; ++i)
     nozzles_thrust += s.layout.share[i] * (s.nozzles.data()[i].thrust_factor - 1.0);
   Lane(p.nozzles_thrust, lane) = nozzles_thrust;
-  bool departs = false;
-  for (int i = 0; i < kNozzles; ++i) departs |= SetLane(p.nozzles[i], lane, s.nozzles.data()[i]);
   p.nozzles_listed = plant.nozzles_are_listed();
-  for (int i = 0; p.nozzles_listed && i < kNozzles; ++i) SetLane(p.listed[i], lane, s.layout, i);
   const BoosterSet* const boosters = plant.boosters.get();
   if (p.apart) {
-    p.apart->first_bank = plant.stacks.data()[0].layout.banks() - 1;
+    p.apart->first_bank = plant.stacks.data()[0].layout.banks();
     SetLane(*p.apart, lane, *boosters, stack == 0);
   }
   if (p.sides) SetLane(p.sides->masses, lane, s.mass);  // what is jettisoned is on the axis
-  SetFurtherBanks(p, lane, s, plant.nozzle_banks() - 1);
-  SetLane(p.departs, lane, departs);
+  SetLane(p.departs, lane, SetBanks(p, lane, s, plant.nozzle_banks()));
   p.any_departs = Any(p.departs);
   p.has_boosters = boosters != nullptr && p.apart == nullptr;
   if (p.has_boosters) {  // of stacks above, which do not boost, they do not count

@@ -88,7 +88,6 @@ class Batch {
   const T* PluginCommands(M powered, const T* program, T* command);
   const T* FedForward(T* program) const;
   void PassCommands(M powered);
-  void PassFurtherCommands(M powered);
   T FeltAboutAll(int axis) const;
   void RollByThrusters(M rolling);
   void FlyThrusters();
@@ -120,7 +119,7 @@ class Batch {
   const double tick_s_;
   const double ticks_a_second_;
   const bool has_jettisons_, cuts_off_in_flight_, has_plugin_;
-  const int most_further_;                ///< banks of nozzles after the first, of any stage
+  const int most_banks_;                  ///< of nozzles, of any stage
   const bool has_free_stage_, flies_on_;  ///< flies_on_: after the last burn
   Slot slot_[kLanes];
   int flying_ = 0;         ///< lanes
@@ -133,13 +132,10 @@ class Batch {
   T next_digest_tick_, next_row_tick_;
   T lost_ticks_;  ///< for which the attitude has been lost
   StepState<T> step_;
-  T next_command_rad_[kDrives];
-  T delay_line_[kDelayLine][kDrives];  ///< commands by pass
-  // Of further banks of nozzles, which most vehicles do not have.
-  T next_further_rad_[kBanks - 1][kDrives];
-  T axis_line_[kDelayLine][kAxes];  ///< commands about the axes by pass, allocated as they leave the line
-  NozzleLayoutLanes<T> further_allocation_[kBanks - 1];
-  T further_previous_rad_[kBanks - 1][kDrives];  ///< by the metrics
+  // Of nozzles, bank by bank: nothing touches those that the vehicle does not have.
+  NozzleLayoutLanes<T> allocation_[kBanks];  ///< of listed nozzles
+  T next_command_rad_[kBanks][kDrives];
+  T delay_line_[kBanks][kDelayLine][kDrives];  ///< commands by pass
   int line_at_ = 0;
   bool same_delay_ = true;  ///< all lanes that burn have one of whole ticks:
   int common_delay_ = 0;
@@ -158,7 +154,6 @@ class Batch {
   int most_steps_ = 1;
 
   GimbalLoop<T> loop_;
-  NozzleLayoutLanes<T> allocation_;  ///< of listed nozzles
   AxisStateLanes<T> axes_[kAxes];
   GimbalOutput<T> gimbals_;
   ThrusterStateLanes<T> thrusters_[kAxes];
@@ -181,17 +176,15 @@ Batch<T>::Batch(const FlightModel& model, FlightQueue& queue)
       has_jettisons_(!model.nominal_plant().jettisons.empty()),
       cuts_off_in_flight_(CutsOffInFlight(definition_.vehicle)),
       has_plugin_(model.autopilot().plugin != nullptr),
-      most_further_(model.nominal_plant().nozzle_banks() - 1),
+      most_banks_(model.nominal_plant().nozzle_banks()),
       has_free_stage_(model.has_free_stage()),
       flies_on_(definition_.course.ends != FlightEnd::kInjection) {
   // Lanes that never fly compute along with the others, on numbers that do no harm.
-  __builtin_memset(static_cast<void*>(&delay_line_), 0, sizeof delay_line_);
+  const auto banks = static_cast<std::size_t>(most_banks_);
+  __builtin_memset(static_cast<void*>(&allocation_), 0, banks * sizeof allocation_[0]);
+  __builtin_memset(static_cast<void*>(&next_command_rad_), 0, banks * sizeof next_command_rad_[0]);
+  __builtin_memset(static_cast<void*>(&delay_line_), 0, banks * sizeof delay_line_[0]);
   __builtin_memset(static_cast<void*>(&loop_), 0, sizeof loop_);
-  __builtin_memset(static_cast<void*>(&allocation_), 0, sizeof allocation_);
-  __builtin_memset(static_cast<void*>(&next_further_rad_), 0, sizeof next_further_rad_);
-  __builtin_memset(static_cast<void*>(&axis_line_), 0, sizeof axis_line_);
-  __builtin_memset(static_cast<void*>(&further_allocation_), 0, sizeof further_allocation_);
-  __builtin_memset(static_cast<void*>(&further_previous_rad_), 0, sizeof further_previous_rad_);
   __builtin_memset(static_cast<void*>(&axes_), 0, sizeof axes_);
   __builtin_memset(static_cast<void*>(&gimbals_), 0, sizeof gimbals_);
   __builtin_memset(static_cast<void*>(&thrusters_), 0, sizeof thrusters_);
@@ -211,7 +204,6 @@ Batch<T>::Batch(const FlightModel& model, FlightQueue& queue)
   time_s_ = tick_ = next_tick_ = lost_ticks_ = T(0.0);
   stop_s_ = next_digest_tick_ = next_row_tick_ = T(kFarFuture);
   steps_a_tick_ = T(1.0);
-  for (T& command : next_command_rad_) command = T(0.0);
   gyro_bias_rad_s_ = Zero<T>();
   for (T& weight : gyro_weight_) weight = T(0.0);
   unit_weight_ = unit_.truth.w = unit_.measured.w = T(1.0);
@@ -318,9 +310,8 @@ void Batch<T>::SetStack(int lane, int stack) {
 /// Boosters burn, or would, while the first stack is as it was at lift-off.
 template <class T>
 void Batch<T>::SetAllocation(int lane, const NozzleLayout& layout) {
-  SetLane(allocation_, lane, layout);
   // A stage without further banks sets them to nothing.
-  for (int bank = 0; bank < most_further_; ++bank) SetLane(further_allocation_[bank], lane, layout, bank + 1);
+  for (int bank = 0; bank < most_banks_; ++bank) SetLane(allocation_[bank], lane, layout, bank);
 }
 
 /// Thrusters hold a stage without gimbal while it coasts.
@@ -395,10 +386,8 @@ LauncherPhase Batch<T>::PhaseOf(int lane) const {
   phase.expelled_mass_kg = Lane(step_.phase().expelled_kg, lane);
   for (int axis = 0; axis < 3; ++axis)
     phase.control_torque_n_m.data()[axis] = Lane(step_.phase().control_torque_n_m[axis], lane);
-  for (int i = 0; i < kDrives; ++i) phase.command_rad.data()[i] = Lane(step_.command_rad()[i], lane);
-  for (int bank = 0; bank < most_further_; ++bank)
-    for (int i = 0; i < kDrives; ++i)
-      phase.command_rad.data()[(bank + 1) * kDrives + i] = Lane(step_.further_command_rad(bank)[i], lane);
+  for (int i = 0; i < most_banks_ * kDrives; ++i)
+    phase.command_rad.data()[i] = Lane(step_.command_rad(i / kDrives)[i % kDrives], lane);
   phase.stuck_nozzle = slot_[lane].stuck_nozzle;
   return phase;
 }

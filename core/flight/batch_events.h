@@ -57,9 +57,8 @@ void Batch<T>::AdvanceThroughEvents(T target) {
       }
       if (slot.switch_s <= Lane(time_s_, lane)) {
         slot.switch_s = kFarFuture;
-        step_.CommandLane(lane, next_command_rad_);
-        for (int bank = 0; bank < step_.plant().further_banks; ++bank)
-          step_.CommandFurtherLane(lane, bank, next_further_rad_[bank]);
+        for (int bank = 0; bank < step_.plant().banks; ++bank)
+          step_.CommandLane(lane, bank, next_command_rad_[bank]);
       } else if (due >> lane & 1u) {
         Happen(lane);
       } else if (Lane(time_s_, lane) >= Lane(target, lane)) {
@@ -225,10 +224,9 @@ void Batch<T>::Ignite(int lane, int stage) {
   const FlightInputs& in = record.inputs;
   const AutopilotModel& autopilot = model_.autopilot();
   SetLane(coasting_, lane, false);
-  for (auto& entry : delay_line_)
-    for (T& command : entry) Lane(command, lane) = 0.0;
-  for (auto& entry : axis_line_)
-    for (T& command : entry) Lane(command, lane) = 0.0;
+  for (int bank = 0; bank < most_banks_; ++bank)
+    for (auto& entry : delay_line_[bank])
+      for (T& command : entry) Lane(command, lane) = 0.0;
 
   AutopilotState state;
   for (int axis = 0; axis < kAxes; ++axis) ReadLane(axes_[axis], lane, state.axes[axis]);

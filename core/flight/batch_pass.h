@@ -245,7 +245,7 @@ void Batch<T>::FlyGimbals() {
     FlyGimbalsOf<false>(powered);
   PassCommands(powered);
   if (!listed) return;
-  const M rolling = powered & (allocation_.rolls_by_thrusters > T(0.0));
+  const M rolling = powered & (allocation_[0].rolls_by_thrusters > T(0.0));
   if (!Any(rolling)) return;
   Blend<T>(rolling, of_roll, axes_[kRoll]);  // restores roll memory: its command was not applied
   RollByThrusters(rolling);
@@ -306,79 +306,55 @@ const T* Batch<T>::FedForward(T* program) const {
 }
 
 // This tick's commands into the line, and what leaves it now to the actuators. A delay that is no whole
-// number of ticks lets the command through within the tick.
+// number of ticks lets the command through within the tick. The flight computer allocates a command to the
+// drives as it gives it: what is on the way when boosters burn out is of the nozzles that burnt.
 template <class T>
 void Batch<T>::PassCommands(M powered) {
   const T roll = gimbals_.deflection_rad[kRoll], pitch = gimbals_.deflection_rad[kPitch];
   const T yaw = gimbals_.deflection_rad[kYaw];
-  T* entry = delay_line_[line_at_];
   const bool listed = step_.plant().nozzles_listed;
-  if (listed) {
-    Allocate(allocation_, roll, pitch, yaw, entry);
-  } else {
-    entry[0] = pitch + roll;
-    entry[1] = pitch - roll;
-    entry[2] = yaw + roll;
-    entry[3] = yaw - roll;
-  }
-  if (same_delay_) {
-    step_.Command(powered, delay_line_[(line_at_ - common_delay_) & (kDelayLine - 1)]);
-  } else {
-    const unsigned acting = Bits(powered);
-    for (int lane = 0; lane < kLanes; ++lane) {
-      if (!(acting >> lane & 1u)) continue;
-      Slot& slot = slot_[lane];
-      const bool within = slot.part_delay_s > 0.0;
-      const T* next = delay_line_[(line_at_ - slot.whole_delay) & (kDelayLine - 1)];
-      const T* now = delay_line_[(line_at_ - slot.whole_delay - (within ? 1 : 0)) & (kDelayLine - 1)];
-      step_.CommandLane(lane, now);
-      for (int i = 0; i < (listed ? kDrives : kNozzles); ++i)
-        Lane(next_command_rad_[i], lane) = Lane(next[i], lane);
-      if (!within) continue;
-      slot.switch_s = Lane(time_s_, lane) + slot.part_delay_s;
-      SetStop(lane);
+  const int drives = listed ? kDrives : kNozzles;
+  for (int bank = 0; bank < step_.plant().banks; ++bank) {
+    T(*const line)[kDrives] = delay_line_[bank];
+    T* const entry = line[line_at_];
+    if (listed) {
+      Allocate(allocation_[bank], roll, pitch, yaw, entry);
+    } else {
+      entry[0] = pitch + roll;
+      entry[1] = pitch - roll;
+      entry[2] = yaw + roll;
+      entry[3] = yaw - roll;
     }
-  }
-  if (most_further_ > 0) PassFurtherCommands(powered);
-  line_at_ = (line_at_ + 1) & (kDelayLine - 1);
-}
-
-/// The same for the drives of further banks.
-template <class T>
-void Batch<T>::PassFurtherCommands(M powered) {
-  for (int axis = 0; axis < kAxes; ++axis) axis_line_[line_at_][axis] = gimbals_.deflection_rad[axis];
-  const auto allocate = [this](int bank, int delay, T* command_rad) __attribute__((always_inline)) {
-    const T* const about = axis_line_[(line_at_ - delay) & (kDelayLine - 1)];
-    Allocate(further_allocation_[bank], about[kRoll], about[kPitch], about[kYaw], command_rad);
-  };
-  for (int bank = 0; bank < step_.plant().further_banks; ++bank) {
-    T now[kDrives];
     if (same_delay_) {
-      allocate(bank, common_delay_, now);
-      step_.CommandFurther(powered, bank, now);
+      step_.Command(powered, bank, line[(line_at_ - common_delay_) & (kDelayLine - 1)]);
       continue;
     }
     for (int lane = 0; lane < kLanes; ++lane) {
       if (!(Bits(powered) >> lane & 1u)) continue;
       const Slot& slot = slot_[lane];
-      T next[kDrives];
-      allocate(bank, slot.whole_delay, next);
-      allocate(bank, slot.whole_delay + (slot.part_delay_s > 0.0 ? 1 : 0), now);
-      step_.CommandFurtherLane(lane, bank, now);
-      for (int i = 0; i < kDrives; ++i) Lane(next_further_rad_[bank][i], lane) = Lane(next[i], lane);
+      const int late = slot.part_delay_s > 0.0 ? 1 : 0;
+      const T* const next = line[(line_at_ - slot.whole_delay) & (kDelayLine - 1)];
+      step_.CommandLane(lane, bank, line[(line_at_ - slot.whole_delay - late) & (kDelayLine - 1)]);
+      for (int i = 0; i < drives; ++i) Lane(next_command_rad_[bank][i], lane) = Lane(next[i], lane);
     }
+  }
+  line_at_ = (line_at_ + 1) & (kDelayLine - 1);
+  for (int lane = 0; !same_delay_ && lane < kLanes; ++lane) {
+    Slot& slot = slot_[lane];
+    if (!(Bits(powered) >> lane & 1u) || !(slot.part_delay_s > 0.0)) continue;
+    slot.switch_s = Lane(time_s_, lane) + slot.part_delay_s;
+    SetStop(lane);
   }
 }
 
 /// The command about an axis that the present deflections of all listed nozzles stand for.
 template <class T>
 T Batch<T>::FeltAboutAll(int axis) const {
-  T felt = FeltAbout(allocation_, axis, step_.drive_state().angle_rad, step_.second_drives().angle_rad);
-  for (int bank = 0; bank < step_.plant().further_banks; ++bank) {
-    const BankState<T>& drives = step_.further_drives(bank);
-    const T all =
-        FeltAbout(further_allocation_[bank], axis, drives.first.angle_rad, drives.second.angle_rad, felt);
-    felt = Select(step_.plant().further[bank].driven, all, felt);
+  T felt(0.0);
+  for (int bank = 0; bank < step_.plant().banks; ++bank) {
+    const BankState<T>& drives = step_.drives(bank);
+    const T all = FeltAbout(allocation_[bank], axis, drives.first.angle_rad, drives.second.angle_rad, felt);
+    felt = Select(step_.plant().bank[bank].driven, all, felt);
   }
   return felt;
 }
@@ -490,24 +466,22 @@ void Batch<T>::Meter(M powered) {
   metrics_.AddPowered(powered, T(tick_s_), time_s_, {-angle_rad_.x, pitch_error, -angle_rad_.z}, law);
   const bool listed = step_.plant().nozzles_listed;
   if (listed) {
-    auto travel = metrics_.StartTravel(powered, time_s_, step_.drive_state(), step_.second_drives(),
-                                       step_.command_rad(), allocation_);
-    for (int bank = 0; bank < step_.plant().further_banks; ++bank) {
-      const BankState<T>& drives = step_.further_drives(bank);
-      metrics_.AddToTravel(powered & step_.plant().further[bank].driven, time_s_, drives.first, drives.second,
-                           step_.further_command_rad(bank), further_allocation_[bank],
-                           further_previous_rad_[bank], travel);
+    typename LaneMetrics<T>::Travel travel{T(0.0), T(0.0), NoLane<T>()};
+    for (int bank = 0; bank < step_.plant().banks; ++bank) {
+      const BankState<T>& drives = step_.drives(bank);
+      metrics_.AddToTravel(powered & step_.plant().bank[bank].driven, time_s_, bank, drives.first,
+                           drives.second, step_.command_rad(bank), allocation_[bank], travel);
     }
-    metrics_.EndTravel(powered, allocation_.per_drive, travel);
+    metrics_.EndTravel(powered, allocation_[0].per_drive, travel);
   } else {
-    metrics_.AddDeflections(powered, time_s_, step_.drive_state(), step_.command_rad(), loop_.limit_rad);
+    metrics_.AddDeflections(powered, time_s_, step_.drives(0).first, step_.command_rad(0), loop_.limit_rad);
   }
 
   const M is_transient =
       InTransient(time_s_, time_s_ - step_.phase().ignition_s, step_.now().altitude_m,
                   definition_.kick_start_s, definition_.kick_end_s, gust_bottom_m_, gust_top_m_);
   const unsigned metered = Bits(powered), interrupted = Bits(is_transient);
-  const T* n = step_.drive_state().angle_rad;
+  const T* n = step_.drives(0).first.angle_rad;
   T roll = T(0.25) * ((n[0] - n[1]) + (n[2] - n[3]));
   T pitch_angle = T(0.5) * (n[0] + n[1]), yaw = T(0.5) * (n[2] + n[3]);
   if (listed) {

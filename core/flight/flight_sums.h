@@ -116,7 +116,7 @@ template <class T>
 struct LaneMetrics {
   ErrorSumsLanes<T> pitch, coast, yaw, roll, deflection;  ///< pitch: of the current stage
   TickSums<T> sums;
-  T has_previous, previous_rad[kDrives];
+  T has_previous, previous_rad[kBanks][kDrives];
 
   /// Before a lane's first tick.
   DISPERSA_INLINE void StartFlight(int lane) {
@@ -155,8 +155,8 @@ struct LaneMetrics {
       deflection.Add(lanes, angle, time_s);
       fastest = Max(fastest, Abs(drives.rate_rad_s[i]));
       largest = Max(largest, Abs(command_rad[i]));
-      travel = travel + Abs(angle - previous_rad[i]);
-      previous_rad[i] = Select(lanes, angle, previous_rad[i]);
+      travel = travel + Abs(angle - previous_rad[0][i]);
+      previous_rad[0][i] = Select(lanes, angle, previous_rad[0][i]);
     }
     AddTravel(lanes, fastest, T(1.0 / kNozzles), travel, largest >= limit_rad);
   }
@@ -165,37 +165,26 @@ struct LaneMetrics {
     T fastest_rad_s, moved_rad;
     MaskOf<T> saturated;
   };
-  DISPERSA_INLINE Travel StartTravel(MaskOf<T> lanes, T time_s, const DriveState<T>& first,
-                                     const DriveState<T>& second, const T* command_rad,
-                                     const NozzleLayoutLanes<T>& list) {
-    Travel travel{T(0.0), T(0.0), IsSaturated(list, command_rad)};
-    AddDrives(lanes, time_s, first, second, list, previous_rad, travel);
-    return travel;
-  }
-  /// Of a further bank. `lanes`: those that have it.
-  DISPERSA_INLINE void AddToTravel(MaskOf<T> lanes, T time_s, const DriveState<T>& first,
+  /// `lanes`: those that have the bank.
+  DISPERSA_INLINE void AddToTravel(MaskOf<T> lanes, T time_s, int bank, const DriveState<T>& first,
                                    const DriveState<T>& second, const T* command_rad,
-                                   const NozzleLayoutLanes<T>& list, T* previous, Travel& travel) {
+                                   const NozzleLayoutLanes<T>& list, Travel& travel) {
     Travel with = travel;
-    AddDrives(lanes, time_s, first, second, list, previous, with);
+    for (int i = 0; i < kDrives; ++i) {
+      const DriveState<T>& drives = i < kNozzles ? first : second;
+      const T angle = drives.angle_rad[i % kNozzles];
+      T& previous = previous_rad[bank][i];
+      deflection.Add(lanes & (list.there[i] > T(0.0)), angle, time_s);
+      with.fastest_rad_s = Max(with.fastest_rad_s, Abs(drives.rate_rad_s[i % kNozzles]));
+      with.moved_rad = with.moved_rad + Abs(angle - previous);
+      previous = Select(lanes, angle, previous);
+    }
     travel.fastest_rad_s = Select(lanes, with.fastest_rad_s, travel.fastest_rad_s);
     travel.moved_rad = Select(lanes, with.moved_rad, travel.moved_rad);
     travel.saturated = travel.saturated | (lanes & IsSaturated(list, command_rad));
   }
   DISPERSA_INLINE void EndTravel(MaskOf<T> lanes, T per_drive, const Travel& travel) {
     AddTravel(lanes, travel.fastest_rad_s, per_drive, travel.moved_rad, travel.saturated);
-  }
-  DISPERSA_INLINE void AddDrives(MaskOf<T> lanes, T time_s, const DriveState<T>& first,
-                                 const DriveState<T>& second, const NozzleLayoutLanes<T>& list, T* previous,
-                                 Travel& travel) {
-    for (int i = 0; i < kDrives; ++i) {
-      const DriveState<T>& drives = i < kNozzles ? first : second;
-      const T angle = drives.angle_rad[i % kNozzles];
-      deflection.Add(lanes & (list.there[i] > T(0.0)), angle, time_s);
-      travel.fastest_rad_s = Max(travel.fastest_rad_s, Abs(drives.rate_rad_s[i % kNozzles]));
-      travel.moved_rad = travel.moved_rad + Abs(angle - previous[i]);
-      previous[i] = Select(lanes, angle, previous[i]);
-    }
   }
   DISPERSA_INLINE void AddTravel(MaskOf<T> lanes, T fastest_rad_s, T per_drive, T moved_rad,
                                  MaskOf<T> saturated) {

@@ -34,10 +34,18 @@ inline namespace DISPERSA_ISA {
 /// Commands of so many ticks are remembered for delays.
 inline constexpr int kDelayLine = 128;
 
-/// The drives of a further bank of nozzles, about first and second hinges.
+/// A bank of nozzles with its drives, about first and second hinges. Of a cross, the first bank alone, second
+/// hinges stay at 0 and nothing reads them.
 template <class T>
 struct BankState {
   DriveState<T> first, second;
+};
+template <class T>
+struct DriveBank {
+  BankState<T> state;
+  GimbalLanes<T> gimbal;
+  Transition<T> over_half;  ///< over half a tick
+  T command_rad[kDrives];   ///< at the actuators
 };
 
 /// Values written through a setter are marked: the next evaluation reads them again.
@@ -46,18 +54,13 @@ class StepState {
  public:
   // ---- what moves ----
   const RigidBodyStateLanes<T>& motion() const { return motion_; }
-  const DriveState<T>& drive_state() const { return drive_state_; }
-  /// Of second hinges.
-  const DriveState<T>& second_drives() const { return second_drives_; }
+  const BankState<T>& drives(int bank) const { return banks_[bank].state; }
   const BendingState<T>& bending_state() const { return bending_state_; }
   // ---- what it moves under ----
   const LauncherPlantLanes<T>& plant() const { return plant_; }
   const LauncherPhaseLanes<T>& phase() const { return phase_; }
   const BendingTableLanes<T>& bending() const { return bending_; }
-  const T* command_rad() const { return command_rad_; }  ///< at the actuators, kDrives
-  // ---- further banks of nozzles, of which the plant says the number: the first is bank 0 of these ----
-  const BankState<T>& further_drives(int bank) const { return further_[bank]; }
-  const T* further_command_rad(int bank) const { return further_command_rad_[bank]; }  ///< kDrives
+  const T* command_rad(int bank) const { return banks_[bank].command_rad; }  ///< at the actuators, kDrives
 
   /// No lane flies: each computes along on numbers that do no harm.
   void Configure(const LauncherPlant& nominal, double tick_s) {
@@ -65,7 +68,7 @@ class StepState {
     earth_ = nominal.environment.earth;
     air_ = &nominal.environment.Air();
     tick_s_ = tick_s;
-    most_further_ = nominal.nozzle_banks() - 1;
+    most_banks_ = nominal.nozzle_banks();
     if (nominal.has_apart_boosters()) plant_.apart = &apart_;
     if (nominal.has_side_masses()) plant_.sides = &sides_;
     start_ = &points_[0];
@@ -91,7 +94,9 @@ class StepState {
     SetLane(plant_, lane, plant, stack);
     SetLane(bending_, lane, plant, stack);
     SetDrives(lane, plant.stacks.data()[stack].gimbal, -1);
-    if (stack == 0 && plant.boosters_steer()) SetBoosterDrives(lane, plant.boosters.get()->gimbal);
+    if (stack == 0 && plant.boosters_steer())
+      for (int bank = apart_.first_bank; bank < most_banks_; ++bank)
+        SetDrives(bank, lane, plant.boosters.get()->gimbal, -1);
     SetLane(phase_.burnt, lane, false);
     ClearCommands(lane);
     MarkMoved(lane);
@@ -135,12 +140,11 @@ class StepState {
     Lane(plant_.beside.burn.left_kg, lane) = 0.0;
     if (!plant_.apart) return;
     SetLane(apart_.attached, lane, false);
-    MarkDriven(plant_, most_further_);
+    MarkDriven(plant_, most_banks_);
     MarkMoved(lane);
   }
   void StickNozzle(int lane, const Gimbal& gimbal, int nozzle, double angle_rad) {
-    DriveState<T>& drives = nozzle < kNozzles ? drive_state_ : further_[nozzle / kNozzles - 1].first;
-    Lane(drives.angle_rad[nozzle % kNozzles], lane) = angle_rad;
+    Lane(banks_[nozzle / kNozzles].state.first.angle_rad[nozzle % kNozzles], lane) = angle_rad;
     SetDrives(lane, gimbal, nozzle);
     MarkMoved(lane);
   }
@@ -170,61 +174,38 @@ class StepState {
 
   void ReadLane(int lane, double* y) const {
     for (unsigned i = 0; i < kValues<T, RigidBodyStateLanes<T>>; ++i) y[i] = LaneAt<T>(motion_, i, lane);
-    for (int i = 0; i < kNozzles; ++i) {
-      y[kNozzleAngle + i] = Lane(drive_state_.angle_rad[i], lane);
-      y[kNozzleRate + i] = Lane(drive_state_.rate_rad_s[i], lane);
-    }
     for (unsigned i = 0; i < kValues<T, BendingState<T>>; ++i)
       y[kModalState + i] = LaneAt<T>(bending_state_, i, lane);
-    for (int i = 0; i < kNozzles; ++i) {
-      y[kSecondAngle + i] = Lane(second_drives_.angle_rad[i], lane);
-      y[kSecondRate + i] = Lane(second_drives_.rate_rad_s[i], lane);
+    for (int drive = 0; drive < most_banks_ * kDrives; ++drive) {
+      const DriveState<T>& of = HingeOf(banks_[drive / kDrives].state, drive);
+      y[AngleOf(drive)] = Lane(of.angle_rad[drive % kNozzles], lane);
+      y[RateOf(drive)] = Lane(of.rate_rad_s[drive % kNozzles], lane);
     }
-    for (int bank = 0; bank < most_further_; ++bank)
-      for (unsigned i = 0; i < kValues<T, BankState<T>>; ++i)
-        y[FurtherPlace(bank, i)] = LaneAt<T>(further_[bank], i, lane);
   }
   void WriteLane(int lane, const double* y) {
     for (unsigned i = 0; i < kValues<T, RigidBodyStateLanes<T>>; ++i) SetLaneAt<T>(motion_, i, lane, y[i]);
-    for (int i = 0; i < kNozzles; ++i) {
-      Lane(drive_state_.angle_rad[i], lane) = y[kNozzleAngle + i];
-      Lane(drive_state_.rate_rad_s[i], lane) = y[kNozzleRate + i];
-    }
     for (unsigned i = 0; i < kValues<T, BendingState<T>>; ++i)
       SetLaneAt<T>(bending_state_, i, lane, y[kModalState + i]);
-    for (int i = 0; i < kNozzles; ++i) {
-      Lane(second_drives_.angle_rad[i], lane) = y[kSecondAngle + i];
-      Lane(second_drives_.rate_rad_s[i], lane) = y[kSecondRate + i];
+    for (int drive = 0; drive < most_banks_ * kDrives; ++drive) {
+      DriveState<T>& of = HingeOf(banks_[drive / kDrives].state, drive);
+      Lane(of.angle_rad[drive % kNozzles], lane) = y[AngleOf(drive)];
+      Lane(of.rate_rad_s[drive % kNozzles], lane) = y[RateOf(drive)];
     }
-    for (int bank = 0; bank < most_further_; ++bank)
-      for (unsigned i = 0; i < kValues<T, BankState<T>>; ++i)
-        SetLaneAt<T>(further_[bank], i, lane, y[FurtherPlace(bank, i)]);
     MarkMoved(lane);
   }
 
   // ---- commands ----
   /// `angle_rad`: of kNozzles, and of kDrives where nozzles are listed.
-  void Command(MaskOf<T> lanes, const T* angle_rad) {
-    for (int i = 0; i < kNozzles; ++i) command_rad_[i] = Select(lanes, angle_rad[i], command_rad_[i]);
+  void Command(MaskOf<T> lanes, int bank, const T* angle_rad) {
+    T* const command_rad = banks_[bank].command_rad;
+    for (int i = 0; i < kNozzles; ++i) command_rad[i] = Select(lanes, angle_rad[i], command_rad[i]);
     for (int i = kNozzles; plant_.nozzles_listed && i < kDrives; ++i)
-      command_rad_[i] = Select(lanes, angle_rad[i], command_rad_[i]);
+      command_rad[i] = Select(lanes, angle_rad[i], command_rad[i]);
     MarkCommanded(lanes);
   }
-  void CommandLane(int lane, const T* angle_rad) {
+  void CommandLane(int lane, int bank, const T* angle_rad) {
     for (int i = 0; i < (plant_.nozzles_listed ? kDrives : kNozzles); ++i)
-      Lane(command_rad_[i], lane) = Lane(angle_rad[i], lane);
-    MaskOf<T> commanded = NoLane<T>();
-    SetLane(commanded, lane, true);
-    MarkCommanded(commanded);
-  }
-  /// Of a further bank. `angle_rad`: of kDrives.
-  void CommandFurther(MaskOf<T> lanes, int bank, const T* angle_rad) {
-    for (int i = 0; i < kDrives; ++i)
-      further_command_rad_[bank][i] = Select(lanes, angle_rad[i], further_command_rad_[bank][i]);
-    MarkCommanded(lanes);
-  }
-  void CommandFurtherLane(int lane, int bank, const T* angle_rad) {
-    for (int i = 0; i < kDrives; ++i) Lane(further_command_rad_[bank][i], lane) = Lane(angle_rad[i], lane);
+      Lane(banks_[bank].command_rad[i], lane) = Lane(angle_rad[i], lane);
     MaskOf<T> commanded = NoLane<T>();
     SetLane(commanded, lane, true);
     MarkCommanded(commanded);
@@ -275,10 +256,8 @@ class StepState {
     Point p;
     SetAir(motion_.p, p.around);
     SetMasses(time_s, p.masses);
-    SetNozzles(drive_state_, command_rad_, p.nozzles);
+    SetNozzles(plant_.nozzles_listed);
     if (plant_.nozzles_listed) {
-      SetNozzles(second_drives_, command_rad_ + kNozzles, p.second);
-      SetFurtherNozzles(further_);
       bending_.modes > 0 ? SetRates<true, true>(motion_, bending_state_, p, p.rates, &p.instant)
                          : SetRates<false, true>(motion_, bending_state_, p, p.rates, &p.instant);
     } else {
@@ -323,9 +302,8 @@ class StepState {
   struct Point {
     Surroundings<T> around;
     TimedMasses<T> masses;
-    Nozzles<T> nozzles, second;  ///< second: about their second hinges
-    Vector<T> cg_velocity;       ///< of C through the body, in I
-    Rates<T> rates, slopes;      ///< slopes: of the rates, at the end of a step
+    Vector<T> cg_velocity;   ///< of C through the body, in I
+    Rates<T> rates, slopes;  ///< slopes: of the rates, at the end of a step
     ModalForce<T> modal, modal_slopes;
     Instant<T> instant;
   };
@@ -341,13 +319,7 @@ class StepState {
     }
     SetMasses(time_s, p.masses);
     Blend<T>(stale_, p.masses, start_->masses);
-    SetNozzles(drive_state_, command_rad_, p.nozzles);
-    Blend<T>(stale_, p.nozzles, start_->nozzles);
-    if constexpr (kListed) {
-      SetNozzles(second_drives_, command_rad_ + kNozzles, p.second);
-      Blend<T>(stale_, p.second, start_->second);
-      if (plant_.further_banks > 0) SetFurtherNozzles(further_);
-    }
+    SetNozzles(kListed);
     Blend<T>(stale_, CgVelocityAt(start_->masses, motion_.q), start_->cg_velocity);
     const ModalForce<T> modal = start_->modal;
     if constexpr (kBends) SetShapes(start_->masses);
@@ -374,10 +346,20 @@ class StepState {
   DISPERSA_OUT_OF_LINE void SetMasses(T time_s, TimedMasses<T>& masses) const {
     masses = MassesAt(plant_, phase_, time_s);
   }
-  DISPERSA_OUT_OF_LINE void SetNozzles(const DriveState<T>& s, const T* commands_rad,
-                                       Nozzles<T>& nozzles) const {
+  DISPERSA_OUT_OF_LINE void SetNozzles(const DriveState<T>& s, const GimbalLanes<T>& gimbal,
+                                       const T* commands_rad, Nozzles<T>& nozzles) const {
     nozzles = NozzlesAt(s.angle_rad);
-    if (plant_.nozzles_have_mass) SetAccelerations(drives_, commands_rad, s, nozzles);
+    if (plant_.nozzles_have_mass) SetAccelerations(gimbal, commands_rad, s, nozzles);
+  }
+  DISPERSA_INLINE void SetNozzles(int bank, bool listed, const BankState<T>& s) const {
+    const DriveBank<T>& of = banks_[bank];
+    SetNozzles(s.first, of.gimbal, of.command_rad, nozzles_[bank].first);
+    if (listed) SetNozzles(s.second, of.gimbal, of.command_rad + kNozzles, nozzles_[bank].second);
+  }
+  // As the drives stand now.
+  DISPERSA_INLINE void SetNozzles(bool listed) const {
+    for (int bank = 0; bank < (listed ? plant_.banks : 1); ++bank)
+      SetNozzles(bank, listed, banks_[bank].state);
   }
   DISPERSA_OUT_OF_LINE void SetShapes(const TimedMasses<T>& masses) {
     ShapesAt(bending_, masses.propellant_kg);
@@ -386,50 +368,33 @@ class StepState {
   DISPERSA_OUT_OF_LINE void SetRates(const RigidBodyStateLanes<T>& s, const BendingState<T>& bent_by,
                                      Point& at, Rates<T>& rates, Instant<T>* instant) const {
     rates = RatesOf(earth_.rotation_rate_rad_s, plant_, phase_, Any(phase_.burning), at.around, at.masses,
-                    TurnedAs<kListed>(at), s, BodyAs<kBends>(bent_by, at.modal), instant);
+                    TurnedAs<kListed>(), s, BodyAs<kBends>(bent_by, at.modal), instant);
   }
-  // Further banks: nothing is done in a vehicle without any.
-  DISPERSA_INLINE static constexpr unsigned FurtherPlace(int bank, unsigned value) {
-    // Of a bank: angles and rates of the first hinges, then of the second. In the state: angles, then rates.
-    const unsigned part = value / kNozzles;
-    const bool is_rate = part == 1 || part == 3;
-    const unsigned second = part >= 2 ? kNozzles : 0;
-    return static_cast<unsigned>(kListedLauncherSize + bank * 2 * kDrives) + (is_rate ? kDrives : 0u) +
-           second + value % kNozzles;
-  }
-  DISPERSA_OUT_OF_LINE void SetFurtherNozzles(const BankState<T>* drives) const {
-    for (int bank = 0; bank < plant_.further_banks; ++bank) {
-      BankNozzles<T>& of = further_nozzles_[bank];
-      of.first = NozzlesAt(drives[bank].first.angle_rad);
-      of.second = NozzlesAt(drives[bank].second.angle_rad);
-      if (!plant_.nozzles_have_mass) continue;
-      const T* const commands = further_command_rad_[bank];
-      SetAccelerations(further_gimbals_[bank], commands, drives[bank].first, of.first);
-      SetAccelerations(further_gimbals_[bank], commands + kNozzles, drives[bank].second, of.second);
-    }
+  DISPERSA_OUT_OF_LINE static void SetDriven(const DriveState<T>& from, const GimbalLanes<T>& gimbal,
+                                             const T* commands_rad, const Transition<T>& over, T step_s,
+                                             DriveState<T>& to) {
+    to = Propagate(gimbal, commands_rad, over, step_s, from);
   }
   /// Over two halves of a step. Banks that a lane's stage does not have stay as they are.
-  DISPERSA_OUT_OF_LINE void DriveFurther(MaskOf<T> odd, T half_s, BankState<T>* middle,
-                                         BankState<T>* end) const {
-    for (int bank = 0; bank < plant_.further_banks; ++bank) {
-      const GimbalLanes<T>& drives = further_gimbals_[bank];
-      Transition<T> over = further_over_half_[bank];
-      for (int lane = 0; Any(odd) && lane < kWidth<T>; ++lane)
-        if (Bits(odd) >> lane & 1u) SetTransition(drives, over, lane, Lane(half_s, lane));
-      const T* const commands = further_command_rad_[bank];
-      const BankState<T>& from = further_[bank];
-      middle[bank].first = Propagate(drives, commands, over, half_s, from.first);
-      middle[bank].second = Propagate(drives, commands + kNozzles, over, half_s, from.second);
-      end[bank].first = Propagate(drives, commands, over, half_s, middle[bank].first);
-      end[bank].second = Propagate(drives, commands + kNozzles, over, half_s, middle[bank].second);
-      const auto absent = !plant_.further[bank].driven;
-      Blend<T>(absent, from, middle[bank]);
-      Blend<T>(absent, from, end[bank]);
+  template <bool kListed>
+  DISPERSA_INLINE void Drive(int bank, MaskOf<T> odd, T half_s, BankState<T>& middle,
+                             BankState<T>& end) const {
+    const DriveBank<T>& of = banks_[bank];
+    Transition<T> over = of.over_half;
+    if (Any(odd))
+      for (int lane = 0; lane < kWidth<T>; ++lane)
+        if (Bits(odd) >> lane & 1u) SetTransition(of.gimbal, over, lane, Lane(half_s, lane));
+    SetDriven(of.state.first, of.gimbal, of.command_rad, over, half_s, middle.first);
+    SetDriven(middle.first, of.gimbal, of.command_rad, over, half_s, end.first);
+    if constexpr (kListed) {
+      const T* const commands = of.command_rad + kNozzles;
+      SetDriven(of.state.second, of.gimbal, commands, over, half_s, middle.second);
+      SetDriven(middle.second, of.gimbal, commands, over, half_s, end.second);
+      if (bank == 0) return;
+      const auto absent = !plant_.bank[bank].driven;
+      Blend<T>(absent, of.state, middle);
+      Blend<T>(absent, of.state, end);
     }
-  }
-  DISPERSA_OUT_OF_LINE void SetDriven(const DriveState<T>& from, const T* commands_rad,
-                                      const Transition<T>& over, T step_s, DriveState<T>& to) const {
-    to = Propagate(drives_, commands_rad, over, step_s, from);
   }
   DISPERSA_OUT_OF_LINE void SetSwung(const Swing<T>& over, const ModalForce<T>& from,
                                      const ModalForce<T>& rise, const ModalForce<T>& curve,
@@ -438,11 +403,11 @@ class StepState {
   }
 
   template <bool kListed>
-  DISPERSA_INLINE decltype(auto) TurnedAs(const Point& at) const {
+  DISPERSA_INLINE decltype(auto) TurnedAs() const {
     if constexpr (kListed)
-      return ListedNozzles<T>{at.nozzles, at.second, further_nozzles_};
+      return ListedNozzles<T>{nozzles_};
     else
-      return (at.nozzles);
+      return (nozzles_[0].first);
   }
   template <bool kBends>
   DISPERSA_INLINE auto BodyAs(const BendingState<T>& bent_by, ModalForce<T>& modal) const {
@@ -490,38 +455,32 @@ class StepState {
     any_stale_ = true;
   }
   void ClearCommands(int lane) {
-    for (T& command : command_rad_) Lane(command, lane) = 0.0;
-    for (int bank = 0; bank < most_further_; ++bank)
-      for (T& command : further_command_rad_[bank]) Lane(command, lane) = 0.0;
+    for (int bank = 0; bank < most_banks_; ++bank)
+      for (T& command : banks_[bank].command_rad) Lane(command, lane) = 0.0;
   }
   void SetDrives(int lane, const Gimbal& gimbal, int stuck_nozzle) {
-    SetLane(drives_, lane, gimbal, stuck_nozzle, 0.5 * tick_s_);
-    SetTransition(drives_, tick_over_half_, lane, 0.5 * tick_s_);
-    for (int bank = 0; bank < most_further_; ++bank) {
+    for (int bank = 0; bank < most_banks_; ++bank) {
       // Those of boosters have drives of their own.
       if (plant_.apart && apart_.turn_nozzles && bank >= apart_.first_bank &&
           (Bits(apart_.attached) >> lane & 1u))
         continue;
-      SetFurtherDrives(bank, lane, gimbal, stuck_nozzle - (bank + 1) * kNozzles);
+      SetDrives(bank, lane, gimbal, stuck_nozzle - bank * kNozzles);
     }
   }
-  void SetBoosterDrives(int lane, const Gimbal& gimbal) {
-    for (int bank = apart_.first_bank; bank < most_further_; ++bank) SetFurtherDrives(bank, lane, gimbal, -1);
+  void SetDrives(int bank, int lane, const Gimbal& gimbal, int stuck_nozzle) {
+    SetLane(banks_[bank].gimbal, lane, gimbal, stuck_nozzle, 0.5 * tick_s_);
+    SetTransition(banks_[bank].gimbal, banks_[bank].over_half, lane, 0.5 * tick_s_);
   }
-  void SetFurtherDrives(int bank, int lane, const Gimbal& gimbal, int stuck_nozzle) {
-    SetLane(further_gimbals_[bank], lane, gimbal, stuck_nozzle, 0.5 * tick_s_);
-    SetTransition(further_gimbals_[bank], further_over_half_[bank], lane, 0.5 * tick_s_);
+  template <class State>
+  static auto& HingeOf(State& bank, int drive) {
+    return drive % kDrives < kNozzles ? bank.first : bank.second;
   }
 
   RigidBodyStateLanes<T> motion_;
-  DriveState<T> drive_state_;
-  DriveState<T> second_drives_;  ///< nothing touches them unless nozzles are listed
   BendingState<T> bending_state_;
   LauncherPlantLanes<T> plant_;
   LauncherPhaseLanes<T> phase_;
-  GimbalLanes<T> drives_;
   BendingTableLanes<T> bending_;
-  T command_rad_[kDrives];  ///< at the actuators
   static_assert(kValues<T, RigidBodyStateLanes<T>> == kRigidBodySize);
   static_assert(kModalState + kValues<T, BendingState<T>> == kBentLauncherSize);
 
@@ -532,16 +491,11 @@ class StepState {
   Point *start_, *middle_, *end_;
   MaskOf<T> stale_, moved_, jumped_;
   bool any_stale_, any_moved_;
-  Transition<T> tick_over_half_;  ///< over half a tick
-  // Further banks of nozzles. They take no time unless some stage has them.
-  int most_further_;  ///< of any stage
-  BankState<T> further_[kBanks - 1];
-  GimbalLanes<T> further_gimbals_[kBanks - 1];
-  T further_command_rad_[kBanks - 1][kDrives];
-  mutable BankNozzles<T> further_nozzles_[kBanks - 1];  ///< of the present evaluation
-  Transition<T> further_over_half_[kBanks - 1];
-  ApartBoosters<T> apart_;  ///< unset unless the vehicle has such boosters
-  SideMasses<T> sides_;     ///< unset unless the vehicle has masses off the axis
+  int most_banks_;                          ///< of any stage
+  DriveBank<T> banks_[kBanks];              ///< those after the first take no time unless some stage has them
+  mutable BankNozzles<T> nozzles_[kBanks];  ///< of the present evaluation
+  ApartBoosters<T> apart_;                  ///< unset unless the vehicle has such boosters
+  SideMasses<T> sides_;                     ///< unset unless the vehicle has masses off the axis
 };
 
 /// Steps within this of a tick take the tick's transition of the actuators: it moves a deflection by less
@@ -559,34 +513,15 @@ MaskOf<T> StepState<T>::StepOf(MaskOf<T> moving, bool all, T from_s, T to_s) {
   Point& b = *middle_;
   Point& c = *end_;
 
-  // In the coast angles, rates and commands are zero, and stay so.
-  DriveState<T> drives_half = drive_state_, drives_end = drive_state_, second_end;
-  BankState<T> further_half[kListed ? kBanks - 1 : 1], further_end[kListed ? kBanks - 1 : 1];
-  if constexpr (kListed) {
-    second_end = second_drives_;
-    for (int bank = 0; bank < plant_.further_banks; ++bank)
-      further_half[bank] = further_end[bank] = further_[bank];
-  }
+  // In the coast angles, rates and commands are zero, and stay so: nothing reads the nozzles.
+  const int banks = kListed ? plant_.banks : 1;
+  BankState<T> drives_half[kListed ? kBanks : 1], drives_end[kListed ? kBanks : 1];
   const auto driven = phase_.burning | phase_.burnt;
-  if (Any(driven)) {
-    const auto odd = moving & driven & (Abs(h - T(tick_s_)) > T(kSameStep_s));
-    Transition<T> over = tick_over_half_;
-    if (Any(odd))
-      for (int lane = 0; lane < kWidth<T>; ++lane)
-        if (Bits(odd) >> lane & 1u) SetTransition(drives_, over, lane, 0.5 * Lane(h, lane));
-    SetDriven(drive_state_, command_rad_, over, half, drives_half);
-    SetDriven(drives_half, command_rad_, over, half, drives_end);
-    SetNozzles(drives_half, command_rad_, b.nozzles);
-    SetNozzles(drives_end, command_rad_, c.nozzles);
-    if constexpr (kListed) {
-      const T* const commands = command_rad_ + kNozzles;
-      DriveState<T> second_half;
-      SetDriven(second_drives_, commands, over, half, second_half);
-      SetDriven(second_half, commands, over, half, second_end);
-      SetNozzles(second_half, commands, b.second);
-      SetNozzles(second_end, commands, c.second);
-      if (plant_.further_banks > 0) DriveFurther(odd, half, further_half, further_end);
-    }
+  const bool is_driven = Any(driven);
+  const auto odd = moving & driven & (Abs(h - T(tick_s_)) > T(kSameStep_s));
+  for (int bank = 0; is_driven && bank < banks; ++bank) {
+    Drive<kListed>(bank, odd, half, drives_half[bank], drives_end[bank]);
+    SetNozzles(bank, kListed, drives_half[bank]);
   }
   BendingState<T> bent_middle, bent_end;
   Swing<T> over_half, over_step;
@@ -607,8 +542,6 @@ MaskOf<T> StepState<T>::StepOf(MaskOf<T> moving, bool all, T from_s, T to_s) {
   b.cg_velocity = CgVelocityAt(b.masses, middle.q);
   if (plant_.flow_coriolis) middle.p = Along(middle.p, T(0.5) * half, a.cg_velocity + b.cg_velocity);
   SetAir(middle.p, b.around);
-  if constexpr (kListed)
-    if (plant_.further_banks > 0) SetFurtherNozzles(further_half);
   SetRates<kBends, kListed>(middle, kBends ? bent_middle : bending_state_, b, b.rates, nullptr);
 
   RigidBodyStateLanes<T> end;
@@ -632,8 +565,7 @@ MaskOf<T> StepState<T>::StepOf(MaskOf<T> moving, bool all, T from_s, T to_s) {
     SetSwung(over_step, a.modal, rising, no_curvature, bent_end);
     SetShapes(c.masses);
   }
-  if constexpr (kListed)
-    if (plant_.further_banks > 0) SetFurtherNozzles(further_end);
+  for (int bank = 0; is_driven && bank < banks; ++bank) SetNozzles(bank, kListed, drives_end[bank]);
   SetRates<kBends, kListed>(end, kBends ? bent_end : bending_state_, c, c.rates, &c.instant);
   end.v = Along(motion_.v, sixth, Along(a.rates.dv + c.rates.dv, four, b.rates.dv));
   end.w = Along(motion_.w, sixth, Along(a.rates.dw + c.rates.dw, four, b.rates.dw));
@@ -659,33 +591,31 @@ MaskOf<T> StepState<T>::StepOf(MaskOf<T> moving, bool all, T from_s, T to_s) {
   const auto take = [&none](const auto&... values) { ((none = Fma(values, T(0.0), none)), ...); };
   take(end.p.x, end.p.y, end.p.z, end.v.x, end.v.y, end.v.z);
   take(end.q.w, end.q.x, end.q.y, end.q.z, end.w.x, end.w.y, end.w.z);
-  for (const T& rate : drives_end.rate_rad_s) none = Fma(rate, T(0.0), none);
-  if constexpr (kListed) {
-    for (const T& rate : second_end.rate_rad_s) none = Fma(rate, T(0.0), none);
-    for (int bank = 0; bank < plant_.further_banks; ++bank)
-      for (int i = 0; i < kNozzles; ++i)
-        none =
-            Fma(further_end[bank].first.rate_rad_s[i] + further_end[bank].second.rate_rad_s[i], T(0.0), none);
+  for (int bank = 0; is_driven && bank < banks; ++bank) {
+    for (const T& rate : drives_end[bank].first.rate_rad_s) none = Fma(rate, T(0.0), none);
+    if constexpr (kListed)
+      for (const T& rate : drives_end[bank].second.rate_rad_s) none = Fma(rate, T(0.0), none);
   }
   if constexpr (kBends)
     for (const auto& of_plane : bent_end.q_m)
       for (const T& q_m : of_plane) none = Fma(q_m, T(0.0), none);
   const auto accepted = moving & (none <= T(0.0));
-  if constexpr (kListed)
-    for (int bank = 0; bank < plant_.further_banks; ++bank)
-      Blend<T>(accepted, further_end[bank], further_[bank]);
   if (all && !Any(moving & !accepted)) {
     motion_ = end;
-    drive_state_ = drives_end;
-    if constexpr (kListed) second_drives_ = second_end;
+    for (int bank = 0; is_driven && bank < banks; ++bank) {
+      banks_[bank].state.first = drives_end[bank].first;
+      if constexpr (kListed) banks_[bank].state.second = drives_end[bank].second;
+    }
     if constexpr (kBends) bending_state_ = bent_end;
     Point* const last = start_;
     start_ = end_;
     end_ = last;
   } else {
     Blend<T>(accepted, end, motion_);
-    Blend<T>(accepted, drives_end, drive_state_);
-    if constexpr (kListed) Blend<T>(accepted, second_end, second_drives_);
+    for (int bank = 0; is_driven && bank < banks; ++bank) {
+      Blend<T>(accepted, drives_end[bank].first, banks_[bank].state.first);
+      if constexpr (kListed) Blend<T>(accepted, drives_end[bank].second, banks_[bank].state.second);
+    }
     if constexpr (kBends) Blend<T>(accepted, bent_end, bending_state_);
     Blend<T>(accepted, c, *start_);
   }

@@ -46,7 +46,7 @@ void DISPERSA_INSTANCE(Evaluate, DISPERSA_LANES)(const StepSetting& setting, lon
     const lanes::Surroundings<Value> around =
         lanes::SurroundingsAt(earth, StandardAir(), at->plant().weather, at->motion().p);
     const lanes::TimedMasses<Value> masses = lanes::MassesAt(at->plant(), at->phase(), Value(setting.from_s));
-    const lanes::Nozzles<Value> nozzles = lanes::NozzlesAt(at->drive_state().angle_rad);
+    const lanes::Nozzles<Value> nozzles = lanes::NozzlesAt(at->drives(0).first.angle_rad);
     rates = lanes::RatesOf<Value>(earth.rotation_rate_rad_s, at->plant(), at->phase(), setting.burning,
                                   around, masses, nozzles, at->motion(), lanes::StraightBody{}, nullptr);
     // The compiler may neither keep what the next evaluation reads nor leave out what this one found.

@@ -9,6 +9,7 @@
 
 #include "core/flight/flight.h"
 #include "core/flight/flight_sums.h"
+#include "core/flight/nozzle_allocation.h"
 #include "core/flight/ripple.h"
 #include "core/margins/linear_axis.h"
 #include "core/math/constants.h"
@@ -246,6 +247,41 @@ TEST(ApartBoosters, RippleBeginsAnewAtEachBurnout) {
   EXPECT_GT(through.worst_rad(), 1.05 * anew.worst_rad());
   EXPECT_NEAR(MetricOf(result, "deflection_ripple_deg"), anew.worst_rad() * kDegPerRad,
               1e-9 + 1e-3 * (through.worst_rad() - anew.worst_rad()) * kDegPerRad);
+}
+
+// The flight computer gives a command to the drives of its own time: what is on its way when boosters burn
+// out still turns theirs, in every bank.
+TEST(ApartBoosters, DelayedCommandsAreOfTheDrivesThatGotThem) {
+  FlightDefinition definition = Gimballed({0.0, 180.0}, true);
+  const int delay = definition.vehicle.stages[0].gimbal.delay_ticks = 3;
+  FlightInputs inputs;
+  inputs.thrust_misalignment_y_rad[0] = 0.5 * kDeg;
+  for (const double part : {0.0, 0.5}) {  // a command within the tick: that of the tick before stands at it
+    inputs.loop_delay_s = part * definition.autopilot.tick_s;
+    const FlightModel model(definition);
+    FlightResult result;
+    const auto ticks = TicksOf(definition, inputs, &result);
+    ASSERT_EQ(result.outcome, Outcome::kCompleted) << result.reason;
+    const std::size_t late = static_cast<std::size_t>(delay) + (part > 0.0 ? 1 : 0);
+    int on_the_way = 0;
+    for (std::size_t now = late; now < ticks.size() && ticks[now].stack == 0 && ticks[now].burning; ++now) {
+      const TickSample& given = ticks[now - late];
+      const NozzleLayout& layout = model.nominal_plant().LayoutOf(0, given.boosting);
+      for (const int bank : {0, 1}) {
+        lanes::NozzleLayoutLanes<double> allocation{};
+        lanes::SetLane(allocation, 0, layout, bank);
+        double command_rad[kDrives];
+        lanes::Allocate(allocation, given.gimbal.roll_rad, given.gimbal.pitch_rad, given.gimbal.yaw_rad,
+                        command_rad);
+        for (std::size_t i = 0; i < kDrives; ++i)
+          ASSERT_NEAR(ticks[now].command_rad[static_cast<std::size_t>(bank) * kDrives + i], command_rad[i],
+                      1e-15)
+              << ticks[now].time_s << " bank " << bank << " drive " << i;
+      }
+      if (given.boosting && !ticks[now].boosting) ++on_the_way;
+    }
+    EXPECT_EQ(on_the_way, static_cast<int>(late));
+  }
 }
 
 // Four at equal angles with nothing to tell them apart: what the model of boosters all alike says.
