@@ -1,4 +1,4 @@
-// Boosters that are bodies of their own, as tests compute them by hand, and compared with boosters all alike.
+// Boosters, as tests compute them by hand.
 #pragma once
 
 #include <gtest/gtest.h>
@@ -8,7 +8,6 @@
 
 #include "core/dynamics/jettison.h"
 #include "core/math/linear.h"
-#include "tests/flown_ticks.h"
 
 namespace dispersa {
 
@@ -65,23 +64,6 @@ inline double ExpectSeparationKeepsMomentum(const LauncherPlant& plant, double s
   EXPECT_NEAR((momentum - all.mass_kg * s.v_IC_I).norm(), 0.0, 1e-10 * momentum.norm());
   EXPECT_NEAR(place.norm() / all.mass_kg, 0.0, 1e-8);
   return (left.p_EoC_I - s.p_EoC_I).norm();
-}
-
-/// Boosters at equal angles with nothing to tell them apart fly as the model of boosters all alike says.
-inline void ExpectFliesAsAllAlike(const FlightDefinition& apart, const FlightInputs& inputs) {
-  FlightDefinition together = apart;
-  together.vehicle.boosters.angles_rad = {};
-  FlightResult one, many;
-  const auto a = TicksOf(together, inputs, &one), b = TicksOf(apart, inputs, &many);
-  ASSERT_EQ(one.outcome, Outcome::kCompleted) << one.reason;
-  ASSERT_EQ(a.size(), b.size());
-  double rates = 0.0, speeds = 0.0;
-  for (std::size_t i = 0; i < a.size(); ++i) {
-    rates = std::max(rates, (a[i].state.w_IB_B - b[i].state.w_IB_B).norm());
-    speeds = std::max(speeds, (a[i].state.v_IC_I - b[i].state.v_IC_I).norm());
-  }
-  EXPECT_LT(rates, 1e-7);
-  EXPECT_LT(speeds, 1e-5);
 }
 
 }  // namespace dispersa

@@ -35,20 +35,6 @@ std::string MeantInput(const std::string& word, const std::vector<std::string>& 
   return DidYouMean(word, names);
 }
 
-// Boosters that are all alike fly as bodies of their own if the list has columns of such.
-void SpreadForList(const InputNode& table, Vehicle& vehicle) {
-  if (vehicle.boosters.count == 0 || vehicle.boosters.are_apart()) return;
-  Vehicle spread = vehicle;
-  SpreadOut(spread.boosters);
-  const std::size_t first = std::max(InputCount(kMaxStages), InputCount(ColumnClass(vehicle)));
-  const std::size_t end = InputCount(ColumnClass(spread));
-  for (const InputMember& member : table.members) {
-    const int input = FindInput(member.key);
-    if (input >= 0 && static_cast<std::size_t>(input) >= first && static_cast<std::size_t>(input) < end)
-      vehicle.boosters = spread.boosters;
-  }
-}
-
 // A cases.csv serves as it is: its inputs have a prefix, and its other columns are results.
 bool KeepInputs(InputNode& table) {
   constexpr std::string_view kPrefix = "input_";
@@ -464,7 +450,6 @@ class CampaignDescription {
                        [&](Fields& map) { dispersa::DescribeDispersions(map, before == 0, campaign_); });
     if (list_.node != nullptr) {
       if (is_cases_csv_) LeaveOutNominal(*list_.node, campaign_.dispersions);
-      SpreadForList(*list_.node, campaign_.vehicle);
       const bool is_sound = before == 0 && problems_.size() == before;
       ReadFields(*list_.node, list_.path, problems_, files_,
                  [&](Fields& map) { DescribeListTable(map, *list_.node, is_sound, campaign_); });

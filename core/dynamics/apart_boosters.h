@@ -1,5 +1,5 @@
-// Boosters that are bodies of their own, of W vehicles side by side (core/math/lanes.h): each has its place,
-// its burn and its nozzle, so the centre of gravity is off the axis and the moments of inertia differ.
+// Boosters of W vehicles side by side (core/math/lanes.h). Each is a body of its own: it has its place, its
+// burn and its nozzle, so the centre of gravity is off the axis and the moments of inertia differ.
 //
 // Frames and signs as in launcher_body.h: B at the vehicle's axis, x forward, stations aft. A booster k
 // stands at (y_k, z_k). Its shell is a thin tube. Its grain burns from its bore outwards, or its tanks drain

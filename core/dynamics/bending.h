@@ -26,7 +26,6 @@ struct ModeNow {
   T stiffness_1_s2, damping_1_s;        ///< omega², 2 zeta omega
   T decay_1_s, damped_frequency_rad_s;  ///< of the free motion
   T inverse_mass_1_kg;
-  T pivot_deflection, pivot_slope_1_m;
 };
 
 /// A column of one mode between two levels of propellant: `low` at the upper one, `rise` from there to the
@@ -162,8 +161,6 @@ DISPERSA_INLINE void ShapesAt(BendingTableLanes<T>& b, T propellant_kg) {
       m.damping_1_s = T(2.0) * m.decay_1_s;
       m.damped_frequency_rad_s = frequency * Sqrt(Fma(-b.damping_ratio, b.damping_ratio, T(1.0)));
       m.inverse_mass_1_kg = at(BendingTable::kInverseMass);
-      m.pivot_deflection = at(BendingTable::kPivotDeflection);
-      m.pivot_slope_1_m = at(BendingTable::kPivotSlope);
     }
   }
 }
@@ -174,36 +171,51 @@ struct Bent {
   T y_m, z_m;
   T about_y_rad, about_z_rad;
 };
-/// `force_n` and `couple_n_m` act there. The modes that do not fly answer them at once (residual flexibility:
-/// R. H. MacNeal, A hybrid method of component mode synthesis, Computers & Structures 1, 1971).
+/// A place where forces act: its columns in the table. Residual and the beam that it relieves: 0 for none.
+struct ForcePlace {
+  int deflection, slope, residual, relieved;
+};
+/// Of the stage's nozzles.
+inline constexpr ForcePlace kAtPivot{BendingTable::kPivotDeflection, BendingTable::kPivotSlope,
+                                     BendingTable::kResidual, 0};
+/// Of the boosters' rigid link, at the station of their nozzles. Their force along the axis relieves the beam
+/// behind the link.
+inline constexpr ForcePlace kAtBoosters{BendingTable::kBoosterDeflection, BendingTable::kBoosterSlope, 0,
+                                        BendingTable::kBehindBoosters};
+/// The shapes of the modes there.
 template <class T>
-DISPERSA_INLINE Bent<T> BentAtPivot(const BendingTableLanes<T>& b, const BendingState<T>& s,
-                                    Vector<T> force_n, Vector<T> couple_n_m) {
-  const OfPlanes<T> moved = b.ColumnsAt(0, BendingTable::kResidual),
-                    both = b.ColumnsAt(0, BendingTable::kResidual + 1),
-                    turned = b.ColumnsAt(0, BendingTable::kResidual + 2);
-  Bent<T> o{Fma(moved.y, force_n.y, -(both.y * couple_n_m.z)), Fma(moved.z, force_n.z, both.z * couple_n_m.y),
-            Fma(both.z, force_n.z, turned.z * couple_n_m.y),
-            Fma(-both.y, force_n.y, turned.y * couple_n_m.z)};
+struct PlaceShapes {
+  OfPlanes<T> deflection[kModes], slope_1_m[kModes];
+};
+template <class T>
+DISPERSA_INLINE PlaceShapes<T> ShapesOf(const BendingTableLanes<T>& b, const ForcePlace& place) {
+  PlaceShapes<T> o;
   for (int mode = 0; mode < b.modes; ++mode) {
-    const ModeNow<T>&y = b.At(0, mode), &z = b.At(1, mode);
-    o.y_m = Fma(y.pivot_deflection, s.q_m[0][mode], o.y_m);
-    o.z_m = Fma(z.pivot_deflection, s.q_m[1][mode], o.z_m);
-    o.about_z_rad = Fma(-y.pivot_slope_1_m, s.q_m[0][mode], o.about_z_rad);
-    o.about_y_rad = Fma(z.pivot_slope_1_m, s.q_m[1][mode], o.about_y_rad);
+    o.deflection[mode] = b.ColumnsAt(mode, place.deflection);
+    o.slope_1_m[mode] = b.ColumnsAt(mode, place.slope);
   }
   return o;
 }
-/// The same of the boosters' rigid link, at the station of their nozzles.
+/// How the modes move and turn the place. `force_n` and `couple_n_m` act there. The modes that do not fly
+/// answer them at once (residual flexibility: R. H. MacNeal, A hybrid method of component mode synthesis,
+/// Computers & Structures 1, 1971).
 template <class T>
-DISPERSA_INLINE Bent<T> BentAtBoosters(const BendingTableLanes<T>& b, const BendingState<T>& s) {
+DISPERSA_INLINE Bent<T> BentAt(const BendingTableLanes<T>& b, const BendingState<T>& s,
+                               const ForcePlace& place, const PlaceShapes<T>& shapes,
+                               const Vector<T>& force_n, const Vector<T>& couple_n_m) {
   Bent<T> o{T(0.0), T(0.0), T(0.0), T(0.0)};
+  if (place.residual != 0) {
+    const OfPlanes<T> moved = b.ColumnsAt(0, place.residual), both = b.ColumnsAt(0, place.residual + 1),
+                      turned = b.ColumnsAt(0, place.residual + 2);
+    o = {Fma(moved.y, force_n.y, -(both.y * couple_n_m.z)), Fma(moved.z, force_n.z, both.z * couple_n_m.y),
+         Fma(both.z, force_n.z, turned.z * couple_n_m.y), Fma(-both.y, force_n.y, turned.y * couple_n_m.z)};
+  }
   for (int mode = 0; mode < b.modes; ++mode) {
     const T q_y = s.q_m[0][mode], q_z = s.q_m[1][mode];
-    o.y_m = Fma(b.ColumnAt(0, mode, BendingTable::kBoosterDeflection), q_y, o.y_m);
-    o.z_m = Fma(b.ColumnAt(1, mode, BendingTable::kBoosterDeflection), q_z, o.z_m);
-    o.about_z_rad = Fma(-b.ColumnAt(0, mode, BendingTable::kBoosterSlope), q_y, o.about_z_rad);
-    o.about_y_rad = Fma(b.ColumnAt(1, mode, BendingTable::kBoosterSlope), q_z, o.about_y_rad);
+    o.y_m = Fma(shapes.deflection[mode].y, q_y, o.y_m);
+    o.z_m = Fma(shapes.deflection[mode].z, q_z, o.z_m);
+    o.about_z_rad = Fma(-shapes.slope_1_m[mode].y, q_y, o.about_z_rad);
+    o.about_y_rad = Fma(shapes.slope_1_m[mode].z, q_z, o.about_y_rad);
   }
   return o;
 }
@@ -230,36 +242,26 @@ DISPERSA_INLINE Vector<T> TurnRate(const BendingTableLanes<T>& b, const BendingS
   return rate;
 }
 
-/// Adds a force and a couple at the pivots to the modes' generalised forces.
+/// Adds a force and a couple at a place to the modes' generalised forces.
 template <class T>
-DISPERSA_INLINE void DriveAtPivot(const BendingTableLanes<T>& b, Vector<T> force_n, Vector<T> couple_n_m,
-                                  ModalForce<T>& o) {
+DISPERSA_INLINE void DriveAt(const BendingTableLanes<T>& b, const BendingState<T>& s, const ForcePlace& place,
+                             const PlaceShapes<T>& shapes, const Vector<T>& force_n,
+                             const Vector<T>& couple_n_m, ModalForce<T>& o) {
   for (int mode = 0; mode < b.modes; ++mode) {
-    const ModeNow<T>&y = b.At(0, mode), &z = b.At(1, mode);
     T& of_y = o.drive_m_s2[0][mode];
     T& of_z = o.drive_m_s2[1][mode];
-    of_y = Fma(force_n.y, y.pivot_deflection, Fma(-couple_n_m.z, y.pivot_slope_1_m, of_y));
-    of_z = Fma(force_n.z, z.pivot_deflection, Fma(couple_n_m.y, z.pivot_slope_1_m, of_z));
-  }
-}
-
-/// The same for the boosters, and the beam behind their link, which their force along the axis relieves.
-template <class T>
-DISPERSA_INLINE void DriveAtBoosters(const BendingTableLanes<T>& b, const BendingState<T>& s,
-                                     Vector<T> force_n, Vector<T> couple_n_m, ModalForce<T>& o) {
-  for (int plane = 0; plane < kPlanes; ++plane) {
-    const T across_n = plane == 0 ? force_n.y : force_n.z;
-    const T turning_n_m = plane == 0 ? -couple_n_m.z : couple_n_m.y;
-    for (int mode = 0; mode < b.modes; ++mode) {
-      T behind(0.0);
-      for (int other = 0; other < b.modes; ++other)
-        behind =
-            Fma(b.ColumnAt(plane, mode, BendingTable::kBehindBoosters + other), s.q_m[plane][other], behind);
-      T& of = o.drive_m_s2[plane][mode];
-      of = Fma(across_n, b.ColumnAt(plane, mode, BendingTable::kBoosterDeflection),
-               Fma(turning_n_m, b.ColumnAt(plane, mode, BendingTable::kBoosterSlope),
-                   Fma(-force_n.x, behind, of)));
+    if (place.relieved != 0) {
+      T behind_y(0.0), behind_z(0.0);
+      for (int other = 0; other < b.modes; ++other) {
+        const OfPlanes<T> behind = b.ColumnsAt(mode, place.relieved + other);
+        behind_y = Fma(behind.y, s.q_m[0][other], behind_y);
+        behind_z = Fma(behind.z, s.q_m[1][other], behind_z);
+      }
+      of_y = Fma(-force_n.x, behind_y, of_y);
+      of_z = Fma(-force_n.x, behind_z, of_z);
     }
+    of_y = Fma(force_n.y, shapes.deflection[mode].y, Fma(-couple_n_m.z, shapes.slope_1_m[mode].y, of_y));
+    of_z = Fma(force_n.z, shapes.deflection[mode].z, Fma(couple_n_m.y, shapes.slope_1_m[mode].z, of_z));
   }
 }
 

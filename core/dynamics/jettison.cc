@@ -29,7 +29,7 @@ Vector3 CgStep(const LauncherPlant& plant, const Balance& from, const Balance& t
 // own, with what their tanks have left. All have burnt out.
 Vector3 LateralOf(const LauncherPlant& plant, int stack, unsigned leaving) {
   Vector3 sum = Vector3::Zero();
-  if (stack > 0 || (leaving & kBoostersGone) == 0 || !plant.has_apart_boosters()) return sum;
+  if (stack > 0 || (leaving & kBoostersGone) == 0 || !plant.boosters) return sum;
   for (const EachBooster& one : plant.boosters->each)
     sum += (one.dry_kg + one.burn.left_kg) * Vector3(0.0, one.y_m, one.z_m);
   return sum;
@@ -58,7 +58,7 @@ MassProperties MassesOn(const LauncherPlant& plant, int stack, unsigned jettison
   lanes::MassPropertiesLanes<double> m = lanes::MassesAt(own, propellant_kg);
   const BoosterSet& set = *plant.boosters;
   lanes::BesideStage<double> beside;
-  if (set.propellant.drains && plant.has_apart_boosters()) {
+  if (set.propellant.drains) {
     // Each with its own burn and tanks: they keep different masses.
     BoosterPropellant of_one = set.propellant;
     for (const EachBooster& one : set.each) {

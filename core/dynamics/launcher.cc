@@ -20,7 +20,7 @@ struct LauncherModel::Prepared {
       if (!stack.aero_grid)
         stack.aero_grid = std::make_shared<const AeroGrid>(BuildAeroGrid(stack.aerodynamics));
     stacks.resize(plant.stacks.size());
-    apart.resize(plant.has_apart_boosters() ? stacks.size() : 0);
+    apart.resize(plant.boosters ? stacks.size() : 0);
     sides.resize(plant.has_side_masses() ? stacks.size() : 0);
     for (std::size_t i = 0; i < stacks.size(); ++i) {
       if (!apart.empty()) stacks[i].apart = &apart[i];
@@ -60,7 +60,7 @@ struct OneLane {
         lighter(Without(from, stack, now, apart, sides)),
         plant(lighter ? *lighter : stack),
         phase{now.burning,          now.burnt,
-              now.boosting,         now.ignition_s,
+              now.boosting(),       now.ignition_s,
               now.expelled_mass_kg, ToLanes(now.control_torque_n_m)},
         motion{{y[0], y[1], y[2]}, {y[3], y[4], y[5]}, {y[6], y[7], y[8], y[9]}, {y[10], y[11], y[12]}},
         around(lanes::SurroundingsAt(earth, from.environment.Air(), plant.weather, motion.p)),
@@ -106,7 +106,6 @@ struct OneLane {
       lighter.sides = &sides;
     }
     if (now.jettisoned != 0) lanes::SetLane(lighter.stack, 0, MassOf(from, now.stack, now.jettisoned));
-    if (now.jettisoned & kBoostersGone) lighter.beside.burn.left_kg = 0.0;
     lanes::SetShape(lighter.aero, 0, of, of.AeroAfter(now.jettisoned, now.burning));
     if (stack.apart != nullptr) {
       apart = *stack.apart;
@@ -259,8 +258,6 @@ bool LauncherPlant::nozzles_have_mass() const {
   return std::any_of(stacks.begin(), stacks.end(),
                      [](const LauncherStack& s) { return s.gimbal.nozzle_inertia_kg_m2 > 0.0; });
 }
-
-bool LauncherPlant::has_apart_boosters() const { return boosters && !boosters->each.empty(); }
 
 bool LauncherPlant::has_side_masses() const {
   return std::any_of(stacks.begin(), stacks.end(), [](const LauncherStack& s) { return s.mass.HasSides(); });

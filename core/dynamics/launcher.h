@@ -106,7 +106,7 @@ struct BendingFactors {
   double slope = 1.0;  ///< of the slopes that sensors feel
 };
 
-/// A booster that is a body of its own.
+/// A booster, a body of its own.
 struct EachBooster {
   MotorBurn burn;
   double dry_kg = 0.0;
@@ -115,6 +115,7 @@ struct EachBooster {
   /// Its thrust undeflected, canted and misaligned; and where each hinge turns it.
   Vector3 along = Vector3::UnitX(), first = Vector3::Zero(), second = Vector3::Zero();
 };
+inline constexpr unsigned kAllBoosters = (1u << kMaxBoosters) - 1u;
 /// The boosters of the first stage.
 struct BoosterSet {
   MotorBurn burn;  ///< of all together
@@ -123,9 +124,9 @@ struct BoosterSet {
   double nozzle_station_m = 0.0;
   double radius_m = 0.0;
   double separation_delay_s = 0.0;
-  std::vector<EachBooster> each = {};  ///< empty: they are all alike
-  Gimbal gimbal = {};                  ///< of each (a limit of 0: their nozzles are fixed)
-  NozzleLayout layout = {};            ///< of the stage's nozzles and theirs, while any of them burns
+  std::vector<EachBooster> each = {};
+  Gimbal gimbal = {};        ///< of each (a limit of 0: their nozzles are fixed)
+  NozzleLayout layout = {};  ///< of the stage's nozzles and theirs, while any of them burns
 };
 /// A vehicle of one flight.
 struct LauncherPlant {
@@ -147,9 +148,8 @@ struct LauncherPlant {
   bool nozzles_are_listed()
       const;  ///< Whether any stage has a list of nozzles. Then a cross is treated as a list too.
   int nozzle_banks() const;  ///< 1 unless a stage has more than four nozzles, or boosters that turn theirs
-  bool has_apart_boosters() const;  ///< that are bodies of their own
-  bool has_side_masses() const;     ///< tables of stages with masses off the axis
-  bool boosters_steer() const;      ///< with nozzles that turn
+  bool has_side_masses() const;  ///< tables of stages with masses off the axis
+  bool boosters_steer() const;   ///< with nozzles that turn
   /// Of a stack's nozzles, while its boosters burn or not.
   const NozzleLayout& LayoutOf(int stack, bool boosting) const;
   /// Doubles of a state that count: a rigid vehicle's state ends with its nozzles.
@@ -164,9 +164,9 @@ struct LauncherPhase {
   int stack = 0;
   unsigned jettisoned = 0;  ///< bit i: of the plant's jettisons
   bool burning = false;
-  bool burnt = false;                             ///< the stack's propellant is used up
-  bool boosting = false;                          ///< the boosters burn too
-  unsigned boosters_burning = 0;                  ///< bit i: of boosters that are bodies of their own
+  bool burnt = false;             ///< the stack's propellant is used up
+  unsigned boosters_burning = 0;  ///< bit i: of the boosters
+  bool boosting() const { return boosters_burning != 0; }
   double ignition_s = 0.0;                        ///< of the stack's motor, when burning
   double expelled_mass_kg = 0.0;                  ///< by the reaction control so far
   Vector3 control_torque_n_m = Vector3::Zero();   ///< of the reaction control

@@ -59,13 +59,10 @@ struct LauncherPlantLanes {
   MaskOf<T> departs;
   bool nozzles_listed;  ///< of any stage: the same in all lanes. The cross is one of the lists then
   T lateral_moment_y_kg_m, lateral_moment_z_kg_m;
-  bool has_boosters;  ///< that are all alike, of the vehicle: the same in all lanes, and stacks
-  BesideStage<T> beside;
-  T beside_nozzle_m, beside_radius_m;
   bool any_products;  ///< some lane has products of inertia
   MaskOf<T> has_products;
   T product_xy_kg_m2, product_xz_kg_m2, product_yz_kg_m2;
-  ApartBoosters<T>* apart;  ///< null: the vehicle has no boosters, or has such that are all alike
+  ApartBoosters<T>* apart;  ///< null: the vehicle has no boosters
   SideMasses<T>* sides;     ///< null: no table of a stage knows masses off the axis
   int banks;                ///< that any lane's stage has
   NozzleBank<T> bank[kBanks];
@@ -97,8 +94,8 @@ struct TimedMasses {
   T cg_speed_m_s;    ///< of C forward through the body: the flow takes propellant away at
   T source_station_m;
   T axial_per_kg_m2, transverse_per_kg_m2;
-  T thrust_fraction, flow_fraction;            ///< of full thrust and flow, 0 when not burning
-  T beside_thrust_fraction, beside_flow_kg_s;  ///< of the boosters, if the vehicle has any
+  T thrust_fraction, flow_fraction;  ///< of full thrust and flow, 0 when not burning
+  T beside_flow_kg_s;                ///< of the boosters, if the vehicle has any
 };
 template <class T>
 DISPERSA_INLINE TimedMasses<T> MassesAt(const LauncherPlantLanes<T>& plant,
@@ -112,15 +109,6 @@ DISPERSA_INLINE TimedMasses<T> MassesAt(const LauncherPlantLanes<T>& plant,
   o.thrust_fraction = Select(phase.burning, burn.fraction, T(0.0));
   o.flow_fraction = Select(phase.burning, burn.flow_fraction, T(0.0));
   T flow_kg_s = plant.burn.full_flow_kg_s * o.flow_fraction;
-  if (plant.has_boosters) {
-    const BurnState<T> beside = BurnAt(plant.beside.burn, time_s - phase.ignition_s);
-    o.beside_thrust_fraction = Select(phase.boosting, beside.fraction, T(0.0));
-    o.beside_flow_kg_s =
-        Select(phase.boosting, plant.beside.burn.full_flow_kg_s * beside.flow_fraction, T(0.0));
-    AddBeside(plant.beside, Select(phase.boosting, beside.propellant_kg, plant.beside.burn.left_kg),
-              o.beside_flow_kg_s, flow_kg_s, m);
-    flow_kg_s = flow_kg_s + o.beside_flow_kg_s;
-  }
   T lateral_y_kg_m = plant.lateral_moment_y_kg_m, lateral_z_kg_m = plant.lateral_moment_z_kg_m;
   if (plant.apart) {
     m = WithApart(*plant.apart, time_s - phase.ignition_s, flow_kg_s, m);
@@ -387,87 +375,44 @@ struct LoadsOf {
   T thrust_n, flow_kg_s;
   T jet_axial, jet_transverse;  ///< jet damping, per rad/s
 };
-/// The thrust where the body bends: it acts at the displaced pivots along the turned axis, and drives the
-/// modes.
+/// What bending makes of a force and a couple (about the axis at the place): the place has moved and turned,
+/// and they drive the modes. `arm`: from C to the place on the axis. Adds to the moment about C, and turns
+/// the force.
 template <class T>
-DISPERSA_INLINE void BendThrust(const LauncherPlantLanes<T>& plant, const LauncherPhaseLanes<T>& phase,
-                                const TimedMasses<T>& masses, const BentBody<T>& bent, Thrust<T>& thrust) {
-  const Vector<T> offset{T(0.0), plant.thrust_offset_y_m, plant.thrust_offset_z_m};
-  const Bent<T> at = BentAtPivot(*bent.bending, *bent.state, thrust.force_n,
-                                 thrust.couple_n_m + Cross(offset, thrust.force_n));
-  const Vector<T> turn{T(0.0), at.about_y_rad, at.about_z_rad};
-  const Vector<T> turned_n = Cross(turn, thrust.force_n);
-  const Vector<T> arm{masses.cg_station_m - plant.pivot_station_m, plant.thrust_offset_y_m - masses.cg_y_m,
-                      plant.thrust_offset_z_m - masses.cg_z_m};
-  const Vector<T> moved{T(0.0), at.y_m, at.z_m};
-  thrust.moment_n_m = thrust.moment_n_m + Cross(arm, turned_n) + Cross(moved, thrust.force_n);
-  thrust.force_n = thrust.force_n + turned_n;
-  ModalForce<T> driven = *bent.modal;
-  DriveAtPivot(*bent.bending, thrust.force_n, thrust.couple_n_m + Cross(offset, thrust.force_n), driven);
-  Blend<T>(phase.burning, driven, *bent.modal);
-}
-
-/// The boosters' forces where the body bends: their rigid link moves and turns them. `couple_n_m`: about the
-/// axis at the station of their nozzles.
-template <class T>
-DISPERSA_INLINE void BendBoosters(const LauncherPhaseLanes<T>& phase, const TimedMasses<T>& masses,
-                                  T nozzle_station_m, const Vector<T>& force_n, const Vector<T>& couple_n_m,
-                                  const BentBody<T>& bent, Thrust<T>& thrust, LoadsOf<T>& o) {
-  const Bent<T> at = BentAtBoosters(*bent.bending, *bent.state);
+DISPERSA_INLINE void Bend(const BentBody<T>& bent, const ForcePlace& place, MaskOf<T> acts,
+                          const Vector<T>& arm, Vector<T> couple_n_m, Vector<T>& force_n,
+                          Vector<T>& moment_n_m) {
+  const BendingTableLanes<T>& b = *bent.bending;
+  const PlaceShapes<T> shapes = ShapesOf(b, place);
+  const Bent<T> at = BentAt(b, *bent.state, place, shapes, force_n, couple_n_m);
   const Vector<T> turn{T(0.0), at.about_y_rad, at.about_z_rad}, moved{T(0.0), at.y_m, at.z_m};
   const Vector<T> turned_n = Cross(turn, force_n), turned_n_m = Cross(turn, couple_n_m);
-  const Vector<T> arm{masses.cg_station_m - nozzle_station_m, -masses.cg_y_m, -masses.cg_z_m};
-  const Vector<T> moment_n_m = Cross(arm, turned_n) + Cross(moved, force_n) + turned_n_m;
-  o.force_n = Select(phase.boosting, o.force_n + turned_n, o.force_n);
-  thrust.moment_n_m = Select(phase.boosting, thrust.moment_n_m + moment_n_m, thrust.moment_n_m);
+  moment_n_m = moment_n_m + Cross(arm, turned_n) + Cross(moved, force_n) + turned_n_m;
+  force_n = force_n + turned_n;
+  couple_n_m = couple_n_m + turned_n_m;
   ModalForce<T> driven = *bent.modal;
-  DriveAtBoosters(*bent.bending, *bent.state, force_n + turned_n, couple_n_m + turned_n_m, driven);
-  Blend<T>(phase.boosting, driven, *bent.modal);
+  DriveAt(b, *bent.state, place, shapes, force_n, couple_n_m, driven);
+  Blend<T>(acts, driven, *bent.modal);
 }
 
-/// Boosters push along the axis at their places. A lateral offset of C turns that into a moment. Returns the
-/// mean place at which the flow of stage and boosters leaves.
-template <class T, class Body>
-DISPERSA_INLINE T AddBoosters(const LauncherPlantLanes<T>& plant, const LauncherPhaseLanes<T>& phase,
-                              const TimedMasses<T>& masses, T pressure_pa, const Body& body,
-                              Thrust<T>& thrust, LoadsOf<T>& o) {
-  const T none(0.0);
-  const MotorBurnLanes<T>& burn = plant.beside.burn;
-  const T net_n =
-      Fma(burn.vacuum_thrust_n, masses.beside_thrust_fraction, -(pressure_pa * burn.exit_area_m2));
-  const T push_n = Select((masses.beside_thrust_fraction > none) & (net_n > none), net_n, none);
-  o.thrust_n = o.thrust_n + push_n;
-  o.force_n.x = Select(phase.boosting, o.force_n.x + push_n, o.force_n.x);
-  thrust.moment_n_m.y = thrust.moment_n_m.y - masses.cg_z_m * push_n;
-  thrust.moment_n_m.z = thrust.moment_n_m.z + masses.cg_y_m * push_n;
-  if constexpr (Body::kBends)
-    BendBoosters(phase, masses, plant.beside_nozzle_m, Vector<T>{push_n, none, none}, Zero<T>(), body, thrust,
-                 o);
-  o.flow_kg_s = o.flow_kg_s + masses.beside_flow_kg_s;
-  const T share = Select(o.flow_kg_s > none,
-                         masses.beside_flow_kg_s / Select(o.flow_kg_s > none, o.flow_kg_s, T(1.0)), none);
-  return plant.pivot_station_m + share * (plant.beside_nozzle_m - plant.pivot_station_m);
-}
-
-/// The same of boosters that are bodies of their own.
+/// Adds the boosters' forces. Returns the mean place at which the flow of stage and boosters leaves.
 template <class T, class Turned, class Body>
-DISPERSA_INLINE T AddApartBoosters(const LauncherPlantLanes<T>& plant, const LauncherPhaseLanes<T>& phase,
-                                   const TimedMasses<T>& masses, T pressure_pa, const Turned& nozzles,
-                                   const Vector<T>& w, const Body& body, Thrust<T>& thrust, LoadsOf<T>& o) {
+DISPERSA_INLINE T AddBoosters(const LauncherPlantLanes<T>& plant, const LauncherPhaseLanes<T>& phase,
+                              const TimedMasses<T>& masses, T pressure_pa, const Turned& nozzles,
+                              const Vector<T>& w, const Body& body, Thrust<T>& thrust, LoadsOf<T>& o) {
   const BankNozzles<T>* banks = nullptr;
   if constexpr (requires { nozzles.bank; }) banks = nozzles.bank;
   const ApartLoads<T> beside = LoadsOfApart(*plant.apart, banks, pressure_pa, masses.cg_station_m,
                                             masses.cg_y_m, masses.cg_z_m, plant.jet_damping, w);
   const T none(0.0);
-  o.thrust_n = Select(phase.boosting, o.thrust_n + beside.thrust_n, o.thrust_n);
-  o.force_n = Select(phase.boosting, o.force_n + beside.force_n, o.force_n);
-  thrust.moment_n_m = Select(phase.boosting, thrust.moment_n_m + beside.moment_n_m, thrust.moment_n_m);
+  Vector<T> force_n = beside.force_n, moment_n_m = beside.moment_n_m;
   if constexpr (Body::kBends) {
-    const T nozzle_m = plant.apart->nozzle_station_m;
-    const Vector<T> arm{masses.cg_station_m - nozzle_m, -masses.cg_y_m, -masses.cg_z_m};
-    BendBoosters(phase, masses, nozzle_m, beside.force_n, beside.moment_n_m - Cross(arm, beside.force_n),
-                 body, thrust, o);
+    const Vector<T> arm{masses.cg_station_m - plant.apart->nozzle_station_m, -masses.cg_y_m, -masses.cg_z_m};
+    Bend(body, kAtBoosters, phase.boosting, arm, moment_n_m - Cross(arm, force_n), force_n, moment_n_m);
   }
+  o.thrust_n = Select(phase.boosting, o.thrust_n + beside.thrust_n, o.thrust_n);
+  o.force_n = Select(phase.boosting, o.force_n + force_n, o.force_n);
+  thrust.moment_n_m = Select(phase.boosting, thrust.moment_n_m + moment_n_m, thrust.moment_n_m);
   o.flow_kg_s = o.flow_kg_s + masses.beside_flow_kg_s;
   const T share = Select(o.flow_kg_s > none,
                          masses.beside_flow_kg_s / Select(o.flow_kg_s > none, o.flow_kg_s, T(1.0)), none);
@@ -511,23 +456,24 @@ DISPERSA_INLINE LoadsOf<T> LoadsAt(double earth_rate_rad_s, const LauncherPlantL
     return o;
   }
   Thrust<T> thrust = ThrustOf<T>(plant, masses, nozzles, around.pressure_pa);
+  const Vector<T> arm{masses.cg_station_m - plant.pivot_station_m, -masses.cg_y_m, -masses.cg_z_m};
   if (plant.nozzles_have_mass) {
     const NozzleReaction<T> reaction = ReactionOf<T>(plant, nozzles);
-    const Vector<T> arm{masses.cg_station_m - plant.pivot_station_m, -masses.cg_y_m, -masses.cg_z_m};
     thrust.force_n = thrust.force_n + reaction.force_n;
     thrust.couple_n_m = thrust.couple_n_m + reaction.couple_n_m;
     thrust.moment_n_m = thrust.moment_n_m + Cross(arm, reaction.force_n) + reaction.couple_n_m;
   }
-  if constexpr (Body::kBends) BendThrust(plant, phase, masses, body, thrust);
+  if constexpr (Body::kBends) {
+    const Vector<T> offset{none, plant.thrust_offset_y_m, plant.thrust_offset_z_m};
+    Bend(body, kAtPivot, phase.burning, arm, thrust.couple_n_m + Cross(offset, thrust.force_n),
+         thrust.force_n, thrust.moment_n_m);
+  }
   o.thrust_n = Select(phase.burning, thrust.thrust_n * plant.nozzles_thrust, none);
   o.flow_kg_s = Select(phase.burning, thrust.flow_kg_s, none);
   o.force_n = Select(phase.burning, o.force_n + thrust.force_n, o.force_n);
   T exit_station_m = plant.pivot_station_m;  // of what flows
-  if (plant.has_boosters)
-    exit_station_m = AddBoosters(plant, phase, masses, around.pressure_pa, body, thrust, o);
   if (plant.apart)
-    exit_station_m =
-        AddApartBoosters(plant, phase, masses, around.pressure_pa, nozzles, s.w, body, thrust, o);
+    exit_station_m = AddBoosters(plant, phase, masses, around.pressure_pa, nozzles, s.w, body, thrust, o);
   if (plant.flow_coriolis) {
     const T turned = T(2.0) * o.flow_kg_s * (exit_station_m - masses.source_station_m);
     o.force_n.y = Fma(turned, s.w.z, o.force_n.y);
@@ -542,14 +488,6 @@ DISPERSA_INLINE LoadsOf<T> LoadsAt(double earth_rate_rad_s, const LauncherPlantL
       const T own_kg_s = o.flow_kg_s - masses.beside_flow_kg_s;
       o.jet_axial = own_kg_s * plant.nozzle_radius_m * plant.nozzle_radius_m;
       o.jet_transverse = own_kg_s * lever * lever;
-    }
-    if (plant.has_boosters) {
-      // So far of the stage's own flow. A booster's nozzle is off the axis by its radius.
-      const T beside = plant.beside_nozzle_m - masses.cg_station_m, r = plant.beside_radius_m;
-      o.jet_axial =
-          o.jet_axial + masses.beside_flow_kg_s * (r * r - plant.nozzle_radius_m * plant.nozzle_radius_m);
-      o.jet_transverse =
-          o.jet_transverse + masses.beside_flow_kg_s * (Fma(beside, beside, T(0.5) * r * r) - lever * lever);
     }
   }
   if constexpr (Body::kBends) FinishDrive(*body.bending, *body.state, o.force_n.x, *body.modal);
@@ -574,7 +512,7 @@ DISPERSA_INLINE Vector<T> TurnedUnderProducts(const LauncherPlantLanes<T>& plant
                              c_xz * m.x + c_yz * m.y + c_zz * m.z};
 }
 
-/// Of a vehicle with masses off the axis: boosters that are bodies of their own, or in tables of its stages.
+/// Of a vehicle with masses off the axis: boosters, or in tables of its stages.
 template <class T>
 DISPERSA_INLINE Tensor<T> TensorOffAxis(const LauncherPlantLanes<T>& plant, const TimedMasses<T>& masses) {
   OffAxis<T> off = plant.apart ? plant.apart->off : plant.sides->now;

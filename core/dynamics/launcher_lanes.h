@@ -133,8 +133,8 @@ DISPERSA_INLINE bool SetBanks(LauncherPlantLanes<T>& p, int lane, const Launcher
 }
 
 /// The plant of a lane on its stack with nothing jettisoned. `p.apart` points to values of its own where the
-/// plant's boosters are bodies of their own, and `p.sides` where it has masses off the axis. Its weather is
-/// set separately, once a flight.
+/// plant has boosters, and `p.sides` where it has masses off the axis. Its weather is set separately, once a
+/// flight.
 template <class T>
 DISPERSA_INLINE void SetLane(LauncherPlantLanes<T>& p, int lane, const LauncherPlant& plant, int stack) {
   const LauncherStack& s = plant.stacks.data()[stack];
@@ -169,21 +169,13 @@ DISPERSA_INLINE void SetLane(LauncherPlantLanes<T>& p, int lane, const LauncherP
     nozzles_thrust += s.layout.share[i] * (s.nozzles.data()[i].thrust_factor - 1.0);
   Lane(p.nozzles_thrust, lane) = nozzles_thrust;
   p.nozzles_listed = plant.nozzles_are_listed();
-  const BoosterSet* const boosters = plant.boosters.get();
   if (p.apart) {
     p.apart->first_bank = plant.stacks.data()[0].layout.banks();
-    SetLane(*p.apart, lane, *boosters, stack == 0);
+    SetLane(*p.apart, lane, *plant.boosters.get(), stack == 0);
   }
   if (p.sides) SetLane(p.sides->masses, lane, s.mass);  // what is jettisoned is on the axis
   SetLane(p.departs, lane, SetBanks(p, lane, s, plant.nozzle_banks()));
   p.any_departs = Any(p.departs);
-  p.has_boosters = boosters != nullptr && p.apart == nullptr;
-  if (p.has_boosters) {  // of stacks above, which do not boost, they do not count
-    SetLane(p.beside, lane, boosters->burn, boosters->propellant);
-    if (stack > 0) Lane(p.beside.burn.left_kg, lane) = 0.0;
-    Lane(p.beside_nozzle_m, lane) = boosters->nozzle_station_m;
-    Lane(p.beside_radius_m, lane) = boosters->radius_m;
-  }
   Lane(p.lateral_moment_y_kg_m, lane) = s.lateral_moment_y_kg_m;
   Lane(p.lateral_moment_z_kg_m, lane) = s.lateral_moment_z_kg_m;
 }

@@ -378,7 +378,6 @@ LauncherPhase Batch<T>::PhaseOf(int lane) const {
   LauncherPhase phase;
   phase.stack = slot_[lane].stack;
   phase.jettisoned = slot_[lane].jettisoned;
-  phase.boosting = Bits(step_.phase().boosting) >> lane & 1u;
   phase.boosters_burning = step_.BoostersBurning(lane);
   phase.burning = Bits(step_.phase().burning) >> lane & 1u;
   phase.burnt = Bits(step_.phase().burnt) >> lane & 1u;

@@ -156,10 +156,6 @@ void Batch<T>::Happen(int lane) {
     }
     case EventKind::kBoosterBurnout:
       metrics_.AddLoadsOfLane(lane, step_.InstantOf(lane, time_s_));  // they peak here, between ticks
-      if (event.booster < 0) {
-        step_.BurnOutBoosters(lane);
-        break;
-      }
       // Commands of one unit turn other nozzles, or move the body less, from here on: no swing of a nozzle.
       record.ripple.Interrupt();
       record.limit_cycle.Interrupt();

@@ -49,7 +49,7 @@ std::size_t PlaceOf(const Vehicle& vehicle, std::size_t booster) {
 
 void LoadMean(const FlightInputs& in, Vehicle& vehicle) {
   Boosters& boosters = vehicle.boosters;
-  if (!boosters.are_apart()) return;
+  if (boosters.count == 0) return;
   double dry = 0.0, propellant = 0.0;
   for (std::size_t k = 0; k < boosters.angles_rad.size(); ++k) {
     dry += in.booster_dry_mass_factor[PlaceOf(vehicle, k)] - 1.0;

@@ -42,8 +42,7 @@ std::vector<FlightEvent> EventsOf(const FlightModel& model, const LauncherPlant&
       events.push_back({kink_s, EventKind::kKink, stage});
     if (i == 0 && plant.boosters) {
       const double tick_s = definition.autopilot.tick_s;
-      const MotorBurn* last = &plant.boosters->burn;
-      if (plant.has_apart_boosters()) last = &plant.boosters->each[0].burn;
+      const MotorBurn* last = &plant.boosters->each[0].burn;
       for (std::size_t k = 0; k < plant.boosters->each.size(); ++k) {
         const MotorBurn& burn = plant.boosters->each[k].burn;
         for (const double kink_s : burn.Kinks(t.ignition_s))
@@ -52,13 +51,9 @@ std::vector<FlightEvent> EventsOf(const FlightModel& model, const LauncherPlant&
                           EventKind::kBoosterBurnout, stage, static_cast<int>(k)});
         if (burn.duration_s > last->duration_s) last = &burn;
       }
-      const BoosterTimes beside = BuildBoosterTimes(definition.vehicle.boosters, *last, t, tick_s);
-      if (!plant.has_apart_boosters()) {
-        for (const double kink_s : last->Kinks(t.ignition_s))
-          events.push_back({kink_s, EventKind::kKink, stage});
-        events.push_back({beside.burnout_s, EventKind::kBoosterBurnout, stage});
-      }
-      events.push_back({beside.separation_s, EventKind::kBoosterSeparation, stage});
+      const double separation_s =
+          BuildBoosterTimes(definition.vehicle.boosters, *last, t, tick_s).separation_s;
+      events.push_back({separation_s, EventKind::kBoosterSeparation, stage});
     }
     const bool leaves_rail = i == 0 && rail_exit_s >= 0.0,
                slides_on = leaves_rail && rail_exit_s >= t.burnout_s;
@@ -257,8 +252,7 @@ void FlightRecord::StandOnRail() {
   rail_ = std::make_unique<RailSlide>(*equations_, *rail, ReadState(lift_off));
   LauncherPhase phase;
   phase.burning = true;
-  phase.boosting = plant.boosters != nullptr;
-  if (plant.has_apart_boosters()) phase.boosters_burning = (1u << plant.boosters->each.size()) - 1u;
+  if (plant.boosters) phase.boosters_burning = (1u << plant.boosters->each.size()) - 1u;
   phase.ignition_s = events.front().time_s;
   RailSlide::Way way;
   const auto ends_at = [&](double limit_s) {
@@ -273,13 +267,11 @@ void FlightRecord::StandOnRail() {
     leaves = ends_at(event.time_s);
     if (leaves || separates) break;
     if (burns_out) {
-      phase.burning = phase.boosting = false;
+      phase.burning = false;
+      phase.boosters_burning = 0;
       phase.burnt = true;
-    } else if (event.booster >= 0) {
-      phase.boosters_burning &= ~(1u << event.booster);
-      phase.boosting = phase.boosters_burning != 0;
     } else {
-      phase.boosting = false;
+      phase.boosters_burning &= ~(1u << event.booster);
     }
   }
   // Without thrust it slides on until it stops.
@@ -432,7 +424,7 @@ TickSample FlightRecord::SampleOf(const LaneView& view, unsigned parts) const {
   s.stuck_nozzle = view.phase.stuck_nozzle;
   s.expelled_mass_kg = view.phase.expelled_mass_kg;
   s.jettisoned = view.phase.jettisoned;
-  s.boosting = view.phase.boosting;
+  s.boosting = view.phase.boosting();
   s.boosters_burning = view.phase.boosters_burning;
   if (parts & kInstant) s.instant = equations_->Evaluate(view.phase, view.time_s, view.y);
   return s;

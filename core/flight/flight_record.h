@@ -30,7 +30,7 @@ enum class EventKind {
   kIgnition,
   kBurnout,
   kSeparation,
-  kBoosterBurnout,  ///< of all, or of one that is a body of its own
+  kBoosterBurnout,  ///< of one
   kBoosterSeparation,
   kSpinEnd,   ///< the spin motors burn out
   kRailExit,  ///< the vehicle leaves its rail
@@ -40,7 +40,7 @@ struct FlightEvent {
   double time_s;
   EventKind kind;
   int stage;
-  int booster = -1;  ///< which burns out (-1: all)
+  int booster = -1;  ///< which burns out
 };
 
 /// The state of a flight outside its lane, as kLauncherSize doubles (launcher.h).

@@ -69,7 +69,7 @@ class StepState {
     air_ = &nominal.environment.Air();
     tick_s_ = tick_s;
     most_banks_ = nominal.nozzle_banks();
-    if (nominal.has_apart_boosters()) plant_.apart = &apart_;
+    if (nominal.boosters.get() != nullptr) plant_.apart = &apart_;
     if (nominal.has_side_masses()) plant_.sides = &sides_;
     start_ = &points_[0];
     middle_ = &points_[1];
@@ -114,22 +114,22 @@ class StepState {
   void Ignite(int lane, double time_s, bool lights_boosters) {
     Lane(phase_.ignition_s, lane) = time_s;
     SetLane(phase_.burning, lane, true);
-    SetLane(phase_.boosting, lane, lights_boosters && (plant_.has_boosters || plant_.apart));
+    SetLane(phase_.boosting, lane, lights_boosters && plant_.apart);
     for (int k = 0; plant_.apart && k < apart_.count; ++k)
       SetLane(apart_.each[k].burning, lane, lights_boosters);
     SetLane(phase_.control_torque_n_m, lane, Zero<double>());
     ClearCommands(lane);
     MarkMoved(lane);
   }
-  /// Of boosters that are bodies of their own. Returns whether no other burns on.
+  /// Returns whether no other burns on.
   bool BurnOutBooster(int lane, int booster) {
     SetLane(apart_.each[booster].burning, lane, false);
     MarkMoved(lane);
     if (BoostersBurning(lane) != 0) return false;
-    BurnOutBoosters(lane);
+    SetLane(phase_.boosting, lane, false);
     return true;
   }
-  /// Bits of boosters that are bodies of their own.
+  /// Bits of the boosters.
   unsigned BoostersBurning(int lane) const {
     unsigned burning = 0;
     for (int k = 0; plant_.apart && k < apart_.count; ++k)
@@ -137,8 +137,6 @@ class StepState {
     return burning;
   }
   void DropBoosters(int lane) {
-    Lane(plant_.beside.burn.left_kg, lane) = 0.0;
-    if (!plant_.apart) return;
     SetLane(apart_.attached, lane, false);
     MarkDriven(plant_, most_banks_);
     MarkMoved(lane);
@@ -158,14 +156,10 @@ class StepState {
     SetLane(phase_.control_torque_n_m, lane, Zero<double>());
     MarkMoved(lane);
   }
-  void BurnOutBoosters(int lane) {
-    SetLane(phase_.boosting, lane, false);
-    MarkMoved(lane);
-  }
   /// Lets go of what belongs to the flight. The lane computes on, for nobody.
   void EndFlight(int lane) {
     plant_.weather.profile[lane] = nullptr;
-    plant_.burn.curve[lane] = plant_.beside.burn.curve[lane] = nullptr;
+    plant_.burn.curve[lane] = nullptr;
     for (ApartBooster<T>& one : apart_.each) one.burn.curve[lane] = nullptr;
     SetTable(bending_, lane, nullptr);
     SetLane(phase_.burning, lane, false);
@@ -494,7 +488,7 @@ class StepState {
   int most_banks_;                          ///< of any stage
   DriveBank<T> banks_[kBanks];              ///< those after the first take no time unless some stage has them
   mutable BankNozzles<T> nozzles_[kBanks];  ///< of the present evaluation
-  ApartBoosters<T> apart_;                  ///< unset unless the vehicle has such boosters
+  ApartBoosters<T> apart_;                  ///< unset unless the vehicle has boosters
   SideMasses<T> sides_;                     ///< unset unless the vehicle has masses off the axis
 };
 

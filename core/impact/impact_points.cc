@@ -74,9 +74,9 @@ std::optional<double> BoosterSeparation(const Vehicle& vehicle, const LauncherPl
   if (!plant.boosters) return std::nullopt;
   const double ignition_s = -vehicle.hold_down_s;
   const StageTimes core = {ignition_s, ignition_s + plant.stacks[0].burn.duration_s, 0.0};
-  const MotorBurn* last = plant.boosters->each.empty() ? &plant.boosters->burn : nullptr;
+  const MotorBurn* last = &plant.boosters->each[0].burn;
   for (const EachBooster& one : plant.boosters->each)
-    if (last == nullptr || one.burn.duration_s > last->duration_s) last = &one.burn;
+    if (one.burn.duration_s > last->duration_s) last = &one.burn;
   return BuildBoosterTimes(vehicle.boosters, *last, core, flights.model().definition().autopilot.tick_s)
       .separation_s;
 }
@@ -111,14 +111,7 @@ std::vector<ImpactPoint> ImpactPoints(const CampaignFlights& flights, const Case
     const LauncherStack& stack = plant.stacks[0];
     const MassProperties mass = MassesOn(plant, 0, kBoostersGone, stack.burn.Propellant(since_s), since_s);
     const Vector3 aside_m = LateralMoment(stack, stack.burn.Propellant(since_s)) / mass.mass_kg;
-    std::vector<EachBooster> each = plant.boosters->each;
-    if (each.empty()) {
-      each.resize(1);
-      each[0].burn.left_kg = plant.boosters->burn.left_kg / boosters.count;
-      each[0].dry_kg = boosters.dry_mass_kg;
-      each[0].tanks = OfOneBooster(plant.boosters->propellant, boosters.count).tanks;
-    }
-    for (const EachBooster& one : each) {
+    for (const EachBooster& one : plant.boosters->each) {
       const FallingBody body = {
           one.dry_kg + one.burn.left_kg,
           TumblingCylinderDragArea(boosters.bottom_station_m - boosters.top_station_m, boosters.diameter_m)};

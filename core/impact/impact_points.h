@@ -26,8 +26,7 @@ struct ImpactPoint {
 /// piece, without thrust, with the propellant that is left. All fall as tumbling cylinders of the stage's
 /// length and diameter, in the air and wind of the case.
 ///
-/// Boosters fall in the same way from their separation. Those that are bodies of their own each start at
-/// their place; of those that are all alike one falls, from the vehicle's axis.
+/// Boosters fall in the same way from their separation, each from its place.
 ///
 /// The last stage of a completed flight that ends at injection or apogee has no point; one that ends at
 /// impact has that of its metrics. Neither has a stack whose state is not finite.

@@ -39,7 +39,6 @@ AxisPlant LineariseAxis(const LauncherPlant& plant, const TickSample& sample, Ax
   phase.ignition_s = sample.time_s - sample.since_ignition_s;
   phase.expelled_mass_kg = sample.expelled_mass_kg;
   phase.jettisoned = sample.jettisoned;
-  phase.boosting = sample.boosting;
   phase.boosters_burning = sample.boosters_burning;
 
   const LauncherStack& stack = plant.stacks[static_cast<std::size_t>(sample.stack)];

@@ -109,16 +109,13 @@ class Drawing {
     }
   }
 
-  // A side view shows two of those that are alike, and each of the others at its place to the right.
+  // A side view shows each at its place to the right.
   void DrawBoosters() {
     const Boosters& b = vehicle_.boosters;
     if (b.count == 0) return;
     const double middle_px = axis_px_;
-    std::vector<double> sides = {-1.0, 1.0};
-    if (b.are_apart()) sides.clear();
-    for (const double angle_rad : b.angles_rad) sides.push_back(Cos(angle_rad));
-    for (const double side : sides) {
-      axis_px_ = middle_px + side * b.radius_m * scale_;
+    for (const double angle_rad : b.angles_rad) {
+      axis_px_ = middle_px + Cos(angle_rad) * b.radius_m * scale_;
       Tube("part", b.top_station_m, b.bottom_station_m, b.diameter_m);
       DrawTanks(b.tanks);
       if (b.is_liquid()) continue;

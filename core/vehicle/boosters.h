@@ -18,10 +18,9 @@ inline constexpr int kMaxBoosters = 8;
 /// after the last has burnt out and before the stage does, at rest against the body, with what their tanks
 /// have left. The aerodynamics of the first stack include them and stay after they have left.
 ///
-/// Without a list of angles they stand at equal angles and are all alike: one motor and one grain or set of
-/// tanks stand for them, and their nozzles are fixed along the axis. With it each is a body of its own: it
-/// has its place, its burn, its nozzle, and a centre of gravity off the vehicle's axis. A campaign that draws
-/// values of each flies those that are all alike in the file as such bodies (SpreadOut()).
+/// Each is a body of its own: it has its place, its burn, its nozzle, and a centre of gravity off the
+/// vehicle's axis. A file with their number in place of their angles has them at equal angles (SpreadOut()),
+/// with nozzles that are fixed along the axis.
 struct Boosters {
   int count = 0;                    ///< 0: none
   double dry_mass_kg = 0.0;         ///< of one, a thin tube from top to bottom station
@@ -34,7 +33,7 @@ struct Boosters {
   Motor motor;                           ///< of one
   Grain grain;                           ///< of one, about its own axis, of a solid motor
   double separation_delay_s = 0.0;       ///< after burnout is detected
-  std::vector<double> angles_rad = {};   ///< of each, from body y towards body z (empty: all alike)
+  std::vector<double> angles_rad = {};   ///< of each, from body y towards body z
   double cant_rad = 0.0;                 ///< by which the thrust is turned towards the vehicle's axis
   Gimbal gimbal = {};                    ///< its drives (a limit of 0: the nozzles are fixed)
   std::vector<double> towards_rad = {};  ///< their hinges, as of a Nozzle
@@ -43,17 +42,15 @@ struct Boosters {
   std::vector<Tank> tanks = {};          ///< of one, about its own axis, of a liquid engine, else empty
   bool are_spread = false;               ///< the angles are not the file's: SpreadOut() has set them
 
-  /// Each is a body of its own.
-  bool are_apart() const { return !angles_rad.empty(); }
   bool turn_nozzles() const { return gimbal.limit_rad > 0.0; }
   bool is_liquid() const { return !tanks.empty(); }
   /// Mass of all boosters with their propellant.
   double LiftOffMass() const { return count * (dry_mass_kg + propellant_mass_kg); }
 };
 
-/// Makes each of boosters that are all alike a body of its own: at equal angles, the first one at body y.
+/// Gives boosters without angles equal ones, the first one at body y.
 inline void SpreadOut(Boosters& boosters) {
-  if (boosters.are_apart()) return;
+  if (!boosters.angles_rad.empty()) return;
   for (int k = 0; k < boosters.count; ++k) boosters.angles_rad.push_back(2.0 * kPi * k / boosters.count);
   boosters.are_spread = true;
 }
@@ -86,13 +83,14 @@ inline void Describe(Fields& fields, Boosters& boosters) {
     fields.OptionalMap("gimbal", turn, "drives of their nozzles, at nozzle_station; default: fixed",
                        [&](Fields& gimbal) { DescribeDrives(gimbal, boosters); });
   };
-  fields.Either({{Has("angles", kAngle), each, boosters.are_apart() && !boosters.are_spread},
+  fields.Either({{Has("angles", kAngle), each, !boosters.angles_rad.empty() && !boosters.are_spread},
                  {Else(), [&] {
                     constexpr const char* kAlike =
                         "boosters without angles are all alike, with fixed nozzles";
                     fields.Misplaced("cant", kAngle, kAlike, "angles_deg in place of count");
                     fields.Misplaced("gimbal", {}, kAlike, "angles_deg in place of count");
-                    fields.Integer("count", 2, kMaxBoosters, boosters.count, "number of equal boosters");
+                    fields.Integer("count", 2, kMaxBoosters, boosters.count, "of them, at equal angles");
+                    SpreadOut(boosters);
                   }}});
   fields.Quantity("dry_mass", kMass, kPositive, boosters.dry_mass_kg,
                   "of one: a thin tube from top to bottom station");

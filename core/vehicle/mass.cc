@@ -134,14 +134,6 @@ BoosterPropellant BuildBoosterPropellant(const Boosters& boosters) {
   return all;
 }
 
-BoosterPropellant OfOneBooster(BoosterPropellant all, int count) {
-  all.kilograms_per_area_m2 /= count;
-  all.tanks.first_per_kg2_m *= count;
-  all.tanks.second_per_kg2_m2 *= count;
-  all.tanks.second_per_kg3_m2 *= Square(count);
-  return all;
-}
-
 SideSums StackMass::SidesAt(double propellant_kg) const {
   SideSums sums = sides;
   if (table == nullptr) return sums;

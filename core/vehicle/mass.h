@@ -95,8 +95,6 @@ struct BoosterPropellant {
   DrainingMass tanks = {};             ///< of all, by the mass in all
 };
 BoosterPropellant BuildBoosterPropellant(const Boosters& boosters);
-/// That of one of `count` boosters.
-BoosterPropellant OfOneBooster(BoosterPropellant all, int count);
 
 /// The flow of an engine's tanks by a mixture ratio that is `factor` times the one in which they are loaded.
 ///

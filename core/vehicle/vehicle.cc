@@ -212,7 +212,7 @@ void CheckStage(const Vehicle& vehicle, std::size_t i, Checker& check) {
 }
 
 void CheckNozzles(const Vehicle& vehicle, Checker& check) {
-  int further = static_cast<int>(vehicle.boosters.angles_rad.size());
+  int further = vehicle.boosters.count;
   for (const Stage& stage : vehicle.stages)
     further += std::max(0, static_cast<int>(NozzlesOf(stage.gimbal).size()) - kNozzles);
   check.Require(further <= kFurtherNozzles, "stages",
@@ -242,15 +242,15 @@ void CheckTables(const Vehicle& vehicle, Checker& check) {
   }
 }
 
-// Boosters that are bodies of their own.
-void CheckApart(const Vehicle& vehicle, Checker& check) {
+void CheckPlaces(const Vehicle& vehicle, Checker& check) {
   const Boosters& b = vehicle.boosters;
   const double least_rad = 2.0 * Asin(std::min(1.0, 0.5 * b.diameter_m / b.radius_m));
   for (std::size_t k = 0; k < b.angles_rad.size(); ++k)
     for (std::size_t other = 0; other < k; ++other) {
       const double apart_rad = std::fabs(std::remainder(b.angles_rad[k] - b.angles_rad[other], kTwoPi));
       check.Require(
-          apart_rad > least_rad - 1e-9, "boosters.angles_deg[" + std::to_string(k) + "]",
+          apart_rad > least_rad - 1e-9,
+          b.are_spread ? "boosters.count" : "boosters.angles_deg[" + std::to_string(k) + "]",
           "puts the booster into another one, " + std::to_string(apart_rad * kDegPerRad) + " deg beside it",
           "angles at least " + std::to_string(least_rad * kDegPerRad) + " deg apart");
     }
@@ -293,7 +293,7 @@ void CheckBoosters(const Vehicle& vehicle, Checker& check) {
                 "ramps that are together shorter than twice burning_time_s");
   check.Require(b.grain.outer_diameter_m <= b.diameter_m, "boosters.grain.outer_diameter_m",
                 "is larger than the booster", "at most diameter_m");
-  if (b.are_apart()) CheckApart(vehicle, check);
+  CheckPlaces(vehicle, check);
   CheckFlows(b.motor.thrust_curve, b.propellant_mass_kg, "boosters.motor", check);
   const double beside_s = BuildBoosterBurn(b, 1.0, 1.0).duration_s + b.separation_delay_s;
   const double core_s = BuildBurn(core, 1.0, 1.0).duration_s;

@@ -366,7 +366,6 @@ FlightDefinition DefinitionOf(const Launcher& launcher) {
   FlightDefinition definition =
       launcher.course.is_controlled ? GuidedDefinitionOf(launcher) : FreeDefinitionOf(launcher);
   definition.noise_seed = 7;
-  if (launcher.draws_masses) SpreadOut(definition.vehicle.boosters);
   if (launcher.has_weather) definition.wind_table = Weather();
   if (launcher.is_turbulent)
     definition.turbulence_path =

@@ -293,13 +293,13 @@ Everything Of(const BendingTableLanes<double>& b, const BendingState<double>& s,
               lanes::Vector<double> force, lanes::Vector<double> couple) {
   const LoadTableLanes<double> body = BodySections();
   Everything o{};
-  o.pivot = lanes::BentAtPivot(b, s, lanes::Zero<double>(), lanes::Zero<double>());
+  o.pivot = BentAtPivot(b, s, lanes::Zero<double>(), lanes::Zero<double>());
   o.unit = lanes::UnitTurn(b, s);
   o.unit_rate = lanes::TurnRate(b, s, -1);
   o.gyro_rate = lanes::TurnRate(b, s, 1);
   o.flow = LinearAir(at);
   lanes::BendFlow(b, s, body, kCg_m, kRound, o.flow, o.drive);
-  lanes::DriveAtPivot(b, force, couple, o.drive);
+  DriveAtPivot(b, s, force, couple, o.drive);
   lanes::FinishDrive(b, s, 2e5, o.drive);
   o.sections = lanes::MomentsByBending(b, s, o.drive, body, LinearAir(at).normal, kRound);
   o.later = lanes::Swung(b, lanes::SwingOver(b, 0.02), s, o.drive, {}, {});

@@ -49,8 +49,7 @@ class BendingMotion : public testing::Test {
 constexpr double kRounding = 1e-14;  // of numbers below 10
 
 TEST_F(BendingMotion, DisplacesAndTurnsThePivot) {
-  const lanes::Bent<double> at =
-      lanes::BentAtPivot(bending_, state_, lanes::Zero<double>(), lanes::Zero<double>());
+  const lanes::Bent<double> at = BentAtPivot(bending_, state_, lanes::Zero<double>(), lanes::Zero<double>());
   const Turned turned = TurnedAt(kBodyPivot_m, state_.q_m[0], state_.q_m[1]);
   EXPECT_NEAR(at.y_m, Sum(0, state_.q_m[0], &MadeUpMode::Deflection, kBodyPivot_m), kRounding);
   EXPECT_NEAR(at.z_m, Sum(1, state_.q_m[1], &MadeUpMode::Deflection, kBodyPivot_m), kRounding);
@@ -69,7 +68,7 @@ TEST_F(BendingMotion, LoadsAtThePivotBendWhatDoesNotFly) {
                                           BendingTable::kResidual + i)] = residual[plane][i];
   const BendingTableLanes<double> bending = BendingOf(table, 0.0);
   const auto at = [&](lanes::Vector<double> force, lanes::Vector<double> couple) {
-    return lanes::BentAtPivot(bending, BendingState<double>{}, force, couple);
+    return BentAtPivot(bending, BendingState<double>{}, force, couple);
   };
   const lanes::Vector<double> none = lanes::Zero<double>(), y{0.0, 1.0, 0.0}, z{0.0, 0.0, 1.0};
   EXPECT_DOUBLE_EQ(at(y, none).y_m, residual[0][0]);
@@ -119,13 +118,13 @@ TEST_F(BendingMotion, AForceAtThePivotDrivesAModeByItsWork) {
   for (int plane = 0; plane < kPlanes; ++plane)
     for (int mode = 0; mode < 2; ++mode) driven.drive_m_s2[plane][mode] = 10.0 * plane + mode;  // is added to
   const ModalForce<double> before = driven;
-  lanes::DriveAtPivot(bending_, force, couple, driven);
+  DriveAtPivot(bending_, state_, force, couple, driven);
   for (int plane = 0; plane < kPlanes; ++plane)
     for (int mode = 0; mode < 2; ++mode) {
       BendingState<double> unit{};
       unit.q_m[plane][mode] = 1.0;
       const lanes::Bent<double> at =
-          lanes::BentAtPivot(bending_, unit, lanes::Zero<double>(), lanes::Zero<double>());
+          BentAtPivot(bending_, unit, lanes::Zero<double>(), lanes::Zero<double>());
       const double work =
           force.y * at.y_m + force.z * at.z_m + couple.y * at.about_y_rad + couple.z * at.about_z_rad;
       EXPECT_NEAR(driven.drive_m_s2[plane][mode] - before.drive_m_s2[plane][mode], work, 1e-9)

@@ -54,7 +54,7 @@ struct Case {
 Case CaseOf(const char* name, const LauncherPlant& plant, bool burning, bool boosting = false) {
   Case c{name, plant, {}, {}};
   c.phase.burning = burning;
-  c.phase.boosting = boosting;
+  c.phase.boosters_burning = boosting ? kAllBoosters : 0u;
   const Earth& earth = plant.environment.earth;
   RigidBodyState s;
   s.p_EoC_I = FromGeodetic(earth, {0.3, 0.7, 9000.0});

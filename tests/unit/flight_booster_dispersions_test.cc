@@ -124,7 +124,8 @@ TEST(BoosterDispersions, MomentumIsThatOfWhatFlowsOut) {
     plant.environment.earth.mu_m3_s2 = 0.0;
     const LauncherModel equations(plant);
     Flown flight{&equations, {}};
-    flight.phase.burning = flight.phase.boosting = true;
+    flight.phase.burning = true;
+    flight.phase.boosters_burning = kAllBoosters;
     RigidBodyState s;
     s.p_EoC_I = {1e9, 0.0, 0.0};
     std::array<double, kLauncherSize> y{};

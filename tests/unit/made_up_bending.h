@@ -148,4 +148,16 @@ inline std::vector<std::vector<MadeUpMode>> TwoPlanes() {
            {{-0.5, 0.35, -0.03, 0.0005}, 37.0, 300.0, {-0.004, 0.06}}}};
 }
 
+/// The pivots, and what drives the modes there.
+inline lanes::Bent<double> BentAtPivot(const lanes::BendingTableLanes<double>& b,
+                                       const lanes::BendingState<double>& s, lanes::Vector<double> force_n,
+                                       lanes::Vector<double> couple_n_m) {
+  return lanes::BentAt(b, s, lanes::kAtPivot, lanes::ShapesOf(b, lanes::kAtPivot), force_n, couple_n_m);
+}
+inline void DriveAtPivot(const lanes::BendingTableLanes<double>& b, const lanes::BendingState<double>& s,
+                         lanes::Vector<double> force_n, lanes::Vector<double> couple_n_m,
+                         lanes::ModalForce<double>& to) {
+  lanes::DriveAt(b, s, lanes::kAtPivot, lanes::ShapesOf(b, lanes::kAtPivot), force_n, couple_n_m, to);
+}
+
 }  // namespace dispersa

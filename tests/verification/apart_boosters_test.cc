@@ -64,7 +64,7 @@ FlightDefinition Gimballed(const std::vector<double>& angles_deg, bool alone = f
 
 LauncherPhase Boosting(std::size_t count) {
   LauncherPhase phase;
-  phase.burning = phase.boosting = true;
+  phase.burning = true;
   phase.boosters_burning = (1u << count) - 1u;
   return phase;
 }
@@ -282,14 +282,6 @@ TEST(ApartBoosters, DelayedCommandsAreOfTheDrivesThatGotThem) {
     }
     EXPECT_EQ(on_the_way, static_cast<int>(late));
   }
-}
-
-// Four at equal angles with nothing to tell them apart: what the model of boosters all alike says.
-TEST(ApartBoosters, AllAlikeFlyAsOneMotorDoes) {
-  FlightInputs inputs;
-  inputs.thrust_misalignment_rad = AllStages(0.2 * kDeg);
-  inputs.cg_offset_m[0] = 0.01;
-  ExpectFliesAsAllAlike(Boosted({0.0, 90.0, 180.0, 270.0}), inputs);
 }
 
 // A burn rate of f: thrust and flow times f, time over f, the same impulse. Which one burns a history says;

@@ -124,8 +124,7 @@ TEST(BoosterMasses, AreThoseOfShellsGrainsAndTanksByHand) {
     for (const double since_s : {0.0, 7.0, 18.0, 20.6}) {
       LauncherPhase phase;
       phase.burning = true;
-      phase.boosting = since_s < 20.5;
-      phase.boosters_burning = phase.boosting ? 3u : 0u;
+      phase.boosters_burning = since_s < 20.5 ? 3u : 0u;
       const Bodies all = ByHand(definition, plant, drawn, since_s);
       const LauncherInstant now = LauncherModel(plant).Evaluate(phase, since_s, y.data());
       EXPECT_NEAR(now.loads.mass_kg, all.mass_kg, 1e-9 * all.mass_kg) << liquid << " " << since_s;

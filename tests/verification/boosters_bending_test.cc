@@ -230,7 +230,6 @@ TEST(BoostersBending, DrawnMassesHaveModesNearTheNominalOnes) {
 struct InSpace : BendingInSpace {
   explicit InSpace(const Vehicle& v) : BendingInSpace(v, 0.5 * kBoost_s) {
     plant.flow_coriolis = false;
-    phase.boosting = true;
     phase.boosters_burning = (1u << kCount) - 1u;
   }
   void Change(const std::function<void(BoosterSet&)>& change) {

@@ -64,7 +64,8 @@ void Advance(const LauncherPlant& plant, const LauncherPhase& phase, double from
 
 LauncherPhase Boosting() {
   LauncherPhase phase;
-  phase.burning = phase.boosting = true;
+  phase.burning = true;
+  phase.boosters_burning = kAllBoosters;
   return phase;
 }
 
@@ -174,7 +175,7 @@ TEST(Boosters, GainTheRocketEquationsSpeed) {
   WriteState(AfterJettison(plant, 0, 0u, kBoostersGone, plant.stacks[0].burn.Propellant(boost_s), boost_s,
                            ReadState(y.data())),
              y.data());
-  phase.boosting = false;
+  phase.boosters_burning = 0;
   phase.jettisoned = kBoostersGone;
   Advance(plant, phase, boost_s, core_s, y.data());
 
