@@ -1,7 +1,6 @@
 #include "core/campaign/dispersion_fields.h"
 
 #include <algorithm>
-#include <cassert>
 #include <functional>
 #include <numeric>
 #include <set>
@@ -9,6 +8,7 @@
 #include "core/campaign/dispersion_table.h"
 #include "core/environment/turbulence.h"
 #include "core/flight/dispersed_vehicle.h"
+#include "core/math/assertion.h"
 #include "core/math/functions.h"
 #include "core/vehicle/mass.h"
 
@@ -85,7 +85,7 @@ class DispersionFields {
     std::vector<int> inputs;
     for (const std::string& column : columns) {
       inputs.push_back(FindInput(column));
-      assert(inputs.back() >= 0);
+      DISPERSA_ASSERT(inputs.back() >= 0);
     }
     campaign_.dispersions.push_back({name, distribution, std::move(inputs), absolute});
   }
@@ -359,7 +359,6 @@ class DispersionFields {
         return fields.Misplaced(row.key, {}, unfit->what.c_str(), unfit->allowed);
     bool is_there = false;
     fields.OptionalMap(row.key, is_there, row.meaning, [&](Fields& map) {
-      if (is_sound_) SpreadOut(campaign_.vehicle.boosters);
       ScalarDistribution distribution = ReadScalar(map, Limited(row, "further", BoosterNames()));
       if (row.draws == Draws::kBoostersTemperature) {
         double sensitivity_1_k = 0.0;

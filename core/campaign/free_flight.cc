@@ -3,10 +3,12 @@
 #include <algorithm>
 
 #include "core/input/input_error.h"
+#include "core/math/assertion.h"
 
 namespace dispersa {
 
 void SetFreeFlight(Campaign& campaign) {
+  DISPERSA_ASSERT(campaign.vehicle.rail.has_value() && !campaign.course.is_controlled);
   const Rail& rail = *campaign.vehicle.rail;
   Reference& reference = campaign.reference;
   reference.name = "none";

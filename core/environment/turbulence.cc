@@ -1,10 +1,10 @@
 #include "core/environment/turbulence.h"
 
 #include <algorithm>
-#include <cassert>
 #include <cmath>
 
 #include "core/environment/wind.h"
+#include "core/math/assertion.h"
 #include "core/math/functions.h"
 #include "core/math/table.h"
 
@@ -90,7 +90,8 @@ TurbulenceScales TurbulenceAt(const TurbulenceStrength& strength, double ground_
 }
 
 TurbulencePath::TurbulencePath(const ClimbPath& path) {
-  assert(IsStrictlyIncreasing(path.altitude_m) && path.sine_angle.size() == path.altitude_m.size());
+  DISPERSA_ASSERT(IsStrictlyIncreasing(path.altitude_m) && path.sine_angle.size() == path.altitude_m.size(),
+                  path.sine_angle.size(), path.altitude_m.size());
   const SinCos azimuth = SineCosine(path.azimuth_rad);
   azimuth_sine_ = azimuth.sin;
   azimuth_cosine_ = azimuth.cos;

@@ -1,8 +1,9 @@
 #include "core/environment/weather_profile.h"
 
 #include <algorithm>
-#include <cassert>
 #include <utility>
+
+#include "core/math/assertion.h"
 
 namespace dispersa {
 
@@ -68,7 +69,7 @@ WeatherProfile BuildWeatherProfile(const Wind& wind, const DensityFactor& densit
 
 FlightWeather PrepareWeather(const Wind& wind, const DensityFactor& density,
                              const TurbulenceField* turbulence) {
-  assert(wind.jets.size() <= 1 && wind.gusts.size() <= 1);
+  DISPERSA_ASSERT(wind.jets.size() <= 1 && wind.gusts.size() <= 1, wind.jets.size(), wind.gusts.size());
   FlightWeather w;
   w.density_factor = density.scale;
   if (!wind.jets.empty()) {

@@ -1,8 +1,9 @@
 #include "core/flight/flight_inputs.h"
 
 #include <algorithm>
-#include <cassert>
 #include <cstring>
+
+#include "core/math/assertion.h"
 
 namespace dispersa {
 namespace {
@@ -13,7 +14,7 @@ const InputDeclarations& Declared() {
   static const InputDeclarations declared = [] {
     InputDeclarations inputs;
     DeclareInputs(inputs);
-    assert(inputs.AllColumns().size() == kInputCount);
+    DISPERSA_ASSERT(inputs.AllColumns().size() == kInputCount);
     return inputs;
   }();
   return declared;

@@ -1,11 +1,11 @@
 #include "core/flight/flight_model.h"
 
 #include <algorithm>
-#include <cassert>
 
 #include "core/dynamics/aero_grid.h"
 #include "core/dynamics/jettison.h"
 #include "core/flight/dispersed_vehicle.h"
+#include "core/math/assertion.h"
 #include "core/math/constants.h"
 #include "core/math/functions.h"
 #include "core/random/draws.h"
@@ -134,6 +134,11 @@ void SetAerodynamics(const Vehicle& vehicle, const AeroTable& table, LauncherSta
 }  // namespace
 
 LauncherPlant BuildNominalPlant(const Vehicle& vehicle) {
+  if (vehicle.boosters.angles_rad.empty() && vehicle.boosters.count > 0) {
+    Vehicle spread = vehicle;
+    SpreadOut(spread.boosters);
+    return BuildNominalPlant(spread);
+  }
   LauncherPlant plant;
   plant.jet_damping = vehicle.jet_damping;
   plant.flow_coriolis = vehicle.flow_coriolis;
@@ -526,6 +531,7 @@ FlightDefinition WithGuidedTimers(FlightDefinition definition) {
 
 FlightModel::FlightModel(FlightDefinition definition)
     : definition_(WithGuidedTimers(std::move(definition))), nominal_(BuildNominalPlant(definition_.vehicle)) {
+  SpreadOut(definition_.vehicle.boosters);
   // Completed once: cases may draw them.
   if (!definition_.vehicle.aerodynamics.empty())
     definition_.vehicle.aerodynamics = AerodynamicsOf(definition_.vehicle);
@@ -568,7 +574,7 @@ FlightModel::FlightModel(FlightDefinition definition)
 }
 
 FlightModel FlightModel::WithAutopilot(const AutopilotConfig& autopilot) const {
-  assert(autopilot.tick_s == definition_.autopilot.tick_s);
+  DISPERSA_ASSERT(autopilot.tick_s == definition_.autopilot.tick_s);
   FlightModel model = *this;
   model.definition_.autopilot = autopilot;
   model.sensors_ = BuildSensors(definition_.vehicle, autopilot);

@@ -1,10 +1,10 @@
 #include "core/flight/metric_list.h"
 
 #include <algorithm>
-#include <cassert>
 #include <utility>
 
 #include "core/flight/metrics.h"
+#include "core/math/assertion.h"
 
 namespace dispersa {
 
@@ -26,7 +26,7 @@ std::optional<std::size_t> MetricList::Find(const std::string& name) const {
 
 std::size_t MetricList::PositionOf(const std::string& name) const {
   const std::optional<std::size_t> found = Find(name);
-  assert(found);
+  DISPERSA_ASSERT(found);
   return *found;
 }
 

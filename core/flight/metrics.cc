@@ -2,13 +2,13 @@
 
 #include <algorithm>
 #include <bit>
-#include <cassert>
 #include <cmath>
 #include <limits>
 
 #include "core/flight/flight_model.h"
 #include "core/flight/flight_sums.h"
 #include "core/flight/structural_limits.h"
+#include "core/math/assertion.h"
 #include "core/math/constants.h"
 #include "core/math/functions.h"
 
@@ -621,7 +621,7 @@ std::string LawsWith(const Metric& metric) {
 std::size_t MetricColumn(const std::string& name) {
   const std::vector<std::string>& names = MetricNames();
   const auto found = std::find(names.begin(), names.end(), name);
-  assert(found != names.end());
+  DISPERSA_ASSERT(found != names.end());
   return static_cast<std::size_t>(found - names.begin());
 }
 

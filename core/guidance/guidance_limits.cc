@@ -6,6 +6,7 @@
 #include "core/control/autopilot_config.h"
 #include "core/guidance/mission.h"
 #include "core/input/number_text.h"
+#include "core/math/assertion.h"
 #include "core/math/functions.h"
 #include "core/vehicle/mass.h"
 #include "core/vehicle/nozzle_layout.h"
@@ -29,6 +30,7 @@ constexpr double kOfDeadband = 1.5, kOfChange = 1.5;
 
 GuidedAuthority AuthorityOf(const Vehicle& vehicle, const AutopilotConfig& autopilot,
                             const GuidanceConfig& config) {
+  DISPERSA_ASSERT(vehicle.stages.size() >= 2, vehicle.stages.size());
   const std::vector<StackMass> stacks = BuildStackMasses(vehicle);
   GuidedAuthority authority;
   authority.deadband_rad = autopilot.reaction_control.deadband_rad;

@@ -3,12 +3,12 @@
 #include <fmt/format.h>
 
 #include <algorithm>
-#include <cassert>
 #include <cmath>
 #include <optional>
 #include <string_view>
 #include <vector>
 
+#include "core/math/assertion.h"
 #include "core/pages/html_parts.h"
 #include "core/pages/svg_chart.h"
 #include "core/results/text.h"
@@ -22,7 +22,7 @@ constexpr double kThinAir_pa = 1000.0;
 
 std::vector<double> Column(const History& history, const char* name, double factor = 1.0) {
   const int column = FindHistoryColumn(name);
-  assert(column >= 0);
+  DISPERSA_ASSERT(column >= 0, column);
   std::vector<double> values(history.rows());
   for (std::size_t row = 0; row < values.size(); ++row) values[row] = history.at(row, column) * factor;
   return values;
@@ -79,7 +79,7 @@ struct BandView {
 const Band& BandOf(const FlightBands& bands, std::string_view column) {
   const auto band = std::find_if(bands.bands.begin(), bands.bands.end(),
                                  [&](const Band& candidate) { return candidate.column == column; });
-  assert(band != bands.bands.end());
+  DISPERSA_ASSERT(band != bands.bands.end());
   return *band;
 }
 

@@ -3,7 +3,6 @@
 #include <fmt/format.h>
 
 #include <algorithm>
-#include <cassert>
 #include <cmath>
 #include <filesystem>
 #include <optional>
@@ -11,6 +10,7 @@
 #include <utility>
 
 #include "core/analysis/band_counter.h"
+#include "core/math/assertion.h"
 #include "core/pages/kept_histories.h"
 #include "core/results/file_system.h"
 #include "core/results/metric_catalogue.h"
@@ -46,7 +46,7 @@ std::vector<int> BandColumns() {
   std::vector<int> columns;
   for (const char* name : kBandColumns) {
     const int column = FindHistoryColumn(name);
-    assert(column >= 0);
+    DISPERSA_ASSERT(column >= 0, column);
     columns.push_back(column);
   }
   return columns;

@@ -3,9 +3,9 @@
 #include <fmt/format.h>
 
 #include <algorithm>
-#include <cassert>
 #include <cmath>
 
+#include "core/math/assertion.h"
 #include "core/results/text.h"
 
 namespace dispersa {
@@ -39,7 +39,8 @@ std::string Rectangle(double x, double y, double width, double height, const std
 }  // namespace
 
 std::string HeatMapSvg(const HeatMap& map, const std::string& description) {
-  assert(map.cells.size() == map.x.size() * map.y.size());
+  DISPERSA_ASSERT(map.cells.size() == map.x.size() * map.y.size(), map.cells.size(), map.x.size(),
+                  map.y.size());
   double low = HUGE_VAL;
   double high = 0.0;
   for (const HeatMapCell& cell : map.cells) {

@@ -2,13 +2,13 @@
 #include <fmt/format.h>
 
 #include <algorithm>
-#include <cassert>
 #include <cmath>
 #include <map>
 
 #include "core/analysis/comparison.h"
 #include "core/analysis/requirement_summary.h"
 #include "core/control/lyapunov.h"
+#include "core/math/assertion.h"
 #include "core/math/constants.h"
 #include "core/pages/html_parts.h"
 #include "core/pages/svg_chart.h"
@@ -314,7 +314,7 @@ std::string PaperCompletionSection(const PaperStudy& study) {
     for (const auto& [factor, group] : groups) {
       ++settings;
       ++margins;
-      assert(margins->input == factors[f] && margins->factor == factor);
+      DISPERSA_ASSERT(margins->input == factors[f] && margins->factor == factor);
       failing_gates += !margins->passed;
       changed += row(titles[f], fmt::format("{:g}", factor), group, *margins) != as_shipped;
     }

@@ -1,12 +1,12 @@
 #include "core/paper/paper_study.h"
 
 #include <algorithm>
-#include <cassert>
 #include <set>
 
 #include "core/campaign/case_design.h"
 #include "core/cases/campaign_flights.h"
 #include "core/control/lyapunov.h"
+#include "core/math/assertion.h"
 
 namespace dispersa {
 namespace {
@@ -164,7 +164,7 @@ const std::vector<std::string>& PaperCompletions() {
 }
 
 PaperStudy RunPaperStudy(const std::vector<Campaign>& campaigns, const PaperOptions& options) {
-  assert(campaigns.size() == PaperCampaigns().size());
+  DISPERSA_ASSERT(campaigns.size() == PaperCampaigns().size(), campaigns.size());
   const auto progress = [&](const std::string& what, std::uint64_t done, std::uint64_t total) {
     if (options.progress) options.progress(what, done, total);
   };

@@ -1,9 +1,8 @@
 #include "core/random/draws.h"
 
-#include <cassert>
-
 #include <Random123/philox.h>
 
+#include "core/math/assertion.h"
 #include "core/random/normal.h"
 
 namespace dispersa {
@@ -26,12 +25,12 @@ double OpenUnitInterval(std::uint64_t bits) { return (static_cast<double>(bits >
 
 Stream::Stream(std::uint64_t seed, std::uint64_t index, std::string_view name)
     : seed_(seed), index_(LowWord(index)), name_hash_(HashName(name)) {
-  assert(HighWord(index) == 0);
+  DISPERSA_ASSERT(HighWord(index) == 0, index);
 }
 
 std::uint64_t Stream::Bits() {
   if (drawn_ % 2 == 0) {
-    assert(drawn_ < std::uint64_t{1} << 33);
+    DISPERSA_ASSERT(drawn_ < std::uint64_t{1} << 33);
     const r123::Philox4x32::ctr_type counter = {
         {LowWord(drawn_ / 2), index_, LowWord(name_hash_), HighWord(name_hash_)}};
     const r123::Philox4x32::key_type key = {{LowWord(seed_), HighWord(seed_)}};

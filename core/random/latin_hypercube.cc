@@ -1,10 +1,10 @@
 #include "core/random/latin_hypercube.h"
 
 #include <bit>
-#include <cassert>
 #include <numeric>
 #include <utility>
 
+#include "core/math/assertion.h"
 #include "core/random/draws.h"
 
 namespace dispersa {
@@ -36,7 +36,7 @@ std::vector<std::uint32_t> Permutation(Stream stream, std::uint32_t size) {
 LatinHypercube::LatinHypercube(std::uint64_t seed, std::uint64_t cases,
                                const std::vector<std::string>& dimension_names)
     : seed_(seed), cases_(cases) {
-  assert(cases >= 1 && cases < std::uint64_t{1} << 32);
+  DISPERSA_ASSERT(cases >= 1 && cases < std::uint64_t{1} << 32, cases);
   dimensions_.reserve(dimension_names.size());
   for (const std::string& name : dimension_names) {
     dimensions_.push_back(

@@ -2,11 +2,11 @@
 
 #include <algorithm>
 #include <bit>
-#include <cassert>
 #include <numeric>
 
 #include <boost/random/sobol.hpp>
 
+#include "core/math/assertion.h"
 #include "core/random/draws.h"
 
 namespace dispersa {
@@ -28,9 +28,10 @@ Sobol::Sobol(std::uint64_t seed, const std::vector<std::string>& dimension_names
 
 Sobol::Sobol(std::uint64_t seed, const std::vector<std::string>& dimension_names,
              const std::vector<std::size_t>& sequence_dimensions) {
-  assert(!dimension_names.empty() && sequence_dimensions.size() == dimension_names.size());
+  DISPERSA_ASSERT(!dimension_names.empty() && sequence_dimensions.size() == dimension_names.size(),
+                  sequence_dimensions.size(), dimension_names.size());
   const std::size_t last = *std::max_element(sequence_dimensions.begin(), sequence_dimensions.end());
-  assert(last < kMaxDimensions);
+  DISPERSA_ASSERT(last < kMaxDimensions, last);
   dimensions_.resize(dimension_names.size());
   for (std::size_t i = 0; i < dimensions_.size(); ++i) {
     dimensions_[i].shift = Stream(seed, 0, dimension_names[i] + "/shift").Bits();
@@ -48,7 +49,7 @@ Sobol::Sobol(std::uint64_t seed, const std::vector<std::string>& dimension_names
 }
 
 std::uint64_t Sobol::Digits(std::uint64_t index, std::size_t dimension) const {
-  assert(index < kMaxCases);
+  DISPERSA_ASSERT(index < kMaxCases, index);
   const auto& directions = dimensions_.at(dimension).directions;
   std::uint64_t digits = 0;
   for (std::uint64_t gray = index ^ (index >> 1); gray != 0; gray &= gray - 1) {

@@ -4,10 +4,10 @@
 #include <unistd.h>
 
 #include <algorithm>
-#include <cassert>
 #include <cerrno>
 #include <string>
 
+#include "core/math/assertion.h"
 #include "core/results/file_system.h"
 
 namespace dispersa {
@@ -41,7 +41,7 @@ ColumnFile::~ColumnFile() {
 }
 
 void ColumnFile::Append(const std::vector<double>& row) {
-  assert(row.size() == columns_);
+  DISPERSA_ASSERT(row.size() == columns_, row.size());
   const std::size_t in_block = rows_ % kBlockRows;
   if (in_block == 0 && rows_ > 0) WriteBlock();
   for (std::size_t i = 0; i < columns_; ++i) block_[i * kBlockRows + in_block] = row[i];
@@ -68,7 +68,7 @@ void ColumnFile::WriteBlock() {
 }
 
 std::vector<double> ColumnFile::Read(std::size_t column) const {
-  assert(column < columns_);
+  DISPERSA_ASSERT(column < columns_, column);
   std::vector<double> values(rows_);
   for (std::size_t first = 0; first < rows_; first += kBlockRows) {
     const std::size_t count = std::min(kBlockRows, rows_ - first);

@@ -1,11 +1,11 @@
 #include "core/statistics/anytime.h"
 
-#include <cassert>
 #include <cmath>
 #include <limits>
 
 #include <boost/math/special_functions/beta.hpp>
 
+#include "core/math/assertion.h"
 #include "core/statistics/bisection.h"
 
 namespace dispersa {
@@ -37,7 +37,8 @@ double LastTrue(Condition condition) {
 }  // namespace
 
 double PassEvidence(double probability, std::int64_t n, std::int64_t failures) {
-  assert(probability > 0.0 && probability < 1.0 && n >= failures && failures >= 0);
+  DISPERSA_ASSERT(probability > 0.0 && probability < 1.0 && n >= failures && failures >= 0, n, failures,
+                  probability);
   const double limit = 1.0 - probability;
   const double a = static_cast<double>(failures) + 0.5;
   const double b = static_cast<double>(n - failures) + 1.0;
@@ -48,7 +49,8 @@ double PassEvidence(double probability, std::int64_t n, std::int64_t failures) {
 }
 
 double FailEvidence(double probability, std::int64_t n, std::int64_t failures) {
-  assert(probability > 0.0 && probability < 1.0 && n >= failures && failures >= 0);
+  DISPERSA_ASSERT(probability > 0.0 && probability < 1.0 && n >= failures && failures >= 0, n, failures,
+                  probability);
   if (failures == 0) return kNone;
   const double limit = 1.0 - probability;
   const auto a = static_cast<double>(failures);
@@ -59,7 +61,8 @@ double FailEvidence(double probability, std::int64_t n, std::int64_t failures) {
 }
 
 LookBoundary AnytimeBoundary(double probability, double pass_risk, double fail_risk, std::int64_t n) {
-  assert(pass_risk > 0.0 && pass_risk < 1.0 && fail_risk > 0.0 && fail_risk < 1.0);
+  DISPERSA_ASSERT(pass_risk > 0.0 && pass_risk < 1.0 && fail_risk > 0.0 && fail_risk < 1.0, pass_risk,
+                  fail_risk);
   const std::int64_t first_open = FirstTrue(-1, n + 1, [&](std::int64_t failures) {
     return PassEvidence(probability, n, failures) < -std::log(pass_risk);
   });
@@ -79,7 +82,7 @@ std::int64_t AnytimeCasesNeeded(double probability, double risk, std::int64_t fa
 }
 
 Interval AnytimeSuccess(std::int64_t n, std::int64_t failures, std::int64_t most_failures, double risk) {
-  assert(n > 0);
+  DISPERSA_ASSERT(n > 0, n);
   const double threshold = -std::log(risk);
   return {LastTrue([&](double p) { return p > 0.0 && PassEvidence(p, n, most_failures) >= threshold; }),
           failures == 0 ? 1.0 : LastTrue([&](double p) {

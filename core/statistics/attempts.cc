@@ -1,10 +1,10 @@
 #include "core/statistics/attempts.h"
 
 #include <algorithm>
-#include <cassert>
 #include <cmath>
 #include <map>
 
+#include "core/math/assertion.h"
 #include "core/statistics/anytime.h"
 
 namespace dispersa {
@@ -50,7 +50,7 @@ bool AnytimePasses(double probability, double risk, std::int64_t cases, std::int
 
 AttemptsVerdict JudgeAttempts(double probability, double risk, std::uint64_t reserved,
                               const std::vector<Attempt>& attempts) {
-  assert(!attempts.empty() && reserved >= 1);
+  DISPERSA_ASSERT(!attempts.empty() && reserved >= 1);
   const double share = risk / static_cast<double>(reserved);
   // What the plan leaves of its share; none if it could not have passed. An anytime plan leaves all: the pool
   // goes on with the same evidence.

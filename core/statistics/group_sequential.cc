@@ -1,12 +1,12 @@
 #include "core/statistics/group_sequential.h"
 
 #include <algorithm>
-#include <cassert>
 #include <cmath>
 #include <numbers>
 
 #include <boost/math/distributions/normal.hpp>
 
+#include "core/math/assertion.h"
 #include "core/statistics/bisection.h"
 #include "core/statistics/order_statistics.h"
 
@@ -59,7 +59,7 @@ class Undecided {
 
   /// Adds cases, up to n.
   void Advance(std::int64_t n) {
-    assert(n >= n_);
+    DISPERSA_ASSERT(n >= n_, n, n_);
     if (n == n_ || mass_.empty()) {
       n_ = std::max(n, n_);
       return;

@@ -1,10 +1,10 @@
 #include "core/statistics/intervals.h"
 
-#include <cassert>
 #include <limits>
 
 #include <boost/math/special_functions/beta.hpp>
 
+#include "core/math/assertion.h"
 #include "core/statistics/bisection.h"
 #include "core/statistics/order_statistics.h"
 
@@ -16,14 +16,16 @@ constexpr double kInfinity = std::numeric_limits<double>::infinity();
 }  // namespace
 
 double ClopperPearsonLower(std::int64_t events, std::int64_t n, double confidence) {
-  assert(n > 0 && events >= 0 && events <= n && confidence > 0.0 && confidence < 1.0);
+  DISPERSA_ASSERT(n > 0 && events >= 0 && events <= n && confidence > 0.0 && confidence < 1.0, n, events,
+                  confidence);
   if (events == 0) return 0.0;
   return boost::math::ibetac_inv(static_cast<double>(events), static_cast<double>(n - events + 1),
                                  confidence);
 }
 
 double ClopperPearsonUpper(std::int64_t events, std::int64_t n, double confidence) {
-  assert(n > 0 && events >= 0 && events <= n && confidence > 0.0 && confidence < 1.0);
+  DISPERSA_ASSERT(n > 0 && events >= 0 && events <= n && confidence > 0.0 && confidence < 1.0, n, events,
+                  confidence);
   if (events == n) return 1.0;
   return boost::math::ibeta_inv(static_cast<double>(events + 1), static_cast<double>(n - events), confidence);
 }
@@ -34,7 +36,8 @@ Interval ClopperPearson(std::int64_t events, std::int64_t n, double confidence) 
 }
 
 RankInterval QuantileRanks(std::int64_t n, double probability, double confidence) {
-  assert(n >= 0 && probability > 0.0 && probability < 1.0 && confidence > 0.0 && confidence < 1.0);
+  DISPERSA_ASSERT(n >= 0 && probability > 0.0 && probability < 1.0 && confidence > 0.0 && confidence < 1.0, n,
+                  probability, confidence);
   // The number B of values up to the quantile is binomial, and n - B counts as failures. If B < r, the value
   // of rank r is above the quantile and is no lower bound. If B >= r, it is below and is no upper bound. Each
   // may happen with half of 1 - confidence.

@@ -1,10 +1,10 @@
 #include "core/statistics/paired.h"
 
 #include <algorithm>
-#include <cassert>
 #include <cmath>
 #include <limits>
 
+#include "core/math/assertion.h"
 #include "core/statistics/order_statistics.h"
 
 namespace dispersa {
@@ -32,7 +32,7 @@ double SignTest(std::size_t worse, std::size_t better) {
 
 PairedDifference ComparePaired(const std::vector<double>& a, const std::vector<double>& b,
                                double confidence) {
-  assert(a.size() == b.size());
+  DISPERSA_ASSERT(a.size() == b.size(), a.size(), b.size());
   PairedDifference result;
   result.n = a.size();
   if (a.empty()) return result;

@@ -1,10 +1,10 @@
 #include "core/statistics/planned_verdict.h"
 
 #include <algorithm>
-#include <cassert>
 #include <cmath>
 #include <set>
 
+#include "core/math/assertion.h"
 #include "core/statistics/anytime.h"
 #include "core/statistics/intervals.h"
 #include "core/statistics/order_statistics.h"
@@ -45,7 +45,7 @@ std::int64_t CaseTally::Missing(std::int64_t n) const { return Below(missing, n)
 
 PlannedVerdict Decide(const PlannedRequirement& requirement, std::int64_t n, const CaseTally& tally,
                       const std::vector<std::int64_t>& past_looks) {
-  assert(n >= 1);
+  DISPERSA_ASSERT(n >= 1, n);
   const double probability = requirement.probability;
   const double risk = requirement.risk;
   const VerdictPlan& plan = requirement.plan;
@@ -121,7 +121,7 @@ PlannedVerdict Decide(const PlannedRequirement& requirement, std::int64_t n, con
 std::vector<PlannedVerdict> DecideAll(const std::vector<PlannedRequirement>& requirements, bool holm,
                                       std::int64_t n, const std::vector<CaseTally>& tallies,
                                       const std::vector<std::int64_t>& past_looks) {
-  assert(requirements.size() == tallies.size());
+  DISPERSA_ASSERT(requirements.size() == tallies.size(), requirements.size(), tallies.size());
   std::vector<PlannedVerdict> verdicts(requirements.size());
   std::size_t open = requirements.size();
   for (bool again = open > 0; again;) {

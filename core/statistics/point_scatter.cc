@@ -1,12 +1,13 @@
 #include "core/statistics/point_scatter.h"
 
 #include <algorithm>
-#include <cassert>
 #include <cmath>
 #include <numbers>
 
 #include <Eigen/Cholesky>
 #include <boost/math/distributions/chi_squared.hpp>
+
+#include "core/math/assertion.h"
 
 namespace dispersa {
 
@@ -70,7 +71,7 @@ std::vector<Containment> ContainmentOf(const std::vector<std::vector<double>>& p
 }
 
 ScatterEllipse EllipseOf(const std::vector<std::vector<double>>& covariance, double scale) {
-  assert(covariance.size() == 2);
+  DISPERSA_ASSERT(covariance.size() == 2, covariance.size());
   const double a = covariance[0][0], b = covariance[0][1], c = covariance[1][1];
   const double middle = 0.5 * (a + c);
   const double half = std::hypot(0.5 * (a - c), b);

@@ -1,10 +1,11 @@
 #include "core/statistics/replicates.h"
 
 #include <algorithm>
-#include <cassert>
 #include <cmath>
 
 #include <boost/math/distributions/students_t.hpp>
+
+#include "core/math/assertion.h"
 
 namespace dispersa {
 
@@ -28,7 +29,7 @@ Interval StudentBounds(const std::vector<double>& shares, double risk) {
 }  // namespace
 
 Interval ReplicateBounds(const std::vector<std::int64_t>& counts, std::int64_t points, double risk) {
-  assert(counts.size() >= 2 && points > 0 && risk > 0.0 && risk < 0.5);
+  DISPERSA_ASSERT(counts.size() >= 2 && points > 0 && risk > 0.0 && risk < 0.5, points, risk, counts.size());
   std::vector<double> shares;
   std::int64_t events = 0;
   for (const std::int64_t count : counts) {

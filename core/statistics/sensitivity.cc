@@ -1,13 +1,13 @@
 #include "core/statistics/sensitivity.h"
 
 #include <algorithm>
-#include <cassert>
 #include <cmath>
 #include <numeric>
 #include <random>
 
 #include <boost/math/distributions/normal.hpp>
 
+#include "core/math/assertion.h"
 #include "core/math/matrices.h"
 
 namespace dispersa {
@@ -89,7 +89,7 @@ Ranked::Ranked(const std::vector<double>& values) : order_(Order(values)), ranks
 }
 
 SensitivityIndex FirstOrderIndex(const Ranked& x, const std::vector<double>& y, std::uint64_t seed) {
-  assert(x.size() == y.size());
+  DISPERSA_ASSERT(x.size() == y.size(), x.size(), y.size());
   const std::size_t n = x.size();
   if (n < 8) return {};
   // About the mean, so that the squares lose no digits.
@@ -133,7 +133,7 @@ SensitivityIndex FirstOrderIndex(const Ranked& x, const std::vector<double>& y, 
 }
 
 std::vector<double> RestOf(const Ranked& x, const std::vector<double>& y) {
-  assert(x.size() == y.size());
+  DISPERSA_ASSERT(x.size() == y.size(), x.size(), y.size());
   const std::size_t count = ClassCount(x.size());
   const std::vector<std::uint8_t> classes = Classes(x, count);
   std::vector<double> sums(count), sizes(count), rest = y;
@@ -146,7 +146,7 @@ std::vector<double> RestOf(const Ranked& x, const std::vector<double>& y) {
 }
 
 double FirstOrderShare(const Ranked& x, const std::vector<double>& y) {
-  assert(x.size() == y.size());
+  DISPERSA_ASSERT(x.size() == y.size(), x.size(), y.size());
   if (x.size() < 8) return 0.0;
   const double mean = std::accumulate(y.begin(), y.end(), 0.0) / static_cast<double>(y.size());
   const std::size_t count = ClassCount(x.size());
@@ -191,7 +191,7 @@ std::vector<double> PartialRankCorrelations(const std::vector<const Ranked*>& x,
 }
 
 double RankSumP(const Ranked& x, const std::vector<bool>& marked) {
-  assert(x.size() == marked.size());
+  DISPERSA_ASSERT(x.size() == marked.size(), x.size(), marked.size());
   const std::vector<double>& ranks = x.ranks();
   const auto n = static_cast<double>(x.size());
   double m = 0.0, sum = 0.0, squares = 0.0;

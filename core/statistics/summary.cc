@@ -1,10 +1,10 @@
 #include "core/statistics/summary.h"
 
 #include <algorithm>
-#include <cassert>
 #include <cmath>
 #include <utility>
 
+#include "core/math/assertion.h"
 #include "core/statistics/compensated_sum.h"
 
 namespace dispersa {
@@ -27,7 +27,7 @@ std::vector<double> SortedFinite(std::vector<double> values) {
 }
 
 double Quantile(const std::vector<double>& sorted_values, double probability) {
-  assert(probability >= 0.0 && probability <= 1.0);
+  DISPERSA_ASSERT(probability >= 0.0 && probability <= 1.0, probability);
   if (sorted_values.empty()) return kUndefined;
   const double position = probability * static_cast<double>(sorted_values.size() - 1);
   const auto below = static_cast<std::size_t>(position);

@@ -1,13 +1,13 @@
 #include "core/statistics/two_samples.h"
 
 #include <algorithm>
-#include <cassert>
 #include <cmath>
 #include <limits>
 #include <numeric>
 
 #include <boost/math/special_functions/gamma.hpp>
 
+#include "core/math/assertion.h"
 #include "core/statistics/order_statistics.h"
 #include "core/statistics/sensitivity.h"
 
@@ -55,7 +55,7 @@ double McNemarP(std::int64_t only_a, std::int64_t only_b) {
 }
 
 double FisherP(std::int64_t events_a, std::int64_t n_a, std::int64_t events_b, std::int64_t n_b) {
-  assert(events_a >= 0 && events_a <= n_a && events_b >= 0 && events_b <= n_b);
+  DISPERSA_ASSERT(events_a >= 0 && events_a <= n_a && events_b >= 0 && events_b <= n_b);
   if (n_a == 0 || n_b == 0) return 1.0;
   const std::int64_t events = events_a + events_b;
   const double all = LogChoose(n_a + n_b, events);
@@ -100,7 +100,7 @@ Interval DifferenceLimits(double a, const Interval& limits_a, double b, const In
 
 QuantileDifference CompareQuantiles(const std::vector<double>& a, const std::vector<double>& b,
                                     double probability, double confidence, bool paired) {
-  assert(!paired || a.size() == b.size());
+  DISPERSA_ASSERT(!paired || a.size() == b.size(), a.size(), b.size());
   QuantileDifference result;
   if (a.empty() || b.empty()) return result;
   const std::vector<double> sorted_a = Sorted(a);

@@ -3,6 +3,7 @@
 #include <cmath>
 
 #include "core/environment/earth.h"
+#include "core/math/assertion.h"
 #include "core/math/functions.h"
 
 namespace dispersa {
@@ -21,6 +22,7 @@ void AimAt(const TrajectoryProblem& problem, Vehicle& vehicle) {
 }
 
 AimedEllipse EllipseOf(const TrajectoryProblem& problem) {
+  DISPERSA_ASSERT(problem.target_apogee_m.has_value());
   const double perigee_m = Wgs84().equatorial_radius_m + problem.target_altitude_m;
   const double apogee_m = Wgs84().equatorial_radius_m + *problem.target_apogee_m;
   return {0.5 * (perigee_m + apogee_m), (apogee_m - perigee_m) / (apogee_m + perigee_m)};

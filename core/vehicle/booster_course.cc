@@ -1,11 +1,15 @@
 #include "core/vehicle/booster_course.h"
 
+#include "core/math/assertion.h"
+
 namespace dispersa {
 
 BoosterCourse::BoosterCourse(const Vehicle& vehicle)
     : stage_(BuildBurn(vehicle.stages[0], 1.0, 1.0)),
       boosters_(BuildBoosterBurn(vehicle.boosters, 1.0, 1.0)),
-      delay_s_(vehicle.boosters.separation_delay_s) {}
+      delay_s_(vehicle.boosters.separation_delay_s) {
+  DISPERSA_ASSERT(vehicle.boosters.count > 0);
+}
 
 double BoosterCourse::PropellantOfAll(double stage_kg) const {
   // The stage's propellant only falls: bisection to the last digit of the time.

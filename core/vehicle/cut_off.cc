@@ -2,11 +2,13 @@
 
 #include <limits>
 
+#include "core/math/assertion.h"
 #include "core/math/functions.h"
 
 namespace dispersa {
 
 double CutOffSpeed(const Motor& motor, double radius_m, double altitude_m) {
+  DISPERSA_ASSERT(EndsAtSpeed(motor));
   if (motor.cut_off == CutOff::kAtVelocity) return motor.cut_off_velocity_m_s;
   const AimedEnergy& aim = motor.aimed_energy;
   if (!aim.is_known) return std::numeric_limits<double>::infinity();

@@ -4,6 +4,7 @@
 #include <numeric>
 
 #include "core/input/fields.h"
+#include "core/math/assertion.h"
 #include "core/math/functions.h"
 #include "core/vehicle/propulsion.h"
 
@@ -167,6 +168,7 @@ void AddSides(const MassTable& table, double dry_kg, MassRows& built) {
 
 MassRows BuildMassRows(const MassTable& table, double dry_kg) {
   const std::size_t count = table.propellant_kg.size();
+  DISPERSA_ASSERT(count >= 2, count);
   const auto sums_at = [&](std::size_t i) {
     const double mass_kg = dry_kg + table.propellant_kg[i], cg_m = table.cg_station_m[i];
     const double transverse_kg_m2 = 0.5 * (PitchInertia(table, i) + YawInertia(table, i));

@@ -1,9 +1,9 @@
 #include "core/vehicle/mould_line.h"
 
 #include <algorithm>
-#include <cassert>
 #include <string>
 
+#include "core/math/assertion.h"
 #include "core/math/constants.h"
 #include "core/math/functions.h"
 
@@ -81,7 +81,7 @@ std::vector<MouldSection> CutMouldLine(const std::vector<ProfileSection>& profil
     }
     body.push_back(section);
   }
-  assert(!body.empty() && body.front().fore_radius_m == 0.0);
+  DISPERSA_ASSERT(!body.empty() && body.front().fore_radius_m == 0.0);
   return body;
 }
 

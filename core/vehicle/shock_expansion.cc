@@ -2,6 +2,7 @@
 
 #include <algorithm>
 
+#include "core/math/assertion.h"
 #include "core/math/constants.h"
 #include "core/math/functions.h"
 
@@ -171,6 +172,7 @@ double ConePressureCoefficient(double mach, double half_angle_rad) {
 }
 
 ShockExpansionResult ShockExpansion(const std::vector<MouldSection>& body, double mach) {
+  DISPERSA_ASSERT(mach >= kShockExpansionMach, mach);
   March march(mach);
   for (const Element& element : Elements(body)) march.Over(element);
   return march.Result();

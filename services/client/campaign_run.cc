@@ -212,6 +212,7 @@ class CampaignRun {
     if (coordinator.joined() == 0 && coordinator.refusal()) {
       return "no worker may fly this campaign: " + *coordinator.refusal();
     }
+    if (!book_.breakdown().empty()) return book_.breakdown();
     // Whoever takes their places would say the same.
     if (const auto refusal = coordinator.RefusalByAll(book_.campaign().result_id())) {
       return "no worker can fly this campaign: " + *refusal;

@@ -5,6 +5,7 @@
 #include <utility>
 
 #include "core/flight/engine_version.h"
+#include "core/math/assertion.h"
 #include "services/coordinator/service.h"
 #include "services/program/exit_code.h"
 
@@ -115,7 +116,12 @@ void Coordinator::Handle(const CoordinatorEvent& event) {
   } else if (const auto* refusal = std::get_if<CampaignRefusal>(&event.what)) {
     dispatcher_.On(event.sender, *refusal, now_s_);
   } else if (const auto* report = std::get_if<Report>(&event.what)) {
-    const auto accepted = dispatcher_.On(event.sender, *report, now_s_);
+    std::vector<const FlownCase*> accepted;
+    try {
+      accepted = dispatcher_.On(event.sender, *report, now_s_);
+    } catch (const AssertionFailed& fault) {
+      dispatcher_.Break(report->flight_id, fault.what());
+    }
     if (accepted.empty() || !link_.HasResultObservers()) return;
     for (const FlownCase* flown : accepted)
       link_.Publish(dispatcher_.FlightIdOf(report->flight_id), report->worker, *flown);

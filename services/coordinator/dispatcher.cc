@@ -5,6 +5,7 @@
 #include <utility>
 
 #include "core/cases/plugin_check.h"
+#include "core/math/assertion.h"
 #include "core/results/fingerprint.h"
 #include "services/log/log.h"
 #include "services/transport/complaints.h"
@@ -319,6 +320,13 @@ void Dispatcher::On(const std::string& sender, const CampaignRefusal& refusal, d
   refusal_ = reason;
   campaign->second.book->ledger().Lost(refusal.worker, WorkerEnd::kLeft, *refusal_);
   known->second.ForgetSent(refusal.flight_id);
+  // Another worker would find the same, or worse: another result.
+  if (IsEngineFault(reason)) campaign->second.book->Break(reason);
+}
+
+void Dispatcher::Break(const std::string& flight_id, const std::string& fault) {
+  if (const auto campaign = campaigns_.find(flight_id); campaign != campaigns_.end())
+    campaign->second.book->Break(fault);
 }
 
 std::string Dispatcher::FlightIdOf(const std::string& result_id) const {
@@ -485,10 +493,14 @@ bool Dispatcher::AssignTo(const std::string& id, Worker& worker, double now_s) {
   for (FlyingCampaign* campaign : by_right) {
     if (!campaign->book->pause().empty() || !campaign->book->breakdown().empty()) continue;
     Ledger& ledger = campaign->book->ledger();
-    if (auto assignment = ledger.GiveTo(id, batches - ledger.Batches(id), now_s)) {
-      GiveOrder(worker, campaign->book->campaign().result_id(), assignment->attempt,
-                std::move(assignment->cases), now_s);
-      return true;
+    try {
+      if (auto assignment = ledger.GiveTo(id, batches - ledger.Batches(id), now_s)) {
+        GiveOrder(worker, campaign->book->campaign().result_id(), assignment->attempt,
+                  std::move(assignment->cases), now_s);
+        return true;
+      }
+    } catch (const AssertionFailed& fault) {
+      campaign->book->Break(fault.what());
     }
   }
   return false;

@@ -68,6 +68,8 @@ class Dispatcher {
   /// Workers to which nothing needs to be sent any more.
   std::vector<std::string> TakeForgotten();
 
+  /// A rule of the program is broken in what concerns this campaign: it ends alone.
+  void Break(const std::string& flight_id, const std::string& fault);
   /// The orders to send now. Stores accepted results when due. Throws ResultError.
   std::vector<Orders> Tick(double now_s);
   /// From now on, every worker gets the order to leave.

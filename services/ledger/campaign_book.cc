@@ -129,6 +129,13 @@ bool CampaignBook::Try(Action action) {
   }
 }
 
+void CampaignBook::Break(const std::string& fault) {
+  if (!breakdown_.empty()) return;
+  LogError("campaign {} ends: {}", Title(campaign_), fault);
+  TryFlush();
+  breakdown_ = fault;
+}
+
 void CampaignBook::Disown(const std::string& worker) {
   if (audit_) audit_->Drop(worker);
   disowned_.push_back(worker);

@@ -55,8 +55,10 @@ class CampaignBook {
   void PauseOnDiskErrors() { pauses_on_disk_errors_ = true; }
   /// Why nothing can be stored now; empty: storing works. Assign no cases while it is set.
   const std::string& pause() const { return pause_; }
-  /// Why nothing can be stored any more; empty: storing works.
+  /// Why nothing can be stored any more, or which rule of the program is broken; empty: all is well.
   const std::string& breakdown() const { return breakdown_; }
+  /// After a fault of the program: what has been accepted is stored, and nothing follows.
+  void Break(const std::string& fault);
   /// Results that were accepted and are not stored yet.
   std::uint64_t unstored() const { return results_.size(); }
 

@@ -1,9 +1,10 @@
 #include "services/ledger/index_set.h"
 
 #include <algorithm>
-#include <cassert>
 #include <iterator>
 #include <numeric>
+
+#include "core/math/assertion.h"
 
 namespace dispersa {
 
@@ -11,14 +12,14 @@ void IndexSet::AddRange(std::uint64_t first, std::uint64_t end) {
   if (first >= end) return;
   count_ += end - first;
   auto after = end_of_.lower_bound(first);
-  assert(after == end_of_.end() || after->first >= end);
+  DISPERSA_ASSERT(after == end_of_.end() || after->first >= end);
   if (after != end_of_.end() && after->first == end) {
     end = after->second;
     after = end_of_.erase(after);
   }
   if (after != end_of_.begin()) {
     const auto before = std::prev(after);
-    assert(before->second <= first);
+    DISPERSA_ASSERT(before->second <= first);
     if (before->second == first) {
       before->second = end;
       return;

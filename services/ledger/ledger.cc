@@ -1,8 +1,9 @@
 #include "services/ledger/ledger.h"
 
 #include <algorithm>
-#include <cassert>
 #include <utility>
+
+#include "core/math/assertion.h"
 
 namespace dispersa {
 namespace {
@@ -25,23 +26,32 @@ Ledger::Ledger(std::string engine_version, std::uint64_t cases, const LedgerOpti
 }
 
 void Ledger::MarkDone(std::uint64_t case_index, const Digest& fingerprint) {
-  assert(case_index < cases_.size() && next_attempt_ == options_.attempt_base + 1);
+  DISPERSA_ASSERT(case_index < cases_.size() && next_attempt_ == options_.attempt_base + 1, case_index,
+                  cases_.size());
   if (!waiting_.Remove(case_index)) return;
   cases_.SetDone(case_index, fingerprint);
   ++progress_.done;
+  CheckSums();
+}
+
+void Ledger::CheckSums() const {
+  DISPERSA_ASSERT(
+      progress_.total == cases_.size() && progress_.done + progress_.quarantined <= progress_.total,
+      progress_.total, cases_.size(), progress_.done, progress_.quarantined);
 }
 
 void Ledger::RequireSecondFlight(std::uint64_t case_index, const std::string& flown_by) {
-  assert(case_index < cases_.size());
+  DISPERSA_ASSERT(case_index < cases_.size(), case_index, cases_.size());
   second_flights_[case_index].first = flown_by;
 }
 
 void Ledger::Extend(std::uint64_t cases) {
-  assert(cases >= cases_.size());
+  DISPERSA_ASSERT(cases >= cases_.size(), cases, cases_.size());
   if (cases == cases_.size()) return;
   waiting_.AddRange(cases_.size(), cases);
   cases_.Extend(cases);
   progress_.total = cases;
+  CheckSums();
 }
 
 void Ledger::Reopen(const std::vector<std::uint64_t>& cases) {
@@ -146,6 +156,7 @@ bool Ledger::Quarantine(const std::string& worker, std::uint64_t case_index, std
   quarantined_at_once_.insert(case_index);
   cases_.Set(case_index, CaseState::kQuarantined);
   ++progress_.quarantined;
+  CheckSums();
   return false;
 }
 
@@ -177,6 +188,7 @@ Acceptance Ledger::Finished(const std::string& worker, std::uint64_t case_index,
   cases_.SetDone(case_index, fingerprint);
   if (flight != second_flights_.end()) flight->second.first = worker;
   ++progress_.done;
+  CheckSums();
   return Acceptance::kAccepted;
 }
 

@@ -145,6 +145,8 @@ class Ledger {
   std::size_t WorkerCount() const { return workers_.size(); }
 
  private:
+  /// No case counts twice.
+  void CheckSums() const;
   /// The second flight of a case that two workers must fly.
   struct SecondFlight {
     std::string first;        ///< the worker that returned its result; empty: none, or unknown

@@ -11,6 +11,7 @@
 #include "core/campaign_yaml/load.h"
 #include "core/cases/plugin_check.h"
 #include "core/flight/engine_version.h"
+#include "core/math/assertion.h"
 #include "services/log/log.h"
 
 namespace dispersa {
@@ -167,11 +168,22 @@ class Worker::SlotQueue : public CaseQueue {
 void Worker::FlyForEver() {
   std::optional<Job> job = Next(true);
   while (job) {
+    const std::string flight_id = job->flight_id;
     SlotQueue queue(*this, *std::move(job));
-    queue.flights().FlyCases(queue);
+    try {
+      queue.flights().FlyCases(queue);
+    } catch (const AssertionFailed& fault) {
+      return Break(flight_id, fault.what());
+    }
     job = queue.TakeOther();
     if (!job) job = Next(true);
   }
+}
+
+void Worker::Break(const std::string& flight_id, const std::string& fault) {
+  const Lock lock(mutex_);
+  if (fault_.empty()) fault_ = fault;
+  desk_.Loaded(flight_id, nullptr, fault);
 }
 
 std::optional<Job> Worker::Next(bool wait) {
@@ -226,6 +238,10 @@ std::optional<WorkerExit> Worker::Exit(double now_s) {
     return WorkerExit::kRefused;
   }
   if (desk_.left()) return WorkerExit::kTold;
+  if (!fault_.empty()) {
+    problem_ = fault_;
+    return WorkerExit::kFault;
+  }
   if (desk_.draining()) {
     if (draining_s_ == 0.0) draining_s_ = now_s;
     // Cases under way are finished. The worker waits until the results are stored, as long as a coordinator
@@ -250,6 +266,7 @@ WorkerExit Worker::Leave(WorkerExit exit) {
   {
     const Lock lock(mutex_);
     closed_ = true;
+    last = desk_.Tick(Now());
     last.status = desk_.Status(WorkerState::kLeft);
   }
   work_.notify_all();

@@ -24,7 +24,7 @@ struct WorkerOptions {
   std::optional<double> patience_s = {};   ///< without a coordinator for so long: give up
 };
 
-enum class WorkerExit { kTold, kRefused, kDrained, kIdle, kNoCoordinator };
+enum class WorkerExit { kTold, kRefused, kDrained, kIdle, kNoCoordinator, kFault };
 
 /// One incarnation of a worker. Cases fly on their own threads; the thread of Run only communicates. A flight
 /// cannot be interrupted. So a worker that ends early leaves flying threads behind, and the process must end
@@ -49,6 +49,8 @@ class Worker {
   void Quarantined(const Job& job, const std::string& reason);
   class SlotQueue;
   void FlyForEver();
+  /// The campaign is refused with the fault, its case is nobody's fault, and the worker leaves.
+  void Break(const std::string& flight_id, const std::string& fault);
 
   void Connect();
   void Load(const CampaignText& text);
@@ -69,6 +71,7 @@ class Worker {
   std::condition_variable work_;
   FlightDesk desk_ DISPERSA_GUARDED_BY(mutex_);
   bool closed_ DISPERSA_GUARDED_BY(mutex_) = false;
+  std::string fault_ DISPERSA_GUARDED_BY(mutex_);
   /// None while the network cannot be used. Changed by the thread of Run under the lock.
   std::shared_ptr<WorkerLink> link_;
 };

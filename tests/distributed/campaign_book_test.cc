@@ -128,6 +128,18 @@ TEST_F(FullDiskTest, AnExpelledWorkersResultsAreRemovedWhenItCanBe) {
   EXPECT_FALSE(store_->rows.contains(0));
 }
 
+TEST_F(FullDiskTest, AFaultOfTheProgramKeepsWhatWasAccepted) {
+  store_->problem.reset();
+  Return("w", 0, 3);
+  book_->Break("engine fault: core/a.cc:1: x does not hold");
+  EXPECT_EQ(store_->rows.size(), 3u);
+  EXPECT_EQ(book_->breakdown(), "engine fault: core/a.cc:1: x does not hold");
+  Return("w", 3, 4);
+  EXPECT_FALSE(book_->FlushIfDue(99.0)) << "nothing follows";
+  book_->Break("engine fault: another");
+  EXPECT_EQ(book_->breakdown(), "engine fault: core/a.cc:1: x does not hold") << "the first one";
+}
+
 TEST_F(FullDiskTest, AnyOtherErrorBreaksTheBookForEver) {
   store_->problem = ResultError::Kind::kFile;
   Return("w", 0, 3);

@@ -585,6 +585,19 @@ TEST_F(DispatcherTest, ARefusalForAnEarlierCoordinatorMeansNothing) {
   EXPECT_THAT(Tick(0.2).assignments, testing::SizeIs(2));
 }
 
+TEST_F(DispatcherTest, AnEngineFaultOfOneWorkerEndsTheCampaignAndBlamesNoCase) {
+  Open(2);
+  dispatcher_.On("s", Status(), 0.0);
+  EXPECT_THAT(Tick(0.0).assignments, testing::SizeIs(2));
+  const std::string fault = "engine fault: core/a.cc:1: x does not hold";
+  dispatcher_.On("s", CampaignRefusal{"w", kEpoch, kFlight, fault}, 0.1);
+  EXPECT_EQ(book_->breakdown(), fault);
+  EXPECT_EQ(Progress().waiting, 2u);
+  EXPECT_EQ(Progress().quarantined, 0u);
+  dispatcher_.On("other", Status("other"), 0.2);
+  EXPECT_THAT(Tick(0.5).assignments, IsEmpty()) << "no other worker gets them";
+}
+
 TEST_F(DispatcherTest, AWorkerThatRefusedACampaignGetsNoCaseOfIt) {
   Open(2);
   dispatcher_.On("s", Status(), 0.0);
