@@ -17,6 +17,7 @@
 #include "core/flight/sensor_model.h"
 #include "core/flight/step_limits.h"
 #include "core/flight/structural_limits.h"
+#include "core/input/base_file.h"
 #include "core/input/number_text.h"
 #include "core/input/read_value.h"
 #include "core/input/struct_problems.h"
@@ -212,6 +213,7 @@ class CampaignDescription {
 
   void Describe(Fields& fields) {
     fields.Schema(kCampaignSchema);
+    fields.Base(CampaignBase());
     fields.Text("name", campaign_.name, "of the campaign, and of its folder");
     CheckName(fields, campaign_.name);
     std::string description;
@@ -587,6 +589,7 @@ class CampaignDescription {
 
 DecodedCampaign DecodeCampaign(InputNode& root, CampaignUse use, std::vector<InputProblem>& problems,
                                FileSource* files, std::vector<InputProblem>* warnings) {
+  WriteOut(root, CampaignBase(), "", problems, files);
   DecodedCampaign decoded;
   CampaignDescription description(&root, use, decoded, problems, files, warnings);
   ReadFields(root, "", problems, files, [&](Fields& fields) { description.Describe(fields); });

@@ -3,6 +3,7 @@
 
 #include "core/campaign_yaml/decode.h"
 #include "core/campaign_yaml/describe_file.h"
+#include "core/input/base_file.h"
 #include "core/input/number_text.h"
 #include "core/input/struct_problems.h"
 #include "core/vehicle/cut_off.h"
@@ -156,6 +157,7 @@ Vehicle DecodeVehicle(InputNode& node, const std::string& path, std::vector<Inpu
   const std::size_t before = problems.size(), files_before = files == nullptr ? 0 : files->problems();
   Vehicle vehicle;
   if (node.file == nullptr) return vehicle;  // already reported
+  WriteOut(node, VehicleBase(), path, problems, files);
   ReadFields(node, path, problems, files, [&](Fields& fields) { DescribeVehicleFile(fields, vehicle); });
   const std::size_t of_files = files == nullptr ? 0 : files->problems() - files_before;
   if (problems.size() > before + of_files || !HasRelations(node)) return vehicle;

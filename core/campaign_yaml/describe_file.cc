@@ -14,9 +14,18 @@ void OfOne(F describe) {
 
 }  // namespace
 
+const BaseKeys& CampaignBase() {
+  static const BaseKeys keys = {kCampaignSchema, "a campaign", {"dispersions"}};
+  return keys;
+}
+const BaseKeys& VehicleBase() {
+  static const BaseKeys keys = {kVehicleSchema, "a vehicle"};
+  return keys;
+}
+
 void DescribeVehicleFile(Fields& fields, Vehicle& vehicle) {
   fields.Schema(kVehicleSchema);
-  fields.Base("based_on", kVehicleSchema, "a vehicle file that gives the keys missing here");
+  fields.Base(VehicleBase());
   Describe(fields, vehicle);
 }
 

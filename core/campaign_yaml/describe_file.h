@@ -10,6 +10,10 @@
 
 namespace dispersa {
 
+/// How files are based on others.
+const BaseKeys& CampaignBase();
+const BaseKeys& VehicleBase();
+
 void DescribeVehicleFile(Fields& fields, Vehicle& vehicle);
 void DescribeReferenceFile(Fields& fields, Reference& reference);
 void DescribeAutopilotFile(Fields& fields, AutopilotConfig& autopilot, const OpenPlugin& open);

@@ -17,6 +17,7 @@
 #include "core/campaign_yaml/plan_warnings.h"
 #include "core/campaign_yaml/sha256.h"
 #include "core/campaign_yaml/standard_input.h"
+#include "core/input/base_file.h"
 #include "core/input/read_value.h"
 
 namespace dispersa {
@@ -80,13 +81,14 @@ void OverrideAutopilot(InputNode& root, const CampaignOverrides& overrides, Prob
 
 Campaign FinishCampaign(InputNode root, FileNames names, const CampaignOverrides& overrides, CampaignUse use,
                         ProblemList problems, std::vector<InputProblem>* warnings) {
+  NamedFiles files(names);
+  WriteOut(root, CampaignBase(), "", problems, &files);
   OverrideAutopilot(root, overrides, problems);
   std::string vehicle_file;
   if (const InputNode* vehicle = root.Find("vehicle");
       vehicle != nullptr && vehicle->kind == InputNode::Kind::kScalar)
     vehicle_file = std::filesystem::path(vehicle->text).filename().string();
   Override(root, overrides);
-  NamedFiles files(names);
   DecodedCampaign decoded = DecodeCampaign(root, use, problems, &files, warnings);
   ThrowIfAny(std::move(problems), root);
   Campaign& campaign = decoded.campaign;

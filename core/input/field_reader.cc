@@ -5,6 +5,7 @@
 #include <set>
 #include <utility>
 
+#include "core/input/base_file.h"
 #include "core/input/number_text.h"
 #include "core/input/read_value.h"
 #include "core/input/struct_problems.h"
@@ -59,32 +60,12 @@ class FieldReader : public Fields {
 
   void Schema(const char* name) override {
     Optional("schema");
-    if (!HasSchema(*node_, path_, name)) node_ = &absent_;
+    if (!HasSchema(*node_, path_, name, problems_)) node_ = &absent_;
   }
-  void Base(const char* key, const char* schema, const char* /*meaning*/) override {
-    const auto is_base = [&](const InputMember& member) { return member.key == key; };
-    const auto found = std::find_if(node_->members.begin(), node_->members.end(), is_base);
-    Known& known = Knows(key);
-    if (found == node_->members.end()) return;
-    known.needed = false;
-    InputNode base = std::move(found->value);
-    node_->members.erase(found);
-    const std::string path = PathOf(key);
-    const bool is_named = base.kind == Kind::kScalar;
-    Load(base, path, FileSource::Holds::kDocument);
-    if (base.file == nullptr || (is_named && !HasSchema(base, "", schema))) {
-      *node_ = InputNode();
-    } else if (base.kind != Kind::kMap) {
-      AddProblem(problems_, base, path, base.Describe() + " is not a vehicle", "the name of a vehicle file");
-      *node_ = InputNode();
-    } else if (const InputNode* deeper = base.Find(key)) {
-      AddProblem(problems_, *deeper, path, "the vehicle that another is based on is based on a third",
-                 "a vehicle file without based_on");
-      *node_ = InputNode();
-    } else {
-      for (InputMember& member : base.members)
-        if (node_->Find(member.key) == nullptr) node_->members.push_back(std::move(member));
-    }
+  void Base(const BaseKeys& keys) override {
+    if (Optional(kBasedOn) != nullptr)
+      Refuse(kBasedOn, "a file is named in a text without files", "the keys of " + std::string(keys.what));
+    if (Optional(kWithout) != nullptr) Refuse(kWithout, "is given without 'based_on'", "based_on: FILE");
   }
   void Document(const char* key, const char*, bool needed, const char* allowed, const char*,
                 const ReadNode& read) override {
@@ -394,7 +375,7 @@ class FieldReader : public Fields {
     value.is_there = found != nullptr;
     if (found == nullptr && !key.needed) return;
     InputNode& node = found == nullptr ? absent_ : *found;
-    const std::string path = PathOf(key.name);
+    std::string path = PathOf(key.name);
     if (key.or_list && node.kind == Kind::kList) {
       if (node.items.empty()) AddProblem(problems_, node, path, "the list is empty", key.allowed);
       for (std::size_t i = 0; i < node.items.size(); ++i)
@@ -403,15 +384,15 @@ class FieldReader : public Fields {
     }
     const bool is_number = key.or_number && node.kind == Kind::kScalar && ParseNumber(node.text);
     if (key.file != MapKey::File::kNone && !is_number)
-      Load(node, path,
-           key.file == MapKey::File::kTable ? FileSource::Holds::kTable : FileSource::Holds::kBytes);
+      path = Load(node, path,
+                  key.file == MapKey::File::kTable ? FileSource::Holds::kTable : FileSource::Holds::kBytes);
     if (key.or_number && node.kind != Kind::kMap) {
       if (node.file != nullptr) value.number = ReadNumber(node, path, problems_);
       return;
     }
     value.is_word = key.word != nullptr && node.kind == Kind::kScalar;
     if (!value.is_word)
-      ReadFields(node, PathOfValue(key.name), problems_, files_, part);
+      ReadFields(node, path, problems_, files_, part);
     else if (node.text != key.word)
       AddProblem(problems_, node, path, node.Describe() + " is not " + key.what, key.allowed);
   }
@@ -448,11 +429,6 @@ class FieldReader : public Fields {
   };
 
   std::string PathOf(const std::string& key) const { return path_.empty() ? key : path_ + "." + key; }
-  // A value that was read from a file of its own has paths of its own.
-  std::string PathOfValue(const char* key) const {
-    const InputNode* value = node_->Find(key);
-    return value == nullptr || value->file == node_->file ? PathOf(key) : "";
-  }
 
   Known& Knows(const std::string& stem, Dimension dimension = {}) {
     Known known{stem, {}, !dimension.empty()};
@@ -524,8 +500,12 @@ class FieldReader : public Fields {
       Items(*list, PathOf(key), low_count, high_count, f);
   }
 
-  void Load(InputNode& value, const std::string& path, FileSource::Holds holds) {
-    if (files_ != nullptr && value.kind == Kind::kScalar) files_->Load(value, path, holds, problems_);
+  // Returns the value's path in its file: what was read from a file of its own has paths of its own.
+  std::string Load(InputNode& value, const std::string& path, FileSource::Holds holds) {
+    if (files_ == nullptr || value.kind != Kind::kScalar) return path;
+    const auto file = value.file;
+    files_->Load(value, path, holds, problems_);
+    return value.file == file ? path : "";
   }
   void LoadColumn(InputNode& value, const std::string& key) {
     const bool is_named = value.kind == Kind::kScalar;
@@ -541,24 +521,9 @@ class FieldReader : public Fields {
   void ReadByHand(const Key& key, FileSource::Holds holds, const ReadNode& read) {
     InputNode* value = Find(key, key.allowed);
     if (value == nullptr) return;
-    Load(*value, PathOf(key.name), holds);
-    if (value->file != nullptr) read(*value, PathOfValue(key.name));
+    const std::string path = Load(*value, PathOf(key.name), holds);
+    if (value->file != nullptr) read(*value, path);
   }
-  // Whether a file is of this kind; a map that stands inside another file need not say so.
-  bool HasSchema(const InputNode& node, const std::string& path, const std::string& schema) {
-    if (node.kind != Kind::kMap) return true;  // refused as what it is
-    const InputNode* value = node.Find("schema");
-    const std::string allowed = "schema: " + schema;
-    if (value == nullptr && path.empty())
-      AddProblem(problems_, node, path, "missing key 'schema'", allowed);
-    else if (value != nullptr && value->text != schema)
-      AddProblem(problems_, *value, path.empty() ? "schema" : path + ".schema",
-                 value->Describe() + " is not the schema of this kind of file", allowed);
-    else
-      return true;
-    return false;
-  }
-
   // The word that decides was refused, or there is no map.
   bool IsUndecided(const std::vector<Alternative>& alternatives) const {
     return node_->kind != Kind::kMap ||

@@ -33,7 +33,7 @@ class FieldWriter : public Fields {
   }
 
   void Schema(const char* name) override { Add("schema", name); }
-  void Base(const char*, const char*, const char*) override {}
+  void Base(const BaseKeys&) override {}
   void Flag(const char* key, bool& value, bool absent, const char*) override {
     if (value != absent || IsAlways(key)) Add(key, value ? "true" : "false");
   }

@@ -11,6 +11,7 @@
 #include <functional>
 #include <optional>
 #include <string>
+#include <string_view>
 #include <type_traits>
 #include <utility>
 #include <vector>
@@ -120,6 +121,17 @@ struct MapValue {
   std::optional<double> number = {};
 };
 
+/// A kind of file that may be based on another one of its kind. The keys `based_on`, a file's name, and
+/// `without`, a list of that file's keys, say how. WriteOut (base_file.h) obeys them before a file is read.
+struct BaseKeys {
+  const char* schema;
+  const char* what;                           ///< "a vehicle"
+  std::vector<std::string_view> merged = {};  ///< maps of named entries, taken entry by entry
+};
+inline constexpr char kBasedOn[] = "based_on", kWithout[] = "without";
+inline constexpr char kBasedOnMeaning[] = "a file of this kind that gives the keys missing here";
+inline constexpr char kWithoutMeaning[] = "keys of that file that do not count here";
+
 class Fields {
  public:
   using Part = std::function<void(Fields&)>;
@@ -147,8 +159,8 @@ class Fields {
 
   /// For a whole file: its kind.
   virtual void Schema(const char* name) = 0;
-  /// For a whole file: the key that names another file of its kind. That file gives the keys missing here.
-  virtual void Base(const char* key, const char* schema, const char* meaning) = 0;
+  /// For a whole file: the keys by which it is based on another one.
+  virtual void Base(const BaseKeys& keys) = 0;
   void Text(const char* key, std::string& value, const char* meaning,
             std::optional<std::string> absent = {}) {
     VisitText({{key, meaning, !absent}, std::move(absent)}, value);

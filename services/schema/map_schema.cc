@@ -140,12 +140,13 @@ MapSchema::Json MapSchema::Finish() const {
     AddProperties(own, schema);
     schema["propertyNames"] = any.size() == 1 ? any.front() : Json{{"anyOf", any}};
   }
-  if (base_.empty()) {
+  if (!has_base_) {
     keys_.AddTo(schema);
   } else {  // what is missing here stands in the other file
     Json rules = Json::object();
     keys_.AddTo(rules);
-    schema["if"] = {{"not", Required(base_)}};
+    schema["if"] = {{"not", Required(kBasedOn)}};
+    rules["properties"][kWithout] = false;
     schema["then"] = std::move(rules);
   }
   return schema;
@@ -218,9 +219,10 @@ std::string MapSchema::Pattern(const std::vector<std::string>& keys) const {
 void MapSchema::Schema(const char* name) {
   Add({"schema", "the kind of this file", false}, {{"const", name}});
 }
-void MapSchema::Base(const char* key, const char*, const char* meaning) {
-  Add({key, meaning, false}, AText());
-  base_ = key;
+void MapSchema::Base(const BaseKeys&) {
+  Add({kBasedOn, kBasedOnMeaning, false}, AText());
+  Add({kWithout, kWithoutMeaning, false}, ListOf(AText(), 1, SIZE_MAX));
+  has_base_ = true;
 }
 void MapSchema::VisitText(const TextKey& key, std::string&) {
   Json text = key.absent ? Json{{"type", "string"}} : AText();

@@ -36,7 +36,7 @@ class MapSchema : public Fields {
   Json Finish() const;
 
   void Schema(const char* name) override;
-  void Base(const char* key, const char* schema, const char* meaning) override;
+  void Base(const BaseKeys& keys) override;
   void Flag(const char* key, bool& value, bool absent, const char* meaning) override;
   void OneOf(const std::vector<OneQuantity>& quantities, std::size_t& which, double& value) override;
   void NamedNumbers(const char* key, const std::optional<std::vector<std::string>>& names,
@@ -100,7 +100,7 @@ class MapSchema : public Fields {
   Keys keys_;
   std::map<std::string, QuantityKey> quantities_;
   std::set<std::string> lists_;  ///< keys of lists, which count as absent if they are empty
-  std::string base_;             ///< the key of a base file that gives missing keys, or empty
+  bool has_base_ = false;        ///< a base file may give missing keys
 };
 
 }  // namespace dispersa

@@ -69,8 +69,7 @@ class Search:
     def campaign(self, number, dispersions):
         text = (self.campaigns / "controllers.yaml").read_text()
         path = self.campaigns / f"uncertain{number}.yaml"
-        path.write_text(re.sub(r"^dispersions:\n", "dispersions:\n" + "".join(f"  {line}\n" for line in dispersions), text,
-                               flags=re.MULTILINE))
+        path.write_text(text + "dispersions:\n" + "".join(f"  {line}\n" for line in dispersions))
         return path
 
     def fly(self, campaign, text, name, *options):

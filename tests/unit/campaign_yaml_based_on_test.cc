@@ -1,0 +1,141 @@
+// Files that say what differs from another one.
+#include <gmock/gmock.h>
+#include <gtest/gtest.h>
+
+#include "core/campaign_yaml/load.h"
+#include "tests/unit/input_files.h"
+
+namespace dispersa::campaign_yaml_based_on_test {
+namespace {
+
+using testing::HasSubstr;
+using testing::Not;
+
+constexpr char kHead[] = "schema: dispersa/campaign/1\nbased_on: campaign.yaml\n";
+
+// The same file, with one line less that it could take from another.
+TEST(BasedOn, TheIdsAreThoseOfTheWrittenOutFile) {
+  const InputFiles files;
+  const Campaign whole = LoadCampaign(files.Path("campaign.yaml"));
+  files.Write("derived.yaml", kHead);
+  EXPECT_EQ(LoadCampaign(files.Path("derived.yaml")).canonical_yaml, whole.canonical_yaml);
+  files.Write("derived.yaml", std::string(kHead) + "name: other\n");
+  const Campaign derived = LoadCampaign(files.Path("derived.yaml"));
+  EXPECT_NE(derived.id, whole.id);
+  EXPECT_EQ(derived.flight_id, whole.flight_id);
+  EXPECT_EQ(derived.vehicle_file, whole.vehicle_file);
+  EXPECT_THAT(derived.canonical_yaml, Not(HasSubstr("based_on")));
+  // What the command line replaces may stand in the base.
+  const CampaignOverrides overrides{.cases = 3, .seed = 4};
+  EXPECT_EQ(LoadCampaign(files.Path("derived.yaml"), overrides).sampling.cases, 3u);
+  EXPECT_EQ(LoadCampaign(files.Path("derived.yaml"), overrides).flight_id,
+            LoadCampaign(files.Path("campaign.yaml"), overrides).flight_id);
+}
+
+// Dispersions are taken one by one, everything else as a whole; what is left out is not there.
+TEST(BasedOn, TakesDispersionsOneByOne) {
+  const InputFiles files;
+  const Campaign whole = LoadCampaign(files.Path("campaign.yaml"));
+  ASSERT_FALSE(whole.requirements.empty());
+  files.Write("middle.yaml", std::string(kHead) +
+                                 "without: [requirements, dispersions.thrust]\n"
+                                 "dispersions: {inertia: {distribution: normal, three_sigma_percent: 5}}\n");
+  const std::string middle = LoadCampaign(files.Path("middle.yaml")).canonical_yaml;
+  EXPECT_THAT(middle, HasSubstr("\n  inertia:\n"));
+  EXPECT_THAT(middle, HasSubstr("\n  drag_coefficient:\n"));
+  EXPECT_THAT(middle, Not(HasSubstr("\n  thrust:\n")));
+  EXPECT_THAT(middle, Not(HasSubstr("requirements")));
+  files.Write("last.yaml",
+              "schema: dispersa/campaign/1\nbased_on: middle.yaml\nwithout: [dispersions]\n"
+              "dispersions: {inertia: {distribution: normal, three_sigma_percent: 1}}\n");
+  const std::string last = LoadCampaign(files.Path("last.yaml")).canonical_yaml;
+  EXPECT_THAT(last, HasSubstr("\ndispersions:\n  inertia:\n    distribution: normal\n    three_sigma_percent: 1\n"));
+  EXPECT_THAT(last, Not(HasSubstr("drag_coefficient")));
+}
+
+// A name is relative to the file in which it stands: a list's table, a vehicle.
+TEST(BasedOn, NamesAreRelativeToTheFileInWhichTheyStand) {
+  const InputFiles files;
+  std::filesystem::create_directories(files.Path("far/near"));
+  files.Write("far/rows.csv", "thrust_factor_stage1\n1.01\n0.99\n");
+  files.Write("far/list.yaml",
+              "schema: dispersa/campaign/1\nbased_on: ../campaign.yaml\nwithout: [requirements]\n"
+              "sampling: {method: list, cases: 2, seed: 1, table: rows.csv}\n");
+  files.Write("far/near/derived.yaml", "schema: dispersa/campaign/1\nbased_on: ../list.yaml\nname: x\n");
+  const Campaign list = LoadCampaign(files.Path("far/list.yaml"));
+  EXPECT_EQ(LoadCampaign(files.Path("far/near/derived.yaml")).flight_id, list.flight_id);
+  // A text in place of a file, and the written-out one.
+  const InputSource text(files.Path("far/near/<dict>"), "schema: dispersa/campaign/1\nbased_on: ../list.yaml\n");
+  EXPECT_EQ(LoadCampaign(text).id, list.id);
+  EXPECT_EQ(ParseCampaign(list.canonical_yaml, "again").id, list.id);
+}
+
+struct BadBase {
+  const char* name;
+  const char* text;   ///< of derived.yaml, after its schema
+  const char* texts;  ///< of the problems
+};
+class BadBaseTest : public testing::TestWithParam<BadBase> {};
+
+TEST_P(BadBaseTest, IsReportedInFull) {
+  const InputFiles files;
+  files.Write("derived.yaml", std::string("schema: dispersa/campaign/1\n") + GetParam().text);
+  files.Write("loop.yaml", "schema: dispersa/campaign/1\nbased_on: ./derived.yaml\n");
+  files.Write("wrong.yaml", "schema: dispersa/campaign/1\nbased_on: campaign.yaml\nsampling: {cases: 0}\n");
+  files.Write("list.yaml", "- 1\n");
+  EXPECT_EQ(files.Texts(CheckFile(files.Path("derived.yaml")).errors), GetParam().texts);
+  try {
+    LoadCampaign(files.Path("derived.yaml"));
+    ADD_FAILURE() << "it was loaded";
+  } catch (const InputError& error) {
+    EXPECT_EQ(files.Texts(error.problems()), GetParam().texts);
+  }
+}
+
+constexpr BadBase kBadBases[] = {
+    {"ItsOwnBase", "based_on: derived.yaml\n",
+     "derived.yaml:2:11: based_on: 'derived.yaml' is based on this file itself, allowed: the name of a "
+     "campaign file that is not based on this one\n"},
+    {"ACycle", "based_on: loop.yaml\n",
+     "loop.yaml:2:11: based_on: 'derived.yaml' is based on this file itself, allowed: the name of a "
+     "campaign file that is not based on this one\n"},
+    {"NoFile", "based_on: none.yaml\n",
+     "derived.yaml:2:11: based_on: file 'none.yaml' not found, allowed: a file, named relative to this one\n"},
+    {"AMap", "based_on: {name: x}\n",
+     "derived.yaml:2:11: based_on: a map is not a file name, allowed: the name of a campaign file\n"},
+    {"NoMap", "based_on: list.yaml\n",
+     "list.yaml:1:1: a list is not a campaign, allowed: the name of a campaign file\n"},
+    {"AnotherKind", "based_on: vehicle.yaml\n",
+     "vehicle.yaml:1:9: schema: 'dispersa/vehicle/1' is not the schema of this kind of file, allowed: "
+     "schema: dispersa/campaign/1\n"},
+    {"WrongInTheBase", "based_on: wrong.yaml\n",
+     "wrong.yaml:3:11: sampling: missing key 'method', allowed: one of monte_carlo, latin_hypercube, sobol, "
+     "corners, one_at_a_time, grid, list\n"
+     "wrong.yaml:3:11: sampling: missing key 'seed', allowed: a whole number from 0 to 18446744073709551615\n"
+     "wrong.yaml:3:19: sampling.cases: 0 is out of range, allowed: a whole number from 1 to 4294967295\n"},
+    {"NothingToLeaveOut", "based_on: wrong.yaml\nwithout: [dispersions.thrst, schema]\n",
+     "derived.yaml:3:11: without[0]: 'dispersions.thrst' is not a key of 'wrong.yaml' (did you mean "
+     "'dispersions.thrust'?), allowed: one of sampling, name, vehicle, reference, autopilot, "
+     "dispersions, dispersions.thrust_misalignment, dispersions.wind, dispersions.drag_coefficient, "
+     "dispersions.thrust, requirements\n"
+     "derived.yaml:3:30: without[1]: 'schema' is not a key of 'wrong.yaml', allowed: one of sampling, name, vehicle, reference, autopilot, "
+     "dispersions, dispersions.thrust_misalignment, dispersions.wind, dispersions.drag_coefficient, "
+     "dispersions.thrust, requirements\n"},
+    {"NoList", "based_on: campaign.yaml\nwithout: requirements\n",
+     "derived.yaml:3:10: without: 'requirements' is not a list of keys, allowed: a list of keys of the file "
+     "that this one is based on\n"},
+};
+
+INSTANTIATE_TEST_SUITE_P(BasedOn, BadBaseTest, testing::ValuesIn(kBadBases),
+                         [](const auto& each) { return std::string(each.param.name); });
+
+TEST(BasedOn, LeavesNothingOutOfNothing) {
+  const InputFiles files;
+  files.Edit("campaign.yaml", "name:", "without: [requirements]\nname:");
+  EXPECT_THAT(files.Texts(CheckFile(files.Path("campaign.yaml")).errors),
+              HasSubstr(": without: is given without 'based_on', allowed: based_on: FILE\n"));
+  EXPECT_THROW(ParseCampaign(kHead, "text"), InputError);
+}
+
+}  // namespace
+}  // namespace dispersa::campaign_yaml_based_on_test
