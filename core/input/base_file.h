@@ -9,8 +9,8 @@
 namespace dispersa {
 
 /// Writes the file at `node` out: keys that it lacks come from its base, without those that it leaves out. A
-/// base may have a base. Values stay where they stand. After a problem, which is recorded, the node is absent.
-/// A node of another schema stays as it is. `path` is the node's own in its file.
+/// base may have a base. Values stay where they stand. After a problem, which is recorded, the node is
+/// absent. A node of another schema stays as it is. `path` is the node's own in its file.
 void WriteOut(InputNode& node, const BaseKeys& keys, const std::string& path,
               std::vector<InputProblem>& problems, FileSource* files);
 

@@ -69,7 +69,7 @@ ExitCode Init(const InitOptions& options, const GlobalOptions& global) {
   }
   for (const FileKind kind : kFileKinds) {
     written.push_back("schemas/" + NameOf(kind) + ".json");
-    WriteFile((directory / written.back()).string(), SchemaText(kind));
+    WriteFile((directory / written.back()).string(), SchemaText(kind, SchemaSet::kSplit));
   }
   if (global.json) {
     const nlohmann::ordered_json report = {{"schema", "dispersa/init/1"},

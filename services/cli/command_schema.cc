@@ -51,7 +51,7 @@ std::vector<std::string> WriteAll(const std::filesystem::path& folder) {
   std::vector<std::string> files;
   for (const FileKind kind : kFileKinds) {
     files.push_back((folder / (NameOf(kind) + ".json")).string());
-    WriteFile(files.back(), SchemaText(kind));
+    WriteFile(files.back(), SchemaText(kind, SchemaSet::kSplit));
   }
   return files;
 }
@@ -67,7 +67,7 @@ ExitCode Schema(const SchemaOptions& options, const GlobalOptions& global) {
   }
   const FileKind kind = KindOf(options.kind);
   RequireWritableFile("--out", options.out);
-  const std::string text = SchemaText(kind);
+  const std::string text = SchemaText(kind, SchemaSet::kWhole);
   if (options.out.empty()) {
     fmt::print("{}", text);
     return kExitDone;
@@ -86,7 +86,9 @@ void AddSchemaCommand(CLI::App& app, Invocation& invocation) {
   command->add_option("kind", options->kind, "kind of input file")
       ->type_name(fmt::format("{{{}}}", fmt::join(KindNames(), ",")));
   command->add_option("--out", options->out, "file to write, else standard output")->type_name(kFileType);
-  command->add_option("--all", options->all, "folder for the schemas of all kinds")->type_name(kFolderType);
+  command
+      ->add_option("--all", options->all, "folder for the schemas of all kinds, which refer to one another")
+      ->type_name(kFolderType);
   command->footer(
       "An editor with a YAML language server completes and checks a file whose first line is\n"
       "`# yaml-language-server: $schema=campaign.json`. `dispersa validate` checks more.\n"

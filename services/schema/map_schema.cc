@@ -136,7 +136,7 @@ MapSchema::Json MapSchema::Finish() const {
     for (const auto& [key, value] : own.items()) names.push_back(key);
     Json any = Json::array();
     if (!names.empty()) any.push_back({{"enum", std::move(names)}});
-    for (const std::string& group : keys_.groups) any.push_back({{"$ref", "#/$defs/" + group}});
+    for (const std::string& group : keys_.groups) any.push_back({{"$ref", group}});
     AddProperties(own, schema);
     schema["propertyNames"] = any.size() == 1 ? any.front() : Json{{"anyOf", any}};
   }
@@ -318,7 +318,10 @@ void MapSchema::Words(const char* key, const std::vector<std::string>& words, st
 
 void MapSchema::VisitMap(const MapKey& key, MapValue&, const Part& part) {
   Json value = MapOf(part);
-  if (key.or_list) value = Or(value, ListOf(value, 1, SIZE_MAX));
+  if (key.or_list) {
+    const Json one = shared_.Named(std::string("one_") + key.name, [&] { return std::move(value); });
+    value = Or(one, ListOf(one, 1, SIZE_MAX));
+  }
   if (key.word != nullptr) value = Or({{"const", key.word}}, std::move(value));
   if (key.file != MapKey::File::kNone) value = Or(AText(), std::move(value));
   const Json number = {{"type", "number"}};
@@ -355,8 +358,7 @@ void MapSchema::Group(const char* name, const std::string& of, const Part& part)
     names.push_back(key);
   }
   quantities_.insert(group.quantities_.begin(), group.quantities_.end());
-  keys_.groups.insert(keys);
-  shared_.Named(keys, [&] { return Json{{"pattern", Pattern(names)}}; });
+  keys_.groups.insert(shared_.Named(keys, [&] { return Json{{"pattern", Pattern(names)}}; }).at("$ref"));
   keys_.rules.push_back(shared_.Named(full, [&] {
     Json schema = Json::object();
     group.AddProperties(group.keys_.values, schema);

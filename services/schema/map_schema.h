@@ -72,7 +72,7 @@ class MapSchema : public Fields {
     Json values = Json::object();  ///< the schema of each
     Json required = Json::array();
     Json rules = Json::array();       ///< which keys go together
-    std::set<std::string> groups;     ///< names of their groups of keys under "$defs"
+    std::set<std::string> groups;     ///< references to the keys of their groups
     std::set<std::string> of_groups;  ///< these keys
 
     /// Adds the conditions on a map with these keys.

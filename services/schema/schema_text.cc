@@ -1,10 +1,11 @@
 #include "services/schema/schema_text.h"
 
+#include <map>
 #include <nlohmann/json.hpp>
+#include <string>
 
 #include "core/campaign_yaml/describe_file.h"
 #include "services/schema/map_schema.h"
-#include "services/schema/shared_parts.h"
 
 namespace dispersa {
 namespace {
@@ -36,12 +37,19 @@ void Print(const Json& json, std::size_t indent, std::string& out) {
 // The schemas that a file's schema refers to.
 class SharedSchemas : public MapSchema::Shared {
  public:
+  explicit SharedSchemas(SchemaSet set) : set_(set) {}
+
   Json Document(const std::string& schema) override {
-    for (const FileKind kind : kFileKinds)
-      if (SchemaOf(kind) == schema) return Named(NameOf(kind), [&] { return File(kind); });
+    for (const FileKind kind : kFileKinds) {
+      if (SchemaOf(kind) != schema) continue;
+      if (set_ == SchemaSet::kSplit) return InItsFile(kind);
+      return Named(NameOf(kind), [&] { return File(kind); });
+    }
     return true;
   }
   Json Named(const std::string& name, const std::function<Json()>& make) override {
+    if (const auto elsewhere = elsewhere_.find(name); elsewhere != elsewhere_.end())
+      return {{"$ref", elsewhere->second}};
     if (!schemas_.contains(name)) {
       schemas_[name] = nullptr;  // it is being made
       Json made = make();
@@ -59,13 +67,25 @@ class SharedSchemas : public MapSchema::Shared {
   const Json& schemas() const { return schemas_; }
 
  private:
+  // What that file has in common with this one is said there.
+  Json InItsFile(FileKind kind) {
+    const std::string file = NameOf(kind) + ".json";
+    SharedSchemas other(set_);
+    other.File(kind);
+    for (const auto& [name, schema] : other.schemas().items())
+      if (!schemas_.contains(name)) elsewhere_[name] = file + "#/$defs/" + name;
+    return {{"$ref", file}};
+  }
+
+  const SchemaSet set_;
+  std::map<std::string, std::string> elsewhere_;  // references to schemas in other files
   Json schemas_ = Json::object();
 };
 
 }  // namespace
 
-std::string SchemaText(FileKind kind) {
-  SharedSchemas shared;
+std::string SchemaText(FileKind kind, SchemaSet set) {
+  SharedSchemas shared(set);
   Json file = shared.File(kind);
   Json schema = {{"$schema", "http://json-schema.org/draft-07/schema#"},
                  {"title", "dispersa " + NameOf(kind) + " file"},
@@ -77,7 +97,7 @@ std::string SchemaText(FileKind kind) {
   schema["required"].insert(schema["required"].begin(), "schema");
   schema["$defs"] = shared.schemas();
   std::string text;
-  Print(WithSharedParts(std::move(schema)), 0, text);
+  Print(schema, 0, text);
   return text + "\n";
 }
 

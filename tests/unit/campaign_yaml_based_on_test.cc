@@ -49,7 +49,8 @@ TEST(BasedOn, TakesDispersionsOneByOne) {
               "schema: dispersa/campaign/1\nbased_on: middle.yaml\nwithout: [dispersions]\n"
               "dispersions: {inertia: {distribution: normal, three_sigma_percent: 1}}\n");
   const std::string last = LoadCampaign(files.Path("last.yaml")).canonical_yaml;
-  EXPECT_THAT(last, HasSubstr("\ndispersions:\n  inertia:\n    distribution: normal\n    three_sigma_percent: 1\n"));
+  EXPECT_THAT(
+      last, HasSubstr("\ndispersions:\n  inertia:\n    distribution: normal\n    three_sigma_percent: 1\n"));
   EXPECT_THAT(last, Not(HasSubstr("drag_coefficient")));
 }
 
@@ -65,7 +66,8 @@ TEST(BasedOn, NamesAreRelativeToTheFileInWhichTheyStand) {
   const Campaign list = LoadCampaign(files.Path("far/list.yaml"));
   EXPECT_EQ(LoadCampaign(files.Path("far/near/derived.yaml")).flight_id, list.flight_id);
   // A text in place of a file, and the written-out one.
-  const InputSource text(files.Path("far/near/<dict>"), "schema: dispersa/campaign/1\nbased_on: ../list.yaml\n");
+  const InputSource text(files.Path("far/near/<dict>"),
+                         "schema: dispersa/campaign/1\nbased_on: ../list.yaml\n");
   EXPECT_EQ(LoadCampaign(text).id, list.id);
   EXPECT_EQ(ParseCampaign(list.canonical_yaml, "again").id, list.id);
 }
@@ -100,7 +102,8 @@ constexpr BadBase kBadBases[] = {
      "loop.yaml:2:11: based_on: 'derived.yaml' is based on this file itself, allowed: the name of a "
      "campaign file that is not based on this one\n"},
     {"NoFile", "based_on: none.yaml\n",
-     "derived.yaml:2:11: based_on: file 'none.yaml' not found, allowed: a file, named relative to this one\n"},
+     "derived.yaml:2:11: based_on: file 'none.yaml' not found, allowed: a file, named relative to this "
+     "one\n"},
     {"AMap", "based_on: {name: x}\n",
      "derived.yaml:2:11: based_on: a map is not a file name, allowed: the name of a campaign file\n"},
     {"NoMap", "based_on: list.yaml\n",
@@ -118,7 +121,8 @@ constexpr BadBase kBadBases[] = {
      "'dispersions.thrust'?), allowed: one of sampling, name, vehicle, reference, autopilot, "
      "dispersions, dispersions.thrust_misalignment, dispersions.wind, dispersions.drag_coefficient, "
      "dispersions.thrust, requirements\n"
-     "derived.yaml:3:30: without[1]: 'schema' is not a key of 'wrong.yaml', allowed: one of sampling, name, vehicle, reference, autopilot, "
+     "derived.yaml:3:30: without[1]: 'schema' is not a key of 'wrong.yaml', allowed: one of sampling, name, "
+     "vehicle, reference, autopilot, "
      "dispersions, dispersions.thrust_misalignment, dispersions.wind, dispersions.drag_coefficient, "
      "dispersions.thrust, requirements\n"},
     {"NoList", "based_on: campaign.yaml\nwithout: requirements\n",

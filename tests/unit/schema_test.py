@@ -25,6 +25,8 @@ KINDS = ["campaign", "vehicle", "reference", "autopilot", "scenario"]
 TIMEOUT_S = 300
 EVERY = int(os.environ.get("DISPERSA_SCHEMA_EVERY", "5"))  # 1: all changes, a minute of work
 
+WHOLE = 20  # every so many changes are judged by the file that stands alone too
+
 # What a schema can know, in the reader's words.
 KNOWABLE = re.compile(r"unknown key|missing key|missing unit|the unit of|is not a number|is not a whole number|"
                       r"is not a choice|is not a map|is not a list|is not text|is not a truth value|is out of range|"
@@ -135,11 +137,19 @@ class SchemaTest(unittest.TestCase):
         done = subprocess.run([BINARIES / "dispersa", "--quiet", "schema", "--all", cls.folder / "schemas"],
                               capture_output=True, text=True, timeout=TIMEOUT_S)
         assert done.returncode == 0, done.stderr
-        cls.validators = {}
+        cls.validators, cls.whole = {}, {}  # of the split set, whose files refer to one another, and of each alone
         for kind in KINDS:
-            schema = json.loads((cls.folder / "schemas" / f"{kind}.json").read_text())
+            path = cls.folder / "schemas" / f"{kind}.json"
+            schema = json.loads(path.read_text())
             jsonschema.Draft7Validator.check_schema(schema)
-            cls.validators[kind] = jsonschema.Draft7Validator(schema)
+            cls.validators[kind] = jsonschema.Draft7Validator(schema, resolver=jsonschema.RefResolver(path.as_uri(), schema))
+            cls.whole[kind] = jsonschema.Draft7Validator(json.loads(cls.printed(kind)))
+
+    @staticmethod
+    def printed(kind):
+        done = subprocess.run([BINARIES / "dispersa", "schema", kind], capture_output=True, text=True, timeout=TIMEOUT_S)
+        assert done.returncode == 0, done.stderr
+        return done.stdout
 
     def refusals(self, document):
         return [f"{list(error.absolute_path)}: {error.message[:200]}"
@@ -150,13 +160,21 @@ class SchemaTest(unittest.TestCase):
         for path, document in shipped():
             with self.subTest(path=path):
                 self.assertEqual([], self.refusals(document))
+                self.assertTrue(self.whole[kind_of(document)].is_valid(document))
             count += 1
         self.assertGreater(count, 50)
 
-    def test_the_schema_of_one_kind_is_printed(self):
-        done = subprocess.run([BINARIES / "dispersa", "schema", "autopilot"], capture_output=True, text=True, timeout=TIMEOUT_S)
-        self.assertEqual(0, done.returncode)
-        self.assertEqual((self.folder / "schemas" / "autopilot.json").read_text(), done.stdout)
+    def test_the_schema_of_one_kind_is_complete(self):
+        for kind in KINDS:
+            text = self.printed(kind)
+            self.assertEqual([], [ref for ref in re.findall(r'"\$ref":\s*"([^"]*)"', text) if not ref.startswith("#/$defs/")])
+        self.assertEqual((self.folder / "schemas" / "autopilot.json").read_text(), self.printed("autopilot"))
+
+    def test_the_schema_of_a_campaign_refers_to_the_others(self):
+        text = (self.folder / "schemas" / "campaign.json").read_text()
+        files = {ref.split("#")[0] for ref in re.findall(r'"\$ref":\s*"([^"]*)"', text)}
+        self.assertEqual({"", "vehicle.json", "autopilot.json", "reference.json"}, files)
+        self.assertLess(len(text), 140_000)
 
     def test_an_unknown_kind_is_refused(self):
         done = subprocess.run([BINARIES / "dispersa", "schema", "vehicel"], capture_output=True, text=True, timeout=TIMEOUT_S)
@@ -258,7 +276,10 @@ class SchemaTest(unittest.TestCase):
                 document = changed(original, *change)
                 file = path.parent / f"changed_{path.stem}_{i}.yaml"
                 file.write_text(json.dumps(document))
-                judged.append((f"{name}: {what}", str(file), bool(self.refusals(document)) if kind_of(document) else True))
+                refused = bool(self.refusals(document)) if kind_of(document) else True
+                if len(judged) % WHOLE == 0 and kind_of(document):
+                    self.assertEqual(refused, not self.whole[kind_of(document)].is_valid(document), (name, what))
+                judged.append((f"{name}: {what}", str(file), refused))
         files = [file for _, file, _ in judged]
         errors = {file: [] for file in files}
         for start in range(0, len(files), 500):
