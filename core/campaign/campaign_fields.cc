@@ -192,9 +192,12 @@ void Describe(Fields& fields, Sampling& sampling) {
                                  {"grid", SamplingMethod::kGrid},
                                  {"list", SamplingMethod::kList}},
                                 sampling.method, "how cases are drawn");
-  fields.Integer("cases", 1, kMaxCases, sampling.cases,
-                 "number of flights, or the largest if it stops when decided");
-  fields.Integer("seed", 0, UINT64_MAX, sampling.seed, "of all draws");
+  fields.Deciding(Decides::kCount, [&] {
+    fields.Integer("cases", 1, kMaxCases, sampling.cases,
+                   "number of flights, or the largest if it stops when decided");
+  });
+  fields.Deciding(Decides::kDraws,
+                  [&] { fields.Integer("seed", 0, UINT64_MAX, sampling.seed, "of all draws"); });
   fields.Integer("replicates", 1, kMaxReplicates, sampling.replicates,
                  "independent Latin hypercube or Sobol designs of cases / replicates points each", 1);
   if (sampling.replicates <= 1) return;
@@ -241,9 +244,11 @@ void Describe(Fields& fields, OwnMetric& metric, const std::vector<std::string>&
 }
 
 void Describe(Fields& fields, Requirement& requirement, const std::vector<std::string>& metrics) {
-  fields.Text("id", requirement.id, "the project's own number of it", "");
-  fields.Text("rationale", requirement.rationale, "why it is required", "");
-  fields.Text("source", requirement.source, "the document that requires it", "");
+  fields.Deciding(Decides::kNothing, [&] {
+    fields.Text("id", requirement.id, "the project's own number of it", "");
+    fields.Text("rationale", requirement.rationale, "why it is required", "");
+    fields.Text("source", requirement.source, "the document that requires it", "");
+  });
   constexpr const char* kOneLimit = "either below: x, above: x or within: [low, high]";
   fields.Name("metric", metrics, "a metric", requirement.metric, "of cases.csv, without its prefix");
   fields.OptionalNumber("below", kAnyNumber, requirement.below, "the metric must stay below");

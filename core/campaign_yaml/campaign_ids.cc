@@ -1,6 +1,7 @@
 #include "core/campaign_yaml/campaign_ids.h"
 
 #include <algorithm>
+#include <initializer_list>
 #include <utility>
 
 #include "core/campaign_yaml/canonical.h"
@@ -30,49 +31,36 @@ InputNode LimitedMetrics(const InputNode& campaign) {
   return limited;
 }
 
+// Removes the keys that decide nothing of what is `kept`.
+void Keep(std::initializer_list<Decides> kept, InputNode& node, Decides around = Decides::kAsAround) {
+  for (InputNode& item : node.items) Keep(kept, item, around);
+  std::erase_if(node.members, [&](InputMember& member) {
+    const Decides what = member.decides == Decides::kAsAround ? around : member.decides;
+    if (std::find(kept.begin(), kept.end(), what) == kept.end()) return true;
+    Keep(kept, member.value, what);
+    return false;
+  });
+}
+
+InputNode Kept(std::initializer_list<Decides> kept, InputNode tree) {
+  Keep(kept, tree);
+  return tree;
+}
+
 }  // namespace
 
 std::string VehicleSha256(const InputNode& vehicle) {
-  InputNode rigid = vehicle;
-  std::erase_if(rigid.members, [](const InputMember& member) {
-    return member.key == "structure_beam" || member.key == "sensors" || member.key == "nozzles" ||
-           member.key == "limits" || member.key == "loss_of_control" || member.key == "descent";
-  });
-  // Nor does a point mass know what its actuators lack, what its structure bears, or how an engine tails off.
-  if (InputNode* stages = rigid.Find("stages"))
-    for (InputNode& stage : stages->items) {
-      if (InputNode* motor = stage.Find("motor"))
-        if (InputNode* liquid = motor->Find("liquid"))
-          std::erase_if(liquid->members,
-                        [](const InputMember& member) { return member.key.starts_with("tail_off_"); });
-      if (InputNode* gimbal = stage.Find("gimbal"))
-        std::erase_if(gimbal->members, [](const InputMember& member) {
-          return member.key.starts_with("dead_zone_") || member.key.starts_with("friction_") ||
-                 member.key.starts_with("resolution_");
-        });
-    }
-  if (InputNode* boosters = rigid.Find("boosters"))
-    std::erase_if(boosters->members,
-                  [](const InputMember& member) { return member.key.starts_with("attachment_station_"); });
-  return Sha256Hex(CanonicalText(rigid));
+  return Sha256Hex(CanonicalText(Kept({Decides::kAsAround}, vehicle)));
 }
 
 std::string RequirementsId(const InputNode& campaign) {
-  InputNode judged = MapAt(campaign);
-  for (const char* key : {"requirements", "verdicts"}) {
-    if (const InputNode* value = campaign.Find(key)) SetMember(judged, key, *value);
-  }
+  InputNode judged = Kept({Decides::kVerdict}, campaign);
   if (InputNode limited = LimitedMetrics(campaign); !limited.items.empty())
     SetMember(judged, "metrics", std::move(limited));
-  // Neither words about a requirement nor its place among the others change what is required.
-  if (InputNode* requirements = judged.Find("requirements")) {
-    for (InputNode& requirement : requirements->items)
-      std::erase_if(requirement.members, [](const InputMember& member) {
-        return member.key == "id" || member.key == "rationale" || member.key == "source";
-      });
+  // The place among the others does not change what is required.
+  if (InputNode* requirements = judged.Find("requirements"))
     std::sort(requirements->items.begin(), requirements->items.end(),
               [](const InputNode& a, const InputNode& b) { return CanonicalText(a) < CanonicalText(b); });
-  }
   return Sha256Hex(CanonicalText(judged));
 }
 
@@ -84,38 +72,17 @@ std::string OwnMetricsId(const std::string& flight_id, const std::vector<OwnMetr
 }
 
 std::string DesignId(const InputNode& campaign) {
-  InputNode design = MapAt(campaign);
-  for (const char* key : {"vehicle", "reference", "autopilot", "guidance", "flight", "dispersions",
-                          "correlations", "derived"}) {
-    if (const InputNode* value = campaign.Find(key)) SetMember(design, key, *value);
-  }
-  const InputNode& sampling = *campaign.Find("sampling");
-  InputNode points = MapAt(campaign);
-  for (const char* key : {"method", "replicates", "table"}) {
-    if (const InputNode* value = sampling.Find(key)) SetMember(points, key, *value);
-  }
-  SetMember(design, "sampling", std::move(points));
-  return Sha256Hex(CanonicalText(design));
+  return Sha256Hex(CanonicalText(Kept({Decides::kAsAround, Decides::kFlightOnly}, campaign)));
 }
 
 std::string FlightId(const InputNode& campaign, SamplingMethod method) {
-  InputNode deciding = MapAt(campaign);
-  for (const char* key : {"vehicle", "reference", "autopilot", "guidance", "flight", "dispersions",
-                          "correlations", "derived"}) {
-    if (const InputNode* value = campaign.Find(key)) SetMember(deciding, key, *value);
-  }
-  InputNode sampling = MapAt(campaign);
-  SetMember(sampling, "method", *campaign.Find("sampling")->Find("method"));
-  SetMember(sampling, "seed", *campaign.Find("sampling")->Find("seed"));
-  for (const char* key : {"replicates", "table"}) {
-    if (const InputNode* value = campaign.Find("sampling")->Find(key)) SetMember(sampling, key, *value);
-  }
   // The strata of a Latin hypercube and the bounds of replicates depend on the number of cases; every other
   // case stands for itself.
-  if (method == SamplingMethod::kLatinHypercube || campaign.Find("sampling")->Find("replicates") != nullptr) {
-    SetMember(sampling, "cases", *campaign.Find("sampling")->Find("cases"));
-  }
-  SetMember(deciding, "sampling", std::move(sampling));
+  const bool counts =
+      method == SamplingMethod::kLatinHypercube || campaign.Find("sampling")->Find("replicates") != nullptr;
+  InputNode deciding = Kept(
+      {Decides::kAsAround, Decides::kFlightOnly, Decides::kDraws, counts ? Decides::kCount : Decides::kDraws},
+      campaign);
   InputNode engine = ScalarAt(campaign, EngineVersion());
   engine.quoted = true;
   SetMember(deciding, "engine", std::move(engine));

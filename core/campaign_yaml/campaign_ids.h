@@ -8,8 +8,9 @@
 
 namespace dispersa {
 
-/// SHA-256 of the canonical vehicle in the tree of a campaign or vehicle file. Beam and limits are left out,
-/// because they do not change the trajectory of the rigid vehicle.
+// The tree was read: the declaration of each key says what it decides (Fields::Deciding).
+
+/// SHA-256 of what decides the trajectory of a point mass, in the vehicle's tree.
 std::string VehicleSha256(const InputNode& vehicle);
 /// SHA-256 of the requirements, of their own metrics, and of the rules by which they are judged. Order, id,
 /// rationale and source of requirements have no effect.

@@ -212,12 +212,14 @@ class CampaignDescription {
         warnings_(warnings) {}
 
   void Describe(Fields& fields) {
-    fields.Schema(kCampaignSchema);
-    fields.Base(CampaignBase());
-    fields.Text("name", campaign_.name, "of the campaign, and of its folder");
-    CheckName(fields, campaign_.name);
-    std::string description;
-    fields.Text("description", description, "purpose", "");
+    fields.Deciding(Decides::kNothing, [&] {
+      fields.Schema(kCampaignSchema);
+      fields.Base(CampaignBase());
+      fields.Text("name", campaign_.name, "of the campaign, and of its folder");
+      CheckName(fields, campaign_.name);
+      std::string description;
+      fields.Text("description", description, "purpose", "");
+    });
     fields.Document("vehicle", kVehicleSchema, true, "a vehicle file", "the vehicle",
                     [this](InputNode& node, const std::string& path) {
                       vehicle_ = {&node, path};
@@ -232,7 +234,7 @@ class CampaignDescription {
                            {Else(), [&] { DescribeFlights(fields, use_ != CampaignUse::kOptimize); }}});
                     }}});
     DescribeDispersions(fields);
-    DescribeJudgement(fields);
+    fields.Deciding(Decides::kVerdict, [&] { DescribeJudgement(fields); });
   }
 
   // What is legal but looks wrong.
@@ -546,11 +548,13 @@ class CampaignDescription {
                          dispersa::Describe(verdicts, campaign_.verdicts, plan, campaign_.sampling);
                        });
     const std::size_t stages = campaign_.vehicle.stages.size();
-    fields.OptionalList("metrics", 1, kMaxOwnMetrics, campaign_.own_metrics, "metrics of the campaign's own",
-                        [&](Fields& map, OwnMetric& metric) {
-                          dispersa::Describe(map, metric, NamesBefore(metric));
-                          ReadExpression(map, metric);
-                        });
+    fields.Deciding(Decides::kNothing, [&] {
+      fields.OptionalList("metrics", 1, kMaxOwnMetrics, campaign_.own_metrics,
+                          "metrics of the campaign's own", [&](Fields& map, OwnMetric& metric) {
+                            dispersa::Describe(map, metric, NamesBefore(metric));
+                            ReadExpression(map, metric);
+                          });
+    });
     std::vector<std::string> metrics = MetricNames();
     if (root_ != nullptr) metrics.resize(MetricCount(stages));
     for (const OwnMetric& metric : campaign_.own_metrics) metrics.push_back(metric.name);
@@ -567,8 +571,10 @@ class CampaignDescription {
                                        "probability and consumer_risk, or another sampling method");
                         });
     fields.When(Has("assumptions"), [&] {
-      fields.Texts("assumptions", 1, SIZE_MAX, campaign_.assumptions,
-                   "assumptions of the verdicts; on the report's first page");
+      fields.Deciding(Decides::kNothing, [&] {
+        fields.Texts("assumptions", 1, SIZE_MAX, campaign_.assumptions,
+                     "assumptions of the verdicts; on the report's first page");
+      });
     });
   }
 

@@ -177,6 +177,14 @@ class FieldReader : public Fields {
     is_clear ? describe() : Spare(describe);
   }
 
+  // ---- what keys decide ----
+
+  void Deciding(Decides what, const std::function<void()>& describe) override {
+    const Decides around = std::exchange(decides_, what);
+    describe();
+    decides_ = around;
+  }
+
   // ---- what does not fit ----
 
   void Check(const std::function<void()>& relation) override {
@@ -215,6 +223,11 @@ class FieldReader : public Fields {
   }
 
   void Finish() {
+    for (const Known& known : known_)
+      if (known.decides != Decides::kAsAround)
+        for (InputMember& member : node_->members)
+          if (std::find(known.keys.begin(), known.keys.end(), member.key) != known.keys.end())
+            member.decides = known.decides;
     if (node_->kind == Kind::kMap) {
       const std::set<std::string> explained = ReportUnknown();
       for (const MissingKeys& missing : missing_) {
@@ -417,6 +430,7 @@ class FieldReader : public Fields {
     bool has_units = false;
     bool needed = true;
     bool is_column = true;  ///< a single number is none
+    Decides decides = Decides::kAsAround;
   };
   struct Found {
     InputNode* node = nullptr;
@@ -434,6 +448,7 @@ class FieldReader : public Fields {
     Known known{stem, {}, !dimension.empty()};
     for (const Unit& unit : dimension) known.keys.push_back(stem + "_" + std::string(unit.suffix));
     if (dimension.empty()) known.keys.push_back(stem);
+    known.decides = decides_;
     return known_.emplace_back(std::move(known));
   }
   InputNode* Optional(const std::string& key) {
@@ -624,7 +639,8 @@ class FieldReader : public Fields {
   std::string path_;
   std::vector<InputProblem>& problems_;
   FileSource* const files_;
-  const std::size_t before_;  // so many problems before this map
+  const std::size_t before_;              // so many problems before this map
+  Decides decides_ = Decides::kAsAround;  // of the keys that are declared now
   std::vector<Known> known_;
   std::vector<MissingKeys> missing_;
   std::set<std::string> spoken_of_;  // keys of which something was said already

@@ -16,12 +16,11 @@
 #include <utility>
 #include <vector>
 
+#include "core/input/input_node.h"
 #include "core/input/range.h"
 #include "core/input/units.h"
 
 namespace dispersa {
-
-struct InputNode;
 
 /// A contradiction in a struct, with the path of the value: "stages[1].propellant_mass_kg".
 struct StructProblem {
@@ -386,6 +385,9 @@ class Fields {
   }
 
   // For readers only: other visitors have no file.
+
+  /// Keys that decide something else than the map around them.
+  virtual void Deciding(Decides /*what*/, const std::function<void()>& describe) { describe(); }
 
   /// Calls `relation` if the map, or the group of its keys, was read without a problem. It refuses
   /// contradicting values by Refuse().

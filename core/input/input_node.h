@@ -32,11 +32,22 @@ struct InputNode {
   std::string Describe() const;
 };
 
+/// What the value of a key decides. Its declaration says so (Fields::Deciding).
+enum class Decides {
+  kAsAround,    ///< what the map around it decides; in a file: the trajectory, and with it a flight
+  kFlightOnly,  ///< a flight, but not the trajectory of a point mass, which a reference is
+  kDraws,       ///< which values are drawn, in a design that stays
+  kCount,       ///< how many cases are flown
+  kVerdict,     ///< what is required, and how that is judged
+  kNothing,     ///< words, and what has an id of its own
+};
+
 struct InputMember {
   std::string key;
   int line = 1;
   int column = 1;
   InputNode value;
+  Decides decides = Decides::kAsAround;  ///< set when the map is read
 };
 
 /// A scalar, list or map at the place of another node.

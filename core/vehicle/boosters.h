@@ -103,8 +103,10 @@ inline void Describe(Fields& fields, Boosters& boosters) {
   DescribePropulsion(fields, boosters.motor, boosters.grain, boosters.tanks);
   fields.Quantity("separation_delay", kTime, kNonNegative, boosters.separation_delay_s,
                   "from detected burnout of the last; before the stage separates", 0.0);
-  fields.Quantity("attachment_station", kLength, kPositive, boosters.attachment_station_m,
-                  "of structure_beam, which carries them by a rigid link", 0.0);
+  fields.Deciding(Decides::kFlightOnly, [&] {
+    fields.Quantity("attachment_station", kLength, kPositive, boosters.attachment_station_m,
+                    "of structure_beam, which carries them by a rigid link", 0.0);
+  });
 }
 
 }  // namespace dispersa

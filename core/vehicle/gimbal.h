@@ -95,12 +95,14 @@ inline void Describe(Fields& fields, Gimbal& gimbal) {
   fields.Number("damping_ratio", kPositive, gimbal.damping_ratio, "of the actuator");
   fields.Integer("delay_ticks", 0, 50, gimbal.delay_ticks,
                  "ticks of the autopilot between command and actuator");
-  fields.Quantity("dead_zone", kAngle, kNonNegative, gimbal.dead_zone_rad,
-                  "largest error to which the servo does not react", 0.0);
-  fields.Quantity("friction", kAngle, kNonNegative, gimbal.friction_rad,
-                  "error at which a drive at rest starts to move", 0.0);
-  fields.Quantity("resolution", kAngle, kNonNegative, gimbal.resolution_rad,
-                  "step of the command at the servo", 0.0);
+  fields.Deciding(Decides::kFlightOnly, [&] {
+    fields.Quantity("dead_zone", kAngle, kNonNegative, gimbal.dead_zone_rad,
+                    "largest error to which the servo does not react", 0.0);
+    fields.Quantity("friction", kAngle, kNonNegative, gimbal.friction_rad,
+                    "error at which a drive at rest starts to move", 0.0);
+    fields.Quantity("resolution", kAngle, kNonNegative, gimbal.resolution_rad,
+                    "step of the command at the servo", 0.0);
+  });
 }
 
 /// In place of a gimbal. Its drives stay at rest; their numbers do no harm.

@@ -108,8 +108,10 @@ inline void DescribeLiquid(Fields& fields, Motor& motor) {
   fields.Quantity("specific_impulse", kTime, kPositive, motor.specific_impulse_s, "in vacuum");
   fields.Quantity("residual_mass", kMass, kNonNegative, motor.residual_mass_kg,
                   "propellant that stays in the tanks", 0.0);
-  fields.Quantity("tail_off", kTime, Between(0.0, 2.0), motor.tail_off_s,
-                  "linear decay of the thrust by a cut-off, which is commanded half of it earlier", 0.0);
+  fields.Deciding(Decides::kFlightOnly, [&] {
+    fields.Quantity("tail_off", kTime, Between(0.0, 2.0), motor.tail_off_s,
+                    "linear decay of the thrust by a cut-off, which is commanded half of it earlier", 0.0);
+  });
   DescribeCommands(fields, motor);
   fields.Check([&] {
     if (motor.cut_off == CutOff::kAtTime && motor.cut_off_s < 0.5 * motor.tail_off_s)

@@ -39,6 +39,32 @@ void DescribeTurningNozzles(Fields& fields, std::vector<Stage>& stages) {
   }
 }
 
+// Limits, sensors, beam, nozzles and descent: what changes a flight, and not the trajectory of a point mass.
+void DescribeBesideTrajectory(Fields& fields, Vehicle& vehicle) {
+  bool has_limits = true;
+  fields.OptionalMap("limits", has_limits, "of the structure; if any is given, they become a requirement",
+                     [&](Fields& limits) { Describe(limits, vehicle.limits); });
+  bool has_loss = true;
+  fields.OptionalMap("loss_of_control", has_loss, "of a controlled stage",
+                     [&](Fields& loss) { Describe(loss, vehicle.loss_of_control); });
+  bool has_descent = true;
+  fields.OptionalMap("descent", has_descent, "of the last stage, where a flight ends at impact",
+                     [&](Fields& descent) { Describe(descent, vehicle.descent); });
+  DescribeTurningNozzles(fields, vehicle.stages);
+  bool has_sensors = true;
+  fields.OptionalMap("sensors", has_sensors, "of attitude and rates; a flexible vehicle needs them",
+                     [&](Fields& sensors) { Describe(sensors, vehicle.sensors); });
+  bool bends = vehicle.structure_beam.has_value();
+  fields.OptionalMap("structure_beam", bends, "elastic beam; default: a rigid vehicle", [&](Fields& beam) {
+    const auto bodies = std::count_if(vehicle.stages.begin(), vehicle.stages.end(),
+                                      [](const Stage& stage) { return !stage.restarts; });
+    Describe(beam, vehicle.structure_beam.emplace(), vehicle.stages.size(), static_cast<std::size_t>(bodies));
+  });
+  if (!has_sensors && bends && vehicle.structure_beam->flown_modes > 0)
+    fields.Refuse("", "missing key 'sensors'",
+                  "where the sensors of a vehicle that bends are: sensors: {inertial_unit: {station_m: x}}");
+}
+
 }  // namespace
 
 void Describe(Fields& fields, Vehicle& vehicle) {
@@ -66,32 +92,11 @@ void Describe(Fields& fields, Vehicle& vehicle) {
                      [&](Fields& control) { Describe(control, vehicle.reaction_control); });
   if (!has_thrusters && is_controlled && vehicle.stages.size() > 1)
     fields.Refuse("", "missing key 'reaction_control'", "a map");
-  bool has_limits = true;
-  fields.OptionalMap("limits", has_limits, "of the structure; if any is given, they become a requirement",
-                     [&](Fields& limits) { Describe(limits, vehicle.limits); });
-  bool has_loss = true;
-  fields.OptionalMap("loss_of_control", has_loss, "of a controlled stage",
-                     [&](Fields& loss) { Describe(loss, vehicle.loss_of_control); });
   bool has_rail = vehicle.rail.has_value();
   fields.OptionalMap("rail", has_rail, "launcher rail",
                      [&](Fields& rail) { Describe(rail, vehicle.rail.emplace()); });
   if (!has_rail) vehicle.rail.reset();
-  bool has_descent = true;
-  fields.OptionalMap("descent", has_descent, "of the last stage, where a flight ends at impact",
-                     [&](Fields& descent) { Describe(descent, vehicle.descent); });
-  DescribeTurningNozzles(fields, vehicle.stages);
-  bool has_sensors = true;
-  fields.OptionalMap("sensors", has_sensors, "of attitude and rates; a flexible vehicle needs them",
-                     [&](Fields& sensors) { Describe(sensors, vehicle.sensors); });
-  bool bends = vehicle.structure_beam.has_value();
-  fields.OptionalMap("structure_beam", bends, "elastic beam; default: a rigid vehicle", [&](Fields& beam) {
-    const auto bodies = std::count_if(vehicle.stages.begin(), vehicle.stages.end(),
-                                      [](const Stage& stage) { return !stage.restarts; });
-    Describe(beam, vehicle.structure_beam.emplace(), vehicle.stages.size(), static_cast<std::size_t>(bodies));
-  });
-  if (!has_sensors && bends && vehicle.structure_beam->flown_modes > 0)
-    fields.Refuse("", "missing key 'sensors'",
-                  "where the sensors of a vehicle that bends are: sensors: {inertial_unit: {station_m: x}}");
+  fields.Deciding(Decides::kFlightOnly, [&] { DescribeBesideTrajectory(fields, vehicle); });
 }
 
 }  // namespace dispersa
