@@ -498,13 +498,13 @@ class DispersionFields {
   // Normal draws in standard deviations: one of each coefficient, for all tables.
   void AeroUncertainties(Fields& map, const DispersionRow& row) {
     const std::vector<std::string> names = {"ca", "cn", "xcp", "damping"};
-    std::vector<std::size_t> drawn;
+    std::vector<std::string> drawn;
     map.Words("of", names, drawn, "coefficients, each drawn once a flight");
     ScalarDistribution standard_normal;
     standard_normal.kind = Distribution::kNormal;
     standard_normal.sigma = 1.0;
     for (std::size_t i = 0; i < names.size(); ++i)
-      if (std::find(drawn.begin(), drawn.end(), i) != drawn.end())
+      if (std::find(drawn.begin(), drawn.end(), names[i]) != drawn.end())
         Add("aerodynamic_uncertainty/" + names[i], standard_normal, {row.columns[i]});
     if (is_sound_ && std::none_of(vehicle_.aerodynamics.begin(), vehicle_.aerodynamics.end(), IsUncertain))
       map.Refuse("", "the vehicle has no aerodynamic table that states an uncertainty",

@@ -213,8 +213,7 @@ class CampaignDescription {
 
   void Describe(Fields& fields) {
     fields.Deciding(Decides::kNothing, [&] {
-      fields.Schema(kCampaignSchema);
-      fields.Base(CampaignBase());
+      fields.File(kCampaignSchema, &CampaignBase());
       fields.Text("name", campaign_.name, "of the campaign, and of its folder");
       CheckName(fields, campaign_.name);
       std::string description;

@@ -24,23 +24,22 @@ const BaseKeys& VehicleBase() {
 }
 
 void DescribeVehicleFile(Fields& fields, Vehicle& vehicle) {
-  fields.Schema(kVehicleSchema);
-  fields.Base(VehicleBase());
+  fields.File(kVehicleSchema, &VehicleBase());
   Describe(fields, vehicle);
 }
 
 void DescribeReferenceFile(Fields& fields, Reference& reference) {
-  fields.Schema(kReferenceSchema);
+  fields.File(kReferenceSchema);
   Describe(fields, reference);
 }
 
 void DescribeAutopilotFile(Fields& fields, AutopilotConfig& autopilot, const OpenPlugin& open) {
-  fields.Schema(kAutopilotSchema);
+  fields.File(kAutopilotSchema);
   Describe(fields, autopilot, open);
 }
 
 void DescribeScenarioFile(Fields& fields, Scenario& scenario) {
-  fields.Schema(kScenarioSchema);
+  fields.File(kScenarioSchema);
   Describe(fields, scenario);
 }
 

@@ -199,7 +199,16 @@ void Describe(Fields& fields, PluginConfig& plugin, const OpenPlugin& open) {
       fields.Check([&] { names = open(fields, base64, plugin); });
     });
     std::vector<double> values;
-    fields.NamedNumbers("parameters", names, values, "a number for each parameter that the law names");
+    const auto parameters = [&](Fields& map) {
+      if (!names) return map.AnyNumbers();
+      for (const std::string& name : *names) map.Number(name.c_str(), kAnyNumber, values.emplace_back(), "");
+    };
+    constexpr const char* kMeaning = "a number for each parameter that the law names";
+    bool has_parameters = false;
+    if (names && !names->empty())
+      fields.Map("parameters", kMeaning, parameters);
+    else
+      fields.OptionalMap("parameters", has_parameters, kMeaning, parameters);
     for (std::size_t i = 0; i < values.size(); ++i) plugin.parameters.emplace_back((*names)[i], values[i]);
   };
   fields.Either({{Has("python"), python}, {Else(), library}});

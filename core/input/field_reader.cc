@@ -15,6 +15,10 @@ namespace {
 
 using Kind = InputNode::Kind;
 
+bool Contains(const std::vector<std::string>& words, const std::string& word) {
+  return std::find(words.begin(), words.end(), word) != words.end();
+}
+
 std::string Quoted(const std::vector<std::string>& words) {
   std::string text;
   for (const std::string& word : words) text += (text.empty() ? "'" : " or '") + word + "'";
@@ -58,18 +62,13 @@ class FieldReader : public Fields {
 
   // ---- the whole file ----
 
-  void Schema(const char* name) override {
+  void File(const char* schema, const BaseKeys* base) override {
     Optional("schema");
-    if (!HasSchema(*node_, path_, name, problems_)) node_ = &absent_;
-  }
-  void Base(const BaseKeys& keys) override {
+    if (!HasSchema(*node_, path_, schema, problems_)) node_ = &absent_;
+    if (base == nullptr) return;
     if (Optional(kBasedOn) != nullptr)
-      Refuse(kBasedOn, "a file is named in a text without files", "the keys of " + std::string(keys.what));
+      Refuse(kBasedOn, "a file is named in a text without files", "the keys of " + std::string(base->what));
     if (Optional(kWithout) != nullptr) Refuse(kWithout, "is given without 'based_on'", "based_on: FILE");
-  }
-  void Document(const char* key, const char*, bool needed, const char* allowed, const char*,
-                const ReadNode& read) override {
-    ReadByHand({key, "", needed, allowed}, FileSource::Holds::kDocument, read);
   }
 
   // ---- single values ----
@@ -105,35 +104,7 @@ class FieldReader : public Fields {
     if (given.empty()) ReportMissing(keys, "one of them");
   }
 
-  // ---- lists ----
-
-  void NamedNumbers(const char* key, const std::optional<std::vector<std::string>>& names,
-                    std::vector<double>& values, const char*) override {
-    InputNode* node = Optional(key);
-    if (!names) return;
-    InputNode empty = MapAt(*node_);
-    ReadFields(node != nullptr ? *node : empty, PathOf(key), problems_, files_, [&](Fields& map) {
-      for (const std::string& name : *names) map.Number(name.c_str(), kAnyNumber, values.emplace_back(), "");
-    });
-  }
-  void Texts(const char* key, std::size_t low_count, std::size_t high_count, std::vector<std::string>& values,
-             const char*) override {
-    Each(key, low_count > 0, low_count, high_count, [&](const InputNode& item, const std::string& path) {
-      values.push_back(ReadText(item, path, problems_));
-    });
-  }
-  void Words(const char* key, const std::vector<std::string>& words, std::vector<std::size_t>& values,
-             const char*) override {
-    Each(key, true, 1, SIZE_MAX, [&](const InputNode& item, const std::string& path) {
-      const auto found = std::find(words.begin(), words.end(), item.text);
-      if (found == words.end())
-        AddProblem(problems_, item, path, item.Describe() + " is not a choice", "one of " + JoinWords(words));
-      values.push_back(found == words.end() ? 0 : static_cast<std::size_t>(found - words.begin()));
-    });
-  }
-  void Columns(const char* key, const char*, const ReadNode& read) override {
-    ReadByHand({key, "", false}, FileSource::Holds::kTable, read);
-  }
+  void AnyNumbers() override { is_open_ = true; }
 
   // ---- which keys go together ----
 
@@ -247,12 +218,33 @@ class FieldReader : public Fields {
 
  protected:
   void VisitText(const TextKey& key, std::string& value) override {
-    if (const InputNode* node = Find(key, "text"))
-      value = ReadText(*node, PathOf(key.name), problems_);
-    else
-      value = key.absent.value_or("");
+    if (!key.words.empty() && key.name_of == nullptr) return ReadChoice(key, value);
+    const InputNode* node =
+        Find(key, key.name_of == nullptr ? "text" : std::string("the name of ") + key.name_of);
+    value = node == nullptr ? key.absent.value_or("") : ReadText(*node, PathOf(key.name), problems_);
+    if (node == nullptr || key.words.empty() || node->kind != Kind::kScalar ||
+        Contains(key.words, node->text))
+      return;
+    AddProblem(problems_, *node, PathOf(key.name),
+               node->Describe() + " is not " + key.name_of + DidYouMean(node->text, key.words),
+               "one of " + JoinWords(key.words));
   }
-  void VisitWhole(const WholeKey& key, std::uint64_t& value) override {
+  void VisitTexts(const TextKey& key, std::size_t low_count, std::size_t high_count,
+                  std::vector<std::string>& values) override {
+    InputNode* list = Find(key, CountText(low_count, high_count));
+    if (list == nullptr) return;
+    Items(*list, PathOf(key.name), low_count, high_count,
+          [&](const InputNode& item, const std::string& path) {
+            if (key.words.empty()) return values.push_back(ReadText(item, path, problems_));
+            if (!Contains(key.words, item.text))
+              AddProblem(problems_, item, path, item.Describe() + " is not a choice",
+                         "one of " + JoinWords(key.words));
+            values.push_back(item.text);
+          });
+  }
+  void VisitWhole(const WholeKey& key, std::vector<std::uint64_t>& values) override {
+    if (key.noun != nullptr) return ReadSeveral(key, values);
+    std::uint64_t& value = values.front();
     const std::string allowed =
         "a whole number from " + std::to_string(key.low) + " to " + std::to_string(key.high);
     const InputNode* node = Find(key, allowed);
@@ -298,31 +290,6 @@ class FieldReader : public Fields {
           });
     values = std::move(read);
   }
-  void VisitSeveral(const SeveralKey& key, std::vector<int>& values) override {
-    const InputNode* node = Optional(key.name);
-    if (node == nullptr) return;
-    const std::string noun = key.noun, path = PathOf(key.name);
-    const std::string allowed = key.low > key.high    ? "no " + noun
-                                : key.low == key.high ? std::to_string(key.low)
-                                                      : "one of " + std::to_string(key.low) + " to " +
-                                                            std::to_string(key.high) + ", or a list of them";
-    const auto read = [&](const InputNode& item, const std::string& item_path) {
-      const bool is_plain = item.kind == Kind::kScalar && !item.quoted;
-      const auto number = is_plain ? ParseInteger(item.text) : std::nullopt;
-      if (!number || *number < static_cast<std::uint64_t>(key.low) ||
-          *number > static_cast<std::uint64_t>(key.high))
-        AddProblem(problems_, item, item_path, item.Describe() + " is no " + noun + " " + key.which, allowed);
-      else if (std::find(values.begin(), values.end(), static_cast<int>(*number)) != values.end())
-        AddProblem(problems_, item, item_path, noun + " " + item.text + " is given twice",
-                   "each " + noun + " once");
-      else
-        values.push_back(static_cast<int>(*number));
-    };
-    if (node->kind != Kind::kList) return read(*node, path);
-    if (node->items.empty()) AddProblem(problems_, *node, path, "the list is empty", allowed);
-    for (std::size_t i = 0; i < node->items.size(); ++i) read(node->items[i], Item(path, i));
-    std::sort(values.begin(), values.end());
-  }
   void VisitRows(const RowsKey& key, std::vector<std::vector<double>>& rows) override {
     std::vector<std::string> names;
     for (const RowsKey::Column& column : key.columns) names.emplace_back(column.name);
@@ -349,39 +316,13 @@ class FieldReader : public Fields {
                                           {"", names.empty() ? 1.0 : key.columns[c].scale}));
          });
   }
-  void VisitName(const NameKey& key, std::string& value) override {
-    const InputNode* node = Find(key, std::string("the name of ") + key.what);
-    if (node == nullptr) return;
-    value = ReadText(*node, PathOf(key.name), problems_);
-    if (key.names.empty() || node->kind != Kind::kScalar ||
-        std::find(key.names.begin(), key.names.end(), node->text) != key.names.end())
-      return;
-    AddProblem(problems_, *node, PathOf(key.name),
-               node->Describe() + " is not " + key.what + DidYouMean(node->text, key.names),
-               "one of " + JoinWords(key.names));
-  }
-  void VisitWord(const WordKey& key, std::size_t& index) override {
-    const std::string allowed = "one of " + JoinWords(key.words);
-    const InputNode* node = Find(key, allowed);
-    index = key.absent.value_or(0);
-    if (node == nullptr) {
-      if (key.needed) undecided_.insert(key.name);
-      return;
-    }
-    const auto found = node->kind == Kind::kScalar ? std::find(key.words.begin(), key.words.end(), node->text)
-                                                   : key.words.end();
-    if (found != key.words.end()) {
-      index = static_cast<std::size_t>(found - key.words.begin());
-      return;
-    }
-    undecided_.insert(key.name);
-    if (const auto reason = no_choices_.find({key.name, node->text}); reason != no_choices_.end())
-      AddProblem(problems_, *node, PathOf(key.name), reason->second.first, reason->second.second);
-    else
-      AddProblem(problems_, *node, PathOf(key.name),
-                 node->Describe() + " is not a choice" +
-                     (node->kind == Kind::kScalar ? DidYouMean(node->text, key.words) : ""),
-                 allowed);
+  void VisitNode(const NodeKey& key, const ReadNode& read) override {
+    InputNode* value = Find(key, key.allowed);
+    if (value == nullptr) return;
+    const std::string path =
+        Load(*value, PathOf(key.name),
+             key.schema == nullptr ? FileSource::Holds::kTable : FileSource::Holds::kDocument);
+    if (value->file != nullptr) read(*value, path);
   }
   void VisitMap(const MapKey& key, MapValue& value, const Part& part) override {
     InputNode* const found = Find(key, key.allowed);
@@ -423,6 +364,52 @@ class FieldReader : public Fields {
   }
 
  private:
+  void ReadChoice(const TextKey& key, std::string& value) {
+    const std::string allowed = "one of " + JoinWords(key.words);
+    const InputNode* node = Find(key, allowed);
+    value = key.absent.value_or(key.words.front());
+    if (node == nullptr) {
+      if (key.needed) undecided_.insert(key.name);
+      return;
+    }
+    if (node->kind == Kind::kScalar && Contains(key.words, node->text)) {
+      value = node->text;
+      return;
+    }
+    undecided_.insert(key.name);
+    if (const auto reason = no_choices_.find({key.name, node->text}); reason != no_choices_.end())
+      AddProblem(problems_, *node, PathOf(key.name), reason->second.first, reason->second.second);
+    else
+      AddProblem(problems_, *node, PathOf(key.name),
+                 node->Describe() + " is not a choice" +
+                     (node->kind == Kind::kScalar ? DidYouMean(node->text, key.words) : ""),
+                 allowed);
+  }
+  void ReadSeveral(const WholeKey& key, std::vector<std::uint64_t>& values) {
+    const InputNode* node = Optional(key.name);
+    if (node == nullptr) return;
+    const std::string noun = key.noun, path = PathOf(key.name);
+    const std::string allowed = key.low > key.high    ? "no " + noun
+                                : key.low == key.high ? std::to_string(key.low)
+                                                      : "one of " + std::to_string(key.low) + " to " +
+                                                            std::to_string(key.high) + ", or a list of them";
+    const auto read = [&](const InputNode& item, const std::string& item_path) {
+      const bool is_plain = item.kind == Kind::kScalar && !item.quoted;
+      const auto number = is_plain ? ParseInteger(item.text) : std::nullopt;
+      if (!number || *number < key.low || *number > key.high)
+        AddProblem(problems_, item, item_path, item.Describe() + " is no " + noun + " " + key.which, allowed);
+      else if (std::find(values.begin(), values.end(), *number) != values.end())
+        AddProblem(problems_, item, item_path, noun + " " + item.text + " is given twice",
+                   "each " + noun + " once");
+      else
+        values.push_back(*number);
+    };
+    if (node->kind != Kind::kList) return read(*node, path);
+    if (node->items.empty()) AddProblem(problems_, *node, path, "the list is empty", allowed);
+    for (std::size_t i = 0; i < node->items.size(); ++i) read(node->items[i], Item(path, i));
+    std::sort(values.begin(), values.end());
+  }
+
   // A key that was asked for.
   struct Known {
     std::string stem;
@@ -533,12 +520,6 @@ class FieldReader : public Fields {
     });
     value = std::move(column);
   }
-  void ReadByHand(const Key& key, FileSource::Holds holds, const ReadNode& read) {
-    InputNode* value = Find(key, key.allowed);
-    if (value == nullptr) return;
-    const std::string path = Load(*value, PathOf(key.name), holds);
-    if (value->file != nullptr) read(*value, path);
-  }
   // The word that decides was refused, or there is no map.
   bool IsUndecided(const std::vector<Alternative>& alternatives) const {
     return node_->kind != Kind::kMap ||
@@ -596,6 +577,7 @@ class FieldReader : public Fields {
       const auto add = [&](const std::string& message, const std::string& allowed) {
         AddProblem(problems_, KeyOf(member), node_->is_table ? path_ : PathOf(member.key), message, allowed);
       };
+      if (is_open_) continue;
       if (all.contains(member.key)) {
         if (&member.value != node_->Find(member.key))
           add("the column '" + member.key + "' is given twice", ColumnNames());
@@ -641,6 +623,7 @@ class FieldReader : public Fields {
   FileSource* const files_;
   const std::size_t before_;              // so many problems before this map
   Decides decides_ = Decides::kAsAround;  // of the keys that are declared now
+  bool is_open_ = false;                  // any other key may be there
   std::vector<Known> known_;
   std::vector<MissingKeys> missing_;
   std::set<std::string> spoken_of_;  // keys of which something was said already

@@ -32,8 +32,7 @@ class FieldWriter : public Fields {
     return text;
   }
 
-  void Schema(const char* name) override { Add("schema", name); }
-  void Base(const BaseKeys&) override {}
+  void File(const char* schema, const BaseKeys*) override { Add("schema", schema); }
   void Flag(const char* key, bool& value, bool absent, const char*) override {
     if (value != absent || IsAlways(key)) Add(key, value ? "true" : "false");
   }
@@ -41,23 +40,6 @@ class FieldWriter : public Fields {
     const OneQuantity& one = quantities[which];
     Quantity(one.stem, one.dimension, one.range, value, one.meaning);
   }
-  void NamedNumbers(const char*, const std::optional<std::vector<std::string>>&, std::vector<double>&,
-                    const char*) override {}
-  void Texts(const char* key, std::size_t, std::size_t, std::vector<std::string>& values,
-             const char*) override {
-    std::vector<std::string> texts;
-    for (const std::string& value : values) texts.push_back(Scalar(value));
-    if (!texts.empty()) Add(key, Bracketed('[', texts, ']'));
-  }
-  void Words(const char* key, const std::vector<std::string>& words, std::vector<std::size_t>& values,
-             const char*) override {
-    std::vector<std::string> texts;
-    for (const std::size_t value : values) texts.push_back(words[value]);
-    if (!texts.empty()) Add(key, Bracketed('[', texts, ']'));
-  }
-  void Columns(const char*, const char*, const ReadNode&) override {}
-  void Document(const char*, const char*, bool, const char*, const char*, const ReadNode&) override {}
-
   void Either(const std::vector<Alternative>& alternatives) override {
     for (const Alternative& alternative : alternatives)
       if (alternative.is_so || alternative.condition.key.empty()) return alternative.describe();
@@ -65,10 +47,21 @@ class FieldWriter : public Fields {
 
  protected:
   void VisitText(const TextKey& key, std::string& value) override {
-    if (value != key.absent || IsAlways(key.name)) Add(key.name, Scalar(value));
+    if (value != key.absent || IsAlways(key.name))
+      Add(key.name, key.words.empty() && key.name_of == nullptr ? Scalar(value) : value);
   }
-  void VisitWhole(const WholeKey& key, std::uint64_t& value) override {
-    if (value != key.absent || IsAlways(key.name)) Add(key.name, std::to_string(value));
+  void VisitTexts(const TextKey& key, std::size_t, std::size_t, std::vector<std::string>& values) override {
+    std::vector<std::string> texts;
+    for (const std::string& value : values) texts.push_back(key.words.empty() ? Scalar(value) : value);
+    if (!texts.empty()) Add(key.name, Bracketed('[', texts, ']'));
+  }
+  void VisitWhole(const WholeKey& key, std::vector<std::uint64_t>& values) override {
+    std::vector<std::string> texts;
+    for (const std::uint64_t value : values) texts.push_back(std::to_string(value));
+    if (key.noun == nullptr && (values.front() != key.absent || IsAlways(key.name)))
+      Add(key.name, texts.front());
+    else if (key.noun != nullptr && !texts.empty())
+      Add(key.name, Bracketed('[', texts, ']'));
   }
   void VisitNumber(const NumberKey& key, std::optional<double>& value) override {
     if (!value || (value == key.absent && !IsAlways(key.name))) return;
@@ -81,11 +74,6 @@ class FieldWriter : public Fields {
     std::vector<std::string> texts;
     for (const double value : values) texts.push_back(NumberIn(value, unit));
     Add(KeyIn(key.name, unit), Bracketed('[', texts, ']'));
-  }
-  void VisitSeveral(const SeveralKey& key, std::vector<int>& values) override {
-    std::vector<std::string> texts;
-    for (const int value : values) texts.push_back(std::to_string(value));
-    if (!texts.empty()) Add(key.name, Bracketed('[', texts, ']'));
   }
   void VisitRows(const RowsKey& key, std::vector<std::vector<double>>& rows) override {
     std::vector<std::string> names, texts;
@@ -102,10 +90,7 @@ class FieldWriter : public Fields {
     else
       AddItems(key.name, texts);
   }
-  void VisitName(const NameKey& key, std::string& value) override { Add(key.name, value); }
-  void VisitWord(const WordKey& key, std::size_t& index) override {
-    if (index != key.absent || IsAlways(key.name)) Add(key.name, key.words[index]);
-  }
+  void VisitNode(const NodeKey&, const ReadNode&) override {}
   void VisitMap(const MapKey& key, MapValue& value, const Part& part) override {
     if (!value.is_there) return;
     FieldWriter map(layout_, flows_ || Contains(layout_.on_one_line, key.name));

@@ -61,12 +61,18 @@ struct Key {
   bool needed = true;   ///< else the key need not be there
   const char* allowed = "";  ///< the expected value, in a message
 };
+/// A text, or one of some words.
 struct TextKey : Key {
-  std::optional<std::string> absent;  ///< the value where the key is not there
+  std::optional<std::string> absent = {};  ///< the value where the key is not there
+  std::vector<std::string> words = {};     ///< empty: any, or another file has them
+  const char* name_of = nullptr;           ///< "a metric", of which the words are names
 };
+/// A whole number, or several.
 struct WholeKey : Key {
   std::uint64_t low, high;
-  std::optional<std::uint64_t> absent;
+  std::optional<std::uint64_t> absent = {};
+  const char* noun = nullptr;   ///< of each of several, for messages: "stage"
+  const char* which = nullptr;  ///< "that this disperses"
 };
 struct NumberKey : Key {
   Dimension dimension;  ///< empty: without unit
@@ -78,22 +84,6 @@ struct NumbersKey : NumberKey {
   std::size_t low_count, high_count;
   bool or_one = false;   ///< one number may replace two
   bool or_file = false;  ///< or a CSV file's only column, of the key's name
-};
-/// One of a list of words.
-struct WordKey : Key {
-  std::vector<std::string> words;
-  std::optional<std::size_t> absent;
-};
-/// The name of one of many things. Without names another file has them.
-struct NameKey : Key {
-  const std::vector<std::string>& names;
-  const char* what;  ///< "a metric"
-};
-/// Whole numbers, each once. A single one needs no list.
-struct SeveralKey : Key {
-  int low, high;
-  const char* noun;   ///< the noun of a message: "stage"
-  const char* which;  ///< "that this disperses"
 };
 /// A list of lists of numbers.
 struct RowsKey : Key {
@@ -112,6 +102,10 @@ struct MapKey : Key {
   bool or_number = false;
   File file = File::kNone;  ///< of which the map may be made, by the columns of a table or of bytes
   bool or_list = false;     ///< of such maps
+};
+/// A value that is read by hand: what a file of another kind holds, or columns of numbers under any names.
+struct NodeKey : Key {
+  const char* schema = nullptr;  ///< of the other kind; null: columns
 };
 /// The value at the key of a map.
 struct MapValue {
@@ -156,10 +150,8 @@ class Fields {
   // Each declares a key. `meaning` is its line in the documentation. With `absent` the key is optional, and
   // that is its value without the key.
 
-  /// For a whole file: its kind.
-  virtual void Schema(const char* name) = 0;
-  /// For a whole file: the keys by which it is based on another one.
-  virtual void Base(const BaseKeys& keys) = 0;
+  /// For a whole file: its kind, and the keys by which it is based on another one.
+  virtual void File(const char* schema, const BaseKeys* base = nullptr) = 0;
   void Text(const char* key, std::string& value, const char* meaning,
             std::optional<std::string> absent = {}) {
     VisitText({{key, meaning, !absent}, std::move(absent)}, value);
@@ -169,13 +161,13 @@ class Fields {
   template <class T>
   void Integer(const char* key, std::uint64_t low, std::uint64_t high, T& value, const char* meaning,
                std::type_identity_t<std::optional<T>> absent = {}) {
-    auto whole = static_cast<std::uint64_t>(value);
+    std::vector<std::uint64_t> whole = {static_cast<std::uint64_t>(value)};
     VisitWhole({{key, meaning, !absent},
                 low,
                 high,
                 absent ? std::optional(static_cast<std::uint64_t>(*absent)) : std::nullopt},
                whole);
-    value = static_cast<T>(whole);
+    value = static_cast<T>(whole.front());
   }
   /// The key is `stem`, an underscore and one of the dimension's units.
   void Quantity(const char* stem, Dimension dimension, const Range& range, double& value, const char* meaning,
@@ -235,7 +227,15 @@ class Fields {
   /// A whole number, or a list of several, each once. The key is optional.
   void Several(const char* key, int low, int high, const char* noun, const char* which,
                std::vector<int>& values, const char* meaning) {
-    VisitSeveral({{key, meaning, false}, low, high, noun, which}, values);
+    std::vector<std::uint64_t> whole(values.begin(), values.end());
+    VisitWhole({{key, meaning, false},
+                static_cast<std::uint64_t>(low),
+                static_cast<std::uint64_t>(high),
+                {},
+                noun,
+                which},
+               whole);
+    values.assign(whole.begin(), whole.end());
   }
   /// A list of lists of numbers, of `width` each, or of any number.
   void Rows(const char* key, std::size_t low_count, std::size_t high_count, std::size_t width,
@@ -248,33 +248,37 @@ class Fields {
     const std::size_t width = columns.size();
     VisitRows({{"rows", meaning}, low_count, SIZE_MAX, width, std::move(columns)}, rows);
   }
-  /// Numbers under `names`. Without names, numbers under any name, which are not read.
-  virtual void NamedNumbers(const char* key, const std::optional<std::vector<std::string>>& names,
-                            std::vector<double>& values, const char* meaning) = 0;
-  virtual void Texts(const char* key, std::size_t low_count, std::size_t high_count,
-                     std::vector<std::string>& values, const char* meaning) = 0;
+  /// In a map: numbers under any names, which are not read.
+  virtual void AnyNumbers() {}
+  void Texts(const char* key, std::size_t low_count, std::size_t high_count, std::vector<std::string>& values,
+             const char* meaning) {
+    VisitTexts({{key, meaning, low_count > 0}}, low_count, high_count, values);
+  }
   /// The name of one of many things. `what` names their kind: "a metric". Without `names` another file has
   /// them.
   void Name(const char* key, const std::vector<std::string>& names, const char* what, std::string& value,
             const char* meaning) {
-    VisitName({{key, meaning}, names, what}, value);
+    VisitText({{key, meaning}, {}, names, what}, value);
   }
-  /// A list of words, each one of `words`. `values` are their positions.
-  virtual void Words(const char* key, const std::vector<std::string>& words, std::vector<std::size_t>& values,
-                     const char* meaning) = 0;
+  /// A list of words, each one of `words`.
+  void Words(const char* key, const std::vector<std::string>& words, std::vector<std::string>& values,
+             const char* meaning) {
+    VisitTexts({{key, meaning}, {}, words}, 1, SIZE_MAX, values);
+  }
   /// One of a list of words.
   template <class Enum>
   void Choice(const char* key, const std::vector<std::pair<std::string, Enum>>& choices, Enum& value,
               const char* meaning, std::optional<Enum> absent = {}) {
-    WordKey all{{key, meaning, !absent}, {}, {}};
-    std::size_t index = 0;
-    for (std::size_t i = 0; i < choices.size(); ++i) {
-      all.words.push_back(choices[i].first);
-      if (choices[i].second == value) index = i;
-      if (absent && choices[i].second == *absent) all.absent = i;
+    TextKey all{{key, meaning, !absent}};
+    std::string word = choices.front().first;
+    for (const auto& [name, choice] : choices) {
+      all.words.push_back(name);
+      if (choice == value) word = name;
+      if (absent && choice == *absent) all.absent = name;
     }
-    VisitWord(all, index);
-    value = choices[index].second;
+    VisitText(all, word);
+    for (const auto& [name, choice] : choices)
+      if (name == word) value = choice;
   }
 
   /// A map that must be there.
@@ -323,11 +327,15 @@ class Fields {
     VisitMap({{key, meaning, true, allowed}, nullptr, nullptr, false, MapKey::File::kBytes}, value, part);
   }
   /// Columns of numbers under any names, or the CSV file of them. The key is optional.
-  virtual void Columns(const char* key, const char* meaning, const ReadNode& read) = 0;
+  void Columns(const char* key, const char* meaning, const ReadNode& read) {
+    VisitNode({{key, meaning, false}}, read);
+  }
   /// The content of a file of a kind, in place or by the file's name. The key is optional unless it is
   /// `needed`.
-  virtual void Document(const char* key, const char* schema, bool needed, const char* allowed,
-                        const char* meaning, const ReadNode& read) = 0;
+  void Document(const char* key, const char* schema, bool needed, const char* allowed, const char* meaning,
+                const ReadNode& read) {
+    VisitNode({{key, meaning, needed, allowed}, schema}, read);
+  }
   /// A list of maps. If `low_count` is 0 the key is optional. Calls describe(fields, item) for each, or
   /// describe(fields, item, number of items).
   template <class T, class F>
@@ -415,13 +423,14 @@ class Fields {
 
   // Each visit gets the value, and leaves the read value in it.
   virtual void VisitText(const TextKey& key, std::string& value) = 0;
-  virtual void VisitWhole(const WholeKey& key, std::uint64_t& value) = 0;
+  virtual void VisitTexts(const TextKey& key, std::size_t low_count, std::size_t high_count,
+                          std::vector<std::string>& values) = 0;
+  /// Several are none without the key; else there is one.
+  virtual void VisitWhole(const WholeKey& key, std::vector<std::uint64_t>& values) = 0;
   virtual void VisitNumber(const NumberKey& key, std::optional<double>& value) = 0;
   virtual void VisitNumbers(const NumbersKey& key, std::vector<double>& values) = 0;
-  virtual void VisitSeveral(const SeveralKey& key, std::vector<int>& values) = 0;
   virtual void VisitRows(const RowsKey& key, std::vector<std::vector<double>>& rows) = 0;
-  virtual void VisitName(const NameKey& key, std::string& value) = 0;
-  virtual void VisitWord(const WordKey& key, std::size_t& index) = 0;
+  virtual void VisitNode(const NodeKey& key, const ReadNode& read) = 0;
   virtual void VisitMap(const MapKey& key, MapValue& value, const Part& part) = 0;
   virtual void VisitMaps(const Key& key, std::size_t low_count, std::size_t high_count,
                          const Items& items) = 0;

@@ -91,7 +91,7 @@ void Describe(Fields& fields, BeamStage& stage, bool timoshenko) {
 // The columns of a table, a row for each station of each mode.
 struct ModeRows {
   std::vector<double> stage, propellant_kg, mode, frequency_rad_s, mass_kg, station_m, deflection, slope_1_m;
-  std::vector<std::size_t> plane;
+  std::vector<std::string> plane;
 };
 
 // As people state a mode's.
@@ -159,7 +159,7 @@ class ModeTable {
     for (std::size_t row = 0; row < rows_.stage.size(); ++row) {
       TabledMode m{static_cast<int>(rows_.stage[row]) - 1,
                    rows_.propellant_kg[row],
-                   kBeamPlanes[rows_.plane[row]],
+                   kBeamPlanes[rows_.plane[row] == "z"],
                    static_cast<int>(rows_.mode[row]),
                    rows_.frequency_rad_s[row],
                    rows_.mass_kg[row],

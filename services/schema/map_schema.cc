@@ -128,7 +128,7 @@ MapSchema::Json MapSchema::Finish() const {
   Json schema = {{"type", "object"}};
   if (keys_.groups.empty()) {
     AddProperties(keys_.values, schema);
-    schema["additionalProperties"] = false;
+    schema["additionalProperties"] = is_open_ ? Json{{"type", "number"}} : Json(false);
   } else {  // names that a group has are said by it
     Json own = Json::object(), names = Json::array();
     for (const auto& [key, value] : keys_.values.items())
@@ -216,24 +216,34 @@ std::string MapSchema::Pattern(const std::vector<std::string>& keys) const {
 
 // ---- Single values ----
 
-void MapSchema::Schema(const char* name) {
-  Add({"schema", "the kind of this file", false}, {{"const", name}});
-}
-void MapSchema::Base(const BaseKeys&) {
+void MapSchema::File(const char* schema, const BaseKeys* base) {
+  Add({"schema", "the kind of this file", false}, {{"const", schema}});
+  has_base_ = base != nullptr;
+  if (!has_base_) return;
   Add({kBasedOn, kBasedOnMeaning, false}, AText());
   Add({kWithout, kWithoutMeaning, false}, ListOf(AText(), 1, SIZE_MAX));
-  has_base_ = true;
 }
 void MapSchema::VisitText(const TextKey& key, std::string&) {
   Json text = key.absent ? Json{{"type", "string"}} : AText();
+  if (!key.words.empty()) text = {{"enum", key.words}};
   if (key.absent && !key.absent->empty()) text["default"] = *key.absent;
   Add(key, std::move(text));
+}
+void MapSchema::VisitTexts(const TextKey& key, std::size_t low_count, std::size_t high_count,
+                           std::vector<std::string>&) {
+  Json text = key.words.empty() ? Json{{"type", "string"}} : Json{{"enum", key.words}};
+  Add(key, ListOf(std::move(text), low_count, high_count));
 }
 void MapSchema::Flag(const char* key, bool&, bool absent, const char* meaning) {
   Add({key, meaning, false}, {{"type", "boolean"}, {"default", absent}});
 }
-void MapSchema::VisitWhole(const WholeKey& key, std::uint64_t&) {
+void MapSchema::VisitWhole(const WholeKey& key, std::vector<std::uint64_t>&) {
   Json number = {{"type", "integer"}, {"minimum", key.low}, {"maximum", key.high}};
+  if (key.noun != nullptr) {
+    Json several = ListOf(number, 1, SIZE_MAX);
+    several["uniqueItems"] = true;
+    return Add(key, Or(number, std::move(several)));
+  }
   if (key.absent) number["default"] = *key.absent;
   const std::string text = "a whole number from " + std::to_string(key.low) + " to " +
                            std::to_string(key.high) + ": " + key.meaning;
@@ -260,14 +270,6 @@ void MapSchema::OneOf(const std::vector<OneQuantity>& quantities, std::size_t&, 
   }
   keys_.rules.push_back(Combined("oneOf", std::move(one)));
 }
-void MapSchema::VisitName(const NameKey& key, std::string&) {
-  Add(key, key.names.empty() ? AText() : Json{{"enum", key.names}});
-}
-void MapSchema::VisitWord(const WordKey& key, std::size_t&) {
-  Json word = {{"enum", key.words}};
-  if (key.absent) word["default"] = key.words[*key.absent];
-  Add(key, std::move(word));
-}
 
 // ---- Lists ----
 
@@ -286,12 +288,6 @@ void MapSchema::VisitNumbers(const NumbersKey& key, std::vector<double>&) {
     return Described(std::move(list), text);
   });
 }
-void MapSchema::VisitSeveral(const SeveralKey& key, std::vector<int>&) {
-  const Json one = {{"type", "integer"}, {"minimum", key.low}, {"maximum", key.high}};
-  Json several = ListOf(one, 1, SIZE_MAX);
-  several["uniqueItems"] = true;
-  Add(key, Or(one, std::move(several)));
-}
 void MapSchema::VisitRows(const RowsKey& key, std::vector<std::vector<double>>&) {
   std::vector<std::string> names;
   for (const RowsKey::Column& column : key.columns) names.emplace_back(column.name);
@@ -300,18 +296,6 @@ void MapSchema::VisitRows(const RowsKey& key, std::vector<std::vector<double>>&)
   Json row = key.width > 0 ? ListOf({{"type", "number"}}, key.width, key.width)
                            : ListOf({{"type", "number"}}, 0, SIZE_MAX);
   Add(key, ListOf(std::move(row), key.low_count, key.high_count));
-}
-void MapSchema::NamedNumbers(const char* key, const std::optional<std::vector<std::string>>&,
-                             std::vector<double>&, const char* meaning) {
-  Add({key, meaning, false}, {{"type", "object"}, {"additionalProperties", {{"type", "number"}}}});
-}
-void MapSchema::Texts(const char* key, std::size_t low_count, std::size_t high_count,
-                      std::vector<std::string>&, const char* meaning) {
-  Add({key, meaning, low_count > 0}, ListOf({{"type", "string"}}, low_count, high_count));
-}
-void MapSchema::Words(const char* key, const std::vector<std::string>& words, std::vector<std::size_t>&,
-                      const char* meaning) {
-  Add({key, meaning}, ListOf({{"enum", words}}, 1, SIZE_MAX));
 }
 
 // ---- Maps ----
@@ -334,13 +318,10 @@ void MapSchema::VisitMaps(const Key& key, std::size_t low_count, std::size_t hig
   items.resize(0);  // how many there are decides nothing
   Add(key, ListOf(std::move(item), low_count, high_count));
 }
-void MapSchema::Columns(const char* key, const char* meaning, const ReadNode&) {
-  const Json column = {{"type", "array"}, {"items", {{"type", "number"}}}};
-  Add({key, meaning, false}, Or(AText(), {{"type", "object"}, {"additionalProperties", column}}));
-}
-void MapSchema::Document(const char* key, const char* schema, bool needed, const char*, const char* meaning,
-                         const ReadNode&) {
-  Add({key, meaning, needed}, Or(AText(), shared_.Document(schema)));
+void MapSchema::VisitNode(const NodeKey& key, const ReadNode&) {
+  const Json columns = {{"type", "object"},
+                        {"additionalProperties", {{"type", "array"}, {"items", {{"type", "number"}}}}}};
+  Add(key, Or(AText(), key.schema == nullptr ? columns : shared_.Document(key.schema)));
 }
 
 // ---- Which keys go together ----

@@ -35,19 +35,10 @@ class MapSchema : public Fields {
   /// The schema of everything described so far.
   Json Finish() const;
 
-  void Schema(const char* name) override;
-  void Base(const BaseKeys& keys) override;
+  void File(const char* schema, const BaseKeys* base) override;
   void Flag(const char* key, bool& value, bool absent, const char* meaning) override;
   void OneOf(const std::vector<OneQuantity>& quantities, std::size_t& which, double& value) override;
-  void NamedNumbers(const char* key, const std::optional<std::vector<std::string>>& names,
-                    std::vector<double>& values, const char* meaning) override;
-  void Texts(const char* key, std::size_t low_count, std::size_t high_count, std::vector<std::string>& values,
-             const char* meaning) override;
-  void Words(const char* key, const std::vector<std::string>& words, std::vector<std::size_t>& values,
-             const char* meaning) override;
-  void Columns(const char* key, const char* meaning, const ReadNode& read) override;
-  void Document(const char* key, const char* schema, bool needed, const char* allowed, const char* meaning,
-                const ReadNode& read) override;
+  void AnyNumbers() override { is_open_ = true; }
   void Group(const char* name, const std::string& of, const Part& part) override;
   void Either(const std::vector<Alternative>& alternatives) override;
   void ExactlyOne(const std::vector<std::string>& keys) override;
@@ -56,13 +47,13 @@ class MapSchema : public Fields {
 
  protected:
   void VisitText(const TextKey& key, std::string& value) override;
-  void VisitWhole(const WholeKey& key, std::uint64_t& value) override;
+  void VisitTexts(const TextKey& key, std::size_t low_count, std::size_t high_count,
+                  std::vector<std::string>& values) override;
+  void VisitWhole(const WholeKey& key, std::vector<std::uint64_t>& values) override;
   void VisitNumber(const NumberKey& key, std::optional<double>& value) override;
   void VisitNumbers(const NumbersKey& key, std::vector<double>& values) override;
-  void VisitSeveral(const SeveralKey& key, std::vector<int>& values) override;
   void VisitRows(const RowsKey& key, std::vector<std::vector<double>>& rows) override;
-  void VisitName(const NameKey& key, std::string& value) override;
-  void VisitWord(const WordKey& key, std::size_t& index) override;
+  void VisitNode(const NodeKey& key, const ReadNode& read) override;
   void VisitMap(const MapKey& key, MapValue& value, const Part& part) override;
   void VisitMaps(const Key& key, std::size_t low_count, std::size_t high_count, const Items& items) override;
 
@@ -100,6 +91,7 @@ class MapSchema : public Fields {
   Keys keys_;
   std::map<std::string, QuantityKey> quantities_;
   std::set<std::string> lists_;  ///< keys of lists, which count as absent if they are empty
+  bool is_open_ = false;         ///< numbers under any names
   bool has_base_ = false;        ///< a base file may give missing keys
 };
 

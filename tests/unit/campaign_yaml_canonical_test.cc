@@ -2,6 +2,8 @@
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
+#include <array>
+
 #include "core/campaign_yaml/canonical.h"
 #include "core/campaign_yaml/load.h"
 #include "core/campaign_yaml/parse_yaml.h"
@@ -147,6 +149,36 @@ TEST(CampaignYamlCanonical, WhatDecidesACaseChangesBothIds) {
     const Campaign other = Edited(edit.file, edit.from, edit.to);
     EXPECT_NE(other.id, campaign.id) << edit.to;
     EXPECT_NE(other.flight_id, campaign.flight_id) << edit.to;
+  }
+}
+
+TEST(CampaignYamlCanonical, EachKeyDecidesWhatItsDeclarationSays) {
+  const auto ids = [](const InputFiles& files) {
+    const Campaign campaign = LoadCampaign(files.Path("campaign.yaml"));
+    return std::array{LoadOptimization(files.Path("campaign.yaml")).vehicle_sha256, campaign.design_id,
+                      campaign.flight_id, campaign.requirements_id};
+  };
+  const std::array original = ids(InputFiles());
+  const struct {
+    const char *file, *from, *to;
+    std::array<bool, 4> changes;  ///< trajectory of the vehicle, design, flight, requirements
+  } edits[] = {
+      {"vehicle.yaml", "thrust_kn: 60", "thrust_kn: 60.0001", {true, true, true, false}},
+      {"vehicle.yaml", "axial_load_g: 12", "axial_load_g: 11", {false, true, true, false}},
+      {"vehicle.yaml", "limit_deg: ", "dead_zone_deg: 0.01, limit_deg: ", {false, true, true, false}},
+      {"campaign.yaml", "seed: 20260101", "seed: 20260102", {false, false, true, false}},
+      {"campaign.yaml", "cases: 100", "cases: 200", {false, false, false, false}},
+      {"campaign.yaml", "name: trial", "name: trial\nassumptions: [calm]", {false, false, false, false}},
+      {"campaign.yaml", "below: 0.5", "below: 0.5, id: R1, source: plan", {false, false, false, false}},
+      {"campaign.yaml", "below: 0.5", "below: 0.6", {false, false, false, true}},
+      {"campaign.yaml", "name: trial", "name: trial\nverdicts: {looks: 2}", {false, false, false, true}},
+  };
+  for (const auto& edit : edits) {
+    const InputFiles files;
+    files.Edit(edit.file, edit.from, edit.to);
+    const std::array now = ids(files);
+    for (std::size_t i = 0; i < now.size(); ++i)
+      EXPECT_EQ(now[i] != original[i], edit.changes[i]) << edit.to << ", " << i;
   }
 }
 

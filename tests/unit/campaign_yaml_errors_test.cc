@@ -33,16 +33,12 @@ TEST_P(BadInputTest, IsReportedInFull) {
 constexpr BadInput kBadInputs[] = {
     {"UnknownKey", "campaign.yaml", "dispersions:\n", "dispersion:\n", "campaign.yaml",
      "campaign.yaml:7:1: dispersion: unknown key 'dispersion' (did you mean 'dispersions'?), "
-     "allowed: autopilot, correlations, derived, description, dispersions, flight, guidance, metrics, name, "
-     "optimize, "
-     "reference, "
-     "requirements, sampling, schema, vehicle, verdicts\n"},
+     "allowed: autopilot, based_on, correlations, derived, description, dispersions, flight, guidance, "
+     "metrics, name, optimize, reference, requirements, sampling, schema, vehicle, verdicts, without\n"},
     {"UnknownKeyLikeNoOther", "campaign.yaml", "name: trial", "name: trial\nzebra: 1", "campaign.yaml",
-     "campaign.yaml:3:1: zebra: unknown key 'zebra', allowed: autopilot, correlations, derived, "
-     "description, dispersions, flight, guidance, metrics, name, optimize, reference, requirements, "
-     "sampling, "
-     "schema, "
-     "vehicle, verdicts\n"},
+     "campaign.yaml:3:1: zebra: unknown key 'zebra', allowed: autopilot, based_on, correlations, "
+     "derived, description, dispersions, flight, guidance, metrics, name, optimize, reference, requirements, "
+     "sampling, schema, vehicle, verdicts, without\n"},
     {"JettisonWithoutTrigger", "vehicle.yaml", "    gimbal:",
      "    jettisoned:\n      - {name: skirt, mass_kg: 10, top_station_m: 1, bottom_station_m: 2, "
      "outer_diameter_m: 1, at: {}}\n    gimbal:",

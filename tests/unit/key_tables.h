@@ -32,10 +32,9 @@ class KeyRows : public Fields {
   std::vector<KeyRow> rows;
   std::vector<std::string> groups;
 
-  void Schema(const char* name) override {
-    Add("schema", "`" + std::string(name) + "`", "needed in a file of its own", "the kind of this file");
-  }
-  void Base(const BaseKeys&) override {
+  void File(const char* schema, const BaseKeys* base) override {
+    Add("schema", "`" + std::string(schema) + "`", "needed in a file of its own", "the kind of this file");
+    if (base == nullptr) return;
     Add(kBasedOn, "file", "none", kBasedOnMeaning);
     Add(kWithout, "list of texts", "none", kWithoutMeaning);
   }
@@ -46,25 +45,6 @@ class KeyRows : public Fields {
     for (const OneQuantity& one : quantities)
       Add(one.stem + std::string("_*"), NumberText(one.dimension, one.range), "one of these is needed",
           one.meaning);
-  }
-  void NamedNumbers(const char* key, const std::optional<std::vector<std::string>>&, std::vector<double>&,
-                    const char* meaning) override {
-    Add(key, "map of numbers", "none", meaning);
-  }
-  void Texts(const char* key, std::size_t low, std::size_t high, std::vector<std::string>&,
-             const char* meaning) override {
-    Add(key, CountText(low, high) + " of texts", Needed(low > 0), meaning);
-  }
-  void Words(const char* key, const std::vector<std::string>& words, std::vector<std::size_t>&,
-             const char* meaning) override {
-    Add(key, "list of " + WordsText(words), "needed", meaning);
-  }
-  void Columns(const char* key, const char* meaning, const ReadNode&) override {
-    Add(key, "CSV file, or map of lists", "none", meaning);
-  }
-  void Document(const char* key, const char*, bool needed, const char*, const char* meaning,
-                const ReadNode&) override {
-    Add(key, "file, or what it holds", Needed(needed), meaning);
   }
   void Group(const char* name, const std::string& of, const Part& part) override {
     if (of.empty()) return part(*this);
@@ -103,9 +83,15 @@ class KeyRows : public Fields {
 
  protected:
   void VisitText(const TextKey& key, std::string&) override {
-    Add(key, "text", key.absent && !key.absent->empty() ? "`" + *key.absent + "`" : "none");
+    const std::string absent = key.absent && !key.absent->empty() ? "`" + *key.absent + "`" : "none";
+    Add(key, key.name_of != nullptr ? "name" : key.words.empty() ? "text" : WordsText(key.words), absent);
   }
-  void VisitWhole(const WholeKey& key, std::uint64_t&) override {
+  void VisitTexts(const TextKey& key, std::size_t low, std::size_t high, std::vector<std::string>&) override {
+    Add(key, key.words.empty() ? CountText(low, high) + " of texts" : "list of " + WordsText(key.words),
+        "none");
+  }
+  void VisitWhole(const WholeKey& key, std::vector<std::uint64_t>&) override {
+    if (key.noun != nullptr) return Add(key, "whole number, or list of them", "all");
     constexpr std::uint64_t kManyEnough = 1u << 31;  // a limit of the machine alone
     std::string value = "whole number";
     if (key.high < kManyEnough)
@@ -131,18 +117,14 @@ class KeyRows : public Fields {
                                (key.or_file ? "; or CSV file" : ""),
               "none");
   }
-  void VisitSeveral(const SeveralKey& key, std::vector<int>&) override {
-    Add(key, "whole number, or list of them", "all");
-  }
   void VisitRows(const RowsKey& key, std::vector<std::vector<double>>&) override {
     std::vector<std::string> names;
     for (const RowsKey::Column& column : key.columns) names.emplace_back(column.name);
     if (!names.empty()) Add("columns", "list of " + WordsText(names), "needed", "these names, in this order");
     Add(key, CountText(key.low_count, key.high_count) + " of rows", "none");
   }
-  void VisitName(const NameKey& key, std::string&) override { Add(key, "name", "none"); }
-  void VisitWord(const WordKey& key, std::size_t&) override {
-    Add(key, WordsText(key.words), key.absent ? "`" + key.words[*key.absent] + "`" : "none");
+  void VisitNode(const NodeKey& key, const ReadNode&) override {
+    Add(key, key.schema == nullptr ? "CSV file, or map of lists" : "file, or what it holds", "none");
   }
   void VisitMap(const MapKey& key, MapValue&, const Part& part) override {
     std::string value = key.or_list ? "map, or list of maps" : "map";
