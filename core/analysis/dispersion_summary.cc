@@ -227,17 +227,6 @@ void SetDrawn(const Dispersion& dispersion, const InputColumn& column, const std
 
 }  // namespace
 
-std::vector<int> DispersedInputs(const Campaign& campaign) {
-  std::vector<int> inputs;
-  for (const Dispersion& dispersion : campaign.dispersions) {
-    inputs.insert(inputs.end(), dispersion.inputs.begin(), dispersion.inputs.end());
-  }
-  for (const DerivedInput& derived : campaign.derived) inputs.push_back(derived.column);
-  std::sort(inputs.begin(), inputs.end());
-  inputs.erase(std::unique(inputs.begin(), inputs.end()), inputs.end());
-  return inputs;
-}
-
 std::vector<DispersionSummary> SummarizeDispersions(const Campaign& campaign, const CaseColumns& cases) {
   std::vector<int> feeders(InputColumns().size(), 0);
   for (const Dispersion& dispersion : campaign.dispersions) {

@@ -29,9 +29,6 @@ struct DispersionSummary {
   std::optional<bool> consistent;
 };
 
-/// Positions in InputColumns() that any dispersion feeds, ascending.
-std::vector<int> DispersedInputs(const Campaign& campaign);
-
 std::vector<DispersionSummary> SummarizeDispersions(const Campaign& campaign, const CaseColumns& cases);
 
 }  // namespace dispersa

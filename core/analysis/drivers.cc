@@ -9,10 +9,10 @@
 #include <utility>
 #include <vector>
 
-#include "core/analysis/dispersion_summary.h"
 #include "core/analysis/load_check.h"
 #include "core/analysis/requirement_summary.h"
 #include "core/campaign/dispersion_table.h"
+#include "core/campaign/row_inputs.h"
 #include "core/flight/flight_inputs.h"
 #include "core/math/constants.h"
 #include "core/results/metric_catalogue.h"

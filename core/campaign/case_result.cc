@@ -3,9 +3,11 @@
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <cstring>
 #include <optional>
 #include <utility>
 
+#include "core/flight/flight_inputs.h"
 #include "core/flight/flight_model.h"
 #include "core/input/read_value.h"
 
@@ -61,7 +63,7 @@ std::string WhyNotMeasured(const Campaign& campaign, const std::string& metric) 
          InfoOf(law).name;
 }
 
-CaseResult ResultOf(const FlightModel& model, std::uint64_t case_index, const FlightInputs& inputs,
+CaseResult ResultOf(const RowInputs& rows, std::uint64_t case_index, const FlightInputs& inputs,
                     FlightResult flight) {
   CaseResult result;
   result.case_index = case_index;
@@ -69,10 +71,22 @@ CaseResult ResultOf(const FlightModel& model, std::uint64_t case_index, const Fl
   result.end_time_s = flight.end_time_s;
   result.end_stage = flight.end_stage;
   result.reason = std::move(flight.reason);
-  result.inputs = InputValues(inputs, ColumnClass(model.definition().vehicle));
+  SetInputs(rows, InputValues(inputs, rows.column_class()), result);
   result.metrics = std::move(flight.metrics);
   result.digest = flight.digest;
   return result;
+}
+
+void SetInputs(const RowInputs& rows, const std::vector<double>& all, CaseResult& result) {
+  result.inputs = rows.RowOf(all);
+  result.inputs_digest = InputsDigest(all);
+}
+
+bool HasInputs(const RowInputs& rows, const std::vector<double>& all, const CaseResult& result) {
+  const std::vector<double> row = rows.RowOf(all);
+  return result.inputs.size() == row.size() &&
+         std::memcmp(result.inputs.data(), row.data(), row.size() * sizeof(double)) == 0 &&
+         result.inputs_digest == InputsDigest(all);
 }
 
 std::string NominalLoss(const CaseResult& nominal) {

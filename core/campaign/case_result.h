@@ -7,6 +7,7 @@
 #include <vector>
 
 #include "core/campaign/campaign.h"
+#include "core/campaign/row_inputs.h"
 #include "core/flight/digest.h"
 #include "core/flight/flight.h"
 #include "core/flight/metric_list.h"
@@ -20,7 +21,8 @@ struct CaseResult {
   double end_time_s = 0.0;     ///< since lift-off
   int end_stage = 0;           ///< 1-based stage burning, or last burnt, at the end
   std::string reason;          ///< one sentence (empty when completed)
-  std::vector<double> inputs;  ///< as applied, in the order of InputNames()
+  std::vector<double> inputs;  ///< those of the campaign's rows (RowInputs), as applied
+  Digest inputs_digest;        ///< InputsDigest() of all inputs, as applied
   /// In the order of MetricsOf the campaign. NaN: undefined, or not measured under its law.
   std::vector<double> metrics;
   Digest digest;
@@ -42,7 +44,11 @@ std::string WhyNotMeasured(const Campaign& campaign, const std::string& metric);
 std::string NominalLoss(const CaseResult& nominal);
 
 /// The result of a flight of these inputs, as a case's result.
-CaseResult ResultOf(const FlightModel& model, std::uint64_t case_index, const FlightInputs& inputs,
+CaseResult ResultOf(const RowInputs& rows, std::uint64_t case_index, const FlightInputs& inputs,
                     FlightResult flight);
+/// Gives a result what its flight applied: a value for each input of the vehicle.
+void SetInputs(const RowInputs& rows, const std::vector<double>& all, CaseResult& result);
+/// Whether a result has these inputs, to the last bit, and its flight applied these constants.
+bool HasInputs(const RowInputs& rows, const std::vector<double>& all, const CaseResult& result);
 
 }  // namespace dispersa

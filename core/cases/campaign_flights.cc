@@ -102,7 +102,7 @@ class FlyingOrders : public FlightQueue {
   void Done(FlightRecord* record) override {
     const auto ended = flying_.extract(record);
     CaseResult result =
-        ResultOf(shared_.flights.model(), record->options.case_index, record->inputs, record->Result());
+        ResultOf(shared_.flights.rows(), record->options.case_index, record->inputs, record->Result());
     shared_.Done(ended.mapped()->order, std::move(result), ended.mapped()->history);
   }
 

@@ -34,6 +34,8 @@ class CampaignFlights {
   ~CampaignFlights();
 
   const FlightModel& model() const { return here_.model(); }
+  /// Which inputs a result has.
+  const RowInputs& rows() const { return here_.rows(); }
   /// The inputs of a case, as its flight applies them.
   FlightInputs Draw(std::uint64_t case_index) const { return here_.Draw(case_index); }
   CaseResult FlyCase(std::uint64_t case_index, History* history = nullptr) const;

@@ -49,7 +49,7 @@ void FlySideBySide(const FlightsHere& flights, const std::vector<std::optional<s
   }
   std::vector<FlightResult> results = FlyAll(flights.model(), orders);
   for (std::size_t i = 0; i < cases.size(); ++i)
-    say(AnswerOf(ResultOf(flights.model(), cases[i].value_or(0), orders[i].inputs, std::move(results[i])),
+    say(AnswerOf(ResultOf(flights.rows(), cases[i].value_or(0), orders[i].inputs, std::move(results[i])),
                  histories[i].values));
 }
 

@@ -41,7 +41,7 @@ class FlyingCases : public FlightQueue {
   }
   void Done(FlightRecord* record) override {
     const auto ended = flying_.extract(record);
-    cases_.Done(ResultOf(flights_.model(), record->options.case_index, record->inputs, record->Result()));
+    cases_.Done(ResultOf(flights_.rows(), record->options.case_index, record->inputs, record->Result()));
   }
 
  private:
@@ -54,6 +54,7 @@ class FlyingCases : public FlightQueue {
 
 FlightsHere::FlightsHere(const Campaign& campaign)
     : design_(WithItsLaw(campaign)),
+      rows_(campaign),
       model_(std::make_unique<FlightModel>(DefinitionOf(campaign))),
       metrics_(MetricsOf(campaign).size()) {}
 
@@ -65,7 +66,7 @@ CaseResult FlightsHere::Fly(const FlightInputs& inputs, std::uint64_t case_index
   options.scheme = scheme;
   options.case_index = case_index;
   options.history = history;
-  return ResultOf(*model_, case_index, model_->AsApplied(inputs), dispersa::Fly(*model_, inputs, options));
+  return ResultOf(rows_, case_index, model_->AsApplied(inputs), dispersa::Fly(*model_, inputs, options));
 }
 
 void FlightsHere::FlyCases(CaseQueue& queue) const {
@@ -78,7 +79,7 @@ bool FlightsHere::IsResult(const CaseResult& result) const {
   const auto& stages = model_->definition().vehicle.stages;
   return outcome >= 0 && outcome < kOutcomeCount && result.end_stage >= 0 &&
          result.end_stage <= static_cast<int>(stages.size()) && result.metrics.size() == metrics_ &&
-         result.inputs.size() == InputValues({}, ColumnClass(model_->definition().vehicle)).size();
+         result.inputs.size() == rows_.positions().size();
 }
 
 }  // namespace dispersa

@@ -35,6 +35,8 @@ class FlightsHere {
   ~FlightsHere();
 
   const FlightModel& model() const { return *model_; }
+  /// Which inputs a result has.
+  const RowInputs& rows() const { return rows_; }
   /// The inputs of a case, as its flight applies them.
   FlightInputs Draw(std::uint64_t case_index) const { return design_.Draw(case_index); }
   /// Any inputs, with any integrator: `case_index` keys the sensors' noise.
@@ -46,6 +48,7 @@ class FlightsHere {
 
  private:
   CaseDesign design_;
+  RowInputs rows_;
   std::unique_ptr<FlightModel> model_;
   std::size_t metrics_;
 };

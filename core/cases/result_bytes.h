@@ -82,6 +82,7 @@ inline void Pack(const CaseResult& result, Packer& out) {
   out.Value(result.end_stage);
   out.Text(result.reason);
   out.Numbers(result.inputs);
+  out.Value(result.inputs_digest);
   out.Numbers(result.metrics);
   out.Value(result.digest);
 }
@@ -94,6 +95,7 @@ inline CaseResult UnpackResult(Unpacker& in) {
   result.end_stage = in.Value<int>();
   result.reason = in.Text();
   result.inputs = in.Numbers();
+  result.inputs_digest = in.Value<Digest>();
   result.metrics = in.Numbers();
   result.digest = in.Value<Digest>();
   return result;

@@ -10,6 +10,7 @@
 #include "core/pages/report_page.h"
 #include "core/results/case_columns.h"
 #include "core/results/cases_csv.h"
+#include "core/results/nominal_json.h"
 #include "core/results/output_file.h"
 #include "core/results/result_error.h"
 
@@ -50,6 +51,7 @@ CampaignSummary WriteReports(const ResultFolder& folder, const Campaign& campaig
       ReadColumns(folder, DispersedInputs(campaign), [&csv](const CaseResult& result) { csv.Write(result); });
   RefuseFewer(cases_csv, csv.rows());
   csv.Commit();
+  WriteFile(folder.directory() / "nominal.json", NominalJson(folder.inputs()));
   CampaignSummary summary = BuildSummary(folder, campaign, cases);
   FlightHistories histories;
   if (options.histories) {

@@ -96,13 +96,14 @@ std::string CampaignSection(const PaperStudy& study) {
 /// Cases with their inputs and metrics, as cases.csv has them.
 std::string CasesData(const Campaign& campaign, const CaseColumns& cases) {
   std::string csv = "case_index,outcome";
-  for (std::size_t i = 0; i < cases.inputs.size(); ++i) csv += ",input_" + InputColumns()[i].name;
+  const std::vector<int> inputs = DispersedInputs(campaign);
+  for (const int i : inputs) csv += ",input_" + InputColumns()[static_cast<std::size_t>(i)].name;
   const std::vector<std::size_t> metrics = MeasuredMetrics(campaign);
   for (const std::size_t i : metrics) csv += ",metric_" + MetricNames()[i];
   csv += "\n";
   for (std::size_t row = 0; row < cases.rows(); ++row) {
     csv += fmt::format("{},{}", cases.index[row], OutcomeName(cases.outcome[row]));
-    for (const auto& column : cases.inputs) csv += "," + ShortestText(column[row]);
+    for (const int i : inputs) csv += "," + ShortestText(cases.inputs[static_cast<std::size_t>(i)][row]);
     for (const std::size_t i : metrics) csv += "," + ShortestText(cases.metrics[i][row]);
     csv += "\n";
   }

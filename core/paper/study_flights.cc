@@ -3,6 +3,7 @@
 #include <algorithm>
 
 #include "core/cases/campaign_flights.h"
+#include "core/flight/flight_inputs.h"
 
 namespace dispersa {
 
@@ -25,14 +26,13 @@ StudyFlights FlyStudy(const Campaign& campaign, const StudyOptions& options) {
   });
 
   CaseColumns& cases = study.cases;
-  if (!results.empty()) {
-    cases.inputs.resize(results.front().inputs.size());
-    cases.metrics.resize(results.front().metrics.size());
-  }
+  const std::vector<std::size_t>& inputs = flights.rows().positions();
+  cases.inputs.resize(InputCount(flights.rows().column_class()));
+  if (!results.empty()) cases.metrics.resize(results.front().metrics.size());
   for (const CaseResult& result : results) {
     cases.index.push_back(result.case_index);
     cases.outcome.push_back(result.outcome);
-    for (std::size_t i = 0; i < result.inputs.size(); ++i) cases.inputs[i].push_back(result.inputs[i]);
+    for (std::size_t i = 0; i < inputs.size(); ++i) cases.inputs[inputs[i]].push_back(result.inputs[i]);
     for (std::size_t i = 0; i < result.metrics.size(); ++i) cases.metrics[i].push_back(result.metrics[i]);
     if (result.outcome == Outcome::kCompleted) continue;
     cases.lost_flights.push_back(

@@ -35,7 +35,7 @@ class ColumnFile {
   int file_ = -1;              ///< descriptor of the file with the earlier rows, block by block
 };
 
-/// A column of values. NaN is undefined.
+/// A column of values, or of one value in every row. NaN is undefined.
 class CaseColumn {
  public:
   CaseColumn() = default;
@@ -43,11 +43,15 @@ class CaseColumn {
   CaseColumn(std::vector<double> values) : values_(std::move(values)) {}
   CaseColumn(std::shared_ptr<const ColumnFile> file, std::size_t number)
       : file_(std::move(file)), number_(number) {}
+  CaseColumn(std::size_t rows, double constant) : rows_(rows), constant_(constant) {}
 
-  std::size_t size() const { return file_ ? file_->rows() : values_.size(); }
+  std::size_t size() const { return file_ ? file_->rows() : rows_ > 0 ? rows_ : values_.size(); }
   bool empty() const { return size() == 0; }
   /// All values. Those of a column on disk are read now.
-  std::vector<double> Values() const { return file_ ? file_->Read(number_) : values_; }
+  std::vector<double> Values() const {
+    if (rows_ > 0) return std::vector<double>(rows_, constant_);
+    return file_ ? file_->Read(number_) : values_;
+  }
   operator std::vector<double>() const { return Values(); }
 
   // For a column in memory only.
@@ -59,6 +63,8 @@ class CaseColumn {
   std::vector<double> values_;
   std::shared_ptr<const ColumnFile> file_;
   std::size_t number_ = 0;
+  std::size_t rows_ = 0;  ///< of a constant
+  double constant_ = 0.0;
 };
 
 }  // namespace dispersa

@@ -15,9 +15,12 @@ CaseColumns ReadColumns(const ResultFolder& folder, const std::vector<int>& want
                         const std::function<void(const CaseResult&)>& observe) {
   CaseColumns cases;
   const std::size_t metrics = folder.metric_list().size();
+  std::vector<std::size_t> places;  // in the rows, of the inputs that they hold
+  for (const int input : wanted_inputs)
+    if (const auto place = folder.inputs().PlaceOf(static_cast<std::size_t>(input))) places.push_back(*place);
   cases.own_metrics = folder.metric_list().own();
-  const auto file = std::make_shared<ColumnFile>(folder.directory(), metrics + wanted_inputs.size());
-  std::vector<double> row(metrics + wanted_inputs.size());
+  const auto file = std::make_shared<ColumnFile>(folder.directory(), metrics + places.size());
+  std::vector<double> row(metrics + places.size());
   Digest first;
   folder.ForEach([&](const CaseResult& result) {
     if (observe) observe(result);
@@ -30,15 +33,19 @@ CaseColumns ReadColumns(const ResultFolder& folder, const std::vector<int>& want
           {result.case_index, result.outcome, result.end_time_s, result.end_stage, result.reason});
     }
     std::copy(result.metrics.begin(), result.metrics.end(), row.begin());
-    for (std::size_t i = 0; i < wanted_inputs.size(); ++i)
-      row[metrics + i] = result.inputs[static_cast<std::size_t>(wanted_inputs[i])];
+    for (std::size_t i = 0; i < places.size(); ++i) row[metrics + i] = result.inputs[places[i]];
     file->Append(row);
   });
   cases.metrics.resize(metrics);
   for (const std::size_t i : folder.metrics()) cases.metrics[i] = CaseColumn(file, i);
   cases.inputs.resize(InputCount(folder.stages()));
-  for (std::size_t i = 0; i < wanted_inputs.size(); ++i)
-    cases.inputs[static_cast<std::size_t>(wanted_inputs[i])] = CaseColumn(file, metrics + i);
+  std::size_t column = metrics;
+  for (const int input : wanted_inputs) {
+    const auto position = static_cast<std::size_t>(input);
+    cases.inputs[position] = folder.inputs().PlaceOf(position)
+                                 ? CaseColumn(file, column++)
+                                 : CaseColumn(cases.rows(), folder.inputs().constant(position));
+  }
   return cases;
 }
 

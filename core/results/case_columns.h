@@ -31,8 +31,9 @@ struct CaseColumns {
 /// A page with a longer list would not be read. cases.csv lists all lost flights.
 inline constexpr std::size_t kListedLostFlights = 10000;
 
-/// Reads all metrics, and the inputs at the positions `wanted_inputs` in InputColumns(), in one pass.
-/// `observe`, if given, gets each result. A million cases take 50 MB beside the columns in use.
+/// Reads all metrics, and the inputs at the positions `wanted_inputs` in InputColumns(), in one pass. An
+/// input that the rows do not hold is a column of its constant. `observe`, if given, gets each result. A
+/// million cases take 50 MB beside the columns in use.
 CaseColumns ReadColumns(const ResultFolder& folder, const std::vector<int>& wanted_inputs,
                         const std::function<void(const CaseResult&)>& observe = {});
 

@@ -16,7 +16,7 @@
 namespace dispersa {
 
 CsvColumns StoredColumns(const ResultFolder& folder) {
-  CsvColumns columns{std::vector<std::size_t>(InputCount(folder.stages())), folder.metrics()};
+  CsvColumns columns{std::vector<std::size_t>(folder.inputs().positions().size()), folder.metrics()};
   std::iota(columns.inputs.begin(), columns.inputs.end(), std::size_t{0});
   return columns;
 }
@@ -24,7 +24,7 @@ CsvColumns StoredColumns(const ResultFolder& folder) {
 CsvColumns VaryingColumns(const ResultFolder& folder) {
   const CsvColumns stored = StoredColumns(folder);
   std::optional<CaseResult> first;
-  std::vector<bool> inputs(InputCount(folder.stages())), metrics(folder.metric_list().size());
+  std::vector<bool> inputs(stored.inputs.size()), metrics(folder.metric_list().size());
   // Undefined equals undefined here: neither has a text.
   const auto differ = [](double a, double b) { return !(a == b) && !(std::isnan(a) && std::isnan(b)); };
   folder.ForEach([&](const CaseResult& result) {
@@ -40,9 +40,9 @@ CsvColumns VaryingColumns(const ResultFolder& folder) {
   return columns;
 }
 
-std::string CasesCsvHeader(const MetricList& list, const CsvColumns& columns) {
+std::string CasesCsvHeader(const RowInputs& inputs, const MetricList& list, const CsvColumns& columns) {
   std::string line = "case_index,outcome,end_time_s,end_stage,reason";
-  for (const std::size_t i : columns.inputs) line += ",input_" + InputColumns()[i].name;
+  for (const std::size_t i : columns.inputs) line += ",input_" + InputColumns()[inputs.positions()[i]].name;
   for (const std::size_t i : columns.metrics) line += ",metric_" + list.NameAt(i);
   return line + ",digest\n";
 }
@@ -57,7 +57,7 @@ std::string CasesCsvLine(const CaseResult& result, const CsvColumns& columns) {
 
 CasesCsv::CasesCsv(const std::filesystem::path& file, const ResultFolder& folder, CsvColumns columns)
     : file_(file), columns_(std::move(columns)) {
-  file_.Write(CasesCsvHeader(folder.metric_list(), columns_));
+  file_.Write(CasesCsvHeader(folder.inputs(), folder.metric_list(), columns_));
 }
 
 std::uint64_t CountCases(const std::filesystem::path& file) {

@@ -13,10 +13,9 @@
 
 namespace dispersa {
 
-/// Positions in a case's inputs and in the folder's list of metrics.
 struct CsvColumns {
-  std::vector<std::size_t> inputs;
-  std::vector<std::size_t> metrics;
+  std::vector<std::size_t> inputs;   ///< places in a row's inputs
+  std::vector<std::size_t> metrics;  ///< positions in the folder's list
 };
 /// All that a folder stores.
 CsvColumns StoredColumns(const ResultFolder& folder);
@@ -24,7 +23,7 @@ CsvColumns StoredColumns(const ResultFolder& folder);
 CsvColumns VaryingColumns(const ResultFolder& folder);
 
 /// Both with their line break. Doubles in the shortest text that reads back to the same bits.
-std::string CasesCsvHeader(const MetricList& list, const CsvColumns& columns);
+std::string CasesCsvHeader(const RowInputs& inputs, const MetricList& list, const CsvColumns& columns);
 std::string CasesCsvLine(const CaseResult& result, const CsvColumns& columns);
 
 /// The growing file. It replaces the old one as a whole.

@@ -70,7 +70,7 @@ std::string ImmutableUri(const std::filesystem::path& file) {
 
 }  // namespace
 
-Database::Database(const std::filesystem::path& file, Mode mode) : file_(file) {
+Database::Database(const std::filesystem::path& file, Mode mode, std::int64_t page_bytes) : file_(file) {
   // NOMUTEX: one thread at a time uses a connection. A lock for each value of a row took a seventh of a
   // coordinator's time.
   int flags = SQLITE_OPEN_NOMUTEX;
@@ -90,10 +90,11 @@ Database::Database(const std::filesystem::path& file, Mode mode) : file_(file) {
     sqlite3_extended_result_codes(handle_, 1);
     sqlite3_busy_timeout(handle_, 10000);
     if (sqlite3_db_readonly(handle_, "main") == 0) {
+      if (mode == Mode::kCreate) Execute(fmt::format("PRAGMA page_size = {}", page_bytes));
       Execute("PRAGMA journal_mode = WAL");
       // Commit returns when the data are on the disk. Acknowledged results then survive a power cut.
       Execute("PRAGMA synchronous = FULL");
-      Execute("PRAGMA wal_autocheckpoint = 4000");  // pages: 16 MB; each checkpoint waits for the disk
+      Execute("PRAGMA wal_autocheckpoint = 2000");  // pages: 16 MB; each checkpoint waits for the disk
     }
   } catch (...) {
     sqlite3_close_v2(handle_);
@@ -113,7 +114,9 @@ void Database::CopyTo(const std::filesystem::path& file) const {
   std::error_code error;
   std::filesystem::remove(temporary, error);  // of a copy that was killed
   {
-    const Database copy(temporary, Mode::kCreate);
+    Statement page(*this, "PRAGMA page_size");
+    page.Step();
+    const Database copy(temporary, Mode::kCreate, page.Integer(0));
     sqlite3_backup* backup = sqlite3_backup_init(copy.handle_, "main", handle_, "main");
     if (backup == nullptr) copy.Fail(sqlite3_errcode(copy.handle_));
     constexpr int kAllPages = -1;
@@ -171,6 +174,10 @@ void Statement::BindInteger(int parameter, std::int64_t value) {
 
 void Statement::BindText(int parameter, std::string_view value) {
   Check(sqlite3_bind_text64(handle_, parameter, value.data(), value.size(), SQLITE_TRANSIENT, SQLITE_UTF8));
+}
+
+void Statement::BindBytes(int parameter, std::string_view value) {
+  Check(sqlite3_bind_blob64(handle_, parameter, value.data(), value.size(), SQLITE_TRANSIENT));
 }
 
 bool Statement::Step() {

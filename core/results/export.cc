@@ -25,7 +25,7 @@ void ExportJsonLines(const ResultFolder& folder, const std::filesystem::path& fi
                  {"end_stage", result.end_stage},
                  {"reason", result.reason}};
     for (std::size_t i = 0; i < result.inputs.size(); ++i)
-      line["input_" + InputColumns()[i].name] = Number(result.inputs[i]);
+      line["input_" + InputColumns()[folder.inputs().positions()[i]].name] = Number(result.inputs[i]);
     for (const std::size_t i : folder.metrics())
       line["metric_" + folder.metric_list().NameAt(i)] = Number(result.metrics[i]);
     line["digest"] = result.digest.Hex();

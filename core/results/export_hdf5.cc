@@ -123,18 +123,18 @@ void ExportHdf5(const ResultFolder& folder, const std::filesystem::path& file,
                 const std::string& incomplete) {
   H5dont_atexit();  // after a full disk the library's last rites end the process with SIGSEGV
   H5Eset_auto2(H5E_DEFAULT, nullptr, nullptr);  // what goes wrong is thrown, not printed
-  std::vector<int> inputs;
-  for (std::size_t i = 0; i < InputCount(folder.stages()); ++i) inputs.push_back(static_cast<int>(i));
+  const std::vector<std::size_t>& in_rows = folder.inputs().positions();
   std::vector<double> end_time_s;
   std::vector<std::uint64_t> end_stage;
   std::vector<std::string> outcome, reason, digest;
-  const CaseColumns cases = ReadColumns(folder, inputs, [&](const CaseResult& result) {
-    outcome.push_back(OutcomeName(result.outcome));
-    end_time_s.push_back(result.end_time_s);
-    end_stage.push_back(static_cast<std::uint64_t>(result.end_stage));
-    reason.push_back(result.reason);
-    digest.push_back(result.digest.Hex());
-  });
+  const CaseColumns cases =
+      ReadColumns(folder, {in_rows.begin(), in_rows.end()}, [&](const CaseResult& result) {
+        outcome.push_back(OutcomeName(result.outcome));
+        end_time_s.push_back(result.end_time_s);
+        end_stage.push_back(static_cast<std::uint64_t>(result.end_stage));
+        reason.push_back(result.reason);
+        digest.push_back(result.digest.Hex());
+      });
 
   const std::filesystem::path temporary = file.string() + ".tmp";
   std::error_code ignored;
@@ -158,11 +158,24 @@ void ExportHdf5(const ResultFolder& folder, const std::filesystem::path& file,
         output.Attribute(path, "unit", unit);
       };
       output.Group("/inputs");
-      for (std::size_t i = 0; i < cases.inputs.size(); ++i) {
+      for (const std::size_t i : in_rows) {
         const std::string path = "/inputs/" + InputColumns()[i].name;
         column(path, SplitUnit(InputColumns()[i].name).unit, cases.inputs[i]);
         output.Attribute(path, "key", InputKey(static_cast<int>(i)));
       }
+      output.Group("/nominal");
+      std::vector<std::string> names, units, keys;
+      std::vector<double> constants;
+      for (const std::size_t i : folder.inputs().constants()) {
+        names.push_back(InputColumns()[i].name);
+        units.push_back(SplitUnit(names.back()).unit);
+        keys.push_back(InputKey(static_cast<int>(i)));
+        constants.push_back(folder.inputs().constant(i));
+      }
+      output.Texts("/nominal/input", names);
+      output.Numbers("/nominal/value", constants);
+      output.Texts("/nominal/unit", units);
+      output.Texts("/nominal/key", keys);
       output.Group("/metrics");
       for (const std::size_t i : folder.metrics()) {
         const std::string& name = folder.metric_list().NameAt(i);

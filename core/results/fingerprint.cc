@@ -35,7 +35,7 @@ Digest Fingerprint(std::string_view bytes) {
   return DigestOf(words);
 }
 
-Digest Fingerprint(const CaseResult& result) {
+Digest Fingerprint(const CaseResult& result, bool with_inputs_digest) {
   std::vector<double> words = {std::bit_cast<double>(result.case_index),
                                static_cast<double>(result.outcome),
                                AsStored(result.end_time_s),
@@ -46,6 +46,10 @@ Digest Fingerprint(const CaseResult& result) {
   words.push_back(static_cast<double>(result.inputs.size()));
   for (const double value : result.inputs) words.push_back(AsStored(value));
   for (const double value : result.metrics) words.push_back(AsStored(value));
+  if (with_inputs_digest) {
+    words.push_back(std::bit_cast<double>(result.inputs_digest.high));
+    words.push_back(std::bit_cast<double>(result.inputs_digest.low));
+  }
   return DigestOf(words);
 }
 

@@ -8,8 +8,9 @@
 namespace dispersa {
 
 /// Covers every field. It detects a damaged row, and a second result of the case that differs anywhere. It is
-/// taken over the stored values: any NaN or infinity is "undefined", -0 is 0.
-Digest Fingerprint(const CaseResult& result);
+/// taken over the stored values: any NaN or infinity is "undefined", -0 is 0. Rows of older releases have no
+/// digest of the inputs: they hold all of them.
+Digest Fingerprint(const CaseResult& result, bool with_inputs_digest = true);
 Digest Fingerprint(std::string_view bytes);
 
 }  // namespace dispersa

@@ -30,15 +30,17 @@ void CompareText(const std::string& name, const std::string& first, const std::s
 }  // namespace
 
 std::vector<ResultDifference> Differences(const CaseResult& first, const CaseResult& second,
-                                          const MetricList& metrics) {
+                                          const RowInputs& inputs, const MetricList& metrics) {
   std::vector<ResultDifference> differences;
   CompareText("outcome", OutcomeName(first.outcome), OutcomeName(second.outcome), differences);
   CompareText("reason", first.reason, second.reason, differences);
   CompareNumber("end_time_s", first.end_time_s, second.end_time_s, differences);
   CompareNumber("end_stage", first.end_stage, second.end_stage, differences);
   for (std::size_t i = 0; i < first.inputs.size(); ++i) {
-    CompareNumber("input_" + InputColumns()[i].name, first.inputs[i], second.inputs[i], differences);
+    CompareNumber("input_" + InputColumns()[inputs.positions()[i]].name, first.inputs[i], second.inputs[i],
+                  differences);
   }
+  CompareText("inputs_digest", first.inputs_digest.Hex(), second.inputs_digest.Hex(), differences);
   for (std::size_t i = 0; i < first.metrics.size(); ++i) {
     CompareNumber("metric_" + metrics.NameAt(i), first.metrics[i], second.metrics[i], differences);
   }

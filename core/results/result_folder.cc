@@ -4,6 +4,7 @@
 
 #include <algorithm>
 #include <charconv>
+#include <cstring>
 #include <fstream>
 #include <iterator>
 #include <optional>
@@ -40,34 +41,63 @@ constexpr int kFirstInput = 5;
 
 using Positions = std::vector<std::size_t>;
 
-std::string CaseColumnList(const MetricList& list, const Positions& metrics, const char* type) {
+std::string CaseColumnList(const RowShape& shape, const char* type) {
   std::string columns;
-  for (std::size_t i = 0; i < InputCount(list.stages()); ++i)
+  for (const std::size_t i : shape.inputs.positions())
     columns += fmt::format(", input_{}{}", InputColumns()[i].name, type);
-  for (const std::size_t i : metrics) columns += fmt::format(", metric_{}{}", list.NameAt(i), type);
+  for (const std::size_t i : shape.metrics)
+    columns += fmt::format(", metric_{}{}", shape.list.NameAt(i), type);
   return columns;
 }
 
-std::string SelectCases(const MetricList& list, const Positions& metrics, const char* table = "cases") {
-  return "SELECT case_index, outcome, end_time_s, end_stage, reason" + CaseColumnList(list, metrics, "") +
+std::string SelectCases(const RowShape& shape, const char* table = "cases") {
+  return "SELECT case_index, outcome, end_time_s, end_stage, reason" + CaseColumnList(shape, "") +
          ", digest, row_digest FROM " + table;
-}
-
-/// Vehicles of few stages, and without clusters of engines, have fewer columns (ColumnClass).
-std::size_t StagesOf(Database& database) {
-  Statement further = database.Prepare(
-      "SELECT COUNT(*) FROM pragma_table_info('cases') WHERE name GLOB 'input_nozzle_flow_factor_nozzle*'");
-  if (further.Step() && further.Integer(0) > 0)
-    return kMaxStages + static_cast<std::size_t>(further.Integer(0));
-  Statement rare = database.Prepare(fmt::format(
-      "SELECT name FROM pragma_table_info('cases') WHERE name LIKE 'input_%_stage{}%'", kMaxStages));
-  return rare.Step() ? kMaxStages : kUsualStages;
 }
 
 bool HasTable(Database& database, const std::string& name) {
   Statement select = database.Prepare("SELECT 1 FROM sqlite_master WHERE type = 'table' AND name = ?");
   select.BindText(1, name);
   return select.Step();
+}
+
+constexpr char kNominal[] = "nominal";
+
+/// Vehicles of few stages, and without clusters of engines, have fewer inputs (ColumnClass).
+std::size_t ClassOf(const std::vector<std::string>& inputs) {
+  const std::string rare = "_stage" + std::to_string(kMaxStages);
+  std::size_t further = 0;
+  bool is_rare = false;
+  for (const std::string& name : inputs) {
+    further += name.starts_with("nozzle_flow_factor_nozzle");
+    is_rare = is_rare || name.find(rare) != std::string::npos;
+  }
+  return further > 0 ? kMaxStages + further : is_rare ? kMaxStages : kUsualStages;
+}
+
+/// Rows hold the inputs of which the table has columns. Every other one stands in the table `nominal`, which
+/// folders of older releases do not have. InputError for an input that this program does not know.
+RowInputs StoredInputs(Database& database, const fs::path& directory) {
+  std::vector<std::string> names;
+  std::vector<std::size_t> positions;
+  const auto position = [&](const std::string& name) {
+    names.push_back(name);
+    if (const int input = FindInput(name); input >= 0) return static_cast<std::size_t>(input);
+    throw InputError(fmt::format("{}: this dispersa does not know its input {}", directory.string(), name));
+  };
+  Statement columns =
+      database.Prepare("SELECT substr(name, 7) FROM pragma_table_info('cases') WHERE name GLOB 'input_*'");
+  while (columns.Step()) positions.push_back(position(columns.Text(0)));
+  std::vector<std::pair<std::size_t, double>> constants;
+  if (HasTable(database, kNominal)) {
+    Statement select = database.Prepare(fmt::format("SELECT input, value FROM {}", kNominal));
+    while (select.Step()) constants.emplace_back(position(select.Text(0)), select.Real(1));
+  }
+  const std::size_t column_class = ClassOf(names);
+  std::vector<double> all(InputCount(column_class), kUndefined);
+  for (const auto& [input, value] : constants)
+    if (input < all.size()) all[input] = value;
+  return RowInputs(column_class, std::move(positions), std::move(all));
 }
 
 /// A law's own metrics are there if it was flown. Those that a kind of flight has are there together, or none
@@ -90,10 +120,14 @@ Positions StoredMetrics(Database& database, const MetricList& list) {
   return metrics;
 }
 
-/// Without those of a campaign's own.
-Positions OfVehicle(const MetricList& list, Positions metrics) {
-  std::erase_if(metrics, [&](std::size_t i) { return i >= MetricCount(list.stages()); });
-  return metrics;
+/// Without the metrics of a campaign's own.
+RowShape OfVehicle(RowShape shape) {
+  std::erase_if(shape.metrics, [&](std::size_t i) { return i >= MetricCount(shape.list.stages()); });
+  return shape;
+}
+
+RowShape ShapeOf(const Campaign& campaign) {
+  return {RowInputs(campaign), MetricsOf(campaign), MeasuredMetrics(campaign)};
 }
 
 constexpr char kOwnMetrics[] = "own_metrics";
@@ -120,8 +154,9 @@ std::vector<OwnMetric> OwnMetricsOf(Database& database) {
   return metrics;
 }
 
-/// Of the tables, as SQLite's user_version. 1 (stored as 0): without `audits`. 2: with it.
-constexpr int kVersion = 2;
+/// Of the tables, as SQLite's user_version. 1 (stored as 0): without `audits`. 2: with it; rows hold all
+/// inputs. 3: rows hold those that the campaign sets, and the table `nominal` the others.
+constexpr int kVersion = 3;
 
 int VersionOf(const Database& database) {
   Statement select(database, "PRAGMA user_version");
@@ -135,25 +170,25 @@ void RefuseNewer(const Database& database, const fs::path& directory) {
                                directory.string(), kDatabaseName, version, kVersion));
 }
 
-/// What versions after the first one have besides. Again: nothing.
-void Upgrade(Database& database) {
-  database.Execute(
-      "CREATE TABLE IF NOT EXISTS audits (case_index INTEGER NOT NULL, worker TEXT NOT NULL, "
-      "PRIMARY KEY (case_index, worker))");
-  database.Execute(fmt::format("PRAGMA user_version = {}", kVersion));
-}
-
-void CreateCases(Database& database, const std::string& table, const MetricList& list,
-                 const Positions& metrics) {
+void CreateCases(Database& database, const std::string& table, const RowShape& shape) {
   database.Execute("CREATE TABLE " + table +
                    " (case_index INTEGER PRIMARY KEY, outcome TEXT NOT NULL, end_time_s REAL, end_stage "
                    "INTEGER NOT NULL, reason TEXT NOT NULL" +
-                   CaseColumnList(list, metrics, " REAL") +
-                   ", digest TEXT NOT NULL, row_digest TEXT NOT NULL)");
+                   CaseColumnList(shape, " REAL") + ", digest TEXT NOT NULL, row_digest BLOB NOT NULL)");
 }
 
 void CreateTables(Database& database, const Campaign& campaign) {
-  CreateCases(database, "cases", MetricsOf(campaign), MeasuredMetrics(campaign));
+  const RowShape shape = ShapeOf(campaign);
+  CreateCases(database, "cases", shape);
+  database.Execute(
+      fmt::format("CREATE TABLE {} (input TEXT PRIMARY KEY, value REAL) WITHOUT ROWID", kNominal));
+  Statement constant = database.Prepare(fmt::format("INSERT INTO {} VALUES (?, ?)", kNominal));
+  for (const std::size_t input : shape.inputs.constants()) {
+    constant.Reset();
+    constant.BindText(1, InputColumns()[input].name);
+    constant.BindReal(2, shape.inputs.constant(input));
+    constant.Step();
+  }
   database.Execute("CREATE TABLE quarantined (case_index INTEGER PRIMARY KEY, reason TEXT NOT NULL)");
   database.Execute("CREATE TABLE provenance (key TEXT PRIMARY KEY, value TEXT NOT NULL)");
   database.Execute(
@@ -162,7 +197,10 @@ void CreateTables(Database& database, const Campaign& campaign) {
   database.Execute(
       "CREATE TABLE looks (requirements_id TEXT NOT NULL, requirement TEXT NOT NULL, n INTEGER NOT NULL, "
       "failures INTEGER NOT NULL, verdict TEXT NOT NULL, PRIMARY KEY (requirements_id, requirement, n))");
-  Upgrade(database);
+  database.Execute(
+      "CREATE TABLE audits (case_index INTEGER NOT NULL, worker TEXT NOT NULL, PRIMARY KEY (case_index, "
+      "worker))");
+  database.Execute(fmt::format("PRAGMA user_version = {}", kVersion));
 }
 
 void WriteOwnMetrics(Database& database, const Campaign& campaign) {
@@ -215,28 +253,47 @@ std::optional<Digest> ParseDigest(const std::string& hex) {
   return digest;
 }
 
+/// Bytes, or in folders of older releases their digits.
+std::string RowDigestText(const CaseResult& result, const RowShape& shape) {
+  const Digest digest = Fingerprint(result, shape.covers_inputs_digest);
+  if (!shape.covers_inputs_digest) return digest.Hex();
+  std::string bytes(sizeof digest.high + sizeof digest.low, '\0');
+  std::memcpy(bytes.data(), &digest.high, sizeof digest.high);
+  std::memcpy(bytes.data() + sizeof digest.high, &digest.low, sizeof digest.low);
+  return bytes;
+}
+
+Digest RowDigestIn(const std::string& text) {
+  Digest digest;
+  if (text.size() != sizeof digest.high + sizeof digest.low) return ParseDigest(text).value_or(Digest{});
+  std::memcpy(&digest.high, text.data(), sizeof digest.high);
+  std::memcpy(&digest.low, text.data() + sizeof digest.high, sizeof digest.low);
+  return digest;
+}
+
 /// None if the row is damaged.
-std::optional<CaseResult> ReadRow(const Statement& row, const MetricList& list, const Positions& metrics) {
+std::optional<CaseResult> ReadRow(const Statement& row, const RowShape& shape) {
   CaseResult result;
   result.case_index = static_cast<std::uint64_t>(row.Integer(0));
   result.end_time_s = row.Real(2);
   result.end_stage = static_cast<int>(row.Integer(3));
   result.reason = row.Text(4);
   int column = kFirstInput;
-  for (std::size_t i = 0; i < InputCount(list.stages()); ++i) result.inputs.push_back(row.Real(column++));
-  result.metrics.assign(list.size(), kUndefined);
-  for (const std::size_t i : metrics) result.metrics[i] = row.Real(column++);
+  for (std::size_t i = 0; i < shape.inputs.positions().size(); ++i)
+    result.inputs.push_back(row.Real(column++));
+  result.inputs_digest = InputsDigest(shape.inputs.AllOf(result.inputs));
+  result.metrics.assign(shape.list.size(), kUndefined);
+  for (const std::size_t i : shape.metrics) result.metrics[i] = row.Real(column++);
   const std::optional<Digest> digest = ParseDigest(row.Text(column));
   if (!ParseOutcome(row.Text(1), &result.outcome) || !digest) return std::nullopt;
   result.digest = *digest;
   // Whatever a disk, a copy or an editor changed: no number of it reaches a table or a verdict.
-  if (Fingerprint(result).Hex() != row.Text(column + 1)) return std::nullopt;
+  if (RowDigestText(result, shape) != row.Text(column + 1)) return std::nullopt;
   return result;
 }
 
-CaseResult ReadCase(const Statement& row, const MetricList& list, const Positions& metrics,
-                    const fs::path& directory) {
-  if (auto result = ReadRow(row, list, metrics)) return *std::move(result);
+CaseResult ReadCase(const Statement& row, const RowShape& shape, const fs::path& directory) {
+  if (auto result = ReadRow(row, shape)) return *std::move(result);
   throw ResultError(Kind::kFile, fmt::format("{}: the row of case {} is damaged; --resume flies it again",
                                              (directory / kDatabaseName).string(), row.Integer(0)));
 }
@@ -250,14 +307,15 @@ CaseResult WithMetrics(CaseResult result, const Positions& metrics) {
   return result;
 }
 
-std::string InsertInto(const std::string& table, const MetricList& list, const Positions& metrics) {
+std::string InsertInto(const std::string& table, const RowShape& shape) {
   std::string parameters = "?, ?, ?, ?, ?, ?, ?";
-  for (std::size_t i = 0; i < InputCount(list.stages()) + metrics.size(); ++i) parameters += ", ?";
+  for (std::size_t i = 0; i < shape.inputs.positions().size() + shape.metrics.size(); ++i)
+    parameters += ", ?";
   return "INSERT INTO " + table + " VALUES (" + parameters + ")";
 }
 
-/// One row. `insert` is InsertInto() of a table with these metrics.
-void InsertRow(Statement& insert, const CaseResult& result, const Positions& metrics) {
+/// One row. `insert` is InsertInto() of a table of this shape.
+void InsertRow(Statement& insert, const CaseResult& result, const RowShape& shape) {
   insert.Reset();
   int parameter = 0;
   insert.BindInteger(++parameter, static_cast<std::int64_t>(result.case_index));
@@ -266,9 +324,9 @@ void InsertRow(Statement& insert, const CaseResult& result, const Positions& met
   insert.BindInteger(++parameter, result.end_stage);
   insert.BindText(++parameter, result.reason);
   for (const double value : result.inputs) insert.BindReal(++parameter, value);
-  for (const std::size_t i : metrics) insert.BindReal(++parameter, result.metrics[i]);
+  for (const std::size_t i : shape.metrics) insert.BindReal(++parameter, result.metrics[i]);
   insert.BindText(++parameter, result.digest.Hex());
-  insert.BindText(++parameter, Fingerprint(result).Hex());
+  insert.BindBytes(++parameter, RowDigestText(result, shape));
   insert.Step();
 }
 
@@ -277,6 +335,21 @@ void RequireSame(std::int64_t case_index, const std::string& stored, const std::
   throw ResultError(Kind::kConflict, fmt::format("case {} was flown twice with different digests: {} is "
                                                  "stored, {} arrived",
                                                  case_index, stored, arrived));
+}
+
+/// What a row does not hold stands once for all cases. So a flight that applied anything else is not stored.
+void RequireFits(const CaseResult& result, const RowShape& shape) {
+  const std::size_t inputs = shape.inputs.positions().size();
+  if (result.inputs.size() != inputs || result.metrics.size() != shape.list.size()) {
+    throw ResultError(Kind::kConflict,
+                      fmt::format("case {} has {} inputs and {} metrics, a row of its campaign has {} and {}",
+                                  result.case_index, result.inputs.size(), result.metrics.size(), inputs,
+                                  shape.list.size()));
+  }
+  if (result.inputs_digest == InputsDigest(shape.inputs.AllOf(result.inputs))) return;
+  throw ResultError(
+      Kind::kConflict,
+      fmt::format("case {}: its flight applied other constants than its campaign's", result.case_index));
 }
 
 /// The row of a case that was flown again goes, and who flew it before.
@@ -303,8 +376,10 @@ void ResultFolder::ReadColumnsOfTable() {
   own_metrics_ = OwnMetricsOf(*database_);
   std::vector<std::string> names;
   for (const OwnMetric& metric : own_metrics_) names.push_back(metric.name);
-  list_ = MetricList(StagesOf(*database_), std::move(names));
-  metrics_ = StoredMetrics(*database_, list_);
+  shape_.inputs = StoredInputs(*database_, directory_);
+  shape_.list = MetricList(shape_.inputs.column_class(), std::move(names));
+  shape_.metrics = StoredMetrics(*database_, shape_.list);
+  shape_.covers_inputs_digest = HasTable(*database_, kNominal);
   has_unmeasured_ = HasTable(*database_, kUnmeasured);
 }
 
@@ -358,13 +433,13 @@ ResultFolder ResultFolder::Open(const fs::path& directory) {
     throw InputError(fmt::format("{}: not a result folder: its {} is no SQLite database", directory.string(),
                                  kDatabaseName));
   }
-  ResultFolder folder(directory,
-                      std::make_unique<Database>(directory / kDatabaseName, Database::Mode::kExisting));
-  RefuseNewer(*folder.database_, directory);
+  auto database = std::make_unique<Database>(directory / kDatabaseName, Database::Mode::kExisting);
+  RefuseNewer(*database, directory);
+  ResultFolder folder(directory, std::move(database));
   std::string schema;
   try {
     schema = folder.Provenance("schema");
-    folder.database_->Prepare(SelectCases(folder.list_, folder.metrics_));
+    folder.database_->Prepare(SelectCases(folder.shape_));
   } catch (const ResultError& unreadable) {
     if (schema != kSchema) {
       throw InputError(fmt::format("{}: not a result folder: {}", directory.string(), unreadable.what()));
@@ -401,7 +476,6 @@ ResultFolder ResultFolder::Resume(const fs::path& directory, const Campaign& cam
   folder.RemoveDamaged();
   folder.MeasureOwn(campaign);
   WriteProvenance(*folder.database_, campaign, !last);
-  Upgrade(*folder.database_);
   transaction.Commit();
   return folder;
 }
@@ -415,19 +489,17 @@ void ResultFolder::Lock() {
 void ResultFolder::MeasureOwn(const Campaign& campaign) {
   if (OwnMetricLines(own_metrics_) == OwnMetricLines(campaign.own_metrics)) return;
   const std::optional<Positions> places = FindOwn(campaign.own_metrics, own_metrics_);
-  const MetricList then = list_;
-  const Positions metrics_then = metrics_;
-  const std::size_t of_vehicle = MetricCount(then.stages());
+  const RowShape then = shape_;
+  const std::size_t of_vehicle = MetricCount(then.list.stages());
   database_->Execute("ALTER TABLE cases RENAME TO cases_then");
-  CreateCases(*database_, "cases", MetricsOf(campaign), MeasuredMetrics(campaign));
-  if (!places && !has_unmeasured_) CreateCases(*database_, kUnmeasured, then, OfVehicle(then, metrics_then));
+  CreateCases(*database_, "cases", ShapeOf(campaign));
+  if (!places && !has_unmeasured_) CreateCases(*database_, kUnmeasured, OfVehicle(then));
   {
-    const MetricList now = MetricsOf(campaign);
-    const Positions to = places ? MeasuredMetrics(campaign) : OfVehicle(then, metrics_then);
-    Statement select = database_->Prepare(SelectCases(then, metrics_then, "cases_then"));
-    Statement insert = database_->Prepare(InsertInto(places ? "cases" : kUnmeasured, now, to));
+    const RowShape to = places ? ShapeOf(campaign) : OfVehicle(then);
+    Statement select = database_->Prepare(SelectCases(then, "cases_then"));
+    Statement insert = database_->Prepare(InsertInto(places ? "cases" : kUnmeasured, to));
     while (select.Step()) {
-      CaseResult result = ReadCase(select, then, metrics_then, directory_);
+      CaseResult result = ReadCase(select, then, directory_);
       std::vector<double> own;
       for (const std::size_t place : places.value_or(Positions()))
         own.push_back(result.metrics[of_vehicle + place]);
@@ -447,10 +519,9 @@ void ResultFolder::MeasureOwn(const Campaign& campaign) {
 
 void ResultFolder::RemoveDamaged() {
   {
-    Statement select = database_->Prepare(SelectCases(list_, metrics_));
+    Statement select = database_->Prepare(SelectCases(shape_));
     while (select.Step()) {
-      if (!ReadRow(select, list_, metrics_))
-        damaged_.push_back(static_cast<std::uint64_t>(select.Integer(0)));
+      if (!ReadRow(select, shape_)) damaged_.push_back(static_cast<std::uint64_t>(select.Integer(0)));
     }
   }
   Remove(damaged_);
@@ -522,25 +593,25 @@ void ResultFolder::Store(std::span<const CaseResult> results, std::span<const Ex
 
 std::size_t ResultFolder::Insert(std::span<const CaseResult> results) {
   Statement stored = database_->Prepare("SELECT digest FROM cases WHERE case_index = ?");
-  Statement insert = database_->Prepare(InsertInto("cases", list_, metrics_));
+  Statement insert = database_->Prepare(InsertInto("cases", shape_));
   Statement lift = database_->Prepare("DELETE FROM quarantined WHERE case_index = ?");
   std::size_t added = 0;
-  for (const CaseResult& flown : results) {
-    const auto index = static_cast<std::int64_t>(flown.case_index);
-    const CaseResult result = WithMetrics(flown, metrics_);
+  // In order, so that fewer pages are split.
+  std::vector<const CaseResult*> ordered;
+  for (const CaseResult& flown : results) ordered.push_back(&flown);
+  std::stable_sort(ordered.begin(), ordered.end(),
+                   [](const CaseResult* a, const CaseResult* b) { return a->case_index < b->case_index; });
+  for (const CaseResult* flown : ordered) {
+    const auto index = static_cast<std::int64_t>(flown->case_index);
+    const CaseResult result = WithMetrics(*flown, shape_.metrics);
     stored.Reset();
     stored.BindInteger(1, index);
     if (stored.Step()) {
       RequireSame(index, stored.Text(0), result.digest.Hex());
       continue;
     }
-    if (result.inputs.size() != InputCount(list_.stages()) || result.metrics.size() != list_.size()) {
-      throw ResultError(
-          Kind::kConflict,
-          fmt::format("case {} has {} inputs and {} metrics, its vehicle has {} and {}", index,
-                      result.inputs.size(), result.metrics.size(), InputCount(list_.stages()), list_.size()));
-    }
-    InsertRow(insert, result, metrics_);
+    RequireFits(result, shape_);
+    InsertRow(insert, result, shape_);
     lift.Reset();
     lift.BindInteger(1, index);
     lift.Step();
@@ -607,8 +678,7 @@ std::vector<std::pair<std::uint64_t, Digest>> ResultFolder::Fingerprints() const
   std::vector<std::pair<std::uint64_t, Digest>> present;
   Statement select = database_->Prepare("SELECT case_index, row_digest FROM cases ORDER BY case_index");
   while (select.Step()) {
-    present.emplace_back(static_cast<std::uint64_t>(select.Integer(0)),
-                         ParseDigest(select.Text(1)).value_or(Digest{}));
+    present.emplace_back(static_cast<std::uint64_t>(select.Integer(0)), RowDigestIn(select.Text(1)));
   }
   return present;
 }
@@ -644,8 +714,8 @@ void ResultFolder::ForEachUnaudited(const std::function<void(const Claim&)>& cal
       "SELECT e.worker, c.case_index, c.row_digest, e.host FROM execution e JOIN cases c USING (case_index) "
       "LEFT JOIN audits a USING (case_index, worker) WHERE a.worker IS NULL");
   while (select.Step()) {
-    callback({select.Text(0), static_cast<std::uint64_t>(select.Integer(1)),
-              ParseDigest(select.Text(2)).value_or(Digest{}), false, select.Text(3)});
+    callback({select.Text(0), static_cast<std::uint64_t>(select.Integer(1)), RowDigestIn(select.Text(2)),
+              false, select.Text(3)});
   }
 }
 
@@ -681,17 +751,17 @@ bool ResultFolder::Contains(std::uint64_t case_index) const {
 }
 
 CaseResult ResultFolder::Load(std::uint64_t case_index) const {
-  Statement select = database_->Prepare(SelectCases(list_, metrics_) + " WHERE case_index = ?");
+  Statement select = database_->Prepare(SelectCases(shape_) + " WHERE case_index = ?");
   select.BindInteger(1, static_cast<std::int64_t>(case_index));
   if (!select.Step()) {
     throw InputError(fmt::format("{}: has no result of case {}", directory_.string(), case_index));
   }
-  return ReadCase(select, list_, metrics_, directory_);
+  return ReadCase(select, shape_, directory_);
 }
 
 void ResultFolder::ForEach(const std::function<void(const CaseResult&)>& callback) const {
-  Statement select = database_->Prepare(SelectCases(list_, metrics_) + " ORDER BY case_index");
-  while (select.Step()) callback(ReadCase(select, list_, metrics_, directory_));
+  Statement select = database_->Prepare(SelectCases(shape_) + " ORDER BY case_index");
+  while (select.Step()) callback(ReadCase(select, shape_, directory_));
 }
 
 }  // namespace dispersa

@@ -23,6 +23,15 @@ namespace dispersa {
 
 class Database;
 
+/// What a table of cases holds beside outcomes and digests.
+struct RowShape {
+  RowInputs inputs;
+  MetricList list;                   ///< names and positions of the metrics in the results
+  std::vector<std::size_t> metrics;  ///< positions of the stored ones
+  bool covers_inputs_digest =
+      true;  ///< row_digest does; false: of an older release, whose rows hold all inputs
+};
+
 /// A verdict that was read.
 struct LookRecord {
   std::string requirements_id;  ///< Campaign's, at the time
@@ -58,11 +67,13 @@ class ResultFolder : public ResultStore {
 
   const std::filesystem::path& directory() const { return directory_; }
   /// Number of stages for which the results have columns: kUsualStages or kMaxStages.
-  std::size_t stages() const { return list_.stages(); }
+  std::size_t stages() const { return shape_.list.stages(); }
+  /// The inputs that the rows hold, and the constants beside them.
+  const RowInputs& inputs() const { return shape_.inputs; }
   /// Names and positions of the metrics in the results.
-  const MetricList& metric_list() const { return list_; }
+  const MetricList& metric_list() const { return shape_.list; }
   /// Positions of the stored metrics: those of the vehicle, of the control law and of the campaign.
-  const std::vector<std::size_t>& metrics() const { return metrics_; }
+  const std::vector<std::size_t>& metrics() const { return shape_.metrics; }
   /// The campaign's own metrics as they were measured. Their expressions are not parsed.
   const std::vector<OwnMetric>& own_metrics() const { return own_metrics_; }
   /// The highest index that was flown, with or without the campaign's own metrics.
@@ -84,8 +95,9 @@ class ResultFolder : public ResultStore {
   std::int64_t PlannedCases() const override;
 
   /// Stores results in one transaction: all or, on an error, none. A case that is there with the same digest
-  /// is left alone. Another digest is an error (kConflict). Stored cases leave the quarantine. Values that
-  /// are not finite become NULL, -0 becomes 0. Returns the number of new ones.
+  /// is left alone. Another digest is an error (kConflict), and so are other constants than the campaign's.
+  /// Stored cases leave the quarantine. Values that are not finite become NULL, -0 becomes 0. Returns the
+  /// number of new ones.
   std::size_t Append(std::span<const CaseResult> results);
   /// From now on no other process may write here. InputError if one does.
   void Lock();
@@ -131,8 +143,7 @@ class ResultFolder : public ResultStore {
   void Remove(const std::vector<std::uint64_t>& cases);
 
   std::filesystem::path directory_;
-  MetricList list_;
-  std::vector<std::size_t> metrics_;
+  RowShape shape_;
   std::vector<OwnMetric> own_metrics_;
   bool has_unmeasured_ = false;  ///< cases were flown before without all of the campaign's own metrics
   std::optional<FolderLock> lock_;

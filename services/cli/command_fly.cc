@@ -31,25 +31,30 @@ struct FlyOptions {
   std::string integrator;  ///< empty: the one that campaigns and scenarios fly
 };
 
-void PrintJson(const CaseResult& result, const Campaign& campaign) {
+void PrintJson(const CaseResult& result, const RowInputs& rows, const Campaign& campaign) {
+  auto in_rows = nlohmann::ordered_json::array();
+  for (const std::size_t position : rows.positions()) in_rows.push_back(InputColumns()[position].name);
   const nlohmann::ordered_json json = {
       {"schema", "dispersa/fly/1"},
       {"outcome", OutcomeName(result.outcome)},
       {"end_time_s", Number(result.end_time_s)},
       {"end_stage", result.end_stage},
       {"reason", result.reason},
-      {"inputs", InputsJson(result.inputs)},
+      {"inputs", InputsJson(rows, result)},
+      {"row_inputs", std::move(in_rows)},
+      {"inputs_digest", result.inputs_digest.Hex()},
       {"metrics", MetricsJson(result.metrics, MetricsOf(campaign), ResultMetrics(campaign))},
       {"digest", result.digest.Hex()}};
   fmt::print("{}\n", json.dump(2));
 }
 
-void PrintText(std::FILE* stream, const CaseResult& result, const Campaign& campaign) {
+void PrintText(std::FILE* stream, const CaseResult& result, const RowInputs& rows, const Campaign& campaign) {
   fmt::print(stream, "outcome  {}\ndigest   {}\n", OutcomeText(result), result.digest.Hex());
   const std::vector<double> nominal = InputValues(FlightInputs{}, kMaxStages + kFurtherNozzles);
-  for (std::size_t i = 0; i < result.inputs.size(); ++i) {
-    if (result.inputs[i] == nominal[i]) continue;
-    fmt::print(stream, "{:<44} {}\n", "input_" + InputColumns()[i].name, ShortestText(result.inputs[i]));
+  const std::vector<double> all = rows.AllOf(result.inputs);
+  for (std::size_t i = 0; i < all.size(); ++i) {
+    if (all[i] == nominal[i]) continue;
+    fmt::print(stream, "{:<44} {}\n", "input_" + InputColumns()[i].name, ShortestText(all[i]));
   }
   const MetricList metrics = MetricsOf(campaign);
   for (const std::size_t i : MeasuredMetrics(campaign)) {
@@ -85,9 +90,9 @@ ExitCode FlyOne(const FlyOptions& options, const GlobalOptions& global) {
                                         options.history.empty() ? nullptr : &history, scheme);
   if (!options.history.empty()) WriteFile(options.history, HistoryCsv(history, campaign.autopilot));
   if (global.json) {
-    PrintJson(result, campaign);
+    PrintJson(result, flights.rows(), campaign);
   } else {
-    PrintText(stream, result, campaign);
+    PrintText(stream, result, flights.rows(), campaign);
   }
   return kExitDone;
 }

@@ -8,7 +8,9 @@
 #include <vector>
 
 #include "core/campaign/case_design.h"
+#include "core/campaign/row_inputs.h"
 #include "core/campaign_yaml/load.h"
+#include "core/flight/flight_inputs.h"
 #include "core/results/text.h"
 #include "services/cli/command.h"
 #include "services/cli/plan_text.h"
@@ -31,12 +33,13 @@ constexpr std::size_t kUsualWidth = 100;
 
 void PrintCsv(const Campaign& campaign, const CaseDesign& design) {
   std::string line = "case_index";
-  const std::size_t stages = ColumnClass(campaign.vehicle);
-  for (std::size_t i = 0; i < InputCount(stages); ++i) line += ",input_" + InputColumns()[i].name;
+  const RowInputs rows(campaign);
+  for (const std::size_t i : rows.positions()) line += ",input_" + InputColumns()[i].name;
   fmt::print("{}\n", line);
   for (std::uint64_t index = 0; index < campaign.sampling.cases; ++index) {
     line = std::to_string(index);
-    for (const double value : InputValues(design.Draw(index), stages)) line += "," + ShortestText(value);
+    for (const double value : rows.RowOf(InputValues(design.Draw(index), rows.column_class())))
+      line += "," + ShortestText(value);
     fmt::print("{}\n", line);
   }
 }
@@ -51,6 +54,7 @@ std::string Indented(const std::string& lines) {
 }
 
 void PrintJson(const Campaign& campaign, const CaseDesign& design) {
+  const RowInputs rows(campaign);
   const nlohmann::ordered_json plan = {{"schema", "dispersa/plan/1"},
                                        {"id", campaign.id},
                                        {"flight_id", campaign.flight_id},
@@ -62,7 +66,8 @@ void PrintJson(const Campaign& campaign, const CaseDesign& design) {
   for (std::uint64_t index = 0; index < campaign.sampling.cases; ++index) {
     const nlohmann::ordered_json one = {
         {"case_index", index},
-        {"inputs", InputsJson(InputValues(design.Draw(index), ColumnClass(campaign.vehicle)))}};
+        {"inputs",
+         InputsJson(rows.positions(), rows.RowOf(InputValues(design.Draw(index), rows.column_class())))}};
     fmt::print("{}\n    {}", index == 0 ? "" : ",", Indented(one.dump(2)));
   }
   fmt::print("\n  {}\n", around.substr(inside));
@@ -90,7 +95,7 @@ void AddPlanCommand(CLI::App& app, Invocation& invocation) {
   command->add_option("--cases", options->overrides.cases, "number of cases, instead of the file's")
       ->transform(WholeNumber(1, kMostCases));
   command->add_option("--seed", options->overrides.seed, "seed, instead of the file's");
-  command->add_flag("--csv", options->csv, "all inputs, in the columns of cases.csv");
+  command->add_flag("--csv", options->csv, "the inputs of each case, in the columns of cases.csv");
   command->add_flag("--all", options->all,
                     "every dispersed input of every case, without the limit to one screen");
   command->footer(

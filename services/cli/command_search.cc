@@ -263,7 +263,7 @@ ExitCode SearchFor(const SearchCommand& command, const GlobalOptions& global) {
         text += fmt::format("{:<44}{:>12.3f}{:>10}\n", coordinate.name, result.point[i],
                             PercentText(std::round(share * 1e3) / 1e3));
     }
-    json["inputs"] = InputsJson(flown.inputs);
+    json["inputs"] = InputsJson(RowInputs(campaign), flown);
     json["digest"] = flown.digest.Hex();
   }
   const std::string written = json.dump(2) + "\n";

@@ -16,8 +16,13 @@ CaseReplay ReplayCase(const StoredCampaign& stored, std::uint64_t case_index, Hi
   }
   CaseReplay replay;
   replay.stored = stored.folder.Load(case_index);
-  replay.replayed = CampaignFlights(stored.campaign).FlyCase(case_index, history);
-  replay.differences = Differences(replay.stored, replay.replayed, MetricsOf(stored.campaign));
+  const CampaignFlights flights(stored.campaign);
+  const RowInputs& rows = stored.folder.inputs();
+  replay.replayed = flights.FlyCase(case_index, history);
+  // Rows of an older release hold all inputs.
+  if (rows.positions() != flights.rows().positions())
+    SetInputs(rows, flights.rows().AllOf(replay.replayed.inputs), replay.replayed);
+  replay.differences = Differences(replay.stored, replay.replayed, rows, MetricsOf(stored.campaign));
   return replay;
 }
 

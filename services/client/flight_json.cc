@@ -2,16 +2,27 @@
 
 #include <fmt/format.h>
 
+#include <numeric>
+
 #include "core/flight/flight_inputs.h"
 #include "core/flight/metrics.h"
 #include "core/results/json_number.h"
 
 namespace dispersa {
 
-nlohmann::ordered_json InputsJson(const std::vector<double>& inputs) {
+nlohmann::ordered_json InputsJson(const std::vector<std::size_t>& positions,
+                                  const std::vector<double>& values) {
   nlohmann::ordered_json json = nlohmann::ordered_json::object();
-  for (std::size_t i = 0; i < inputs.size(); ++i) json[InputColumns()[i].name] = Number(inputs[i]);
+  for (std::size_t i = 0; i < positions.size(); ++i)
+    json[InputColumns()[positions[i]].name] = Number(values[i]);
   return json;
+}
+
+nlohmann::ordered_json InputsJson(const RowInputs& rows, const CaseResult& result) {
+  const std::vector<double> all = rows.AllOf(result.inputs);
+  std::vector<std::size_t> positions(all.size());
+  std::iota(positions.begin(), positions.end(), std::size_t{0});
+  return InputsJson(positions, all);
 }
 
 nlohmann::ordered_json MetricsJson(const std::vector<double>& metrics, const MetricList& list,

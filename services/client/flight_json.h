@@ -7,9 +7,12 @@
 
 namespace dispersa {
 
-/// Inputs by name, and the metrics at some positions of their list: {"thrust_factor_stage1": 1.01, ...}. An
+/// Inputs and metrics at some positions of their lists, by name: {"thrust_factor_stage1": 1.01, ...}. An
 /// undefined value is null.
-nlohmann::ordered_json InputsJson(const std::vector<double>& inputs);
+nlohmann::ordered_json InputsJson(const std::vector<std::size_t>& positions,
+                                  const std::vector<double>& values);
+/// All inputs of a result.
+nlohmann::ordered_json InputsJson(const RowInputs& rows, const CaseResult& result);
 nlohmann::ordered_json MetricsJson(const std::vector<double>& metrics, const MetricList& list,
                                    const std::vector<std::size_t>& positions);
 

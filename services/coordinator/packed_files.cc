@@ -79,7 +79,7 @@ void PackReports(const fs::path& results) {
 }
 
 void RemoveReports(const fs::path& results) {
-  for (const char* name : {"cases.csv", "summary.json", "report.html", "histories"}) {
+  for (const char* name : {"cases.csv", "nominal.json", "summary.json", "report.html", "histories"}) {
     for (const fs::path& file : {results / name, Packed(results / name)}) {
       std::error_code error;
       fs::remove_all(file, error);

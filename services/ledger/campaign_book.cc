@@ -3,7 +3,6 @@
 #include <fmt/format.h>
 
 #include <algorithm>
-#include <cstring>
 #include <limits>
 #include <utility>
 
@@ -70,6 +69,7 @@ CampaignBook::CampaignBook(const Campaign& campaign, std::unique_ptr<ResultStore
     : campaign_(campaign),
       store_(std::move(store)),
       design_(campaign),
+      rows_(campaign),
       rule_(RuleOf(campaign, *store_)),
       ledger_(EngineVersion(), rule_ ? rule_->target() : campaign.sampling.cases, options) {
   const std::uint64_t cases = ledger_.Progress().total;
@@ -86,10 +86,7 @@ bool CampaignBook::HasItsMetrics(const CaseResult& result) const {
 }
 
 bool CampaignBook::IsDrawnSo(const CaseResult& result) const {
-  const std::vector<double> drawn =
-      InputValues(design_.Draw(result.case_index), ColumnClass(campaign_.vehicle));
-  return result.inputs.size() == drawn.size() &&
-         std::memcmp(result.inputs.data(), drawn.data(), drawn.size() * sizeof(double)) == 0;
+  return HasInputs(rows_, InputValues(design_.Draw(result.case_index), rows_.column_class()), result);
 }
 
 void CampaignBook::KeepTally() {
@@ -178,7 +175,7 @@ void CampaignBook::Refuse(std::uint64_t case_index, const std::string& once, con
 
 void CampaignBook::RefuseForDifference(const CaseResult& first, const std::string& once,
                                        const CaseResult& second, const std::string& again) {
-  const std::vector<ResultDifference> differences = Differences(first, second, MetricsOf(campaign_));
+  const std::vector<ResultDifference> differences = Differences(first, second, rows_, MetricsOf(campaign_));
   if (differences.empty()) return;
   const ResultDifference& at = differences.front();
   Refuse(second.case_index, once, again,

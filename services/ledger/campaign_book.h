@@ -120,6 +120,7 @@ class CampaignBook {
   std::unique_ptr<ResultStore> store_;
   const ResultFolder* folder_ = nullptr;  ///< the store, if it is one
   CaseDesign design_;
+  RowInputs rows_;
   std::optional<StoppingRule> rule_;  ///< of a campaign that stops when it is decided
   std::optional<RunningTally> tally_;
   std::optional<Audit> audit_;

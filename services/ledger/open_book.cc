@@ -72,6 +72,7 @@ void TakeOver(const ResultFolder& from, const Campaign& campaign, const std::vec
     return;
   }
   const CaseDesign design(campaign);
+  const RowInputs rows(campaign);
   const Fliers fliers(from);
   std::vector<CaseResult> results;
   std::vector<ExecutionRecord> records;
@@ -83,7 +84,7 @@ void TakeOver(const ResultFolder& from, const Campaign& campaign, const std::vec
   std::uint64_t others = 0;
   from.ForEach([&](const CaseResult& result) {
     if (result.case_index >= campaign.sampling.cases || to.Contains(result.case_index)) return;
-    if (result.inputs != InputValues(design.Draw(result.case_index), ColumnClass(campaign.vehicle))) {
+    if (!HasInputs(rows, InputValues(design.Draw(result.case_index), rows.column_class()), result)) {
       ++others;
       return;
     }

@@ -5,6 +5,7 @@
 #include <map>
 #include <memory>
 #include <mutex>
+#include <numeric>
 #include <optional>
 #include <string>
 #include <utility>
@@ -18,6 +19,7 @@
 #include "core/campaign_yaml/named_files.h"
 #include "core/cases/campaign_flights.h"
 #include "core/flight/flight_inputs.h"
+#include "core/flight/flight_model.h"
 #include "core/flight/history.h"
 #include "core/flight/metrics.h"
 #include "core/input/number_text.h"
@@ -145,20 +147,21 @@ py::object ReadTree(const std::string& path, bool inlined) {
   return ValueOf(root);
 }
 
-/// The inputs of the first `count` cases; shape (count, inputs), in the units of the columns.
+/// The rows' inputs of the first `count` cases; shape (count, inputs), in the units of the columns.
 py::array Plan(const LoadedCampaign& campaign, std::uint64_t count) {
   std::vector<double> rows;
+  const RowInputs in_rows(campaign.campaign());
   {
     const py::gil_scoped_release free;
     const CaseDesign design(campaign.campaign());
-    rows.reserve(count * InputCount(campaign.stages()));
+    rows.reserve(count * in_rows.positions().size());
     for (std::uint64_t i = 0; i < count; ++i) {
-      const std::vector<double> inputs = InputValues(design.Draw(i), campaign.stages());
+      const std::vector<double> inputs = in_rows.RowOf(InputValues(design.Draw(i), campaign.stages()));
       rows.insert(rows.end(), inputs.begin(), inputs.end());
     }
   }
   return ArrayOf(std::move(rows),
-                 {static_cast<py::ssize_t>(count), static_cast<py::ssize_t>(InputCount(campaign.stages()))});
+                 {static_cast<py::ssize_t>(count), static_cast<py::ssize_t>(in_rows.positions().size())});
 }
 
 Scheme SchemeOf(const std::string& name) {
@@ -218,7 +221,9 @@ std::vector<int> ColumnsNamed(const std::optional<std::vector<std::string>>& nam
   return columns;
 }
 
-py::dict FlightValues(CaseResult result, const MetricList& list, const std::vector<std::size_t>& metrics) {
+/// `inputs`: all, as applied.
+py::dict FlightValues(const CaseResult& result, std::vector<double> inputs, const MetricList& list,
+                      const std::vector<std::size_t>& metrics) {
   std::vector<double> values;
   for (const std::size_t i : metrics) values.push_back(result.metrics[i]);
   py::dict flight;
@@ -227,7 +232,7 @@ py::dict FlightValues(CaseResult result, const MetricList& list, const std::vect
   flight["end_stage"] = result.end_stage;
   flight["reason"] = result.reason;
   flight["digest"] = result.digest.Hex();
-  flight["inputs"] = ArrayOf(std::move(result.inputs));
+  flight["inputs"] = ArrayOf(std::move(inputs));
   flight["metrics"] = ArrayOf(std::move(values));
   flight["metric_names"] = NamesOf(list, metrics);
   return flight;
@@ -278,12 +283,14 @@ py::dict FlyOne(const LoadedCampaign& campaign, std::optional<std::uint64_t> cas
   if (!case_index) with.FliesTheNominal();
   History history;
   history.step_s = step_s;
-  CaseResult result = observer.Watch([&] {
+  std::vector<double> applied;
+  const CaseResult result = observer.Watch([&] {
     const CampaignFlights& flights = with.flights();
-    return flights.Fly(InputsOf(campaign, flights, case_index, replaced), case_index.value_or(0),
-                       step_s > 0.0 ? &history : nullptr, scheme);
+    const FlightInputs inputs = InputsOf(campaign, flights, case_index, replaced);
+    applied = InputValues(flights.model().AsApplied(inputs), campaign.stages());
+    return flights.Fly(inputs, case_index.value_or(0), step_s > 0.0 ? &history : nullptr, scheme);
   });
-  py::dict flight = FlightValues(std::move(result), MetricsOf(campaign.campaign()), with.metrics());
+  py::dict flight = FlightValues(result, std::move(applied), MetricsOf(campaign.campaign()), with.metrics());
   const std::vector<int> columns = HistoryColumnsUnder(with.autopilot());
   flight["history"] = step_s > 0.0 ? py::object(HistoryArray(history, columns)) : py::none();
   flight["history_columns"] = HistoryNames(columns);
@@ -351,8 +358,14 @@ py::dict FlyMany(const LoadedCampaign& campaign, const std::vector<std::uint64_t
                               if (observer.ShouldStop()) throw Interrupted();
                             });
   });
-  ResultColumns table(MetricsOf(campaign.campaign()), with.metrics());
-  for (const CaseResult& result : results) table.Add(result);
+  const RowInputs in_rows(campaign.campaign());
+  std::vector<std::size_t> inputs(InputCount(campaign.stages()));
+  std::iota(inputs.begin(), inputs.end(), std::size_t{0});
+  ResultColumns table(std::move(inputs), MetricsOf(campaign.campaign()), with.metrics());
+  for (CaseResult& result : results) {
+    result.inputs = in_rows.AllOf(result.inputs);
+    table.Add(result);
+  }
   py::dict answer = table.Take();
   answer["history_columns"] = HistoryNames(columns);
   if (step_s > 0.0) {
@@ -396,14 +409,9 @@ void AddCampaigns(py::module_& module) {
                              [](const LoadedCampaign& c) { return PluginAxes(c.campaign().autopilot); })
       .def_property_readonly("autopilot", [](const LoadedCampaign& c) { return c.campaign().autopilot.name; })
       .def_property_readonly("vehicle", [](const LoadedCampaign& c) { return c.campaign().vehicle.name; })
-      .def_property_readonly("dispersed",
-                             [](const LoadedCampaign& c) {
-                               std::vector<std::string> names;
-                               for (const Dispersion& dispersion : c.campaign().dispersions)
-                                 for (const int input : dispersion.inputs)
-                                   names.push_back(InputColumns()[static_cast<std::size_t>(input)].name);
-                               return names;
-                             })
+      .def_property_readonly(
+          "dispersed",
+          [](const LoadedCampaign& c) { return NamesOfInputs(RowInputs(c.campaign()).positions()); })
       .def_property_readonly("input_keys",
                              [](const LoadedCampaign& c) {
                                std::vector<std::string> keys;

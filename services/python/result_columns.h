@@ -23,14 +23,20 @@ inline std::vector<std::string> NamesOf(const MetricList& list, const std::vecto
   return names;
 }
 
+/// Names of the inputs at these positions.
+inline std::vector<std::string> NamesOfInputs(const std::vector<std::size_t>& positions) {
+  std::vector<std::string> names;
+  for (const std::size_t i : positions) names.push_back(InputColumns()[i].name);
+  return names;
+}
+
 /// Gather without the interpreter's lock; take with it.
 class ResultColumns {
  public:
-  /// `metrics`: positions in the list of those that are kept.
-  ResultColumns(MetricList list, std::vector<std::size_t> metrics)
-      : list_(std::move(list)),
-        input_count_(InputCount(list_.stages())),
-        metric_columns_(std::move(metrics)) {}
+  /// `inputs`: positions in InputColumns() of those that each result has. `metrics`: positions in the list of
+  /// those that are kept.
+  ResultColumns(std::vector<std::size_t> inputs, MetricList list, std::vector<std::size_t> metrics)
+      : list_(std::move(list)), input_columns_(std::move(inputs)), metric_columns_(std::move(metrics)) {}
 
   /// A result with as many inputs and metrics.
   void Add(const CaseResult& result) {
@@ -43,7 +49,8 @@ class ResultColumns {
     for (const std::size_t i : metric_columns_) metrics_.push_back(result.metrics[i]);
     digest_.push_back(result.digest.Hex());
   }
-  /// The columns of cases.csv, and `metric_names`. Inputs and metrics have the shape (results, names).
+  /// The columns of cases.csv, `input_names` and `metric_names`. Inputs and metrics have the shape (results,
+  /// names).
   pybind11::dict Take() {
     const auto rows = static_cast<pybind11::ssize_t>(index_.size());
     pybind11::dict columns;
@@ -52,7 +59,9 @@ class ResultColumns {
     columns["end_time_s"] = ArrayOf(std::move(end_time_s_));
     columns["end_stage"] = ArrayOf(std::move(end_stage_));
     columns["reason"] = reason_;
-    columns["inputs"] = ArrayOf(std::move(inputs_), {rows, static_cast<pybind11::ssize_t>(input_count_)});
+    columns["inputs"] =
+        ArrayOf(std::move(inputs_), {rows, static_cast<pybind11::ssize_t>(input_columns_.size())});
+    columns["input_names"] = NamesOfInputs(input_columns_);
     columns["metrics"] =
         ArrayOf(std::move(metrics_), {rows, static_cast<pybind11::ssize_t>(metric_columns_.size())});
     columns["metric_names"] = NamesOf(list_, metric_columns_);
@@ -62,7 +71,7 @@ class ResultColumns {
 
  private:
   MetricList list_;
-  std::size_t input_count_;
+  std::vector<std::size_t> input_columns_;
   std::vector<std::size_t> metric_columns_;
   std::vector<std::uint64_t> index_;
   std::vector<std::string> outcome_, reason_, digest_;

@@ -3,6 +3,7 @@
 #include <pybind11/stl.h>
 
 #include <filesystem>
+#include <map>
 #include <optional>
 #include <string>
 #include <utility>
@@ -111,11 +112,14 @@ py::dict Results(const std::string& directory) {
   std::string engine, summary;
   ExitCode code = kExitDone;
   std::optional<ResultColumns> columns;
+  std::map<std::string, double> nominal;
   {
     const py::gil_scoped_release free;
     // A run that flew no case, or one that goes on, has results too.
     const StoredCampaign stored = OpenStored(directory, /*may_be_empty=*/true);
-    columns.emplace(stored.folder.metric_list(), stored.folder.metrics());
+    columns.emplace(stored.folder.inputs().positions(), stored.folder.metric_list(), stored.folder.metrics());
+    for (const std::size_t i : stored.folder.inputs().constants())
+      nominal[InputColumns()[i].name] = stored.folder.inputs().constant(i);
     stored.folder.ForEach([&](const CaseResult& result) { columns->Add(result); });
     engine = stored.folder.Provenance("engine");
     const CampaignSummary built = BuildSummary(stored.folder, stored.campaign);
@@ -123,6 +127,7 @@ py::dict Results(const std::string& directory) {
     summary = SummaryJson(built);
   }
   py::dict answer = columns->Take();
+  answer["nominal"] = nominal;
   answer["engine"] = engine;
   answer["exit_code"] = static_cast<int>(code);
   answer["summary"] = summary;

@@ -9,9 +9,9 @@ constexpr char kQuarantinedOutcome[] = "given_up";
 std::vector<std::uint8_t> Octets(const std::string& bytes) { return {bytes.begin(), bytes.end()}; }
 std::string Bytes(const std::vector<std::uint8_t>& octets) { return {octets.begin(), octets.end()}; }
 
-idl::FlownCaseV2 ToIdl(const FlownCase& flown) {
+idl::FlownCaseV3 ToIdl(const FlownCase& flown) {
   const CaseResult& result = flown.result;
-  idl::FlownCaseV2 message;
+  idl::FlownCaseV3 message;
   message.case_index(result.case_index);
   message.attempt(flown.attempt);
   message.outcome(flown.is_quarantined ? kQuarantinedOutcome : OutcomeName(result.outcome));
@@ -19,13 +19,15 @@ idl::FlownCaseV2 ToIdl(const FlownCase& flown) {
   message.end_stage(result.end_stage);
   message.reason(result.reason);
   message.inputs(result.inputs);
+  message.inputs_digest_high(result.inputs_digest.high);
+  message.inputs_digest_low(result.inputs_digest.low);
   message.metrics(result.metrics);
   message.digest_high(result.digest.high);
   message.digest_low(result.digest.low);
   return message;
 }
 
-bool FromIdl(const idl::FlownCaseV2& message, FlownCase* flown) {
+bool FromIdl(const idl::FlownCaseV3& message, FlownCase* flown) {
   flown->is_quarantined = message.outcome() == kQuarantinedOutcome;
   CaseResult& result = flown->result;
   result.case_index = message.case_index();
@@ -35,6 +37,7 @@ bool FromIdl(const idl::FlownCaseV2& message, FlownCase* flown) {
   result.end_stage = message.end_stage();
   result.reason = message.reason();
   result.inputs = message.inputs();
+  result.inputs_digest = {message.inputs_digest_high(), message.inputs_digest_low()};
   result.metrics = message.metrics();
   result.digest = {message.digest_high(), message.digest_low()};
   return true;
@@ -91,8 +94,8 @@ idl::OrdersV1 ToIdl(const Orders& orders) {
   return message;
 }
 
-idl::ReportV2 ToIdl(const Report& report) {
-  idl::ReportV2 message;
+idl::ReportV3 ToIdl(const Report& report) {
+  idl::ReportV3 message;
   message.worker(report.worker);
   message.coordinator_epoch(report.coordinator_epoch);
   message.number(report.number);
@@ -147,8 +150,8 @@ idl::ProgressV1 ToIdl(const CampaignProgress& progress) {
   return message;
 }
 
-idl::ResultV1 ToIdl(const std::string& flight_id, const std::string& worker, const FlownCase& flown) {
-  idl::ResultV1 message;
+idl::ResultV2 ToIdl(const std::string& flight_id, const std::string& worker, const FlownCase& flown) {
+  idl::ResultV2 message;
   message.flight_id(flight_id);
   message.worker(worker);
   message.flown(ToIdl(flown));
@@ -205,7 +208,7 @@ std::optional<Orders> FromIdl(const idl::OrdersV1& orders) {
   return plain;
 }
 
-std::optional<Report> FromIdl(const idl::ReportV2& report) {
+std::optional<Report> FromIdl(const idl::ReportV3& report) {
   Report plain{report.worker(), report.coordinator_epoch(), report.number(), report.flight_id(), {}, {}};
   plain.flown.resize(report.flown().size());
   for (std::size_t i = 0; i < plain.flown.size(); ++i) {

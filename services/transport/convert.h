@@ -11,19 +11,19 @@ namespace dispersa {
 
 idl::WorkerStatusV2 ToIdl(const WorkerStatus& status);
 idl::OrdersV1 ToIdl(const Orders& orders);
-idl::ReportV2 ToIdl(const Report& report);
+idl::ReportV3 ToIdl(const Report& report);
 idl::TextRequestV1 ToIdl(const TextRequest& request);
 idl::TextV1 ToIdl(const TextPart& part);
 idl::CampaignRefusalV1 ToIdl(const CampaignRefusal& refusal);
 idl::ProgressV1 ToIdl(const CampaignProgress& progress);
-idl::ResultV1 ToIdl(const std::string& flight_id, const std::string& worker, const FlownCase& flown);
+idl::ResultV2 ToIdl(const std::string& flight_id, const std::string& worker, const FlownCase& flown);
 idl::RequestV1 ToIdl(const Request& request);
 idl::ReplyV1 ToIdl(const Reply& reply);
 
 // None if the message has an enumerator or an outcome that this version does not know.
 std::optional<WorkerStatus> FromIdl(const idl::WorkerStatusV2& status);
 std::optional<Orders> FromIdl(const idl::OrdersV1& orders);
-std::optional<Report> FromIdl(const idl::ReportV2& report);
+std::optional<Report> FromIdl(const idl::ReportV3& report);
 std::optional<TextRequest> FromIdl(const idl::TextRequestV1& request);
 std::optional<TextPart> FromIdl(const idl::TextV1& part);
 std::optional<CampaignRefusal> FromIdl(const idl::CampaignRefusalV1& refusal);

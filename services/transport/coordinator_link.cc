@@ -101,8 +101,8 @@ struct CoordinatorLink::Impl {
     dds::Subscriber* subscriber;
     std::map<std::string, std::unique_ptr<Channel>> channels;  ///< by worker or client
     Writer<idl::ProgressV1PubSubType> progress;
-    Writer<idl::ResultV1PubSubType> results;
-    std::optional<Reader<idl::ReportV2PubSubType>> reports;
+    Writer<idl::ResultV2PubSubType> results;
+    std::optional<Reader<idl::ReportV3PubSubType>> reports;
     std::optional<Reader<idl::TextRequestV1PubSubType>> text_requests;
     std::optional<Reader<idl::CampaignRefusalV1PubSubType>> campaign_refusals;
     std::optional<Reader<idl::RequestV1PubSubType>> requests;

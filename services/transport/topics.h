@@ -9,12 +9,12 @@ namespace dispersa {
 
 inline const std::string kStatusTopic = "dispersa/WorkerStatusV2";
 inline const std::string kOrdersTopic = "dispersa/OrdersV1";
-inline const std::string kReportTopic = "dispersa/ReportV2";
+inline const std::string kReportTopic = "dispersa/ReportV3";
 inline const std::string kTextRequestTopic = "dispersa/TextRequestV1";
 inline const std::string kTextTopic = "dispersa/TextV1";
 inline const std::string kCampaignRefusalTopic = "dispersa/CampaignRefusalV1";
 inline const std::string kProgressTopic = "dispersa/ProgressV1";
-inline const std::string kResultTopic = "dispersa/ResultV1";
+inline const std::string kResultTopic = "dispersa/ResultV2";
 inline const std::string kRequestTopic = "dispersa/RequestV1";
 inline const std::string kReplyTopic = "dispersa/ReplyV1";
 

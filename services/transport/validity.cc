@@ -55,9 +55,9 @@ std::string WhyInvalid(const Orders& orders) {
 
 std::string WhyInvalid(const Report& report) {
   const auto has_sizes = [](const FlownCase& flown) {
+    if (flown.result.inputs.size() > InputColumns().size()) return false;
     const auto are_of = [&](std::size_t stages) {
-      return flown.result.inputs.size() == InputCount(stages) &&
-             flown.result.metrics.size() >= MetricCount(stages) &&
+      return flown.result.metrics.size() >= MetricCount(stages) &&
              flown.result.metrics.size() <= MetricCount(stages) + kMaxOwnMetrics;
     };
     if (flown.is_quarantined)

@@ -69,7 +69,7 @@ struct WorkerLink::Impl {
   long met = 0;  ///< participants that the worker knows of
   dds::Publisher* publisher;
   dds::Subscriber* subscriber;
-  std::optional<Writer<idl::ReportV2PubSubType>> reports;
+  std::optional<Writer<idl::ReportV3PubSubType>> reports;
   std::optional<Writer<idl::TextRequestV1PubSubType>> text_requests;
   std::optional<Writer<idl::CampaignRefusalV1PubSubType>> campaign_refusals;
   std::optional<Writer<idl::WorkerStatusV2PubSubType>> statuses;

@@ -14,6 +14,7 @@
 #include "core/flight/metrics.h"
 #include "memory_store.h"
 #include "temporary_folder.h"
+#include "tests/nominal_inputs.h"
 
 namespace dispersa::campaign_book_test {
 namespace {
@@ -48,7 +49,7 @@ class BookTest : public testing::Test {
     CaseResult result;
     result.case_index = case_index;
     result.outcome = Outcome::kCompleted;
-    result.inputs.resize(InputCount(kUsualStages));
+    ApplyNominal(result);
     result.metrics.resize(MetricCount(kUsualStages));
     result.metrics[MetricColumn(kPeak)] = peak;
     return result;

@@ -26,7 +26,7 @@ class CampaignServiceTest : public ServiceTest {
  protected:
   void Return(const Campaign& campaign, std::uint64_t case_index) {
     CaseResult result = MadeUpWorkforce::ResultOf(case_index);
-    result.inputs = InputValues(CaseDesign(campaign).Draw(case_index), campaign.vehicle.stages.size());
+    SetInputs(RowInputs(campaign), InputValues(CaseDesign(campaign).Draw(case_index)), result);
     workforce_.Return("w", campaign.flight_id, result);
   }
   /// Three lives of a worker end in this case, the only one that is left to fly.
@@ -592,7 +592,7 @@ class OpeningTest : public ServiceTest {
  protected:
   static CaseResult Drawn(const Campaign& campaign, std::uint64_t case_index) {
     CaseResult result = MadeUpWorkforce::ResultOf(case_index);
-    result.inputs = InputValues(CaseDesign(campaign).Draw(case_index), campaign.vehicle.stages.size());
+    SetInputs(RowInputs(campaign), InputValues(CaseDesign(campaign).Draw(case_index)), result);
     return result;
   }
   static std::vector<std::string> WorkersOf(const ResultFolder& folder) {

@@ -21,6 +21,7 @@
 #include "services/transport/complaints.h"
 #include "services/transport/private_domain.h"
 #include "services/transport/worker_link.h"
+#include "tests/nominal_inputs.h"
 
 namespace dispersa::coordinator_test {
 namespace {
@@ -40,7 +41,7 @@ CaseResult ResultOf(std::uint64_t case_index) {
   result.end_time_s = 570.0;
   result.end_stage = 4;
   const auto k = static_cast<double>(case_index);
-  result.inputs = InputValues({});
+  ApplyNominal(result);
   result.metrics.assign(MetricCount(kUsualStages), k / 3.0);
   result.metrics.back() = std::numeric_limits<double>::quiet_NaN();
   result.digest = {case_index, 1};
@@ -172,7 +173,7 @@ TEST_F(CoordinatorTest, FliesACampaignAndDismissesItsWorkers) {
   for (std::uint64_t k = 0; k < 50; ++k) {
     const CaseResult stored = book_->folder().Load(k);
     EXPECT_EQ(stored.digest, ResultOf(k).digest);
-    EXPECT_EQ(stored.inputs, ResultOf(k).inputs);
+    EXPECT_EQ(stored.inputs_digest, ResultOf(k).inputs_digest);
     EXPECT_EQ(stored.metrics.front(), ResultOf(k).metrics.front());
   }
 }
@@ -328,7 +329,9 @@ TEST(FingerprintTest, ChangesWithEveryField) {
       [](CaseResult& r) { r.end_stage = 3; },
       [](CaseResult& r) { r.reason = "x"; },
       [](CaseResult& r) { r.reason = std::string(1, '\0'); },
-      [](CaseResult& r) { r.inputs[3] += 1.0; },
+      [](CaseResult& r) { r.inputs.push_back(1.0); },
+      [](CaseResult& r) { r.inputs_digest.high ^= 1; },
+      [](CaseResult& r) { r.inputs_digest.low ^= 1; },
       [](CaseResult& r) { r.metrics[1] = 0.0; },
       [](CaseResult& r) { r.inputs.push_back(r.metrics[0]), r.metrics.erase(r.metrics.begin()); },
       [](CaseResult& r) { r.metrics[2] = std::numeric_limits<double>::quiet_NaN(); },

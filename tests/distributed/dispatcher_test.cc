@@ -30,13 +30,16 @@ Campaign MadeUp(const std::string& flight_id, std::uint64_t cases) {
   campaign.flight_id = flight_id;
   campaign.sampling.cases = cases;
   campaign.canonical_yaml = "0123456789";
+  ScalarDistribution one;
+  one.values = {one.nominal = 1.0};
+  campaign.dispersions = {{"drag_coefficient", one, {FindInput("drag_factor")}}};
   return campaign;
 }
 
 CaseResult ResultOf(std::uint64_t case_index) {
   CaseResult result;
   result.case_index = case_index;
-  result.inputs = InputValues({});  // what a campaign without dispersions draws
+  SetInputs(RowInputs(MadeUp("", 1)), InputValues({}), result);
   result.metrics.resize(MetricCount(kUsualStages));
   return result;
 }
@@ -367,7 +370,7 @@ TEST_F(DispatcherTest, AResultOfAnotherVehicleIsNone) {
   dispatcher_.On("s", Status(), 0.0);
   ASSERT_EQ(Tick(0.0).assignments.at(0).cases.at(0), 0u);
   CaseResult result = ResultOf(0);
-  result.inputs.resize(InputCount(64));
+  result.inputs.resize(2);
   dispatcher_.On("s", Report{"w", kEpoch, 1, kFlight, {{1, result}}, {}}, 0.1);
   EXPECT_EQ(Progress().done, 0u);
   EXPECT_EQ(dispatcher_.refused_messages(), 1u);
@@ -456,7 +459,7 @@ TEST_F(ForgerTest, InputsThatTheCampaignDoesNotDrawExpelTheProcessAndAllThatItRe
   for (const auto& [worker, case_index] : first) Return(worker, ResultOf(case_index));
   EXPECT_EQ(Progress().done, 3u);
   CaseResult forged = ResultOf(second.at("node1_bb"));
-  forged.inputs[7] += 1e-12;
+  forged.inputs[0] += 1e-12;
   Return("node1_bb", forged);
   EXPECT_EQ(Progress().done, 2u) << "of node2 and of node1's honest process";
   EXPECT_EQ(dispatcher_.joined(), 2u);
@@ -493,7 +496,7 @@ TEST_F(ForgerTest, AProcessThenItsHostThenItsKeysAreExpelled) {
   EXPECT_EQ(Progress().done, 6u);
   const auto lie = [&](const std::string& worker) {
     CaseResult forged = ResultOf(given.at(worker).at(1));
-    forged.inputs[7] += 1e-12;
+    forged.inputs_digest.low ^= 1;  // a constant that it did not apply
     Return(worker, forged);
   };
   const auto names = [&] {

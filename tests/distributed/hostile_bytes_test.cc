@@ -92,7 +92,7 @@ void Fuzz(const typename PubSubType::type& sample) {
 
 TEST(HostileBytes, EveryDecoderSurvivesDamagedSamples) {
   fuzz::Chance();  // says how to repeat it
-  Fuzz<idl::ReportV2PubSubType>(ToIdl(SampleReport()));
+  Fuzz<idl::ReportV3PubSubType>(ToIdl(SampleReport()));
   Fuzz<idl::OrdersV1PubSubType>(ToIdl(SampleOrders()));
   Fuzz<idl::WorkerStatusV2PubSubType>(ToIdl(SampleStatus()));
   Fuzz<idl::TextRequestV1PubSubType>(ToIdl(TextRequest{"w", "f", 3}));
@@ -105,8 +105,8 @@ TEST(HostileBytes, EveryDecoderSurvivesDamagedSamples) {
 
 TEST(HostileBytes, SevenBytesAreRefused) {
   const Bytes seven = {0xff, 0xff, 0xff, 0xff, 1, 2, 3};
-  idl::ReportV2 report;
-  EXPECT_FALSE(Decode<idl::ReportV2PubSubType>(seven, &report));
+  idl::ReportV3 report;
+  EXPECT_FALSE(Decode<idl::ReportV3PubSubType>(seven, &report));
   idl::TextV1 text;
   EXPECT_FALSE(Decode<idl::TextV1PubSubType>(seven, &text));
   EXPECT_FALSE(Decode<idl::TextV1PubSubType>({}, &text));
@@ -128,7 +128,7 @@ TEST(HostileBytes, AnUnknownStateOrOutcomeIsNoMessage) {
   idl::WorkerStatusV2 status = ToIdl(SampleStatus());
   status.state(static_cast<idl::WorkerStateV2>(4));
   EXPECT_FALSE(FromIdl(status));
-  idl::ReportV2 report = ToIdl(SampleReport());
+  idl::ReportV3 report = ToIdl(SampleReport());
   report.flown()[0].outcome("exploded");
   EXPECT_FALSE(FromIdl(report));
 }

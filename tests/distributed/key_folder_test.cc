@@ -300,7 +300,7 @@ TEST_F(KeyFolderTest, ADamagedOrForeignFileIsNamed) {
   EXPECT_EQ(from(kPermissionsFile, other),
             problem(kPermissionsFile, "not the permissions of the owner of identity.pem"));
   std::string edited = TextOfFile(keys / kPermissionsFile);
-  edited.replace(edited.find("ReportV2"), 8, "OrdersV1");
+  edited.replace(edited.find("ReportV3"), 8, "OrdersV1");
   EXPECT_EQ(with(kPermissionsFile, edited), problem(kPermissionsFile, unsigned_text));
   EXPECT_EQ(OpenError(keys), "none");
   fs::remove(keys / kGovernanceFile);
@@ -346,16 +346,16 @@ TEST(Permissions, EachRoleMayWhatItNeeds) {
     return RulesIn(PermissionsDocument(role, "node1", Right::kRead, "CN=node1", 0, kDay_s));
   };
   const std::string t = " dispersa/";
-  EXPECT_EQ(rules(Role::kWorker), "publish" + t + "WorkerStatusV2" + t + "ReportV2" + t + "TextRequestV1" +
+  EXPECT_EQ(rules(Role::kWorker), "publish" + t + "WorkerStatusV2" + t + "ReportV3" + t + "TextRequestV1" +
                                       t + "CampaignRefusalV1 in wnode1_*\nsubscribe" + t + "OrdersV1" + t +
                                       "TextV1 in wnode1_*\n");
   EXPECT_EQ(rules(Role::kClient), "publish" + t + "RequestV1 in w_read_node1_*\nsubscribe" + t +
                                       "ReplyV1 in w_read_node1_*\nsubscribe" + t + "ProgressV1" + t +
-                                      "ResultV1 in \n");
-  EXPECT_EQ(rules(Role::kObserver), "subscribe" + t + "ProgressV1" + t + "ResultV1 in \n");
-  EXPECT_EQ(rules(Role::kCoordinator), "publish" + t + "ProgressV1" + t + "ResultV1 in \npublish" + t +
+                                      "ResultV2 in \n");
+  EXPECT_EQ(rules(Role::kObserver), "subscribe" + t + "ProgressV1" + t + "ResultV2 in \n");
+  EXPECT_EQ(rules(Role::kCoordinator), "publish" + t + "ProgressV1" + t + "ResultV2 in \npublish" + t +
                                            "OrdersV1" + t + "TextV1" + t + "ReplyV1 in w*\nsubscribe" + t +
-                                           "WorkerStatusV2" + t + "ReportV2" + t + "TextRequestV1" + t +
+                                           "WorkerStatusV2" + t + "ReportV3" + t + "TextRequestV1" + t +
                                            "CampaignRefusalV1" + t + "RequestV1 in *\npublish" + t +
                                            "RequestV1 in wnode1_*\nsubscribe" + t + "ReplyV1 in wnode1_*\n");
 }

@@ -7,10 +7,12 @@
 #include <string>
 #include <vector>
 
+#include "core/campaign_yaml/load.h"
 #include "core/flight/engine_version.h"
 #include "core/flight/flight_inputs.h"
 #include "core/flight/metrics.h"
 #include "services/coordinator/workforce.h"
+#include "tests/nominal_inputs.h"
 
 namespace dispersa {
 
@@ -60,11 +62,13 @@ class MadeUpWorkforce : public Workforce {
     if (const auto book = books_.find(flight_id); book != books_.end())
       book->second->Accept(worker, "host", 0, result, time_s);
   }
+  /// Of smoke.yaml.
   static CaseResult ResultOf(std::uint64_t case_index) {
     CaseResult result;
     result.case_index = case_index;
     result.outcome = Outcome::kCompleted;
-    result.inputs.assign(InputCount(kUsualStages), 0.5);
+    static const RowInputs rows(LoadCampaign(DISPERSA_CAMPAIGNS "/smoke.yaml"));
+    ApplyEverywhere(rows, 0.5, result);
     result.metrics.assign(MetricCount(kUsualStages), 0.25);
     return result;
   }

@@ -17,6 +17,7 @@
 #include "services/ledger/campaign_book.h"
 #include "services/ledger/prepare_run.h"
 #include "tests/distributed/forgetful_store.h"
+#include "tests/nominal_inputs.h"
 
 namespace dispersa::rules_test {
 namespace {
@@ -97,7 +98,7 @@ TEST(Rules, ResumingWithFewerCasesDropsNoRow) {
     PreparedRun prepared = PrepareRun(request);
     CaseResult result;
     result.case_index = 7;
-    result.inputs.assign(InputCount(kUsualStages), 0.5);
+    ApplyEverywhere(prepared.folder.inputs(), 0.5, result);
     result.metrics.assign(MetricCount(kUsualStages), 0.5);
     prepared.folder.Append({{result}});
   }

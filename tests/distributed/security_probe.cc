@@ -158,9 +158,9 @@ int Main(const std::vector<std::string>& words) {
     orders.leave(true);
     Try<idl::WorkerStatusV2PubSubType>(kStatusTopic, options, outcome, participant, status);
     Try<idl::OrdersV1PubSubType>(kOrdersTopic, options, outcome, participant, orders);
-    Try<idl::ReportV2PubSubType>(kReportTopic, options, outcome, participant);
+    Try<idl::ReportV3PubSubType>(kReportTopic, options, outcome, participant);
     Try<idl::RequestV1PubSubType>(kRequestTopic, options, outcome, participant);
-    Try<idl::ResultV1PubSubType>(kResultTopic, options, outcome, participant);
+    Try<idl::ResultV2PubSubType>(kResultTopic, options, outcome, participant);
     Try<idl::ProgressV1PubSubType>(kProgressTopic, options, outcome, participant);
   } catch (const std::exception& error) {
     problem = error.what();

@@ -229,10 +229,10 @@ class SecurityTest(unittest.TestCase):
     def test_a_role_says_what_it_may_and_nothing_else(self):
         self.start_coordinator()
         # By its own middleware already.
-        honest = self.stranger(*self.publish("ReportV2", "", "--keys", self.folder("observer"))).leave()
-        self.assertEqual((honest["created"], honest["problem"]), (False, "cannot create a writer of dispersa/ReportV2"))
+        honest = self.stranger(*self.publish("ReportV3", "", "--keys", self.folder("observer"))).leave()
+        self.assertEqual((honest["created"], honest["problem"]), (False, "cannot create a writer of dispersa/ReportV3"))
         # And by the coordinator's, if its own does not mind.
-        for role, topic, name in (("observer", "ReportV2", ""), ("observer", "RequestV1", "one_a"), ("client", "ReportV2", "one_b"),
+        for role, topic, name in (("observer", "ReportV3", ""), ("observer", "RequestV1", "one_a"), ("client", "ReportV3", "one_b"),
                                   ("worker", "RequestV1", "one_c")):
             with self.subTest(role=role, topic=topic):
                 self.assert_refused(rf"Error checking create remote writer .*dispersa/{topic} topic not found in allow rule",
@@ -263,7 +263,7 @@ class SecurityTest(unittest.TestCase):
         for folder, permissions in ((own, forged), (other, forged_by_other)):
             permissions.replace(folder / "permissions.p7s")
             before = self.log.read_text().count("Error validating remote permissions")
-            stranger = self.stranger(*self.publish("ReportV2", "", "--keys", folder))
+            stranger = self.stranger(*self.publish("ReportV3", "", "--keys", folder))
             wait_for(lambda: self.log.read_text().count("Error validating remote permissions") > before, "refusal")
             seen = stranger.leave()
             self.assertEqual((seen["created"], seen["matched"]), (True, 0))
@@ -325,11 +325,11 @@ class SecurityTest(unittest.TestCase):
         self.assertEqual(coordinator.leave()["matched"], 1)
 
     def test_an_observer_hears_results_and_nothing_else_and_says_nothing(self):
-        hear = ["subscribe", "dispersa/ResultV1", "", DOMAIN, "--keys"]
+        hear = ["subscribe", "dispersa/ResultV2", "", DOMAIN, "--keys"]
         # Another observer, in the coordinator's place, is who could be told made-up results.
         listening = self.stranger(*hear, self.folder("observer"), "--as-coordinator")
-        lying = self.stranger(*self.publish("ResultV1", "", "--keys", self.that_lies_to_itself("observer")))
-        wait_for(lambda: re.search("Error checking create remote writer .*dispersa/ResultV1 topic not found in allow rule",
+        lying = self.stranger(*self.publish("ResultV2", "", "--keys", self.that_lies_to_itself("observer")))
+        wait_for(lambda: re.search("Error checking create remote writer .*dispersa/ResultV2 topic not found in allow rule",
                                    listening.log.read_text()), "refusal")
         self.assertEqual((lying.leave()["matched"], listening.leave()["matched"]), (0, 0))
 
@@ -380,7 +380,7 @@ class SecurityTest(unittest.TestCase):
             (with_change("identity.key", take("observer")), "identity.key: not the key of identity.pem"),
             (with_change("identity_ca.pem", take("worker", self.foreign)), "identity.pem: not signed by identity_ca.pem"),
             (with_change("permissions.p7s", take("observer")), "permissions.p7s: not the permissions of the owner of identity.pem"),
-            (with_change("permissions.p7s", lambda file: file.write_text(file.read_text().replace("ReportV2", "OrdersV1"))),
+            (with_change("permissions.p7s", lambda file: file.write_text(file.read_text().replace("ReportV3", "OrdersV1"))),
              "permissions.p7s: the signature does not fit: damaged, or of another authority"),
             (with_change("governance.p7s", take("worker", self.foreign)),
              "governance.p7s: the signature does not fit: damaged, or of another authority"),

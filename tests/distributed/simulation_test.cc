@@ -22,6 +22,7 @@
 #include "services/coordinator/dispatcher.h"
 #include "services/log/log.h"
 #include "services/worker/flight_desk.h"
+#include "tests/nominal_inputs.h"
 
 namespace dispersa::simulation_test {
 namespace {
@@ -92,7 +93,7 @@ class DiskStore : public ResultStore {
 CaseResult ResultOf(std::uint64_t case_index) {
   CaseResult result;
   result.case_index = case_index;
-  result.inputs = InputValues({});
+  ApplyNominal(result);
   result.digest = {case_index, 7};
   result.outcome = Outcome::kCompleted;
   result.metrics.assign(MetricCount(kUsualStages), 0.0);

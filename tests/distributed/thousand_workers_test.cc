@@ -25,6 +25,7 @@
 #include "services/log/log.h"
 #include "services/worker/flight_desk.h"
 #include "tests/distributed/forgetful_store.h"
+#include "tests/nominal_inputs.h"
 
 namespace dispersa::thousand_workers_test {
 namespace {
@@ -57,7 +58,7 @@ Campaign Endless() {
 CaseResult ResultOf(std::uint64_t case_index) {
   CaseResult result;
   result.case_index = case_index;
-  result.inputs = InputValues({});
+  ApplyNominal(result);
   result.digest = {case_index, 7};
   result.metrics.resize(MetricCount(kUsualStages));
   return result;

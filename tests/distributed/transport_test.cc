@@ -85,7 +85,8 @@ CaseResult ResultOf(std::uint64_t case_index) {
   result.end_time_s = 123.456;
   result.end_stage = 3;
   result.reason = "attitude error";
-  result.inputs.assign(InputCount(kUsualStages), 1.0 / 3.0);
+  result.inputs.assign(20, 1.0 / 3.0);
+  result.inputs_digest = {3, 0xbeefull << 40};
   result.metrics.assign(MetricCount(kUsualStages), -0.0);
   result.digest = {0xfeedull << 48, 1};
   return result;
@@ -132,6 +133,7 @@ TEST_F(Transport, CarriesWhatAWorkerSaysToTheLastBit) {
   EXPECT_EQ(result.reason, "attitude error");
   EXPECT_EQ(result.digest, sent.digest);
   ASSERT_EQ(result.inputs, sent.inputs);
+  EXPECT_EQ(result.inputs_digest, sent.inputs_digest);
   ASSERT_EQ(result.metrics.size(), sent.metrics.size());
   for (std::size_t i = 0; i < sent.metrics.size(); ++i)
     EXPECT_EQ(Bits(result.metrics[i]), Bits(sent.metrics[i])) << i;

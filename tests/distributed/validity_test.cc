@@ -112,10 +112,10 @@ TEST(Validity, AResultHasTheInputsAndMetricsOfThisEngine) {
       report.flown[0].result.metrics.resize(metrics);
     });
   };
-  const std::size_t inputs = InputCount(kUsualStages), metrics = MetricCount(kUsualStages);
+  const std::size_t inputs = InputColumns().size(), metrics = MetricCount(kUsualStages);
   EXPECT_EQ(of(inputs, metrics), "");
-  for (const std::size_t wrong_inputs : {std::size_t{0}, inputs - 1, inputs + 1})
-    EXPECT_EQ(of(wrong_inputs, metrics), wrong);
+  EXPECT_EQ(of(0, metrics), "") << "of a campaign that disperses nothing";
+  EXPECT_EQ(of(inputs + 1, metrics), wrong);
   EXPECT_EQ(of(inputs, metrics + kMaxOwnMetrics), "") << "of a campaign with metrics of its own";
   for (const std::size_t wrong_metrics : {std::size_t{0}, metrics - 1, metrics + kMaxOwnMetrics + 1})
     EXPECT_EQ(of(inputs, wrong_metrics), wrong);

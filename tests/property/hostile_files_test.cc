@@ -21,6 +21,7 @@
 #include "core/results/result_folder.h"
 #include "tests/every_metric.h"
 #include "tests/fuzz.h"
+#include "tests/nominal_inputs.h"
 
 namespace dispersa::hostile_files_test {
 namespace {
@@ -195,8 +196,7 @@ TEST_F(HostileFiles, NoWrongNumberComesOutOfADamagedDatabase) {
       result.case_index = i;
       result.outcome = Outcome::kCompleted;
       result.reason = "a reason";
-      for (std::size_t k = 0; k < InputCount(kUsualStages); ++k)
-        result.inputs.push_back(0.1 * static_cast<double>(k));
+      ApplyNominal(result);
       for (std::size_t k = 0; k < MetricCount(kUsualStages); ++k)
         result.metrics.push_back(1.0 / static_cast<double>(k + i + 1));
       result.digest = {i, 5};

@@ -67,15 +67,15 @@ const Kind kKinds[] = {
 #undef MADE_UP
 
 // Undefined metrics and inputs of a nominal flight are left out.
-std::string Text(const CaseResult& result, std::size_t column_class) {
+std::string Text(const CaseResult& result, const RowInputs& rows) {
   std::string text = std::string("outcome ") + OutcomeName(result.outcome) + "\n";
   if (!result.reason.empty()) text += "reason " + result.reason + "\n";
   text += "end_time_s " + FormatNumber(result.end_time_s) + "\n";
   text += "end_stage " + std::to_string(result.end_stage) + "\n";
-  const std::vector<double> nominal = InputValues({}, column_class);
-  for (std::size_t i = 0; i < result.inputs.size(); ++i)
-    if (result.inputs[i] != nominal[i])
-      text += "input_" + InputColumns()[i].name + " " + FormatNumber(result.inputs[i]) + "\n";
+  const std::vector<double> nominal = InputValues({}, rows.column_class()), all = rows.AllOf(result.inputs);
+  EXPECT_EQ(result.inputs_digest, InputsDigest(all)) << "another input was applied";
+  for (std::size_t i = 0; i < all.size(); ++i)
+    if (all[i] != nominal[i]) text += "input_" + InputColumns()[i].name + " " + FormatNumber(all[i]) + "\n";
   for (std::size_t i = 0; i < result.metrics.size(); ++i)
     if (!std::isnan(result.metrics[i]))
       text += "metric_" + MetricNames()[i] + " " + FormatNumber(result.metrics[i]) + "\n";
@@ -90,17 +90,16 @@ TEST_P(FlightGolden, IsAsItWas) {
   CampaignOverrides overrides;
   if (kind.autopilot != nullptr) overrides.autopilot = kind.autopilot;
   const Campaign campaign = LoadCampaign(kind.campaign, overrides);
-  const std::size_t column_class = ColumnClass(campaign.vehicle);
   const CampaignFlights flights(campaign);
 
   std::vector<CaseOrder> orders;
   for (const std::uint64_t index : kind.cases) orders.push_back({index});
   std::vector<std::string> texts(orders.size());
   flights.FlyCases(orders, 1, [&](std::size_t order, const CaseResult& result, const History&) {
-    texts[order] = "[case " + std::to_string(kind.cases[order]) + "]\n" + Text(result, column_class);
+    texts[order] = "[case " + std::to_string(kind.cases[order]) + "]\n" + Text(result, flights.rows());
   });
   std::string text = "# Flights of campaign '" + campaign.name + "'.\n";
-  if (kind.nominal) text += "[nominal]\n" + Text(flights.FlyNominal(), column_class);
+  if (kind.nominal) text += "[nominal]\n" + Text(flights.FlyNominal(), flights.rows());
   for (const std::string& each : texts) text += each;
   EXPECT_TRUE(MatchesGolden(text, std::string(DISPERSA_GOLDENS "/") + kind.name + ".txt"));
 }

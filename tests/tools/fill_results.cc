@@ -25,9 +25,7 @@ CaseResult MadeUp(const CampaignFlights& flights, const std::vector<CaseResult>&
                   std::uint64_t seed) {
   CaseResult result = flown[index % flown.size()];
   result.case_index = index;
-  result.inputs =
-      InputValues(flights.Draw(index),
-                  flown.front().metrics.size() == MetricCount(kMaxStages) ? kMaxStages : kUsualStages);
+  SetInputs(flights.rows(), InputValues(flights.Draw(index), flights.rows().column_class()), result);
   Stream chance(seed, index, "made up");
   for (double& metric : result.metrics) metric *= 1.0 + 0.1 * chance.Normal();
   if (chance.Uniform() < 2e-4) {

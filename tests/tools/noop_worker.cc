@@ -23,13 +23,13 @@ namespace dispersa {
 namespace {
 
 /// The same for every worker, another one for each case.
-CaseResult MadeUp(std::uint64_t case_index, const CaseDesign& design) {
+CaseResult MadeUp(std::uint64_t case_index, const CaseDesign& design, const RowInputs& rows) {
   CaseResult result;
   result.case_index = case_index;
   result.outcome = Outcome::kCompleted;
   result.end_time_s = 500.0;
   result.end_stage = 4;
-  result.inputs = InputValues(design.Draw(case_index));  // the one thing that is seen at once
+  SetInputs(rows, InputValues(design.Draw(case_index)), result);  // the one thing that is seen at once
   result.metrics.assign(MetricCount(kUsualStages), 1.0 / static_cast<double>(case_index + 1));
   result.digest = {case_index, ~case_index};
   return result;
@@ -44,7 +44,8 @@ void Work(const NetworkOptions& network, const std::vector<Peer>& peers, std::ui
   };
   const std::string uuid = NameOnNetwork(network, MakeUuid());
   FlightDesk desk({.worker = uuid, .engine_version = EngineVersion(), .slots = slots}, 0.0);
-  std::optional<CaseDesign> design;  // of its one campaign
+  std::optional<CaseDesign> design;
+  RowInputs rows;  // of its one campaign
   std::optional<Job> flying;
   const std::chrono::milliseconds pause(flight_s > 0.0 ? 1 : 20);
   std::optional<WorkerLink> link(std::in_place, network, peers, uuid);
@@ -57,13 +58,15 @@ void Work(const NetworkOptions& network, const std::vector<Peer>& peers, std::ui
       }
     }
     if (const auto text = desk.TakeText()) {
-      design.emplace(ParseCampaign(text->text, text->name));
+      const Campaign campaign = ParseCampaign(text->text, text->name);
+      design.emplace(campaign);
+      rows = RowInputs(campaign);
       desk.Loaded(text->flight_id, nullptr, "");
     }
     while (flying || (flying = desk.Next(now_s()))) {
       for (const Report& report : desk.TakeReports(now_s())) link->Send(report);
       if (now_s() < flying->started_s + flight_s) break;
-      desk.Done(*flying, MadeUp(flying->case_index, *design), now_s());
+      desk.Done(*flying, MadeUp(flying->case_index, *design, rows), now_s());
       flying.reset();
     }
     const FlightDesk::Due due = desk.Tick(now_s());

@@ -82,7 +82,8 @@ CampaignSummary Summary(const Campaign& campaign, const std::vector<std::uint64_
     CaseResult& result = results.emplace_back();
     result.case_index = results.size() - 1;
     result.outcome = Outcome::kCompleted;
-    result.inputs = InputValues(FlightInputs{}, ColumnClass(campaign.vehicle));
+    const RowInputs rows(campaign);
+    SetInputs(rows, rows.AllOf(std::vector<double>(rows.positions().size(), 1.0)), result);
     result.metrics.assign(MetricsOf(campaign).size(), 0.1);
     result.digest = {digest, 1};
   }

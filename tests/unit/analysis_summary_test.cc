@@ -445,7 +445,7 @@ class Misuse : public testing::Test {
                                                           : ResultFolder::Create(folder, campaign_);
     std::vector<CaseResult> results;
     for (std::uint64_t k = flown_; k < cases; ++k) {
-      results.push_back(MakeCase(k));
+      results.push_back(MakeCase(k, opened.inputs()));
       results.back().metrics[MetricColumn(kPeak)] = k < failing ? 0.9 : 0.1;
     }
     flown_ = cases;

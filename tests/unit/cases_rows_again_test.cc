@@ -26,25 +26,27 @@ constexpr std::uint64_t kRows = 3;
 // What a folder of these results has in cases.csv.
 std::string CasesCsvOf(const Campaign& campaign, const std::vector<CaseResult>& results) {
   CsvColumns columns;
-  for (std::size_t i = 0; i < InputCount(ColumnClass(campaign.vehicle)); ++i) columns.inputs.push_back(i);
+  const RowInputs rows(campaign);
+  for (std::size_t i = 0; i < rows.positions().size(); ++i) columns.inputs.push_back(i);
   columns.metrics = MeasuredMetrics(campaign);
-  std::string text = CasesCsvHeader(MetricsOf(campaign), columns);
+  std::string text = CasesCsvHeader(rows, MetricsOf(campaign), columns);
   for (const CaseResult& result : results) text += CasesCsvLine(result, columns);
   return text;
 }
 
 // Rows as drawn, with metrics that nothing measured, and a reason that needs quotes.
 std::vector<CaseResult> DrawnRows(const Campaign& campaign, const CaseDesign& design) {
-  std::vector<CaseResult> rows;
+  const RowInputs rows(campaign);
+  std::vector<CaseResult> drawn;
   for (std::uint64_t i = 0; i < kRows; ++i) {
     CaseResult row;
     row.case_index = i;
     row.reason = i == 1 ? "lost, at \"once\"\nand for good" : "";
-    row.inputs = InputValues(design.Draw(i), ColumnClass(campaign.vehicle));
+    SetInputs(rows, InputValues(design.Draw(i), rows.column_class()), row);
     row.metrics.assign(MetricsOf(campaign).size(), std::nan(""));
-    rows.push_back(row);
+    drawn.push_back(row);
   }
-  return rows;
+  return drawn;
 }
 
 std::string Without(std::string text, std::initializer_list<const char*> keys) {
@@ -135,11 +137,11 @@ TEST(RowsAgain, HaveTheSameDigests) {
   for (std::uint64_t i = 0; i < kRows; ++i) {
     const CaseResult result = listed.FlyCase(i);
     EXPECT_EQ(result.digest, flown[i].digest) << i;
-    EXPECT_EQ(result.inputs, flown[i].inputs) << i;
+    EXPECT_EQ(result.inputs_digest, flown[i].inputs_digest) << i;
   }
   // A column holds the wind that was flown, at the altitude beside it.
   const auto input = [&](const char* name) {
-    return flown[0].inputs[static_cast<std::size_t>(FindInput(name))];
+    return flights.rows().AllOf(flown[0].inputs)[static_cast<std::size_t>(FindInput(name))];
   };
   const WindStatistics& winds = *campaign.wind_statistics;
   EXPECT_EQ(input("wind_profile_altitude_5_m"), winds.altitude_m[4]);

@@ -15,6 +15,7 @@
 #include "services/coordinator/attendance.h"
 #include "services/coordinator/dispatcher.h"
 #include "tests/distributed/memory_store.h"
+#include "tests/nominal_inputs.h"
 
 namespace dispersa::coordinator_dispatch_rules_test {
 namespace {
@@ -25,7 +26,7 @@ using testing::IsEmpty;
 CaseResult ResultOf(std::uint64_t case_index) {
   CaseResult result;
   result.case_index = case_index;
-  result.inputs = InputValues({});  // what a campaign without dispersions draws
+  ApplyNominal(result);  // what a campaign without dispersions draws
   result.metrics.resize(MetricCount(kUsualStages));
   return result;
 }

@@ -19,6 +19,7 @@
 #include "services/ledger/running_tally.h"
 #include "tests/distributed/memory_store.h"
 #include "tests/distributed/temporary_folder.h"
+#include "tests/nominal_inputs.h"
 
 namespace dispersa::coordinator_ledger_test {
 namespace {
@@ -577,7 +578,7 @@ class TallyOfTwo : public testing::Test {
     CaseResult result;
     result.case_index = case_index;
     result.outcome = outcome;
-    result.inputs = InputValues({});
+    ApplyNominal(result);
     result.metrics.resize(MetricCount(kUsualStages));
     result.metrics[MetricColumn("pitch_error_peak_deg")] = peak_deg;
     result.metrics[MetricColumn("q_max_pa")] = pressure_pa;

@@ -21,6 +21,7 @@
 #include "core/flight/history.h"
 #include "core/flight/metrics.h"
 #include "tests/every_metric.h"
+#include "tests/nominal_inputs.h"
 
 namespace dispersa::report_test {
 
@@ -79,16 +80,16 @@ inline Campaign MakeLimitedCampaign(std::uint64_t cases) {
   return campaign;
 }
 
-/// Every number differs from every other, and between cases.
-inline CaseResult MakeCase(std::uint64_t index) {
+/// The metrics of a case, and its end, differ from each other and between cases; the inputs of its row
+/// between cases.
+inline CaseResult MakeCase(std::uint64_t index, const RowInputs& rows = RowInputs(MakeCampaign(1))) {
   CaseResult result;
   result.case_index = index;
   result.outcome = Outcome::kCompleted;
   result.end_time_s = 569.25;
   result.end_stage = 4;
   const auto k = static_cast<double>(index);
-  for (std::size_t i = 0; i < InputCount(kUsualStages); ++i)
-    result.inputs.push_back(0.1 * static_cast<double>(i) + k / 7.0);
+  ApplyEverywhere(rows, 0.1 + k / 7.0, result);
   for (std::size_t i = 0; i < MetricCount(kUsualStages); ++i) {
     result.metrics.push_back(1.0 + static_cast<double>(i) + k / 3.0);
   }

@@ -64,7 +64,7 @@ class ReportPageTest : public testing::Test {
     ResultFolder folder = ResultFolder::Create(temporary_ / "out", campaign_);
     std::vector<CaseResult> results;
     for (std::uint64_t k = 0; k < flown; ++k) {
-      results.push_back(MakeCase(k));
+      results.push_back(MakeCase(k, folder.inputs()));
       if (k != 3) continue;
       results.back().outcome = Outcome::kLostControl;
       results.back().reason = "rate > 60";

@@ -34,7 +34,7 @@ TEST(PaperStudyFlights, AreTheCampaignsCasesForAnyNumberOfThreads) {
     EXPECT_EQ(flown.cases.index[row], row);
     EXPECT_EQ(flown.cases.outcome[row], expected.outcome);
     for (std::size_t i = 0; i < expected.inputs.size(); ++i)
-      EXPECT_EQ(flown.cases.inputs[i][row], expected.inputs[i]) << InputColumns()[i].name;
+      EXPECT_EQ(flown.cases.inputs[flights.rows().positions()[i]][row], expected.inputs[i]) << i;
     for (std::size_t i = 0; i < expected.metrics.size(); ++i) {
       if (std::isnan(expected.metrics[i])) {
         EXPECT_TRUE(std::isnan(flown.cases.metrics[i][row])) << MetricNames()[i];

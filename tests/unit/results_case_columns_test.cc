@@ -77,14 +77,17 @@ TEST(ReportCaseColumns, OfManyLostFlightsTheFirstAreListed) {
   }
   folder.Append(results);
   std::uint64_t seen = 0;
-  const CaseColumns cases =
-      ReadColumns(folder, {3}, [&seen](const CaseResult& result) { seen += result.case_index; });
+  const CaseColumns cases = ReadColumns(folder, {FindInput("cg_factor"), FindInput("drag_factor")},
+                                        [&seen](const CaseResult& result) { seen += result.case_index; });
   EXPECT_EQ(cases.lost_flights.size(), kListedLostFlights);
   EXPECT_EQ(LostCount(cases), kLost);
   EXPECT_EQ(seen, kLost * (kLost - 1) / 2);
-  const std::vector<double> input = cases.inputs[3];
-  EXPECT_EQ(input[7], results[7].inputs[3]);
-  EXPECT_TRUE(cases.inputs[4].empty());
+  const auto input = [&cases](const char* name) {
+    return cases.inputs[static_cast<std::size_t>(FindInput(name))].Values();
+  };
+  EXPECT_EQ(input("drag_factor")[7], results[7].inputs[0]);
+  EXPECT_EQ(input("cg_factor"), std::vector<double>(kLost, 1.0)) << "no row holds it";
+  EXPECT_TRUE(input("cp_factor").empty()) << "not asked for";
 }
 
 }  // namespace

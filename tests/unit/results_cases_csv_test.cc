@@ -27,12 +27,10 @@ using testing::StartsWith;
 std::vector<std::size_t> AllMetrics(ControlLaw law = ControlLaw::kAdaptiveFuzzy) {
   return MetricsUnder(kUsualStages, AnyUnder(law));
 }
-CsvColumns AllColumns() {
-  CsvColumns columns{std::vector<std::size_t>(InputCount(kUsualStages)), AllMetrics()};
-  std::iota(columns.inputs.begin(), columns.inputs.end(), std::size_t{0});
-  return columns;
+CsvColumns AllColumns() { return {{0}, AllMetrics()}; }
+std::string Header() {
+  return CasesCsvHeader(RowInputs(MakeLimitedCampaign(1)), MetricList(kUsualStages), AllColumns());
 }
-std::string Header() { return CasesCsvHeader(MetricList(kUsualStages), AllColumns()); }
 
 TEST(CasesCsv, WritesDoublesThatReadBackToTheSameBits) {
   EXPECT_EQ(ShortestText(0.1 + 0.2), "0.30000000000000004");
@@ -53,11 +51,10 @@ TEST(CasesCsv, QuotesFieldsThatNeedIt) {
 
 TEST(CasesCsv, NamesEveryColumn) {
   const std::string header = Header();
-  EXPECT_THAT(header, StartsWith("case_index,outcome,end_time_s,end_stage,reason,input_" +
-                                 InputColumns()[0].name + ","));
+  EXPECT_THAT(header, StartsWith("case_index,outcome,end_time_s,end_stage,reason,input_drag_factor,"));
   EXPECT_THAT(header, EndsWith(",metric_" + MetricNames()[MetricCount(kUsualStages) - 1] + ",digest\n"));
   EXPECT_EQ(static_cast<std::size_t>(std::count(header.begin(), header.end(), ',')),
-            5 + InputCount(kUsualStages) + MetricCount(kUsualStages));
+            5 + 1 + MetricCount(kUsualStages));
 }
 
 TEST(CasesCsv, HasTheMetricsOfItsLawAlone) {
@@ -130,21 +127,19 @@ TEST(CasesCsv, LeavesOutWhatIsTheSameInAllCases) {
   TemporaryFolder temporary;
   ResultFolder folder = ResultFolder::Create(temporary / "out", MakeLimitedCampaign(2));
   CaseResult first = MakeCase(0), second = MakeCase(1);
-  std::fill(first.inputs.begin(), first.inputs.end(), 1.0);
   std::fill(first.metrics.begin(), first.metrics.end(), 2.0);
-  second.inputs = first.inputs;
   second.metrics = first.metrics;
-  second.inputs[3] = 1.5;
   second.metrics[0] = kNaN;  // defined in one of them
   first.metrics[1] = second.metrics[1] = kNaN;
   folder.Append({{first, second}});
   WriteCasesCsv(folder, VaryingColumns(folder), temporary / "out" / "varying.csv");
   const std::string csv = ReadText(temporary / "out" / "varying.csv");
-  EXPECT_EQ(csv.substr(0, csv.find('\n')), "case_index,outcome,end_time_s,end_stage,reason,input_" +
-                                               InputColumns()[3].name + ",metric_" + MetricNames()[0] +
-                                               ",digest");
-  EXPECT_THAT(csv, HasSubstr(",1,2," + first.digest.Hex() + "\n"));
-  EXPECT_THAT(csv, HasSubstr(",1.5,," + second.digest.Hex() + "\n"));
+  EXPECT_EQ(csv.substr(0, csv.find('\n')),
+            "case_index,outcome,end_time_s,end_stage,reason,input_drag_factor"
+            ",metric_" +
+                MetricNames()[0] + ",digest");
+  EXPECT_THAT(csv, HasSubstr(",0.1,2," + first.digest.Hex() + "\n"));
+  EXPECT_THAT(csv, HasSubstr(",0.24285714285714285,," + second.digest.Hex() + "\n"));
 }
 
 TEST(CasesCsv, CountsTheCasesOfAFileHoweverTheyAreQuoted) {

@@ -12,10 +12,12 @@
 #include <filesystem>
 #include <fstream>
 #include <limits>
+#include <nlohmann/json.hpp>
 
 #include "core/flight/engine_version.h"
 #include "core/results/database.h"
 #include "core/results/fingerprint.h"
+#include "core/results/nominal_json.h"
 #include "core/results/output_file.h"
 #include "tests/small_disk.h"
 #include "tests/unit/made_up_results.h"
@@ -85,7 +87,7 @@ TEST(ResultFolder, StoresUndefinedAsNullAndNoNegativeZero) {
   result.metrics[0] = kNaN;
   result.metrics[1] = std::numeric_limits<double>::infinity();
   result.metrics[2] = -0.0;
-  result.inputs[0] = -0.0;
+  ApplyEverywhere(RowInputs(MakeLimitedCampaign(1)), -0.0, result);
   folder.Append({{result}});
   const CaseResult loaded = folder.Load(0);
   EXPECT_TRUE(std::isnan(loaded.metrics[0]));
@@ -359,37 +361,61 @@ TEST(ResultFolder, IsWrittenByOneProcessAtATime) {
   EXPECT_EQ(MessageOf<InputError>([&] { FolderLock again(temporary / "out"); }), busy);
 }
 
-// As the release before wrote it: without a version and the table of audits.
-TEST(ResultFolder, AFolderOfTheFirstVersionIsReadAndBecomesOneOfTodayWhenItGoesOn) {
+std::string NamesOfInputs(const std::filesystem::path& folder, const std::string& sql) {
+  return Query(folder, "SELECT group_concat(" + sql);
+}
+
+TEST(ResultFolder, RowsHoldTheInputsThatTheCampaignSetsAndATableTheOthersOnce) {
   TemporaryFolder temporary;
-  const std::filesystem::path database = temporary / "out" / "results.sqlite";
-  {
-    ResultFolder folder = ResultFolder::Create(temporary / "out", MakeLimitedCampaign(3));
-    folder.Append({{MakeCase(0), MakeCase(2)}});
-  }
-  Database(database, Database::Mode::kExisting).Execute("DROP TABLE audits; PRAGMA user_version = 0");
-  EXPECT_THAT(ResultFolder::Open(temporary / "out").PresentCases(), ElementsAre(0, 2));
-  {
-    ResultFolder folder = ResultFolder::Resume(temporary / "out", MakeLimitedCampaign(3));
-    EXPECT_THAT(folder.PresentCases(), ElementsAre(0, 2));
-    folder.AppendAudits({{Claim{"w", 0, MakeCase(0).digest, false}}});
-  }
-  const Database today(database, Database::Mode::kExisting);
-  Statement version(today, "PRAGMA user_version");
-  ASSERT_TRUE(version.Step());
-  EXPECT_EQ(version.Integer(0), 2);
-  EXPECT_THAT(ResultFolder::Resume(temporary / "out", MakeLimitedCampaign(3)).PresentCases(),
-              ElementsAre(0, 2));
+  Campaign campaign = MakeLimitedCampaign(3);
+  campaign.derived.push_back({"cg_factor", "drag_factor", FindInput("cg_factor"), {}});
+  ScalarDistribution constant;
+  constant.values = {1.0};
+  campaign.dispersions.push_back({"density", constant, {FindInput("density_factor")}});
+  ResultFolder folder = ResultFolder::Create(temporary / "out", campaign);
+  EXPECT_EQ(
+      NamesOfInputs(temporary / "out", "name) FROM pragma_table_info('cases') WHERE name LIKE 'input%'"),
+      "input_drag_factor,input_cg_factor,input_density_factor");
+  EXPECT_EQ(Query(temporary / "out", "SELECT count(*) FROM nominal"),
+            std::to_string(InputCount(kUsualStages) - 3));
+  EXPECT_EQ(Query(temporary / "out", "SELECT value FROM nominal WHERE input = 'wind_altitude_m'"), "12000.0");
+  CaseResult result = MakeCase(1);
+  ApplyEverywhere(folder.inputs(), 0.5, result);
+  folder.Append({{result}});
+  const ResultFolder opened = ResultFolder::Open(temporary / "out");
+  EXPECT_THAT(opened.Load(1).inputs, ElementsAre(0.5, 0.5, 0.5));
+  EXPECT_EQ(opened.Load(1).inputs_digest, result.inputs_digest);
+  const auto nominal = nlohmann::json::parse(NominalJson(opened.inputs()));
+  EXPECT_EQ(nominal["schema"], "dispersa/nominal/1");
+  EXPECT_EQ(nominal["inputs"].size(), InputCount(kUsualStages) - 3);
+  EXPECT_EQ(nominal["inputs"]["wind_altitude_m"],
+            (nlohmann::json{{"value", 12000.0}, {"unit", "m"}, {"key", "wind.altitude"}}));
+  EXPECT_FALSE(nominal["inputs"].contains("density_factor"));
+}
+
+// Nothing in the row would show it.
+TEST(ResultFolder, RefusesAFlightThatAppliedOtherConstants) {
+  TemporaryFolder temporary;
+  ResultFolder folder = ResultFolder::Create(temporary / "out", MakeLimitedCampaign(3));
+  CaseResult result = MakeCase(1);
+  std::vector<double> all = folder.inputs().AllOf(result.inputs);
+  all[static_cast<std::size_t>(FindInput("cg_factor"))] = 1.01;
+  SetInputs(folder.inputs(), all, result);
+  EXPECT_EQ(MessageOf<ResultError>([&] {
+              folder.Append({{MakeCase(0), result}});
+            }),
+            "case 1: its flight applied other constants than its campaign's");
+  EXPECT_THAT(folder.PresentCases(), ElementsAre()) << "all or none";
 }
 
 TEST(ResultFolder, AFolderOfALaterVersionIsLeftAlone) {
   TemporaryFolder temporary;
   ResultFolder::Create(temporary / "out", MakeLimitedCampaign(3));
   Database(temporary / "out" / "results.sqlite", Database::Mode::kExisting)
-      .Execute("PRAGMA user_version = 3");
+      .Execute("PRAGMA user_version = 4");
   const std::string error =
       (temporary / "out").string() +
-      ": written by a newer dispersa: its results.sqlite has version 3, this one reads 2";
+      ": written by a newer dispersa: its results.sqlite has version 4, this one reads 3";
   EXPECT_EQ(MessageOf<InputError>([&] { ResultFolder::Open(temporary / "out"); }), error);
   EXPECT_EQ(MessageOf<InputError>([&] { ResultFolder::Resume(temporary / "out", MakeLimitedCampaign(3)); }),
             error);
@@ -400,7 +426,8 @@ TEST(ResultFolder, TellsADamagedRowAndRemovesItToBeFlownAgain) {
   for (const std::string& damage :
        {metric + " = " + metric + " + 1e-9", std::string("outcome = 'impact'"), std::string("reason = 'x'"),
         std::string("end_stage = end_stage + 1"), std::string("end_time_s = NULL"),
-        std::string("digest = '0' || substr(digest, 2, 30) || 'e'"), std::string("row_digest = ''")}) {
+        std::string("digest = '0' || substr(digest, 2, 30) || 'e'"), std::string("row_digest = ''"),
+        std::string("input_drag_factor = 1.5")}) {
     TemporaryFolder temporary;
     {
       ResultFolder folder = ResultFolder::Create(temporary / "out", MakeLimitedCampaign(3));

@@ -141,6 +141,7 @@ class Results:
     reason: list[str]
     digest: list[str]
     inputs: _Structured
+    nominal: dict[str, float]
     metrics: _Structured
     def __init__(self, directory: _Path) -> None: ...
     def __len__(self) -> int: ...

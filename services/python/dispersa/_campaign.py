@@ -151,7 +151,7 @@ class Campaign:
 
     @functools.cached_property
     def input_names(self):
-        """Names of the inputs of a case, with units; cases.csv has them as input_NAME."""
+        """Names of all inputs of a case, with units; cases.csv has those in `dispersed` as input_NAME."""
         return tuple(_core.input_names(self.stages))
 
     @functools.cached_property
@@ -168,15 +168,15 @@ class Campaign:
 
     @functools.cached_property
     def dispersed(self):
-        """Names of the inputs that this campaign disperses."""
-        return tuple(dict.fromkeys(self._core.dispersed))
+        """Names of the inputs that an entry of `dispersions` or `derived` sets: those of cases.csv."""
+        return tuple(self._core.dispersed)
 
     def plan(self, cases=None):
         """Draws the inputs of the cases without flying. Returns a structured array of shape (cases,) with a float64 field
-        for each input, in the unit of its name. `cases`: number of cases, beginning with the first; default: all. Raises
+        for each input in `dispersed`, in the unit of its name. `cases`: number of cases, beginning with the first; default: all. Raises
         BadInput for more cases than the campaign has. For a larger campaign use `load(..., cases=...)`."""
         count = self.cases if cases is None else whole("cases", cases, 0, self.cases)
-        return structured(_core.plan(self._core, count), self.input_names)
+        return structured(_core.plan(self._core, count), self.dispersed)
 
     def fly(self, case=None, *, inputs=None, history=True, step_s=0.1, integrator="simpson", law=None, axes=("pitch",)):
         """Flies one case in this process, or the nominal flight if `case` is None. Returns a Flight.

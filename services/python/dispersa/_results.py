@@ -27,7 +27,8 @@ class Results:
 
     These are arrays of shape (cases,) or lists of that length, in the order of `case_index`: `case_index`, `outcome`,
     `end_time_s` (since lift-off), `end_stage` (from 1), `reason`, `digest`. `inputs`, `metrics`: structured arrays of shape
-    (cases,) with a float64 field for each name, in the unit of the name. An undefined metric is NaN.
+    (cases,) with a float64 field for each name, in the unit of the name. An undefined metric is NaN. `nominal`: {name: value}
+    of every input that the campaign does not set, one for all cases.
     """
 
     def __init__(self, directory):
@@ -43,7 +44,8 @@ class Results:
         self.end_stage = values["end_stage"]
         self.reason = values["reason"]
         self.digest = values["digest"]
-        self.inputs = structured(values["inputs"], self.campaign.input_names)
+        self.inputs = structured(values["inputs"], values["input_names"])
+        self.nominal = values["nominal"]
         self.metrics = structured(values["metrics"], values["metric_names"])
 
     def __repr__(self):
@@ -161,11 +163,12 @@ class Results:
         parts = [pandas.DataFrame(first)]
         for prefix, columns in (("input_", self.inputs), ("metric_", self.metrics)):
             names = columns.dtype.names
-            plain = columns.view(numpy.float64).reshape(len(self), len(names))
+            plain = columns.view(numpy.float64).reshape(len(self), len(names)) if names else numpy.empty((len(self), 0))
             parts.append(pandas.DataFrame(plain, columns=[prefix + name for name in names], copy=False))
         parts.append(pandas.DataFrame({"digest": self.digest}))
         frame = pandas.concat(parts, axis=1)
-        frame.attrs["input_keys"] = {"input_" + name: key for name, key in self.campaign.input_keys.items() if key}
+        frame.attrs["input_keys"] = {"input_" + name: self.campaign.input_keys[name] for name in self.inputs.dtype.names
+                                     if self.campaign.input_keys.get(name)}
         return frame
 
     def bands(self):

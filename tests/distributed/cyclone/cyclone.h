@@ -34,7 +34,7 @@ inline dds_entity_t Join(int domain) {
   return Check(dds_create_participant(id, nullptr, nullptr), "participant");
 }
 
-/// "dispersa::idl::ResultV1" travels as "dispersa/ResultV1".
+/// "dispersa::idl::ResultV2" travels as "dispersa/ResultV2".
 inline dds_entity_t Topic(dds_entity_t participant, const dds_topic_descriptor_t& type) {
   const std::string name = type.m_typename;
   return Check(dds_create_topic(participant, &type, ("dispersa/" + name.substr(name.rfind(':') + 1)).c_str(),

@@ -37,8 +37,8 @@ Json Doubles(const dds_sequence_double& sequence) {
   return std::vector<double>(sequence._buffer, sequence._buffer + sequence._length);
 }
 
-Json ToJson(const dispersa_idl_ResultV1& result) {
-  const dispersa_idl_FlownCaseV2& flown = result.flown;
+Json ToJson(const dispersa_idl_ResultV2& result) {
+  const dispersa_idl_FlownCaseV3& flown = result.flown;
   return {{"flight_id", result.flight_id},
           {"worker", result.worker},
           {"case_index", flown.case_index},
@@ -48,6 +48,8 @@ Json ToJson(const dispersa_idl_ResultV1& result) {
           {"reason", flown.reason},
           {"inputs", Doubles(flown.inputs)},
           {"metrics", Doubles(flown.metrics)},
+          {"inputs_digest_high", flown.inputs_digest_high},
+          {"inputs_digest_low", flown.inputs_digest_low},
           {"digest_high", flown.digest_high},
           {"digest_low", flown.digest_low}};
 }
@@ -64,7 +66,7 @@ int main(int argc, char** argv) {
   const dds_entity_t participant = cyclone::Join(std::atoi(argv[1]));
   // In this order: the coordinator, too, learns of the readers in it, so who hears of the progress misses no
   // result from then on.
-  const dds_entity_t results = cyclone::Reader(participant, dispersa_idl_ResultV1_desc);
+  const dds_entity_t results = cyclone::Reader(participant, dispersa_idl_ResultV2_desc);
   const dds_entity_t progresses = cyclone::Reader(participant, dispersa_idl_ProgressV1_desc);
 
   std::map<std::string, std::uint64_t> count;  // of results, by flight id
@@ -73,7 +75,7 @@ int main(int argc, char** argv) {
   std::optional<dds_time_t> ended;
   while (!ended || count[flight_id] < done) {
     dds_sleepfor(kRound);
-    cyclone::TakeAll<dispersa_idl_ResultV1>(results, [&](const dispersa_idl_ResultV1& result) {
+    cyclone::TakeAll<dispersa_idl_ResultV2>(results, [&](const dispersa_idl_ResultV2& result) {
       ++count[result.flight_id];
       std::cout << Json{{"result", ToJson(result)}}.dump() << std::endl;
     });

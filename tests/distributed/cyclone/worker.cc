@@ -34,7 +34,7 @@ struct Flown {
   double end_time_s = 0.0;
   std::int32_t end_stage = 0;
   std::vector<double> inputs, metrics;
-  std::uint64_t digest_high = 0, digest_low = 0;
+  std::uint64_t inputs_digest[2], digest[2];  ///< high, low
 };
 
 struct Assignment {
@@ -60,17 +60,23 @@ std::vector<double> Doubles(const Json& object) {
   return values;
 }
 
+std::uint64_t Half(const Json& digest, std::size_t half) {
+  return std::stoull(digest.get<std::string>().substr(16 * half, 16), nullptr, 16);
+}
+
 Flown Fly(const std::string& dispersa, const std::string& file, std::uint64_t case_index) {
   const Json json = Output(dispersa + " fly " + file + " --case " + std::to_string(case_index) + " --json");
-  const std::string digest = json.at("digest");
+  Json in_row = Json::array();
+  for (const Json& name : json.at("row_inputs"))
+    in_row.push_back(json.at("inputs").at(name.get<std::string>()));
   return {json.at("outcome"),
           json.at("reason"),
           json.at("end_time_s"),
           json.at("end_stage"),
-          Doubles(json.at("inputs")),
+          Doubles(in_row),
           Doubles(json.at("metrics")),
-          std::stoull(digest.substr(0, 16), nullptr, 16),
-          std::stoull(digest.substr(16), nullptr, 16)};
+          {Half(json.at("inputs_digest"), 0), Half(json.at("inputs_digest"), 1)},
+          {Half(json.at("digest"), 0), Half(json.at("digest"), 1)}};
 }
 
 /// A sequence of the middleware over what somebody else owns.
@@ -91,7 +97,7 @@ struct Worker {
         orders(cyclone::Reader(participant, dispersa_idl_OrdersV1_desc, "w" + name)),
         texts(cyclone::Reader(participant, dispersa_idl_TextV1_desc, "w" + name)),
         statuses(cyclone::Writer(participant, dispersa_idl_WorkerStatusV2_desc)),
-        reports(cyclone::Writer(participant, dispersa_idl_ReportV2_desc)),
+        reports(cyclone::Writer(participant, dispersa_idl_ReportV3_desc)),
         requests(cyclone::Writer(participant, dispersa_idl_TextRequestV1_desc)) {}
 
   void On(const dispersa_idl_OrdersV1& said) {
@@ -157,20 +163,21 @@ struct Worker {
 
   /// Reports flown cases or, while there are none, begun ones.
   void Report() {
-    std::vector<dispersa_idl_FlownCaseV2> messages;
+    std::vector<dispersa_idl_FlownCaseV3> messages;
     for (std::size_t i = 0; i < flown.size(); ++i) {
       Flown& each = flown[i];
       messages.push_back({assignment->cases[i], assignment->attempt, View(each.outcome), each.end_time_s,
                           each.end_stage, View(each.reason), View<dds_sequence_double>(each.inputs),
-                          View<dds_sequence_double>(each.metrics), each.digest_high, each.digest_low});
+                          each.inputs_digest[0], each.inputs_digest[1],
+                          View<dds_sequence_double>(each.metrics), each.digest[0], each.digest[1]});
     }
     std::vector<dispersa_idl_StartedCaseV2> started = Started();
-    dispersa_idl_ReportV2 report{};
+    dispersa_idl_ReportV3 report{};
     report.worker = View(name);
     report.coordinator_epoch = assignment->epoch;
     report.number = flown.empty() ? 0 : kReport;
     report.flight_id = View(flight_id);
-    report.flown = View<dds_sequence_dispersa_idl_FlownCaseV2>(messages);
+    report.flown = View<dds_sequence_dispersa_idl_FlownCaseV3>(messages);
     report.started = View<dds_sequence_dispersa_idl_StartedCaseV2>(started);
     cyclone::Check(dds_write(reports, &report), "report");
     reported = dds_time();

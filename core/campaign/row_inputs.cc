@@ -1,0 +1,69 @@
+#include "core/campaign/row_inputs.h"
+
+#include <algorithm>
+#include <cmath>
+#include <limits>
+
+#include "core/flight/flight_inputs.h"
+
+namespace dispersa {
+namespace {
+
+std::vector<double> NominalInputs(std::size_t column_class) {
+  FlightInputs nominal;
+  TakeColumns(nominal);
+  return InputValues(nominal, column_class);
+}
+
+}  // namespace
+
+std::vector<int> DispersedInputs(const Campaign& campaign) {
+  std::vector<int> inputs;
+  for (const Dispersion& dispersion : campaign.dispersions)
+    inputs.insert(inputs.end(), dispersion.inputs.begin(), dispersion.inputs.end());
+  for (const DerivedInput& derived : campaign.derived) inputs.push_back(derived.column);
+  std::sort(inputs.begin(), inputs.end());
+  inputs.erase(std::unique(inputs.begin(), inputs.end()), inputs.end());
+  return inputs;
+}
+
+Digest InputsDigest(const std::vector<double>& all) {
+  std::vector<double> values = all;
+  for (double& value : values)
+    value = std::isfinite(value) ? value + 0.0 : std::numeric_limits<double>::quiet_NaN();
+  Digester digester;
+  digester.Add(values.data(), values.size());
+  return digester.Finish();
+}
+
+RowInputs::RowInputs(const Campaign& campaign)
+    : column_class_(ColumnClass(campaign.vehicle)), all_(NominalInputs(column_class_)) {
+  for (const int input : DispersedInputs(campaign)) positions_.push_back(static_cast<std::size_t>(input));
+}
+
+std::vector<std::size_t> RowInputs::constants() const {
+  std::vector<std::size_t> constants;
+  for (std::size_t i = 0; i < all_.size(); ++i)
+    if (!PlaceOf(i)) constants.push_back(i);
+  return constants;
+}
+
+std::optional<std::size_t> RowInputs::PlaceOf(std::size_t position) const {
+  const auto found = std::find(positions_.begin(), positions_.end(), position);
+  if (found == positions_.end()) return std::nullopt;
+  return static_cast<std::size_t>(found - positions_.begin());
+}
+
+std::vector<double> RowInputs::RowOf(const std::vector<double>& all) const {
+  std::vector<double> row;
+  for (const std::size_t position : positions_) row.push_back(all[position]);
+  return row;
+}
+
+std::vector<double> RowInputs::AllOf(const std::vector<double>& row) const {
+  std::vector<double> all = all_;
+  for (std::size_t i = 0; i < row.size(); ++i) all[positions_[i]] = row[i];
+  return all;
+}
+
+}  // namespace dispersa
