@@ -59,7 +59,10 @@ FlightBands ComputeBands(const std::vector<SampledFlight>& flights, const std::v
   return bands;
 }
 
-std::string BandsCsv(const FlightBands& bands) {
+std::string BandsCsv(const FlightBands& bands, int digits) {
+  const auto text = [digits](double value) {
+    return digits == 0 ? ShortestText(value) : DigitsText(value, digits);
+  };
   std::string csv = "time_s,flights";
   for (const Band& band : bands.bands) {
     for (const char* statistic : {"min", "p01", "p05", "p50", "p95", "p99", "max"}) {
@@ -68,11 +71,11 @@ std::string BandsCsv(const FlightBands& bands) {
   }
   csv += "\n";
   for (std::size_t step = 0; step < bands.time_s.size(); ++step) {
-    csv += ShortestText(bands.time_s[step]) + "," + std::to_string(bands.flying[step]);
+    csv += text(bands.time_s[step]) + "," + std::to_string(bands.flying[step]);
     for (const Band& band : bands.bands) {
       for (const auto* values :
            {&band.min, &band.p01, &band.p05, &band.p50, &band.p95, &band.p99, &band.max}) {
-        csv += "," + ShortestText((*values)[step]);
+        csv += "," + text((*values)[step]);
       }
     }
     csv += "\n";

@@ -36,7 +36,7 @@ FlightBands ComputeBands(const std::vector<SampledFlight>& flights, const std::v
                          double step_s);
 
 /// CSV with the columns time_s, flights, and for each history column _min, _p01, _p05, _p50, _p95, _p99,
-/// _max.
-std::string BandsCsv(const FlightBands& bands);
+/// _max. `digits`: significant ones of a value; 0: all that are needed to read back the same bits.
+std::string BandsCsv(const FlightBands& bands, int digits = 0);
 
 }  // namespace dispersa

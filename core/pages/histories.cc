@@ -13,6 +13,7 @@
 #include "core/math/assertion.h"
 #include "core/pages/kept_histories.h"
 #include "core/results/file_system.h"
+#include "core/results/gzip.h"
 #include "core/results/metric_catalogue.h"
 #include "core/results/output_file.h"
 #include "core/results/text.h"
@@ -23,6 +24,9 @@ namespace {
 namespace fs = std::filesystem;
 
 constexpr double kHistoryStep_s = 0.1;
+constexpr int kHistoryDigits = 9;
+/// Flights with every tick that are held at the same time: a flight of ten minutes has 30 MB.
+constexpr std::size_t kWithEveryTick = 2;
 /// Short compared with the transients of an ignition (about 1 s), and a multiple of kHistoryStep_s.
 constexpr double kBandStep_s = 0.2;
 /// Worst cases of each key metric that get a history.
@@ -90,7 +94,7 @@ HistoryFlights ChooseFlights(const CampaignSummary& summary, const CaseColumns& 
 
 /// What the rows and columns of the files are.
 std::string LayoutOfFiles(const std::vector<int>& band_columns) {
-  std::string layout = fmt::format("{} {}", kHistoryStep_s, kBandStep_s);
+  std::string layout = fmt::format("gzip {} {} {}", kHistoryDigits, kHistoryStep_s, kBandStep_s);
   for (const int column : band_columns) layout += " " + HistoryColumns()[static_cast<std::size_t>(column)];
   return layout;
 }
@@ -105,7 +109,7 @@ void EmptyDirectory(const fs::path& directory) {
 
 }  // namespace
 
-std::string HistoryCsv(const History& history, const AutopilotConfig& autopilot) {
+std::string HistoryCsv(const History& history, const AutopilotConfig& autopilot, int digits) {
   const std::vector<int> columns = HistoryColumnsUnder(autopilot);
   std::string csv;
   for (const int column : columns)
@@ -114,11 +118,46 @@ std::string HistoryCsv(const History& history, const AutopilotConfig& autopilot)
   for (std::size_t row = 0; row < history.rows(); ++row) {
     for (const int column : columns) {
       if (column != columns.front()) csv += ",";
-      csv += ShortestText(history.at(row, column));
+      csv +=
+          digits == 0 ? ShortestText(history.at(row, column)) : DigitsText(history.at(row, column), digits);
     }
     csv += "\n";
   }
   return csv;
+}
+
+History Thinned(const History& ticks, double tick_s, double step_s) {
+  constexpr double kSame_s = 1e-6;
+  const std::size_t rows = ticks.rows(), columns = HistoryColumns().size();
+  const long in_step = std::max(1L, std::lround(step_s / tick_s));
+  std::vector<bool> kept(rows);
+  const auto time_s = [&](std::size_t row) { return ticks.at(row, 0); };
+  for (std::size_t row = 0; row < rows; ++row) {
+    const long tick = std::lround(time_s(row) / tick_s);
+    const bool is_tick = std::fabs(time_s(row) - static_cast<double>(tick) * tick_s) < kSame_s;
+    // An event on a tick has a row beside the tick's.
+    const bool is_double = (row > 0 && time_s(row) - time_s(row - 1) < kSame_s) ||
+                           (row + 1 < rows && time_s(row + 1) - time_s(row) < kSame_s);
+    kept[row] = !is_tick || is_double || tick % in_step == 0 || row + 1 == rows;
+  }
+  for (std::size_t column = 1; column < columns; ++column) {
+    std::optional<std::size_t> least, largest;
+    for (std::size_t row = 0; row < rows; ++row) {
+      const double value = ticks.at(row, static_cast<int>(column));
+      if (!std::isfinite(value)) continue;
+      if (!least || value < ticks.at(*least, static_cast<int>(column))) least = row;
+      if (!largest || value > ticks.at(*largest, static_cast<int>(column))) largest = row;
+    }
+    if (least) kept[*least] = kept[*largest] = true;
+  }
+  History thinned;
+  thinned.step_s = step_s;
+  for (std::size_t row = 0; row < rows; ++row)
+    if (kept[row])
+      thinned.values.insert(thinned.values.end(),
+                            ticks.values.begin() + static_cast<std::ptrdiff_t>(row * columns),
+                            ticks.values.begin() + static_cast<std::ptrdiff_t>((row + 1) * columns));
+  return thinned;
 }
 
 std::vector<std::size_t> ExtremeRows(const CaseColumns& cases) {
@@ -166,42 +205,60 @@ FlightHistories WriteHistories(const ResultFolder& folder, const Campaign& campa
   histories.nominal_history.step_s = kHistoryStep_s;
   histories.nominal = flights.FlyNominal(&histories.nominal_history);
   if (kept) return histories;
-  WriteFile(directory / "nominal.csv", HistoryCsv(histories.nominal_history, campaign.autopilot));
+  const double tick_s = campaign.autopilot.tick_s;
+  const auto write = [&](const std::string& name, const History& ticks) {
+    std::string csv = HistoryCsv(Thinned(ticks, tick_s, kHistoryStep_s), campaign.autopilot, kHistoryDigits);
+    WriteFile(directory / name, Gzip(csv));
+    return csv;
+  };
+  {
+    History ticks;
+    ticks.step_s = tick_s;
+    flights.FlyNominal(&ticks);
+    write(kNominalHistoryName, ticks);
+  }
 
-  histories.written_cases = written;
-  histories.written_flights.resize(written.size());
   BandCounter counter(columns, kBandStep_s);
   std::size_t flown = 0;
   const auto fly = [&](std::size_t from, std::size_t to) {
     std::vector<CaseOrder> orders;
-    for (std::size_t i = from; i < to; ++i) {
-      const bool in_full = std::binary_search(written.begin(), written.end(), indices[i]);
-      orders.push_back({indices[i], in_full ? kHistoryStep_s : kBandStep_s});
-    }
-    flights.FlyCases(
-        orders, options.threads, [&](std::size_t i, const CaseResult& result, const History& history) {
-          const std::size_t at = from + i;
-          CheckReproduced(folder, indices[at], result.digest);
-          SampledFlight samples = SampleFlight(history, columns, kBandStep_s);
-          const auto found = std::lower_bound(written.begin(), written.end(), indices[at]);
-          if (found != written.end() && *found == indices[at]) {
-            WriteFile(directory / CaseHistoryName(indices[at]), HistoryCsv(history, campaign.autopilot));
-            histories.written_flights[static_cast<std::size_t>(found - written.begin())] = samples;
-          }
-          if (at < wanted.sampled) {
-            counter.Add(std::move(samples));
-          } else {
-            counter.AddExtreme(samples);
-          }
-          progress("time histories", ++flown, indices.size());
-        });
+    for (std::size_t i = from; i < to; ++i) orders.push_back({indices[i], kBandStep_s});
+    flights.FlyCases(orders, options.threads,
+                     [&](std::size_t i, const CaseResult& result, const History& history) {
+                       CheckReproduced(folder, indices[from + i], result.digest);
+                       SampledFlight samples = SampleFlight(history, columns, kBandStep_s);
+                       if (from + i < wanted.sampled) {
+                         counter.Add(std::move(samples));
+                       } else {
+                         counter.AddExtreme(samples);
+                       }
+                       progress("time histories", ++flown, indices.size() + written.size());
+                     });
   };
   // The flights that the counter keeps are flown first. They may end in any order.
   const std::size_t first = std::min(wanted.sampled, BandCounter::kKept);
   fly(0, first);
   fly(first, indices.size());
-  histories.bands = counter.Bands();
-  WriteFile(directory / "bands.csv", BandsCsv(histories.bands));
+  // What is drawn is what the files hold, so that it is the same when they are read again.
+  const std::string bands = BandsCsv(counter.Bands(), kHistoryDigits);
+  WriteFile(directory / kBandsName, Gzip(bands));
+  histories.bands = BandsIn(bands, columns, kBandStep_s, wanted);
+
+  histories.written_cases = written;
+  histories.written_flights.resize(written.size());
+  for (std::size_t at = 0; at < written.size(); at += kWithEveryTick) {
+    std::vector<CaseOrder> orders;
+    for (std::size_t i = at; i < std::min(at + kWithEveryTick, written.size()); ++i)
+      orders.push_back({written[i], tick_s});
+    flights.FlyCases(orders, options.threads,
+                     [&](std::size_t i, const CaseResult& result, const History& ticks) {
+                       CheckReproduced(folder, written[at + i], result.digest);
+                       const std::string csv = write(CaseHistoryName(written[at + i]), ticks);
+                       histories.written_flights[at + i] =
+                           SampleFlight(HistoryIn(csv, campaign.autopilot), columns, kBandStep_s);
+                       progress("time histories", ++flown, indices.size() + written.size());
+                     });
+  }
   KeepHistories(directory, key, wanted);
   return histories;
 }

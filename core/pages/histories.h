@@ -18,14 +18,18 @@ struct FlightHistories {
   CaseResult nominal;
   History nominal_history;
   FlightBands bands;
-  std::vector<std::uint64_t> written_cases;  ///< cases with a file histories/case_<index>.csv, ascending
+  std::vector<std::uint64_t> written_cases;  ///< cases with a file histories/case_<index>.csv.gz, ascending
   std::vector<SampledFlight>
       written_flights;  ///< the same cases at the steps of the bands: one column for each band
 };
 
 /// CSV with one line for each row. The header names the columns of flights under this autopilot. NaN is an
-/// empty cell.
-std::string HistoryCsv(const History& history, const AutopilotConfig& autopilot);
+/// empty cell. `digits`: significant ones of a value; 0: all that are needed to read back the same bits.
+std::string HistoryCsv(const History& history, const AutopilotConfig& autopilot, int digits = 0);
+
+/// Of a history with every tick: its rows at the multiples of a step, those of events, and those at which a
+/// column is least or largest.
+History Thinned(const History& ticks, double tick_s, double step_s);
 
 /// Rows of the cases with the smallest and the largest value of any metric, ascending.
 std::vector<std::size_t> ExtremeRows(const CaseColumns& cases);

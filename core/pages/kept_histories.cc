@@ -11,6 +11,7 @@
 
 #include "core/flight/engine_version.h"
 #include "core/results/fingerprint.h"
+#include "core/results/gzip.h"
 #include "core/results/output_file.h"
 #include "core/statistics/summary.h"
 
@@ -20,7 +21,6 @@ namespace {
 namespace fs = std::filesystem;
 
 constexpr char kMadeOf[] = "made_of.json";
-constexpr char kBands[] = "bands.csv";
 
 std::string ReadText(const fs::path& file) {
   // In one piece: character by character took longer than the flights of a small campaign.
@@ -30,7 +30,7 @@ std::string ReadText(const fs::path& file) {
 }
 
 std::vector<std::string> FilesOf(const HistoryFlights& flights) {
-  std::vector<std::string> files = {"nominal.csv", kBands};
+  std::vector<std::string> files = {kNominalHistoryName, kBandsName};
   for (const std::uint64_t index : flights.written) files.push_back(CaseHistoryName(index));
   return files;
 }
@@ -55,8 +55,22 @@ std::vector<std::vector<double>> Numbers(std::string_view csv) {
   return rows;
 }
 
-FlightBands BandsIn(std::string_view csv, const std::vector<int>& columns, double step_s) {
+std::vector<fs::path> Others(const fs::path& directory, const std::map<std::string, std::string>& files) {
+  std::vector<fs::path> others;
+  for (const fs::directory_entry& entry : fs::directory_iterator(directory)) {
+    const std::string name = entry.path().filename().string();
+    if (name != kMadeOf && !files.contains(name)) others.push_back(entry.path());
+  }
+  return others;
+}
+
+}  // namespace
+
+FlightBands BandsIn(std::string_view csv, const std::vector<int>& columns, double step_s,
+                    const HistoryFlights& flights) {
   FlightBands bands;
+  bands.flights = flights.sampled;
+  bands.extreme_flights = flights.indices.size() - flights.sampled;
   bands.step_s = step_s;
   for (const int column : columns)
     bands.bands.push_back({.column = HistoryColumns()[static_cast<std::size_t>(column)]});
@@ -83,18 +97,7 @@ History HistoryIn(std::string_view csv, const AutopilotConfig& autopilot) {
   return history;
 }
 
-std::vector<fs::path> Others(const fs::path& directory, const std::map<std::string, std::string>& files) {
-  std::vector<fs::path> others;
-  for (const fs::directory_entry& entry : fs::directory_iterator(directory)) {
-    const std::string name = entry.path().filename().string();
-    if (name != kMadeOf && !files.contains(name)) others.push_back(entry.path());
-  }
-  return others;
-}
-
-}  // namespace
-
-std::string CaseHistoryName(std::uint64_t case_index) { return fmt::format("case_{}.csv", case_index); }
+std::string CaseHistoryName(std::uint64_t case_index) { return fmt::format("case_{}.csv.gz", case_index); }
 
 std::string KeyOfHistories(const ResultFolder& folder, const Campaign& campaign,
                            const HistoryFlights& flights, const std::string& layout) {
@@ -106,7 +109,7 @@ std::string KeyOfHistories(const ResultFolder& folder, const Campaign& campaign,
 }
 
 void KeepHistories(const fs::path& directory, const std::string& key, const HistoryFlights& flights) {
-  nlohmann::ordered_json made_of = {{"schema", "dispersa/histories/1"}, {"key", key}};
+  nlohmann::ordered_json made_of = {{"schema", "dispersa/histories/2"}, {"key", key}};
   for (const std::string& name : FilesOf(flights))
     made_of["files"][name] = Fingerprint(ReadText(directory / name)).Hex();
   WriteFile(directory / kMadeOf, made_of.dump(1) + "\n");
@@ -124,8 +127,10 @@ std::optional<FlightHistories> ReadKeptHistories(const fs::path& directory, cons
   const nlohmann::json files = member(made_of, "files");
   std::map<std::string, std::string> texts;
   for (const std::string& name : FilesOf(flights)) {
-    texts[name] = ReadText(directory / name);
-    if (member(files, name) != Fingerprint(texts[name]).Hex()) return std::nullopt;
+    const std::string bytes = ReadText(directory / name);
+    std::optional<std::string> text = Gunzip(bytes);
+    if (!text || member(files, name) != Fingerprint(bytes).Hex()) return std::nullopt;
+    texts[name] = *std::move(text);
   }
   // Files of other reports would be taken for some of this one.
   for (const fs::path& file : Others(directory, texts)) fs::remove_all(file);
@@ -134,9 +139,7 @@ std::optional<FlightHistories> ReadKeptHistories(const fs::path& directory, cons
   for (const std::uint64_t index : flights.written)
     kept.written_flights.push_back(
         SampleFlight(HistoryIn(texts[CaseHistoryName(index)], campaign.autopilot), columns, step_s));
-  kept.bands = BandsIn(texts[kBands], columns, step_s);
-  kept.bands.flights = flights.sampled;
-  kept.bands.extreme_flights = flights.indices.size() - flights.sampled;
+  kept.bands = BandsIn(texts[kBandsName], columns, step_s, flights);
   return kept;
 }
 

@@ -5,6 +5,7 @@
 #include <filesystem>
 #include <optional>
 #include <string>
+#include <string_view>
 #include <vector>
 
 #include "core/pages/histories.h"
@@ -18,8 +19,15 @@ struct HistoryFlights {
   std::vector<std::uint64_t> written;  ///< cases with a file of their own, ascending
 };
 
-/// Name of a history's file in histories/.
+// Names of files in histories/.
+inline constexpr char kNominalHistoryName[] = "nominal.csv.gz";
+inline constexpr char kBandsName[] = "bands.csv.gz";
 std::string CaseHistoryName(std::uint64_t case_index);
+
+/// What HistoryCsv() and BandsCsv() have written.
+History HistoryIn(std::string_view csv, const AutopilotConfig& autopilot);
+FlightBands BandsIn(std::string_view csv, const std::vector<int>& columns, double step_s,
+                    const HistoryFlights& flights);
 
 /// A text that is the same if, and only if, the histories would have the same bytes: engine, flight id, and
 /// the flights with their digests, and the layout of the files, which the engine version does not cover.

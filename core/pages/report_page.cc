@@ -67,7 +67,7 @@ std::string ReportPage(const Campaign& campaign, const CampaignSummary& summary,
         "<p>Pointwise percentiles over {}, flown again and sampled every {} s; a lost flight counts until it "
         "is "
         "lost.{} S1 to S{} mark ignitions. Peaks between the samples are in the metrics, not here. Numbers: "
-        "<code>histories/bands.csv</code>.</p>\n",
+        "<code>histories/bands.csv.gz</code>.</p>\n",
         sample, ReadableText(bands.step_s), extremes, campaign.vehicle.stages.size());
     page += EnvelopeFigures(histories, summary, campaign.reference.program.t2_s);
   }
@@ -99,7 +99,7 @@ std::string ReportPage(const Campaign& campaign, const CampaignSummary& summary,
   if (flown_again && histories.bands.flights > 0) page += WorstFigures(histories, summary);
   page += "<div class=\"screen\">\n<h2 id=\"nominal\">Nominal flight</h2>\n<p>The flight without dispersions";
   page += campaign.course.is_controlled ? ", through the same closed loop." : ".";
-  page += " It is not one of the cases. Numbers: <code>histories/nominal.csv</code>.";
+  page += " It is not one of the cases. Numbers: <code>histories/nominal.csv.gz</code>.";
   if (campaign.course.ends != FlightEnd::kInjection)
     page +=
         " The curves end where the flight goes on as a point mass: at the end of the last burn above the "

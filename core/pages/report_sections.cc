@@ -185,7 +185,7 @@ std::string WorstCasesSection(const CampaignSummary& summary, const FlightHistor
       table.Row({i == 0 ? HtmlText(info.title) : "", std::to_string(one.case_index),
                  one.value ? value_text(*one.value) + unit : "–", OutcomeWords(one.outcome),
                  ReplayCell(summary, one.case_index),
-                 written ? Code(fmt::format("histories/case_{}.csv", one.case_index)) : ""},
+                 written ? Code(fmt::format("histories/case_{}.csv.gz", one.case_index)) : ""},
                 i < kPrinted ? "" : "screen");
     }
   }

@@ -16,6 +16,14 @@ std::string ShortestText(double value) {
   return std::string(buffer.data(), result.ptr);
 }
 
+std::string DigitsText(double value, int digits) {
+  if (!std::isfinite(value)) return "";
+  std::array<char, 32> buffer;
+  const auto result = std::to_chars(buffer.data(), buffer.data() + buffer.size(), value + 0.0,
+                                    std::chars_format::general, digits);
+  return std::string(buffer.data(), result.ptr);
+}
+
 std::string ReadableText(double value) {
   if (!std::isfinite(value)) return "–";
   const double magnitude = std::fabs(value);

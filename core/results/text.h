@@ -10,6 +10,8 @@ namespace dispersa {
 
 /// The shortest decimal that reads back as the same double. Empty if not finite; -0 becomes 0.
 std::string ShortestText(double value);
+/// With so many significant digits at most, otherwise as ShortestText().
+std::string DigitsText(double value, int digits);
 /// For people: five significant digits, without an exponent between 1e-4 and 1e9. "–" if not finite.
 std::string ReadableText(double value);
 enum class Rounding { kNearest, kDown, kUp };

@@ -86,6 +86,7 @@ ExitCode FlyOne(const FlyOptions& options, const GlobalOptions& global) {
   const CampaignFlights flights(campaign);
   const FlightInputs inputs = options.case_index ? flights.Draw(*options.case_index) : FlightInputs{};
   History history;
+  history.step_s = campaign.autopilot.tick_s;
   const CaseResult result = flights.Fly(inputs, options.case_index.value_or(0),
                                         options.history.empty() ? nullptr : &history, scheme);
   if (!options.history.empty()) WriteFile(options.history, HistoryCsv(history, campaign.autopilot));
@@ -107,7 +108,9 @@ void AddFlyCommand(CLI::App& app, Invocation& invocation) {
       ->required()
       ->type_name(kYamlType);
   command->add_option("--case", options->case_index, "case index, from 0; without it the nominal flight");
-  command->add_option("--history", options->history, "file for the time history, CSV; -: standard output")
+  command
+      ->add_option("--history", options->history,
+                   "file for the time history with every tick, CSV; -: standard output")
       ->type_name(kFileType);
   command
       ->add_option("--integrator", options->integrator,

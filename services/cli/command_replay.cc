@@ -39,6 +39,7 @@ ExitCode Replay(const ReplayOptions& options, const GlobalOptions& global) {
   std::FILE* const stream = StreamBeside("--history", options.history, global);
   RequireWritableFile("--history", options.history);
   History history;
+  history.step_s = stored.campaign.autopilot.tick_s;
   const CaseReplay replay =
       ReplayCase(stored, options.case_index, options.history.empty() ? nullptr : &history);
   if (!options.history.empty()) WriteFile(options.history, HistoryCsv(history, stored.campaign.autopilot));

@@ -6,11 +6,12 @@
 #include <algorithm>
 #include <array>
 #include <fstream>
-#include <iterator>
 #include <memory>
+#include <sstream>
 #include <system_error>
 
 #include "core/results/file_system.h"
+#include "core/results/gzip.h"
 #include "core/results/output_file.h"
 #include "core/results/result_error.h"
 
@@ -20,8 +21,7 @@ namespace {
 namespace fs = std::filesystem;
 
 constexpr char kPacked[] = ".gz";
-// Fast: full digits are noise, and the best level takes six times as long for a twelfth less.
-constexpr std::size_t kBlock = 64 << 10;
+constexpr char kPage[] = "report.html";
 
 struct CloseGz {
   void operator()(gzFile file) const { gzclose(file); }
@@ -34,36 +34,6 @@ fs::path Packed(const fs::path& file) { return file.string() + kPacked; }
   throw ResultError(ResultError::Kind::kFile, file.string() + ": cannot be read");
 }
 
-std::string Deflated(const fs::path& file) {
-  std::ifstream stream(file, std::ios::binary);
-  z_stream deflate{};
-  constexpr int kGzipHeader = 15 + 16, kMemory = 8;
-  if (!stream ||
-      deflateInit2(&deflate, Z_BEST_SPEED, Z_DEFLATED, kGzipHeader, kMemory, Z_DEFAULT_STRATEGY) != Z_OK)
-    FailRead(file);
-  const std::unique_ptr<z_stream, int (*)(z_stream*)> end(&deflate, deflateEnd);
-  std::string packed;
-  std::array<char, kBlock> in, out;
-  do {
-    stream.read(in.data(), in.size());
-    deflate.next_in = reinterpret_cast<Bytef*>(in.data());
-    deflate.avail_in = static_cast<uInt>(stream.gcount());
-    do {
-      deflate.next_out = reinterpret_cast<Bytef*>(out.data());
-      deflate.avail_out = out.size();
-      ::deflate(&deflate, stream ? Z_NO_FLUSH : Z_FINISH);
-      packed.append(out.data(), out.size() - deflate.avail_out);
-    } while (deflate.avail_out == 0);
-  } while (stream);
-  if (stream.bad()) FailRead(file);
-  return packed;
-}
-
-void Pack(const fs::path& file) {
-  WriteFile(Packed(file), Deflated(file));
-  fs::remove(file);
-}
-
 bool IsPacked(const fs::path& file) {
   std::error_code error;
   return !fs::exists(file, error) && fs::exists(Packed(file), error);
@@ -72,14 +42,19 @@ bool IsPacked(const fs::path& file) {
 }  // namespace
 
 void PackReports(const fs::path& results) {
-  for (const fs::path& file : StoredFilesIn(results)) {
-    const bool is_history = file.parent_path() == "histories" && file.extension() == ".csv";
-    if (is_history || file == "report.html") Pack(results / file);
-  }
+  const fs::path page = results / kPage;
+  std::error_code error;
+  if (!fs::exists(page, error)) return;
+  std::ifstream stream(page, std::ios::binary);
+  std::ostringstream text;
+  text << stream.rdbuf();
+  if (!stream || !text) FailRead(page);
+  WriteFile(Packed(page), Gzip(text.str()));
+  fs::remove(page);
 }
 
 void RemoveReports(const fs::path& results) {
-  for (const char* name : {"cases.csv", "nominal.json", "summary.json", "report.html", "histories"}) {
+  for (const char* name : {"cases.csv", "nominal.json", "summary.json", kPage, "histories"}) {
     for (const fs::path& file : {results / name, Packed(results / name)}) {
       std::error_code error;
       fs::remove_all(file, error);
@@ -106,7 +81,7 @@ std::vector<fs::path> StoredFilesIn(const fs::path& results) {
 std::vector<fs::path> FilesIn(const fs::path& results) {
   std::vector<fs::path> files = StoredFilesIn(results);
   for (fs::path& file : files)
-    if (file.extension() == kPacked) file.replace_extension();
+    if (file == Packed(kPage)) file.replace_extension();
   std::sort(files.begin(), files.end());
   files.erase(std::unique(files.begin(), files.end()), files.end());
   return files;

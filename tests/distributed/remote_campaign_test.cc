@@ -10,6 +10,7 @@
 #include <vector>
 
 #include "core/results/database.h"
+#include "core/results/gzip.h"
 #include "made_up_service.h"
 #include "services/coordinator/epoch.h"
 #include "services/coordinator/packed_files.h"
@@ -269,37 +270,40 @@ TEST_F(RemoteCampaign, IsLaunchedFollowedAndFetched) {
   }
 }
 
-// The largest files are compressed there. A client that fetches them gets them uncompressed.
-TEST_F(RemoteCampaign, ReportsAreStoredPackedAndFetchedPlain) {
+// The page is compressed there. A client that fetches it gets it uncompressed; histories are compressed
+// everywhere.
+TEST_F(RemoteCampaign, ThePageIsStoredPackedAndFetchedPlain) {
   const Campaign campaign = Smoke(2);
   Launch(campaign);
   ASSERT_TRUE(Reaches(campaign.id, CampaignState::kFlying));
   session_.Ask("cancel", {{"id", campaign.id}});
-  const fs::path results = service_->catalogue().ResultsOf(campaign.id);
+  const fs::path results = service_->catalogue().ResultsOf(campaign.id), page = results / "report.html";
   fs::create_directories(results / "histories");
-  std::string history = "time_s\n";
-  while (history.size() < 600'000) history += std::to_string(history.size()) + "\n";
-  for (const char* file : {"histories/nominal.csv", "histories/case_1.csv", "report.html", "summary.json"})
-    std::ofstream(results / file, std::ios::binary) << history;
+  std::string text = "time_s\n";
+  while (text.size() < 600'000) text += std::to_string(text.size()) + "\n";
+  const std::string history = Gzip(text);
+  std::ofstream(results / "histories/nominal.csv.gz", std::ios::binary) << history;
+  for (const fs::path& file : {page, results / "summary.json"}) std::ofstream(file, std::ios::binary) << text;
   PackReports(results);
   PackReports(results);  // again: nothing
-  for (const char* file : {"histories/nominal.csv", "histories/case_1.csv", "report.html"}) {
-    EXPECT_FALSE(fs::exists(results / file)) << file;
-    EXPECT_LT(fs::file_size(results / (std::string(file) + ".gz")), history.size() / 2) << file;
-    EXPECT_EQ(SizeOf(results / file), history.size());
-  }
-  EXPECT_TRUE(fs::exists(results / "summary.json"));
-  std::ofstream(results / "report.html", std::ios::binary) << "of a process that was killed";
+  EXPECT_FALSE(fs::exists(page));
+  EXPECT_LT(fs::file_size(results / "report.html.gz"), text.size() / 2);
+  EXPECT_EQ(SizeOf(page), text.size());
+  EXPECT_EQ(ReadPart(page, text.size(), 10), "");
+  EXPECT_EQ(ReadPart(page, 7, 4), text.substr(7, 4));
   const FetchedCampaign fetched = FetchCampaign(session_, campaign.id, (folder_ / "fetched").string());
-  for (const char* file : {"histories/nominal.csv", "histories/case_1.csv", "summary.json"})
-    EXPECT_TRUE(TextOfFile(fetched.directory / file) == history) << file;
-  EXPECT_EQ(TextOfFile(fetched.directory / "report.html"), "of a process that was killed");
+  for (const char* file : {"report.html", "summary.json"})
+    EXPECT_TRUE(TextOfFile(fetched.directory / file) == text) << file;
+  EXPECT_TRUE(TextOfFile(fetched.directory / "histories/nominal.csv.gz") == history);
   EXPECT_FALSE(fs::exists(fetched.directory / "report.html.gz"));
-  EXPECT_EQ(ReadPart(results / "histories/nominal.csv", history.size(), 10), "");
-  EXPECT_EQ(ReadPart(results / "histories/nominal.csv", 7, 4), history.substr(7, 4));
+  std::ofstream(page, std::ios::binary) << "of a process that was killed";
+  const FetchedCampaign again = FetchCampaign(session_, campaign.id, (folder_ / "again").string());
+  EXPECT_EQ(TextOfFile(again.directory / "report.html"), "of a process that was killed");
+  fs::remove(page);
   BackUp(session_, (folder_ / "backup").string());
-  EXPECT_TRUE(fs::exists(folder_ / "backup" / campaign.id / "results/histories/nominal.csv.gz"));
-  EXPECT_EQ(SizeOf(folder_ / "backup" / campaign.id / "results/histories/nominal.csv"), history.size());
+  const fs::path backup = folder_ / "backup" / campaign.id / "results";
+  EXPECT_TRUE(TextOfFile(backup / "histories/nominal.csv.gz") == history);
+  EXPECT_EQ(SizeOf(backup / "report.html"), text.size());
 }
 
 // As long as a reader has it open, SQLite leaves the last transactions beside the database.

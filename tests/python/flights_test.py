@@ -17,6 +17,8 @@ def owner(array):
         array = array.base
     return array.base
 
+TICK_S = 0.01  # of the campaign's autopilot: the program's histories have every tick
+
 
 class One(unittest.TestCase):
     @classmethod
@@ -42,14 +44,14 @@ class One(unittest.TestCase):
         numpy.testing.assert_array_equal(flight.history.rows, [[float(c or "nan") for c in row] for row in rows[1:]])
 
     def test_a_case_is_the_programs_to_the_bit(self):
-        self.check(["--case", 7], self.campaign.fly(7))
+        self.check(["--case", 7], self.campaign.fly(7, step_s=TICK_S))
 
     def test_the_nominal_flight_is_the_programs_to_the_bit(self):
-        self.check([], dispersa.fly(SMOKE))
+        self.check([], dispersa.fly(SMOKE, step_s=TICK_S))
 
     def test_each_integrator_is_the_programs_to_the_bit(self):
         for name in ("erk4", "cvode"):
-            self.check(["--case", 2, "--integrator", name], self.campaign.fly(2, integrator=name))
+            self.check(["--case", 2, "--integrator", name], self.campaign.fly(2, integrator=name, step_s=TICK_S))
 
     def test_replaced_inputs(self):
         drawn = self.campaign.fly(3, history=False)

@@ -16,7 +16,7 @@ OWNED = [
     (r"hdf5", {"results"}),
     (r"(seccomp\.h|linux/landlock\.h)", {"containment"}),
     (r"sqlite3\.h", {"results"}),
-    (r"zlib\.h", {"coordinator"}),
+    (r"zlib\.h", {"coordinator", "results"}),
     (r"boost/(asio|beast)", {"http"}),
     (r"CLI/", {"program", "cli", "coordinator", "worker"}),
     (r"(pybind11/|Python\.h)", {"python"}),

@@ -10,6 +10,7 @@
 #include "core/cases/campaign_flights.h"
 #include "core/flight/engine_version.h"
 #include "core/results/database.h"
+#include "core/results/gzip.h"
 #include "tests/unit/made_up_results.h"
 
 namespace dispersa::pages_reports_test {
@@ -80,12 +81,12 @@ TEST(Reports, AreTheSameBytesForAnyOrderAndNumberOfThreads) {
   const std::map<std::string, std::string> others = Files(temporary / "other");
   ASSERT_EQ(files.size(), others.size());
   for (const auto& [name, bytes] : files) EXPECT_TRUE(others.at(name) == bytes) << name;
-  for (const char* name : {"campaign.yaml", "cases.csv", "summary.json", "report.html",
-                           "histories/nominal.csv", "histories/bands.csv"}) {
+  for (const char* name : {"campaign.yaml", "cases.csv", "summary.json", "report.html", "nominal.json",
+                           "histories/nominal.csv.gz", "histories/bands.csv.gz"}) {
     EXPECT_EQ(files.count(name), 1u) << name;
   }
   const std::uint64_t worst = summary.worst_cases.at(0).cases.at(0).case_index;
-  EXPECT_EQ(files.count("histories/case_" + std::to_string(worst) + ".csv"), 1u);
+  EXPECT_EQ(files.count("histories/case_" + std::to_string(worst) + ".csv.gz"), 1u);
   EXPECT_EQ(nlohmann::json::parse(files.at("summary.json"))["nominal"]["outcome"], "completed");
   EXPECT_EQ(summary.flown, kCases);
   EXPECT_EQ(summary.verdict, CampaignVerdict::kPass);
@@ -98,7 +99,7 @@ TEST(Reports, CanBeWrittenAgain) {
   EXPECT_EQ(WriteReports(folder, TheCampaign(), {.history_cases = 0, .threads = 1, .progress = {}}).verdict,
             CampaignVerdict::kIncomplete);
   const std::map<std::string, std::string> first = Files(temporary / "out");
-  std::ofstream(temporary / "out" / "histories" / "case_99.csv") << "of an earlier worst case";
+  std::ofstream(temporary / "out" / "histories" / "case_99.csv.gz") << "of an earlier worst case";
   WriteReports(ResultFolder::Open(temporary / "out"), TheCampaign(),
                {.history_cases = 0, .threads = 1, .progress = {}});
   EXPECT_TRUE(Files(temporary / "out") == first);
@@ -120,28 +121,69 @@ TEST(Reports, KeepHistoriesOfTheSameFlights) {
                   }});
     return flights;
   };
-  EXPECT_EQ(flown(3), kCases);
+  const std::uint64_t all = flown(3);  // those of the files a second time, with every tick
+  EXPECT_GT(all, kCases);
   const std::map<std::string, std::string> reports = Files(out);
   EXPECT_EQ(flown(3), 0u);
   EXPECT_TRUE(Files(out) == reports);
 
   const auto change = [&](const char* name, const std::string& text) {
     std::ofstream(out / "histories" / name) << text;
-    EXPECT_EQ(flown(3), kCases) << name;
+    EXPECT_EQ(flown(3), all) << name;
     EXPECT_TRUE(Files(out) == reports) << name;
     EXPECT_EQ(flown(3), 0u) << name;
   };
-  std::string bands = reports.at("histories/bands.csv");
-  bands.back() = '\n';
+  std::string bands = Gunzip(reports.at("histories/bands.csv.gz")).value();
   bands[bands.size() - 2] = bands[bands.size() - 2] == '1' ? '2' : '1';
-  change("bands.csv", bands);
-  change("nominal.csv", "");
+  change("bands.csv.gz", Gzip(bands));
+  change("bands.csv.gz", reports.at("histories/bands.csv.gz") + "more");
+  change("nominal.csv.gz", "");
   change("made_of.json", "[]");
   change("made_of.json", "{\"key\": 1, \"files\": 2}");
-  EXPECT_EQ(flown(2), kCases) << "another sample";
+  EXPECT_EQ(flown(2), all) << "another sample";
   Database(out / "results.sqlite", Database::Mode::kExisting)
       .Execute("UPDATE cases SET reason = 'as another engine says' WHERE case_index = 1");
   EXPECT_THROW(flown(2), ResultError) << "a damaged row";
+}
+
+// Ticks of 0.1 s; every third is kept, the event between ticks, that on a tick with the tick's own row, the
+// extremes, and the end.
+TEST(Histories, HaveRowsOfAStepAndOfEventsAndExtremes) {
+  History ticks;
+  const auto add = [&](double time_s, double value) {
+    ticks.values.resize(ticks.values.size() + HistoryColumns().size(), std::nan(""));
+    double* const row = &ticks.values[ticks.values.size() - HistoryColumns().size()];
+    row[0] = time_s;
+    row[5] = value;
+  };
+  add(0.0, 1.0);
+  add(0.1, 2.0);
+  add(0.2, 9.0);  // the largest
+  add(0.1 + 0.2, 3.0);
+  add(0.35, 3.0);  // an event
+  add(0.4, 3.0);
+  add(0.5, 3.0);
+  add(0.5, 4.0);   // an event on a tick
+  add(0.7, -1.0);  // the least
+  add(0.8, 3.0);
+  add(1.0, 3.0);
+  const History kept = Thinned(ticks, 0.1, 0.3);
+  std::vector<double> times;
+  for (std::size_t row = 0; row < kept.rows(); ++row) times.push_back(kept.at(row, 0));
+  EXPECT_EQ(times, (std::vector<double>{0.0, 0.2, 0.1 + 0.2, 0.35, 0.5, 0.5, 0.7, 1.0}));
+  EXPECT_EQ(kept.at(1, 5), 9.0);
+}
+
+TEST(Gzip, GivesTheSameTextAgainAndRefusesDamage) {
+  for (const std::string& text : {std::string(), std::string("a"), std::string(1'000'000, 'x')}) {
+    const std::string bytes = Gzip(text);
+    EXPECT_EQ(Gzip(text), bytes);
+    EXPECT_EQ(Gunzip(bytes), text);
+    EXPECT_EQ(Gunzip(bytes.substr(0, bytes.size() - 1)), std::nullopt);
+    EXPECT_EQ(Gunzip(bytes + "x"), std::nullopt);
+  }
+  EXPECT_EQ(Gunzip(""), std::nullopt);
+  EXPECT_EQ(Gunzip("time_s\n0\n"), std::nullopt);
 }
 
 // A folder whose rows got lost: the table that was made of all of them is the last that there is.
@@ -212,7 +254,7 @@ TEST(Reports, TellTheirProgressAndStopWhenAsked) {
   std::uint64_t last = 0;
   const auto progress = [&](const std::string& what, std::uint64_t done, std::uint64_t total) {
     if (what != "time histories") return;
-    EXPECT_EQ(total, kCases);
+    EXPECT_EQ(total, kCases + 4) << "the worst of each key metric a second time, with every tick";
     last = done;
     if (done == 2) throw Stop();
   };

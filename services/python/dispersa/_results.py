@@ -1,5 +1,6 @@
 """Result folders: runs, reports, comparisons; margins and references."""
 import functools
+import gzip
 import html
 import json
 import os
@@ -172,7 +173,7 @@ class Results:
         return frame
 
     def bands(self):
-        """histories/bands.csv: percentiles over time as a History with columns NAME_min, _p01, _p05, _p50, _p95, _p99
+        """histories/bands.csv.gz: percentiles over time as a History with columns NAME_min, _p01, _p05, _p50, _p95, _p99
         and _max beside time_s. Raises BadInput when the report was made without histories."""
         return self._csv("bands.csv")
 
@@ -182,11 +183,13 @@ class Results:
         return self._csv("nominal.csv" if case is None else f"case_{whole('case', case, 0, MOST_CASES)}.csv")
 
     def _csv(self, name):
-        file = self.directory / "histories" / name
+        file = self.directory / "histories" / f"{name}.gz"
+        if not file.is_file() and file.with_suffix("").is_file():
+            file = file.with_suffix("")  # of an older release
         if not file.is_file():
             raise BadInput([(str(file), 0, 0, "", "there is no such history",
                              "Campaign.fly, or report() with histories")])
-        with open(file, encoding="utf-8") as stream:
+        with open(file, encoding="utf-8") if file.suffix == ".csv" else gzip.open(file, "rt", encoding="utf-8") as stream:
             columns = stream.readline().strip().split(",")
             return History(numpy.genfromtxt(stream, delimiter=",", ndmin=2), columns)
 
