@@ -29,6 +29,8 @@ StudyFlights FlyStudy(const Campaign& campaign, const StudyOptions& options) {
   const std::vector<std::size_t>& inputs = flights.rows().positions();
   cases.inputs.resize(InputCount(flights.rows().column_class()));
   if (!results.empty()) cases.metrics.resize(results.front().metrics.size());
+  for (const std::size_t input : flights.rows().constants())
+    cases.inputs[input] = std::vector<double>(results.size(), flights.rows().constant(input));
   for (const CaseResult& result : results) {
     cases.index.push_back(result.case_index);
     cases.outcome.push_back(result.outcome);
