@@ -55,16 +55,10 @@ std::string WhyInvalid(const Orders& orders) {
 
 std::string WhyInvalid(const Report& report) {
   const auto has_sizes = [](const FlownCase& flown) {
-    if (flown.result.inputs.size() > InputColumns().size()) return false;
-    const auto are_of = [&](std::size_t stages) {
-      return flown.result.metrics.size() >= MetricCount(stages) &&
-             flown.result.metrics.size() <= MetricCount(stages) + kMaxOwnMetrics;
-    };
-    if (flown.is_quarantined)
-      return flown.result.inputs.empty() && flown.result.metrics.empty() && !flown.result.reason.empty();
-    for (std::size_t further = 1; further <= kFurtherNozzles; ++further)
-      if (are_of(kMaxStages + further)) return true;
-    return are_of(kUsualStages) || are_of(kMaxStages);
+    const std::size_t inputs = flown.result.inputs.size(), metrics = flown.result.metrics.size();
+    if (flown.is_quarantined) return inputs == 0 && metrics == 0 && !flown.result.reason.empty();
+    return inputs <= InputColumns().size() && metrics >= MetricCount(kUsualStages) &&
+           metrics <= MetricCount(kMaxStages + kFurtherNozzles) + kMaxOwnMetrics;
   };
   const auto is_sane = [](const FlownCase& flown) {
     return flown.result.reason.size() <= kMaxReason && flown.result.end_stage >= 0 &&

@@ -117,7 +117,9 @@ TEST(Validity, AResultHasTheInputsAndMetricsOfThisEngine) {
   EXPECT_EQ(of(0, metrics), "") << "of a campaign that disperses nothing";
   EXPECT_EQ(of(inputs + 1, metrics), wrong);
   EXPECT_EQ(of(inputs, metrics + kMaxOwnMetrics), "") << "of a campaign with metrics of its own";
-  for (const std::size_t wrong_metrics : {std::size_t{0}, metrics - 1, metrics + kMaxOwnMetrics + 1})
+  const std::size_t most = MetricCount(kMaxStages + kFurtherNozzles) + kMaxOwnMetrics;
+  EXPECT_EQ(of(inputs, most), "");
+  for (const std::size_t wrong_metrics : {std::size_t{0}, metrics - 1, most + 1})
     EXPECT_EQ(of(inputs, wrong_metrics), wrong);
 }
 
