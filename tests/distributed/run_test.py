@@ -256,7 +256,7 @@ class RunTest(unittest.TestCase):
         disk = self.root / "disk"
         disk.mkdir()
         campaign_size = (self.reference.out / "campaign.yaml").stat().st_size
-        subprocess.run(["mount", "-t", "tmpfs", "-o", f"size={campaign_size + 200_000}", "tmpfs", disk], check=True)
+        subprocess.run(["mount", "-t", "tmpfs", "-o", f"size={campaign_size + 500_000}", "tmpfs", disk], check=True)
         try:
             run = self.run_dispersa("disk/out", "--workers", 2).finish()
             self.assertEqual(run.code, 5, run.stderr)
