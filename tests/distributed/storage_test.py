@@ -15,7 +15,7 @@ from service_case import ServiceCase
 
 CASES = 60
 SMALL = 300
-DISK = 128 << 20  # histories and page of a campaign take about 70 MB before they are compressed
+DISK = 128 << 20  # histories and page of a campaign take about 20 MB
 
 
 class StorageTest(ServiceCase):
