@@ -1,5 +1,5 @@
-// Rules of the program itself, checked in every build. One that does not hold is a defect of the program, not of
-// its input: what computes stops, and nothing that it found counts.
+// Rules of the program itself, checked in every build. One that does not hold is a defect of the program, not
+// of its input: what computes stops, and nothing that it found counts.
 #pragma once
 
 #include <initializer_list>
@@ -28,6 +28,6 @@ struct AssertedValue {
 
 /// DISPERSA_ASSERT(condition, values...): throws AssertionFailed unless the condition holds. Not in code of
 /// lanes, which is compiled for several instruction sets.
-#define DISPERSA_ASSERT(condition, ...)                                                               \
-  ((condition) ? void()                                                                               \
+#define DISPERSA_ASSERT(condition, ...) \
+  ((condition) ? void()                 \
                : ::dispersa::FailAssertion(#condition, __FILE__, __LINE__, #__VA_ARGS__, {__VA_ARGS__}))

@@ -9,6 +9,7 @@
 #include "core/campaign_yaml/load.h"
 #include "core/cases/campaign_flights.h"
 #include "core/flight/engine_version.h"
+#include "core/pages/histories.h"
 #include "core/results/database.h"
 #include "core/results/gzip.h"
 #include "tests/unit/made_up_results.h"

@@ -179,7 +179,7 @@ std::unique_ptr<lanes::StepState<double>> StepOf(const InSpace& flight, double t
   step->StartFlight(0, calm, flight.y.data());
   step->SetStack(0, flight.plant, 0);
   if (flight.phase.burning) step->Ignite(0, flight.phase.ignition_s, false);
-  step->CommandLane(0, flight.phase.command_rad.data());
+  step->CommandLane(0, 0, flight.phase.command_rad.data());
   return step;
 }
 

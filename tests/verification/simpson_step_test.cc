@@ -64,7 +64,7 @@ class Stretch {
     step->StartFlight(0, calm, y_);
     step->SetStack(0, plant_, 0);
     step->Ignite(0, 0.0, false);
-    step->CommandLane(0, phase_.command_rad.data());
+    step->CommandLane(0, 0, phase_.command_rad.data());
     return step;
   }
   RigidBodyState InSteps(int steps) {
@@ -133,8 +133,8 @@ TEST(SimpsonStep, SeesWhatWasWritten) {
       {"Ignite", [](Step& step) { step.Ignite(0, 5.0, false); }},
       {"BurnOut", [](Step& step) { step.BurnOut(0); }},
       {"StickNozzle", [&](Step& step) { step.StickNozzle(0, gimbal, 1, 0.03); }},
-      {"Command", [&](Step& step) { step.Command(true, command_rad); }},
-      {"CommandLane", [&](Step& step) { step.CommandLane(0, command_rad); }},
+      {"Command", [&](Step& step) { step.Command(true, 0, command_rad); }},
+      {"CommandLane", [&](Step& step) { step.CommandLane(0, 0, command_rad); }},
       {"SetControlTorque",
        [](Step& step) {
          step.SetControlTorque(true, {0.0, 300.0, 0.0});
