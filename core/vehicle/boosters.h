@@ -89,7 +89,8 @@ inline void Describe(Fields& fields, Boosters& boosters) {
                         "boosters without angles are all alike, with fixed nozzles";
                     fields.Misplaced("cant", kAngle, kAlike, "angles_deg in place of count");
                     fields.Misplaced("gimbal", {}, kAlike, "angles_deg in place of count");
-                    fields.Integer("count", 2, kMaxBoosters, boosters.count, "of them, at equal angles");
+                    fields.Integer("count", 2, kMaxBoosters, boosters.count,
+                                   "number of equal boosters, at equal angles");
                     SpreadOut(boosters);
                   }}});
   fields.Quantity("dry_mass", kMass, kPositive, boosters.dry_mass_kg,

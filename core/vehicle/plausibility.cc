@@ -13,6 +13,7 @@ namespace plausibility {
 double WidestDiameter(const Vehicle& vehicle, double top_m, double bottom_m) {
   constexpr int kSamples = 64;  // sections are far longer than a 64th of a grain
   double widest_m = 0.0;
+  if (vehicle.profile.empty()) return widest_m;
   for (const MouldSection& section : CutMouldLine(vehicle.profile, vehicle.stages[0].bottom_station_m)) {
     for (int k = 0; k <= kSamples; ++k) {
       const double station_m = top_m + (bottom_m - top_m) * k / kSamples;
