@@ -168,7 +168,7 @@ TEST(Sandbox, WhatIsPrintedIsLinesOfPrintableText) {
 }
 
 TEST(Sandbox, NoCallTellsWhichFilesExist) {
-  if (!SandboxHere().paths) GTEST_SKIP() << "the kernel gives no listener";
+  ASSERT_TRUE(SandboxHere().paths) << "this kernel gives no listener: a law can tell which files exist here";
   using Ask = std::function<long(const char* path)>;
   struct stat out {};
   char text[64];
