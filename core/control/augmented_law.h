@@ -19,7 +19,7 @@ struct AugmentedLaw {
   static void StartStage(const AxisConfig&, int, AxisState& memory) { ResetAxis(memory); }
 
   template <bool kAll, class T>
-  DISPERSA_INLINE static void Step(const LawInput<T>& in, AxisOutput<T>& out, AxisStateLanes<T>& memory) {
+  DISPERSA_INLINE static void Step(const LawInput<T>& in, AxisOutput<T>& out, AxisMemory<T>& memory) {
     const T error = in.error_rad, rate = in.rate_rad_s;
     const AdaptiveAugmentation& a = in.config.augmentation;
     const T dt(in.tick_s);

@@ -76,9 +76,9 @@ GimbalCommand StepGimbals(const AutopilotModel& model, int stage, double since_i
                           AutopilotState& state) {
   using namespace lanes;
   GimbalLoop<double> loop;
-  SetLane(loop, 0, model, stage, pn_factor.x(), pn_factor.y(), gain);
-  AxisStateLanes<double> memory[kAxes];
-  for (int axis = 0; axis < kAxes; ++axis) SetLane(memory[axis], 0, state.axes[axis]);
+  SetLoop(loop, 0, model, stage, pn_factor.x(), pn_factor.y(), gain);
+  AxisMemory<double> memory[kAxes];
+  for (int axis = 0; axis < kAxes; ++axis) SetLaneValues<double>(memory[axis], 0, state.axes[axis]);
   const Vector<double> angle{error.angle_rad.x(), error.angle_rad.y(), error.angle_rad.z()};
   const Vector<double> rate{error.rate_rad_s.x(), error.rate_rad_s.y(), error.rate_rad_s.z()};
   const double program[kAxes] = {error.program_rad_s2.x(), error.program_rad_s2.y(),
@@ -88,7 +88,7 @@ GimbalCommand StepGimbals(const AutopilotModel& model, int stage, double since_i
                            static_cast<const double*>(nullptr), memory, out);
   GimbalCommand command{out.deflection_rad[kRoll], out.deflection_rad[kPitch], out.deflection_rad[kYaw], {}};
   for (int axis = 0; axis < kAxes; ++axis) {
-    ReadLane(memory[axis], 0, state.axes[axis]);
+    ReadLaneValues<double>(memory[axis], 0, state.axes[axis]);
     command.telemetry[static_cast<std::size_t>(axis)] =
         TelemetryOf(model.laws[static_cast<std::size_t>(axis)].config, out.axes[axis], memory[axis], 0);
   }

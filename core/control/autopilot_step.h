@@ -5,6 +5,7 @@
 #include "core/control/autopilot.h"
 #include "core/control/axis_step.h"
 #include "core/control/law_schedule.h"
+#include "core/control/reaction_control.h"
 #include "core/math/lane_vector.h"
 #include "core/math/row_memory.h"
 
@@ -14,9 +15,9 @@ inline namespace DISPERSA_ISA {
 /// The loop's knowledge of each lane's stage.
 template <class T>
 struct GimbalLoop {
-  StageLawLanes<T> axes[kAxes];
-  LawPieceLanes<T> pieces[kAxes];  ///< of axes with a schedule
-  T gain;                          ///< of every command
+  StageLawOf<T> axes[kAxes];   ///< P_n carries the flight's factors
+  HeldPiece<T> pieces[kAxes];  ///< of axes with a schedule
+  T gain;                      ///< of every command
   T pn_error_factor, pn_rate_factor;
   int stage[kWidth<T>];
   T limit_rad;
@@ -26,12 +27,12 @@ struct GimbalLoop {
   mutable RowMemory<T, EffectivenessRows::kRowSize> effectiveness_rows;
 };
 template <class T>
-DISPERSA_INLINE void SetLane(GimbalLoop<T>& loop, int lane, const AutopilotModel& model, int stage,
+DISPERSA_INLINE void SetLoop(GimbalLoop<T>& loop, int lane, const AutopilotModel& model, int stage,
                              double pn_error_factor, double pn_rate_factor, double gain) {
   for (int axis = 0; axis < kAxes; ++axis)
-    SetLane(loop.axes[axis], lane, model.laws.data()[axis].stages.data()[stage], pn_error_factor,
-            pn_rate_factor);
-  for (LawPieceLanes<T>& piece : loop.pieces) piece.range.Forget(lane);
+    SetLane(loop.axes[axis], lane,
+            model.laws.data()[axis].stages.data()[stage].WithPnFactors(pn_error_factor, pn_rate_factor));
+  for (HeldPiece<T>& piece : loop.pieces) piece.range.Forget(lane);
   Lane(loop.gain, lane) = gain;
   Lane(loop.pn_error_factor, lane) = pn_error_factor;
   Lane(loop.pn_rate_factor, lane) = pn_rate_factor;
@@ -53,10 +54,10 @@ struct GimbalOutput {
 /// Finds the pieces of a law that the lanes are in which `found` does not name.
 template <class T>
 DISPERSA_OUT_OF_LINE void FindPieces(const AxisLaw& law, const int* stage, T since_ignition_s,
-                                     MaskOf<T> found, LawPieceLanes<T>& pieces) {
+                                     MaskOf<T> found, HeldPiece<T>& pieces) {
   const unsigned known = Bits(found);
   for (int lane = 0; lane < kWidth<T>; ++lane)
-    if (!(known >> lane & 1u)) SetLane(pieces, lane, law, stage[lane], Lane(since_ignition_s, lane));
+    if (!(known >> lane & 1u)) FindPiece(pieces, lane, law, stage[lane], Lane(since_ignition_s, lane));
 }
 
 /// Brings the laws that change within a stage to the lanes' times.
@@ -66,10 +67,10 @@ DISPERSA_OUT_OF_LINE void FollowSchedule(const AutopilotModel& model, T since_ig
   for (int axis = 0; axis < kAxes; ++axis) {
     const AxisLaw& law = model.laws.data()[axis];
     if (law.config.schedule.empty()) continue;
-    LawPieceLanes<T>& pieces = loop.pieces[axis];
+    HeldPiece<T>& pieces = loop.pieces[axis];
     const auto found = pieces.range.Contains(since_ignition_s);
     if (!All(found)) FindPieces(law, loop.stage, since_ignition_s, found, pieces);
-    StageLawLanes<T>& now = loop.axes[axis];
+    StageLawOf<T>& now = loop.axes[axis];
     SetLaw(pieces, static_cast<int>(law.config.filters.size()), since_ignition_s, now);
     now.pn_error = now.pn_error * loop.pn_error_factor;
     now.pn_rate = now.pn_rate * loop.pn_rate_factor;
@@ -110,7 +111,7 @@ DISPERSA_INLINE void Effectiveness(const GimbalLoop<T>& loop, T since_ignition_s
 template <bool kAll, class T>
 DISPERSA_INLINE void StepGimbals(const AutopilotModel& model, GimbalLoop<T>& loop, MaskOf<T> acting,
                                  T since_ignition_s, const Vector<T>& angle_rad, const Vector<T>& rate_rad_s,
-                                 const T* program_rad_s2, const T* foreign_rad_s2, AxisStateLanes<T>* memory,
+                                 const T* program_rad_s2, const T* foreign_rad_s2, AxisMemory<T>* memory,
                                  GimbalOutput<T>& out) {
   if (model.is_scheduled) FollowSchedule(model, since_ignition_s, loop);
   T of_roll, of_pitch;
@@ -134,17 +135,10 @@ DISPERSA_INLINE void StepGimbals(const AutopilotModel& model, GimbalLoop<T>& loo
   }
 }
 
-/// Memory of one axis of the reaction control.
-template <class T>
-struct ThrusterStateLanes {
-  T direction;  ///< -1, 0, 1: the couple that fires
-  T cycles_on;  ///< since it opened
-};
-
 /// One cycle of the lanes that act: StepThrusters of reaction_control.h.
 template <class T>
 DISPERSA_INLINE void StepThrusters(const ReactionControlLogic& logic, int minimum_cycles, MaskOf<T> acting,
-                                   T error_rad, T rate_rad_s, ThrusterStateLanes<T>& memory) {
+                                   T error_rad, T rate_rad_s, ThrusterStateOf<T>& memory) {
   const T s = Fma(T(logic.rate_gain_s), rate_rad_s, error_rad);
   const auto is_open = Abs(memory.direction) > T(0.5);
   const T cycles = memory.cycles_on + Select(is_open, T(1.0), T(0.0));

@@ -85,14 +85,14 @@ void ResetAxis(AxisState& state) {
 double StepAxis(const AxisLaw& law, int stage, double error_rad, double rate_rad_s, double pn_error_factor,
                 double pn_rate_factor, double tick_s, AxisState& state, AxisTelemetry& telemetry,
                 double since_ignition_s) {
-  lanes::StageLawLanes<double> of_stage;
-  lanes::SetLane(of_stage, 0, LawAt(law, stage, since_ignition_s), pn_error_factor, pn_rate_factor);
-  lanes::AxisStateLanes<double> memory;
-  lanes::SetLane(memory, 0, state);
+  const StageLaw of_stage =
+      LawAt(law, stage, since_ignition_s).WithPnFactors(pn_error_factor, pn_rate_factor);
+  AxisMemory<double> memory;
+  lanes::SetLaneValues<double>(memory, 0, state);
   lanes::AxisOutput<double> out;
   lanes::StepAxis<true>(law.config, tick_s, of_stage, true, error_rad, rate_rad_s,
                         static_cast<const double*>(nullptr), true, memory, out);
-  lanes::ReadLane(memory, 0, state);
+  lanes::ReadLaneValues<double>(memory, 0, state);
   telemetry = lanes::TelemetryOf(law.config, out, memory, 0);
   return out.command_rad_s2;
 }

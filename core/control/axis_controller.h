@@ -16,23 +16,35 @@
 
 namespace dispersa {
 
-/// The law of one axis in one stage: doubles only, those of StageLawLanes (law.h).
-struct StageLaw {
-  double kp_1_s2 = 0.0;
-  double kd_1_s = 0.0;
-  double p11 = 0.0, p12 = 0.0, p22 = 0.0;  ///< P of the Lyapunov equation
-  double pn_error = 0.0, pn_rate = 0.0;    ///< P_n: its last column, or the configured one
-  double gamma = 0.0;                      ///< 0: not adaptive
-  double ki_1_s3 = 0.0;                    ///< of the integral
-  DigitalSection filters[kFilterSections];
+/// The law of one axis in one stage, of one flight or of W side by side.
+template <class T>
+struct StageLawOf {
+  T kp_1_s2 = T(0.0);
+  T kd_1_s = T(0.0);
+  T p11 = T(0.0), p12 = T(0.0), p22 = T(0.0);  ///< P of the Lyapunov equation
+  T pn_error = T(0.0), pn_rate = T(0.0);       ///< P_n: its last column, or the configured one
+  T gamma = T(0.0);                            ///< 0: not adaptive
+  T ki_1_s3 = T(0.0);                          ///< of the integral
+  DigitalSectionOf<T> filters[kFilterSections];
+
+  /// With a flight's factors on P_n.
+  StageLawOf WithPnFactors(double of_error, double of_rate) const {
+    StageLawOf law = *this;
+    law.pn_error = law.pn_error * T(of_error);
+    law.pn_rate = law.pn_rate * T(of_rate);
+    return law;
+  }
 };
+using StageLaw = StageLawOf<double>;
 
 /// A law whose numbers change at a constant rate from a time since ignition on.
-struct LawPiece {
-  double from_s = 0.0;
-  StageLaw at;    ///< then
-  StageLaw rate;  ///< of each number, 1/s
+template <class T>
+struct LawPieceOf {
+  T from_s = T(0.0);
+  StageLawOf<T> at;    ///< then
+  StageLawOf<T> rate;  ///< of each number, 1/s
 };
+using LawPiece = LawPieceOf<double>;
 
 /// The law of one axis, prepared for flight and shared by all flights.
 struct AxisLaw {

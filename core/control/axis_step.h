@@ -9,7 +9,7 @@ inline namespace DISPERSA_ISA {
 
 template <class T>
 DISPERSA_INLINE AxisTelemetry TelemetryOf(const AxisConfig& config, const AxisOutput<T>& o,
-                                          const AxisStateLanes<T>& m, int lane) {
+                                          const AxisMemory<T>& m, int lane) {
   AxisTelemetry t;
   const double bound = config.adaptation.projection_bound_rad_s2;
   for (int i = 0; i < kFuzzyRules; ++i)
@@ -26,13 +26,14 @@ DISPERSA_INLINE AxisTelemetry TelemetryOf(const AxisConfig& config, const AxisOu
 
 /// `count` sections in series, transposed direct form II: two values of memory each.
 template <bool kAll, class T>
-DISPERSA_INLINE T Filter(int count, const T (*sections)[5], MaskOf<T> acting, T x, T (*memory)[2]) {
+DISPERSA_INLINE T Filter(int count, const DigitalSectionOf<T>* sections, MaskOf<T> acting, T x,
+                         T (*memory)[2]) {
   for (int i = 0; i < count; ++i) {
-    const T* c = sections[i];  // b0, b1, b2, a1, a2
+    const DigitalSectionOf<T>& c = sections[i];
     T* m = memory[i];
-    const T y = Fma(c[0], x, m[0]);
-    const T first = Fma(c[1], x, Fma(-c[3], y, m[1]));
-    const T second = Fma(c[2], x, -c[4] * y);
+    const T y = Fma(c.b0, x, m[0]);
+    const T first = Fma(c.b1, x, Fma(-c.a1, y, m[1]));
+    const T second = Fma(c.b2, x, -c.a2 * y);
     m[0] = Kept<kAll>(acting, first, m[0]);
     m[1] = Kept<kAll>(acting, second, m[1]);
     x = y;
@@ -43,9 +44,9 @@ DISPERSA_INLINE T Filter(int count, const T (*sections)[5], MaskOf<T> acting, T 
 /// One tick of the acting lanes. The other lanes keep their memory. `foreign_rad_s2`: the command of a
 /// plug-in or of Python, else null. `is_reported`: V and what the law has learnt are read afterwards.
 template <bool kAll, class T>
-DISPERSA_INLINE void StepAxis(const AxisConfig& config, double tick_s, const StageLawLanes<T>& stage,
+DISPERSA_INLINE void StepAxis(const AxisConfig& config, double tick_s, const StageLawOf<T>& stage,
                               MaskOf<T> acting, T error, T rate, const T* foreign_rad_s2, bool is_reported,
-                              AxisStateLanes<T>& memory, AxisOutput<T>& out) {
+                              AxisMemory<T>& memory, AxisOutput<T>& out) {
   out.command_rad_s2 = out.departure_norm2 = out.frozen = out.v = out.v_rate_sign = T(0.0);
   if (is_reported || config.adaptation.supervisory_bound > 0.0) {
     out.v = T(0.5) *

@@ -14,7 +14,7 @@ struct ForeignLaw {
   }
 
   template <bool kAll, class T>
-  DISPERSA_INLINE static void Step(const LawInput<T>& in, AxisOutput<T>& out, AxisStateLanes<T>&) {
+  DISPERSA_INLINE static void Step(const LawInput<T>& in, AxisOutput<T>& out, AxisMemory<T>&) {
     out.command_rad_s2 = *in.foreign_rad_s2;
   }
 };

@@ -31,7 +31,7 @@ struct FuzzyLaw {
   }
 
   template <bool kAll, class T>
-  DISPERSA_INLINE static void Step(const LawInput<T>& in, AxisOutput<T>& out, AxisStateLanes<T>& memory) {
+  DISPERSA_INLINE static void Step(const LawInput<T>& in, AxisOutput<T>& out, AxisMemory<T>& memory) {
     const T error = in.error_rad, rate = in.rate_rad_s;
     const FuzzyRules& rules = in.config.rules;
     const double last = kFuzzySets - 1.0;

@@ -7,22 +7,20 @@
 namespace dispersa::lanes {
 inline namespace DISPERSA_ISA {
 
-/// LawPiece of each lane, and the times since ignition in which it holds.
+/// The piece of a law that holds, and the times since ignition in which it does.
 template <class T>
-struct LawPieceLanes {
+struct HeldPiece : LawPieceOf<T> {
   RowRange<T> range;
-  T from_s;
-  StageLawLanes<T> at, rate;
 };
 /// The piece of a stage's law at a time. A stage without a schedule is one piece that does not change.
 template <class T>
-DISPERSA_INLINE void SetLane(LawPieceLanes<T>& o, int lane, const AxisLaw& law, int stage,
-                             double since_ignition_s) {
+DISPERSA_INLINE void FindPiece(HeldPiece<T>& o, int lane, const AxisLaw& law, int stage,
+                               double since_ignition_s) {
   const std::vector<LawPiece>& pieces = law.pieces.data()[stage];
   if (pieces.empty()) {
     o.range.Set(lane, -kNoEnd, kNoEnd);
     Lane(o.from_s, lane) = 0.0;
-    SetLaneValues<T>(o.at, lane, law.stages.data()[stage]);
+    SetLane(o.at, lane, law.stages.data()[stage]);
     // Of -0, so that a number keeps its bits, also the sign of a zero.
     for (unsigned i = 0; i < kValues<double, StageLaw>; ++i) SetLaneAt<T>(o.rate, i, lane, -0.0);
     return;
@@ -32,15 +30,13 @@ DISPERSA_INLINE void SetLane(LawPieceLanes<T>& o, int lane, const AxisLaw& law, 
   const LawPiece* piece = first;
   while (piece != last && since_ignition_s >= piece[1].from_s) ++piece;
   o.range.Set(lane, piece == first ? -kNoEnd : piece->from_s, piece == last ? kNoEnd : piece[1].from_s);
-  Lane(o.from_s, lane) = piece->from_s;
-  SetLaneValues<T>(o.at, lane, piece->at);
-  SetLaneValues<T>(o.rate, lane, piece->rate);
+  SetLane<LawPieceOf>(o, lane, *piece);
 }
 
 /// The numbers of a law with so many sections at times in the pieces; those of further sections stay.
 template <class T>
-DISPERSA_INLINE void SetLaw(const LawPieceLanes<T>& piece, int sections, T since_ignition_s,
-                            StageLawLanes<T>& now) {
+DISPERSA_INLINE void SetLaw(const LawPieceOf<T>& piece, int sections, T since_ignition_s,
+                            StageLawOf<T>& now) {
   const T since = since_ignition_s - piece.from_s;
   const unsigned numbers = kValues<double, StageLaw> - kValues<double, DigitalSection> *
                                                            static_cast<unsigned>(kFilterSections - sections);
@@ -50,12 +46,10 @@ DISPERSA_INLINE void SetLaw(const LawPieceLanes<T>& piece, int sections, T since
 
 /// The law in a stage at a time since its ignition: the same source for a flight's ticks and its margins.
 DISPERSA_INLINE StageLaw LawAtTime(const AxisLaw& law, int stage, double since_ignition_s) {
-  LawPieceLanes<double> piece;
-  SetLane(piece, 0, law, stage, since_ignition_s);
-  StageLawLanes<double> at;
-  SetLaw(piece, kFilterSections, since_ignition_s, at);
+  HeldPiece<double> piece;
+  FindPiece(piece, 0, law, stage, since_ignition_s);
   StageLaw now;
-  ReadLaneValues<double>(at, 0, now);
+  SetLaw(piece, kFilterSections, since_ignition_s, now);
   return now;
 }
 

@@ -13,7 +13,7 @@ struct PdLaw {
   }
 
   template <bool kAll, class T>
-  DISPERSA_INLINE static void Step(const LawInput<T>& in, AxisOutput<T>& out, AxisStateLanes<T>&) {
+  DISPERSA_INLINE static void Step(const LawInput<T>& in, AxisOutput<T>& out, AxisMemory<T>&) {
     out.command_rad_s2 = Fma(in.stage.kp_1_s2, in.error_rad, in.stage.kd_1_s * in.rate_rad_s);
   }
 };
@@ -26,7 +26,7 @@ struct PidLaw {
   }
 
   template <bool kAll, class T>
-  DISPERSA_INLINE static void Step(const LawInput<T>& in, AxisOutput<T>& out, AxisStateLanes<T>& memory) {
+  DISPERSA_INLINE static void Step(const LawInput<T>& in, AxisOutput<T>& out, AxisMemory<T>& memory) {
     const T before = memory.integral_rad_s2;
     const T bound(in.config.integral.bound_rad_s2 > 0.0 ? in.config.integral.bound_rad_s2 : 1e300);
     const T after = Clamp(Fma(T(in.tick_s) * in.stage.ki_1_s3, in.error_rad, before), -bound, bound);

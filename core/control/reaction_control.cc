@@ -6,12 +6,8 @@ namespace dispersa {
 
 int StepThrusters(const ReactionControlLogic& logic, double error_rad, double rate_rad_s, int minimum_cycles,
                   ThrusterState& state) {
-  lanes::ThrusterStateLanes<double> memory{static_cast<double>(state.direction),
-                                           static_cast<double>(state.cycles_on)};
-  lanes::StepThrusters(logic, minimum_cycles, true, error_rad, rate_rad_s, memory);
-  state.direction = static_cast<int>(memory.direction);
-  state.cycles_on = static_cast<int>(memory.cycles_on);
-  return state.direction;
+  lanes::StepThrusters(logic, minimum_cycles, true, error_rad, rate_rad_s, state);
+  return static_cast<int>(state.direction);
 }
 
 }  // namespace dispersa

@@ -6,10 +6,12 @@
 namespace dispersa {
 
 /// Memory of one axis of the logic.
-struct ThrusterState {
-  int direction = 0;  ///< -1, 0, 1: the couple that fires
-  int cycles_on = 0;  ///< since it opened
+template <class T>
+struct ThrusterStateOf {
+  T direction = T(0.0);  ///< -1, 0, 1: the couple that fires
+  T cycles_on = T(0.0);  ///< since it opened
 };
+using ThrusterState = ThrusterStateOf<double>;
 
 /// Decides for one cycle. A couple opens when |e + k de/dt| leaves the deadband. It closes when the switching
 /// value has come back across the hysteresis, but not before its minimum on-time. Returns the direction.

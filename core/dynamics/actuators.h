@@ -18,9 +18,9 @@
 namespace dispersa::lanes {
 inline namespace DISPERSA_ISA {
 
-/// The actuators of each lane's stack.
+/// A gimbal's drives, prepared.
 template <class T>
-struct GimbalLanes {
+struct DriveNumbers {
   T limit_rad, rate_limit_rad_s;
   T bandwidth2_1_s2;    ///< w²
   T twice_damping_1_s;  ///< 2 zeta w
@@ -28,12 +28,16 @@ struct GimbalLanes {
   T dead_zone_rad;
   T friction_1_s2;  ///< w² friction: the deceleration by it, rad/s²
   T resolution_rad;
-  bool is_rough, is_coarse;  ///< whether any lane has a dead zone or friction, whether any has a resolution
   // Number and share of the steps of one numerical propagation of a lane (StepsOver).
   T limited_steps, limited_part, rough_steps, rough_part;
-  int most_limited_steps, most_rough_steps;  ///< of any lane
   T fast_limit2_rad2_s2;  ///< of a drive that may reach its rate limit between the ends: the limit squared
-  bool is_fast;           ///< any lane has such drives
+};
+/// The actuators of each lane's stack.
+template <class T>
+struct Actuators : DriveNumbers<T> {
+  bool is_rough, is_coarse;  ///< whether any lane has a dead zone or friction, whether any has a resolution
+  bool is_fast;              ///< any lane has drives that may reach their rate limit between the ends
+  int most_limited_steps, most_rough_steps;  ///< of any lane
 };
 
 /// Steps of one numerical propagation: at least `least`, and none longer than half a radian of the drive's
@@ -82,7 +86,7 @@ DISPERSA_INLINE Transition<double> TransitionOver(double bandwidth2, double twic
 /// The command that a servo follows: the nearest step of its resolution (the even one of two), within the
 /// limit.
 template <class T>
-DISPERSA_INLINE T Followed(const GimbalLanes<T>& d, T command_rad) {
+DISPERSA_INLINE T Followed(const Actuators<T>& d, T command_rad) {
   if (d.is_coarse) {
     const T stepped = Nearest(command_rad / d.resolution_rad) * d.resolution_rad;
     command_rad = Select(d.resolution_rad > T(0.0), stepped, command_rad);
@@ -92,7 +96,7 @@ DISPERSA_INLINE T Followed(const GimbalLanes<T>& d, T command_rad) {
 
 /// Acceleration that the servo asks for, rad/s².
 template <class T>
-DISPERSA_INLINE T Pull(const GimbalLanes<T>& d, T command_rad, T angle_rad) {
+DISPERSA_INLINE T Pull(const Actuators<T>& d, T command_rad, T angle_rad) {
   const T distance = command_rad - angle_rad;
   if (!d.is_rough) return d.bandwidth2_1_s2 * distance;
   return d.bandwidth2_1_s2 * (distance - Clamp(distance, -d.dead_zone_rad, d.dead_zone_rad));
@@ -101,7 +105,7 @@ DISPERSA_INLINE T Pull(const GimbalLanes<T>& d, T command_rad, T angle_rad) {
 /// The direction in which a drive slides. A moving drive: that of its rate. A drive at rest: that of a pull
 /// above its friction, else 0 (held).
 template <class T>
-DISPERSA_INLINE T SlidesIn(const GimbalLanes<T>& d, T command_rad, T angle_rad, T rate_rad_s) {
+DISPERSA_INLINE T SlidesIn(const Actuators<T>& d, T command_rad, T angle_rad, T rate_rad_s) {
   const T one(1.0), none(0.0);
   const T pull = Pull(d, command_rad, angle_rad);
   const T loose = Select(Abs(pull) > d.friction_1_s2, pull, none);
@@ -113,7 +117,7 @@ DISPERSA_INLINE T SlidesIn(const GimbalLanes<T>& d, T command_rad, T angle_rad, 
 /// further outwards. `slides` is the direction that friction opposes (SlidesIn). It does not change between
 /// two rests.
 template <class T>
-DISPERSA_INLINE void DriveRates(const GimbalLanes<T>& d, int i, T command_rad, T angle_rad, T rate_rad_s,
+DISPERSA_INLINE void DriveRates(const Actuators<T>& d, int i, T command_rad, T angle_rad, T rate_rad_s,
                                 T slides, T& dangle, T& drate) {
   T acceleration = Fma(d.bandwidth2_1_s2, command_rad - angle_rad, -(d.twice_damping_1_s * rate_rad_s));
   if (d.is_rough) {
@@ -131,14 +135,14 @@ DISPERSA_INLINE void DriveRates(const GimbalLanes<T>& d, int i, T command_rad, T
 }
 /// The step of a drive without friction.
 template <class T>
-DISPERSA_INLINE void DriveRates(const GimbalLanes<T>& d, int i, T command_rad, T angle_rad, T rate_rad_s,
+DISPERSA_INLINE void DriveRates(const Actuators<T>& d, int i, T command_rad, T angle_rad, T rate_rad_s,
                                 T& dangle, T& drate) {
   DriveRates(d, i, command_rad, angle_rad, rate_rad_s, T(0.0), dangle, drate);
 }
 
 /// One step of the classical Runge-Kutta method, of a drive that slides one way.
 template <class T>
-DISPERSA_INLINE void StepDrive(const GimbalLanes<T>& d, int i, T command_rad, T slides, T h_s, T& angle_rad,
+DISPERSA_INLINE void StepDrive(const Actuators<T>& d, int i, T command_rad, T slides, T h_s, T& angle_rad,
                                T& rate_rad_s) {
   const T half = T(0.5) * h_s, sixth = h_s * T(1.0 / 6.0);
   const T angle = angle_rad, rate = rate_rad_s;
@@ -161,7 +165,7 @@ inline constexpr int kLimitedSteps = 4;
 
 /// Replaces the lanes whose drives have a dead zone or friction by their numerical propagation.
 template <class T>
-void PropagateRough(const GimbalLanes<T>& d, const T* command_rad, T time_s, const DriveState<T>& from,
+void PropagateRough(const Actuators<T>& d, const T* command_rad, T time_s, const DriveState<T>& from,
                     DriveState<T>& to) {
   const T none(0.0), half(0.5), h = time_s * d.rough_part;
   const auto rough = (d.dead_zone_rad > none) | (d.friction_1_s2 > none);
@@ -194,7 +198,7 @@ void PropagateRough(const GimbalLanes<T>& d, const T* command_rad, T time_s, con
 
 /// Accelerations of the deflections, into the nozzles that the equations of motion see.
 template <class T>
-DISPERSA_INLINE void SetAccelerations(const GimbalLanes<T>& d, const T* command_rad, const DriveState<T>& s,
+DISPERSA_INLINE void SetAccelerations(const Actuators<T>& d, const T* command_rad, const DriveState<T>& s,
                                       Nozzles<T>& nozzles) {
   for (int i = 0; i < kNozzles; ++i) {
     T rate;
@@ -208,7 +212,7 @@ DISPERSA_INLINE void SetAccelerations(const GimbalLanes<T>& d, const T* command_
 /// either end, or could reach it in between. The bound for that is rate² + w² distance², which does not grow.
 /// The command's angle is limited here. The mechanical stop is at the same angle and takes the rate.
 template <class T>
-DISPERSA_INLINE DriveState<T> Propagate(const GimbalLanes<T>& d, const T* command_rad,
+DISPERSA_INLINE DriveState<T> Propagate(const Actuators<T>& d, const T* command_rad,
                                         const Transition<T>& over, T time_s, const DriveState<T>& from) {
   DriveState<T> to;
   T fastest(0.0), farthest(0.0), energy(0.0);

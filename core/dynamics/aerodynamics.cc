@@ -13,8 +13,8 @@ double TotalIncidence(const Vector3& v) {
 ForceAndMoment AerodynamicForce(const BodyAerodynamics& body, const AeroGrid& grid, const Vector3& v,
                                 const Vector3& w, double density_kg_m3, double speed_of_sound_m_s,
                                 double cg_station_m) {
-  lanes::BodyAerodynamicsLanes<double> one;
-  lanes::SetLane(one, 0, body, grid);
+  lanes::BodyInFlow<double> one;
+  lanes::SetBody(one, 0, body, grid);
   const double inverse_sound = speed_of_sound_m_s > 0.0 ? 1.0 / speed_of_sound_m_s : 0.0;
   const auto flow = lanes::ForceOfFlow<double>(one, {v.x(), v.y(), v.z()}, {w.x(), w.y(), w.z()},
                                                density_kg_m3, inverse_sound, cg_station_m);

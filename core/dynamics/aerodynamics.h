@@ -33,18 +33,21 @@ struct Coefficient {
 ///   F = -q S ((ca n_z² + ca_yaw n_y²) x + cn_yaw n_y y + cn n_z z)
 ///
 /// cn_yaw acts at its own xcp. Each is a function of the total incidence. The factors are the pitch plane's.
-struct BodyAerodynamics {
-  double area_m2 = 0.0;
-  double length_m = 0.0;  ///< c: of cm and cmq
-  double span_m = 0.0;    ///< b: of clp and cnr
+template <class T>
+struct BodyNumbers {
+  T area_m2 = T(0.0);
+  T length_m = T(0.0);                    ///< c: of cm and cmq
+  T span_m = T(0.0);                      ///< b: of clp and cnr
+  T moment_reference_station_m = T(0.0);  ///< with cm, cd, cl
+  T twist_rad_m = T(0.0);                 ///< by which canted fins turn the body on each metre of its way:
+                                          ///< clp damps the roll rate less this times V
+  T minimum_airspeed_m_s = T(0.0);        ///< floor of V in the damping terms
+};
+struct BodyAerodynamics : BodyNumbers<double> {
   Coefficient ca, cn, cd, cl, cm;
   Coefficient xcp_station_m;                      ///< with cn
   Coefficient ca_yaw, cn_yaw, xcp_yaw_station_m;  ///< without tables: the body is symmetric about its axis
-  double moment_reference_station_m = 0.0;        ///< with cm, cd, cl
   Coefficient clp, cmq, cnr;                      ///< over Mach, one incidence
-  double twist_rad_m = 0.0;           ///< by which canted fins turn the body on each metre of its way: clp
-                                      ///< damps the roll rate less this times V
-  double minimum_airspeed_m_s = 0.0;  ///< floor of V in the damping terms
 
   bool has_yaw_plane() const { return !cn_yaw.empty(); }
 };

@@ -24,9 +24,10 @@ inline namespace DISPERSA_ISA {
 
 template <class T>
 struct ApartBooster {
-  MotorBurnLanes<T> burn;
+  BurningMotor<T> burn;
   T y_m, z_m, dry_kg;
-  DrainingMassLanes<T> tanks;
+  DrainingMassOf<T> tanks;
+  bool any_mixes;
   Vector<T> along;          ///< its thrust undeflected: canted and misaligned
   Vector<T> first, second;  ///< across it, where a positive angle turns the thrust about each hinge
   MaskOf<T> burning;
@@ -50,7 +51,7 @@ struct ApartBoosters {
 };
 
 template <class T>
-DISPERSA_INLINE void SetLane(ApartBoosters<T>& a, int lane, const BoosterSet& set, bool are_attached) {
+DISPERSA_INLINE void SetBoosters(ApartBoosters<T>& a, int lane, const BoosterSet& set, bool are_attached) {
   a.count = static_cast<int>(set.each.size());
   a.turn_nozzles = set.gimbal.limit_rad > 0.0;
   SetLane(a.attached, lane, are_attached);
@@ -66,20 +67,15 @@ DISPERSA_INLINE void SetLane(ApartBoosters<T>& a, int lane, const BoosterSet& se
   for (int k = 0; k < a.count; ++k) {
     ApartBooster<T>& one = a.each[k];
     const EachBooster& from = set.each.data()[k];
-    SetLane(one.burn, lane, from.burn);
+    SetBurn(one.burn, lane, from.burn);
     SetLane(one.tanks, lane, from.tanks);
+    one.any_mixes = IsAnywhere(one.tanks.second_kg_m2);
     Lane(one.dry_kg, lane) = from.dry_kg;
     Lane(one.y_m, lane) = from.y_m;
     Lane(one.z_m, lane) = from.z_m;
-    const auto direction = [lane](Vector<T> & to, const Vector3& v) __attribute__((always_inline)) {
-      const double* const values = v.data();
-      Lane(to.x, lane) = values[0];
-      Lane(to.y, lane) = values[1];
-      Lane(to.z, lane) = values[2];
-    };
-    direction(one.along, from.along);
-    direction(one.first, from.first);
-    direction(one.second, from.second);
+    SetLane(one.along, lane, VectorAt(from.along.data()));
+    SetLane(one.first, lane, VectorAt(from.first.data()));
+    SetLane(one.second, lane, VectorAt(from.second.data()));
     SetLane(one.burning, lane, false);
   }
 }
@@ -94,7 +90,7 @@ DISPERSA_INLINE T LieIn(const ApartBoosters<T>& a, ApartBooster<T>& b, T& first,
     b.source_across_m2 = Fma(T(0.5), b.source_axial_m2, a.length2_m2);
     return a.grain_station_m;
   }
-  const BoosterLiquids<T> liquids = LiquidsOf(b.tanks, b.kg);
+  const BoosterLiquids<T> liquids = LiquidsOf(b.tanks, b.any_mixes, b.kg);
   b.source_station_m = liquids.surface_m;
   b.source_axial_m2 = T(0.0);
   b.source_across_m2 = liquids.surface_gyration2_m2;
@@ -107,8 +103,8 @@ DISPERSA_INLINE T LieIn(const ApartBoosters<T>& a, ApartBooster<T>& b, T& first,
 /// comes from become such that the whole flow times them is what the stage's own flow does; the boosters'
 /// part is in LoadsOfApart. By value: a reference would keep `m` in memory for vehicles without boosters too.
 template <class T>
-DISPERSA_OUT_OF_LINE MassPropertiesLanes<T> WithApart(ApartBoosters<T>& a, T since_ignition_s, T flow_kg_s,
-                                                      MassPropertiesLanes<T> m) {
+DISPERSA_OUT_OF_LINE MassPropertiesOf<T> WithApart(ApartBoosters<T>& a, T since_ignition_s, T flow_kg_s,
+                                                   MassPropertiesOf<T> m) {
   const T none(0.0), half(0.5), one(1.0);
   T beside_kg(0.0), own_axial(0.0), first(0.0), second(0.0), surfaces(0.0);
   a.flow_kg_s = none;
@@ -150,8 +146,8 @@ DISPERSA_OUT_OF_LINE MassPropertiesLanes<T> WithApart(ApartBoosters<T>& a, T sin
   const T total_kg_s = a.flow_kg_s + flow_kg_s;
   const T own = Select(total_kg_s > none, flow_kg_s / Select(total_kg_s > none, total_kg_s, one), one);
   const T moved = Square(m.source_station_m - m.cg_station_m) - Square(m.source_station_m - old_cg);
-  m.axial_per_kg_m2 = own * m.axial_per_kg_m2;
-  m.transverse_per_kg_m2 = own * (m.transverse_per_kg_m2 + moved);
+  m.axial_inertia_per_kg = own * m.axial_inertia_per_kg;
+  m.transverse_inertia_per_kg = own * (m.transverse_inertia_per_kg + moved);
   m.source_station_m = source_m + own * (m.source_station_m - source_m);
   return m;
 }

@@ -43,11 +43,10 @@ struct OfPlanes {
 
 /// The bending of each lane's stack.
 template <class T>
-struct BendingTableLanes {
+struct FlownModes : BendingFactorsOf<T> {
   int modes = 0;   ///< of any stack: the same in all lanes, as
   int planes = 1;  ///< 1: plane z is plane y in every stack
   const BendingTable* table[kWidth<T>] = {};
-  T frequency_factor[kModes], damping_ratio, slope_factor;
   /// The levels that each lane is between, read from its table: the propellant of the upper one, by how much
   /// the next has less, and the range in which they stay the right ones (none: nothing is read yet).
   T level_kg, span_kg, from_kg, to_kg;
@@ -69,15 +68,15 @@ struct BendingTableLanes {
   }
   /// Slopes that sensors feel: of the inertial unit, and of each gyro.
   DISPERSA_INLINE T UnitSlope(int plane, int mode) const {
-    return slope_factor * ColumnAt(plane, mode, BendingTable::kUnitSlope);
+    return this->slope_factor * ColumnAt(plane, mode, BendingTable::kUnitSlope);
   }
   DISPERSA_INLINE T GyroSlope(int plane, int mode, int gyro) const {
-    return slope_factor * ColumnAt(plane, mode, BendingTable::kGyroSlope + gyro);
+    return this->slope_factor * ColumnAt(plane, mode, BendingTable::kGyroSlope + gyro);
   }
 };
 /// The modes of another stack, or of one that has let go of a body (null: it is rigid).
 template <class T>
-DISPERSA_INLINE void SetTable(BendingTableLanes<T>& b, int lane, const BendingTable* table) {
+DISPERSA_INLINE void SetTable(FlownModes<T>& b, int lane, const BendingTable* table) {
   b.table[lane] = table != nullptr && table->modes > 0 ? table : nullptr;
   Lane(b.from_kg, lane) = Lane(b.to_kg, lane) = 0.0;
 }
@@ -95,7 +94,7 @@ struct ModalForce {
 
 /// Reads the levels about each lane's propellant. A flight needs it once for each level.
 template <class T>
-DISPERSA_OUT_OF_LINE void ReadLevels(BendingTableLanes<T>& b, T propellant_kg) {
+DISPERSA_OUT_OF_LINE void ReadLevels(FlownModes<T>& b, T propellant_kg) {
   constexpr double kInfinity = __builtin_inf();
   alignas(128) static constexpr double kNone[BendingTable::kRowSize] = {};
   int level[kWidth<T>], next[kWidth<T>];
@@ -144,7 +143,7 @@ DISPERSA_OUT_OF_LINE void ReadLevels(BendingTableLanes<T>& b, T propellant_kg) {
 /// Sets the values that depend on the lane's propellant. Columns that a step needs once are looked up where
 /// they are needed.
 template <class T>
-DISPERSA_INLINE void ShapesAt(BendingTableLanes<T>& b, T propellant_kg) {
+DISPERSA_INLINE void ShapesAt(FlownModes<T>& b, T propellant_kg) {
   if (Any(!((propellant_kg < b.from_kg) & (propellant_kg >= b.to_kg)))) ReadLevels(b, propellant_kg);
   b.within = Clamp((b.level_kg - propellant_kg) / b.span_kg, T(0.0), T(1.0));
   for (int plane = 0; plane < b.planes; ++plane) {
@@ -155,7 +154,7 @@ DISPERSA_INLINE void ShapesAt(BendingTableLanes<T>& b, T propellant_kg) {
       ModeNow<T>& m = b.now[plane][mode];
       const T tabulated = at(BendingTable::kFrequency);
       const auto flies = tabulated > T(0.0);
-      const T frequency = Select(flies, tabulated * b.frequency_factor[mode], T(1.0));
+      const T frequency = Select(flies, tabulated * b.frequency_factor.data()[mode], T(1.0));
       m.stiffness_1_s2 = frequency * frequency;
       m.decay_1_s = b.damping_ratio * frequency;
       m.damping_1_s = T(2.0) * m.decay_1_s;
@@ -188,7 +187,7 @@ struct PlaceShapes {
   OfPlanes<T> deflection[kModes], slope_1_m[kModes];
 };
 template <class T>
-DISPERSA_INLINE PlaceShapes<T> ShapesOf(const BendingTableLanes<T>& b, const ForcePlace& place) {
+DISPERSA_INLINE PlaceShapes<T> ShapesOf(const FlownModes<T>& b, const ForcePlace& place) {
   PlaceShapes<T> o;
   for (int mode = 0; mode < b.modes; ++mode) {
     o.deflection[mode] = b.ColumnsAt(mode, place.deflection);
@@ -200,9 +199,9 @@ DISPERSA_INLINE PlaceShapes<T> ShapesOf(const BendingTableLanes<T>& b, const For
 /// answer them at once (residual flexibility: R. H. MacNeal, A hybrid method of component mode synthesis,
 /// Computers & Structures 1, 1971).
 template <class T>
-DISPERSA_INLINE Bent<T> BentAt(const BendingTableLanes<T>& b, const BendingState<T>& s,
-                               const ForcePlace& place, const PlaceShapes<T>& shapes,
-                               const Vector<T>& force_n, const Vector<T>& couple_n_m) {
+DISPERSA_INLINE Bent<T> BentAt(const FlownModes<T>& b, const BendingState<T>& s, const ForcePlace& place,
+                               const PlaceShapes<T>& shapes, const Vector<T>& force_n,
+                               const Vector<T>& couple_n_m) {
   Bent<T> o{T(0.0), T(0.0), T(0.0), T(0.0)};
   if (place.residual != 0) {
     const OfPlanes<T> moved = b.ColumnsAt(0, place.residual), both = b.ColumnsAt(0, place.residual + 1),
@@ -221,7 +220,7 @@ DISPERSA_INLINE Bent<T> BentAt(const BendingTableLanes<T>& b, const BendingState
 }
 /// How far the inertial unit is turned against the mean axes, rad about x, y, z.
 template <class T>
-DISPERSA_INLINE Vector<T> UnitTurn(const BendingTableLanes<T>& b, const BendingState<T>& s) {
+DISPERSA_INLINE Vector<T> UnitTurn(const FlownModes<T>& b, const BendingState<T>& s) {
   Vector<T> turn = Zero<T>();
   for (int mode = 0; mode < b.modes; ++mode) {
     turn.y = Fma(b.UnitSlope(1, mode), s.q_m[1][mode], turn.y);
@@ -231,7 +230,7 @@ DISPERSA_INLINE Vector<T> UnitTurn(const BendingTableLanes<T>& b, const BendingS
 }
 /// Rotation rate of the inertial unit against the mean axes, rad/s. With `gyro` from 0 on: of that gyro.
 template <class T>
-DISPERSA_INLINE Vector<T> TurnRate(const BendingTableLanes<T>& b, const BendingState<T>& s, int gyro) {
+DISPERSA_INLINE Vector<T> TurnRate(const FlownModes<T>& b, const BendingState<T>& s, int gyro) {
   Vector<T> rate = Zero<T>();
   for (int mode = 0; mode < b.modes; ++mode) {
     const T y = gyro < 0 ? b.UnitSlope(0, mode) : b.GyroSlope(0, mode, gyro);
@@ -244,7 +243,7 @@ DISPERSA_INLINE Vector<T> TurnRate(const BendingTableLanes<T>& b, const BendingS
 
 /// Adds a force and a couple at a place to the modes' generalised forces.
 template <class T>
-DISPERSA_INLINE void DriveAt(const BendingTableLanes<T>& b, const BendingState<T>& s, const ForcePlace& place,
+DISPERSA_INLINE void DriveAt(const FlownModes<T>& b, const BendingState<T>& s, const ForcePlace& place,
                              const PlaceShapes<T>& shapes, const Vector<T>& force_n,
                              const Vector<T>& couple_n_m, ModalForce<T>& o) {
   for (int mode = 0; mode < b.modes; ++mode) {
@@ -276,7 +275,7 @@ struct LiftNow {
 };
 /// `aft_m`: of the centre of pressure behind that of slender-body theory.
 template <class T>
-DISPERSA_INLINE LiftNow<T> LiftOf(const BendingTableLanes<T>& b, int plane, int mode, int effect, T aft_m) {
+DISPERSA_INLINE LiftNow<T> LiftOf(const FlownModes<T>& b, int plane, int mode, int effect, T aft_m) {
   const auto by = [&](LiftCause cause) __attribute__((always_inline)) {
     return b.ColumnAt(plane, mode, BendingTable::LiftColumn(cause, effect));
   };
@@ -290,7 +289,7 @@ struct LiftPlanes {
 };
 /// `side`: of the yaw plane (null: as the pitch plane).
 template <class T>
-DISPERSA_INLINE LiftPlanes<T> LiftPlanesOf(const BendingTableLanes<T>& b, const LoadTableLanes<T>& body,
+DISPERSA_INLINE LiftPlanes<T> LiftPlanesOf(const FlownModes<T>& b, const Sections<T>& body,
                                            const NormalForce<T>& air, const SideForce<T>* side) {
   const T aft_m = air.xcp_station_m - body.slender_station_m;
   if (side == nullptr) return {{aft_m, aft_m}, b.planes == 1};
@@ -299,7 +298,7 @@ DISPERSA_INLINE LiftPlanes<T> LiftPlanesOf(const BendingTableLanes<T>& b, const 
 /// The effects of a mode's motion in both planes: `slope_n` and `rate_n` are the normal forces per radian
 /// times q and q' / V.
 template <class T>
-DISPERSA_INLINE void AddLift(const BendingTableLanes<T>& b, int mode, int effect, const LiftPlanes<T>& planes,
+DISPERSA_INLINE void AddLift(const FlownModes<T>& b, int mode, int effect, const LiftPlanes<T>& planes,
                              const OfPlanes<T>& slope_n, const OfPlanes<T>& rate_n, T& y, T& z) {
   const LiftNow<T> of_y = LiftOf(b, 0, mode, effect, planes.aft_m.y);
   const LiftNow<T> of_z = planes.are_one ? of_y : LiftOf(b, 1, mode, effect, planes.aft_m.z);
@@ -310,9 +309,9 @@ DISPERSA_INLINE void AddLift(const BendingTableLanes<T>& b, int mode, int effect
 /// The additional effects of the flow on a body that bends. Added to the body's force, to its moment about C,
 /// and to the modes. `side`: of the yaw plane (null: as the pitch plane).
 template <class T>
-DISPERSA_INLINE void BendFlow(const BendingTableLanes<T>& b, const BendingState<T>& s,
-                              const LoadTableLanes<T>& body, T cg_station_m, const SideForce<T>* side,
-                              FlowForce<T>& flow, ModalForce<T>& o) {
+DISPERSA_INLINE void BendFlow(const FlownModes<T>& b, const BendingState<T>& s, const Sections<T>& body,
+                              T cg_station_m, const SideForce<T>* side, FlowForce<T>& flow,
+                              ModalForce<T>& o) {
   const NormalForce<T>& air = flow.normal;
   const LiftPlanes<T> planes = LiftPlanesOf(b, body, air, side);
   const T side_n = side ? side->normal_n : air.normal_n, side_slope_n = side ? side->slope_n : air.slope_n;
@@ -342,9 +341,8 @@ DISPERSA_INLINE void BendFlow(const BendingTableLanes<T>& b, const BendingState<
 /// Adds bending's part to the sections' moments: `drive` is Q / m, `side` as in BendFlow. A function of its
 /// own: rigid vehicles do not need it.
 template <class T>
-DISPERSA_OUT_OF_LINE SectionMoments<T> MomentsByBending(const BendingTableLanes<T>& b,
-                                                        const BendingState<T>& s, const ModalForce<T>& drive,
-                                                        const LoadTableLanes<T>& body,
+DISPERSA_OUT_OF_LINE SectionMoments<T> MomentsByBending(const FlownModes<T>& b, const BendingState<T>& s,
+                                                        const ModalForce<T>& drive, const Sections<T>& body,
                                                         const NormalForce<T>& air, const SideForce<T>* side) {
   SectionMoments<T> o;
   for (int i = 0; i < body.stations; ++i) o.y_n_m[i] = o.z_n_m[i] = T(0.0);
@@ -374,7 +372,7 @@ DISPERSA_OUT_OF_LINE SectionMoments<T> MomentsByBending(const BendingTableLanes<
 
 /// Ends the sum of generalised forces: compression by the force along the axis, over the masses.
 template <class T>
-DISPERSA_INLINE void FinishDrive(const BendingTableLanes<T>& b, const BendingState<T>& s, T axial_n,
+DISPERSA_INLINE void FinishDrive(const FlownModes<T>& b, const BendingState<T>& s, T axial_n,
                                  ModalForce<T>& o) {
   for (int mode = 0; mode < b.modes; ++mode) {
     T shortened_y(0.0), shortened_z(0.0);
@@ -397,7 +395,7 @@ struct Swing {
   T aa[kPlanes][kModes], ar[kPlanes][kModes], ra[kPlanes][kModes], rr[kPlanes][kModes];
 };
 template <class T>
-DISPERSA_INLINE Swing<T> SwingOver(const BendingTableLanes<T>& b, T time_s) {
+DISPERSA_INLINE Swing<T> SwingOver(const FlownModes<T>& b, T time_s) {
   Swing<T> o;
   o.time_s = time_s;
   for (int plane = 0; plane < b.planes; ++plane)
@@ -416,7 +414,7 @@ DISPERSA_INLINE Swing<T> SwingOver(const BendingTableLanes<T>& b, T time_s) {
 }
 /// Twice the time.
 template <class T>
-DISPERSA_INLINE Swing<T> Twice(const BendingTableLanes<T>& b, const Swing<T>& s) {
+DISPERSA_INLINE Swing<T> Twice(const FlownModes<T>& b, const Swing<T>& s) {
   Swing<T> o = s;
   o.time_s = s.time_s + s.time_s;
   for (int plane = 0; plane < b.planes; ++plane)
@@ -433,7 +431,7 @@ DISPERSA_INLINE Swing<T> Twice(const BendingTableLanes<T>& b, const Swing<T>& s)
 /// The modes after the time of `swing` under drives d0 + d1 t + d2 t², exactly: a particular motion a + b t +
 /// c t² plus the free motion of the rest.
 template <class T>
-DISPERSA_INLINE BendingState<T> Swung(const BendingTableLanes<T>& b, const Swing<T>& swing,
+DISPERSA_INLINE BendingState<T> Swung(const FlownModes<T>& b, const Swing<T>& swing,
                                       const BendingState<T>& from, const ModalForce<T>& d0,
                                       const ModalForce<T>& d1, const ModalForce<T>& d2) {
   BendingState<T> to = from;

@@ -19,7 +19,7 @@ struct AeroRows {
 
 /// The body of each lane: its grid, sizes, and the factors on its coefficients.
 template <class T>
-struct BodyAerodynamicsLanes {
+struct BodyInFlow : BodyNumbers<T> {
   const AeroGrid* grid[kWidth<T>];
   T mach_top, mach_scale, incidence_top, incidence_scale;  ///< AeroGrid::Axis
   bool has_wind_axes;                                      ///< any lane's grid has coefficients in wind axes
@@ -27,10 +27,7 @@ struct BodyAerodynamicsLanes {
   bool has_more;                                           ///< either; never both
   bool has_airspeed_floor;                                 ///< minimum_airspeed_m_s counts
   bool has_twist;                                          ///< twist_rad_m counts
-  T area_m2, length_m, span_m, twist_rad_m;
   T ca_factor, cn_factor, xcp_factor;
-  T moment_reference_station_m;
-  T minimum_airspeed_m_s;
   mutable AeroRows<T> rows;
 };
 
@@ -53,8 +50,7 @@ DISPERSA_INLINE int CellAt(const AeroGrid::Axis& axis, int bucket, double x, int
 
 /// Finds the cells of the lanes that `found` does not name.
 template <class T>
-DISPERSA_OUT_OF_LINE void FindCells(const BodyAerodynamicsLanes<T>& body, T mach, T incidence,
-                                    MaskOf<T> found) {
+DISPERSA_OUT_OF_LINE void FindCells(const BodyInFlow<T>& body, T mach, T incidence, MaskOf<T> found) {
   int at_mach[kWidth<T>], at_incidence[kWidth<T>];
   Truncate(mach * body.mach_scale, at_mach);
   Truncate(incidence * body.incidence_scale, at_incidence);
@@ -86,8 +82,7 @@ DISPERSA_INLINE T BilinearAt(const T* c, T mach, T incidence) {
 
 /// Coefficients with their factors. Outside the grid the end value holds.
 template <class T>
-DISPERSA_INLINE Coefficients<T> CoefficientsAt(const BodyAerodynamicsLanes<T>& body, T mach,
-                                               T incidence_rad) {
+DISPERSA_INLINE Coefficients<T> CoefficientsAt(const BodyInFlow<T>& body, T mach, T incidence_rad) {
   const T m = Clamp(mach, T(0.0), body.mach_top), i = Clamp(incidence_rad, T(0.0), body.incidence_top);
   const auto found = body.rows.mach.Contains(m) & body.rows.incidence.Contains(i);
   if (!All(found)) FindCells(body, m, i, found);
@@ -154,7 +149,7 @@ struct YawPlane {
   T ca, cn, cn_slope_1_rad, xcp_station_m, cnr;
 };
 template <class T>
-DISPERSA_INLINE YawPlane<T> YawPlaneAt(const BodyAerodynamicsLanes<T>& body, T mach, T incidence_rad) {
+DISPERSA_INLINE YawPlane<T> YawPlaneAt(const BodyInFlow<T>& body, T mach, T incidence_rad) {
   const T m = Clamp(mach, T(0.0), body.mach_top), i = Clamp(incidence_rad, T(0.0), body.incidence_top);
   const T* c = body.rows.yaw_plane;
   return {body.ca_factor * BilinearAt(c, m, i), body.cn_factor * BilinearAt(c + 4, m, i),
@@ -165,8 +160,8 @@ DISPERSA_INLINE YawPlane<T> YawPlaneAt(const BodyAerodynamicsLanes<T>& body, T m
 /// v: velocity through the air (m/s), w: angular velocity (rad/s) that the damping derivatives see, both in
 /// body axes. At rest there is neither force nor moment.
 template <class T>
-DISPERSA_INLINE FlowForce<T> ForceOfFlow(const BodyAerodynamicsLanes<T>& body, Vector<T> v, Vector<T> w,
-                                         T density_kg_m3, T inverse_sound_s_m, T cg_station_m) {
+DISPERSA_INLINE FlowForce<T> ForceOfFlow(const BodyInFlow<T>& body, Vector<T> v, Vector<T> w, T density_kg_m3,
+                                         T inverse_sound_s_m, T cg_station_m) {
   FlowForce<T> o;
   const T across2 = Fma(v.y, v.y, v.z * v.z);
   const T across = Sqrt(across2);

@@ -11,27 +11,17 @@ inline namespace DISPERSA_ISA {
 
 /// LoadTable of each lane's stack.
 template <class T>
-struct LoadTableLanes {
+struct Sections : LoadNumbers<T> {
   T slender_station_m;
   int stations = 0;  ///< of any lane; a lane with fewer has no moment at the others
-  T scouts_see;
-  T station_m[kLoadStations], first_kg_m[kLoadStations][3], second_kg_m2[kLoadStations][3];
-  T slender_arm_m[kLoadStations], shift_arm[kLoadStations];  ///< lever of the shares ahead of each station
 };
 /// `table` null: nothing is known of this lane's sections.
 template <class T>
-DISPERSA_INLINE void SetLane(LoadTableLanes<T>& s, int lane, const LoadTable* table) {
+DISPERSA_INLINE void SetSections(Sections<T>& s, int lane, const LoadTable* table) {
   const LoadTable& from = table ? *table : NoLoads();
+  SetLane<LoadNumbers>(s, lane, from);
   Lane(s.slender_station_m, lane) = from.lift.slender_station_m;
   s.stations = s.stations > from.stations ? s.stations : from.stations;
-  Lane(s.scouts_see, lane) = from.scouts_see;
-  for (int i = 0; i < kLoadStations; ++i) {
-    Lane(s.station_m[i], lane) = from.station_m.data()[i];
-    for (int k = 0; k < 3; ++k) Lane(s.first_kg_m[i][k], lane) = from.first_kg_m.data()[i].data()[k];
-    for (int k = 0; k < 3; ++k) Lane(s.second_kg_m2[i][k], lane) = from.second_kg_m2.data()[i].data()[k];
-    Lane(s.slender_arm_m[i], lane) = from.slender_arm_m.data()[i];
-    Lane(s.shift_arm[i], lane) = from.shift_arm.data()[i];
-  }
 }
 
 /// Moments about z (of forces along y) and about -y (along z) at each load station.
@@ -61,7 +51,7 @@ struct LargestMoment {
 /// the axial force on the bent axis. `side`: of the yaw plane, with kTwoPlanes. A lane looks beyond its
 /// scouts where their moment says that the largest may be above `seen_n_m`; bent ones always do.
 template <class T, bool kTwoPlanes, class... Further>
-DISPERSA_INLINE LargestMoment<T> LargestOfPlanes(const LoadTableLanes<T>& body, const NormalForce<T>& air,
+DISPERSA_INLINE LargestMoment<T> LargestOfPlanes(const Sections<T>& body, const NormalForce<T>& air,
                                                  const SideForce<T>* side, const BodyMotion<T>& m, T seen_n_m,
                                                  const Further&... further) {
   T largest2(0.0), station(0.0);
@@ -72,23 +62,24 @@ DISPERSA_INLINE LargestMoment<T> LargestOfPlanes(const LoadTableLanes<T>& body, 
     side_aft = side->xcp_station_m - body.slender_station_m;
   }
   const T y_n = side_n * air.across_y, z_n = air.normal_n * air.across_z;
+  const T *const slender_arm_m = body.slender_arm_m.data(), *const shift_arm = body.shift_arm.data();
   const auto look = [&](int begin, int end, const auto& lanes) __attribute__((always_inline)) {
     for (int i = begin; i < end; ++i) {
-      const T* f = body.first_kg_m[i];
-      const T* s = body.second_kg_m2[i];
+      const T* f = body.first_kg_m.data()[i].data();
+      const T* s = body.second_kg_m2.data()[i].data();
       const T first = Fma(m.propellant_kg, Fma(m.propellant_kg, f[2], f[1]), f[0]);
       const T turned =
           Fma(m.cg_station_m, first, -Fma(m.propellant_kg, Fma(m.propellant_kg, s[2], s[1]), s[0]));
-      const T arm = Fma(aft, body.shift_arm[i], body.slender_arm_m[i]);
+      const T arm = Fma(aft, shift_arm[i], slender_arm_m[i]);
       T side_arm = arm;
-      if constexpr (kTwoPlanes) side_arm = Fma(side_aft, body.shift_arm[i], body.slender_arm_m[i]);
+      if constexpr (kTwoPlanes) side_arm = Fma(side_aft, shift_arm[i], slender_arm_m[i]);
       T y = Fma(m.lateral_y_m_s2, first, Fma(m.turn_z_1_s2, turned, y_n * side_arm));
       T z = Fma(m.lateral_z_m_s2, first, Fma(-m.turn_y_1_s2, turned, z_n * arm));
       ((y = y + further.y_n_m[i], z = z + further.z_n_m[i]), ...);
       const T size2 = Fma(y, y, z * z);
       const auto is_larger = lanes & (size2 > largest2);
       largest2 = Select(is_larger, size2, largest2);
-      station = Select(is_larger, body.station_m[i], station);
+      station = Select(is_larger, body.station_m.data()[i], station);
     }
   };
   const auto all = T(0.0) < T(1.0);
@@ -106,16 +97,15 @@ DISPERSA_INLINE LargestMoment<T> LargestOfPlanes(const LoadTableLanes<T>& body, 
 
 /// Out of line: most bodies have one plane, and pay nothing.
 template <class T, class... Further>
-DISPERSA_OUT_OF_LINE LargestMoment<T> LargestOfTwoPlanes(const LoadTableLanes<T>& body,
-                                                         const NormalForce<T>& air, const SideForce<T>& side,
-                                                         const BodyMotion<T>& m, T seen_n_m,
-                                                         const Further&... further) {
+DISPERSA_OUT_OF_LINE LargestMoment<T> LargestOfTwoPlanes(const Sections<T>& body, const NormalForce<T>& air,
+                                                         const SideForce<T>& side, const BodyMotion<T>& m,
+                                                         T seen_n_m, const Further&... further) {
   return LargestOfPlanes<T, true>(body, air, &side, m, seen_n_m, further...);
 }
 
 /// `side`: of the yaw plane (null: as the pitch plane).
 template <class T, class... Further>
-DISPERSA_INLINE LargestMoment<T> LargestOf(const LoadTableLanes<T>& body, const NormalForce<T>& air,
+DISPERSA_INLINE LargestMoment<T> LargestOf(const Sections<T>& body, const NormalForce<T>& air,
                                            const SideForce<T>* side, const BodyMotion<T>& m, T seen_n_m,
                                            const Further&... further) {
   return side ? LargestOfTwoPlanes(body, air, *side, m, seen_n_m, further...)

@@ -53,9 +53,9 @@ MassProperties MassesOn(const LauncherPlant& plant, int stack, unsigned jettison
                         double since_ignition_s) {
   const StackMass mass = MassOf(plant, stack, jettisoned);
   if (stack > 0 || !plant.boosters || (jettisoned & kBoostersGone) != 0) return mass.At(propellant_kg);
-  lanes::StackMassLanes<double> own;
-  lanes::SetLane(own, 0, mass);
-  lanes::MassPropertiesLanes<double> m = lanes::MassesAt(own, propellant_kg);
+  lanes::BurningStack<double> own;
+  lanes::SetStack(own, 0, mass);
+  MassProperties m = lanes::MassesAt(own, propellant_kg);
   const BoosterSet& set = *plant.boosters;
   lanes::BesideStage<double> beside;
   if (set.propellant.drains) {
@@ -63,15 +63,14 @@ MassProperties MassesOn(const LauncherPlant& plant, int stack, unsigned jettison
     BoosterPropellant of_one = set.propellant;
     for (const EachBooster& one : set.each) {
       of_one.tanks = one.tanks;
-      lanes::SetLane(beside, 0, one.burn, of_one);
+      lanes::SetBeside(beside, 0, one.burn, of_one);
       lanes::AddBeside(beside, one.burn.Propellant(since_ignition_s), 0.0, 0.0, m);
     }
   } else {
-    lanes::SetLane(beside, 0, set.burn, set.propellant);
+    lanes::SetBeside(beside, 0, set.burn, set.propellant);
     lanes::AddBeside(beside, set.burn.Propellant(since_ignition_s), 0.0, 0.0, m);
   }
-  return {m.mass_kg,          m.cg_station_m,    m.axial_kg_m2,
-          m.transverse_kg_m2, m.axial_per_kg_m2, m.transverse_per_kg_m2};
+  return m;
 }
 
 unsigned DueJettisons(const LauncherPlant& plant, int stack, unsigned jettisoned,

@@ -25,14 +25,14 @@ struct LauncherModel::Prepared {
     for (std::size_t i = 0; i < stacks.size(); ++i) {
       if (!apart.empty()) stacks[i].apart = &apart[i];
       if (!sides.empty()) stacks[i].sides = &sides[i];
-      lanes::SetLane(stacks[i], 0, plant, static_cast<int>(i));
-      lanes::SetLane(stacks[i].weather, 0, weather);
+      lanes::SetPlant(stacks[i], 0, plant, static_cast<int>(i));
+      lanes::SetWeather(stacks[i].weather, 0, weather);
     }
   }
 
   LauncherPlant plant;
   FlightWeather weather;
-  std::vector<lanes::LauncherPlantLanes<double>> stacks;
+  std::vector<lanes::FlyingPlant<double>> stacks;
   std::vector<lanes::ApartBoosters<double>> apart;
   std::vector<lanes::SideMasses<double>> sides;
 };
@@ -54,7 +54,7 @@ namespace {
 
 // An instant of one lane.
 struct OneLane {
-  OneLane(const LauncherPlant& from, const lanes::LauncherPlantLanes<double>& stack, const LauncherPhase& now,
+  OneLane(const LauncherPlant& from, const lanes::FlyingPlant<double>& stack, const LauncherPhase& now,
           double time_s, const double* y)
       : earth(from.environment.earth),
         lighter(Without(from, stack, now, apart, sides)),
@@ -69,8 +69,8 @@ struct OneLane {
     for (int bank = 0; bank < plant.banks; ++bank) {
       const bool is_boosters =
           now.stack == 0 && from.boosters_steer() && bank >= from.stacks[0].layout.banks();
-      lanes::SetLane(drives[bank], 0, is_boosters ? from.boosters->gimbal : gimbal,
-                     now.stuck_nozzle - bank * kNozzles);
+      lanes::SetActuators(drives[bank], 0, is_boosters ? from.boosters->gimbal : gimbal,
+                          now.stuck_nozzle - bank * kNozzles);
       for (int hinge = 0; hinge < (plant.nozzles_listed ? 2 : 1); ++hinge) {
         const int first = DriveOf(bank * kNozzles, hinge);
         lanes::Nozzles<double>& of = hinge == 0 ? nozzles[bank].first : nozzles[bank].second;
@@ -82,7 +82,7 @@ struct OneLane {
       }
     }
     if (from.bending_modes() == 0) return;
-    lanes::SetLane(bending, 0, from, now.stack);
+    lanes::SetModes(bending, 0, from, now.stack);
     if (now.jettisoned != 0)
       lanes::SetTable(bending, 0,
                       from.stacks[static_cast<std::size_t>(now.stack)].BendingWithout(now.jettisoned));
@@ -94,18 +94,20 @@ struct OneLane {
   }
 
   // Masses off the axis have values of the instant: `apart` is that of boosters, `sides` that of tables.
-  static std::optional<lanes::LauncherPlantLanes<double>> Without(
-      const LauncherPlant& from, const lanes::LauncherPlantLanes<double>& stack, const LauncherPhase& now,
-      lanes::ApartBoosters<double>& apart, lanes::SideMasses<double>& sides) {
+  static std::optional<lanes::FlyingPlant<double>> Without(const LauncherPlant& from,
+                                                           const lanes::FlyingPlant<double>& stack,
+                                                           const LauncherPhase& now,
+                                                           lanes::ApartBoosters<double>& apart,
+                                                           lanes::SideMasses<double>& sides) {
     const LauncherStack& of = from.stacks[static_cast<std::size_t>(now.stack)];
     if (now.jettisoned == 0 && stack.apart == nullptr && stack.sides == nullptr && !of.aero_variants)
       return std::nullopt;
-    lanes::LauncherPlantLanes<double> lighter = stack;
+    lanes::FlyingPlant<double> lighter = stack;
     if (stack.sides != nullptr) {
       sides = *stack.sides;
       lighter.sides = &sides;
     }
-    if (now.jettisoned != 0) lanes::SetLane(lighter.stack, 0, MassOf(from, now.stack, now.jettisoned));
+    if (now.jettisoned != 0) lanes::SetStack(lighter.stack, 0, MassOf(from, now.stack, now.jettisoned));
     lanes::SetShape(lighter.aero, 0, of, of.AeroAfter(now.jettisoned, now.burning));
     if (stack.apart != nullptr) {
       apart = *stack.apart;
@@ -130,18 +132,18 @@ struct OneLane {
   }
 
   const Earth& earth;
-  lanes::ApartBoosters<double> apart;                        ///< unset unless there are such boosters
-  lanes::SideMasses<double> sides;                           ///< unset unless there are masses off the axis
-  std::optional<lanes::LauncherPlantLanes<double>> lighter;  ///< the stack without bodies that have left
-  const lanes::LauncherPlantLanes<double>& plant;
-  lanes::LauncherPhaseLanes<double> phase;
-  lanes::RigidBodyStateLanes<double> motion;
+  lanes::ApartBoosters<double> apart;                 ///< unset unless there are such boosters
+  lanes::SideMasses<double> sides;                    ///< unset unless there are masses off the axis
+  std::optional<lanes::FlyingPlant<double>> lighter;  ///< the stack without bodies that have left
+  const lanes::FlyingPlant<double>& plant;
+  lanes::BurnPhase<double> phase;
+  lanes::RigidMotion<double> motion;
   lanes::Surroundings<double> around;
   lanes::TimedMasses<double> masses;
   lanes::BankNozzles<double> nozzles[kBanks];  ///< of the plant's banks
-  lanes::GimbalLanes<double> drives[kBanks]{};
+  lanes::Actuators<double> drives[kBanks]{};
   // Unset in a vehicle that does not bend.
-  lanes::BendingTableLanes<double> bending;
+  lanes::FlownModes<double> bending;
   lanes::BendingState<double> bending_state;
   mutable lanes::ModalForce<double> modal;  ///< of the last evaluation
 
@@ -168,7 +170,7 @@ const LauncherPlant& LauncherModel::plant() const { return prepared_->plant; }
 LauncherInstant LauncherModel::Evaluate(const LauncherPhase& phase, double time_s, const double* y) const {
   const OneLane one(prepared_->plant, prepared_->stacks[static_cast<std::size_t>(phase.stack)], phase, time_s,
                     y);
-  const lanes::RigidBodyStateLanes<double>& s = one.motion;
+  const lanes::RigidMotion<double>& s = one.motion;
   const lanes::TimedMasses<double>& masses = one.masses;
   const lanes::LoadsOf<double> loads = one.Loads();
   LauncherInstant now;
@@ -209,7 +211,7 @@ void LauncherModel::Derivative(const LauncherPhase& phase, double time_s, const 
                                double* dydt) const {
   const std::size_t stack = static_cast<std::size_t>(phase.stack);
   const OneLane one(prepared_->plant, prepared_->stacks[stack], phase, time_s, y);
-  const lanes::RigidBodyStateLanes<double>& s = one.motion;
+  const lanes::RigidMotion<double>& s = one.motion;
   const lanes::Rates<double> rates = one.Rates();
   const Quaternion dq = dispersa::Derivative({s.q.w, s.q.x, s.q.y, s.q.z}, ToEigen(s.w));
   Vector3 dp = ToEigen(s.v);
@@ -221,7 +223,7 @@ void LauncherModel::Derivative(const LauncherPhase& phase, double time_s, const 
     const int bank = i / kDrives;
     if (bank >= one.plant.banks) break;
     const std::size_t drive = static_cast<std::size_t>(i);
-    const lanes::GimbalLanes<double>& drives = one.drives[bank];
+    const lanes::Actuators<double>& drives = one.drives[bank];
     const double command = lanes::Followed(drives, phase.command_rad[drive]);
     lanes::DriveRates(drives, i % kNozzles, command, y[AngleOf(i)], y[RateOf(i)], phase.slides[drive],
                       dydt[AngleOf(i)], dydt[RateOf(i)]);

@@ -99,13 +99,6 @@ struct LauncherStack {
   }
 };
 
-/// Factors of one flight on every stack's bending.
-struct BendingFactors {
-  std::array<double, kModes> frequency = {1.0, 1.0, 1.0, 1.0, 1.0};  ///< of each mode
-  double damping_ratio = 0.0;
-  double slope = 1.0;  ///< of the slopes that sensors feel
-};
-
 /// A booster, a body of its own.
 struct EachBooster {
   MotorBurn burn;

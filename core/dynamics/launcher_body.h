@@ -24,7 +24,7 @@ struct ListedNozzle {
 
 /// Differences of one nozzle's thrust from a nominal nozzle's (NozzleDeparture).
 template <class T>
-struct NozzleDepartureLanes {
+struct NozzleDepartureOf {
   Matrix<T> extra;  ///< its factor times its tilt, less 1
   T offset_y_m, offset_z_m;
 };
@@ -35,33 +35,37 @@ struct NozzleBank {
   MaskOf<T> there;                   ///< lanes whose stage has nozzles in it: of the first bank all
   MaskOf<T> driven;                  ///< or whose boosters have (apart_boosters.h)
   ListedNozzle<T> listed[kNozzles];  ///< unset unless nozzles are listed
-  NozzleDepartureLanes<T> departs[kNozzles];
+  NozzleDepartureOf<T> departs[kNozzles];
 };
 
-/// Each lane's current stack, its flight's factors applied (LauncherPlant, LauncherStack).
+/// A stack's numbers, its flight's factors applied (LauncherPlant, LauncherStack).
 template <class T>
-struct LauncherPlantLanes {
-  FlightWeatherLanes<T> weather;
-  StackMassLanes<T> stack;
-  MotorBurnLanes<T> burn;
-  BodyAerodynamicsLanes<T> aero;
-  LoadTableLanes<T> sections;
+struct StackNumbers {
   T cg_factor, inertia_factor;
+  T product_xy_kg_m2, product_xz_kg_m2, product_yz_kg_m2;
   T pivot_station_m, nozzle_radius_m;
   T nozzle_moment_kg_m;    ///< mass of a nozzle times the distance of its centre of gravity aft of the pivot
   T nozzle_inertia_kg_m2;  ///< about the hinge
-  bool nozzles_have_mass;  ///< of any stage: the same in all lanes, as
-  bool jet_damping, flow_coriolis;
   Matrix<T> thrust_tilt;
   T thrust_offset_y_m, thrust_offset_z_m;
   T nozzles_thrust;  ///< of all nozzles together, over that of the burn
+  T lateral_moment_y_kg_m, lateral_moment_z_kg_m;
+};
+/// Each lane's current stack.
+template <class T>
+struct FlyingPlant : StackNumbers<T> {
+  FlownWeather<T> weather;
+  BurningStack<T> stack;
+  BurningMotor<T> burn;
+  BodyInFlow<T> aero;
+  Sections<T> sections;
+  bool nozzles_have_mass;  ///< of any stage: the same in all lanes, as
+  bool jet_damping, flow_coriolis;
   bool any_departs;  ///< some lane's nozzles are not all the same
   MaskOf<T> departs;
   bool nozzles_listed;  ///< of any stage: the same in all lanes. The cross is one of the lists then
-  T lateral_moment_y_kg_m, lateral_moment_z_kg_m;
-  bool any_products;  ///< some lane has products of inertia
+  bool any_products;    ///< some lane has products of inertia
   MaskOf<T> has_products;
-  T product_xy_kg_m2, product_xz_kg_m2, product_yz_kg_m2;
   ApartBoosters<T>* apart;  ///< null: the vehicle has no boosters
   SideMasses<T>* sides;     ///< null: no table of a stage knows masses off the axis
   int banks;                ///< that any lane's stage has
@@ -70,7 +74,7 @@ struct LauncherPlantLanes {
 
 /// Values that stay constant between two events of each lane (LauncherPhase).
 template <class T>
-struct LauncherPhaseLanes {
+struct BurnPhase {
   MaskOf<T> burning, burnt, boosting;
   T ignition_s;
   T expelled_kg;
@@ -79,7 +83,7 @@ struct LauncherPhaseLanes {
 
 /// Position and velocity of the centre of gravity C, attitude, angular velocity (RigidBodyState).
 template <class T>
-struct RigidBodyStateLanes {
+struct RigidMotion {
   Vector<T> p, v;
   Turn<T> q;
   Vector<T> w;
@@ -98,14 +102,13 @@ struct TimedMasses {
   T beside_flow_kg_s;                ///< of the boosters, if the vehicle has any
 };
 template <class T>
-DISPERSA_INLINE TimedMasses<T> MassesAt(const LauncherPlantLanes<T>& plant,
-                                        const LauncherPhaseLanes<T>& phase, T time_s) {
+DISPERSA_INLINE TimedMasses<T> MassesAt(const FlyingPlant<T>& plant, const BurnPhase<T>& phase, T time_s) {
   // BurnAt holds the time within the burn, so that the ends of a step, which rounding may put outside, count.
   const BurnState<T> burn = BurnAt(plant.burn, time_s - phase.ignition_s);
-  const T unlit = Select(phase.burnt, plant.burn.left_kg, plant.burn.propellant_kg);
+  const T unlit = Select(phase.burnt, plant.burn.left_kg, plant.burn.propellant_mass_kg);
   TimedMasses<T> o;
   o.propellant_kg = Select(phase.burning, burn.propellant_kg, unlit);
-  MassPropertiesLanes<T> m = MassesAt(plant.stack, o.propellant_kg);
+  MassPropertiesOf<T> m = MassesAt(plant.stack, o.propellant_kg);
   o.thrust_fraction = Select(phase.burning, burn.fraction, T(0.0));
   o.flow_fraction = Select(phase.burning, burn.flow_fraction, T(0.0));
   T flow_kg_s = plant.burn.full_flow_kg_s * o.flow_fraction;
@@ -127,10 +130,10 @@ DISPERSA_INLINE TimedMasses<T> MassesAt(const LauncherPlantLanes<T>& plant,
   o.cg_station_m = m.cg_station_m * plant.cg_factor;
   o.cg_y_m = lateral_y_kg_m * o.inverse_mass_1_kg;
   o.cg_z_m = lateral_z_kg_m * o.inverse_mass_1_kg;
-  o.axial_kg_m2 = m.axial_kg_m2 * plant.inertia_factor;
-  o.transverse_kg_m2 = m.transverse_kg_m2 * plant.inertia_factor;
-  o.axial_per_kg_m2 = m.axial_per_kg_m2 * plant.inertia_factor;
-  o.transverse_per_kg_m2 = m.transverse_per_kg_m2 * plant.inertia_factor;
+  o.axial_kg_m2 = m.axial_inertia_kg_m2 * plant.inertia_factor;
+  o.transverse_kg_m2 = m.transverse_inertia_kg_m2 * plant.inertia_factor;
+  o.axial_per_kg_m2 = m.axial_inertia_per_kg * plant.inertia_factor;
+  o.transverse_per_kg_m2 = m.transverse_inertia_per_kg * plant.inertia_factor;
   o.cg_speed_m_s = flow_kg_s * o.inverse_mass_1_kg * plant.cg_factor * (m.source_station_m - m.cg_station_m);
   o.source_station_m = m.source_station_m;
   return o;
@@ -201,13 +204,13 @@ struct Thrust {
 /// Adds the deviations of nozzles from a quarter of the thrust each: force, and couple about the pivots'
 /// centre.
 template <class T>
-DISPERSA_INLINE void AddDepartures(const LauncherPlantLanes<T>& plant, const Nozzles<T>& nozzles, T quarter_n,
+DISPERSA_INLINE void AddDepartures(const FlyingPlant<T>& plant, const Nozzles<T>& nozzles, T quarter_n,
                                    Thrust<T>& o) {
   const T none(0.0), r = plant.nozzle_radius_m;
   const Vector<T> place[kNozzles] = {{none, r, none}, {none, -r, none}, {none, none, r}, {none, none, -r}};
   Vector<T> force = Zero<T>(), couple = Zero<T>();
   for (int i = 0; i < kNozzles; ++i) {
-    const NozzleDepartureLanes<T>& nozzle = plant.bank[0].departs[i];
+    const NozzleDepartureOf<T>& nozzle = plant.bank[0].departs[i];
     const bool pitches = i < 2;
     const Vector<T> nominal = quarter_n * Vector<T>{nozzles.cosine[i], pitches ? none : -nozzles.sine[i],
                                                     pitches ? nozzles.sine[i] : none};
@@ -224,7 +227,7 @@ DISPERSA_INLINE void AddDepartures(const LauncherPlantLanes<T>& plant, const Noz
 /// turn the force towards +z, bottom (+z) and top (-z) towards -y. P = P_vac - p A_e. Thrust is 0 if the
 /// ambient pressure would make it negative.
 template <class T>
-DISPERSA_INLINE Thrust<T> ThrustOf(const LauncherPlantLanes<T>& plant, const TimedMasses<T>& masses,
+DISPERSA_INLINE Thrust<T> ThrustOf(const FlyingPlant<T>& plant, const TimedMasses<T>& masses,
                                    const Nozzles<T>& nozzles, T pressure_pa) {
   Thrust<T> o;
   // Not Max, which would turn a thrust that is no number into none.
@@ -253,13 +256,13 @@ DISPERSA_INLINE Thrust<T> ThrustOf(const LauncherPlantLanes<T>& plant, const Tim
 /// Adds force and couple of a bank of listed nozzles under a stage's thrust, with deviations of each nozzle
 /// from its nominal share.
 template <class T>
-DISPERSA_INLINE void AddBank(const LauncherPlantLanes<T>& plant, const NozzleBank<T>& bank,
+DISPERSA_INLINE void AddBank(const FlyingPlant<T>& plant, const NozzleBank<T>& bank,
                              const BankNozzles<T>& nozzles, T thrust_n, Vector<T>& force_n,
                              Vector<T>& couple_n_m) {
   const Nozzles<T>&first = nozzles.first, &second = nozzles.second;
   for (int i = 0; i < kNozzles; ++i) {
     const ListedNozzle<T>& nozzle = bank.listed[i];
-    const NozzleDepartureLanes<T>& departs = bank.departs[i];
+    const NozzleDepartureOf<T>& departs = bank.departs[i];
     const T across = first.sine[i] * second.cosine[i], second_sine = second.sine[i];
     const Vector<T> turned{first.cosine[i] * second.cosine[i],
                            Fma(across, nozzle.first_y, second_sine * nozzle.second_y),
@@ -274,7 +277,7 @@ DISPERSA_INLINE void AddBank(const LauncherPlantLanes<T>& plant, const NozzleBan
 /// Adds the banks after the first of the lanes that have them. A function of its own: it is long, and few
 /// vehicles need it.
 template <class T>
-DISPERSA_OUT_OF_LINE void AddFurtherBanks(const LauncherPlantLanes<T>& plant, const BankNozzles<T>* nozzles,
+DISPERSA_OUT_OF_LINE void AddFurtherBanks(const FlyingPlant<T>& plant, const BankNozzles<T>* nozzles,
                                           T thrust_n, Vector<T>& force_n, Vector<T>& couple_n_m) {
   for (int i = 1; i < plant.banks; ++i) {
     const NozzleBank<T>& bank = plant.bank[i];
@@ -287,7 +290,7 @@ DISPERSA_OUT_OF_LINE void AddFurtherBanks(const LauncherPlantLanes<T>& plant, co
 
 /// The same as above for a list of nozzles (core/vehicle/nozzle_layout.h).
 template <class T>
-DISPERSA_INLINE Thrust<T> ThrustOf(const LauncherPlantLanes<T>& plant, const TimedMasses<T>& masses,
+DISPERSA_INLINE Thrust<T> ThrustOf(const FlyingPlant<T>& plant, const TimedMasses<T>& masses,
                                    const ListedNozzles<T>& nozzles, T pressure_pa) {
   Thrust<T> o;
   const T none(0.0);
@@ -313,7 +316,7 @@ struct NozzleReaction {
   Vector<T> force_n, couple_n_m;  ///< at the pivots
 };
 template <class T>
-DISPERSA_INLINE NozzleReaction<T> ReactionOf(const LauncherPlantLanes<T>& plant, const Nozzles<T>& nozzles) {
+DISPERSA_INLINE NozzleReaction<T> ReactionOf(const FlyingPlant<T>& plant, const Nozzles<T>& nozzles) {
   const T* a = nozzles.acceleration_rad_s2;
   const T pitch = a[0] + a[1], yaw = a[2] + a[3];
   const T roll = (a[0] - a[1]) + (a[2] - a[3]);
@@ -323,7 +326,7 @@ DISPERSA_INLINE NozzleReaction<T> ReactionOf(const LauncherPlantLanes<T>& plant,
 }
 
 template <class T>
-DISPERSA_INLINE void AddReactions(const LauncherPlantLanes<T>& plant, const NozzleBank<T>& bank,
+DISPERSA_INLINE void AddReactions(const FlyingPlant<T>& plant, const NozzleBank<T>& bank,
                                   const BankNozzles<T>& nozzles, NozzleReaction<T>& o) {
   const T none(0.0);
   for (int i = 0; i < kNozzles; ++i) {
@@ -338,8 +341,7 @@ DISPERSA_INLINE void AddReactions(const LauncherPlantLanes<T>& plant, const Nozz
   }
 }
 template <class T>
-DISPERSA_INLINE NozzleReaction<T> ReactionOf(const LauncherPlantLanes<T>& plant,
-                                             const ListedNozzles<T>& nozzles) {
+DISPERSA_INLINE NozzleReaction<T> ReactionOf(const FlyingPlant<T>& plant, const ListedNozzles<T>& nozzles) {
   NozzleReaction<T> o{Zero<T>(), Zero<T>()};
   for (int i = 0; i < plant.banks; ++i) {
     NozzleReaction<T> with = o;
@@ -355,7 +357,7 @@ DISPERSA_INLINE NozzleReaction<T> ReactionOf(const LauncherPlantLanes<T>& plant,
 template <class T>
 struct BentBody {
   static constexpr bool kBends = true;
-  const BendingTableLanes<T>* bending;
+  const FlownModes<T>* bending;
   const BendingState<T>* state;
   ModalForce<T>* modal;  ///< receives Q / m
 };
@@ -382,7 +384,7 @@ template <class T>
 DISPERSA_INLINE void Bend(const BentBody<T>& bent, const ForcePlace& place, MaskOf<T> acts,
                           const Vector<T>& arm, Vector<T> couple_n_m, Vector<T>& force_n,
                           Vector<T>& moment_n_m) {
-  const BendingTableLanes<T>& b = *bent.bending;
+  const FlownModes<T>& b = *bent.bending;
   const PlaceShapes<T> shapes = ShapesOf(b, place);
   const Bent<T> at = BentAt(b, *bent.state, place, shapes, force_n, couple_n_m);
   const Vector<T> turn{T(0.0), at.about_y_rad, at.about_z_rad}, moved{T(0.0), at.y_m, at.z_m};
@@ -397,7 +399,7 @@ DISPERSA_INLINE void Bend(const BentBody<T>& bent, const ForcePlace& place, Mask
 
 /// Adds the boosters' forces. Returns the mean place at which the flow of stage and boosters leaves.
 template <class T, class Turned, class Body>
-DISPERSA_INLINE T AddBoosters(const LauncherPlantLanes<T>& plant, const LauncherPhaseLanes<T>& phase,
+DISPERSA_INLINE T AddBoosters(const FlyingPlant<T>& plant, const BurnPhase<T>& phase,
                               const TimedMasses<T>& masses, T pressure_pa, const Turned& nozzles,
                               const Vector<T>& w, const Body& body, Thrust<T>& thrust, LoadsOf<T>& o) {
   const BankNozzles<T>* banks = nullptr;
@@ -425,10 +427,10 @@ DISPERSA_INLINE T AddBoosters(const LauncherPlantLanes<T>& plant, const Launcher
 /// the grain's middle or the liquids' surfaces to the pivots. A turning body pushes it aside: Coriolis's
 /// force 2 m_dot s w x e_x on the body.
 template <class T, class Turned, class Body>
-DISPERSA_INLINE LoadsOf<T> LoadsAt(double earth_rate_rad_s, const LauncherPlantLanes<T>& plant,
-                                   const LauncherPhaseLanes<T>& phase, bool any_burns,
-                                   const Surroundings<T>& around, const TimedMasses<T>& masses,
-                                   const Turned& nozzles, const RigidBodyStateLanes<T>& s, const Body& body) {
+DISPERSA_INLINE LoadsOf<T> LoadsAt(double earth_rate_rad_s, const FlyingPlant<T>& plant,
+                                   const BurnPhase<T>& phase, bool any_burns, const Surroundings<T>& around,
+                                   const TimedMasses<T>& masses, const Turned& nozzles,
+                                   const RigidMotion<T>& s, const Body& body) {
   LoadsOf<T> o;
   o.R_IB = RotationMatrix(s.q);
   const T omega(earth_rate_rad_s), none(0.0);
@@ -497,9 +499,8 @@ DISPERSA_INLINE LoadsOf<T> LoadsAt(double earth_rate_rad_s, const LauncherPlantL
 /// dw/dt of I dw/dt = `moment` - w x I w with products of inertia, by cofactors of I. `moment` does not
 /// include w x I w.
 template <class T>
-DISPERSA_INLINE Vector<T> TurnedUnderProducts(const LauncherPlantLanes<T>& plant,
-                                              const TimedMasses<T>& masses, const Vector<T>& moment,
-                                              const Vector<T>& w) {
+DISPERSA_INLINE Vector<T> TurnedUnderProducts(const FlyingPlant<T>& plant, const TimedMasses<T>& masses,
+                                              const Vector<T>& moment, const Vector<T>& w) {
   const T a = masses.axial_kg_m2, t = masses.transverse_kg_m2;
   const T xy = plant.product_xy_kg_m2, xz = plant.product_xz_kg_m2, yz = plant.product_yz_kg_m2;
   const Vector<T> spin{a * w.x - (xy * w.y + xz * w.z), t * w.y - (xy * w.x + yz * w.z),
@@ -514,7 +515,7 @@ DISPERSA_INLINE Vector<T> TurnedUnderProducts(const LauncherPlantLanes<T>& plant
 
 /// Of a vehicle with masses off the axis: boosters, or in tables of its stages.
 template <class T>
-DISPERSA_INLINE Tensor<T> TensorOffAxis(const LauncherPlantLanes<T>& plant, const TimedMasses<T>& masses) {
+DISPERSA_INLINE Tensor<T> TensorOffAxis(const FlyingPlant<T>& plant, const TimedMasses<T>& masses) {
   OffAxis<T> off = plant.apart ? plant.apart->off : plant.sides->now;
   if (plant.apart && plant.sides) {
     const OffAxis<T>& more = plant.sides->now;
@@ -539,11 +540,10 @@ DISPERSA_INLINE Tensor<T> TensorOffAxis(const LauncherPlantLanes<T>& plant, cons
 /// v plus m_dot times the way of the flow (aft). Gravitation, outer forces and the leaving flow change it. A
 /// burn that begins or ends does not change v. The motion of an offset C across the body (mm/s) is left out.
 template <class T, class Turned, class Body>
-DISPERSA_INLINE Rates<T> RatesOf(double earth_rate_rad_s, const LauncherPlantLanes<T>& plant,
-                                 const LauncherPhaseLanes<T>& phase, bool any_burns,
-                                 const Surroundings<T>& around, const TimedMasses<T>& masses,
-                                 const Turned& nozzles, const RigidBodyStateLanes<T>& s, const Body& body,
-                                 Instant<T>* instant) {
+DISPERSA_INLINE Rates<T> RatesOf(double earth_rate_rad_s, const FlyingPlant<T>& plant,
+                                 const BurnPhase<T>& phase, bool any_burns, const Surroundings<T>& around,
+                                 const TimedMasses<T>& masses, const Turned& nozzles, const RigidMotion<T>& s,
+                                 const Body& body, Instant<T>* instant) {
   const LoadsOf<T> loads =
       LoadsAt(earth_rate_rad_s, plant, phase, any_burns, around, masses, nozzles, s, body);
   Rates<T> o;

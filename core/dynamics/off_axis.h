@@ -16,23 +16,45 @@ struct OffAxis {
   T about_y_kg_m2, yz_kg_m2;           ///< what I_y has more than the mean of I_y and I_z; sum of m y z
 };
 
-/// Stages with tables that know masses off the axis.
+/// Stages with tables that know masses off the axis (SideSums).
 template <class T>
 struct SideMasses {
-  SideMassLanes<T> masses;
+  T fixed[kSideSums];                ///< of all but the burning propellant
+  const MassRows* table[kWidth<T>];  ///< null: none has side rows
   OffAxis<T> now;
 };
+template <class T>
+DISPERSA_INLINE void SetSides(SideMasses<T>& s, int lane, const StackMass& mass) {
+  const double* const sums = mass.sides.data();
+  for (int k = 0; k < kSideSums; ++k) Lane(s.fixed[k], lane) = sums[k];
+  s.table[lane] = mass.table != nullptr && mass.table->side_rows.size() > 0 ? mass.table : nullptr;
+}
+template <class T>
+DISPERSA_INLINE void SidesAt(const SideMasses<T>& s, T propellant_kg, T* sums) {
+  const double* piece[kWidth<T>];
+  for (int lane = 0; lane < kWidth<T>; ++lane) {
+    const MassRows* const table = s.table[lane];
+    piece[lane] = table == nullptr
+                      ? kNoMassRow
+                      : table->side_rows.data() +
+                            MassRows::kSideRowSize * MassPieceAt(*table, Lane(propellant_kg, lane));
+  }
+  T row[MassRows::kSideRowSize];
+  LoadRow(piece, MassRows::kSideRowSize / 4, row);
+  const T from = propellant_kg - row[0];
+  for (int k = 0; k < kSideSums; ++k) sums[k] = s.fixed[k] + Fma(from, row[2 + 2 * k], row[1 + 2 * k]);
+}
 /// `m` with what they weigh off the axis, and that in `now`. By value: a reference would keep `m` in memory
 /// for other vehicles too.
 template <class T>
-DISPERSA_OUT_OF_LINE MassPropertiesLanes<T> WithSides(SideMasses<T>& sides, T propellant_kg,
-                                                      MassPropertiesLanes<T> m) {
+DISPERSA_OUT_OF_LINE MassPropertiesOf<T> WithSides(SideMasses<T>& sides, T propellant_kg,
+                                                   MassPropertiesOf<T> m) {
   T sums[kSideSums];
-  SidesAt(sides.masses, propellant_kg, sums);
+  SidesAt(sides, propellant_kg, sums);
   sides.now = {sums[kSideY],        sums[kSideZ],      sums[kSideStationY],
                sums[kSideStationZ], sums[kSideAboutY], sums[kSideYz]};
-  m.axial_kg_m2 = m.axial_kg_m2 + sums[kSideSquare];
-  m.transverse_kg_m2 = Fma(T(0.5), sums[kSideSquare], m.transverse_kg_m2);
+  m.axial_inertia_kg_m2 = m.axial_inertia_kg_m2 + sums[kSideSquare];
+  m.transverse_inertia_kg_m2 = Fma(T(0.5), sums[kSideSquare], m.transverse_inertia_kg_m2);
   return m;
 }
 

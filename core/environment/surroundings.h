@@ -59,7 +59,7 @@ DISPERSA_INLINE Vector<T> GravitationAt(const Earth& earth, Vector<T> p, const P
 }
 
 template <class T>
-struct AirStateLanes {
+struct AirPressure {
   T pressure_pa, energy_j_kg;  ///< energy: pressure / density
 };
 /// A row of an air table in each lane.
@@ -85,20 +85,20 @@ DISPERSA_OUT_OF_LINE void FindAir(const AirTable& table, T z, MaskOf<T> found, A
 
 /// The standard's air is within kAirTableTolerance of StandardAtmosphere1976. `rows` belong to this table.
 template <class T>
-DISPERSA_INLINE AirStateLanes<T> AirAt(const AirTable& table, T altitude_m, AirRows<T>& rows) {
+DISPERSA_INLINE AirPressure<T> AirAt(const AirTable& table, T altitude_m, AirRows<T>& rows) {
   const T z = Clamp(altitude_m, T(kAtmosphereBottom_m), T(kAtmosphereTop_m));
   const auto found = rows.range.Contains(z);
   if (!All(found)) FindAir(table, z, found, rows);
   const T* c = rows.c;
   const T u = (z - c[0]) * c[1];
-  AirStateLanes<T> air;
+  AirPressure<T> air;
   air.pressure_pa = Fma(u, Fma(u, Fma(u, Fma(u, Fma(u, Fma(u, c[8], c[7]), c[6]), c[5]), c[4]), c[3]), c[2]);
   air.energy_j_kg = Fma(u, Fma(u, Fma(u, Fma(u, Fma(u, c[14], c[13]), c[12]), c[11]), c[10]), c[9]);
   air.pressure_pa = Select(altitude_m > T(kAtmosphereTop_m), T(0.0), air.pressure_pa);
   return air;
 }
 template <class T>
-DISPERSA_INLINE AirStateLanes<T> AirAt(const AirTable& table, T altitude_m) {
+DISPERSA_INLINE AirPressure<T> AirAt(const AirTable& table, T altitude_m) {
   AirRows<T> rows;
   for (int lane = 0; lane < kWidth<T>; ++lane) rows.range.Forget(lane);
   return AirAt(table, altitude_m, rows);
@@ -106,19 +106,26 @@ DISPERSA_INLINE AirStateLanes<T> AirAt(const AirTable& table, T altitude_m) {
 
 /// Wind and density of one flight each.
 template <class T>
-struct FlightWeatherLanes {
-  T density_factor;
-  T jet_speed_m_s;  ///< JetStream (0: none)
-  T jet_altitude_m, jet_inverse_width;
-  T jet_north, jet_east;  ///< unit vector of where it blows to
-  T gust_speed_m_s;       ///< Gust (0: none)
-  T gust_start_m, gust_inverse_length;
-  T gust_north, gust_east;
+struct FlownWeather : WeatherNumbers<T> {
   const WeatherProfile* profile[kWidth<T>];  ///< null: calm
   bool has_profiles, has_updrafts;
   mutable AirRows<T> air_rows;  ///< of the flight's air, and
   mutable RowMemory<T, WeatherProfile::kRowSize> profile_rows;
 };
+
+/// `from` must outlive the flight.
+template <class T>
+DISPERSA_INLINE void SetWeather(FlownWeather<T>& w, int lane, const FlightWeather& from) {
+  SetLane<WeatherNumbers>(w, lane, from);
+  w.profile[lane] = from.profile.is_calm() ? nullptr : &from.profile;
+  w.air_rows.range.Forget(lane);
+  w.profile_rows.range.Forget(lane);
+  w.has_profiles = w.has_updrafts = false;
+  for (const WeatherProfile* const profile : w.profile) {
+    w.has_profiles |= profile != nullptr;
+    w.has_updrafts |= profile != nullptr && profile->has_updraft;
+  }
+}
 
 /// Speed of a JetStream.
 template <class T>
@@ -137,7 +144,7 @@ DISPERSA_INLINE T GustSpeed(T altitude_m, T speed_m_s, T start_m, T inverse_leng
 
 /// Finds the rows of the lanes' profiles, of the lanes that `found` does not name.
 template <class T>
-DISPERSA_OUT_OF_LINE void FindProfiles(const FlightWeatherLanes<T>& weather, T altitude_m, MaskOf<T> found) {
+DISPERSA_OUT_OF_LINE void FindProfiles(const FlownWeather<T>& weather, T altitude_m, MaskOf<T> found) {
   static constexpr double kCalm[WeatherProfile::kRowSize] = {0.0, 0.0, 0.0, 0.0, 1.0, 0.0, 0.0, 0.0};
   auto& rows = weather.profile_rows;
   const unsigned known = Bits(found);
@@ -176,12 +183,12 @@ struct Surroundings {
 /// At p_EoP_I. ComputeAirData explains the frames.
 template <class T>
 DISPERSA_INLINE Surroundings<T> SurroundingsAt(const Earth& earth, const AirTable& air_table,
-                                               const FlightWeatherLanes<T>& weather, Vector<T> p) {
+                                               const FlownWeather<T>& weather, Vector<T> p) {
   const Place<T> at = PlaceAt(earth, p);
   Surroundings<T> o;
   o.altitude_m = at.altitude_m;
   o.gravitation_m_s2 = GravitationAt(earth, p, at);
-  const AirStateLanes<T> air = AirAt(air_table, at.altitude_m, weather.air_rows);
+  const AirPressure<T> air = AirAt(air_table, at.altitude_m, weather.air_rows);
   const T inverse_energy = T(1.0) / air.energy_j_kg;
   T factor = weather.density_factor;
   T north(0.0), east(0.0), up(0.0);

@@ -31,11 +31,17 @@ WeatherProfile BuildWeatherProfile(const Wind& wind, const DensityFactor& densit
 
 /// One flight's wind and density in the form of its equations: plain numbers and the profile. Directions are
 /// unit components of the direction in which the air moves. A speed of 0 means none.
-struct FlightWeather {
-  double density_factor = 1.0;
-  double jet_speed_m_s = 0.0, jet_altitude_m = 0.0, jet_inverse_width = 1.0, jet_north = 0.0, jet_east = 0.0;
-  double gust_speed_m_s = 0.0, gust_start_m = 0.0, gust_inverse_length = 1.0, gust_north = 0.0,
-         gust_east = 0.0;
+template <class T>
+struct WeatherNumbers {
+  T density_factor = T(1.0);
+  /// JetStream, with the unit vector of where it blows to.
+  T jet_speed_m_s = T(0.0), jet_altitude_m = T(0.0), jet_inverse_width = T(1.0);
+  T jet_north = T(0.0), jet_east = T(0.0);
+  /// Gust, likewise.
+  T gust_speed_m_s = T(0.0), gust_start_m = T(0.0), gust_inverse_length = T(1.0);
+  T gust_north = T(0.0), gust_east = T(0.0);
+};
+struct FlightWeather : WeatherNumbers<double> {
   WeatherProfile profile;  ///< of everything else
 };
 /// Prepares a wind with at most one jet stream and one gust, as a flight draws it.

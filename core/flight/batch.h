@@ -133,7 +133,7 @@ class Batch {
   T lost_ticks_;  ///< for which the attitude has been lost
   StepState<T> step_;
   // Of nozzles, bank by bank: nothing touches those that the vehicle does not have.
-  NozzleLayoutLanes<T> allocation_[kBanks];  ///< of listed nozzles
+  BankAllocation<T> allocation_[kBanks];  ///< of listed nozzles
   T next_command_rad_[kBanks][kDrives];
   T delay_line_[kBanks][kDelayLine][kDrives];  ///< commands by pass
   int line_at_ = 0;
@@ -154,9 +154,9 @@ class Batch {
   int most_steps_ = 1;
 
   GimbalLoop<T> loop_;
-  AxisStateLanes<T> axes_[kAxes];
+  AxisMemory<T> axes_[kAxes];
   GimbalOutput<T> gimbals_;
-  ThrusterStateLanes<T> thrusters_[kAxes];
+  ThrusterStateOf<T> thrusters_[kAxes];
   LaneMetrics<T> metrics_;
   T gust_bottom_m_, gust_top_m_;
   T roll_rate_peak_rad_s_, least_static_margin_;  ///< of stages without gimbal
@@ -197,7 +197,7 @@ Batch<T>::Batch(const FlightModel& model, FlightQueue& queue)
     SetLane(live_, lane, false);
     SetLane(coasting_, lane, false);
     SetLane(unsteered_, lane, false);
-    SetLane(loop_, lane, model.autopilot(), 0, 1.0, 1.0, 1.0);
+    SetLoop(loop_, lane, model.autopilot(), 0, 1.0, 1.0, 1.0);
     SetLane(drifts_, lane, false);
     SetLane(gyros_fresh_, lane, false);
   }
@@ -254,9 +254,8 @@ void Batch<T>::Start(int lane, FlightRecord* record) {
   Lane(next_digest_tick_, lane) = Lane(lost_ticks_, lane) = 0.0;
   Lane(next_row_tick_, lane) = record->watched ? 0.0 : kFarFuture;
   const AxisState fresh;
-  for (AxisStateLanes<T>& axis : axes_) SetLane(axis, lane, fresh);
-  for (ThrusterStateLanes<T>& thruster : thrusters_)
-    Lane(thruster.direction, lane) = Lane(thruster.cycles_on, lane) = 0.0;
+  for (AxisMemory<T>& axis : axes_) SetLaneValues<T>(axis, lane, fresh);
+  for (ThrusterStateOf<T>& thruster : thrusters_) SetLane(thruster, lane, ThrusterState{});
   metrics_.StartFlight(lane);
   const FlightInputs& in = record->inputs;
   SetLane(gyro_bias_rad_s_, lane,
@@ -311,7 +310,7 @@ void Batch<T>::SetStack(int lane, int stack) {
 template <class T>
 void Batch<T>::SetAllocation(int lane, const NozzleLayout& layout) {
   // A stage without further banks sets them to nothing.
-  for (int bank = 0; bank < most_banks_; ++bank) SetLane(allocation_[bank], lane, layout, bank);
+  for (int bank = 0; bank < most_banks_; ++bank) SetLane(allocation_[bank], lane, AllocationOf(layout, bank));
 }
 
 /// Thrusters hold a stage without gimbal while it coasts.
@@ -408,7 +407,7 @@ LaneView Batch<T>::ViewOf(int lane) const {
     view.gimbal_rad[axis] = Lane(gimbals_.deflection_rad[axis], lane);
     view.axes[axis] =
         TelemetryOf(model_.autopilot().laws.data()[axis].config, gimbals_.axes[axis], axes_[axis], lane);
-    ReadLane(axes_[axis], lane, view.memories[axis]);
+    ReadLaneValues<T>(axes_[axis], lane, view.memories[axis]);
   }
   return view;
 }

@@ -225,11 +225,11 @@ void Batch<T>::Ignite(int lane, int stage) {
       for (T& command : entry) Lane(command, lane) = 0.0;
 
   AutopilotState state;
-  for (int axis = 0; axis < kAxes; ++axis) ReadLane(axes_[axis], lane, state.axes[axis]);
+  for (int axis = 0; axis < kAxes; ++axis) ReadLaneValues<T>(axes_[axis], lane, state.axes[axis]);
   StartStage(autopilot, stage, state);
   for (int axis = 0; axis < kAxes; ++axis) {
-    SetLane(axes_[axis], lane, state.axes[axis]);
-    Lane(thrusters_[axis].direction, lane) = Lane(thrusters_[axis].cycles_on, lane) = 0.0;
+    SetLaneValues<T>(axes_[axis], lane, state.axes[axis]);
+    SetLane(thrusters_[axis], lane, state.thrusters[axis]);
   }
   if (has_plugin_) {
     dispersa_law_stage of_stage{};
@@ -254,7 +254,7 @@ void Batch<T>::Ignite(int lane, int stage) {
   SetLane(gyros_fresh_, lane, true);
   const int loop_stage = static_cast<int>(in.loop_stage + 0.5);
   const bool is_changed = loop_stage == 0 || loop_stage == stage + 1;
-  SetLane(loop_, lane, autopilot, stage, in.pn_error_factor, in.pn_rate_factor,
+  SetLoop(loop_, lane, autopilot, stage, in.pn_error_factor, in.pn_rate_factor,
           is_changed ? in.loop_gain_factor : 1.0);
 
   const Gimbal& gimbal = record.plant.stacks.data()[stage].gimbal;
@@ -303,7 +303,7 @@ void Batch<T>::BurnOut(int lane, int stage) {
   step_.BurnOut(lane);
   SetShape(lane);
   // Thrusters held the roll before: their state ends.
-  Lane(thrusters_[kRoll].direction, lane) = Lane(thrusters_[kRoll].cycles_on, lane) = 0.0;
+  SetLane(thrusters_[kRoll], lane, ThrusterState{});
   if (stage + 1 == static_cast<int>(record.plant.stacks.size())) record.Inject(now.altitude_m, y);
 }
 

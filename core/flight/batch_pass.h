@@ -237,7 +237,7 @@ void Batch<T>::FlyGimbals() {
   if (has_free_stage_) powered = powered & !unsteered_;
   if (!Any(powered)) return;
   const bool listed = step_.plant().nozzles_listed;
-  AxisStateLanes<T> of_roll;
+  AxisMemory<T> of_roll;
   if (listed) of_roll = axes_[kRoll];
   if (All(powered))
     FlyGimbalsOf<true>(powered);
@@ -538,7 +538,7 @@ void Batch<T>::MeterFree() {
       Select(free, Max(roll_rate_peak_rad_s_, Abs(step_.motion().w.x)), roll_rate_peak_rad_s_);
   const Instant<T>& now = step_.now();
   const M felt = free & (now.qbar_pa >= T(kIncidenceFloor_pa));
-  const BodyAerodynamicsLanes<T>& aero = step_.plant().aero;
+  const BodyInFlow<T>& aero = step_.plant().aero;
   T foremost_m = now.normal.xcp_station_m;
   if (aero.has_yaw_plane) foremost_m = Min(foremost_m, now.side.xcp_station_m);
   const T margin = (foremost_m - step_.cg_station_m()) / aero.span_m;

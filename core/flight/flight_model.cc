@@ -690,9 +690,9 @@ LauncherPlant FlightModel::PlantFor(const FlightInputs& inputs,
   LauncherPlant plant = nominal_;
   plant.cg_factor = in.cg_factor;
   plant.inertia_factor = in.inertia_factor;
-  plant.bending.frequency = in.bending_frequency_factor;
+  plant.bending.frequency_factor = in.bending_frequency_factor;
   plant.bending.damping_ratio *= in.bending_damping_factor;
-  plant.bending.slope = in.bending_slope_factor;
+  plant.bending.slope_factor = in.bending_slope_factor;
   plant.environment.density.scale *= in.density_factor;
 
   Wind& wind = plant.environment.wind;

@@ -140,8 +140,8 @@ class FlightRecord::JudgedMotion {
   // smooth.
   bool SlideTo(const Gimbal& gimbal, double from_s, double to_s, int steps, double* y) {
     // Whether a nozzle is stuck plays no part: a drive at rest stays so.
-    lanes::GimbalLanes<double> drives{};
-    lanes::SetLane(drives, 0, gimbal, phase_.stuck_nozzle);
+    lanes::Actuators<double> drives{};
+    lanes::SetActuators(drives, 0, gimbal, phase_.stuck_nozzle);
     State start;
     std::copy(y, y + kLauncherSize, start.begin());
     // A drive turns round a few times a second. More rests than these within a tick are a programming error.

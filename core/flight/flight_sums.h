@@ -20,12 +20,14 @@ namespace dispersa {
 inline constexpr double kNoPeak = -1.0;
 
 /// Sums of a signed angle over ticks.
-struct ErrorSums {
-  double squares = 0.0;
-  double peak = kNoPeak;     ///< largest magnitude
-  double peak_time_s = 0.0;  ///< when it was first reached
-  double count = 0.0;
+template <class T>
+struct ErrorSumsOf {
+  T squares = T(0.0);
+  T peak = T(kNoPeak);     ///< largest magnitude
+  T peak_time_s = T(0.0);  ///< when it was first reached
+  T count = T(0.0);
 };
+using ErrorSums = ErrorSumsOf<double>;
 
 /// Sums over ticks, and largest magnitudes: for one flight (T = double) or for W flights side by side.
 template <class T>
@@ -81,28 +83,13 @@ DISPERSA_INLINE MaskOf<T> InTransient(T time_s, T since_ignition_s, T altitude_m
 }
 
 template <class T>
-struct ErrorSumsLanes {
-  T squares, peak, peak_time_s, count;
-
-  DISPERSA_INLINE void Add(MaskOf<T> lanes, T value, T time_s) {
-    const T size = Abs(value);
-    squares = Select(lanes, Fma(value, value, squares), squares);
-    const auto is_higher = lanes & (size > peak);
-    peak = Select(is_higher, size, peak);
-    peak_time_s = Select(is_higher, time_s, peak_time_s);
-    count = count + Select(lanes, T(1.0), T(0.0));
-  }
-};
-template <class T>
-DISPERSA_INLINE void SetLane(ErrorSumsLanes<T>& s, int lane, const ErrorSums& e) {
-  Lane(s.squares, lane) = e.squares;
-  Lane(s.peak, lane) = e.peak;
-  Lane(s.peak_time_s, lane) = e.peak_time_s;
-  Lane(s.count, lane) = e.count;
-}
-template <class T>
-DISPERSA_INLINE ErrorSums LaneOf(const ErrorSumsLanes<T>& s, int lane) {
-  return {Lane(s.squares, lane), Lane(s.peak, lane), Lane(s.peak_time_s, lane), Lane(s.count, lane)};
+DISPERSA_INLINE void Add(ErrorSumsOf<T>& sums, MaskOf<T> lanes, T value, T time_s) {
+  const T size = Abs(value);
+  sums.squares = Select(lanes, Fma(value, value, sums.squares), sums.squares);
+  const auto is_higher = lanes & (size > sums.peak);
+  sums.peak = Select(is_higher, size, sums.peak);
+  sums.peak_time_s = Select(is_higher, time_s, sums.peak_time_s);
+  sums.count = sums.count + Select(lanes, T(1.0), T(0.0));
 }
 
 /// Telemetry of the pitch axis' control law at a tick.
@@ -114,14 +101,14 @@ struct LyapunovSample {
 
 template <class T>
 struct LaneMetrics {
-  ErrorSumsLanes<T> pitch, coast, yaw, roll, deflection;  ///< pitch: of the current stage
+  ErrorSumsOf<T> pitch, coast, yaw, roll, deflection;  ///< pitch: of the current stage
   TickSums<T> sums;
   T has_previous, previous_rad[kBanks][kDrives];
 
   /// Before a lane's first tick.
   DISPERSA_INLINE void StartFlight(int lane) {
     for (unsigned i = 0; i < kValues<T, LaneMetrics>; ++i) SetLaneAt<T>(*this, i, lane, 0.0);
-    for (ErrorSumsLanes<T>* e : {&pitch, &coast, &yaw, &roll, &deflection}) SetLane(*e, lane, ErrorSums{});
+    for (ErrorSumsOf<T>* e : {&pitch, &coast, &yaw, &roll, &deflection}) SetLane(*e, lane, ErrorSums{});
     SetLaneValues<T>(sums, lane, TickSums<double>{});
   }
   /// At a lane's burnout, and when it ends.
@@ -134,9 +121,9 @@ struct LaneMetrics {
   /// One tick of powered flight. Errors are true less reference, about x, y, z.
   DISPERSA_INLINE void AddPowered(MaskOf<T> lanes, T tick_s, T time_s, Vector<T> error_rad,
                                   const LyapunovSample<T>& law) {
-    pitch.Add(lanes, error_rad.y, time_s);
-    yaw.Add(lanes, error_rad.z, time_s);
-    roll.Add(lanes, error_rad.x, time_s);
+    lanes::Add(pitch, lanes, error_rad.y, time_s);
+    lanes::Add(yaw, lanes, error_rad.z, time_s);
+    lanes::Add(roll, lanes, error_rad.x, time_s);
     sums.itae_rad_s2 =
         Select(lanes, Fma(tick_s * time_s, Abs(error_rad.y), sums.itae_rad_s2), sums.itae_rad_s2);
     const auto is_outside = lanes & (law.v > T(0.5 * kResidualError_rad * kResidualError_rad) * law.p11);
@@ -152,7 +139,7 @@ struct LaneMetrics {
     T travel(0.0), largest(0.0), fastest(0.0);
     for (int i = 0; i < kNozzles; ++i) {
       const T angle = drives.angle_rad[i];
-      deflection.Add(lanes, angle, time_s);
+      lanes::Add(deflection, lanes, angle, time_s);
       fastest = Max(fastest, Abs(drives.rate_rad_s[i]));
       largest = Max(largest, Abs(command_rad[i]));
       travel = travel + Abs(angle - previous_rad[0][i]);
@@ -168,13 +155,13 @@ struct LaneMetrics {
   /// `lanes`: those that have the bank.
   DISPERSA_INLINE void AddToTravel(MaskOf<T> lanes, T time_s, int bank, const DriveState<T>& first,
                                    const DriveState<T>& second, const T* command_rad,
-                                   const NozzleLayoutLanes<T>& list, Travel& travel) {
+                                   const BankAllocation<T>& list, Travel& travel) {
     Travel with = travel;
     for (int i = 0; i < kDrives; ++i) {
       const DriveState<T>& drives = i < kNozzles ? first : second;
       const T angle = drives.angle_rad[i % kNozzles];
       T& previous = previous_rad[bank][i];
-      deflection.Add(lanes & (list.there[i] > T(0.0)), angle, time_s);
+      lanes::Add(deflection, lanes & (list.there[i] > T(0.0)), angle, time_s);
       with.fastest_rad_s = Max(with.fastest_rad_s, Abs(drives.rate_rad_s[i % kNozzles]));
       with.moved_rad = with.moved_rad + Abs(angle - previous);
       previous = Select(lanes, angle, previous);
@@ -196,7 +183,7 @@ struct LaneMetrics {
   }
 
   DISPERSA_INLINE void AddCoast(MaskOf<T> lanes, T time_s, T pitch_error_rad) {
-    coast.Add(lanes, pitch_error_rad, time_s);
+    lanes::Add(coast, lanes, pitch_error_rad, time_s);
   }
 
   /// Loads at a tick outside the coast.

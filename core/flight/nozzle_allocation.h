@@ -11,7 +11,7 @@ inline namespace DISPERSA_ISA {
 
 /// The allocation of each lane's stage to the drives of a bank.
 template <class T>
-struct NozzleLayoutLanes {
+struct BankAllocation {
   T drive[kDrives][kSteeredAxes];
   T felt[kSteeredAxes][kDrives];
   T limit_rad[kNozzles];
@@ -19,27 +19,28 @@ struct NozzleLayoutLanes {
   T per_drive;           ///< 1 over their number in all banks
   T rolls_by_thrusters;  ///< 1 of a stage whose nozzles cannot
 };
-template <class T>
-DISPERSA_INLINE void SetLane(NozzleLayoutLanes<T>& a, int lane, const NozzleLayout& layout, int bank = 0) {
+DISPERSA_INLINE BankAllocation<double> AllocationOf(const NozzleLayout& layout, int bank) {
+  BankAllocation<double> a;
   const int first = bank * kDrives;
   for (int i = 0; i < kDrives; ++i) {
     for (int axis = 0; axis < kSteeredAxes; ++axis) {
-      Lane(a.drive[i][axis], lane) = layout.allocation[first + i][axis];
-      Lane(a.felt[axis][i], lane) = layout.felt[axis][first + i];
+      a.drive[i][axis] = layout.allocation[first + i][axis];
+      a.felt[axis][i] = layout.felt[axis][first + i];
     }
-    Lane(a.there[i], lane) = layout.there[first + i];
+    a.there[i] = layout.there[first + i];
   }
+  for (int i = 0; i < kNozzles; ++i) a.limit_rad[i] = layout.limit_rad[bank * kNozzles + i];
   double drives = 0.0;
   for (const double there : layout.there) drives += there;
-  for (int i = 0; i < kNozzles; ++i) Lane(a.limit_rad[i], lane) = layout.limit_rad[bank * kNozzles + i];
-  Lane(a.per_drive, lane) = 1.0 / drives;
-  Lane(a.rolls_by_thrusters, lane) = layout.rolls ? 0.0 : 1.0;
+  a.per_drive = 1.0 / drives;
+  a.rolls_by_thrusters = layout.rolls ? 0.0 : 1.0;
+  return a;
 }
 
 /// Commands of the drives. A nozzle that would turn by more than its limit keeps the direction: a cone of two
 /// hinges.
 template <class T>
-DISPERSA_INLINE void Allocate(const NozzleLayoutLanes<T>& a, T roll_rad, T pitch_rad, T yaw_rad,
+DISPERSA_INLINE void Allocate(const BankAllocation<T>& a, T roll_rad, T pitch_rad, T yaw_rad,
                               T* command_rad) {
   const auto commanded = [&](int drive) __attribute__((always_inline)) {
     return Fma(a.drive[drive][0], roll_rad, Fma(a.drive[drive][1], pitch_rad, a.drive[drive][2] * yaw_rad));
@@ -56,7 +57,7 @@ DISPERSA_INLINE void Allocate(const NozzleLayoutLanes<T>& a, T roll_rad, T pitch
 
 /// The command about an axis that deflections stand for, with that of the banks before.
 template <class T>
-DISPERSA_INLINE T FeltAbout(const NozzleLayoutLanes<T>& a, int axis, const T* first_rad, const T* second_rad,
+DISPERSA_INLINE T FeltAbout(const BankAllocation<T>& a, int axis, const T* first_rad, const T* second_rad,
                             T before = T(0.0)) {
   T felt = before;
   for (int i = 0; i < kNozzles; ++i)
@@ -66,7 +67,7 @@ DISPERSA_INLINE T FeltAbout(const NozzleLayoutLanes<T>& a, int axis, const T* fi
 
 /// Lanes in which a nozzle is commanded to its limit.
 template <class T>
-DISPERSA_INLINE MaskOf<T> IsSaturated(const NozzleLayoutLanes<T>& a, const T* command_rad) {
+DISPERSA_INLINE MaskOf<T> IsSaturated(const BankAllocation<T>& a, const T* command_rad) {
   // Scaling to the limit leaves a rounding.
   constexpr double kAtLimit = 1.0 - 1e-9;
   T reached(0.0);

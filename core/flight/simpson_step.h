@@ -43,7 +43,7 @@ struct BankState {
 template <class T>
 struct DriveBank {
   BankState<T> state;
-  GimbalLanes<T> gimbal;
+  Actuators<T> gimbal;
   Transition<T> over_half;  ///< over half a tick
   T command_rad[kDrives];   ///< at the actuators
 };
@@ -53,13 +53,13 @@ template <class T>
 class StepState {
  public:
   // ---- what moves ----
-  const RigidBodyStateLanes<T>& motion() const { return motion_; }
+  const RigidMotion<T>& motion() const { return motion_; }
   const BankState<T>& drives(int bank) const { return banks_[bank].state; }
   const BendingState<T>& bending_state() const { return bending_state_; }
   // ---- what it moves under ----
-  const LauncherPlantLanes<T>& plant() const { return plant_; }
-  const LauncherPhaseLanes<T>& phase() const { return phase_; }
-  const BendingTableLanes<T>& bending() const { return bending_; }
+  const FlyingPlant<T>& plant() const { return plant_; }
+  const BurnPhase<T>& phase() const { return phase_; }
+  const FlownModes<T>& bending() const { return bending_; }
   const T* command_rad(int bank) const { return banks_[bank].command_rad; }  ///< at the actuators, kDrives
 
   /// No lane flies: each computes along on numbers that do no harm.
@@ -86,13 +86,13 @@ class StepState {
     SetLane(phase_.boosting, lane, false);
     Lane(phase_.ignition_s, lane) = Lane(phase_.expelled_kg, lane) = 0.0;
     SetLane(phase_.control_torque_n_m, lane, Zero<double>());
-    SetLane(plant_.weather, lane, weather);
+    SetWeather(plant_.weather, lane, weather);
     WriteLane(lane, y);
   }
   /// A stack that has not burnt and is not commanded. `plant` must outlive the flight.
   void SetStack(int lane, const LauncherPlant& plant, int stack) {
-    SetLane(plant_, lane, plant, stack);
-    SetLane(bending_, lane, plant, stack);
+    SetPlant(plant_, lane, plant, stack);
+    SetModes(bending_, lane, plant, stack);
     SetDrives(lane, plant.stacks.data()[stack].gimbal, -1);
     if (stack == 0 && plant.boosters_steer())
       for (int bank = apart_.first_bank; bank < most_banks_; ++bank)
@@ -103,7 +103,7 @@ class StepState {
   }
   /// Of the stack without what it has jettisoned: its masses and its modes (null: it is rigid).
   void SetMass(int lane, const StackMass& mass, const BendingTable* bending) {
-    SetLane(plant_.stack, lane, mass);
+    lanes::SetStack(plant_.stack, lane, mass);
     SetTable(bending_, lane, bending);
     MarkMoved(lane);
   }
@@ -147,7 +147,7 @@ class StepState {
     MarkMoved(lane);
   }
   /// The same burn until an end in the future: what holds now goes on to hold.
-  void ShortenBurn(int lane, const MotorBurn& burn) { SetLane(plant_.burn, lane, burn); }
+  void ShortenBurn(int lane, const MotorBurn& burn) { SetBurn(plant_.burn, lane, burn); }
   /// The thrust bends here, or its slope jumps.
   void PassKink(int lane) { MarkMoved(lane); }
   void BurnOut(int lane) {
@@ -167,7 +167,7 @@ class StepState {
   }
 
   void ReadLane(int lane, double* y) const {
-    for (unsigned i = 0; i < kValues<T, RigidBodyStateLanes<T>>; ++i) y[i] = LaneAt<T>(motion_, i, lane);
+    for (unsigned i = 0; i < kValues<T, RigidMotion<T>>; ++i) y[i] = LaneAt<T>(motion_, i, lane);
     for (unsigned i = 0; i < kValues<T, BendingState<T>>; ++i)
       y[kModalState + i] = LaneAt<T>(bending_state_, i, lane);
     for (int drive = 0; drive < most_banks_ * kDrives; ++drive) {
@@ -177,7 +177,7 @@ class StepState {
     }
   }
   void WriteLane(int lane, const double* y) {
-    for (unsigned i = 0; i < kValues<T, RigidBodyStateLanes<T>>; ++i) SetLaneAt<T>(motion_, i, lane, y[i]);
+    for (unsigned i = 0; i < kValues<T, RigidMotion<T>>; ++i) SetLaneAt<T>(motion_, i, lane, y[i]);
     for (unsigned i = 0; i < kValues<T, BendingState<T>>; ++i)
       SetLaneAt<T>(bending_state_, i, lane, y[kModalState + i]);
     for (int drive = 0; drive < most_banks_ * kDrives; ++drive) {
@@ -340,7 +340,7 @@ class StepState {
   DISPERSA_OUT_OF_LINE void SetMasses(T time_s, TimedMasses<T>& masses) const {
     masses = MassesAt(plant_, phase_, time_s);
   }
-  DISPERSA_OUT_OF_LINE void SetNozzles(const DriveState<T>& s, const GimbalLanes<T>& gimbal,
+  DISPERSA_OUT_OF_LINE void SetNozzles(const DriveState<T>& s, const Actuators<T>& gimbal,
                                        const T* commands_rad, Nozzles<T>& nozzles) const {
     nozzles = NozzlesAt(s.angle_rad);
     if (plant_.nozzles_have_mass) SetAccelerations(gimbal, commands_rad, s, nozzles);
@@ -359,12 +359,12 @@ class StepState {
     ShapesAt(bending_, masses.propellant_kg);
   }
   template <bool kBends, bool kListed>
-  DISPERSA_OUT_OF_LINE void SetRates(const RigidBodyStateLanes<T>& s, const BendingState<T>& bent_by,
-                                     Point& at, Rates<T>& rates, Instant<T>* instant) const {
+  DISPERSA_OUT_OF_LINE void SetRates(const RigidMotion<T>& s, const BendingState<T>& bent_by, Point& at,
+                                     Rates<T>& rates, Instant<T>* instant) const {
     rates = RatesOf(earth_.rotation_rate_rad_s, plant_, phase_, Any(phase_.burning), at.around, at.masses,
                     TurnedAs<kListed>(), s, BodyAs<kBends>(bent_by, at.modal), instant);
   }
-  DISPERSA_OUT_OF_LINE static void SetDriven(const DriveState<T>& from, const GimbalLanes<T>& gimbal,
+  DISPERSA_OUT_OF_LINE static void SetDriven(const DriveState<T>& from, const Actuators<T>& gimbal,
                                              const T* commands_rad, const Transition<T>& over, T step_s,
                                              DriveState<T>& to) {
     to = Propagate(gimbal, commands_rad, over, step_s, from);
@@ -414,7 +414,7 @@ class StepState {
   DISPERSA_INLINE Vector<T> CgVelocityAt(const TimedMasses<T>& masses, const Turn<T>& q) const {
     return plant_.flow_coriolis ? CgVelocityOf(masses, q) : Zero<T>();
   }
-  static void SetTransition(const GimbalLanes<T>& drives, Transition<T>& over, int lane, double time_s) {
+  static void SetTransition(const Actuators<T>& drives, Transition<T>& over, int lane, double time_s) {
     const Transition<double> one =
         TransitionOver(Lane(drives.bandwidth2_1_s2, lane), Lane(drives.twice_damping_1_s, lane), time_s);
     Lane(over.aa, lane) = one.aa;
@@ -462,7 +462,7 @@ class StepState {
     }
   }
   void SetDrives(int bank, int lane, const Gimbal& gimbal, int stuck_nozzle) {
-    SetLane(banks_[bank].gimbal, lane, gimbal, stuck_nozzle, 0.5 * tick_s_);
+    SetActuators(banks_[bank].gimbal, lane, gimbal, stuck_nozzle, 0.5 * tick_s_);
     SetTransition(banks_[bank].gimbal, banks_[bank].over_half, lane, 0.5 * tick_s_);
   }
   template <class State>
@@ -470,12 +470,12 @@ class StepState {
     return drive % kDrives < kNozzles ? bank.first : bank.second;
   }
 
-  RigidBodyStateLanes<T> motion_;
+  RigidMotion<T> motion_;
   BendingState<T> bending_state_;
-  LauncherPlantLanes<T> plant_;
-  LauncherPhaseLanes<T> phase_;
-  BendingTableLanes<T> bending_;
-  static_assert(kValues<T, RigidBodyStateLanes<T>> == kRigidBodySize);
+  FlyingPlant<T> plant_;
+  BurnPhase<T> phase_;
+  FlownModes<T> bending_;
+  static_assert(kValues<T, RigidMotion<T>> == kRigidBodySize);
   static_assert(kModalState + kValues<T, BendingState<T>> == kBentLauncherSize);
 
   Earth earth_;
@@ -528,7 +528,7 @@ MaskOf<T> StepState<T>::StepOf(MaskOf<T> moving, bool all, T from_s, T to_s) {
     SetSwung(over_half, a.modal, a.modal_slopes, no_curvature, bent_middle);
   }
 
-  RigidBodyStateLanes<T> middle;
+  RigidMotion<T> middle;
   middle.p = Along(Along(motion_.p, half, motion_.v), h2_8, a.rates.dv);
   middle.v = Along(Along(motion_.v, half, a.rates.dv), h2_8, a.slopes.dv);
   middle.q = TurnedBy(motion_.q, Along(half * motion_.w, h2_8, a.rates.dw));
@@ -538,7 +538,7 @@ MaskOf<T> StepState<T>::StepOf(MaskOf<T> moving, bool all, T from_s, T to_s) {
   SetAir(middle.p, b.around);
   SetRates<kBends, kListed>(middle, kBends ? bent_middle : bending_state_, b, b.rates, nullptr);
 
-  RigidBodyStateLanes<T> end;
+  RigidMotion<T> end;
   end.p = Along(Along(motion_.p, h, motion_.v), h2_6, Along(a.rates.dv, two, b.rates.dv));
   const Vector<T> turn = Along(h * motion_.w, h2_6, Along(a.rates.dw, two, b.rates.dw));
   end.q = TurnedBy(motion_.q, Along(turn, h2 * h * T(1.0 / 12.0), Cross(middle.w, b.rates.dw)));

@@ -46,7 +46,7 @@ void EachMode(const LauncherPlant& plant, std::size_t stack, F f) {
       for (std::size_t level = 0; level < table->propellant_kg.size(); ++level)
         highest_rad_s = std::max(highest_rad_s,
                                  table->Row(plane, static_cast<int>(level), mode)[BendingTable::kFrequency]);
-    f(mode, plant.bending.frequency[static_cast<std::size_t>(mode)] * highest_rad_s);
+    f(mode, plant.bending.frequency_factor[static_cast<std::size_t>(mode)] * highest_rad_s);
   }
 }
 

@@ -15,7 +15,7 @@ struct Flow {
 };
 Flow FlowAt(const GuidanceMission& mission, const NavigatedState& state, double altitude_m) {
   const AirTable& table = mission.air ? *mission.air : StandardAir();
-  const lanes::AirStateLanes<double> air = lanes::AirAt(table, altitude_m);
+  const lanes::AirPressure<double> air = lanes::AirAt(table, altitude_m);
   const Vector3 turns(0.0, 0.0, mission.earth.rotation_rate_rad_s);
   return {air.pressure_pa / air.energy_j_kg, (state.v_IC_I - turns.cross(state.p_EoC_I)).norm()};
 }

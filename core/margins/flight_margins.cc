@@ -200,9 +200,9 @@ class InstantLoop {
               double tick_s, const MarginModel& of)
       : tick_s_(tick_s),
         delay_ticks_(plant.stacks[static_cast<std::size_t>(sample.stack)].gimbal.delay_ticks) {
-    const std::array<double, kModes> nominal = plant.bending.frequency;
+    const std::array<double, kModes> nominal = plant.bending.frequency_factor;
     for (const FrequencySet& set : FrequencySets(ModesOf(plant, sample.stack), of.frequency_band)) {
-      for (std::size_t k = 0; k < kModes; ++k) plant.bending.frequency[k] = set.factor[k] * nominal[k];
+      for (std::size_t k = 0; k < kModes; ++k) plant.bending.frequency_factor[k] = set.factor[k] * nominal[k];
       plants_.push_back({set.name, LineariseAxis(plant, sample, axis, sensors, of.path)});
       if (plants_.back().plant.lowest_mode_rad_s == 0.0) break;
     }

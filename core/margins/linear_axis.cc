@@ -133,7 +133,8 @@ AxisPlant LineariseAxis(const LauncherPlant& plant, const TickSample& sample, Ax
   const double sign = axis == kPitch ? 1.0 : -1.0;
   const auto slope_of = [&](int column, int mode) {
     const double propellant = stack.burn.Propellant(sample.since_ignition_s);
-    return sign * plant.bending.slope * table->At(table->planes == 1 ? 0 : plane, mode, column, propellant);
+    return sign * plant.bending.slope_factor *
+           table->At(table->planes == 1 ? 0 : plane, mode, column, propellant);
   };
   const auto rate_at = [&](int column) {
     Eigen::RowVectorXd row = Eigen::RowVectorXd::Unit(size, 1);
@@ -148,9 +149,9 @@ AxisPlant LineariseAxis(const LauncherPlant& plant, const TickSample& sample, Ax
                             weights.gyro[g], 0.5 * (sensors.gyros[g].sample_ticks - 1)});
   }
   if (modes > 0)
-    linear.lowest_mode_rad_s =
-        plant.bending.frequency[0] * table->At(table->planes == 1 ? 0 : plane, 0, BendingTable::kFrequency,
-                                               stack.burn.Propellant(sample.since_ignition_s));
+    linear.lowest_mode_rad_s = plant.bending.frequency_factor[0] *
+                               table->At(table->planes == 1 ? 0 : plane, 0, BendingTable::kFrequency,
+                                         stack.burn.Propellant(sample.since_ignition_s));
   return linear;
 }
 

@@ -21,16 +21,8 @@ template <class T>
 DISPERSA_INLINE Vector<T> Zero() {
   return {T(0.0), T(0.0), T(0.0)};
 }
-template <class T>
-DISPERSA_INLINE void SetLane(Vector<T>& v, int lane, const Vector<double>& value) {
-  Lane(v.x, lane) = value.x;
-  Lane(v.y, lane) = value.y;
-  Lane(v.z, lane) = value.z;
-}
-template <class T>
-DISPERSA_INLINE Vector<double> LaneOf(const Vector<T>& v, int lane) {
-  return {Lane(v.x, lane), Lane(v.y, lane), Lane(v.z, lane)};
-}
+/// Of three numbers.
+DISPERSA_INLINE Vector<double> VectorAt(const double* v) { return {v[0], v[1], v[2]}; }
 /// a + k b.
 template <class T>
 DISPERSA_INLINE Vector<T> Along(Vector<T> a, T k, Vector<T> b) {
@@ -58,6 +50,10 @@ struct Matrix {
     return {Dot(m.row[0], v), Dot(m.row[1], v), Dot(m.row[2], v)};
   }
 };
+/// Of nine numbers, column by column.
+DISPERSA_INLINE Matrix<double> MatrixAt(const double* m) {
+  return {{{m[0], m[3], m[6]}, {m[1], m[4], m[7]}, {m[2], m[5], m[8]}}};
+}
 /// Transposed times v.
 template <class T>
 DISPERSA_INLINE Vector<T> TransposeTimes(const Matrix<T>& m, Vector<T> v) {

@@ -310,6 +310,14 @@ DISPERSA_INLINE void SetLane(Mask<8>& mask, int lane, bool value) {
 }
 #endif
 
+/// Whether a number of any lane is not 0.
+template <class T>
+DISPERSA_INLINE bool IsAnywhere(const T& value) {
+  bool any = false;
+  for (int lane = 0; lane < kWidth<T>; ++lane) any |= Lane(value, lane) != 0.0;
+  return any;
+}
+
 /// Bit i: lane i.
 DISPERSA_INLINE unsigned Bits(bool mask) { return mask ? 1u : 0u; }
 DISPERSA_INLINE unsigned Bits(Mask<4> mask) { return static_cast<unsigned>(_mm256_movemask_pd(mask.v)); }
@@ -389,7 +397,7 @@ DISPERSA_INLINE void Blend(MaskOf<T> mask, const S& from, S& to) {
     SetValueAt(to, i, Select(mask, ValueAt<T>(from, i), ValueAt<T>(to, i)));
 }
 
-/// A lane of a struct: `S` of T, `V` of 64-bit values in the same order.
+/// A lane of a struct of T in one of 64-bit values in the same order.
 template <class T, class S, class V>
 DISPERSA_INLINE void SetLaneValues(S& to, int lane, const V& from) {
   static_assert(kValues<T, S> == kValues<double, V>);
@@ -399,6 +407,18 @@ template <class T, class S, class V>
 DISPERSA_INLINE void ReadLaneValues(const S& from, int lane, V& to) {
   static_assert(kValues<T, S> == kValues<double, V>);
   for (unsigned i = 0; i < kValues<T, S>; ++i) SetValueAt(to, i, LaneAt<T>(from, i, lane));
+}
+
+/// A lane of X<T> is an X<double>: any struct that consists of values alone.
+template <template <class> class X, class T>
+DISPERSA_INLINE void SetLane(X<T>& to, int lane, const X<double>& from) {
+  SetLaneValues<T>(to, lane, from);
+}
+template <template <class> class X, class T>
+DISPERSA_INLINE X<double> LaneOf(const X<T>& from, int lane) {
+  X<double> to;
+  ReadLaneValues<T>(from, lane, to);
+  return to;
 }
 
 /// Truncates towards zero, lane by lane. Values must fit int.

@@ -31,6 +31,15 @@ enum LiftEffect : int {
 /// (lift_distribution.h).
 enum LiftCause : int { kSlopeSlender, kSlopeShift, kRateSlender, kRateShift, kLiftCauses };
 
+/// Factors of one flight on every stack's bending.
+template <class T>
+struct BendingFactorsOf {
+  std::array<T, kModes> frequency_factor{T(1.0), T(1.0), T(1.0), T(1.0), T(1.0)};  ///< of each mode
+  T damping_ratio = T(0.0);
+  T slope_factor = T(1.0);  ///< of the slopes that sensors feel
+};
+using BendingFactors = BendingFactorsOf<double>;
+
 class BendingPlaces;  ///< places of a stack's mesh, found once for all masses (bending_places.h)
 
 struct BendingTable {

@@ -34,7 +34,7 @@ Eigen::MatrixXd DisplacementsByEnergy(const std::vector<BeamElement>& elements) 
 
 }  // namespace
 
-BeamMassProperties MassPropertiesOf(const Eigen::MatrixXd& mass, const std::vector<double>& stations) {
+BeamMassProperties PropertiesOf(const Eigen::MatrixXd& mass, const std::vector<double>& stations) {
   // About the middle first, so that nothing cancels.
   const double middle = 0.5 * (stations.front() + stations.back());
   const Eigen::MatrixXd rigid = RigidShapes(stations, middle);
@@ -48,7 +48,7 @@ namespace {
 // The modes for shapes of unit energy. Takes the rigid motion, in the sense of the masses, from them.
 FreeFreeModes ModesAmong(Eigen::MatrixXd shape, const std::vector<double>& stations,
                          const Eigen::MatrixXd& mass, int count) {
-  const BeamMassProperties whole = MassPropertiesOf(mass, stations);
+  const BeamMassProperties whole = PropertiesOf(mass, stations);
   const Eigen::MatrixXd rigid = RigidShapes(stations, whole.cg_station_m);
   Eigen::MatrixXd momenta = MassTimes(mass, rigid).transpose() * shape;
   momenta.row(0) /= whole.mass_kg;

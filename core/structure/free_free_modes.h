@@ -14,7 +14,7 @@ struct BeamMassProperties {
   double cg_station_m = 0.0;
   double transverse_inertia_kg_m2 = 0.0;  ///< about the centre of gravity
 };
-BeamMassProperties MassPropertiesOf(const Eigen::MatrixXd& mass, const std::vector<double>& stations);
+BeamMassProperties PropertiesOf(const Eigen::MatrixXd& mass, const std::vector<double>& stations);
 
 struct FreeFreeModes {
   Eigen::VectorXd frequency_rad_s;  ///< rising

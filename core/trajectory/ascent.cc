@@ -74,17 +74,17 @@ bool Steers(const AscentModel& model, const FlightProgram& program) {
 }
 
 template <class T>
-void SetLane(lanes::Leg<T>& leg, int lane, const AscentModel& model, const Flight& flight) {
+void SetLeg(lanes::Leg<T>& leg, int lane, const AscentModel& model, const Flight& flight) {
   const std::size_t stack = static_cast<std::size_t>(flight.stack);
-  SetLane(leg.program, lane, *flight.program);
-  SetLane(leg.stack, lane, MassOf(model.plant, flight.stack, flight.jettisoned));
-  SetLane(leg.burn, lane, flight.burns[stack]);
+  SetLane(leg.program, lane, lanes::Prepared(*flight.program));
+  SetStack(leg.stack, lane, MassOf(model.plant, flight.stack, flight.jettisoned));
+  SetBurn(leg.burn, lane, flight.burns[stack]);
   const LauncherStack& shape = model.plant.stacks[stack];
   SetShape(leg.aero, lane, shape, shape.AeroAfter(flight.jettisoned, flight.burning));
-  SetLane(leg.weather, lane, model.weather);
+  SetWeather(leg.weather, lane, model.weather);
   leg.has_boosters = model.plant.boosters != nullptr;
   if (leg.has_boosters) {
-    SetLane(leg.beside, lane, model.plant.boosters->burn, model.plant.boosters->propellant);
+    SetBeside(leg.beside, lane, model.plant.boosters->burn, model.plant.boosters->propellant);
     if (stack > 0 || (flight.jettisoned & kBoostersGone) != 0) Lane(leg.beside.burn.left_kg, lane) = 0.0;
   }
   lanes::SetLane(leg.boosting, lane, flight.boosting);
@@ -109,22 +109,6 @@ template <class T>
 struct Peaks {
   T qbar_pa, q_alpha_pa_rad, axial_g, lateral_g, turn_rate_rad_s, transonic_alpha_rad;
 };
-
-template <class T>
-Peaks<double> LaneOf(const Peaks<T>& peaks, int lane) {
-  return {Lane(peaks.qbar_pa, lane),         Lane(peaks.q_alpha_pa_rad, lane),
-          Lane(peaks.axial_g, lane),         Lane(peaks.lateral_g, lane),
-          Lane(peaks.turn_rate_rad_s, lane), Lane(peaks.transonic_alpha_rad, lane)};
-}
-template <class T>
-void SetLane(Peaks<T>& peaks, int lane, const Peaks<double>& value) {
-  Lane(peaks.qbar_pa, lane) = value.qbar_pa;
-  Lane(peaks.q_alpha_pa_rad, lane) = value.q_alpha_pa_rad;
-  Lane(peaks.axial_g, lane) = value.axial_g;
-  Lane(peaks.lateral_g, lane) = value.lateral_g;
-  Lane(peaks.turn_rate_rad_s, lane) = value.turn_rate_rad_s;
-  Lane(peaks.transonic_alpha_rad, lane) = value.transonic_alpha_rad;
-}
 
 // Adds an instant to the peaks.
 template <class T>
@@ -192,7 +176,7 @@ class Fleet {
   AscentPoint PointOf(int lane) const {
     const Flight& flight = flights_[lane];
     AscentPoint point;
-    SetLane(point.leg, 0, model_, flight);
+    SetLeg(point.leg, 0, model_, flight);
     point.time_s = Lane(time_s_, lane);
     point.stage = flight.stack + 1;
     point.p = LaneOf(p_, lane);
@@ -263,8 +247,8 @@ void Fleet<T>::TakeOff(int lane, const FlightProgram& program, AscentResult* res
   SetLane(p_, lane, ToLanes(flight.frame.p_EoL_I));
   SetLane(v_, lane, ToLanes(flight.frame.v_IL_I));
   Lane(time_s_, lane) = Lane(next_s_, lane) = 0.0;
-  SetLane(peaks_, lane, Peaks<double>{});
-  SetLane(leg_, lane, model_, flight);
+  lanes::SetLane(peaks_, lane, Peaks<double>{});
+  SetLeg(leg_, lane, model_, flight);
   if (!result) return;
   *result = {};
   result->last_ignition_s = all.last_ignition_s;
@@ -371,7 +355,7 @@ void Fleet<T>::LetGo(int lane, double from_s, const LaneVector& p, const LaneVec
   Drop(lane, due);
   for (std::size_t i = 0; i < flight.result->jettison_s.size(); ++i)
     if (due >> i & 1u) flight.result->jettison_s[i] = Lane(time_s_, lane);
-  SetLane(leg_, lane, model_, flight);
+  SetLeg(leg_, lane, model_, flight);
   const double event_s = flight.to_s;
   if (event_s > Lane(time_s_, lane) + kSameInstant_s) {
     SetOut(lane, event_s);
@@ -431,7 +415,7 @@ void Fleet<T>::CutOff(int lane, double from_s, const LaneVector& p, const LaneVe
   flight.events = std::move(all.events);
   result.last_ignition_s = all.last_ignition_s;
   result.earlier_ignition_s = all.earlier_ignition_s;
-  SetLane(leg_, lane, model_, flight);
+  SetLeg(leg_, lane, model_, flight);
   flight.step = flight.steps - 1;  // on to the cut-off
 }
 
@@ -453,7 +437,7 @@ void Fleet<T>::GoOn(int lane) {
     const AscentEvent& event = flight.events[flight.next_event];
     if (event.time_s > Lane(time_s_, lane) + kSameInstant_s) return SetOut(lane, event.time_s);
     Happen(lane, event);
-    SetLane(leg_, lane, model_, flight);
+    SetLeg(leg_, lane, model_, flight);
     ++flight.next_event;
   }
   Conclude(lane, true);
@@ -484,9 +468,9 @@ void Fleet<T>::SetOut(int lane, double to_s) {
 template <class T>
 void Fleet<T>::ObserveHere(int lane) {
   const AscentPoint point = PointOf(lane);
-  Peaks<double> peaks = LaneOf(peaks_, lane);
+  Peaks<double> peaks = lanes::LaneOf(peaks_, lane);
   Observe(options_, ground_, point.leg, point.time_s, point.p, point.v, InstantOf(ground_, point), peaks);
-  SetLane(peaks_, lane, peaks);
+  lanes::SetLane(peaks_, lane, peaks);
 }
 
 template <class T>
@@ -582,7 +566,7 @@ void Fleet<T>::Conclude(int lane, bool completed) {
                   e.ascending_node_rad,
                   e.radius_m,
                   e.argument_of_latitude_rad};
-  const Peaks<double> peaks = LaneOf(peaks_, lane);
+  const Peaks<double> peaks = lanes::LaneOf(peaks_, lane);
   result.q_max_pa = peaks.qbar_pa;
   result.q_alpha_max_pa_rad = peaks.q_alpha_pa_rad;
   result.axial_load_max_g = peaks.axial_g;
@@ -602,9 +586,7 @@ void Fleet<T>::Conclude(int lane, bool completed) {
 }  // namespace
 
 double ProgrammedIncidence(const FlightProgram& program, double time_s) {
-  lanes::FlightProgramLanes<double> prepared;
-  SetLane(prepared, 0, program);
-  return lanes::IncidenceAt(prepared, time_s);
+  return lanes::IncidenceAt(lanes::Prepared(program), time_s);
 }
 
 AscentModel BuildAscentModel(const Vehicle& vehicle, double tick_s) {

@@ -20,28 +20,27 @@ struct Ground {
 
 /// FlightProgram with precomputed reciprocals.
 template <class T>
-struct FlightProgramLanes {
+struct PreparedProgram {
   T alpha_max_rad, t1_s, t3_s, t2_s;
   T inverse_fall_1_s, inverse_rise_1_s;  ///< 1 / (t3 - t1), 1 / (t2 - t3)
 };
-template <class T>
-DISPERSA_INLINE void SetLane(FlightProgramLanes<T>& p, int lane, const FlightProgram& program) {
-  Lane(p.alpha_max_rad, lane) = program.alpha_max_rad;
-  Lane(p.t1_s, lane) = program.t1_s;
-  Lane(p.t3_s, lane) = program.t3_s;
-  Lane(p.t2_s, lane) = program.t2_s;
-  Lane(p.inverse_fall_1_s, lane) = 1.0 / (program.t3_s - program.t1_s);
-  Lane(p.inverse_rise_1_s, lane) = 1.0 / (program.t2_s - program.t3_s);
+DISPERSA_INLINE PreparedProgram<double> Prepared(const FlightProgram& program) {
+  return {program.alpha_max_rad,
+          program.t1_s,
+          program.t3_s,
+          program.t2_s,
+          1.0 / (program.t3_s - program.t1_s),
+          1.0 / (program.t2_s - program.t3_s)};
 }
 
 /// Values that stay constant between two events of a lane.
 template <class T>
 struct Leg {
-  FlightProgramLanes<T> program;
-  FlightWeatherLanes<T> weather;
-  StackMassLanes<T> stack;
-  MotorBurnLanes<T> burn;
-  BodyAerodynamicsLanes<T> aero;
+  PreparedProgram<T> program;
+  FlownWeather<T> weather;
+  BurningStack<T> stack;
+  BurningMotor<T> burn;
+  BodyInFlow<T> aero;
   bool has_boosters;  ///< of the vehicle
   BesideStage<T> beside;
   MaskOf<T> burning, burnt, boosting;
@@ -63,7 +62,7 @@ DISPERSA_INLINE T SmoothStep(T s) {
 
 /// ProgrammedIncidence of ascent.h.
 template <class T>
-DISPERSA_INLINE T IncidenceAt(const FlightProgramLanes<T>& program, T time_s) {
+DISPERSA_INLINE T IncidenceAt(const PreparedProgram<T>& program, T time_s) {
   const T s = Select(time_s < program.t3_s, (time_s - program.t1_s) * program.inverse_fall_1_s,
                      (program.t2_s - time_s) * program.inverse_rise_1_s);
   return T(0.0) - program.alpha_max_rad * SmoothStep(Clamp(s, T(0.0), T(1.0)));
@@ -141,11 +140,11 @@ DISPERSA_OUT_OF_LINE AscentInstant<T> InstantAt(const Ground& ground, const Leg<
                                                 const Vector<T>& p, const Vector<T>& v) {
   const Surroundings<T> around = SurroundingsAt(ground.earth, *ground.air, leg.weather, p);
   const BurnState<T> burn = BurnAt(leg.burn, time_s - leg.ignition_s);
-  const T unlit = Select(leg.burnt, leg.burn.left_kg, leg.burn.propellant_kg);
-  MassPropertiesLanes<T> masses = MassesAt(leg.stack, Select(leg.burning, burn.propellant_kg, unlit));
+  const T unlit = Select(leg.burnt, leg.burn.left_kg, leg.burn.propellant_mass_kg);
+  MassPropertiesOf<T> masses = MassesAt(leg.stack, Select(leg.burning, burn.propellant_kg, unlit));
   T beside_thrust_n(0.0);
   if (leg.has_boosters) {
-    const MotorBurnLanes<T>& beside = leg.beside.burn;
+    const BurningMotor<T>& beside = leg.beside.burn;
     const BurnState<T> boost = BurnAt(beside, time_s - leg.ignition_s);
     AddBeside(leg.beside, Select(leg.boosting, boost.propellant_kg, beside.left_kg), T(0.0), T(0.0), masses);
     const T push =

@@ -42,11 +42,11 @@ void HeldPlants::Hold(LauncherPlant plant, const std::string& name, const TickSa
   SensorModel all = plant_.untuned.sensors();
   all.stages[stage].unit = 1.0;
   for (std::size_t g = 0; g < all.gyros.size(); ++g) all.stages[stage].gyro[g] = 1.0;
-  const std::array<double, kModes> nominal = plant.bending.frequency;
+  const std::array<double, kModes> nominal = plant.bending.frequency_factor;
   const auto& bending = plant.stacks[stage].bending;
   const std::vector<FrequencySet> sets = FrequencySets(bending ? bending->modes : 0, frequency_band);
   for (const FrequencySet& set : sets) {
-    for (std::size_t k = 0; k < kModes; ++k) plant.bending.frequency[k] = set.factor[k] * nominal[k];
+    for (std::size_t k = 0; k < kModes; ++k) plant.bending.frequency_factor[k] = set.factor[k] * nominal[k];
     // Roll has no bending and no aerodynamic instability, so it is checked for the nominal plant only.
     const std::vector<Axis> axes = frequency_band > 0.0 && &set == &sets.front()
                                        ? std::vector{kPitch, kYaw, kRoll}

@@ -79,11 +79,9 @@ DrainingMass Draining(const std::vector<Tank>& tanks, double propellant_kg) {
 }  // namespace
 
 MassProperties StackMass::At(double propellant_kg) const {
-  lanes::StackMassLanes<double> stack;
-  lanes::SetLane(stack, 0, *this);
-  const lanes::MassPropertiesLanes<double> m = lanes::MassesAt(stack, propellant_kg);
-  return {m.mass_kg,          m.cg_station_m,    m.axial_kg_m2,
-          m.transverse_kg_m2, m.axial_per_kg_m2, m.transverse_per_kg_m2};
+  lanes::BurningStack<double> stack;
+  lanes::SetStack(stack, 0, *this);
+  return lanes::MassesAt(stack, propellant_kg);
 }
 
 double DryMass(const Vehicle& vehicle, int stage) {
@@ -273,10 +271,11 @@ std::vector<StackMass> BuildStackMasses(const Vehicle& vehicle) {
       stack.fixed_second_moment_kg_m2 += std::exchange(stack.tanks.second_kg_m2, 0.0);
       continue;
     }
+    const double length_m = burning.grain.bottom_station_m - burning.grain.top_station_m;
     stack.grain_station_m = 0.5 * (burning.grain.top_station_m + burning.grain.bottom_station_m);
-    stack.grain_length_m = burning.grain.bottom_station_m - burning.grain.top_station_m;
-    stack.grain_outer_radius_m = 0.5 * burning.grain.outer_diameter_m;
-    stack.grain_density_kg_m3 = PropellantDensity(burning);
+    stack.grain_outer2_m2 = Square(0.5 * burning.grain.outer_diameter_m);
+    stack.grain_inner_per_kg_m2 = 1.0 / (kPi * PropellantDensity(burning) * length_m);
+    stack.grain_length2_m2 = Square(length_m) / 12.0;
   }
   // After its restarts were copied: boosters have left before the first stage burns again.
   if (vehicle.boosters.count > 0) {

@@ -9,14 +9,18 @@ namespace dispersa {
 
 /// Mass properties of an axisymmetric stack. Inertias are about its centre of gravity, along and across the
 /// axis.
-struct MassProperties {
-  double mass_kg = 0.0;
-  double cg_station_m = 0.0;
-  double axial_inertia_kg_m2 = 0.0;
-  double transverse_inertia_kg_m2 = 0.0;
-  double axial_inertia_per_kg = 0.0;       ///< derivative by propellant mass, m²
-  double transverse_inertia_per_kg = 0.0;  ///< derivative by propellant mass about the moving CG, m²
+template <class T>
+struct MassPropertiesOf {
+  T mass_kg = T(0.0);
+  T cg_station_m = T(0.0);
+  T axial_inertia_kg_m2 = T(0.0);
+  T transverse_inertia_kg_m2 = T(0.0);
+  T axial_inertia_per_kg = T(0.0);       ///< derivative by propellant mass, m²
+  T transverse_inertia_per_kg = T(0.0);  ///< derivative by propellant mass about the moving CG, m²
+  /// Where mass goes: the grain's middle, or the surfaces of the liquids, by their shares.
+  T source_station_m = T(0.0);
 };
+using MassProperties = MassPropertiesOf<double>;
 
 /// Liquids that drain in a constant mixture: polynomials of the remaining mass m.
 ///
@@ -26,31 +30,36 @@ struct MassProperties {
 /// smooth wall does not turn an inviscid liquid. Free liquid resists pitching less, by up to a half in a
 /// squat tank (H. N. Abramson (ed.), "The Dynamic Behavior of Liquids in Moving Containers", NASA SP-106,
 /// 1966, chapters 2 and 6). Sloshing is not modelled.
-struct DrainingMass {
-  double first_per_kg_m = 0.0, first_per_kg2_m = 0.0;  ///< first moment m (a + b m)
+template <class T>
+struct DrainingMassOf {
+  T first_per_kg_m = T(0.0), first_per_kg2_m = T(0.0);  ///< first moment m (a + b m)
   /// Second moment m (a + b m + c m²).
-  double second_per_kg_m2 = 0.0, second_per_kg2_m2 = 0.0, second_per_kg3_m2 = 0.0;
+  T second_per_kg_m2 = T(0.0), second_per_kg2_m2 = T(0.0), second_per_kg3_m2 = T(0.0);
   /// Of a mixture that differs from the tanks' loads: what both moments have besides (MixtureOf).
-  double first_kg_m = 0.0, second_kg_m2 = 0.0;
+  T first_kg_m = T(0.0), second_kg_m2 = T(0.0);
 };
+using DrainingMass = DrainingMassOf<double>;
 
 /// All masses of a stack but the burning propellant, summed once, and the burning grain or the draining
 /// tanks.
 ///
 /// The grain burns from its bore outwards at constant length. With the propellant's density rho: r_i² = r_o²
 /// - m / (pi rho L). Its inertias are those of a tube. Parallel axes by Huygens and Steiner.
-struct StackMass {
-  double fixed_mass_kg = 0.0;
-  double fixed_first_moment_kg_m = 0.0;    ///< about station 0
-  double fixed_second_moment_kg_m2 = 0.0;  ///< transverse, about station 0, own inertias included
-  double fixed_axial_inertia_kg_m2 = 0.0;
-  double grain_station_m = 0.0;
-  double grain_length_m = 0.0;
-  double grain_outer_radius_m = 0.0;
-  double grain_density_kg_m3 = 0.0;
+template <class T>
+struct StackSums {
+  T fixed_mass_kg = T(0.0);
+  T fixed_first_moment_kg_m = T(0.0);    ///< about station 0
+  T fixed_second_moment_kg_m2 = T(0.0);  ///< transverse, about station 0, own inertias included
+  T fixed_axial_inertia_kg_m2 = T(0.0);
+  T grain_station_m = T(0.0);
+  T grain_outer2_m2 = T(0.0);        ///< its outer radius squared
+  T grain_inner_per_kg_m2 = T(0.0);  ///< by which each kilogram lowers its bore's radius squared
+  T grain_length2_m2 = T(0.0);       ///< its length squared, over 12
+  DrainingMassOf<T> tanks;
+};
+struct StackMass : StackSums<double> {
   double propellant_mass_kg = 0.0;  ///< at ignition
   bool drains = false;              ///< tanks in place of the grain
-  DrainingMass tanks;
   const MassRows* table = nullptr;  ///< in place of grain or tanks (null: none), the stage's own
   SideSums sides{};                 ///< of all but the burning propellant, by tables of its stages
 

@@ -8,7 +8,7 @@ namespace dispersa {
 class PreparedBurn {
  public:
   /// Refers to the motor's curve.
-  explicit PreparedBurn(const MotorBurn& motor) { lanes::SetLane(burn_, 0, motor); }
+  explicit PreparedBurn(const MotorBurn& motor) { lanes::SetBurn(burn_, 0, motor); }
 
   /// At a time within the burn: MotorBurn's Fraction() and Propellant().
   lanes::BurnState<double> At(double since_ignition_s) const {
@@ -16,7 +16,7 @@ class PreparedBurn {
   }
 
  private:
-  lanes::MotorBurnLanes<double> burn_;
+  lanes::BurningMotor<double> burn_;
 };
 
 }  // namespace dispersa

@@ -13,18 +13,22 @@ namespace dispersa {
 inline constexpr double kLeastThrustFraction = 0.2;
 
 /// A motor as one flight burns it: nominal data times the flight's factors.
-struct MotorBurn {
-  double vacuum_thrust_n = 0.0;  ///< at full thrust
-  double full_flow_kg_s = 0.0;   ///< at full thrust
-  double propellant_mass_kg = 0.0;
-  double rise_s = 0.0;
-  double tail_s = 0.0;
-  double exit_area_m2 = 0.0;
-  double duration_s = 0.0;  ///< ignition to burnout
-  double left_kg = 0.0;     ///< of the propellant, then
-  /// Replaces the ramps. Its time runs `curve_rate` times as fast as in the file, by the flight's burn rate.
-  std::shared_ptr<const BurnCurve> curve;
-  double curve_rate = 1.0;
+template <class T>
+struct BurnNumbers {
+  T vacuum_thrust_n = T(0.0);  ///< at full thrust
+  T full_flow_kg_s = T(0.0);   ///< at full thrust
+  T propellant_mass_kg = T(0.0);
+  T rise_s = T(0.0);
+  T tail_s = T(0.0);
+  T exit_area_m2 = T(0.0);
+  T duration_s = T(0.0);  ///< ignition to burnout
+  T left_kg = T(0.0);     ///< of the propellant, then
+  /// The curve's time runs so many times as fast as in the file, by the flight's burn rate (in lanes 0:
+  /// none).
+  T curve_rate = T(1.0);
+};
+struct MotorBurn : BurnNumbers<double> {
+  std::shared_ptr<const BurnCurve> curve;  ///< replaces the ramps
 
   /// Fraction of full thrust and flow, 0 outside [0, duration_s].
   double Fraction(double since_ignition_s) const;

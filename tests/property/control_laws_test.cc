@@ -69,10 +69,9 @@ std::vector<Tick> AnyTicks(Random& random) {
 
 // One tick of one lane, by the law itself.
 double StepAlone(const AxisLaw& law, int stage, const Tick& tick, AxisState& state, bool is_reported = true) {
-  lanes::StageLawLanes<double> of_stage;
-  lanes::SetLane(of_stage, 0, law.stages[static_cast<std::size_t>(stage)], 1.0, 1.0);
-  lanes::AxisStateLanes<double> memory;
-  lanes::SetLane(memory, 0, state);
+  const StageLaw& of_stage = law.stages[static_cast<std::size_t>(stage)];
+  AxisMemory<double> memory;
+  lanes::SetLaneValues<double>(memory, 0, state);
   memory.saturation = tick.saturation;
   const lanes::LawInput<double> input{
       law.config,           kTick_s,    of_stage, true, tick.error_rad, tick.rate_rad_s,
@@ -81,7 +80,7 @@ double StepAlone(const AxisLaw& law, int stage, const Tick& tick, AxisState& sta
   output.v = 1e-7;
   lanes::WithLaw(law.config.law,
                  [&](auto each) { decltype(each)::template Step<true>(input, output, memory); });
-  lanes::ReadLane(memory, 0, state);
+  lanes::ReadLaneValues<double>(memory, 0, state);
   return output.command_rad_s2;
 }
 void Ignite(const AxisConfig& config, int stage, AxisState& state) {
@@ -190,13 +189,13 @@ TEST_P(ControlLaws, TakeAForeignCommandOnlyFromAPlugin) {
 template <class T>
 void FlyBesideOthers(const AxisLaw& law, Random& random) {
   constexpr int kLanes = lanes::kWidth<T>;
-  lanes::StageLawLanes<T> stage;
-  lanes::AxisStateLanes<T> memory;
+  StageLawOf<T> stage;
+  AxisMemory<T> memory;
   AxisState alone[kLanes];
   std::vector<Tick> ticks[kLanes];
   for (int lane = 0; lane < kLanes; ++lane) {
-    lanes::SetLane(stage, lane, law.stages[static_cast<std::size_t>(lane % 2)], 1.0, 1.0);
-    lanes::SetLane(memory, lane, alone[lane]);
+    lanes::SetLane(stage, lane, law.stages[static_cast<std::size_t>(lane % 2)]);
+    lanes::SetLaneValues<T>(memory, lane, alone[lane]);
     ticks[lane] = AnyTicks(random);
   }
   for (std::size_t i = 0; i < kTicks; ++i) {
@@ -236,7 +235,7 @@ void FlyBesideOthers(const AxisLaw& law, Random& random) {
         ASSERT_EQ(Bits(lanes::Lane(output.command_rad_s2, lane)), Bits(expected))
             << "tick " << i << ", lane " << lane;
       }
-      lanes::ReadLane(memory, lane, beside);
+      lanes::ReadLaneValues<T>(memory, lane, beside);
       ASSERT_TRUE(Same(beside, alone[lane]))
           << "tick " << i << ", lane " << lane << (acts[lane] ? "" : ", at rest");
     }

@@ -67,17 +67,12 @@ Command DrawnCommand(Stream& draws, const NozzleLayout& layout, double size) {
 struct Drives {
   double command_rad[kDrives];
 };
-Drives Allocated(const lanes::NozzleLayoutLanes<double>& a, const Command& c) {
+Drives Allocated(const lanes::BankAllocation<double>& a, const Command& c) {
   Drives drives;
   lanes::Allocate(a, c.roll_rad, c.pitch_rad, c.yaw_rad, drives.command_rad);
   return drives;
 }
-lanes::NozzleLayoutLanes<double> AllocationOf(const NozzleLayout& layout) {
-  lanes::NozzleLayoutLanes<double> a{};
-  lanes::SetLane(a, 0, layout);
-  return a;
-}
-double Felt(const lanes::NozzleLayoutLanes<double>& a, int axis, const Drives& drives) {
+double Felt(const lanes::BankAllocation<double>& a, int axis, const Drives& drives) {
   return lanes::FeltAbout(a, axis, drives.command_rad, drives.command_rad + kNozzles);
 }
 
@@ -90,7 +85,7 @@ TEST(NozzleAllocation, WhatIsFeltIsWhatWasCommanded) {
       turning_twice += layout.there[k + kNozzles] > 0.0;
       fixed += layout.there[k] == 0.0;
     }
-    const lanes::NozzleLayoutLanes<double> a = AllocationOf(layout);
+    const lanes::BankAllocation<double> a = lanes::AllocationOf(layout, 0);
     // A layout that hardly rolls turns far for it: the smallest commands stay within every limit.
     const Command command = DrawnCommand(draws, layout, 0.3);
     const Drives drives = Allocated(a, command);
@@ -118,7 +113,7 @@ TEST(NozzleAllocation, KeepsEachNozzleWithinItsLimitAndDirection) {
   Stream draws(5, 0, "commands");
   int saturated = 0, free = 0;
   for (const NozzleLayout& layout : DrawnLayouts(300)) {
-    const lanes::NozzleLayoutLanes<double> a = AllocationOf(layout);
+    const lanes::BankAllocation<double> a = lanes::AllocationOf(layout, 0);
     const Command command = DrawnCommand(draws, layout, 2.0);
     const Drives drives = Allocated(a, command);
     bool reached = false;
@@ -145,7 +140,7 @@ TEST(NozzleAllocation, KeepsEachNozzleWithinItsLimitAndDirection) {
 TEST(NozzleAllocation, IsTheLeastThatDoes) {
   Stream draws(6, 0, "deflections");
   for (const NozzleLayout& layout : DrawnLayouts(100)) {
-    const lanes::NozzleLayoutLanes<double> a = AllocationOf(layout);
+    const lanes::BankAllocation<double> a = lanes::AllocationOf(layout, 0);
     Drives any;
     for (int drive = 0; drive < kDrives; ++drive)
       any.command_rad[drive] = layout.there[drive] * (2.0 * draws.Uniform() - 1.0);
@@ -175,12 +170,12 @@ TEST(NozzleAllocation, OfALaneIsThatOfItsStageAlone) {
   const std::vector<NozzleLayout> layouts = DrawnLayouts(40);
   Stream draws(7, 0, "commands");
   for (std::size_t first = 0; first < layouts.size(); first += 4) {
-    lanes::NozzleLayoutLanes<Four> together{};
+    lanes::BankAllocation<Four> together{};
     Four roll(0.0), pitch(0.0), yaw(0.0), drives[kDrives];
     Command commands[4];
     for (std::size_t lane = 0; lane < 4; ++lane) {
       const int at = static_cast<int>(lane);
-      lanes::SetLane(together, at, layouts[first + lane]);
+      lanes::SetLane(together, at, lanes::AllocationOf(layouts[first + lane], 0));
       commands[lane] = DrawnCommand(draws, layouts[first + lane], 2.0);
       lanes::Lane(roll, at) = commands[lane].roll_rad;
       lanes::Lane(pitch, at) = commands[lane].pitch_rad;
@@ -189,7 +184,7 @@ TEST(NozzleAllocation, OfALaneIsThatOfItsStageAlone) {
     lanes::Allocate(together, roll, pitch, yaw, drives);
     for (std::size_t lane = 0; lane < 4; ++lane) {
       const int at = static_cast<int>(lane);
-      const lanes::NozzleLayoutLanes<double> alone = AllocationOf(layouts[first + lane]);
+      const lanes::BankAllocation<double> alone = lanes::AllocationOf(layouts[first + lane], 0);
       const Drives expected = Allocated(alone, commands[lane]);
       for (int drive = 0; drive < kDrives; ++drive)
         EXPECT_EQ(lanes::Lane(drives[drive], at), expected.command_rad[drive]);

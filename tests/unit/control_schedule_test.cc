@@ -128,14 +128,15 @@ void ExpectLanesAsAlone() {
   const AutopilotModel model = Model(Scheduled(), SampleAxis(ControlLaw::kPd));
   constexpr int kLanes = lanes::kWidth<T>;
   lanes::GimbalLoop<T> loop;
-  lanes::AxisStateLanes<T> memory[kAxes];
+  AxisMemory<T> memory[kAxes];
   AutopilotState alone[kLanes];
   int stage_of[kLanes];
   const auto enter = [&](int lane, int stage) {
     stage_of[lane] = stage;
-    lanes::SetLane(loop, lane, model, stage, 1.0, 1.0, 1.0);
+    lanes::SetLoop(loop, lane, model, stage, 1.0, 1.0, 1.0);
     StartStage(model, stage, alone[lane]);
-    for (int axis = 0; axis < kAxes; ++axis) lanes::SetLane(memory[axis], lane, alone[lane].axes[axis]);
+    for (int axis = 0; axis < kAxes; ++axis)
+      lanes::SetLaneValues<T>(memory[axis], lane, alone[lane].axes[axis]);
   };
   for (int lane = 0; lane < kLanes; ++lane) enter(lane, lane == 2 ? 1 : 0);
   for (int tick = 0; tick < 1500; ++tick) {

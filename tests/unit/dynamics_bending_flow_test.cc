@@ -10,11 +10,11 @@ namespace dispersa::dynamics_bending_flow_test {
 namespace {
 
 using lanes::BendingState;
-using lanes::BendingTableLanes;
 using lanes::FlowForce;
-using lanes::LoadTableLanes;
+using lanes::FlownModes;
 using lanes::ModalForce;
 using lanes::NormalForce;
+using lanes::Sections;
 
 constexpr const lanes::SideForce<double>* kRound = nullptr;  // both planes have the same air
 constexpr double kCg_m = 11.0, kXcp_m = 8.0, kSpeed_m_s = 400.0, kSlope_n = 6e5;
@@ -37,10 +37,10 @@ FlowForce<double> LinearAir(Incidence at) {
   return flow;
 }
 
-LoadTableLanes<double> BodySections() {
+Sections<double> BodySections() {
   static const LoadTable loads = MadeUpLoads();
-  LoadTableLanes<double> body{};
-  lanes::SetLane(body, 0, &loads);
+  Sections<double> body{};
+  lanes::SetSections(body, 0, &loads);
   return body;
 }
 
@@ -55,7 +55,7 @@ constexpr double kSmall_n = 1e-8;  // rounding of forces of 1e5 N on arms of 20 
 // A body that moves aside meets the flow at its speed over the airspeed; one that is turned, at its turn.
 TEST(BendingFlow, OfARigidMotionIsTheFlowOfTheMovedBody) {
   const BendingTable table = MadeUpTable(RigidMotions());
-  const BendingTableLanes<double> bending = BendingOf(table, 0.0);
+  const FlownModes<double> bending = BendingOf(table, 0.0);
   BendingState<double> s{};
   s.rate_m_s[0][0] = 3.0;           // towards +y
   s.rate_m_s[1][0] = -2.0;          // towards -z
@@ -102,7 +102,7 @@ std::array<double, kStrips> ForcesByBending(const std::vector<MadeUpMode>& modes
 // incidence does.
 TEST(BendingFlow, OfATurningBodyIsThatOfEachPlacesSpeed) {
   const BendingTable table = MadeUpTable(RigidMotions());
-  const BendingTableLanes<double> bending = BendingOf(table, 0.0);
+  const FlownModes<double> bending = BendingOf(table, 0.0);
   const LoadTable loads = MadeUpLoads();
   const double aft_m = kXcp_m - loads.lift.slender_station_m;
   for (int plane = 0; plane < kPlanes; ++plane) {
@@ -133,8 +133,8 @@ TEST(BendingFlow, OfATurningBodyIsThatOfEachPlacesSpeed) {
 // A bent body's forces do work on each mode by their places.
 TEST(BendingFlow, DrivesEachModeByTheWorkOfItsStrips) {
   const BendingTable table = MadeUpTable(TwoPlanes());
-  const BendingTableLanes<double> bending = BendingOf(table, 0.0);
-  const LoadTableLanes<double> body = BodySections();
+  const FlownModes<double> bending = BendingOf(table, 0.0);
+  const Sections<double> body = BodySections();
   const Incidence straight{-0.03, 0.04};
   BendingState<double> s{};
   for (int plane = 0; plane < kPlanes; ++plane)
@@ -171,7 +171,7 @@ TEST(BendingFlow, DrivesEachModeByTheWorkOfItsStrips) {
 
 TEST(BendingFlow, InVacuumIsNothingHoweverTheBodyRings) {
   const BendingTable table = MadeUpTable(TwoPlanes());
-  const BendingTableLanes<double> bending = BendingOf(table, 0.0);
+  const FlownModes<double> bending = BendingOf(table, 0.0);
   BendingState<double> s{};
   s.q_m[0][0] = s.q_m[1][1] = 0.1;
   s.rate_m_s[0][1] = s.rate_m_s[1][0] = 5.0;
@@ -192,8 +192,8 @@ TEST(BendingFlow, InVacuumIsNothingHoweverTheBodyRings) {
 TEST(BendingSections, CarryTheMassesAheadLessTheirAir) {
   const BendingTable table = MadeUpTable(TwoPlanes());
   constexpr double kDamping = 0.04;
-  const BendingTableLanes<double> bending = BendingOf(table, 0.0, kDamping);
-  const LoadTableLanes<double> body = BodySections();
+  const FlownModes<double> bending = BendingOf(table, 0.0, kDamping);
+  const Sections<double> body = BodySections();
   BendingState<double> s{};
   ModalForce<double> driven{};
   for (int plane = 0; plane < kPlanes; ++plane)
@@ -238,9 +238,9 @@ TEST(BendingSections, CarryTheMassesAheadLessTheirAir) {
 // air.
 TEST(BendingFlow, OfTwoPlanesIsThatOfEach) {
   const BendingTable one = MadeUpTable({TwoPlanes()[0]}), two = MadeUpTable(TwoPlanes());
-  const LoadTableLanes<double> body = BodySections();
+  const Sections<double> body = BodySections();
   for (const BendingTable* table : {&one, &two}) {
-    const BendingTableLanes<double> bending = BendingOf(*table, 0.0);
+    const FlownModes<double> bending = BendingOf(*table, 0.0);
     BendingState<double> s{};
     for (int plane = 0; plane < kPlanes; ++plane)
       for (int mode = 0; mode < 2; ++mode) {
@@ -289,9 +289,9 @@ struct Everything {
   BendingState<double> later;
   lanes::SectionMoments<double> sections;
 };
-Everything Of(const BendingTableLanes<double>& b, const BendingState<double>& s, Incidence at,
+Everything Of(const FlownModes<double>& b, const BendingState<double>& s, Incidence at,
               lanes::Vector<double> force, lanes::Vector<double> couple) {
-  const LoadTableLanes<double> body = BodySections();
+  const Sections<double> body = BodySections();
   Everything o{};
   o.pivot = BentAtPivot(b, s, lanes::Zero<double>(), lanes::Zero<double>());
   o.unit = lanes::UnitTurn(b, s);
@@ -310,7 +310,7 @@ Everything Of(const BendingTableLanes<double>& b, const BendingState<double>& s,
 // same.
 TEST(BendingPlanes, AreOneAnotherTurnedByAQuarterAboutX) {
   const BendingTable table = MadeUpTable({TwoPlanes()[0]});
-  const BendingTableLanes<double> b = BendingOf(table, 0.0, 0.01);
+  const FlownModes<double> b = BendingOf(table, 0.0, 0.01);
   BendingState<double> s{}, turned{};
   for (int mode = 0; mode < 2; ++mode) {
     s.q_m[0][mode] = 0.02 - 0.03 * mode;

@@ -10,7 +10,7 @@ namespace dispersa::dynamics_bending_motion_test {
 namespace {
 
 using lanes::BendingState;
-using lanes::BendingTableLanes;
+using lanes::FlownModes;
 using lanes::ModalForce;
 
 using Number = double (MadeUpMode::*)(double) const;
@@ -42,7 +42,7 @@ Turned TurnedAt(double station_m, const double (&y)[kModes], const double (&z)[k
 class BendingMotion : public testing::Test {
  protected:
   const BendingTable table_ = MadeUpTable(TwoPlanes());
-  const BendingTableLanes<double> bending_ = BendingOf(table_, 0.0);
+  const FlownModes<double> bending_ = BendingOf(table_, 0.0);
   const BendingState<double> state_ = SomeState();
 };
 
@@ -66,7 +66,7 @@ TEST_F(BendingMotion, LoadsAtThePivotBendWhatDoesNotFly) {
     for (int i = 0; i < 3; ++i)
       table.rows[static_cast<std::size_t>(table.Row(plane, 0, 0) - table.rows.data() +
                                           BendingTable::kResidual + i)] = residual[plane][i];
-  const BendingTableLanes<double> bending = BendingOf(table, 0.0);
+  const FlownModes<double> bending = BendingOf(table, 0.0);
   const auto at = [&](lanes::Vector<double> force, lanes::Vector<double> couple) {
     return BentAtPivot(bending, BendingState<double>{}, force, couple);
   };
@@ -175,7 +175,7 @@ Oscillator OscillatorOf(std::size_t plane, std::size_t mode, double damping_rati
 
 TEST_F(BendingMotion, FreeModesSwingAsDampedOscillators) {
   for (const double damping_ratio : {0.0, 0.02, 0.6}) {
-    const BendingTableLanes<double> bending = BendingOf(table_, 0.0, damping_ratio);
+    const FlownModes<double> bending = BendingOf(table_, 0.0, damping_ratio);
     for (const double time_s : {0.005, 0.37}) {
       const BendingState<double> to =
           lanes::Swung(bending, lanes::SwingOver(bending, time_s), state_, {}, {}, {});
@@ -198,7 +198,7 @@ TEST_F(BendingMotion, FreeModesSwingAsDampedOscillators) {
 // it.
 TEST_F(BendingMotion, DrivenModesFollowAParabolaExactly) {
   constexpr double kDamping = 0.05;
-  const BendingTableLanes<double> bending = BendingOf(table_, 0.0, kDamping);
+  const FlownModes<double> bending = BendingOf(table_, 0.0, kDamping);
   BendingState<double> from{};
   ModalForce<double> d0{}, d1{}, d2{};
   const auto parabola = [](std::size_t plane, std::size_t mode, int power) {
@@ -226,7 +226,7 @@ TEST_F(BendingMotion, DrivenModesFollowAParabolaExactly) {
 }
 
 TEST_F(BendingMotion, TwiceATimeIsOneSwingAndThenAnother) {
-  const BendingTableLanes<double> bending = BendingOf(table_, 0.0, 0.03);
+  const FlownModes<double> bending = BendingOf(table_, 0.0, 0.03);
   const lanes::Swing<double> once = lanes::SwingOver(bending, 0.04), twice = lanes::Twice(bending, once);
   EXPECT_EQ(twice.time_s, 0.08);
   // Drives that change: those of the second half are d(t + 0.04).

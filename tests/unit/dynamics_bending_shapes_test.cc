@@ -46,7 +46,7 @@ double Expected(const Between& at, int plane, int mode, int column) {
 }
 
 // Every number that a flight has of one mode, with the column that it comes from. Frequencies are apart.
-void ExpectColumns(const lanes::BendingTableLanes<double>& bending, int plane, int mode,
+void ExpectColumns(const lanes::FlownModes<double>& bending, int plane, int mode,
                    const std::function<double(int)>& column) {
   constexpr double kRounding = 1e-14;  // of numbers up to 1
   const lanes::ModeNow<double>& now = bending.At(plane, mode);
@@ -75,7 +75,7 @@ void ExpectColumns(const lanes::BendingTableLanes<double>& bending, int plane, i
 TEST(BendingShapes, AreLinearBetweenLevelsAndHeldBeyond) {
   const BendingTable table = NumberTable(2);
   for (const Between& at : kPlaces) {
-    const lanes::BendingTableLanes<double> bending = BendingOf(table, at.propellant_kg, 0.02);
+    const lanes::FlownModes<double> bending = BendingOf(table, at.propellant_kg, 0.02);
     for (int plane = 0; plane < kPlanes; ++plane)
       for (int mode = 0; mode < 2; ++mode) {
         SCOPED_TRACE(testing::Message() << at.propellant_kg << " kg, plane " << plane << ", mode " << mode);
@@ -104,10 +104,10 @@ TEST(BendingShapes, OfOneColumnAreThoseOfAFlight) {
 
 TEST(BendingShapes, OfOneLevelAreTheSameAtAnyPropellant) {
   const BendingTable table = MadeUpTable(TwoPlanes());
-  const lanes::BendingTableLanes<double> some = BendingOf(table, 0.0), more = BendingOf(table, 77.0);
+  const lanes::FlownModes<double> some = BendingOf(table, 0.0), more = BendingOf(table, 77.0);
   for (int plane = 0; plane < kPlanes; ++plane)
     for (int mode = 0; mode < 2; ++mode) {
-      const auto of = [&](const lanes::BendingTableLanes<double>& bending) {
+      const auto of = [&](const lanes::FlownModes<double>& bending) {
         return bending.ColumnAt(plane, mode, BendingTable::kPivotDeflection);
       };
       EXPECT_EQ(of(some),
@@ -120,7 +120,7 @@ TEST(BendingShapes, OfOneLevelAreTheSameAtAnyPropellant) {
 
 TEST(BendingShapes, OfAnAxisymmetricBodyServeBothPlanes) {
   const BendingTable table = NumberTable(1);
-  lanes::BendingTableLanes<double> bending = BendingOf(table, 80.0);
+  lanes::FlownModes<double> bending = BendingOf(table, 80.0);
   EXPECT_EQ(&bending.At(1, 1), &bending.At(0, 1));
   // Beside a stack whose planes differ, its second plane is looked up too.
   bending.planes = 2;
@@ -134,7 +134,7 @@ TEST(BendingShapes, OfAnAxisymmetricBodyServeBothPlanes) {
 
 TEST(BendingShapes, FollowTheFlightsFactors) {
   const BendingTable table = NumberTable(2);
-  lanes::BendingTableLanes<double> bending = BendingOf(table, 80.0);
+  lanes::FlownModes<double> bending = BendingOf(table, 80.0);
   bending.frequency_factor[0] = 1.1;
   bending.frequency_factor[1] = 0.8;
   bending.slope_factor = 1.5;
@@ -156,7 +156,7 @@ TEST(BendingShapes, FollowTheFlightsFactors) {
 TEST(BendingShapes, OfAModeThatDoesNotFlyAreNone) {
   const BendingTable table = NumberTable(1, 1);
   for (const BendingTable* of_stack : {&table, static_cast<const BendingTable*>(nullptr)}) {
-    lanes::BendingTableLanes<double> bending = BendingOf(table, 80.0, 0.01);
+    lanes::FlownModes<double> bending = BendingOf(table, 80.0, 0.01);
     bending.modes = 3;  // another stack has so many
     bending.planes = 2;
     lanes::SetTable(bending, 0, of_stack);
@@ -174,7 +174,7 @@ TEST(BendingShapes, OfAModeThatDoesNotFlyAreNone) {
 TEST(BendingShapes, AreThoseOfAnotherStackAtOnce) {
   BendingTable another = NumberTable(2);
   for (double& value : another.rows) value *= 3.0;
-  lanes::BendingTableLanes<double> bending = BendingOf(NumberTable(2), 80.0);
+  lanes::FlownModes<double> bending = BendingOf(NumberTable(2), 80.0);
   lanes::SetTable(bending, 0, &another);
   lanes::ShapesAt(bending, 80.0);
   for (int plane = 0; plane < kPlanes; ++plane)
@@ -189,7 +189,7 @@ TEST(BendingShapes, OfALaneAreThoseOfItsStackAlone) {
   const BendingTable two_planes = NumberTable(2), one_plane = NumberTable(1), one_mode = NumberTable(2, 1);
   const BendingTable* tables[4] = {&one_plane, nullptr, &two_planes, &one_mode};
   const double propellant_kg[4] = {97.0, 50.0, 33.0, -1.0};
-  lanes::BendingTableLanes<Four> together{};
+  lanes::FlownModes<Four> together{};
   together.modes = together.planes = 2;
   Four propellant(0.0);
   for (int lane = 0; lane < 4; ++lane) {
@@ -201,7 +201,7 @@ TEST(BendingShapes, OfALaneAreThoseOfItsStackAlone) {
   }
   lanes::ShapesAt(together, propellant);
   for (int lane = 0; lane < 4; ++lane) {
-    lanes::BendingTableLanes<double> alone{};
+    lanes::FlownModes<double> alone{};
     alone.modes = alone.planes = 2;
     lanes::SetTable(alone, 0, tables[lane]);
     for (double& factor : alone.frequency_factor) factor = 1.0 + 0.1 * lane;

@@ -182,7 +182,7 @@ TEST(Turbulence, TheFieldIsWhatTheFlightsEquationsSee) {
   environment.turbulence = std::make_shared<const TurbulenceField>(Drawn(3, 0.8));
   const FlightWeather weather =
       PrepareWeather(environment.wind, environment.density, environment.turbulence.get());
-  lanes::FlightWeatherLanes<double> lane{};
+  lanes::FlownWeather<double> lane{};
   lane.density_factor = 1.0;
   lane.jet_inverse_width = lane.gust_inverse_length = 1.0;
   lane.profile[0] = &weather.profile;

@@ -113,11 +113,11 @@ TEST(FlexibleDispersions, FactorsOfBendingLeaveItsTablesAlone) {
   inputs.bending_slope_factor = 1.2;
   const LauncherPlant plant = model.PlantFor(inputs), &nominal = model.nominal_plant();
   EXPECT_EQ(plant.stacks[0].bending, nominal.stacks[0].bending);
-  EXPECT_EQ(plant.bending.frequency[0], 1.0);
-  EXPECT_EQ(plant.bending.frequency[1], 0.9);
+  EXPECT_EQ(plant.bending.frequency_factor[0], 1.0);
+  EXPECT_EQ(plant.bending.frequency_factor[1], 0.9);
   EXPECT_EQ(plant.bending.damping_ratio, 2.0 * nominal.bending.damping_ratio);
   EXPECT_GT(nominal.bending.damping_ratio, 0.0);
-  EXPECT_EQ(plant.bending.slope, 1.2);
+  EXPECT_EQ(plant.bending.slope_factor, 1.2);
 }
 
 }  // namespace

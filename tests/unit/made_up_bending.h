@@ -127,9 +127,9 @@ inline BendingTable MadeUpTable(const std::vector<std::vector<MadeUpMode>>& plan
 }
 
 /// One lane that bends as a table says.
-inline lanes::BendingTableLanes<double> BendingOf(const BendingTable& table, double propellant_kg,
-                                                  double damping_ratio = 0.0) {
-  lanes::BendingTableLanes<double> bending{};
+inline lanes::FlownModes<double> BendingOf(const BendingTable& table, double propellant_kg,
+                                           double damping_ratio = 0.0) {
+  lanes::FlownModes<double> bending{};
   bending.modes = table.modes;
   bending.planes = table.planes;
   lanes::SetTable(bending, 0, &table);
@@ -149,12 +149,12 @@ inline std::vector<std::vector<MadeUpMode>> TwoPlanes() {
 }
 
 /// The pivots, and what drives the modes there.
-inline lanes::Bent<double> BentAtPivot(const lanes::BendingTableLanes<double>& b,
+inline lanes::Bent<double> BentAtPivot(const lanes::FlownModes<double>& b,
                                        const lanes::BendingState<double>& s, lanes::Vector<double> force_n,
                                        lanes::Vector<double> couple_n_m) {
   return lanes::BentAt(b, s, lanes::kAtPivot, lanes::ShapesOf(b, lanes::kAtPivot), force_n, couple_n_m);
 }
-inline void DriveAtPivot(const lanes::BendingTableLanes<double>& b, const lanes::BendingState<double>& s,
+inline void DriveAtPivot(const lanes::FlownModes<double>& b, const lanes::BendingState<double>& s,
                          lanes::Vector<double> force_n, lanes::Vector<double> couple_n_m,
                          lanes::ModalForce<double>& to) {
   lanes::DriveAt(b, s, lanes::kAtPivot, lanes::ShapesOf(b, lanes::kAtPivot), force_n, couple_n_m, to);

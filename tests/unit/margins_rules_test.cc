@@ -208,7 +208,7 @@ TEST(MarginsAt, OfABodyThatBendsAreTheLeastOfAllSetsOfFrequencies) {
     std::vector<LoopMargins> each;
     for (const std::array<double, 2>& factor : factors) {
       LauncherPlant plant = model.nominal_plant();
-      for (std::size_t mode = 0; mode < 2; ++mode) plant.bending.frequency[mode] *= factor[mode];
+      for (std::size_t mode = 0; mode < 2; ++mode) plant.bending.frequency_factor[mode] *= factor[mode];
       each.push_back(at(plant, 0.0));
     }
     ExpectSame(at(model.nominal_plant(), 0.2), LeastOf(each));

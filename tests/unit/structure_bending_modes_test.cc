@@ -34,7 +34,7 @@ BeamMassProperties BeamWeight(const Vehicle& vehicle, int stage, double propella
   const double full_kg = vehicle.stages[static_cast<std::size_t>(stage)].propellant_mass_kg;
   const std::vector<double> stations =
       MeshStations(beam.sections, BuildBeamMasses(vehicle, stage, full_kg), 30);
-  return MassPropertiesOf(MassMatrix(beam, stations, BuildElements(beam, BeamPlane::kY, stations)), stations);
+  return PropertiesOf(MassMatrix(beam, stations, BuildElements(beam, BeamPlane::kY, stations)), stations);
 }
 
 void ExpectRigidMasses(const Vehicle& vehicle) {

@@ -268,8 +268,7 @@ TEST(ApartBoosters, DelayedCommandsAreOfTheDrivesThatGotThem) {
       const TickSample& given = ticks[now - late];
       const NozzleLayout& layout = model.nominal_plant().LayoutOf(0, given.boosting);
       for (const int bank : {0, 1}) {
-        lanes::NozzleLayoutLanes<double> allocation{};
-        lanes::SetLane(allocation, 0, layout, bank);
+        const lanes::BankAllocation<double> allocation = lanes::AllocationOf(layout, bank);
         double command_rad[kDrives];
         lanes::Allocate(allocation, given.gimbal.roll_rad, given.gimbal.pitch_rad, given.gimbal.yaw_rad,
                         command_rad);

@@ -21,7 +21,7 @@ TEST(AirTable, IsWithinItsToleranceOfTheStandardEverywhere) {
   double pressure = 0.0, density = 0.0, sound = 0.0;
   for (double z = -5000.0; z <= 1.0e6; z += 7.3) {
     const AirState air = StandardAtmosphere1976(z);
-    const lanes::AirStateLanes<double> looked_up = lanes::AirAt(StandardAir(), z);
+    const lanes::AirPressure<double> looked_up = lanes::AirAt(StandardAir(), z);
     pressure = std::max(pressure, std::fabs(looked_up.pressure_pa / air.pressure_pa - 1.0));
     density =
         std::max(density, std::fabs(looked_up.pressure_pa / looked_up.energy_j_kg / air.density_kg_m3 - 1.0));
@@ -44,8 +44,8 @@ TEST(AirTable, AKeptRowChangesNoBit) {
   const std::vector<double> up = altitudes;
   altitudes.insert(altitudes.end(), up.rbegin(), up.rend());
   for (const double z : altitudes) {
-    const lanes::AirStateLanes<double> air = lanes::AirAt(StandardAir(), z, kept);
-    const lanes::AirStateLanes<double> anew = lanes::AirAt(StandardAir(), z);
+    const lanes::AirPressure<double> air = lanes::AirAt(StandardAir(), z, kept);
+    const lanes::AirPressure<double> anew = lanes::AirAt(StandardAir(), z);
     EXPECT_EQ(air.pressure_pa, anew.pressure_pa) << z;
     EXPECT_EQ(air.energy_j_kg, anew.energy_j_kg) << z;
   }
@@ -68,8 +68,8 @@ TEST(Surroundings, AreThoseOfTheDefinitions) {
   environment.density = {1.05, {{0.0, 10000.0, 40000.0}, {0.9, 1.1, 1.0}}};
   const FlightWeather prepared =
       PrepareWeather(environment.wind, environment.density, environment.turbulence.get());
-  lanes::FlightWeatherLanes<double> weather;
-  lanes::SetLane(weather, 0, prepared);
+  lanes::FlownWeather<double> weather;
+  lanes::SetWeather(weather, 0, prepared);
   Stream draws(3, 0, "places");
   for (int k = 0; k < 20000; ++k) {
     const Geodetic place = {kPi * (draws.Uniform() - 0.5), kTwoPi * (draws.Uniform() - 0.5),
@@ -112,8 +112,8 @@ TEST(AeroGrid, IsTheTablesThemselves) {
   Stream draws(4, 0, "flow");
   for (const BodyAerodynamics& body : bodies) {
     const AeroGrid grid = BuildAeroGrid(body);
-    lanes::BodyAerodynamicsLanes<double> one;
-    lanes::SetLane(one, 0, body, grid);
+    lanes::BodyInFlow<double> one;
+    lanes::SetBody(one, 0, body, grid);
     for (int k = 0; k < 5000; ++k) {
       const double mach = 12.0 * draws.Uniform() * draws.Uniform(),
                    incidence = kPi * draws.Uniform() * draws.Uniform();
@@ -142,8 +142,8 @@ TEST(AeroGrid, TheSlopeOfTheNormalForceIsItsDerivative) {
       BuildNominalPlant(LoadVehicle(DISPERSA_CAMPAIGNS "/vehicles/slv4.yaml")).stacks[0].aerodynamics;
   body.cn.factor = 1.3;
   const AeroGrid grid = BuildAeroGrid(body);
-  lanes::BodyAerodynamicsLanes<double> one;
-  lanes::SetLane(one, 0, body, grid);
+  lanes::BodyInFlow<double> one;
+  lanes::SetBody(one, 0, body, grid);
   Stream draws(8, 0, "flow");
   int within = 0;
   for (int k = 0; k < 2000; ++k) {
@@ -163,7 +163,7 @@ TEST(AeroGrid, TheSlopeOfTheNormalForceIsItsDerivative) {
 // One drive from rest under a command, by SUNDIALS on its derivative, and by the engine in steps of half a
 // tick.
 struct OneDrive {
-  lanes::GimbalLanes<double> drives{};
+  lanes::Actuators<double> drives{};
   double command_rad;
 
   explicit OneDrive(double command, double rate_limit, double damping_ratio) : command_rad(command) {
@@ -172,7 +172,7 @@ struct OneDrive {
     gimbal.rate_limit_rad_s = rate_limit;
     gimbal.bandwidth_rad_s = 40.0;
     gimbal.damping_ratio = damping_ratio;
-    lanes::SetLane(drives, 0, gimbal, -1);
+    lanes::SetActuators(drives, 0, gimbal, -1);
   }
   static void Rhs(double, const double* y, double* dydt, void* context) {
     const auto* self = static_cast<const OneDrive*>(context);

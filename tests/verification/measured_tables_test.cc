@@ -77,13 +77,13 @@ TEST(MeasuredAir, IsExponentialBetweenItsLevelsAndTheStandardsAboveTheFade) {
     const auto between = [&](const std::vector<double>& values) {
       return values[low] * std::pow(values[low + 1] / values[low], part);
     };
-    const lanes::AirStateLanes<double> at = lanes::AirAt(air, z);
+    const lanes::AirPressure<double> at = lanes::AirAt(air, z);
     EXPECT_NEAR(at.pressure_pa / between(table.pressure_pa), 1.0, 1e-11) << z;
     EXPECT_NEAR(at.pressure_pa / at.energy_j_kg / between(table.density_kg_m3), 1.0, 1e-11) << z;
   }
   for (const double z : {-4000.0, 21e3, 24e3, 29e3}) {
     const AirState standard = StandardAtmosphere1976(z);
-    const lanes::AirStateLanes<double> at = lanes::AirAt(air, z);
+    const lanes::AirPressure<double> at = lanes::AirAt(air, z);
     const double kept = z < 0.0 ? 1.0 : 1.0 - (z - 20e3) / kWindFade_m;
     EXPECT_NEAR(at.pressure_pa / standard.pressure_pa, 1.0 + 0.05 * kept, 1e-11) << z;
     EXPECT_NEAR(at.energy_j_kg / (standard.pressure_pa / standard.density_kg_m3),
@@ -91,7 +91,7 @@ TEST(MeasuredAir, IsExponentialBetweenItsLevelsAndTheStandardsAboveTheFade) {
         << z;
   }
   for (const double z : {30e3, 47e3, 86e3, 300e3, 2e6}) {
-    const lanes::AirStateLanes<double> own = lanes::AirAt(air, z), standard = lanes::AirAt(StandardAir(), z);
+    const lanes::AirPressure<double> own = lanes::AirAt(air, z), standard = lanes::AirAt(StandardAir(), z);
     EXPECT_NEAR(own.pressure_pa, standard.pressure_pa, 1e-11 * standard.pressure_pa) << z;
     EXPECT_NEAR(own.energy_j_kg, standard.energy_j_kg, 1e-11 * standard.energy_j_kg) << z;
   }

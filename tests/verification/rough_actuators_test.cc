@@ -27,7 +27,7 @@ Gimbal Smooth(double bandwidth_rad_s, double damping_ratio) {
 // One nozzle, moved as the engine moves it.
 class Drive {
  public:
-  explicit Drive(const Gimbal& gimbal) { lanes::SetLane(drives_, 0, gimbal, -1); }
+  explicit Drive(const Gimbal& gimbal) { lanes::SetActuators(drives_, 0, gimbal, -1); }
 
   void Move(double command_rad, double time_s) {
     const double commands[kNozzles] = {command_rad, 0.0, 0.0, 0.0};
@@ -38,7 +38,7 @@ class Drive {
   double rate_rad_s() const { return state_.rate_rad_s[0]; }
 
  private:
-  lanes::GimbalLanes<double> drives_{};
+  lanes::Actuators<double> drives_{};
   lanes::DriveState<double> state_{};
 };
 
@@ -121,13 +121,13 @@ TEST(RoughActuators, OneLaneMovesAsManyDo) {
   coarse.resolution_rad = 0.002;
   const Gimbal gimbals[4] = {rough, Smooth(25.0, 0.7), coarse, rough};
   using Four = lanes::Pack<4>;
-  lanes::GimbalLanes<Four> drives{};
+  lanes::Actuators<Four> drives{};
   lanes::DriveState<Four> state{};
   lanes::Transition<Four> over{};
   for (int i = 0; i < kNozzles; ++i) state.angle_rad[i] = state.rate_rad_s[i] = Four(0.0);
   std::vector<Drive> alone;
   for (int lane = 0; lane < 4; ++lane) {
-    lanes::SetLane(drives, lane, gimbals[lane], -1);
+    lanes::SetActuators(drives, lane, gimbals[lane], -1);
     alone.emplace_back(gimbals[lane]);
     const double w = gimbals[lane].bandwidth_rad_s;
     const auto one = lanes::TransitionOver(w * w, 2.0 * gimbals[lane].damping_ratio * w, kHalfTick_s);

@@ -50,11 +50,11 @@ std::vector<Tube> Tubes(const Vehicle& vehicle, double propellant_kg) {
 }
 
 // One section alone.
-lanes::LoadTableLanes<double> Only(const LoadTable& table, int station) {
-  lanes::LoadTableLanes<double> s{};
-  lanes::SetLane(s, 0, &table);
-  std::copy_n(s.first_kg_m[station], 3, s.first_kg_m[0]);
-  std::copy_n(s.second_kg_m2[station], 3, s.second_kg_m2[0]);
+lanes::Sections<double> Only(const LoadTable& table, int station) {
+  lanes::Sections<double> s{};
+  lanes::SetSections(s, 0, &table);
+  s.first_kg_m[0] = s.first_kg_m[station];
+  s.second_kg_m2[0] = s.second_kg_m2[station];
   s.slender_arm_m[0] = s.slender_arm_m[station];
   s.shift_arm[0] = s.shift_arm[station];
   s.stations = 1;
@@ -98,7 +98,7 @@ void ExpectBalance(const Vehicle& vehicle, const std::vector<double>& parts) {
         behind -= kg * ((acceleration + turn * (mass.cg_station_m - middle)) * (s - middle) + turn * second);
         behind -= kg * turn * tube.gyration2_m2;
       }
-      const lanes::LoadTableLanes<double> body = Only(table, station);
+      const lanes::Sections<double> body = Only(table, station);
       const lanes::NormalForce<double> along_y{normal_n, 0.0, xcp_m, 1.0, 0.0, 500.0},
           along_z{normal_n, 0.0, xcp_m, 0.0, 1.0, 500.0};
       const lanes::SideForce<double>* const round = nullptr;
@@ -137,8 +137,8 @@ TEST(SectionMoments, AreLookedForBeyondTheScoutsWhereTheyMayBeTheLargest) {
   table.scouts_see = 0.9;
   table.slender_arm_m.fill(1.0);
   table.slender_arm_m[kScoutStations] = 1.1;
-  lanes::LoadTableLanes<Four> body{};
-  for (int lane = 0; lane < 4; ++lane) lanes::SetLane(body, lane, &table);
+  lanes::Sections<Four> body{};
+  for (int lane = 0; lane < 4; ++lane) lanes::SetSections(body, lane, &table);
   const double just = 1.0 / (lanes::kScoutMargin * table.scouts_see);
   const double seen[4] = {0.0, 0.999 * just, 1.001 * just, 100.0}, found[4] = {1.1, 1.1, 1.0, 1.0};
   Four seen_n_m(0.0);

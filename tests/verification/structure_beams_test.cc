@@ -144,7 +144,7 @@ TEST(FreeBeams, RigidMotionCostsNoEnergyAndModesHaveNoMomentum) {
   beam.masses.fixed = {{0.0, 3000.0, 1.0, 400.0}};
   const Solved s = Solve(beam, 40, 4);
   const Eigen::MatrixXd stiffness = StiffnessMatrix(s.elements);
-  const BeamMassProperties whole = MassPropertiesOf(s.mass, s.stations);
+  const BeamMassProperties whole = PropertiesOf(s.mass, s.stations);
   const Eigen::MatrixXd rigid = RigidShapes(s.stations, whole.cg_station_m);
   // Forces of a rigid motion, against those of a mode of like size.
   const double forces = (stiffness * s.modes.shape.col(0)).norm() / s.modes.shape.col(0).norm();
