@@ -7,6 +7,7 @@
 
 #include "core/dynamics/actuators.h"
 #include "core/dynamics/launcher_body.h"
+#include "core/flight/flight_inputs.h"
 #include "core/flight/free_flight_sums.h"
 #include "core/flight/nozzle_allocation.h"
 #include "core/flight/orbit.h"
@@ -18,6 +19,8 @@ namespace dispersa {
 
 /// What the largest of magnitudes is without any of them: no magnitude.
 inline constexpr double kNoPeak = -1.0;
+/// What the least of margins is without any of them.
+inline constexpr double kNoMargin = 1e300;
 
 /// Sums of a signed angle over ticks.
 template <class T>
@@ -103,13 +106,20 @@ template <class T>
 struct LaneMetrics {
   ErrorSumsOf<T> pitch, coast, yaw, roll, deflection;  ///< pitch: of the current stage
   TickSums<T> sums;
+  T roll_rate_peak_rad_s, least_static_margin;  ///< of stages without gimbal
+  T gust_bottom_m, gust_top_m;                  ///< altitudes of a gust (none if top <= bottom)
   T has_previous, previous_rad[kBanks][kDrives];
 
   /// Before a lane's first tick.
-  DISPERSA_INLINE void StartFlight(int lane) {
+  DISPERSA_INLINE void StartFlight(int lane, const FlightInputs& in) {
     for (unsigned i = 0; i < kValues<T, LaneMetrics>; ++i) SetLaneAt<T>(*this, i, lane, 0.0);
     for (ErrorSumsOf<T>* e : {&pitch, &coast, &yaw, &roll, &deflection}) SetLane(*e, lane, ErrorSums{});
-    SetLaneValues<T>(sums, lane, TickSums<double>{});
+    SetLane(sums, lane, TickSums<double>{});
+    Lane(roll_rate_peak_rad_s, lane) = kNoPeak;
+    Lane(least_static_margin, lane) = kNoMargin;
+    Lane(gust_bottom_m, lane) = in.gust_altitude_m;
+    Lane(gust_top_m, lane) =
+        in.gust_speed_m_s != 0.0 ? in.gust_altitude_m + in.gust_length_m : in.gust_altitude_m;
   }
   /// At a lane's burnout, and when it ends.
   DISPERSA_INLINE void EndStage(int lane, int stage, FlightSums& flight) {
@@ -199,6 +209,13 @@ struct LaneMetrics {
     Raise(lanes, lateral, sums.lateral_load_max_g);
   }
 
+  /// A tick of stages that nothing controls: their roll rate, and the static margin where there is air.
+  DISPERSA_INLINE void AddFree(MaskOf<T> lanes, T roll_rate_rad_s, T qbar_pa, T margin) {
+    Raise(lanes, Abs(roll_rate_rad_s), roll_rate_peak_rad_s);
+    const auto felt = lanes & (qbar_pa >= T(kIncidenceFloor_pa));
+    least_static_margin = Select(felt & (margin < least_static_margin), margin, least_static_margin);
+  }
+
   DISPERSA_INLINE void AddMoment(MaskOf<T> lanes, const LargestMoment<T>& now) {
     const auto is_larger = lanes & (now.moment_n_m > sums.bending_moment_max_n_m);
     sums.bending_moment_max_n_m = Select(is_larger, now.moment_n_m, sums.bending_moment_max_n_m);
@@ -212,6 +229,9 @@ struct LaneMetrics {
     s.roll = LaneOf(roll, lane);
     s.deflection = LaneOf(deflection, lane);
     ReadLaneValues<T>(sums, lane, static_cast<TickSums<double>&>(s));
+    s.free.roll_rate_peak_rad_s = Lane(roll_rate_peak_rad_s, lane);
+    if (const double least = Lane(least_static_margin, lane); least < kNoMargin)
+      s.free.least_static_margin = least;
   }
   /// Loads of one lane at a moment between ticks, its burnout.
   DISPERSA_INLINE void AddLoadsOfLane(int lane, const Instant<double>& now) {

@@ -9,6 +9,8 @@
 
 #include "core/dynamics/bending.h"
 #include "core/flight/sensor_model.h"
+#include "core/flight/simpson_step.h"
+#include "core/flight/standing.h"
 #include "core/math/lane_vector.h"
 
 namespace dispersa::lanes {
@@ -22,14 +24,8 @@ struct InertialUnit {
 
   /// A lane at rest at a true attitude, aligned to `believed` (w, x, y, z).
   DISPERSA_INLINE void Start(int lane, const Turn<T>& q, const double* believed) {
-    Lane(truth.w, lane) = Lane(q.w, lane);
-    Lane(truth.x, lane) = Lane(q.x, lane);
-    Lane(truth.y, lane) = Lane(q.y, lane);
-    Lane(truth.z, lane) = Lane(q.z, lane);
-    Lane(measured.w, lane) = believed[0];
-    Lane(measured.x, lane) = believed[1];
-    Lane(measured.y, lane) = believed[2];
-    Lane(measured.z, lane) = believed[3];
+    SetLane(truth, lane, LaneOf(q, lane));
+    SetLane(measured, lane, {believed[0], believed[1], believed[2], believed[3]});
     Lane(time_s, lane) = 0.0;
     SetLane(drift_rad_s, lane, Zero<double>());
   }
@@ -69,6 +65,120 @@ DISPERSA_INLINE void StepGyro(const GyroModel& gyro, MaskOf<T> acting, MaskOf<T>
     output = Select((acting & sampled) | fresh, shown, output);
   }
 }
+
+/// All sensors of the lanes, with what they remember.
+template <class T>
+class Sensors {
+ public:
+  /// In a lane that does not fly they are perfect.
+  void Configure(const FlightModel& model) {
+    model_ = &model.sensors();
+    tick_s_ = model.definition().autopilot.tick_s;
+    unit_weight_ = unit_.truth.w = unit_.measured.w = T(1.0);
+  }
+  void StartFlight(int lane, const FlightRecord& record, const Turn<T>& q) {
+    const FlightInputs& in = record.inputs;
+    const Vector<double> bias{in.gyro_bias_roll_rad_s, in.gyro_bias_pitch_rad_s, in.gyro_bias_yaw_rad_s};
+    SetLane(bias_rad_s_, lane, bias);
+    SetLane(drifts_, lane,
+            record.noisy || in.launch_azimuth_error_rad != 0.0 || bias.x != 0.0 || bias.y != 0.0 ||
+                bias.z != 0.0);
+    unit_.Start(lane, q, record.believed_attitude);
+    EndStage(lane);
+  }
+  /// A stage's weights of gyros and unit; without thrust only the unit has weight.
+  void StartStage(int lane, const SensorModel::Weights& weights) {
+    for (int i = 0; i < kRateGyros; ++i) Lane(gyro_weight_[i], lane) = weights.gyro.data()[i];
+    Lane(unit_weight_, lane) = weights.unit;
+    SetLane(gyros_fresh_, lane, true);
+  }
+  void EndStage(int lane) {
+    for (T& weight : gyro_weight_) Lane(weight, lane) = 0.0;
+    Lane(unit_weight_, lane) = 1.0;
+  }
+
+  /// Whether any of these lanes sees anything but the truth.
+  bool AreImperfect(const StepState<T>& step, MaskOf<T> live) const {
+    return step.bending().modes > 0 || model_->uses_gyros || Any(drifts_ & live);
+  }
+  /// What they see at the lanes' ticks, of the lanes in `imperfect`; the others see the truth.
+  struct Sight {
+    MaskOf<T> imperfect;
+    Turn<T> attitude;
+    Vector<T> rate_rad_s;
+  };
+  Sight Measure(const Standing<T>& at, StepState<T>& step) {
+    const bool bends = step.bending().modes > 0;
+    Sight seen{at.live, step.motion().q, step.motion().w};
+    if (bends) {
+      step.UpdateShapes(at.time_s);
+      seen.attitude = TurnedBy(seen.attitude, UnitTurn(step.bending(), step.bending_state()));
+      seen.rate_rad_s = seen.rate_rad_s + TurnRate(step.bending(), step.bending_state(), -1);
+    }
+    if (model_->uses_gyros) seen.rate_rad_s = GyroRates(at, step, seen.rate_rad_s);
+    if (!bends && !model_->uses_gyros) seen.imperfect = at.live & drifts_;
+    if (!Any(drifts_ & at.live)) return seen;
+    AverageNoise(at);
+    unit_.Measure(at.live, at.time_s, seen.attitude);
+    Blend<T>(drifts_, unit_.measured, seen.attitude);
+    DriftOn(at, step);
+    seen.rate_rad_s = Select(drifts_, seen.rate_rad_s + unit_.drift_rad_s, seen.rate_rad_s);
+    return seen;
+  }
+
+ private:
+  /// The blend of gyros and inertial unit.
+  Vector<T> GyroRates(const Standing<T>& at, const StepState<T>& step, Vector<T> unit_rad_s) {
+    const MaskOf<T> burning = at.live & step.phase().burning;
+    Vector<T> blend = unit_weight_ * unit_rad_s;
+    const int gyros = static_cast<int>(model_->gyros.size());
+    for (int g = 0; g < gyros; ++g) {
+      const GyroModel& gyro = model_->gyros.data()[g];
+      Vector<T> rate = step.motion().w;
+      if (step.bending().modes > 0) rate = rate + TurnRate(step.bending(), step.bending_state(), g);
+      const T period(static_cast<double>(gyro.sample_ticks)), last = period * Nearest(at.tick / period);
+      const MaskOf<T> sampled = (last >= at.tick) & (last <= at.tick);
+      StepGyro(gyro, burning, burning & gyros_fresh_, sampled, rate, gyros_[g]);
+      blend = Along(blend, gyro_weight_[g], gyros_[g].output_rad_s);
+    }
+    gyros_fresh_ = gyros_fresh_ & !burning;
+    return blend;
+  }
+  /// Bias and noise until the next measurement. Only a tick at which the autopilot acts takes a sample.
+  void DriftOn(const Standing<T>& at, const StepState<T>& step) {
+    unit_.drift_rad_s = bias_rad_s_;
+    const unsigned acting = Bits(at.live & (step.phase().burning | at.coasting));
+    for (int lane = 0; lane < kWidth<T>; ++lane) {
+      if (!(acting >> lane & 1u) || !at.slot[lane].record->noisy) continue;
+      double noise[kAxes];
+      at.slot[lane].record->DrawNoise(noise);
+      SetLane(unit_.drift_rad_s, lane, LaneOf(unit_.drift_rad_s, lane) + VectorAt(noise));
+    }
+  }
+  /// The unit samples at every tick, although the samples within a cycle of the reaction control are not
+  /// used. Over the n ticks of a cycle it turns by the mean of n samples; the first one is known.
+  void AverageNoise(const Standing<T>& at) {
+    for (int lane = 0; lane < kWidth<T>; ++lane) {
+      if (!(Bits(at.live & drifts_) >> lane & 1u) || !at.slot[lane].record->noisy) continue;
+      const double ticks = Nearest((Lane(at.time_s, lane) - Lane(unit_.time_s, lane)) / tick_s_);
+      if (ticks < 2.0) continue;
+      double others[kAxes];
+      at.slot[lane].record->DrawNoise(others);
+      const Vector<double> bias = LaneOf(bias_rad_s_, lane), first = LaneOf(unit_.drift_rad_s, lane) - bias;
+      const Vector<double> sum = first + Sqrt(ticks - 1.0) * VectorAt(others);
+      SetLane(unit_.drift_rad_s, lane, bias + (1.0 / ticks) * sum);
+    }
+  }
+
+  const SensorModel* model_;
+  double tick_s_;
+  Vector<T> bias_rad_s_;
+  InertialUnit<T> unit_;
+  MaskOf<T> drifts_;  ///< whose gyros have a bias or noise, or whose unit is misaligned
+  GyroMemory<T> gyros_[kRateGyros];
+  T gyro_weight_[kRateGyros], unit_weight_;  ///< of the measured rates
+  MaskOf<T> gyros_fresh_;                    ///< have not been read since ignition
+};
 
 }  // namespace DISPERSA_ISA
 }  // namespace dispersa::lanes

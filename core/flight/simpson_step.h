@@ -31,9 +31,6 @@
 namespace dispersa::lanes {
 inline namespace DISPERSA_ISA {
 
-/// Commands of so many ticks are remembered for delays.
-inline constexpr int kDelayLine = 128;
-
 /// A bank of nozzles with its drives, about first and second hinges. Of a cross, the first bank alone, second
 /// hinges stay at 0 and nothing reads them.
 template <class T>
@@ -62,9 +59,8 @@ class StepState {
   const FlownModes<T>& bending() const { return bending_; }
   const T* command_rad(int bank) const { return banks_[bank].command_rad; }  ///< at the actuators, kDrives
 
-  /// No lane flies: each computes along on numbers that do no harm.
+  /// Of an object of zeros. No lane flies: each computes along on numbers that do no harm.
   void Configure(const LauncherPlant& nominal, double tick_s) {
-    __builtin_memset(static_cast<void*>(this), 0, sizeof *this);
     earth_ = nominal.environment.earth;
     air_ = &nominal.environment.Air();
     tick_s_ = tick_s;
@@ -258,7 +254,7 @@ class StepState {
       bending_.modes > 0 ? SetRates<true, false>(motion_, bending_state_, p, p.rates, &p.instant)
                          : SetRates<false, false>(motion_, bending_state_, p, p.rates, &p.instant);
     }
-    return LaneOf(p.instant, lane);
+    return lanes::LaneOf(p.instant, lane);
   }
 
   /// Shapes of the modes at the lanes' propellant, where bending is looked at between steps.
@@ -415,17 +411,8 @@ class StepState {
     return plant_.flow_coriolis ? CgVelocityOf(masses, q) : Zero<T>();
   }
   static void SetTransition(const Actuators<T>& drives, Transition<T>& over, int lane, double time_s) {
-    const Transition<double> one =
-        TransitionOver(Lane(drives.bandwidth2_1_s2, lane), Lane(drives.twice_damping_1_s, lane), time_s);
-    Lane(over.aa, lane) = one.aa;
-    Lane(over.ar, lane) = one.ar;
-    Lane(over.ra, lane) = one.ra;
-    Lane(over.rr, lane) = one.rr;
-  }
-  static Instant<double> LaneOf(const Instant<T>& i, int lane) {
-    Instant<double> one;
-    ReadLaneValues<T>(i, lane, one);
-    return one;
+    SetLane(over, lane,
+            TransitionOver(Lane(drives.bandwidth2_1_s2, lane), Lane(drives.twice_damping_1_s, lane), time_s));
   }
 
   // The lane's state or plant has jumped: nothing of the last step's end holds.

@@ -12,7 +12,7 @@ using Value = LaneValue<DISPERSA_LANES>;
 
 // Every value and lane set before the first step.
 lanes::StepState<Value>* NewStep(const StepSetting& setting) {
-  lanes::StepState<Value>* step = new lanes::StepState<Value>;
+  lanes::StepState<Value>* step = new lanes::StepState<Value>();
   step->Configure(*setting.plant, setting.tick_s);
   for (int lane = 0; lane < DISPERSA_LANES; ++lane) {
     step->StartFlight(lane, *setting.weather, setting.y);

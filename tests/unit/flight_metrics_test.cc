@@ -45,7 +45,7 @@ class MetricsRecorder {
  public:
   MetricsRecorder(const FlightModel& model, const FlightInputs& inputs)
       : model_(model), inputs_(inputs), ripple_(kTick_s), cycle_(kTick_s) {
-    metrics_.StartFlight(0);
+    metrics_.StartFlight(0, FlightInputs{});
   }
 
   void AddTick(const Tick& s) {
