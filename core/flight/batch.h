@@ -291,9 +291,8 @@ LaneView Batch<T>::ViewOf(int lane) const {
     // Without thrust the lane's autopilot does not act. The values in its place come from neighbouring lanes.
     if (!view.phase.burning || (Bits(m_.at.unsteered) >> lane & 1u)) continue;
     view.gimbal_rad[axis] = Lane(m_.computer.output().deflection_rad[axis], lane);
-    view.axes[axis] =
-        TelemetryOf(model_.autopilot().laws.data()[axis].config, m_.computer.output().axes[axis],
-                    m_.computer.memory(axis), lane);
+    view.axes[axis] = TelemetryOf(model_.autopilot().laws.data()[axis].config,
+                                  m_.computer.output().axes[axis], m_.computer.memory(axis), lane);
     ReadLaneValues<T>(m_.computer.memory(axis), lane, view.memories[axis]);
   }
   return view;

@@ -150,7 +150,8 @@ void Batch<T>::Happen(int lane) {
       break;
     }
     case EventKind::kBoosterBurnout:
-      m_.metrics.AddLoadsOfLane(lane, m_.step.InstantOf(lane, m_.at.time_s));  // they peak here, between ticks
+      m_.metrics.AddLoadsOfLane(lane,
+                                m_.step.InstantOf(lane, m_.at.time_s));  // they peak here, between ticks
       // Commands of one unit turn other nozzles, or move the body less, from here on: no swing of a nozzle.
       record.ripple.Interrupt();
       record.limit_cycle.Interrupt();

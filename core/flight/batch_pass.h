@@ -39,9 +39,10 @@ void Batch<T>::Measure() {
   for (int lane = 0; lane < kLanes; ++lane) {
     const Slot& slot = m_.at.slot[lane];
     const double tick = Lane(m_.at.tick, lane);
-    row[lane] = slot.IsGuided() ? slot.record->guided->RowAt(tick)
-                                : reference.rows.data() + ReferenceRows::kRowSize *
-                                                              static_cast<long>(Min(tick, reference.last_tick));
+    row[lane] = slot.IsGuided()
+                    ? slot.record->guided->RowAt(tick)
+                    : reference.rows.data() +
+                          ReferenceRows::kRowSize * static_cast<long>(Min(tick, reference.last_tick));
   }
   T now[ReferenceRows::kRowSize];
   LoadRow(row, 2, now);
@@ -122,23 +123,25 @@ void Batch<T>::Meter(M powered) {
   const AxisOutput<T>& pitch = m_.computer.output().axes[kPitch];
   const LyapunovSample<T> law{pitch.v, Select(pitch.v_rate_sign < T(0.0), T(1.0), T(0.0)),
                               m_.computer.law(kPitch).p11, pitch.departure_norm2};
-  m_.metrics.AddPowered(powered, T(tick_s_), m_.at.time_s, {-m_.errors.angle_rad.x, pitch_error, -m_.errors.angle_rad.z}, law);
+  m_.metrics.AddPowered(powered, T(tick_s_), m_.at.time_s,
+                        {-m_.errors.angle_rad.x, pitch_error, -m_.errors.angle_rad.z}, law);
   const bool listed = m_.step.plant().nozzles_listed;
   if (listed) {
     typename LaneMetrics<T>::Travel travel{T(0.0), T(0.0), NoLane<T>()};
     for (int bank = 0; bank < m_.step.plant().banks; ++bank) {
       const BankState<T>& drives = m_.step.drives(bank);
       m_.metrics.AddToTravel(powered & m_.step.plant().bank[bank].driven, m_.at.time_s, bank, drives.first,
-                           drives.second, m_.step.command_rad(bank), m_.computer.allocation(bank), travel);
+                             drives.second, m_.step.command_rad(bank), m_.computer.allocation(bank), travel);
     }
     m_.metrics.EndTravel(powered, m_.computer.allocation(0).per_drive, travel);
   } else {
-    m_.metrics.AddDeflections(powered, m_.at.time_s, m_.step.drives(0).first, m_.step.command_rad(0), m_.computer.limit_rad());
+    m_.metrics.AddDeflections(powered, m_.at.time_s, m_.step.drives(0).first, m_.step.command_rad(0),
+                              m_.computer.limit_rad());
   }
 
-  const M is_transient =
-      InTransient(m_.at.time_s, m_.at.time_s - m_.step.phase().ignition_s, m_.step.now().altitude_m,
-                  definition_.kick_start_s, definition_.kick_end_s, m_.metrics.gust_bottom_m, m_.metrics.gust_top_m);
+  const M is_transient = InTransient(m_.at.time_s, m_.at.time_s - m_.step.phase().ignition_s,
+                                     m_.step.now().altitude_m, definition_.kick_start_s,
+                                     definition_.kick_end_s, m_.metrics.gust_bottom_m, m_.metrics.gust_top_m);
   const unsigned metered = Bits(powered), interrupted = Bits(is_transient);
   const T* n = m_.step.drives(0).first.angle_rad;
   T roll = T(0.25) * ((n[0] - n[1]) + (n[2] - n[3]));
@@ -163,7 +166,8 @@ void Batch<T>::Meter(M powered) {
 
 template <class T>
 void Batch<T>::WatchAndDigest() {
-  const unsigned due = Bits(m_.at.live & ((m_.at.tick >= m_.at.next_digest_tick) | (m_.at.tick >= m_.at.next_row_tick)));
+  const unsigned due =
+      Bits(m_.at.live & ((m_.at.tick >= m_.at.next_digest_tick) | (m_.at.tick >= m_.at.next_row_tick)));
   if (due == 0) return;
   const long second = static_cast<long>(1.0 / tick_s_ + 0.5);
   for (int lane = 0; lane < kLanes; ++lane) {
@@ -237,11 +241,12 @@ void Batch<T>::CheckEnds() {
   const StructuralLimits& limits = definition_.vehicle.limits;
   if (limits.terminate) {
     const auto above = [](T value, double limit) { return value > T(limit > 0.0 ? limit : kFarFuture); };
-    suspects = suspects | (m_.at.live & (above(m_.metrics.sums.q_max_pa, limits.q_max_pa) |
-                                    above(m_.metrics.sums.q_alpha_max_pa_rad, limits.q_alpha_pa_rad) |
-                                    above(m_.metrics.sums.axial_load_max_g, limits.axial_load_g) |
-                                    above(m_.metrics.sums.lateral_load_max_g, limits.lateral_load_g) |
-                                    above(m_.metrics.sums.bending_moment_max_n_m, limits.bending_moment_n_m)));
+    suspects =
+        suspects | (m_.at.live & (above(m_.metrics.sums.q_max_pa, limits.q_max_pa) |
+                                  above(m_.metrics.sums.q_alpha_max_pa_rad, limits.q_alpha_pa_rad) |
+                                  above(m_.metrics.sums.axial_load_max_g, limits.axial_load_g) |
+                                  above(m_.metrics.sums.lateral_load_max_g, limits.lateral_load_g) |
+                                  above(m_.metrics.sums.bending_moment_max_n_m, limits.bending_moment_n_m)));
   }
   if (has_plugin_) {
     for (int lane = 0; lane < kLanes; ++lane)
@@ -253,9 +258,10 @@ void Batch<T>::CheckEnds() {
   for (int lane = 0; lane < kLanes; ++lane) {
     if (!(Bits(suspects) >> lane & 1u)) continue;
     // A sample stands for all ticks up to the next sample: in the coast these are several.
-    const double lost_ticks = Bits(is_lost) >> lane & 1u
-                                  ? Lane(m_.at.lost_ticks, lane) + Lane(m_.at.next_tick, lane) - Lane(m_.at.tick, lane)
-                                  : 0.0;
+    const double lost_ticks =
+        Bits(is_lost) >> lane & 1u
+            ? Lane(m_.at.lost_ticks, lane) + Lane(m_.at.next_tick, lane) - Lane(m_.at.tick, lane)
+            : 0.0;
     Lane(m_.at.lost_ticks, lane) = lost_ticks;
     FlightSums loads;
     m_.metrics.Read(lane, loads);

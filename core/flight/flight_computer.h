@@ -156,15 +156,14 @@ void FlightComputer<T>::StartStage(int lane, int stage, const Standing<T>& at, M
   const bool is_changed = loop_stage == 0 || loop_stage == stage + 1;
   SetLoop(loop_, lane, autopilot, stage, in.pn_error_factor, in.pn_rate_factor,
           is_changed ? in.loop_gain_factor : 1.0);
-  line_.StartStage(lane,
-                   record.plant.stacks.data()[stage].gimbal.delay_ticks +
-                       (is_changed ? in.loop_delay_s / tick_s_ : 0.0),
-                   tick_s_, burning);
+  line_.StartStage(
+      lane,
+      record.plant.stacks.data()[stage].gimbal.delay_ticks + (is_changed ? in.loop_delay_s / tick_s_ : 0.0),
+      tick_s_, burning);
 }
 
 template <class T>
-void FlightComputer<T>::Steer(M powered, const Standing<T>& at, const Sensed<T>& sensed,
-                              StepState<T>& step) {
+void FlightComputer<T>::Steer(M powered, const Standing<T>& at, const Sensed<T>& sensed, StepState<T>& step) {
   const bool listed = step.plant().nozzles_listed;
   AxisMemory<T> of_roll;
   if (listed) of_roll = axes_[kRoll];
@@ -229,7 +228,8 @@ const T* FlightComputer<T>::FedForward(const Standing<T>& at, T* program) const 
 /// Roll control of stages whose nozzles cannot roll: the thrusters of the coast fire in the same cycles while
 /// the motor burns.
 template <class T>
-void FlightComputer<T>::RollByThrusters(M rolling, const Standing<T>& at, const Sensed<T>& sensed, StepState<T>& step) {
+void FlightComputer<T>::RollByThrusters(M rolling, const Standing<T>& at, const Sensed<T>& sensed,
+                                        StepState<T>& step) {
   const AutopilotModel& autopilot = model_->autopilot();
   const ReactionControlLogic& logic = autopilot.config.reaction_control;
   const ReactionControl& rcs = model_->definition().vehicle.reaction_control;

@@ -287,6 +287,28 @@ class StepState {
   /// Code of its own for each kind of vehicle: whether it bends, whether its nozzles are listed.
   template <bool kBends, bool kListed>
   MaskOf<T> StepOf(MaskOf<T> moving, bool all, T from_s, T to_s);
+  /// A step on its way.
+  template <bool kListed>
+  struct Trial {
+    T length_s, half_s;
+    int banks;  ///< whose drives may move
+    BankState<T> drives_half[kListed ? kBanks : 1], drives_end[kListed ? kBanks : 1];
+    BendingState<T> bent_middle, bent_end;
+    Swing<T> over_half, over_step;
+    RigidMotion<T> middle, end;
+  };
+  template <bool kListed>
+  void DriveToEnd(MaskOf<T> moving, Trial<kListed>& trial) const;
+  template <bool kBends, bool kListed>
+  void GoToMiddle(T from_s, Trial<kListed>& trial);
+  template <bool kBends, bool kListed>
+  void GoToEnd(T to_s, Trial<kListed>& trial);
+  template <bool kBends, bool kListed>
+  void Correct(Trial<kListed>& trial);
+  template <bool kBends, bool kListed>
+  MaskOf<T> IsFinite(const Trial<kListed>& trial) const;
+  template <bool kBends, bool kListed>
+  void Take(MaskOf<T> accepted, bool all, const Trial<kListed>& trial);
 
   /// Everything of an instant that a step uses.
   struct Point {
@@ -487,35 +509,45 @@ template <class T>
 template <bool kBends, bool kListed>
 MaskOf<T> StepState<T>::StepOf(MaskOf<T> moving, bool all, T from_s, T to_s) {
   EvaluateStartOf<kBends, kListed>(from_s);
-  const T h = to_s - from_s, half = T(0.5) * h, sixth = h * T(1.0 / 6.0);
-  const T two(2.0), three(3.0), four(4.0);
-  const T h2 = h * h, h2_8 = T(0.125) * h2, h2_6 = T(1.0 / 6.0) * h2;
+  Trial<kListed> trial;
+  trial.length_s = to_s - from_s;
+  trial.half_s = T(0.5) * trial.length_s;
+  DriveToEnd(moving, trial);
+  GoToMiddle<kBends>(from_s, trial);
+  GoToEnd<kBends>(to_s, trial);
+  Correct<kBends>(trial);
+  const MaskOf<T> accepted = moving & IsFinite<kBends>(trial);
+  Take<kBends>(accepted, all && !Any(moving & !accepted), trial);
+  return accepted;
+}
+
+template <class T>
+template <bool kListed>
+DISPERSA_INLINE void StepState<T>::DriveToEnd(MaskOf<T> moving, Trial<kListed>& trial) const {
+  // In the coast angles, rates and commands are zero, and stay so: nothing reads the nozzles.
+  const auto driven = phase_.burning | phase_.burnt;
+  trial.banks = !Any(driven) ? 0 : kListed ? plant_.banks : 1;
+  const auto odd = moving & driven & (Abs(trial.length_s - T(tick_s_)) > T(kSameStep_s));
+  for (int bank = 0; bank < trial.banks; ++bank) {
+    Drive<kListed>(bank, odd, trial.half_s, trial.drives_half[bank], trial.drives_end[bank]);
+    SetNozzles(bank, kListed, trial.drives_half[bank]);
+  }
+}
+
+template <class T>
+template <bool kBends, bool kListed>
+DISPERSA_INLINE void StepState<T>::GoToMiddle(T from_s, Trial<kListed>& trial) {
+  const T half = trial.half_s, h2_8 = T(0.125) * (trial.length_s * trial.length_s);
   const Point& a = *start_;
   Point& b = *middle_;
-  Point& c = *end_;
-
-  // In the coast angles, rates and commands are zero, and stay so: nothing reads the nozzles.
-  const int banks = kListed ? plant_.banks : 1;
-  BankState<T> drives_half[kListed ? kBanks : 1], drives_end[kListed ? kBanks : 1];
-  const auto driven = phase_.burning | phase_.burnt;
-  const bool is_driven = Any(driven);
-  const auto odd = moving & driven & (Abs(h - T(tick_s_)) > T(kSameStep_s));
-  for (int bank = 0; is_driven && bank < banks; ++bank) {
-    Drive<kListed>(bank, odd, half, drives_half[bank], drives_end[bank]);
-    SetNozzles(bank, kListed, drives_half[bank]);
-  }
-  BendingState<T> bent_middle, bent_end;
-  Swing<T> over_half, over_step;
-  const ModalForce<T> no_curvature{};
   SetMasses(from_s + half, b.masses);
   if constexpr (kBends) {
     SetShapes(b.masses);
-    over_half = SwingOver(bending_, half);
-    over_step = Twice(bending_, over_half);
-    SetSwung(over_half, a.modal, a.modal_slopes, no_curvature, bent_middle);
+    trial.over_half = SwingOver(bending_, half);
+    trial.over_step = Twice(bending_, trial.over_half);
+    SetSwung(trial.over_half, a.modal, a.modal_slopes, ModalForce<T>{}, trial.bent_middle);
   }
-
-  RigidMotion<T> middle;
+  RigidMotion<T>& middle = trial.middle;
   middle.p = Along(Along(motion_.p, half, motion_.v), h2_8, a.rates.dv);
   middle.v = Along(Along(motion_.v, half, a.rates.dv), h2_8, a.slopes.dv);
   middle.q = TurnedBy(motion_.q, Along(half * motion_.w, h2_8, a.rates.dw));
@@ -523,36 +555,54 @@ MaskOf<T> StepState<T>::StepOf(MaskOf<T> moving, bool all, T from_s, T to_s) {
   b.cg_velocity = CgVelocityAt(b.masses, middle.q);
   if (plant_.flow_coriolis) middle.p = Along(middle.p, T(0.5) * half, a.cg_velocity + b.cg_velocity);
   SetAir(middle.p, b.around);
-  SetRates<kBends, kListed>(middle, kBends ? bent_middle : bending_state_, b, b.rates, nullptr);
+  SetRates<kBends, kListed>(middle, kBends ? trial.bent_middle : bending_state_, b, b.rates, nullptr);
+}
 
-  RigidMotion<T> end;
+/// Position and attitude are final there. The velocities are a guess.
+template <class T>
+template <bool kBends, bool kListed>
+DISPERSA_INLINE void StepState<T>::GoToEnd(T to_s, Trial<kListed>& trial) {
+  const T h = trial.length_s, sixth = h * T(1.0 / 6.0), two(2.0);
+  const T h2 = h * h, h2_6 = T(1.0 / 6.0) * h2;
+  const Point &a = *start_, &b = *middle_;
+  Point& c = *end_;
+  RigidMotion<T>& end = trial.end;
   end.p = Along(Along(motion_.p, h, motion_.v), h2_6, Along(a.rates.dv, two, b.rates.dv));
   const Vector<T> turn = Along(h * motion_.w, h2_6, Along(a.rates.dw, two, b.rates.dw));
-  end.q = TurnedBy(motion_.q, Along(turn, h2 * h * T(1.0 / 12.0), Cross(middle.w, b.rates.dw)));
+  end.q = TurnedBy(motion_.q, Along(turn, h2 * h * T(1.0 / 12.0), Cross(trial.middle.w, b.rates.dw)));
   end.v = Along(motion_.v, h, b.rates.dv);
   end.w = Along(motion_.w, h, b.rates.dw);
   SetMasses(to_s, c.masses);
   c.cg_velocity = CgVelocityAt(c.masses, end.q);
   if (plant_.flow_coriolis)
-    end.p = Along(end.p, sixth, Along(a.cg_velocity + c.cg_velocity, four, b.cg_velocity));
+    end.p = Along(end.p, sixth, Along(a.cg_velocity + c.cg_velocity, T(4.0), b.cg_velocity));
   SetAir(end.p, c.around);
-  const T per_s = T(1.0) / h;
   if constexpr (kBends) {
+    const T per_s = T(1.0) / h;
     ModalForce<T> rising;
     for (int plane = 0; plane < kPlanes; ++plane)
       for (int mode = 0; mode < kModes; ++mode)
         rising.drive_m_s2[plane][mode] =
             two * per_s * (b.modal.drive_m_s2[plane][mode] - a.modal.drive_m_s2[plane][mode]);
-    SetSwung(over_step, a.modal, rising, no_curvature, bent_end);
+    SetSwung(trial.over_step, a.modal, rising, ModalForce<T>{}, trial.bent_end);
     SetShapes(c.masses);
   }
-  for (int bank = 0; is_driven && bank < banks; ++bank) SetNozzles(bank, kListed, drives_end[bank]);
-  SetRates<kBends, kListed>(end, kBends ? bent_end : bending_state_, c, c.rates, &c.instant);
-  end.v = Along(motion_.v, sixth, Along(a.rates.dv + c.rates.dv, four, b.rates.dv));
-  end.w = Along(motion_.w, sixth, Along(a.rates.dw + c.rates.dw, four, b.rates.dw));
+  for (int bank = 0; bank < trial.banks; ++bank) SetNozzles(bank, kListed, trial.drives_end[bank]);
+  SetRates<kBends, kListed>(end, kBends ? trial.bent_end : bending_state_, c, c.rates, &c.instant);
+}
+
+/// Velocities and bending by all three evaluations, and the slopes at the end.
+template <class T>
+template <bool kBends, bool kListed>
+DISPERSA_INLINE void StepState<T>::Correct(Trial<kListed>& trial) {
+  const T h = trial.length_s, sixth = h * T(1.0 / 6.0), per_s = T(1.0) / h;
+  const T two(2.0), three(3.0), four(4.0);
+  const Point &a = *start_, &b = *middle_;
+  Point& c = *end_;
+  trial.end.v = Along(motion_.v, sixth, Along(a.rates.dv + c.rates.dv, four, b.rates.dv));
+  trial.end.w = Along(motion_.w, sixth, Along(a.rates.dw + c.rates.dw, four, b.rates.dw));
   c.slopes.dv = per_s * Along(Along(a.rates.dv, three, c.rates.dv), -four, b.rates.dv);
   c.slopes.dw = per_s * Along(Along(a.rates.dw, three, c.rates.dw), -four, b.rates.dw);
-
   if constexpr (kBends) {
     // The parabola a + rise t + curve t² through the three.
     ModalForce<T> rise, curve;
@@ -564,43 +614,52 @@ MaskOf<T> StepState<T>::StepOf(MaskOf<T> moving, bool all, T from_s, T to_s) {
         curve.drive_m_s2[plane][mode] = two * per_s * per_s * ((from + to) - two * at);
         c.modal_slopes.drive_m_s2[plane][mode] = per_s * (from + three * to - four * at);
       }
-    SetSwung(over_step, a.modal, rise, curve, bent_end);
+    SetSwung(trial.over_step, a.modal, rise, curve, trial.bent_end);
   }
+}
 
-  // 0 or not a number.
-  T none(0.0);
+template <class T>
+template <bool kBends, bool kListed>
+DISPERSA_INLINE MaskOf<T> StepState<T>::IsFinite(const Trial<kListed>& trial) const {
+  T none(0.0);  // or not a number
   const auto take = [&none](const auto&... values) { ((none = Fma(values, T(0.0), none)), ...); };
+  const RigidMotion<T>& end = trial.end;
   take(end.p.x, end.p.y, end.p.z, end.v.x, end.v.y, end.v.z);
   take(end.q.w, end.q.x, end.q.y, end.q.z, end.w.x, end.w.y, end.w.z);
-  for (int bank = 0; is_driven && bank < banks; ++bank) {
-    for (const T& rate : drives_end[bank].first.rate_rad_s) none = Fma(rate, T(0.0), none);
+  for (int bank = 0; bank < trial.banks; ++bank) {
+    for (const T& rate : trial.drives_end[bank].first.rate_rad_s) take(rate);
     if constexpr (kListed)
-      for (const T& rate : drives_end[bank].second.rate_rad_s) none = Fma(rate, T(0.0), none);
+      for (const T& rate : trial.drives_end[bank].second.rate_rad_s) take(rate);
   }
   if constexpr (kBends)
-    for (const auto& of_plane : bent_end.q_m)
-      for (const T& q_m : of_plane) none = Fma(q_m, T(0.0), none);
-  const auto accepted = moving & (none <= T(0.0));
-  if (all && !Any(moving & !accepted)) {
-    motion_ = end;
-    for (int bank = 0; is_driven && bank < banks; ++bank) {
-      banks_[bank].state.first = drives_end[bank].first;
-      if constexpr (kListed) banks_[bank].state.second = drives_end[bank].second;
+    for (const auto& of_plane : trial.bent_end.q_m)
+      for (const T& q_m : of_plane) take(q_m);
+  return none <= T(0.0);
+}
+
+/// The accepted lanes go to the step's end. `all`: those are all that fly.
+template <class T>
+template <bool kBends, bool kListed>
+DISPERSA_INLINE void StepState<T>::Take(MaskOf<T> accepted, bool all, const Trial<kListed>& trial) {
+  if (all) {
+    motion_ = trial.end;
+    for (int bank = 0; bank < trial.banks; ++bank) {
+      banks_[bank].state.first = trial.drives_end[bank].first;
+      if constexpr (kListed) banks_[bank].state.second = trial.drives_end[bank].second;
     }
-    if constexpr (kBends) bending_state_ = bent_end;
+    if constexpr (kBends) bending_state_ = trial.bent_end;
     Point* const last = start_;
     start_ = end_;
     end_ = last;
-  } else {
-    Blend<T>(accepted, end, motion_);
-    for (int bank = 0; is_driven && bank < banks; ++bank) {
-      Blend<T>(accepted, drives_end[bank].first, banks_[bank].state.first);
-      if constexpr (kListed) Blend<T>(accepted, drives_end[bank].second, banks_[bank].state.second);
-    }
-    if constexpr (kBends) Blend<T>(accepted, bent_end, bending_state_);
-    Blend<T>(accepted, c, *start_);
+    return;
   }
-  return accepted;
+  Blend<T>(accepted, trial.end, motion_);
+  for (int bank = 0; bank < trial.banks; ++bank) {
+    Blend<T>(accepted, trial.drives_end[bank].first, banks_[bank].state.first);
+    if constexpr (kListed) Blend<T>(accepted, trial.drives_end[bank].second, banks_[bank].state.second);
+  }
+  if constexpr (kBends) Blend<T>(accepted, trial.bent_end, bending_state_);
+  Blend<T>(accepted, *end_, *start_);
 }
 
 }  // namespace DISPERSA_ISA

@@ -1,4 +1,5 @@
-// Where W flights stand that are flown side by side (core/math/lanes.h): which lanes fly, in which phase, when.
+// Where W flights stand that are flown side by side (core/math/lanes.h): which lanes fly, in which phase,
+// when.
 #pragma once
 
 #include "core/flight/flight_record.h"
