@@ -27,11 +27,11 @@ inline FlightDefinition FlexibleGuidedDefinition() {
 /// Wind and a gust from aside, misalignments, lighter masses above, and modes that are not the nominal ones.
 inline FlightInputs FlexibleGuidedInputs() {
   FlightInputs inputs = Table3Inputs();
-  inputs.gust_speed_m_s = 9.0;
-  inputs.gust_altitude_m = 9000.0;
-  inputs.gust_length_m = 400.0;
-  inputs.gust_azimuth_rad = 40.0 * kRadPerDeg;
-  inputs.dry_mass_factor[1] = 0.99;
+  inputs.air.gust_speed_m_s = 9.0;
+  inputs.air.gust_altitude_m = 9000.0;
+  inputs.air.gust_length_m = 400.0;
+  inputs.air.gust_azimuth_rad = 40.0 * kRadPerDeg;
+  inputs.stages[1].dry_mass_factor = 0.99;
   inputs.bending_frequency_factor[0] = 0.97;
   inputs.bending_slope_factor = 1.05;
   return inputs;

@@ -24,9 +24,9 @@ inline Campaign GalleryLauncherWithoutTailOff(const std::string& campaigns, cons
 /// A case's inputs, with navigation that does not err and tail-offs that the flight computer knows.
 inline FlightInputs DrawnWithoutErrorsOfTheComputer(const CampaignFlights& flights, std::uint64_t index) {
   FlightInputs inputs = flights.Draw(index);
-  inputs.navigation_position_error_m = inputs.navigation_velocity_error_m_s = {};
-  inputs.accelerometer_scale_factor = 1.0;
-  inputs.tail_off_factor = AllStages(1.0);
+  inputs.sensors.navigation_position_error_m = inputs.sensors.navigation_velocity_error_m_s = {};
+  inputs.sensors.accelerometer_scale_factor = 1.0;
+  for (StageInputs& stage : inputs.stages) stage.tail_off_factor = 1.0;
   return inputs;
 }
 

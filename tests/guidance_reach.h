@@ -59,7 +59,7 @@ inline std::vector<ReachCase> FlyReach(const std::vector<double>& percentages) {
   for (int stage = 0; stage < stages; ++stage) {
     for (const double percent : percentages) {
       FlightInputs inputs;
-      inputs.specific_impulse_factor[static_cast<std::size_t>(stage)] = 1.0 + 0.01 * percent;
+      inputs.stages[static_cast<std::size_t>(stage)].specific_impulse_factor = 1.0 + 0.01 * percent;
       ReachCase each{stage, percent, ReachedBy(Fly(open, inputs)), ReachedBy(Fly(closed, inputs))};
       each.axis_below_km = std::fmin(each.open.axis_km, each.closed.target_axis_km) - each.closed.axis_km;
       each.perigee_below_km =

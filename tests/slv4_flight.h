@@ -30,12 +30,13 @@ inline FlightDefinition Slv4Definition(const std::string& campaigns,
 /// Everything of the paper's Table 3 at once, each at its full size.
 inline FlightInputs Table3Inputs() {
   FlightInputs inputs;
-  inputs.thrust_misalignment_rad = AllStages(0.25 * kRadPerDeg);
+  for (StageInputs& stage : inputs.stages) stage.thrust.misalignment_rad.magnitude = 0.25 * kRadPerDeg;
   inputs.thrust_misalignment_clock_rad = {0.5, 2.1, 3.7, 5.3};
-  inputs.wind_max_speed_m_s = 60.96;
-  inputs.wind_azimuth_rad = 280.0 * kRadPerDeg;
+  inputs.air.wind_max_speed_m_s = 60.96;
+  inputs.air.wind_azimuth_rad = 280.0 * kRadPerDeg;
   inputs.drag_factor = 1.067;
-  for (std::size_t stage = 0; stage < 4; ++stage) inputs.thrust_factor[stage] = stage % 2 == 0 ? 1.02 : 0.98;
+  for (std::size_t stage = 0; stage < 4; ++stage)
+    inputs.stages[stage].thrust_factor = stage % 2 == 0 ? 1.02 : 0.98;
   return inputs;
 }
 

@@ -39,21 +39,22 @@ void Batch<T>::Measure() {
   for (int lane = 0; lane < kLanes; ++lane) {
     const Slot& slot = m_.at.slot[lane];
     const double tick = Lane(m_.at.tick, lane);
-    row[lane] = slot.IsGuided()
-                    ? slot.record->guided->RowAt(tick)
-                    : reference.rows.data() +
-                          ReferenceRows::kRowSize * static_cast<long>(Min(tick, reference.last_tick));
+    row[lane] =
+        reference.rows.data() + ReferenceRows::kRowSize * static_cast<long>(Min(tick, reference.last_tick));
+    if (definition_.guidance.closed_loop && slot.IsGuided()) row[lane] = slot.record->guided->RowAt(tick);
   }
   T now[ReferenceRows::kRowSize];
   LoadRow(row, 2, now);
   m_.errors = ErrorsAgainst(now, m_.step.motion().q, m_.step.motion().w);
-  m_.sensed = {m_.errors, m_.step.motion().w};
+  m_.sensed.errors = m_.errors;
+  if (has_plugin_) m_.sensed.body_rate_rad_s = m_.step.motion().w;
   if (!m_.sensors.AreImperfect(m_.step, m_.at.live)) return;
   const auto seen = m_.sensors.Measure(m_.at, m_.step);
   const AttitudeErrors<T> shown = ErrorsAgainst(now, seen.attitude, seen.rate_rad_s);
   AttitudeErrors<T>& sensed = m_.sensed.errors;
   sensed.angle_rad = Select(seen.imperfect, shown.angle_rad, sensed.angle_rad);
   sensed.rate_rad_s = Select(seen.imperfect, shown.rate_rad_s, sensed.rate_rad_s);
+  if (!has_plugin_) return;
   m_.sensed.body_rate_rad_s = Select(seen.imperfect, seen.rate_rad_s, m_.sensed.body_rate_rad_s);
 }
 

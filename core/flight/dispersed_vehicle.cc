@@ -52,8 +52,8 @@ void LoadMean(const FlightInputs& in, Vehicle& vehicle) {
   if (boosters.count == 0) return;
   double dry = 0.0, propellant = 0.0;
   for (std::size_t k = 0; k < boosters.angles_rad.size(); ++k) {
-    dry += in.booster_dry_mass_factor[PlaceOf(vehicle, k)] - 1.0;
-    propellant += in.booster_propellant_factor[PlaceOf(vehicle, k)] - 1.0;
+    dry += in.further[PlaceOf(vehicle, k)].booster.dry_mass_factor - 1.0;
+    propellant += in.further[PlaceOf(vehicle, k)].booster.propellant_factor - 1.0;
   }
   boosters.dry_mass_kg *= 1.0 + dry / boosters.count;
   if (propellant != 0.0) Load(1.0 + propellant / boosters.count, boosters);
@@ -63,10 +63,12 @@ void LoadMean(const FlightInputs& in, Vehicle& vehicle) {
 
 bool ChangesMasses(const FlightInputs& in) {
   for (std::size_t i = 0; i < kMaxStages; ++i)
-    if (in.dry_mass_factor[i] != 1.0 || in.propellant_factor[i] != 1.0 || in.mixture_ratio_factor[i] != 1.0)
+    if (in.stages[i].dry_mass_factor != 1.0 || in.stages[i].propellant_factor != 1.0 ||
+        in.stages[i].mixture_ratio_factor != 1.0)
       return true;
   for (std::size_t i = 0; i < kFurtherNozzles; ++i)
-    if (in.booster_dry_mass_factor[i] != 1.0 || in.booster_propellant_factor[i] != 1.0) return true;
+    if (in.further[i].booster.dry_mass_factor != 1.0 || in.further[i].booster.propellant_factor != 1.0)
+      return true;
   return in.payload_mass_kg != 0.0;
 }
 
@@ -80,19 +82,20 @@ Vehicle WithDispersedMasses(const Vehicle& vehicle, const FlightInputs& in) {
     std::size_t first = i;  // burn of the stage, whose factors are the stage's
     while (vehicle.stages[first].restarts) --first;
     const double nominal_dry_kg = DryMass(vehicle, static_cast<int>(i));
-    double dry_kg = nominal_dry_kg * in.dry_mass_factor[first];
+    double dry_kg = nominal_dry_kg * in.stages[first].dry_mass_factor;
     const int element = static_cast<int>(in.payload_element + 0.5) - 1;
     const bool is_last =
         LastBurn(vehicle, static_cast<int>(i)) + 1 == static_cast<int>(vehicle.stages.size());
     if (is_last && element >= 0 && element < static_cast<int>(stage.structure.size()))
       AddToElement(static_cast<std::size_t>(element), in.payload_mass_kg, dry_kg, stage);
     if (stage.flown_mass.rows) {
-      stage.flown_mass.dry_factor = in.dry_mass_factor[first];
-      stage.flown_mass.added_kg = dry_kg - nominal_dry_kg * in.dry_mass_factor[first];
+      stage.flown_mass.dry_factor = in.stages[first].dry_mass_factor;
+      stage.flown_mass.added_kg = dry_kg - nominal_dry_kg * in.stages[first].dry_mass_factor;
       stage.flown_mass.element = static_cast<std::size_t>(std::max(element, 0));
     }
-    Load(in.propellant_factor[first], stage);
-    Mix(vehicle.stages[first], in.propellant_factor[first], in.mixture_ratio_factor[first], stage);
+    Load(in.stages[first].propellant_factor, stage);
+    Mix(vehicle.stages[first], in.stages[first].propellant_factor, in.stages[first].mixture_ratio_factor,
+        stage);
     double own_kg = dry_kg + stage.propellant_mass_kg;
     const Stage& at_last = vehicle.stages[static_cast<std::size_t>(LastBurn(vehicle, static_cast<int>(i)))];
     for (const Jettison& jettison : at_last.jettisoned) own_kg += jettison.mass_kg;
@@ -107,11 +110,11 @@ DispersedBooster BoosterOf(const Vehicle& nominal, const FlightInputs& in, std::
   const std::size_t k = PlaceOf(nominal, booster);
   DispersedBooster dispersed{nominal.boosters, {}};
   Boosters& one = dispersed.one;
-  one.dry_mass_kg *= in.booster_dry_mass_factor[k];
-  if (in.booster_propellant_factor[k] != 1.0) Load(in.booster_propellant_factor[k], one);
+  one.dry_mass_kg *= in.further[k].booster.dry_mass_factor;
+  if (in.further[k].booster.propellant_factor != 1.0) Load(in.further[k].booster.propellant_factor, one);
   if (!one.is_liquid()) return dispersed;
   dispersed.mixture = BuildMixture(one.tanks, one.propellant_mass_kg, one.motor.residual_mass_kg,
-                                   in.booster_mixture_ratio_factor[k]);
+                                   in.further[k].booster.mixture_ratio_factor);
   one.motor.residual_mass_kg = dispersed.mixture.residual_kg;
   return dispersed;
 }

@@ -20,7 +20,7 @@ inline namespace DISPERSA_ISA {
 template <class T>
 struct Sensed {
   AttitudeErrors<T> errors;
-  Vector<T> body_rate_rad_s;
+  Vector<T> body_rate_rad_s;  ///< set where a plug-in reads it
 };
 
 template <class T>
@@ -219,7 +219,8 @@ const T* FlightComputer<T>::FedForward(const Standing<T>& at, T* program) const 
   for (int lane = 0; lane < kLanes; ++lane) {
     const double tick = Min(Lane(at.tick, lane), model_->reference_rows().last_tick);
     row[lane] = table.rows.data() + FeedForwardRows::kRowSize * static_cast<long>(tick);
-    if (at.slot[lane].IsGuided()) row[lane] = at.slot[lane].record->guided->feed_forward_row();
+    if (model_->definition().guidance.closed_loop && at.slot[lane].IsGuided())
+      row[lane] = at.slot[lane].record->guided->feed_forward_row();
   }
   LoadFour(row, program);
   return program;

@@ -22,84 +22,94 @@ const InputDeclarations& Declared() {
 
 }  // namespace
 
-InputDeclarations& InputDeclarations::One(double FlightInputs::*field, const std::string& name, double unit,
+InputDeclarations& InputDeclarations::One(int number, const double& of, const std::string& name, double unit,
                                           const Dispersal& dispersal) {
   Begin();
-  columns_.push_back({name, unit, OffsetOf(&(nominal_.*field))});
-  Disperse(dispersal, DrawnFor::kFlight, name);
+  columns_.push_back({number, name, unit, OffsetOf(of)});
+  Disperse(number, dispersal, DrawnFor::kFlight, name);
   return *this;
 }
 
-InputDeclarations& InputDeclarations::EachStage(PerStage FlightInputs::*field, const std::string& stem,
+InputDeclarations& InputDeclarations::EachStage(int number, const double& of, const std::string& stem,
                                                 const std::string& unit_suffix, double unit,
                                                 const Dispersal& dispersal) {
   Begin();
   for (std::size_t i = 0; i < kMaxStages; ++i)
-    ColumnsWith(i).push_back({stem + "_stage" + std::to_string(i + 1) + unit_suffix,
+    ColumnsWith(i).push_back({number,
+                              stem + "_stage" + std::to_string(i + 1) + unit_suffix,
                               unit,
-                              OffsetOf(&(nominal_.*field)[i]),
+                              OffsetOf(of) + i * sizeof(StageInputs),
                               {static_cast<int>(i) + 1, 0}});
-  Disperse(dispersal, DrawnFor::kEachStage, stem + "_{stage}" + unit_suffix);
+  Disperse(number, dispersal, DrawnFor::kEachStage, stem + "_{stage}" + unit_suffix);
   return *this;
 }
 
-InputDeclarations& InputDeclarations::EachNozzle(PerNozzle FlightInputs::*field, const std::string& stem,
-                                                 const std::string& unit_suffix, double unit) {
+InputDeclarations& InputDeclarations::EachNozzle(NozzleNumbers numbers, const double& of,
+                                                 const std::string& stem, const std::string& unit_suffix,
+                                                 double unit) {
   Begin();
+  const auto* const first = reinterpret_cast<const double*>(&nominal_.stages[0].nozzles[0]);
   for (std::size_t i = 0; i < kMaxStages; ++i)
     for (std::size_t nozzle = 0; nozzle < kNozzles; ++nozzle)
       ColumnsWith(i).push_back(
-          {stem + "_stage" + std::to_string(i + 1) + "_" + kNozzleNames[nozzle] + unit_suffix,
+          {numbers.of_stage,
+           stem + "_stage" + std::to_string(i + 1) + "_" + kNozzleNames[nozzle] + unit_suffix,
            unit,
-           OffsetOf(&(nominal_.*field)[i][nozzle]),
+           OffsetOf(of) + i * sizeof(StageInputs) + nozzle * sizeof(NozzleInputs),
            {static_cast<int>(i) + 1, static_cast<int>(nozzle)}});
+  const std::size_t within = OffsetOf(of) - OffsetOf(*first);
+  const auto* const beyond = reinterpret_cast<const double*>(&nominal_.further[0].nozzle);
+  Further(numbers.further, OffsetOf(*beyond) + within, stem, unit_suffix, unit);
   return *this;
 }
 
-InputDeclarations& InputDeclarations::EachFurtherNozzle(PerFurtherNozzle FlightInputs::*field,
-                                                        const std::string& stem,
-                                                        const std::string& unit_suffix, double unit) {
+InputDeclarations& InputDeclarations::EachBooster(int number, const double& of, const std::string& stem) {
   Begin();
-  for (std::size_t i = 0; i < kFurtherNozzles; ++i)
-    further_[i].push_back(
-        {stem + "_nozzle" + std::to_string(kNozzles + 1 + static_cast<int>(i)) + unit_suffix,
-         unit,
-         OffsetOf(&(nominal_.*field)[i]),
-         {0, static_cast<int>(i)}});
+  Further(number, OffsetOf(of), stem, "", 1.0);
   return *this;
 }
 
-InputDeclarations& InputDeclarations::EachMode(std::array<double, kModes> FlightInputs::*field,
+InputDeclarations& InputDeclarations::EachMode(int number, const std::array<double, kModes>& of,
                                                const std::string& stem, const Dispersal& dispersal) {
   Begin();
   for (std::size_t i = 0; i < kModes; ++i)
-    columns_.push_back({stem + "_mode" + std::to_string(i + 1),
-                        1.0,
-                        OffsetOf(&(nominal_.*field)[i]),
-                        {0, static_cast<int>(i)}});
-  Disperse(dispersal, DrawnFor::kEachMode, stem + "_{mode}");
+    columns_.push_back(
+        {number, stem + "_mode" + std::to_string(i + 1), 1.0, OffsetOf(of[i]), {0, static_cast<int>(i)}});
+  Disperse(number, dispersal, DrawnFor::kEachMode, stem + "_{mode}");
   return *this;
 }
 
-InputDeclarations& InputDeclarations::EachLevel(std::array<double, kWindLevels> FlightInputs::*field,
+InputDeclarations& InputDeclarations::EachLevel(int number, const std::array<double, kWindLevels>& of,
                                                 const std::string& stem, const std::string& unit_suffix) {
   Begin();
   for (std::size_t i = 0; i < kWindLevels; ++i)
-    columns_.push_back({stem + "_" + std::to_string(i + 1) + unit_suffix,
+    columns_.push_back({number,
+                        stem + "_" + std::to_string(i + 1) + unit_suffix,
                         1.0,
-                        OffsetOf(&(nominal_.*field)[i]),
+                        OffsetOf(of[i]),
                         {0, static_cast<int>(i)}});
   return *this;
 }
 
-InputDeclarations& InputDeclarations::EachLaunchAxis(std::array<double, 3> FlightInputs::*field,
+InputDeclarations& InputDeclarations::EachLaunchAxis(int number, const std::array<double, 3>& of,
                                                      const std::string& stem,
                                                      const std::string& unit_suffix) {
   Begin();
   const char* const axes[] = {"_downrange", "_right", "_down"};
   for (std::size_t i = 0; i < 3; ++i)
-    columns_.push_back({stem + axes[i] + unit_suffix, 1.0, OffsetOf(&(nominal_.*field)[i])});
+    columns_.push_back({number, stem + axes[i] + unit_suffix, 1.0, OffsetOf(of[i])});
   return *this;
+}
+
+void InputDeclarations::Further(int number, std::size_t offset, const std::string& stem,
+                                const std::string& unit_suffix, double unit) {
+  for (std::size_t i = 0; i < kFurtherNozzles; ++i)
+    further_[i].push_back(
+        {number,
+         stem + "_nozzle" + std::to_string(kNozzles + 1 + static_cast<int>(i)) + unit_suffix,
+         unit,
+         offset + i * sizeof(FurtherInputs),
+         {0, static_cast<int>(i)}});
 }
 
 template <typename Set>
@@ -117,6 +127,11 @@ InputDeclarations& InputDeclarations::Within(const AllowedValues& allowed) {
 InputDeclarations& InputDeclarations::ReadBy(const Readers& readers) {
   return ForLast([&](InputColumn& column) { column.readers = readers; });
 }
+InputDeclarations& InputDeclarations::OfFurtherReadBy(const Readers& readers) {
+  for (auto& columns : further_)
+    for (std::size_t i = last_further_; i < columns.size(); ++i) columns[i].readers = readers;
+  return *this;
+}
 InputDeclarations& InputDeclarations::Usually(const UsualValues& usual) {
   return ForLast([&](InputColumn& column) { column.usual = usual; });
 }
@@ -128,9 +143,20 @@ std::vector<InputColumn> InputDeclarations::AllColumns() const {
   return all;
 }
 
-std::size_t InputDeclarations::OffsetOf(const double* value) const {
+void InputDeclarations::Finish() {
+  const auto by_number = [](const auto& a, const auto& b) { return a.number < b.number; };
+  const auto sort = [&](auto& all) { std::stable_sort(all.begin(), all.end(), by_number); };
+  sort(columns_);
+  sort(rare_);
+  for (auto& columns : further_) sort(columns);
+  sort(dispersed_);
+}
+
+std::size_t InputDeclarations::OffsetOf(const double& value) const {
   const char* const first = reinterpret_cast<const char*>(&nominal_);
-  return static_cast<std::size_t>(reinterpret_cast<const char*>(value) - first);
+  const std::ptrdiff_t offset = reinterpret_cast<const char*>(&value) - first;
+  DISPERSA_ASSERT(offset >= 0 && offset < static_cast<std::ptrdiff_t>(sizeof nominal_), offset);
+  return static_cast<std::size_t>(offset);
 }
 
 void InputDeclarations::Begin() {
@@ -143,8 +169,9 @@ std::vector<InputColumn>& InputDeclarations::ColumnsWith(std::size_t stage) {
   return stage < kUsualStages ? columns_ : rare_;
 }
 
-void InputDeclarations::Disperse(const Dispersal& dispersal, DrawnFor drawn_for, const std::string& column) {
-  if (dispersal.key != nullptr) dispersed_.push_back({dispersal, drawn_for, column});
+void InputDeclarations::Disperse(int number, const Dispersal& dispersal, DrawnFor drawn_for,
+                                 const std::string& column) {
+  if (dispersal.key != nullptr) dispersed_.push_back({number, dispersal, drawn_for, column});
 }
 
 const std::vector<InputColumn>& InputColumns() {

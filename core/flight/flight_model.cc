@@ -592,17 +592,18 @@ namespace {
 struct Aside {
   double y = 0.0, z = 0.0;
 };
-// Of a magnitude with its direction (from body y towards body z) and of components besides.
-Aside AsideOf(double magnitude, double clock, double y, double z) {
-  const SinCos c = SineCosine(clock);
+// `factor`: of the magnitude and of the components.
+Aside AsideOf(const Lateral& of, double factor = 1.0) {
+  const SinCos c = SineCosine(of.clock_rad);
+  const double magnitude = factor * of.magnitude;
   Aside aside{magnitude * c.cos, magnitude * c.sin};
-  if (y != 0.0) aside.y += y;
-  if (z != 0.0) aside.z += z;
+  if (of.y != 0.0) aside.y += factor * of.y;
+  if (of.z != 0.0) aside.z += factor * of.z;
   return aside;
 }
 
 // The spin for each metre of way that a stack's fins ask for: of all strips together no roll moment.
-double TwistOf(const Vehicle& vehicle, std::size_t stack, const PerStage& cant_rad) {
+double TwistOf(const Vehicle& vehicle, std::size_t stack, const FlightInputs& in) {
   double wanted_m3 = 0.0, damped_m4 = 0.0;
   for (std::size_t i = stack; i < vehicle.stages.size();
        i = static_cast<std::size_t>(LastBurn(vehicle, static_cast<int>(i))) + 1) {
@@ -610,7 +611,7 @@ double TwistOf(const Vehicle& vehicle, std::size_t stack, const PerStage& cant_r
     while (vehicle.stages[first].restarts) --first;
     for (const FinSet& fins : vehicle.stages[i].fins) {
       const FinStrips strips = StripsOf(fins, 0.5 * vehicle.stages[i].diameter_m);
-      wanted_m3 += fins.count * (fins.cant_rad + cant_rad[first]) * strips.first_m3;
+      wanted_m3 += fins.count * (fins.cant_rad + in.stages[first].fin_cant_rad) * strips.first_m3;
       damped_m4 += fins.count * strips.second_m4;
     }
   }
@@ -622,14 +623,19 @@ Matrix3 ThrustTilt(const Aside& tilt) {
   return RotationMatrix(FromRotationVector(Vector3(0.0, -tilt.z, tilt.y)));
 }
 
+NozzleDeparture DepartureOf(const NozzleInputs& nozzle) {
+  const Aside moved = AsideOf(nozzle.line.offset_m);
+  return {ThrustTilt(AsideOf(nozzle.line.misalignment_rad)), nozzle.thrust_factor, moved.y, moved.z};
+}
+
 // Of a stage's flow, by those of its nozzles. `further`: place of its first nozzle beyond four.
 double FlowFactor(const NozzleLayout& layout, const FlightInputs& in, std::size_t stage,
                   std::size_t further) {
   double more = 0.0;
   for (int nozzle = 0; nozzle < layout.nozzles; ++nozzle) {
     const std::size_t k = static_cast<std::size_t>(nozzle);
-    const double factor =
-        nozzle < kNozzles ? in.nozzle_flow_factor[stage][k] : in.further_flow_factor[further + k - kNozzles];
+    const double factor = nozzle < kNozzles ? in.stages[stage].nozzles[k].flow_factor
+                                            : in.further[further + k - kNozzles].nozzle.flow_factor;
     more += layout.share[nozzle] * (factor - 1.0);
   }
   return 1.0 + more;
@@ -639,8 +645,8 @@ WindTable ProfileOf(const FlightInputs& in, int levels) {
   const auto first = [levels](const std::array<double, kWindLevels>& values) {
     return std::vector<double>(values.begin(), values.begin() + levels);
   };
-  return {first(in.wind_profile_altitude_m), first(in.wind_profile_north_m_s),
-          first(in.wind_profile_east_m_s)};
+  return {first(in.air.wind_profile_altitude_m), first(in.air.wind_profile_north_m_s),
+          first(in.air.wind_profile_east_m_s)};
 }
 
 TurbulenceField TurbulenceOf(const FlightInputs& in, const TurbulencePath& path, std::uint64_t seed,
@@ -648,7 +654,7 @@ TurbulenceField TurbulenceOf(const FlightInputs& in, const TurbulencePath& path,
   Stream along(seed, case_index, "turbulence/along"), across(seed, case_index, "turbulence/across"),
       normal(seed, case_index, "turbulence/normal");
   return DrawTurbulence(
-      {in.turbulence_exceedance, in.turbulence_wind_20ft_m_s, in.turbulence_scale}, path,
+      {in.air.turbulence_exceedance, in.air.turbulence_wind_20ft_m_s, in.air.turbulence_scale}, path,
       {[&] { return along.Normal(); }, [&] { return across.Normal(); }, [&] { return normal.Normal(); }});
 }
 
@@ -657,16 +663,16 @@ TurbulenceField TurbulenceOf(const FlightInputs& in, const TurbulencePath& path,
 std::shared_ptr<const BoosterSet> BoostersFor(const Vehicle& vehicle, const Boosters& boosters,
                                               const FlightInputs& in, double thrust_factor,
                                               const BoosterSet& nominal) {
-  BoosterSet set = BuildBoosterSet(boosters, thrust_factor, in.mass_flow_factor[0]);
+  BoosterSet set = BuildBoosterSet(boosters, thrust_factor, in.stages[0].mass_flow_factor);
   set.layout = nominal.layout;
-  set.gimbal.bandwidth_rad_s *= in.actuator_bandwidth_factor * in.stack_actuator_bandwidth_factor[0];
+  set.gimbal.bandwidth_rad_s *= in.actuator_bandwidth_factor * in.stages[0].actuator_bandwidth_factor;
   std::size_t k = static_cast<std::size_t>(FurtherNozzlesBefore(vehicle, vehicle.stages.size()));
-  for (std::size_t i = 0; i < boosters.angles_rad.size(); ++i, ++k)
+  for (std::size_t i = 0; i < boosters.angles_rad.size(); ++i, ++k) {
+    const NozzleInputs& nozzle = in.further[k].nozzle;
     set.each.push_back(BuildEachBooster(
-        BoosterOf(vehicle, in, i), i, thrust_factor, in.mass_flow_factor[0],
-        {in.further_thrust_factor[k], in.further_flow_factor[k],
-         ThrustTilt(AsideOf(in.further_misalignment_rad[k], in.further_misalignment_clock_rad[k],
-                            in.further_misalignment_y_rad[k], in.further_misalignment_z_rad[k]))}));
+        BoosterOf(vehicle, in, i), i, thrust_factor, in.stages[0].mass_flow_factor,
+        {nozzle.thrust_factor, nozzle.flow_factor, ThrustTilt(AsideOf(nozzle.line.misalignment_rad))}));
+  }
   return std::make_shared<const BoosterSet>(std::move(set));
 }
 
@@ -674,13 +680,13 @@ std::shared_ptr<const BoosterSet> BoostersFor(const Vehicle& vehicle, const Boos
 
 FlightInputs FlightModel::AsApplied(FlightInputs in) const {
   const auto& statistics = definition_.wind_statistics;
-  if (!statistics || WindLevelsOf(in.wind_profile_altitude_m) > 0) return in;
+  if (!statistics || WindLevelsOf(in.air.wind_profile_altitude_m) > 0) return in;
   const auto fill = [](const std::vector<double>& from, std::array<double, kWindLevels>& to) {
     std::copy_n(from.begin(), std::min(from.size(), to.size()), to.begin());
   };
-  fill(statistics->altitude_m, in.wind_profile_altitude_m);
-  fill(statistics->mean_north_m_s, in.wind_profile_north_m_s);
-  fill(statistics->mean_east_m_s, in.wind_profile_east_m_s);
+  fill(statistics->altitude_m, in.air.wind_profile_altitude_m);
+  fill(statistics->mean_north_m_s, in.air.wind_profile_north_m_s);
+  fill(statistics->mean_east_m_s, in.air.wind_profile_east_m_s);
   return in;
 }
 
@@ -693,17 +699,19 @@ LauncherPlant FlightModel::PlantFor(const FlightInputs& inputs,
   plant.bending.frequency_factor = in.bending_frequency_factor;
   plant.bending.damping_ratio *= in.bending_damping_factor;
   plant.bending.slope_factor = in.bending_slope_factor;
-  plant.environment.density.scale *= in.density_factor;
+  plant.environment.density.scale *= in.air.density_factor;
 
   Wind& wind = plant.environment.wind;
-  if (in.wind_max_speed_m_s != 0.0)
-    wind.jets.push_back({in.wind_max_speed_m_s, in.wind_altitude_m, in.wind_width_m, in.wind_azimuth_rad});
-  if (in.gust_speed_m_s != 0.0)
-    wind.gusts.push_back({in.gust_speed_m_s, in.gust_altitude_m, in.gust_length_m, in.gust_azimuth_rad});
-  if (const int levels = WindLevelsOf(in.wind_profile_altitude_m); levels > 0)
+  if (in.air.wind_max_speed_m_s != 0.0)
+    wind.jets.push_back(
+        {in.air.wind_max_speed_m_s, in.air.wind_altitude_m, in.air.wind_width_m, in.air.wind_azimuth_rad});
+  if (in.air.gust_speed_m_s != 0.0)
+    wind.gusts.push_back(
+        {in.air.gust_speed_m_s, in.air.gust_altitude_m, in.air.gust_length_m, in.air.gust_azimuth_rad});
+  if (const int levels = WindLevelsOf(in.air.wind_profile_altitude_m); levels > 0)
     wind.tables.push_back(ProfileOf(in, levels));
 
-  if (case_index && definition_.turbulence_path && in.turbulence_exceedance > 0.0)
+  if (case_index && definition_.turbulence_path && in.air.turbulence_exceedance > 0.0)
     plant.environment.turbulence = std::make_shared<const TurbulenceField>(
         TurbulenceOf(in, *definition_.turbulence_path, definition_.noise_seed, *case_index));
 
@@ -721,49 +729,33 @@ LauncherPlant FlightModel::PlantFor(const FlightInputs& inputs,
     LauncherStack& stack = plant.stacks[i];
     if (!sigmas.is_nominal() && i < vehicle.aerodynamics.size() && IsUncertain(vehicle.aerodynamics[i]))
       SetAerodynamics(vehicle, Drawn(vehicle.aerodynamics[i], sigmas), stack);
-    const double thrust_factor = in.thrust_factor[i] * in.specific_impulse_factor[i];
-    const double flow_factor = in.mass_flow_factor[i] * FlowFactor(stack.layout, in, i, further);
+    const StageInputs& of = in.stages[i];
+    const double thrust_factor = of.thrust_factor * of.specific_impulse_factor;
+    const double flow_factor = of.mass_flow_factor * FlowFactor(stack.layout, in, i, further);
     stack.burn = dispersed ? BuildBurn(vehicle.stages[i], thrust_factor, flow_factor)
                            : BuildBurn(vehicle.stages[i], thrust_factor, flow_factor, stack.burn.curve);
-    if (in.tail_off_factor[i] != 1.0) SetTailOff(in.tail_off_factor[i], vehicle.stages[i], stack.burn);
+    if (of.tail_off_factor != 1.0) SetTailOff(of.tail_off_factor, vehicle.stages[i], stack.burn);
     if (i == 0 && plant.boosters)
       plant.boosters = BoostersFor(definition_.vehicle, vehicle.boosters, in, thrust_factor, *plant.boosters);
-    stack.gimbal.bandwidth_rad_s *= in.actuator_bandwidth_factor * in.stack_actuator_bandwidth_factor[i];
-    stack.aerodynamics.ca.factor = in.drag_factor * in.stack_drag_factor[i];
-    stack.aerodynamics.cn.factor = in.lift_factor * in.stack_lift_factor[i];
-    stack.aerodynamics.xcp_station_m.factor = in.cp_factor * in.stack_cp_factor[i];
-    if (has_fins_) stack.aerodynamics.twist_rad_m = TwistOf(vehicle, i, in.fin_cant_rad);
-    stack.cg_factor = in.stack_cg_factor[i];
-    stack.inertia_factor = in.stack_inertia_factor[i];
-    stack.product_xy_kg_m2 = in.product_of_inertia_xy_kg_m2[i];
-    stack.product_xz_kg_m2 = in.product_of_inertia_xz_kg_m2[i];
-    stack.product_yz_kg_m2 = in.product_of_inertia_yz_kg_m2[i];
-    stack.thrust_tilt = ThrustTilt(AsideOf(in.thrust_misalignment_rad[i], in.thrust_misalignment_clock_rad[i],
-                                           in.thrust_misalignment_y_rad[i], in.thrust_misalignment_z_rad[i]));
-    const Aside offset = AsideOf(in.thrust_offset_m[i], in.thrust_offset_clock_rad[i],
-                                 in.thrust_offset_y_m[i], in.thrust_offset_z_m[i]);
+    stack.gimbal.bandwidth_rad_s *= in.actuator_bandwidth_factor * of.actuator_bandwidth_factor;
+    stack.aerodynamics.ca.factor = in.drag_factor * of.drag_factor;
+    stack.aerodynamics.cn.factor = in.lift_factor * of.lift_factor;
+    stack.aerodynamics.xcp_station_m.factor = in.cp_factor * of.cp_factor;
+    if (has_fins_) stack.aerodynamics.twist_rad_m = TwistOf(vehicle, i, in);
+    stack.cg_factor = of.cg_factor;
+    stack.inertia_factor = of.inertia_factor;
+    stack.product_xy_kg_m2 = of.product_of_inertia_xy_kg_m2;
+    stack.product_xz_kg_m2 = of.product_of_inertia_xz_kg_m2;
+    stack.product_yz_kg_m2 = of.product_of_inertia_yz_kg_m2;
+    stack.thrust_tilt = ThrustTilt(AsideOf(of.thrust.misalignment_rad));
+    const Aside offset = AsideOf(of.thrust.offset_m);
     stack.thrust_offset_y_m = offset.y;
     stack.thrust_offset_z_m = offset.z;
-    for (std::size_t nozzle = 0; nozzle < kNozzles; ++nozzle) {
-      const Aside tilt =
-          AsideOf(in.nozzle_misalignment_rad[i][nozzle], in.nozzle_misalignment_clock_rad[i][nozzle],
-                  in.nozzle_misalignment_y_rad[i][nozzle], in.nozzle_misalignment_z_rad[i][nozzle]);
-      const Aside moved = AsideOf(in.nozzle_offset_m[i][nozzle], in.nozzle_offset_clock_rad[i][nozzle],
-                                  in.nozzle_offset_y_m[i][nozzle], in.nozzle_offset_z_m[i][nozzle]);
-      stack.nozzles[nozzle] = {ThrustTilt(tilt), in.nozzle_thrust_factor[i][nozzle], moved.y, moved.z};
-    }
-    for (int nozzle = kNozzles; nozzle < stack.layout.nozzles; ++nozzle, ++further) {
-      const Aside tilt =
-          AsideOf(in.further_misalignment_rad[further], in.further_misalignment_clock_rad[further],
-                  in.further_misalignment_y_rad[further], in.further_misalignment_z_rad[further]);
-      const Aside moved = AsideOf(in.further_offset_m[further], in.further_offset_clock_rad[further],
-                                  in.further_offset_y_m[further], in.further_offset_z_m[further]);
-      stack.nozzles[static_cast<std::size_t>(nozzle)] = {ThrustTilt(tilt), in.further_thrust_factor[further],
-                                                         moved.y, moved.z};
-    }
-    const double fixed_kg = stack.mass.fixed_mass_kg;
-    const Aside lateral = AsideOf(fixed_kg * in.cg_offset_m[i], in.cg_offset_clock_rad[i],
-                                  fixed_kg * in.cg_offset_y_m[i], fixed_kg * in.cg_offset_z_m[i]);
+    for (std::size_t nozzle = 0; nozzle < kNozzles; ++nozzle)
+      stack.nozzles[nozzle] = DepartureOf(of.nozzles[nozzle]);
+    for (int nozzle = kNozzles; nozzle < stack.layout.nozzles; ++nozzle, ++further)
+      stack.nozzles[static_cast<std::size_t>(nozzle)] = DepartureOf(in.further[further].nozzle);
+    const Aside lateral = AsideOf(of.cg_offset_m, stack.mass.fixed_mass_kg);
     stack.lateral_moment_y_kg_m = lateral.y;
     stack.lateral_moment_z_kg_m = lateral.z;
   }

@@ -211,7 +211,7 @@ FlightRecord::FlightRecord(const FlightModel& model, const FlightOrder& order)
       history_ticks(options.history ? std::max(1L, std::lround(options.history->step_s /
                                                                model.definition().autopilot.tick_s))
                                     : 0),
-      noisy(inputs.gyro_noise_rad_s > 0.0),
+      noisy(inputs.sensors.gyro_noise_rad_s > 0.0),
       ripple(model.definition().autopilot.tick_s),
       limit_cycle(model.definition().autopilot.tick_s),
       model_(model),
@@ -362,7 +362,8 @@ void FlightRecord::SetEquations() {
 FlightRecord::~FlightRecord() = default;
 
 void FlightRecord::DrawNoise(double* rate_rad_s) {
-  for (int axis = 0; axis < kAxes; ++axis) rate_rad_s[axis] = inputs.gyro_noise_rad_s * gyro_noise_.Normal();
+  for (int axis = 0; axis < kAxes; ++axis)
+    rate_rad_s[axis] = inputs.sensors.gyro_noise_rad_s * gyro_noise_.Normal();
 }
 
 void FlightRecord::AddToDigest(double time_s, const double* y) {
@@ -377,7 +378,7 @@ bool FlightRecord::Guide(const LaneSight& sight) {
   std::size_t first = events.size();
   while (events[first - 1].stage == last) --first;
   // The motor ignites late by its dispersed delay after guidance's command.
-  const double late_s = inputs.ignition_delay_s[static_cast<std::size_t>(last)];
+  const double late_s = inputs.stages[static_cast<std::size_t>(last)].ignition_delay_s;
   const double ignition_s =
       late_s != 0.0 ? std::max(guided->ignition_s() + late_s, sight.time_s) : guided->ignition_s();
   const double shift_s = ignition_s - events[first].time_s;
@@ -525,8 +526,8 @@ void FlightRecord::Separate(int stage, unsigned jettisoned, double* y) {
     return;
   }
   TakeAlong(plant.stacks[below], jettisoned, y + kModalState, s);
-  s.w_IB_B += Vector3(inputs.tip_off_roll_rad_s[below], inputs.tip_off_pitch_rad_s[below],
-                      inputs.tip_off_yaw_rad_s[below]);
+  s.w_IB_B += Vector3(inputs.stages[below].tip_off_roll_rad_s, inputs.stages[below].tip_off_pitch_rad_s,
+                      inputs.stages[below].tip_off_yaw_rad_s);
   std::fill(y, y + kLauncherSize, 0.0);
   WriteState(s, y);
 }

@@ -117,9 +117,9 @@ struct LaneMetrics {
     SetLane(sums, lane, TickSums<double>{});
     Lane(roll_rate_peak_rad_s, lane) = kNoPeak;
     Lane(least_static_margin, lane) = kNoMargin;
-    Lane(gust_bottom_m, lane) = in.gust_altitude_m;
+    Lane(gust_bottom_m, lane) = in.air.gust_altitude_m;
     Lane(gust_top_m, lane) =
-        in.gust_speed_m_s != 0.0 ? in.gust_altitude_m + in.gust_length_m : in.gust_altitude_m;
+        in.air.gust_speed_m_s != 0.0 ? in.air.gust_altitude_m + in.air.gust_length_m : in.air.gust_altitude_m;
   }
   /// At a lane's burnout, and when it ends.
   DISPERSA_INLINE void EndStage(int lane, int stage, FlightSums& flight) {

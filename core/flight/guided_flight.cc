@@ -7,13 +7,13 @@ namespace dispersa {
 
 GuidedFlight::GuidedFlight(const FlightModel& model, const FlightInputs& in)
     : model_(model),
-      position_error_I_(model.frame().R_IL * Vector3(in.navigation_position_error_m[0],
-                                                     in.navigation_position_error_m[1],
-                                                     in.navigation_position_error_m[2])),
-      velocity_error_I_(model.frame().R_IL * Vector3(in.navigation_velocity_error_m_s[0],
-                                                     in.navigation_velocity_error_m_s[1],
-                                                     in.navigation_velocity_error_m_s[2])),
-      accelerometer_factor_(in.accelerometer_scale_factor),
+      position_error_I_(model.frame().R_IL * Vector3(in.sensors.navigation_position_error_m[0],
+                                                     in.sensors.navigation_position_error_m[1],
+                                                     in.sensors.navigation_position_error_m[2])),
+      velocity_error_I_(model.frame().R_IL * Vector3(in.sensors.navigation_velocity_error_m_s[0],
+                                                     in.sensors.navigation_velocity_error_m_s[1],
+                                                     in.sensors.navigation_velocity_error_m_s[2])),
+      accelerometer_factor_(in.sensors.accelerometer_scale_factor),
       guidance_(std::make_unique<ClosedLoopGuidance>(*model.guidance_mission())) {}
 
 GuidedFlight::~GuidedFlight() = default;

@@ -61,22 +61,42 @@ bool Separates(const FlightParts& parts, const InputPlace& place) {
   return next != nullptr && !next->restarts;
 }
 
+// Columns of further nozzles are those that the vehicle has.
 bool IsNozzle(const FlightParts& parts, const InputPlace& place) {
+  if (place.stage == 0) return true;
   const Stage* stage = StageAt(parts.vehicle, place);
   return stage != nullptr && place.item < NozzleCount(stage->gimbal);
 }
 
-// Whether the input beside this one, at the same place, is set.
-template <auto kMember>
+// The value beside an input, at the same place, without which the input means nothing.
+using Beside = double (*)(const FlightInputs& in, const InputPlace& place);
+template <Beside kValue>
 bool IsSet(const FlightParts& parts, const InputPlace& place) {
-  const auto& member = parts.set.*kMember;
-  if constexpr (requires { member[0][0]; })
-    return member[static_cast<std::size_t>(place.stage) - 1][static_cast<std::size_t>(place.item)] != 0.0;
-  else if constexpr (requires { member[0]; })
-    return member[static_cast<std::size_t>(place.stage > 0 ? place.stage - 1 : place.item)] != 0.0;
-  else
-    return member != 0.0;
+  return kValue(parts.set, place) != 0.0;
 }
+const StageInputs& StageAt(const FlightInputs& in, const InputPlace& place) {
+  return in.stages[static_cast<std::size_t>(place.stage) - 1];
+}
+double ThrustMisalignment(const FlightInputs& in, const InputPlace& place) {
+  return StageAt(in, place).thrust.misalignment_rad.magnitude;
+}
+double ThrustOffset(const FlightInputs& in, const InputPlace& place) {
+  return StageAt(in, place).thrust.offset_m.magnitude;
+}
+double CgOffset(const FlightInputs& in, const InputPlace& place) {
+  return StageAt(in, place).cg_offset_m.magnitude;
+}
+double NozzleMisalignment(const FlightInputs& in, const InputPlace& place) {
+  return NozzleAt(in, place).line.misalignment_rad.magnitude;
+}
+double NozzleOffset(const FlightInputs& in, const InputPlace& place) {
+  return NozzleAt(in, place).line.offset_m.magnitude;
+}
+double JetSpeed(const FlightInputs& in, const InputPlace&) { return in.air.wind_max_speed_m_s; }
+double GustSpeed(const FlightInputs& in, const InputPlace&) { return in.air.gust_speed_m_s; }
+double Exceedance(const FlightInputs& in, const InputPlace&) { return in.air.turbulence_exceedance; }
+double StuckNozzle(const FlightInputs& in, const InputPlace&) { return in.stuck_nozzle; }
+double PayloadMass(const FlightInputs& in, const InputPlace&) { return in.payload_mass_kg; }
 
 constexpr char kNoMagnitude[] = "it is a direction, and nothing draws its magnitude";
 constexpr char kMagnitude[] = "the magnitude beside it, or no direction";
@@ -211,38 +231,29 @@ const Readers kByUncertainTables = {[](const FlightParts& parts, const InputPlac
                                     "the vehicle has no aerodynamic table that states an uncertainty",
                                     "tables with an uncertainty"};
 
-const Readers kWithThrustMisalignment = {IsSet<&FlightInputs::thrust_misalignment_rad>, kNoMagnitude,
-                                         kMagnitude};
-const Readers kWithThrustOffset = {IsSet<&FlightInputs::thrust_offset_m>, kNoMagnitude, kMagnitude};
-const Readers kWithCgOffset = {IsSet<&FlightInputs::cg_offset_m>, kNoMagnitude, kMagnitude};
-const Readers kWithNozzleMisalignment = {IsSet<&FlightInputs::nozzle_misalignment_rad>, kNoMagnitude,
-                                         kMagnitude};
-const Readers kWithNozzleOffset = {IsSet<&FlightInputs::nozzle_offset_m>, kNoMagnitude, kMagnitude};
-const Readers kWithFurtherMisalignment = {IsSet<&FlightInputs::further_misalignment_rad>, kNoMagnitude,
-                                          kMagnitude};
-const Readers kWithFurtherOffset = {IsSet<&FlightInputs::further_offset_m>, kNoMagnitude, kMagnitude};
-const Readers kWithWind = {IsSet<&FlightInputs::wind_max_speed_m_s>, "the jet stream's speed is 0",
-                           "wind_max_speed_m_s above 0"};
-const Readers kWithGust = {IsSet<&FlightInputs::gust_speed_m_s>, "the gust's speed is 0",
-                           "gust_speed_m_s other than 0"};
+const Readers kWithThrustMisalignment = {IsSet<ThrustMisalignment>, kNoMagnitude, kMagnitude};
+const Readers kWithThrustOffset = {IsSet<ThrustOffset>, kNoMagnitude, kMagnitude};
+const Readers kWithCgOffset = {IsSet<CgOffset>, kNoMagnitude, kMagnitude};
+const Readers kWithNozzleMisalignment = {IsSet<NozzleMisalignment>, kNoMagnitude, kMagnitude};
+const Readers kWithNozzleOffset = {IsSet<NozzleOffset>, kNoMagnitude, kMagnitude};
+const Readers kWithWind = {IsSet<JetSpeed>, "the jet stream's speed is 0", "wind_max_speed_m_s above 0"};
+const Readers kWithGust = {IsSet<GustSpeed>, "the gust's speed is 0", "gust_speed_m_s other than 0"};
 const Readers kWithProfile = {[](const FlightParts& parts, const InputPlace& place) {
-                                const auto& altitude_m = parts.set.wind_profile_altitude_m;
+                                const auto& altitude_m = parts.set.air.wind_profile_altitude_m;
                                 // The lowest may lie at 0.
                                 return altitude_m[static_cast<std::size_t>(std::max(place.item, 1))] != 0.0;
                               },
                               "its level has no altitude", "wind_profile_altitude_*_m beside it"};
-const Readers kWithTurbulence = {IsSet<&FlightInputs::turbulence_exceedance>,
-                                 "the turbulence's exceedance is 0", "turbulence_exceedance above 0"};
-const Readers kWithStuckNozzle = {IsSet<&FlightInputs::stuck_nozzle>, "no nozzle is stuck",
-                                  "stuck_nozzle above 0"};
+const Readers kWithTurbulence = {IsSet<Exceedance>, "the turbulence's exceedance is 0",
+                                 "turbulence_exceedance above 0"};
+const Readers kWithStuckNozzle = {IsSet<StuckNozzle>, "no nozzle is stuck", "stuck_nozzle above 0"};
 const Readers kWithLoop = {[](const FlightParts& parts, const InputPlace&) {
                              return parts.course.is_controlled &&
                                     (parts.set.loop_gain_factor != 1.0 || parts.set.loop_delay_s != 0.0);
                            },
                            "neither the loop's gain nor its delay is changed",
                            "loop_gain_factor or loop_delay_s beside it"};
-const Readers kWithPayload = {IsSet<&FlightInputs::payload_mass_kg>, "no payload is added",
-                              "payload_mass_kg other than 0"};
+const Readers kWithPayload = {IsSet<PayloadMass>, "no payload is added", "payload_mass_kg other than 0"};
 
 // ---- what holds for a column ----
 

@@ -81,7 +81,7 @@ extern const Readers kByAutopilot, kByAdaptation, kByNavigation, kByDrives, kByM
     kByNozzle, kByFurtherNozzle, kByUncertainTables;
 // Inputs that have a meaning only beside another.
 extern const Readers kWithThrustMisalignment, kWithThrustOffset, kWithCgOffset, kWithNozzleMisalignment,
-    kWithNozzleOffset, kWithFurtherMisalignment, kWithFurtherOffset, kWithWind, kWithGust, kWithProfile,
-    kWithTurbulence, kWithStuckNozzle, kWithLoop, kWithPayload;
+    kWithNozzleOffset, kWithWind, kWithGust, kWithProfile, kWithTurbulence, kWithStuckNozzle, kWithLoop,
+    kWithPayload;
 
 }  // namespace dispersa

@@ -78,7 +78,8 @@ class Sensors {
   }
   void StartFlight(int lane, const FlightRecord& record, const Turn<T>& q) {
     const FlightInputs& in = record.inputs;
-    const Vector<double> bias{in.gyro_bias_roll_rad_s, in.gyro_bias_pitch_rad_s, in.gyro_bias_yaw_rad_s};
+    const Vector<double> bias{in.sensors.gyro_bias_roll_rad_s, in.sensors.gyro_bias_pitch_rad_s,
+                              in.sensors.gyro_bias_yaw_rad_s};
     SetLane(bias_rad_s_, lane, bias);
     SetLane(drifts_, lane,
             record.noisy || in.launch_azimuth_error_rad != 0.0 || bias.x != 0.0 || bias.y != 0.0 ||

@@ -35,11 +35,11 @@ std::vector<StageTimes> BuildTimeline(const Vehicle& vehicle, const std::vector<
         break;
       case IgnitionTrigger::kBurnoutDetection:
         times[i].ignition_s =
-            times[i - 1].separation_s + std::max(stage.ignition_delay_s + in.ignition_delay_s[i], 0.0);
+            times[i - 1].separation_s + std::max(stage.ignition_delay_s + in.stages[i].ignition_delay_s, 0.0);
         break;
       case IgnitionTrigger::kTimer: {
         const double timer_s = i + 1 == burns.size() ? last_ignition_s : earlier_ignition_s[i];
-        times[i].ignition_s = std::max(timer_s + in.ignition_delay_s[i], times[i - 1].separation_s);
+        times[i].ignition_s = std::max(timer_s + in.stages[i].ignition_delay_s, times[i - 1].separation_s);
         break;
       }
     }
@@ -48,7 +48,7 @@ std::vector<StageTimes> BuildTimeline(const Vehicle& vehicle, const std::vector<
     const bool last = i + 1 == burns.size();
     times[i].separation_s =
         last ? times[i].burnout_s
-             : detection_s + std::max(stage.separation_delay_s + in.separation_delay_s[i], 0.0);
+             : detection_s + std::max(stage.separation_delay_s + in.stages[i].separation_delay_s, 0.0);
   }
   return times;
 }

@@ -130,8 +130,8 @@ std::vector<ImpactPoint> ImpactPoints(const CampaignFlights& flights, const Case
     const auto stage = static_cast<std::size_t>(below);
     if (vehicle.stages[stage + 1].restarts) continue;  // nothing has left
     RigidBodyState above = rows.State(environment.earth, row);
-    above.w_IB_B -= Vector3(inputs.tip_off_roll_rad_s[stage], inputs.tip_off_pitch_rad_s[stage],
-                            inputs.tip_off_yaw_rad_s[stage]);
+    above.w_IB_B -= Vector3(inputs.stages[stage].tip_off_roll_rad_s, inputs.stages[stage].tip_off_pitch_rad_s,
+                            inputs.stages[stage].tip_off_yaw_rad_s);
     const StackMass& mass = plant.stacks[stage + 1].mass;
     const double aft_m = DryStation(vehicle.stages[stage]) - mass.At(mass.propellant_mass_kg).cg_station_m;
     const RigidBodyState spent = AtPoint(above, Vector3(-aft_m, 0.0, 0.0));

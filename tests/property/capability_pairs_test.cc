@@ -377,24 +377,26 @@ FlightInputs InputsOf(const Launcher& launcher, std::uint64_t index) {
   Stream draws(3, index, "pairs");
   FlightInputs in = Table3Inputs();
   for (double& factor : in.thrust_factor) factor = 1.0 + 0.002 * draws.Normal();
-  in.tail_off_factor = AllStages(1.2);
+  for (StageInputs& stage : in.stages) stage.tail_off_factor = 1.2;
   // What is left of the wind after a rail was set for it.
-  in.wind_max_speed_m_s = (launcher.course.is_controlled ? 30.0 : 3.0) * draws.Uniform();
-  if (launcher.is_turbulent) in.turbulence_exceedance = 1e-1;
-  if (launcher.vehicle.sensors.rate_gyros.empty()) in.gyro_noise_rad_s = 0.002 * kRadPerDeg;
+  in.air.wind_max_speed_m_s = (launcher.course.is_controlled ? 30.0 : 3.0) * draws.Uniform();
+  if (launcher.is_turbulent) in.air.turbulence_exceedance = 1e-1;
+  if (launcher.vehicle.sensors.rate_gyros.empty()) in.sensors.gyro_noise_rad_s = 0.002 * kRadPerDeg;
   if (!launcher.draws_masses) return in;
   for (std::size_t stage = 0; stage < 4; ++stage) {
-    in.dry_mass_factor[stage] = 1.0 + 0.005 * draws.Normal();
-    in.propellant_factor[stage] = 1.0 + 0.002 * draws.Normal();
+    in.stages[stage].dry_mass_factor = 1.0 + 0.005 * draws.Normal();
+    in.stages[stage].propellant_factor = 1.0 + 0.002 * draws.Normal();
   }
   const Vehicle& vehicle = launcher.vehicle;
   for (std::size_t stage = 0; stage < vehicle.stages.size(); ++stage)
-    if (vehicle.stages[stage].is_liquid()) in.mixture_ratio_factor[stage] = 1.0 + 0.01 * draws.Normal();
+    if (vehicle.stages[stage].is_liquid())
+      in.stages[stage].mixture_ratio_factor = 1.0 + 0.01 * draws.Normal();
   auto at = static_cast<std::size_t>(FurtherNozzlesBefore(vehicle, vehicle.stages.size()));
   for (int k = 0; k < vehicle.boosters.count; ++k, ++at) {
-    in.booster_dry_mass_factor[at] = 1.0 + 0.02 * draws.Normal();
-    in.booster_propellant_factor[at] = 1.0 + 0.002 * draws.Normal();
-    if (vehicle.boosters.is_liquid()) in.booster_mixture_ratio_factor[at] = 1.0 + 0.01 * draws.Normal();
+    in.further[at].booster.dry_mass_factor = 1.0 + 0.02 * draws.Normal();
+    in.further[at].booster.propellant_factor = 1.0 + 0.002 * draws.Normal();
+    if (vehicle.boosters.is_liquid())
+      in.further[at].booster.mixture_ratio_factor = 1.0 + 0.01 * draws.Normal();
   }
   return in;
 }

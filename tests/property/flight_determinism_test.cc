@@ -21,7 +21,7 @@ std::vector<FlightInputs> Flights() {
   std::vector<FlightInputs> all(5);
   all[1] = Table3Inputs();
   all[2].gyro_noise_rad_s = 0.01 * kRadPerDeg;
-  all[2].tip_off_pitch_rad_s[2] = 1.0 * kRadPerDeg;
+  all[2].stages[2].tip_off_pitch_rad_s = 1.0 * kRadPerDeg;
   all[3].stuck_nozzle = 1.0;
   all[3].stuck_nozzle_stage = 1.0;
   all[3].stuck_nozzle_rad = 6.0 * kRadPerDeg;

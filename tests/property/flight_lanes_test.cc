@@ -189,30 +189,31 @@ FlightInputs DrawnInputs(std::uint64_t flight) {
     if (draws.Uniform() < 0.5) value = drawn;
   };
   for (std::size_t stage = 0; stage < kUsualStages; ++stage) {
-    some(in.thrust_misalignment_rad[stage], 0.25 * kRadPerDeg * draws.Uniform());
-    some(in.thrust_misalignment_clock_rad[stage], kTwoPi * draws.Uniform());
-    some(in.thrust_offset_m[stage], 0.005 * draws.Uniform());
-    some(in.thrust_offset_clock_rad[stage], kTwoPi * draws.Uniform());
+    some(in.stages[stage].thrust.misalignment_rad.magnitude, 0.25 * kRadPerDeg * draws.Uniform());
+    some(in.stages[stage].thrust.misalignment_rad.clock_rad, kTwoPi * draws.Uniform());
+    some(in.stages[stage].thrust.offset_m.magnitude, 0.005 * draws.Uniform());
+    some(in.stages[stage].thrust.offset_m.clock_rad, kTwoPi * draws.Uniform());
     for (std::size_t nozzle = 0; nozzle < kNozzles; ++nozzle) {
-      some(in.nozzle_misalignment_rad[stage][nozzle], 0.25 * kRadPerDeg * draws.Uniform());
-      some(in.nozzle_misalignment_clock_rad[stage][nozzle], kTwoPi * draws.Uniform());
-      some(in.nozzle_offset_m[stage][nozzle], 0.002 * draws.Uniform());
-      some(in.nozzle_thrust_factor[stage][nozzle], 0.99 + 0.02 * draws.Uniform());
+      some(in.stages[stage].nozzles[nozzle].line.misalignment_rad.magnitude,
+           0.25 * kRadPerDeg * draws.Uniform());
+      some(in.stages[stage].nozzles[nozzle].line.misalignment_rad.clock_rad, kTwoPi * draws.Uniform());
+      some(in.stages[stage].nozzles[nozzle].line.offset_m.magnitude, 0.002 * draws.Uniform());
+      some(in.stages[stage].nozzles[nozzle].thrust_factor, 0.99 + 0.02 * draws.Uniform());
     }
-    some(in.cg_offset_m[stage], 0.005 * draws.Uniform());
-    some(in.cg_offset_clock_rad[stage], kTwoPi * draws.Uniform());
-    some(in.thrust_factor[stage], 1.0 + 0.02 * draws.Normal());
-    some(in.mass_flow_factor[stage], 1.0 + 0.02 * draws.Normal());
-    some(in.specific_impulse_factor[stage], 1.0 + 0.01 * draws.Normal());
-    some(in.tip_off_pitch_rad_s[stage], 0.5 * kRadPerDeg * draws.Normal());
-    some(in.tip_off_yaw_rad_s[stage], 0.5 * kRadPerDeg * draws.Normal());
-    some(in.tip_off_roll_rad_s[stage], 0.5 * kRadPerDeg * draws.Normal());
+    some(in.stages[stage].cg_offset_m.magnitude, 0.005 * draws.Uniform());
+    some(in.stages[stage].cg_offset_m.clock_rad, kTwoPi * draws.Uniform());
+    some(in.stages[stage].thrust_factor, 1.0 + 0.02 * draws.Normal());
+    some(in.stages[stage].mass_flow_factor, 1.0 + 0.02 * draws.Normal());
+    some(in.stages[stage].specific_impulse_factor, 1.0 + 0.01 * draws.Normal());
+    some(in.stages[stage].tip_off_pitch_rad_s, 0.5 * kRadPerDeg * draws.Normal());
+    some(in.stages[stage].tip_off_yaw_rad_s, 0.5 * kRadPerDeg * draws.Normal());
+    some(in.stages[stage].tip_off_roll_rad_s, 0.5 * kRadPerDeg * draws.Normal());
   }
-  some(in.wind_max_speed_m_s, 60.0 * draws.Uniform());
-  some(in.wind_azimuth_rad, kTwoPi * draws.Uniform());
-  some(in.gust_speed_m_s, 9.0 * draws.Uniform());
-  some(in.gust_altitude_m, 9000.0);
-  in.gust_length_m = 400.0;
+  some(in.air.wind_max_speed_m_s, 60.0 * draws.Uniform());
+  some(in.air.wind_azimuth_rad, kTwoPi * draws.Uniform());
+  some(in.air.gust_speed_m_s, 9.0 * draws.Uniform());
+  some(in.air.gust_altitude_m, 9000.0);
+  in.air.gust_length_m = 400.0;
   constexpr double kAltitudes_m[] = {0.0, 6000.0, 14000.0}, kNorth_m_s[] = {0.0, 5.0, 20.0},
                    kEast_m_s[] = {1.0, 2.0, 3.0}, kSigma_m_s[] = {2.0, 5.0, 8.0};
   for (std::size_t level = 0; level < kWindLevels; ++level) {
@@ -221,57 +222,57 @@ FlightInputs DrawnInputs(std::uint64_t flight) {
     some(east, draws.Normal());
     // Without altitudes a flight meets the means of the campaign's statistics.
     if (level >= std::size(kAltitudes_m) || flight % 4 == 1) continue;
-    in.wind_profile_altitude_m[level] = kAltitudes_m[level];
-    in.wind_profile_north_m_s[level] = kNorth_m_s[level] + kSigma_m_s[level] * north;
-    in.wind_profile_east_m_s[level] = kEast_m_s[level] + kSigma_m_s[level] * east;
+    in.air.wind_profile_altitude_m[level] = kAltitudes_m[level];
+    in.air.wind_profile_north_m_s[level] = kNorth_m_s[level] + kSigma_m_s[level] * north;
+    in.air.wind_profile_east_m_s[level] = kEast_m_s[level] + kSigma_m_s[level] * east;
   }
   for (double* factor :
-       {&in.drag_factor, &in.lift_factor, &in.cg_factor, &in.cp_factor, &in.density_factor,
+       {&in.drag_factor, &in.lift_factor, &in.cg_factor, &in.cp_factor, &in.air.density_factor,
         &in.inertia_factor, &in.actuator_bandwidth_factor, &in.bending_damping_factor,
         &in.bending_slope_factor, &in.bending_frequency_factor[0], &in.bending_frequency_factor[1]})
     some(*factor, 1.0 + 0.03 * draws.Normal());
-  some(in.gyro_bias_roll_rad_s, 1e-6 * draws.Normal());
-  some(in.gyro_bias_pitch_rad_s, 1e-6 * draws.Normal());
-  some(in.gyro_bias_yaw_rad_s, 1e-6 * draws.Normal());
-  some(in.gyro_noise_rad_s, 0.005 * kRadPerDeg);
+  some(in.sensors.gyro_bias_roll_rad_s, 1e-6 * draws.Normal());
+  some(in.sensors.gyro_bias_pitch_rad_s, 1e-6 * draws.Normal());
+  some(in.sensors.gyro_bias_yaw_rad_s, 1e-6 * draws.Normal());
+  some(in.sensors.gyro_noise_rad_s, 0.005 * kRadPerDeg);
   // Only guided flights feel these, so they are no draws of the stream that the inputs after them follow
   // from.
   Stream navigation(5, flight, "navigation");
-  for (double& error_m : in.navigation_position_error_m) error_m = 30.0 * navigation.Normal();
-  for (double& error_m_s : in.navigation_velocity_error_m_s) error_m_s = 0.3 * navigation.Normal();
-  in.accelerometer_scale_factor = 1.0 + 1e-3 * navigation.Normal();
+  for (double& error_m : in.sensors.navigation_position_error_m) error_m = 30.0 * navigation.Normal();
+  for (double& error_m_s : in.sensors.navigation_velocity_error_m_s) error_m_s = 0.3 * navigation.Normal();
+  in.sensors.accelerometer_scale_factor = 1.0 + 1e-3 * navigation.Normal();
   // Later inputs have a stream of their own for the same reason.
   Stream later(5, flight, "later inputs");
   const auto seldom = [&](double& value, double drawn) {
     if (later.Uniform() < 0.3) value = drawn;
   };
   for (std::size_t stage = 0; stage < kUsualStages; ++stage) {
-    seldom(in.dry_mass_factor[stage], 1.0 + 0.01 * later.Normal());
-    seldom(in.propellant_factor[stage], 1.0 + 0.005 * later.Normal());
-    seldom(in.product_of_inertia_xy_kg_m2[stage], 0.05 * later.Normal());
-    seldom(in.product_of_inertia_xz_kg_m2[stage], 0.03 * later.Normal());
-    seldom(in.product_of_inertia_yz_kg_m2[stage], 0.03 * later.Normal());
-    seldom(in.ignition_delay_s[stage], 0.2 * later.Uniform());
-    seldom(in.separation_delay_s[stage], 0.1 * later.Uniform());
-    seldom(in.thrust_misalignment_y_rad[stage], 0.1 * kRadPerDeg * later.Normal());
-    seldom(in.cg_offset_z_m[stage], 0.002 * later.Normal());
-    for (double* factor : {&in.stack_drag_factor[stage], &in.stack_lift_factor[stage],
-                           &in.stack_cg_factor[stage], &in.stack_cp_factor[stage],
-                           &in.stack_inertia_factor[stage], &in.stack_actuator_bandwidth_factor[stage]})
+    seldom(in.stages[stage].dry_mass_factor, 1.0 + 0.01 * later.Normal());
+    seldom(in.stages[stage].propellant_factor, 1.0 + 0.005 * later.Normal());
+    seldom(in.stages[stage].product_of_inertia_xy_kg_m2, 0.05 * later.Normal());
+    seldom(in.stages[stage].product_of_inertia_xz_kg_m2, 0.03 * later.Normal());
+    seldom(in.stages[stage].product_of_inertia_yz_kg_m2, 0.03 * later.Normal());
+    seldom(in.stages[stage].ignition_delay_s, 0.2 * later.Uniform());
+    seldom(in.stages[stage].separation_delay_s, 0.1 * later.Uniform());
+    seldom(in.stages[stage].thrust.misalignment_rad.y, 0.1 * kRadPerDeg * later.Normal());
+    seldom(in.stages[stage].cg_offset_m.z, 0.002 * later.Normal());
+    for (double* factor : {&in.stages[stage].drag_factor, &in.stages[stage].lift_factor,
+                           &in.stages[stage].cg_factor, &in.stages[stage].cp_factor,
+                           &in.stages[stage].inertia_factor, &in.stages[stage].actuator_bandwidth_factor})
       seldom(*factor, 1.0 + 0.02 * later.Normal());
   }
   Stream further(5, flight, "further nozzles");
   for (std::size_t nozzle = 0; nozzle < 14; ++nozzle) {
     if (further.Uniform() < 0.5) continue;
-    in.further_misalignment_y_rad[nozzle] = 0.2 * kRadPerDeg * further.Normal();
-    in.further_misalignment_rad[nozzle] = 0.1 * kRadPerDeg * further.Uniform();
-    in.further_misalignment_clock_rad[nozzle] = kTwoPi * further.Uniform();
-    in.further_offset_z_m[nozzle] = 0.002 * further.Normal();
-    in.further_thrust_factor[nozzle] = 1.0 + 0.01 * further.Normal();
-    in.further_flow_factor[nozzle] = 1.0 + 0.01 * further.Normal();
+    in.further[nozzle].nozzle.line.misalignment_rad.y = 0.2 * kRadPerDeg * further.Normal();
+    in.further[nozzle].nozzle.line.misalignment_rad.magnitude = 0.1 * kRadPerDeg * further.Uniform();
+    in.further[nozzle].nozzle.line.misalignment_rad.clock_rad = kTwoPi * further.Uniform();
+    in.further[nozzle].nozzle.line.offset_m.z = 0.002 * further.Normal();
+    in.further[nozzle].nozzle.thrust_factor = 1.0 + 0.01 * further.Normal();
+    in.further[nozzle].nozzle.flow_factor = 1.0 + 0.01 * further.Normal();
   }
   // In some flights so fast that a rate limit may act within a tick.
-  seldom(in.stack_actuator_bandwidth_factor[1], 9.0);
+  seldom(in.stages[1].actuator_bandwidth_factor, 9.0);
   seldom(in.payload_mass_kg, 5.0 * later.Normal());
   in.payload_element = 1.0;
   seldom(in.launch_azimuth_error_rad, 0.3 * kRadPerDeg * later.Normal());
@@ -288,9 +289,9 @@ FlightInputs DrawnInputs(std::uint64_t flight) {
   some(in.loop_gain_factor, 1.0 + 0.5 * draws.Uniform());
   some(in.loop_delay_s, 0.03 * draws.Uniform());
   some(in.loop_stage, std::floor(5.0 * draws.Uniform()));
-  some(in.turbulence_exceedance, 1e-3);
-  some(in.turbulence_wind_20ft_m_s, 15.0);
-  some(in.turbulence_scale, 1.0 + 0.2 * draws.Uniform());
+  some(in.air.turbulence_exceedance, 1e-3);
+  some(in.air.turbulence_wind_20ft_m_s, 15.0);
+  some(in.air.turbulence_scale, 1.0 + 0.2 * draws.Uniform());
   return in;
 }
 

@@ -82,10 +82,10 @@ TEST(CaseDesign, FactorsMultiplyOthersAreSet) {
                                          Of("wind", Values({30.0}), "wind_max_speed_m_s"),
                                          Of("wind again", Values({20.0}), "wind_max_speed_m_s")}));
   const FlightInputs in = design.Draw(0);
-  EXPECT_DOUBLE_EQ(in.thrust_factor[0], 1.1 * 0.5);
-  EXPECT_DOUBLE_EQ(in.thrust_factor[1], 1.1);
-  EXPECT_EQ(in.thrust_factor[2], 1.0);
-  EXPECT_EQ(in.wind_max_speed_m_s, 20.0);
+  EXPECT_DOUBLE_EQ(in.stages[0].thrust_factor, 1.1 * 0.5);
+  EXPECT_DOUBLE_EQ(in.stages[1].thrust_factor, 1.1);
+  EXPECT_EQ(in.stages[2].thrust_factor, 1.0);
+  EXPECT_EQ(in.air.wind_max_speed_m_s, 20.0);
 }
 
 TEST(CaseDesign, AbsoluteTakesTheMagnitude) {
@@ -95,9 +95,9 @@ TEST(CaseDesign, AbsoluteTakesTheMagnitude) {
   const CaseDesign magnitude(With(SamplingMethod::kMonteCarlo, {tilt}));
   int negative = 0;
   for (std::uint64_t k = 0; k < 50; ++k) {
-    const double value = with_sign.Draw(k).thrust_misalignment_rad[0];
+    const double value = with_sign.Draw(k).stages[0].thrust.misalignment_rad.magnitude;
     negative += value < 0.0;
-    EXPECT_EQ(magnitude.Draw(k).thrust_misalignment_rad[0], std::fabs(value));
+    EXPECT_EQ(magnitude.Draw(k).stages[0].thrust.misalignment_rad.magnitude, std::fabs(value));
   }
   EXPECT_GT(negative, 10);
 }
@@ -184,8 +184,8 @@ void ExpectStratified(SamplingMethod method, std::size_t cases) {
   std::set<std::size_t> cells_a, cells_b;
   for (std::uint64_t k = 0; k < cases; ++k) {
     const FlightInputs in = design.Draw(k);
-    cells_a.insert(static_cast<std::size_t>(in.wind_max_speed_m_s * static_cast<double>(cases)));
-    cells_b.insert(static_cast<std::size_t>(in.wind_altitude_m * static_cast<double>(cases)));
+    cells_a.insert(static_cast<std::size_t>(in.air.wind_max_speed_m_s * static_cast<double>(cases)));
+    cells_b.insert(static_cast<std::size_t>(in.air.wind_altitude_m * static_cast<double>(cases)));
   }
   EXPECT_EQ(cells_a.size(), cases);
   EXPECT_EQ(cells_b.size(), cases);
@@ -249,9 +249,9 @@ TEST(CaseDesign, CorrelatedNormalsAreAndOthersStay) {
   constexpr int kCases = 4000;
   for (std::uint64_t k = 0; k < kCases; ++k) {
     const FlightInputs in = together.Draw(k);
-    EXPECT_EQ(in.wind_altitude_m, apart.Draw(k).wind_altitude_m);
-    ab += in.wind_altitude_m * in.wind_width_m / kCases;
-    bb += in.wind_width_m * in.wind_width_m / kCases;
+    EXPECT_EQ(in.air.wind_altitude_m, apart.Draw(k).wind_altitude_m);
+    ab += in.air.wind_altitude_m * in.air.wind_width_m / kCases;
+    bb += in.air.wind_width_m * in.air.wind_width_m / kCases;
   }
   // Standard errors: of the covariance 2 sqrt((1 + 0.36) / 4000) = 0.037, of the variance 4 sqrt(2 / 4000) =
   // 0.09.

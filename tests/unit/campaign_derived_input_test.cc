@@ -63,7 +63,7 @@ TEST(DerivedInput, FollowsFromTheDrawsInTheUnitsOfItsColumns) {
     for (std::uint64_t k = 0; k < 8; ++k) {
       const FlightInputs before = plain.Draw(k);
       FlightInputs expected = before;
-      expected.lift_factor = 1.0 + 0.5 * (before.thrust_factor[0] - 1.0);
+      expected.lift_factor = 1.0 + 0.5 * (before.stages[0].thrust_factor - 1.0);
       const FlightInputs drawn = derived.Draw(k);
       EXPECT_EQ(drawn.lift_factor, expected.lift_factor) << method;
       EXPECT_NEAR(drawn.wind_azimuth_rad, before.gust_azimuth_rad + 10.0 * kRadPerDeg, 1e-15);
@@ -91,7 +91,7 @@ TEST(DerivedInput, FollowsInASearch) {
   for (std::size_t i = 0; i < point.size(); ++i)
     if (space.coordinates()[i].name == "thrust/stage1") point[i] = 3.0;
   const FlightInputs inputs = space.Inputs({point})[0];
-  EXPECT_NEAR(inputs.thrust_factor[0], 1.02, 1e-12);
+  EXPECT_NEAR(inputs.stages[0].thrust_factor, 1.02, 1e-12);
   EXPECT_NEAR(inputs.lift_factor, 1.01, 1e-12);
 }
 
@@ -101,7 +101,7 @@ TEST(DerivedInput, WithoutAValueIsAFlightThatFails) {
   int failed = 0, flown = 0;
   for (std::uint64_t k = 0; k < 8; ++k) {
     const CaseResult result = CampaignFlights(campaign).FlyCase(k);
-    if (CaseDesign(campaign).Draw(k).thrust_factor[0] < 1.0) {
+    if (CaseDesign(campaign).Draw(k).stages[0].thrust_factor < 1.0) {
       ++failed;
       EXPECT_EQ(result.outcome, Outcome::kNumericalFailure);
       EXPECT_EQ(result.reason, "the input density_factor has no value");

@@ -167,8 +167,8 @@ TEST(BoostersFile, ReadDispersionsOfTheirMasses) {
     EXPECT_NE((*drawn)[1], (*drawn)[2]);
     EXPECT_EQ((*drawn)[3], 1.0);
   }
-  EXPECT_NE(in.booster_mixture_ratio_factor[0], 1.0);
-  EXPECT_EQ(in.booster_mixture_ratio_factor[0], in.booster_mixture_ratio_factor[2]);
+  EXPECT_NE(in.further[0].booster.mixture_ratio_factor, 1.0);
+  EXPECT_EQ(in.further[0].booster.mixture_ratio_factor, in.further[2].booster.mixture_ratio_factor);
   files.Edit("campaign.yaml", "high_factor: 1.01", "high_factor: 9");
   EXPECT_NE(files.Texts(CheckFile(files.Path("campaign.yaml")).errors).find("a draw can be 9 (factor)"),
             std::string::npos);
@@ -267,8 +267,8 @@ TEST(BoostersFile, OfSomeAlikeStandInAListOfCases) {
              "method: list, cases: 2, seed: 1, table: runs.csv");
   const Campaign campaign = LoadCampaign(files.Path("campaign.yaml"));
   const FlightInputs in = CaseDesign(campaign).Draw(1);
-  EXPECT_EQ(in.booster_dry_mass_factor[0], 1.2);
-  EXPECT_EQ(in.booster_dry_mass_factor[1], 0.9);
+  EXPECT_EQ(in.further[0].booster.dry_mass_factor, 1.2);
+  EXPECT_EQ(in.further[1].booster.dry_mass_factor, 0.9);
   files.Write("runs.csv",
               "booster_dry_mass_factor_nozzle5,booster_dry_mass_factor_nozzle7\n1,1.1\n1.2,0.9\n");
   EXPECT_NE(files.Texts(CheckFile(files.Path("campaign.yaml")).errors)

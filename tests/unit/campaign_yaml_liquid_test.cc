@@ -75,8 +75,8 @@ TEST(LiquidFile, ReadsDrawsOfTheMixture) {
   MakeLiquid(files);
   const Campaign campaign = LoadCampaign(files.Path("campaign.yaml"));
   const FlightInputs in = CaseDesign(campaign).Draw(3);
-  EXPECT_NE(in.mixture_ratio_factor[0], 1.0);
-  EXPECT_EQ(in.mixture_ratio_factor[1], 1.0);
+  EXPECT_NE(in.stages[0].mixture_ratio_factor, 1.0);
+  EXPECT_EQ(in.stages[1].mixture_ratio_factor, 1.0);
   files.Edit("campaign.yaml", "per: stage, stage: 1", "per: stage");
   EXPECT_EQ(
       files.Texts(CheckFile(files.Path("campaign.yaml")).errors),

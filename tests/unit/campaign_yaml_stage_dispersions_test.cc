@@ -125,8 +125,9 @@ TEST(StageDispersions, WhatTheTwoReadingsOfAMisalignmentHaveAboutAnAxis) {
     double squares = 0.0;
     for (int i = 0; i < kCases; ++i) {
       const FlightInputs in = design.Draw(static_cast<std::uint64_t>(i));
-      const double y = in.thrust_misalignment_rad[0] * std::cos(in.thrust_misalignment_clock_rad[0]) +
-                       in.thrust_misalignment_y_rad[0];
+      const double y = in.stages[0].thrust.misalignment_rad.magnitude *
+                           std::cos(in.stages[0].thrust.misalignment_rad.clock_rad) +
+                       in.stages[0].thrust.misalignment_rad.y;
       squares += y * y / kCases;
     }
     return 3.0 * std::sqrt(squares) * kDegPerRad;

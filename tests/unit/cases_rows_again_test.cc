@@ -154,9 +154,9 @@ TEST(RowsAgain, AnglesComeBackToTheBit) {
   for (std::uint64_t i = 0; i < 20000; ++i) {
     Stream stream(1, i, "angles");
     FlightInputs in;
-    in.wind_azimuth_rad = std::ldexp(stream.Normal(), static_cast<int>(i % 60) - 40);
+    in.air.wind_azimuth_rad = std::ldexp(stream.Normal(), static_cast<int>(i % 60) - 40);
     TakeColumns(in);
-    const double flown_rad = in.wind_azimuth_rad;
+    const double flown_rad = in.air.wind_azimuth_rad;
     const double column_deg = InputValues(in)[static_cast<std::size_t>(FindInput("wind_azimuth_deg"))];
     EXPECT_EQ(column_deg * kRadPerDeg, flown_rad) << i;
   }

@@ -36,26 +36,28 @@ FlightDefinition Boosted() {
 // Inputs of the first stage that act on its boosters. The last one changes the masses too.
 std::vector<FlightInputs> Dispersed() {
   FlightInputs thrust, flow, impulse, all;
-  thrust.thrust_factor[0] = 1.03;
-  flow.mass_flow_factor[0] = 0.95;
-  impulse.specific_impulse_factor[0] = 1.01;
-  all.thrust_factor[0] = 0.98;
-  all.mass_flow_factor[0] = 1.04;
-  all.specific_impulse_factor[0] = 0.99;
-  all.dry_mass_factor[0] = 1.02;
-  all.propellant_factor[0] = 0.97;
-  all.dry_mass_factor[1] = 1.05;
+  thrust.stages[0].thrust_factor = 1.03;
+  flow.stages[0].mass_flow_factor = 0.95;
+  impulse.stages[0].specific_impulse_factor = 1.01;
+  all.stages[0].thrust_factor = 0.98;
+  all.stages[0].mass_flow_factor = 1.04;
+  all.stages[0].specific_impulse_factor = 0.99;
+  all.stages[0].dry_mass_factor = 1.02;
+  all.stages[0].propellant_factor = 0.97;
+  all.stages[1].dry_mass_factor = 1.05;
   return {{}, thrust, flow, impulse, all};
 }
-double ThrustFactor(const FlightInputs& in) { return in.thrust_factor[0] * in.specific_impulse_factor[0]; }
+double ThrustFactor(const FlightInputs& in) {
+  return in.stages[0].thrust_factor * in.stages[0].specific_impulse_factor;
+}
 
 TEST(BoosterDispersions, FollowTheFirstStagesThrustAndFlow) {
   const FlightModel model(Boosted());
   for (const FlightInputs& in : Dispersed()) {
     const MotorBurn burn = model.PlantFor(in).boosters->burn;
     EXPECT_NEAR(burn.vacuum_thrust_n, 2.0 * kBoostThrust_n * ThrustFactor(in), 1e-8);
-    EXPECT_NEAR(burn.full_flow_kg_s, kBoostFlow_kg_s * in.mass_flow_factor[0], 1e-12);
-    EXPECT_NEAR(burn.duration_s, kBoostTime_s / in.mass_flow_factor[0], 1e-12);
+    EXPECT_NEAR(burn.full_flow_kg_s, kBoostFlow_kg_s * in.stages[0].mass_flow_factor, 1e-12);
+    EXPECT_NEAR(burn.duration_s, kBoostTime_s / in.stages[0].mass_flow_factor, 1e-12);
     EXPECT_EQ(burn.propellant_mass_kg, 2.0 * kBoostPropellant_kg);
     EXPECT_NEAR(burn.exit_area_m2, 0.14, 1e-15);
   }
@@ -65,9 +67,9 @@ TEST(BoosterDispersions, FollowTheFirstStagesThrustAndFlow) {
 struct Core {
   double dry_kg, propellant_kg, above_kg;
   explicit Core(const FlightInputs& in)
-      : dry_kg(6000.0 * in.dry_mass_factor[0]),
-        propellant_kg(4000.0 * in.propellant_factor[0]),
-        above_kg(2000.0 * in.dry_mass_factor[1] + 1000.0) {}
+      : dry_kg(6000.0 * in.stages[0].dry_mass_factor),
+        propellant_kg(4000.0 * in.stages[0].propellant_factor),
+        above_kg(2000.0 * in.stages[1].dry_mass_factor + 1000.0) {}
 };
 
 // Every kilogram is accounted for until the core's burnout: what flows, and the shells when they go.
@@ -75,7 +77,7 @@ TEST(BoosterDispersions, MassIsWhatHasNotFlownNorLeft) {
   const FlightModel model(Boosted());
   for (const FlightInputs& in : Dispersed()) {
     const Core core(in);
-    const double flow = in.mass_flow_factor[0], boost_s = kBoostTime_s / flow;
+    const double flow = in.stages[0].mass_flow_factor, boost_s = kBoostTime_s / flow;
     double gone_s = 0.0;
     int boosting = 0, alone = 0;
     FlightOptions options;
@@ -130,12 +132,12 @@ TEST(BoosterDispersions, MomentumIsThatOfWhatFlowsOut) {
     s.p_EoC_I = {1e9, 0.0, 0.0};
     std::array<double, kLauncherSize> y{};
     WriteState(s, y.data());
-    const double boost_s = kBoostTime_s / in.mass_flow_factor[0];
+    const double boost_s = kBoostTime_s / in.stages[0].mass_flow_factor;
     Integrator integrator(Scheme::kRungeKutta4, kRigidLauncherSize, &Flown::Rhs, &flight, nullptr);
     ASSERT_TRUE(integrator.Advance(0.0, boost_s, 1000, y.data()));
     const Core core(in);
     const double full_kg = core.dry_kg + core.propellant_kg + core.above_kg + kBoostersWhole_kg;
-    const double flow_kg_s = in.mass_flow_factor[0] * (kCoreFlow_kg_s + kBoostFlow_kg_s);
+    const double flow_kg_s = in.stages[0].mass_flow_factor * (kCoreFlow_kg_s + kBoostFlow_kg_s);
     const double exhaust_m_s = ThrustFactor(in) * (200e3 + 2.0 * kBoostThrust_n) / flow_kg_s;
     // Of the classical Runge-Kutta method in steps of 20 ms.
     EXPECT_NEAR(ReadState(y.data()).v_IC_I.norm(),

@@ -69,11 +69,11 @@ TEST(Clusters, AddForcesAndMomentsOfEveryEngine) {
       for (const int hinge : {0, 1})
         angles[static_cast<std::size_t>(DriveOf(k, hinge))] = 5.0 * kDeg * (2.0 * draws.Uniform() - 1.0);
     FlightInputs inputs;
-    inputs.nozzle_misalignment_y_rad[0][2] = 0.004;
-    inputs.further_misalignment_rad[1] = 0.01;  // the sixth
-    inputs.further_misalignment_clock_rad[1] = 0.7;
-    inputs.further_offset_y_m[3] = 0.02;     // the eighth
-    inputs.further_thrust_factor[4] = 0.95;  // the ninth
+    inputs.stages[0].nozzles[2].line.misalignment_rad.y = 0.004;
+    inputs.further[1].nozzle.line.misalignment_rad.magnitude = 0.01;  // the sixth
+    inputs.further[1].nozzle.line.misalignment_rad.clock_rad = 0.7;
+    inputs.further[3].nozzle.line.offset_m.y = 0.02;  // the eighth
+    inputs.further[4].nozzle.thrust_factor = 0.95;    // the ninth
     const LauncherInstant now = InstantAt(model, inputs, angles);
     Vector3 force = Vector3::Zero(), moment = Vector3::Zero();
     double shares = 0.0;
@@ -101,9 +101,9 @@ TEST(Clusters, AddForcesAndMomentsOfEveryEngine) {
 
 FlightInputs Disturbed() {
   FlightInputs inputs;
-  inputs.thrust_misalignment_rad = AllStages(0.2 * kDeg);
-  inputs.thrust_misalignment_clock_rad = AllStages(0.6);
-  inputs.cg_offset_m[0] = 0.01;
+  for (StageInputs& stage : inputs.stages) stage.thrust.misalignment_rad.magnitude = 0.2 * kDeg;
+  for (StageInputs& stage : inputs.stages) stage.thrust.misalignment_rad.clock_rad = 0.6;
+  inputs.stages[0].cg_offset_m.magnitude = 0.01;
   return inputs;
 }
 
@@ -175,7 +175,7 @@ TEST(Clusters, MassesOfNineNozzlesReactAsNineTimesTheMass) {
 TEST(Clusters, JudgesFlyTheSameFlight) {
   for (const auto& nozzles : {Octaweb(), Named(ThirtyThree())}) {
     FlightInputs inputs = Disturbed();
-    inputs.further_thrust_factor[1] = 0.97;
+    inputs.further[1].nozzle.thrust_factor = 0.97;
     const auto engine = TicksOf(Definition(nozzles), inputs);
     const auto judge = TicksOf(Definition(nozzles), inputs, nullptr, {.scheme = Scheme::kRungeKutta4});
     EXPECT_LT(Apart(engine, judge, 40.0), 1e-6);
@@ -187,7 +187,7 @@ TEST(Clusters, JudgesFlyTheSameFlight) {
 // sum times L sin d. The one that is weak moves with the others.
 TEST(Clusters, AWeakEngineIsTrimmedByTheAngleOfItsMoment) {
   FlightInputs inputs;
-  inputs.further_thrust_factor[0] = 0.95;  // the fifth nozzle, number 4 of the ring: at 135 deg
+  inputs.further[0].nozzle.thrust_factor = 0.95;  // the fifth nozzle, number 4 of the ring: at 135 deg
   const FlightDefinition definition = Definition(Octaweb());
   const auto ticks = TicksOf(definition, inputs);
   const LauncherPlant plant = FlightModel(definition).PlantFor(inputs);
@@ -226,8 +226,8 @@ TEST(Clusters, FlowOfTheStageIsTheSumOfItsEngines) {
   const FlightDefinition definition = Definition(Octaweb());
   const FlightModel model(definition);
   FlightInputs inputs;
-  inputs.nozzle_flow_factor[0][0] = 0.97;
-  inputs.further_flow_factor[2] = 1.06;
+  inputs.stages[0].nozzles[0].flow_factor = 0.97;
+  inputs.further[2].nozzle.flow_factor = 1.06;
   const MotorBurn nominal = model.nominal_plant().stacks[0].burn,
                   burn = model.PlantFor(inputs).stacks[0].burn;
   EXPECT_NEAR(burn.full_flow_kg_s, nominal.full_flow_kg_s * (1.0 + (-0.03 + 0.06) / 9.0), 1e-11);
@@ -240,8 +240,8 @@ TEST(Clusters, FlowOfAnUpperStageIsThatOfItsOwnEngines) {
   definition.vehicle.stages[1].gimbal.nozzles = Octaweb();
   const FlightModel model(definition);
   FlightInputs inputs;
-  inputs.further_flow_factor[2] = 1.06;      // the seventh of the first stage
-  inputs.further_flow_factor[5 + 4] = 0.91;  // the ninth of the second
+  inputs.further[2].nozzle.flow_factor = 1.06;      // the seventh of the first stage
+  inputs.further[5 + 4].nozzle.flow_factor = 0.91;  // the ninth of the second
   const LauncherPlant& nominal = model.nominal_plant();
   const LauncherPlant plant = model.PlantFor(inputs);
   for (const auto& [stage, factor] : {std::pair<std::size_t, double>{0, 1.06}, {1, 0.91}})
@@ -300,7 +300,7 @@ TEST(Clusters, VerniersSteerBesideFixedEngines) {
   EXPECT_NEAR(layout.roll_arm_m, 0.04 * 0.6, 1e-12);
   EXPECT_NEAR(layout.share[0], 0.24, 1e-12);
   FlightInputs inputs;
-  inputs.thrust_misalignment_rad[0] = 0.02 * kDeg;
+  inputs.stages[0].thrust.misalignment_rad.magnitude = 0.02 * kDeg;
   FlightResult result;
   double turned = 0.0;
   for (const TickSample& s : TicksOf(definition, inputs, &result)) {

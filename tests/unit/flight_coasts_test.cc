@@ -52,7 +52,7 @@ struct Flown {
 Flown FlyWithTipOff(const FlightDefinition& definition) {
   Flown flown;
   FlightInputs inputs;
-  inputs.tip_off_pitch_rad_s[0] = inputs.tip_off_roll_rad_s[0] = 1.0 * kRadPerDeg;
+  inputs.stages[0].tip_off_pitch_rad_s = inputs.stages[0].tip_off_roll_rad_s = 1.0 * kRadPerDeg;
   FlightOptions options;
   options.observe = [&](const TickSample& s) { flown.ticks.push_back(s); };
   flown.result = Fly(FlightModel(definition), inputs, options);

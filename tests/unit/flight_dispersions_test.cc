@@ -41,9 +41,9 @@ constexpr double kSpace_m = 2e6;  // above the atmosphere's end
 
 TEST(Dispersions, MisalignmentTiltsTheThrustTowardsItsClockAngle) {
   FlightInputs inputs;
-  inputs.thrust_misalignment_rad[0] = 0.01;
+  inputs.stages[0].thrust.misalignment_rad.magnitude = 0.01;
   for (const double clock : {0.0, 0.5 * kPi, 2.5}) {
-    inputs.thrust_misalignment_clock_rad[0] = clock;
+    inputs.stages[0].thrust.misalignment_rad.clock_rad = clock;
     const LauncherInstant now = InstantOf(inputs, kSpace_m);
     const Vector3 expected(std::cos(0.01), std::sin(0.01) * std::cos(clock),
                            std::sin(0.01) * std::sin(clock));
@@ -57,9 +57,9 @@ TEST(Dispersions, MisalignmentTiltsTheThrustTowardsItsClockAngle) {
 
 TEST(Dispersions, ThrustOffsetGivesAMomentTowardsItsClockAngle) {
   FlightInputs inputs;
-  inputs.thrust_offset_m[0] = 0.005;
+  inputs.stages[0].thrust.offset_m.magnitude = 0.005;
   for (const double clock : {0.0, 0.5 * kPi, 2.5}) {
-    inputs.thrust_offset_clock_rad[0] = clock;
+    inputs.stages[0].thrust.offset_m.clock_rad = clock;
     const LauncherInstant now = InstantOf(inputs, kSpace_m);
     EXPECT_NEAR(now.loads.moment_n_m.y(), 200e3 * 0.005 * std::sin(clock), 1e-9) << clock;
     EXPECT_NEAR(now.loads.moment_n_m.z(), -200e3 * 0.005 * std::cos(clock), 1e-9) << clock;
@@ -77,11 +77,11 @@ TEST(Dispersions, EachNozzleHasItsOwnThrust) {
       {-lever, radius, 0.0}, {-lever, -radius, 0.0}, {-lever, 0.0, radius}, {-lever, 0.0, -radius}};
   for (std::size_t nozzle = 0; nozzle < kNozzles; ++nozzle) {
     FlightInputs inputs;
-    inputs.nozzle_misalignment_rad[0][nozzle] = 0.01;
-    inputs.nozzle_misalignment_clock_rad[0][nozzle] = 0.7;
-    inputs.nozzle_offset_m[0][nozzle] = 0.02;
-    inputs.nozzle_offset_clock_rad[0][nozzle] = 2.5;
-    inputs.nozzle_thrust_factor[0][nozzle] = 1.03;
+    inputs.stages[0].nozzles[nozzle].line.misalignment_rad.magnitude = 0.01;
+    inputs.stages[0].nozzles[nozzle].line.misalignment_rad.clock_rad = 0.7;
+    inputs.stages[0].nozzles[nozzle].line.offset_m.magnitude = 0.02;
+    inputs.stages[0].nozzles[nozzle].line.offset_m.clock_rad = 2.5;
+    inputs.stages[0].nozzles[nozzle].thrust_factor = 1.03;
     const LauncherInstant now = InstantOf(inputs, kSpace_m);
     const Vector3 nominal(50e3, 0.0, 0.0);
     const Vector3 force =
@@ -98,10 +98,10 @@ TEST(Dispersions, EachNozzleHasItsOwnThrust) {
 // The centre of gravity of what does not burn is given; the propellant, about the axis, draws it back.
 TEST(Dispersions, ACentreOfGravityOffTheAxisGivesThrustAndDragALever) {
   FlightInputs inputs;
-  inputs.cg_offset_m[0] = 0.01;
+  inputs.stages[0].cg_offset_m.magnitude = 0.01;
   const LauncherPlant nominal = FlightModel(SampleDefinition()).PlantFor({});
   for (const double clock : {0.0, 0.5 * kPi, 2.5}) {
-    inputs.cg_offset_clock_rad[0] = clock;
+    inputs.stages[0].cg_offset_m.clock_rad = clock;
     const LauncherInstant in_space = InstantOf(inputs, kSpace_m);
     const double aside = 0.01 * nominal.stacks[0].mass.fixed_mass_kg /
                          in_space.loads.mass_kg;  // the inertia's own is left out
@@ -119,7 +119,7 @@ TEST(Dispersions, ACentreOfGravityOffTheAxisGivesThrustAndDragALever) {
 
 TEST(Dispersions, TheUpperStackLeavesWithTheVelocityOfItsOwnOffsetCg) {
   FlightInputs inputs;
-  inputs.cg_offset_m[1] = 0.02;
+  inputs.stages[1].cg_offset_m.magnitude = 0.02;
   const LauncherPlant offset = FlightModel(SampleDefinition()).PlantFor(inputs),
                       straight = FlightModel(SampleDefinition()).PlantFor({});
   RigidBodyState state;
@@ -134,9 +134,9 @@ TEST(Dispersions, TheUpperStackLeavesWithTheVelocityOfItsOwnOffsetCg) {
 
 TEST(Dispersions, EachStageHasItsOwnThrust) {
   FlightInputs inputs;
-  inputs.thrust_misalignment_rad[1] = 0.01;
-  inputs.thrust_offset_m[1] = 0.005;
-  inputs.thrust_factor[1] = 1.1;
+  inputs.stages[1].thrust.misalignment_rad.magnitude = 0.01;
+  inputs.stages[1].thrust.offset_m.magnitude = 0.005;
+  inputs.stages[1].thrust_factor = 1.1;
   const LauncherPlant plant = FlightModel(SampleDefinition()).PlantFor(inputs);
   EXPECT_EQ(plant.stacks[0].thrust_tilt, Matrix3(Matrix3::Identity()));
   EXPECT_EQ(plant.stacks[0].thrust_offset_y_m, 0.0);
@@ -151,8 +151,8 @@ TEST(Dispersions, EachStageHasItsOwnThrust) {
 TEST(Dispersions, WhatThrustConserves) {
   const FlightModel model(SampleDefinition());
   FlightInputs total_impulse, propellant, specific_impulse;
-  total_impulse.thrust_factor[0] = total_impulse.mass_flow_factor[0] = 1.02;
-  propellant.thrust_factor[0] = specific_impulse.specific_impulse_factor[0] = 1.02;
+  total_impulse.stages[0].thrust_factor = total_impulse.stages[0].mass_flow_factor = 1.02;
+  propellant.stages[0].thrust_factor = specific_impulse.stages[0].specific_impulse_factor = 1.02;
   const MotorBurn faster = model.PlantFor(total_impulse).stacks[0].burn;
   EXPECT_DOUBLE_EQ(faster.vacuum_thrust_n, 1.02 * 200e3);
   EXPECT_DOUBLE_EQ(faster.full_flow_kg_s, 1.02 * 100.0);
@@ -185,7 +185,7 @@ TEST(Launcher, AmbientPressureTakesItsPartOfTheThrust) {
 
 TEST(Dispersions, DensityFactorMultipliesAirAndDynamicPressure) {
   FlightInputs inputs;
-  inputs.density_factor = 1.1;
+  inputs.air.density_factor = 1.1;
   const AirData nominal = InstantOf({}, 12e3).air, dense = InstantOf(inputs, 12e3).air;
   EXPECT_GT(nominal.qbar_pa, 1000.0);
   EXPECT_NEAR(dense.density_kg_m3 / nominal.density_kg_m3, 1.1, 1e-14);
@@ -195,7 +195,7 @@ TEST(Dispersions, DensityFactorMultipliesAirAndDynamicPressure) {
 
 TEST(Dispersions, DensityProfileOfTheEnvironmentIsMultiplied) {
   FlightInputs inputs;
-  inputs.density_factor = 1.1;
+  inputs.air.density_factor = 1.1;
   LauncherPlant plant = FlightModel(SampleDefinition()).PlantFor(inputs);
   plant.environment.density.by_altitude = {{10e3, 14e3}, {1.0, 1.4}};
   const AirData air = LauncherModel(plant).Evaluate(Burning(), 10.0, Above(12e3).data()).air;
@@ -204,10 +204,10 @@ TEST(Dispersions, DensityProfileOfTheEnvironmentIsMultiplied) {
 
 TEST(Dispersions, AGustBlowsFromItsAzimuthAtItsAltitudes) {
   FlightInputs inputs;
-  inputs.gust_speed_m_s = 9.0;
-  inputs.gust_altitude_m = 11000.0;
-  inputs.gust_length_m = 2000.0;
-  inputs.gust_azimuth_rad = 0.5 * kPi;  // from the east, towards -y here
+  inputs.air.gust_speed_m_s = 9.0;
+  inputs.air.gust_altitude_m = 11000.0;
+  inputs.air.gust_length_m = 2000.0;
+  inputs.air.gust_azimuth_rad = 0.5 * kPi;  // from the east, towards -y here
   const auto change = [&](double altitude_m) -> Vector3 {
     return InstantOf(inputs, altitude_m).air.v_AP_I - InstantOf({}, altitude_m).air.v_AP_I;
   };
@@ -253,9 +253,9 @@ const TickSample& TickAt(const std::vector<TickSample>& ticks, double time_s) {
 
 TEST(Dispersions, TipOffIsAddedAsTheStageSeparates) {
   FlightInputs inputs;
-  inputs.tip_off_roll_rad_s[0] = 0.01;
-  inputs.tip_off_pitch_rad_s[0] = -0.02;
-  inputs.tip_off_yaw_rad_s[0] = 0.03;
+  inputs.stages[0].tip_off_roll_rad_s = 0.01;
+  inputs.stages[0].tip_off_pitch_rad_s = -0.02;
+  inputs.stages[0].tip_off_yaw_rad_s = 0.03;
   const auto nominal = TicksOf(HighDefinition(), {}), tipped = TicksOf(HighDefinition(), inputs);
   // Burnout at 40 s, separation half a second later, on a tick.
   EXPECT_EQ(TickAt(tipped, 40.49).state.w_IB_B, TickAt(nominal, 40.49).state.w_IB_B);
@@ -290,7 +290,7 @@ TEST(Dispersions, AStuckNozzleStaysInItsStageAlone) {
 // and leaves bias times time in truth.
 TEST(Dispersions, AGyroBiasDriftsTheAttitude) {
   FlightInputs inputs;
-  inputs.gyro_bias_yaw_rad_s = 0.01 * kRadPerDeg;
+  inputs.sensors.gyro_bias_yaw_rad_s = 0.01 * kRadPerDeg;
   const auto nominal = TicksOf(HighDefinition(), {}), biased = TicksOf(HighDefinition(), inputs);
   for (const double t : {20.0, 35.0}) {
     const Vector3 drift = TickAt(biased, t).error.angle_rad - TickAt(nominal, t).error.angle_rad;
@@ -303,9 +303,9 @@ TEST(Dispersions, AGyroBiasDriftsTheAttitude) {
 TEST(Dispersions, GyroNoiseHasItsStandardDeviation) {
   const FlightModel model(HighDefinition());
   FlightInputs inputs;
-  inputs.gyro_noise_rad_s = 0.002;
+  inputs.sensors.gyro_noise_rad_s = 0.002;
   // Falls back at once: only the first tick counts.
-  inputs.thrust_factor[0] = 0.1;
+  inputs.stages[0].thrust_factor = 0.1;
   FlightInputs quiet = inputs;
   quiet.gyro_noise_rad_s = 0.0;
   const auto command = [&](const FlightInputs& in, std::uint64_t case_index) {
@@ -346,7 +346,7 @@ TEST(Dispersions, GyroNoiseIsARandomWalkOfEveryTickInTheCoastToo) {
   double squares = 0.0, time_s = 0.0;
   for (int i = 0; i < kCases; ++i) {
     FlightInputs inputs;
-    inputs.gyro_noise_rad_s = kNoise_rad_s;
+    inputs.sensors.gyro_noise_rad_s = kNoise_rad_s;
     FlightOptions options;
     options.case_index = static_cast<std::uint64_t>(i);
     Vector3 error = Vector3::Zero();

@@ -39,8 +39,8 @@ FlightDefinition Busy(int cycle_ticks) {
 }
 FlightInputs TipOff() {
   FlightInputs inputs;
-  inputs.tip_off_pitch_rad_s[0] = 0.001;
-  inputs.tip_off_yaw_rad_s[0] = -0.002;
+  inputs.stages[0].tip_off_pitch_rad_s = 0.001;
+  inputs.stages[0].tip_off_yaw_rad_s = -0.002;
   return inputs;
 }
 
@@ -120,8 +120,8 @@ TEST(Digest, IsOfTheMetricsToo) {
   definition.kick_end_s = 39.0;  // deflections of stage 1 say nothing of ripple: the states do not know
   const FlightModel b(definition);
   FlightInputs inputs;
-  inputs.thrust_misalignment_rad = AllStages(0.2 * kRadPerDeg);
-  inputs.gyro_noise_rad_s = 0.05 * kRadPerDeg;
+  for (StageInputs& stage : inputs.stages) stage.thrust.misalignment_rad.magnitude = 0.2 * kRadPerDeg;
+  inputs.sensors.gyro_noise_rad_s = 0.05 * kRadPerDeg;
   const FlightResult one = Fly(a, inputs), other = Fly(b, inputs);
   ASSERT_NE(MetricOf(one, "deflection_ripple_deg"), MetricOf(other, "deflection_ripple_deg"));
   EXPECT_EQ(one.end_state.p_EoC_I, other.end_state.p_EoC_I);
@@ -189,8 +189,8 @@ TEST(FlyAll, KeepsTheOrderOfItsOrders) {
   const FlightModel model(HighDefinition());
   std::vector<FlightOrder> orders(11);
   for (std::size_t i = 0; i < orders.size(); ++i) {
-    orders[i].inputs.thrust_factor[0] = 1.0 + 0.01 * static_cast<double>(i);
-    if (i % 3 == 1) orders[i].inputs.tip_off_yaw_rad_s[0] = 61.0 * kRadPerDeg;  // ends early
+    orders[i].inputs.stages[0].thrust_factor = 1.0 + 0.01 * static_cast<double>(i);
+    if (i % 3 == 1) orders[i].inputs.stages[0].tip_off_yaw_rad_s = 61.0 * kRadPerDeg;  // ends early
   }
   const std::vector<FlightResult> flown = FlyAll(model, orders);
   ASSERT_EQ(flown.size(), orders.size());

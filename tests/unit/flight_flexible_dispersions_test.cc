@@ -28,7 +28,7 @@ FlightDefinition Flexible() {
 FlightInputs Heavier(double factor) {
   FlightInputs inputs;
   for (std::size_t stage = 0; stage < 2; ++stage)
-    inputs.dry_mass_factor[stage] = inputs.propellant_factor[stage] = factor;
+    inputs.stages[stage].dry_mass_factor = inputs.stages[stage].propellant_factor = factor;
   return inputs;
 }
 
@@ -64,8 +64,8 @@ TEST(FlexibleDispersions, ModesOfAHeavierVehicleAreSlowerByTheRoot) {
 // A vehicle whose file has the dispersed masses flies the same modes and the same loads.
 TEST(FlexibleDispersions, AreThoseOfAVehicleOfThoseMasses) {
   FlightInputs inputs;
-  inputs.dry_mass_factor[0] = 0.9;
-  inputs.propellant_factor[1] = 1.05;
+  inputs.stages[0].dry_mass_factor = 0.9;
+  inputs.stages[1].propellant_factor = 1.05;
   FlightDefinition built = Flexible();
   Stage &first = built.vehicle.stages[0], &second = built.vehicle.stages[1];
   first.liftoff_mass_kg += -600.0 + 50.0;  // of 6 t dry

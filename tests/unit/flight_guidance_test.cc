@@ -75,13 +75,13 @@ TEST(GuidedFlight, MissesByWhatNavigationErrs) {
   const FlightModel model(Guided());
   FlightInputs inputs;
   const Missed right = MissOf(Fly(model, inputs));
-  inputs.navigation_velocity_error_m_s = {2.0, 0.0, 0.0};
+  inputs.sensors.navigation_velocity_error_m_s = {2.0, 0.0, 0.0};
   const FlightResult fast = Fly(model, inputs);
   // Downrange at lift-off is some 17 deg off the velocity at injection.
   EXPECT_NEAR(MissOf(fast).velocity_m_s - right.velocity_m_s, -2.0 * std::cos(17.0 * kDeg), 0.3);
   EXPECT_EQ(MetricOf(fast, "guidance_converged"), 1.0) << "nobody on board knows";
   inputs = {};
-  inputs.navigation_position_error_m = {0.0, 0.0, 400.0};
+  inputs.sensors.navigation_position_error_m = {0.0, 0.0, 400.0};
   EXPECT_NEAR(MissOf(Fly(model, inputs)).altitude_m - right.altitude_m, 400.0 * std::cos(17.0 * kDeg), 60.0);
 }
 
@@ -90,7 +90,7 @@ TEST(GuidedFlight, MissesByWhatNavigationErrs) {
 TEST(GuidedFlight, FindsOutAboutTheLastMotorOnlyWhileItBurns) {
   FlightDefinition definition = Guided();
   FlightInputs inputs;
-  inputs.specific_impulse_factor[3] = 1.005;
+  inputs.stages[3].specific_impulse_factor = 1.005;
   const FlightResult steered = Fly(FlightModel(definition), inputs);
   definition.guidance.steers_last_burn = false;
   const FlightResult planned = Fly(FlightModel(definition), inputs);

@@ -43,7 +43,7 @@ LauncherPlant PlantOf(const FlightInputs& inputs) { return FlightModel(SampleDef
 
 TEST(DryMass, WeighsTheStageAndEverythingBelow) {
   FlightInputs inputs;
-  inputs.dry_mass_factor[1] = 1.1;  // of 2 t
+  inputs.stages[1].dry_mass_factor = 1.1;  // of 2 t
   const LauncherPlant nominal = PlantOf({}), heavy = PlantOf(inputs);
   EXPECT_NEAR(heavy.stacks[1].mass.fixed_mass_kg, nominal.stacks[1].mass.fixed_mass_kg + 200.0, 1e-9);
   EXPECT_NEAR(heavy.stacks[0].mass.fixed_mass_kg, nominal.stacks[0].mass.fixed_mass_kg + 200.0, 1e-9);
@@ -60,7 +60,7 @@ TEST(DryMass, WeighsTheStageAndEverythingBelow) {
 
 TEST(DryMass, CostsTheSpeedOfTheRocketEquation) {
   FlightInputs inputs;
-  inputs.dry_mass_factor[0] = 1.01;  // of 6 t
+  inputs.stages[0].dry_mass_factor = 1.01;  // of 6 t
   const TickSample nominal = AtBurnout({}), heavy = AtBurnout(inputs);
   EXPECT_EQ(heavy.time_s, nominal.time_s);
   const double expected = Given(13060.0, 9060.0) - Given(13000.0, 9000.0);
@@ -69,7 +69,7 @@ TEST(DryMass, CostsTheSpeedOfTheRocketEquation) {
 
 TEST(PropellantLoad, LengthensTheBurnAndNarrowsTheBore) {
   FlightInputs inputs;
-  inputs.propellant_factor[0] = 1.01;
+  inputs.stages[0].propellant_factor = 1.01;
   const LauncherPlant nominal = PlantOf({}), full = PlantOf(inputs);
   const MotorBurn &before = nominal.stacks[0].burn, &after = full.stacks[0].burn;
   EXPECT_DOUBLE_EQ(after.propellant_mass_kg, 4040.0);
@@ -85,14 +85,14 @@ TEST(PropellantLoad, LengthensTheBurnAndNarrowsTheBore) {
               4040.0 * (1.44 + bore2) / 8.0, 1e-8);
   // Of an upper stage it is a load for the lower one.
   FlightInputs upper;
-  upper.propellant_factor[1] = 1.01;
+  upper.stages[1].propellant_factor = 1.01;
   EXPECT_NEAR(PlantOf(upper).stacks[0].mass.fixed_mass_kg, nominal.stacks[0].mass.fixed_mass_kg + 10.0, 1e-9);
   EXPECT_DOUBLE_EQ(LargestPropellantFactor(SampleVehicle().stages[0]), 1.44 / (1.44 - 0.16));
 }
 
 TEST(PropellantLoad, GivesTheSpeedOfTheRocketEquationLessGravitation) {
   FlightInputs inputs;
-  inputs.propellant_factor[0] = 1.01;
+  inputs.stages[0].propellant_factor = 1.01;
   const TickSample nominal = AtBurnout({}), full = AtBurnout(inputs);
   EXPECT_NEAR(full.time_s - nominal.time_s, 0.4, 1e-9);
   const double g = Wgs84().mu_m3_s2 / nominal.state.p_EoC_I.squaredNorm();
@@ -141,7 +141,7 @@ TEST(PayloadMass, IsCarriedByItsElement) {
 TEST(DispersedMasses, AreNotKnownOnBoard) {
   const FlightModel model(SampleDefinition());
   FlightInputs inputs;
-  inputs.dry_mass_factor[0] = 1.1;
+  inputs.stages[0].dry_mass_factor = 1.1;
   const StageControl nominal = BuildStageControl(model.nominal_plant(), 0);
   EXPECT_NE(BuildStageControl(model.PlantFor(inputs), 0).pitch_effectiveness_1_s2.y,
             nominal.pitch_effectiveness_1_s2.y);
@@ -151,9 +151,9 @@ TEST(DispersedMasses, AreNotKnownOnBoard) {
 // An inertia with products turns as Euler's equation says.
 TEST(ProductsOfInertia, TurnTheVehicleAsEulerSays) {
   FlightInputs inputs;
-  inputs.product_of_inertia_xy_kg_m2[0] = 300.0;
-  inputs.product_of_inertia_xz_kg_m2[0] = -500.0;
-  inputs.product_of_inertia_yz_kg_m2[0] = 700.0;
+  inputs.stages[0].product_of_inertia_xy_kg_m2 = 300.0;
+  inputs.stages[0].product_of_inertia_xz_kg_m2 = -500.0;
+  inputs.stages[0].product_of_inertia_yz_kg_m2 = 700.0;
   const LauncherPlant plant = PlantOf(inputs);
   const LauncherModel equations(plant), plain(PlantOf({}));
   RigidBodyState state;
@@ -182,8 +182,8 @@ TEST(ProductsOfInertia, TurnTheVehicleAsEulerSays) {
 // Nothing acts: angular momentum and energy stay, and the body tumbles all the same.
 TEST(ProductsOfInertia, KeepAngularMomentumAndEnergy) {
   FlightInputs inputs;
-  inputs.product_of_inertia_xz_kg_m2[0] = 900.0;
-  inputs.product_of_inertia_yz_kg_m2[0] = -400.0;
+  inputs.stages[0].product_of_inertia_xz_kg_m2 = 900.0;
+  inputs.stages[0].product_of_inertia_yz_kg_m2 = -400.0;
   const LauncherModel equations(PlantOf(inputs));
   struct Free {
     const LauncherModel& equations;
@@ -212,12 +212,12 @@ TEST(ProductsOfInertia, KeepAngularMomentumAndEnergy) {
 
 TEST(StackFactors, ActOnTheirStackAlone) {
   FlightInputs inputs;
-  inputs.stack_drag_factor[1] = 1.1;
-  inputs.stack_lift_factor[1] = 1.2;
-  inputs.stack_cp_factor[1] = 1.3;
-  inputs.stack_cg_factor[1] = 0.9;
-  inputs.stack_inertia_factor[1] = 1.4;
-  inputs.stack_actuator_bandwidth_factor[1] = 0.5;
+  inputs.stages[1].drag_factor = 1.1;
+  inputs.stages[1].lift_factor = 1.2;
+  inputs.stages[1].cp_factor = 1.3;
+  inputs.stages[1].cg_factor = 0.9;
+  inputs.stages[1].inertia_factor = 1.4;
+  inputs.stages[1].actuator_bandwidth_factor = 0.5;
   inputs.drag_factor = 1.01;  // the whole vehicle's multiplies
   const LauncherPlant plant = PlantOf(inputs);
   EXPECT_EQ(plant.stacks[0].aerodynamics.ca.factor, 1.01);
@@ -264,7 +264,7 @@ Vector3 NoseOf(const LauncherPlant& plant, int stack, double propellant_kg, cons
 TEST(CentreOfGravity, AtSeparationLeavesTheNoseWhereItIs) {
   FlightInputs inputs;
   inputs.cg_factor = 1.03;
-  inputs.stack_cg_factor[0] = 0.98;
+  inputs.stages[0].cg_factor = 0.98;
   const LauncherPlant plant = PlantOf(inputs);
   RigidBodyState state;
   state.p_EoC_I = {Wgs84().equatorial_radius_m + 2e6, 0.0, 0.0};

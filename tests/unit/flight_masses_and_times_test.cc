@@ -27,7 +27,7 @@ TEST(Timeline, ASeparationDelayIsThatOfItsStage) {
   const std::vector<StageTimes> nominal = BuildTimeline(vehicle, burns, kTick_s, 500.0);
   for (std::size_t late = 0; late < 3; ++late) {
     FlightInputs in;
-    in.separation_delay_s[late] = 0.25;
+    in.stages[late].separation_delay_s = 0.25;
     const std::vector<StageTimes> times = BuildTimeline(vehicle, burns, kTick_s, 500.0, {}, in);
     for (std::size_t i = 0; i < 4; ++i) {
       // Stages up to it keep their burns, those behind it come later; stage 4 waits for its timer.
@@ -72,7 +72,7 @@ TEST(DispersedVehicle, WhatARestartLetsGoOfIsPartOfEachBurnsMass) {
   const std::size_t first = vehicle.stages.size() - 2;
   for (const std::size_t burn : {first, first + 1}) vehicle.stages[burn].liftoff_mass_kg += body.mass_kg;
   FlightInputs in;
-  in.dry_mass_factor[first] = 1.1;
+  in.stages[first].dry_mass_factor = 1.1;
   const double dry_kg = DryMass(vehicle, static_cast<int>(first));
   const Vehicle heavier = WithDispersedMasses(vehicle, in);
   for (const std::size_t burn : {first, first + 1})
@@ -89,7 +89,7 @@ TEST(DispersedVehicle, AThrustCurveIsStretchedWithItsPropellant) {
   curve.time_s = {0.0, 10.0, 50.0, 54.0};
   curve.thrust_n = {250e3, 280e3, 240e3, 0.0};
   FlightInputs in;
-  in.propellant_factor[1] = 1.004;
+  in.stages[1].propellant_factor = 1.004;
   const Vehicle heavier = WithDispersedMasses(vehicle, in);
   const MotorBurn before = BuildBurn(vehicle.stages[1], 1.0, 1.0),
                   after = BuildBurn(heavier.stages[1], 1.0, 1.0);
@@ -103,7 +103,7 @@ TEST(DispersedVehicle, AThrustCurveIsStretchedWithItsPropellant) {
 TEST(DispersedVehicle, BoostersKeepTheirMasses) {
   const Vehicle vehicle = LoadVehicle(DISPERSA_TEST_DATA "/goldens/boosters_vehicle.yaml");
   FlightInputs in;
-  in.dry_mass_factor[1] = 1.01;
+  in.stages[1].dry_mass_factor = 1.01;
   const Vehicle heavier = WithDispersedMasses(vehicle, in);
   const double added_kg = 0.01 * DryMass(vehicle, 1);
   ASSERT_GT(added_kg, 1.0);

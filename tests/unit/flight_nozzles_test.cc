@@ -84,11 +84,11 @@ TEST(ListedNozzles, ThreeNozzlesAddTheirMoments) {
   const FlightModel model(Definition(Three(0.4)));
   const std::vector<double> angles = {2.0 * kDeg, -1.0 * kDeg, 0.5 * kDeg};
   FlightInputs inputs;
-  inputs.nozzle_misalignment_rad[0][1] = 0.01;
-  inputs.nozzle_misalignment_clock_rad[0][1] = 0.7;
-  inputs.nozzle_offset_m[0][2] = 0.02;
-  inputs.nozzle_offset_clock_rad[0][2] = 2.5;
-  inputs.nozzle_thrust_factor[0][0] = 1.03;
+  inputs.stages[0].nozzles[1].line.misalignment_rad.magnitude = 0.01;
+  inputs.stages[0].nozzles[1].line.misalignment_rad.clock_rad = 0.7;
+  inputs.stages[0].nozzles[2].line.offset_m.magnitude = 0.02;
+  inputs.stages[0].nozzles[2].line.offset_m.clock_rad = 2.5;
+  inputs.stages[0].nozzles[0].thrust_factor = 1.03;
   const LauncherInstant now = InstantAt(model, inputs, angles);
   Vector3 force = Vector3::Zero(), moment = Vector3::Zero();
   for (std::size_t k = 0; k < 3; ++k) {
@@ -133,11 +133,11 @@ TEST(ListedNozzles, MassesOfNozzlesReactAsTheCrossDoes) {
 
 FlightInputs Disturbed() {
   FlightInputs inputs;
-  inputs.thrust_misalignment_rad = AllStages(0.2 * kDeg);
-  inputs.thrust_misalignment_clock_rad = AllStages(0.6);
-  inputs.nozzle_misalignment_rad[0][0] = 0.3 * kDeg;
-  inputs.nozzle_misalignment_clock_rad[0][0] = 1.4;
-  inputs.cg_offset_m[0] = 0.01;
+  for (StageInputs& stage : inputs.stages) stage.thrust.misalignment_rad.magnitude = 0.2 * kDeg;
+  for (StageInputs& stage : inputs.stages) stage.thrust.misalignment_rad.clock_rad = 0.6;
+  inputs.stages[0].nozzles[0].line.misalignment_rad.magnitude = 0.3 * kDeg;
+  inputs.stages[0].nozzles[0].line.misalignment_rad.clock_rad = 1.4;
+  inputs.stages[0].cg_offset_m.magnitude = 0.01;
   return inputs;
 }
 
@@ -188,8 +188,8 @@ std::vector<Nozzle> OneBetweenFixed() {
 // thrust passes the CG.)
 FlightInputs Rolled() {
   FlightInputs inputs;
-  inputs.nozzle_misalignment_rad[0][1] = 8e-5;
-  inputs.nozzle_misalignment_clock_rad[0][1] = 0.5 * kPi;
+  inputs.stages[0].nozzles[1].line.misalignment_rad.magnitude = 8e-5;
+  inputs.stages[0].nozzles[1].line.misalignment_rad.clock_rad = 0.5 * kPi;
   return inputs;
 }
 
@@ -291,8 +291,8 @@ TEST(ListedNozzles, TheLimitIsOfTheWholeDeflection) {
   FlightDefinition definition = Definition(OneNozzle());
   definition.vehicle.stages[0].gimbal.nozzles[0].limit_rad = 1.0 * kDeg;
   FlightInputs inputs;
-  inputs.thrust_misalignment_rad[0] = 2.0 * kDeg;  // more than the nozzle can trim
-  inputs.thrust_misalignment_clock_rad[0] = 0.25 * kPi;
+  inputs.stages[0].thrust.misalignment_rad.magnitude = 2.0 * kDeg;  // more than the nozzle can trim
+  inputs.stages[0].thrust.misalignment_rad.clock_rad = 0.25 * kPi;
   double widest = 0.0, first = 0.0, second = 0.0;
   FlightResult result;
   for (const TickSample& s : TicksOf(definition, inputs, &result)) {

@@ -30,7 +30,7 @@ TEST(Outcome, CompletedAtTheEndOfTheLastBurn) {
 
 TEST(Outcome, LostControlByRateAtTheTickAfterTheTipOff) {
   FlightInputs inputs;
-  inputs.tip_off_yaw_rad_s[0] = 61.0 * kRadPerDeg;
+  inputs.stages[0].tip_off_yaw_rad_s = 61.0 * kRadPerDeg;
   const FlightResult result = FlyWith(inputs);
   EXPECT_EQ(result.outcome, Outcome::kLostControl);
   EXPECT_EQ(result.reason, "angular rate above 60 deg/s");
@@ -43,7 +43,7 @@ TEST(Outcome, LostControlByAttitudeAfterHalfASecondInTheCoastToo) {
     FlightDefinition definition = HighDefinition();
     definition.autopilot.reaction_control.cycle_ticks = cycle;
     FlightInputs inputs;
-    inputs.tip_off_pitch_rad_s[0] = 50.0 * kRadPerDeg;
+    inputs.stages[0].tip_off_pitch_rad_s = 50.0 * kRadPerDeg;
     const FlightResult result = FlyWith(inputs, definition);
     EXPECT_EQ(result.outcome, Outcome::kLostControl);
     EXPECT_EQ(result.reason, "attitude error above 15 deg for 0.5 s");
@@ -54,7 +54,7 @@ TEST(Outcome, LostControlByAttitudeAfterHalfASecondInTheCoastToo) {
 
 TEST(Outcome, ImpactWhenThrustDoesNotCarryTheWeight) {
   FlightInputs inputs;
-  inputs.thrust_factor[0] = 0.3;
+  inputs.stages[0].thrust_factor = 0.3;
   const FlightResult result = FlyWith(inputs);
   EXPECT_EQ(result.outcome, Outcome::kImpact);
   EXPECT_EQ(result.reason, "fell below the launch site");
@@ -65,7 +65,7 @@ TEST(Outcome, ImpactInTheCoast) {
   FlightDefinition definition = HighDefinition();
   definition.last_ignition_s = 400.0;
   FlightInputs inputs;
-  inputs.thrust_factor[0] = 0.72;
+  inputs.stages[0].thrust_factor = 0.72;
   const FlightResult result = FlyWith(inputs, definition);
   EXPECT_EQ(result.outcome, Outcome::kImpact);
   EXPECT_GT(result.end_time_s, 41.0);
@@ -86,12 +86,12 @@ TEST(Outcome, StructuralLimitOnlyWhenTheVehicleSaysTerminate) {
 
 TEST(Outcome, NumericalFailureIsData) {
   FlightInputs inputs;
-  inputs.thrust_factor[0] = 1e300;  // the square of an acceleration overflows
+  inputs.stages[0].thrust_factor = 1e300;  // the square of an acceleration overflows
   const FlightResult result = FlyWith(inputs);
   EXPECT_EQ(result.outcome, Outcome::kNumericalFailure);
   EXPECT_EQ(result.reason, "the integrator failed or the state is not finite");
 
-  inputs.thrust_factor[0] = std::numeric_limits<double>::quiet_NaN();
+  inputs.stages[0].thrust_factor = std::numeric_limits<double>::quiet_NaN();
   const FlightResult refused = FlyWith(inputs);
   EXPECT_EQ(refused.outcome, Outcome::kNumericalFailure);
   EXPECT_EQ(refused.reason, "the input thrust_factor_stage1 has no value");
@@ -99,7 +99,7 @@ TEST(Outcome, NumericalFailureIsData) {
 
 TEST(Outcome, LossOfControlIsAsTheVehicleSays) {
   FlightInputs inputs;
-  inputs.tip_off_yaw_rad_s[0] = 31.0 * kRadPerDeg;
+  inputs.stages[0].tip_off_yaw_rad_s = 31.0 * kRadPerDeg;
   FlightDefinition definition = HighDefinition();
   definition.vehicle.loss_of_control.rate_rad_s = 30.0 * kRadPerDeg;
   const FlightResult fast = FlyWith(inputs, definition);
@@ -157,9 +157,9 @@ TEST(Outcome, TimeoutOfSimulatedTime) {
 
 TEST(Fly, RecordingAHistoryChangesNothing) {
   FlightInputs pushed;
-  pushed.tip_off_pitch_rad_s[0] = 1.0 * kRadPerDeg;
+  pushed.stages[0].tip_off_pitch_rad_s = 1.0 * kRadPerDeg;
   FlightInputs falling;
-  falling.thrust_factor[0] = 0.72;
+  falling.stages[0].thrust_factor = 0.72;
   FlightDefinition definition = HighDefinition();
   definition.autopilot.reaction_control.cycle_ticks = 5;
   for (const FlightInputs& inputs : {FlightInputs{}, pushed, falling}) {
@@ -186,8 +186,8 @@ TEST(Fly, HistoryHasARowAnOutputStepAndAnEvent) {
 
 TEST(Fly, NozzleRatesStayWithinTheActuatorsLimit) {
   FlightInputs inputs;
-  inputs.thrust_misalignment_rad[0] = 2.0 * kRadPerDeg;
-  inputs.tip_off_pitch_rad_s[0] = 5.0 * kRadPerDeg;
+  inputs.stages[0].thrust.misalignment_rad.magnitude = 2.0 * kRadPerDeg;
+  inputs.stages[0].tip_off_pitch_rad_s = 5.0 * kRadPerDeg;
   const FlightResult result = FlyWith(inputs);
   for (std::size_t i = 0; i < MetricCount(kUsualStages); ++i)
     if (MetricNames()[i] == "deflection_rate_peak_deg_s") {

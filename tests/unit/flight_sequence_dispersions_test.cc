@@ -30,8 +30,8 @@ FlightDefinition TriggeredBySeparation() {
 
 TEST(Delays, MoveWhatTheyTriggerAndNothingBefore) {
   FlightInputs inputs;
-  inputs.separation_delay_s[0] = 0.3;
-  inputs.ignition_delay_s[1] = 0.7;
+  inputs.stages[0].separation_delay_s = 0.3;
+  inputs.stages[1].ignition_delay_s = 0.7;
   const Vehicle vehicle = TriggeredBySeparation().vehicle;
   const std::vector<MotorBurn> burns = {BuildBurn(vehicle.stages[0], 1.0, 1.0),
                                         BuildBurn(vehicle.stages[1], 1.0, 1.0)};
@@ -42,19 +42,19 @@ TEST(Delays, MoveWhatTheyTriggerAndNothingBefore) {
   EXPECT_NEAR(late[1].ignition_s, nominal[1].ignition_s + 1.0, 1e-12);
   EXPECT_NEAR(late[1].burnout_s, nominal[1].burnout_s + 1.0, 1e-12);
   // Nothing happens before what triggers it.
-  inputs.separation_delay_s[0] = -9.0;
-  inputs.ignition_delay_s[1] = -9.0;
+  inputs.stages[0].separation_delay_s = -9.0;
+  inputs.stages[1].ignition_delay_s = -9.0;
   const auto early = BuildTimeline(vehicle, burns, 0.01, 0.0, {}, inputs);
   EXPECT_EQ(early[0].separation_s, 40.0);
   EXPECT_EQ(early[1].ignition_s, 40.0);
   // The first stage ignites when it ignites.
-  inputs.ignition_delay_s[0] = 3.0;
+  inputs.stages[0].ignition_delay_s = 3.0;
   EXPECT_EQ(BuildTimeline(vehicle, burns, 0.01, 0.0, {}, inputs)[0].ignition_s, 0.0);
 }
 
 TEST(Delays, OfATimerAddToIt) {
   FlightInputs inputs;
-  inputs.ignition_delay_s[1] = 0.25;
+  inputs.stages[1].ignition_delay_s = 0.25;
   const Vehicle vehicle = SampleVehicle();
   const std::vector<MotorBurn> burns = {BuildBurn(vehicle.stages[0], 1.0, 1.0),
                                         BuildBurn(vehicle.stages[1], 1.0, 1.0)};
@@ -65,7 +65,7 @@ TEST(Delays, OfATimerAddToIt) {
 // with the speed that it had.
 TEST(Delays, LetTheVehicleFall) {
   FlightInputs inputs;
-  inputs.ignition_delay_s[1] = 2.0;
+  inputs.stages[1].ignition_delay_s = 2.0;
   const FlightDefinition definition = HighDefinition();
   const TickSample nominal = First(TicksOf(definition, {}), 1, true),
                    late = First(TicksOf(definition, inputs), 1, true);
@@ -127,24 +127,25 @@ TEST(Components, AreWhatMagnitudeAndClockStandFor) {
   FlightInputs polar, parts;
   constexpr double kClock = 2.5;
   const double cosine = std::cos(kClock), sine = std::sin(kClock);
-  polar.thrust_misalignment_rad[0] = 0.01;
-  polar.thrust_offset_m[0] = 0.005;
-  polar.cg_offset_m[0] = 0.02;
-  polar.nozzle_misalignment_rad[0][2] = 0.003;
-  polar.nozzle_offset_m[0][2] = 0.001;
-  polar.thrust_misalignment_clock_rad[0] = polar.thrust_offset_clock_rad[0] = polar.cg_offset_clock_rad[0] =
-      kClock;
-  polar.nozzle_misalignment_clock_rad[0][2] = polar.nozzle_offset_clock_rad[0][2] = kClock;
-  parts.thrust_misalignment_y_rad[0] = 0.01 * cosine;
-  parts.thrust_misalignment_z_rad[0] = 0.01 * sine;
-  parts.thrust_offset_y_m[0] = 0.005 * cosine;
-  parts.thrust_offset_z_m[0] = 0.005 * sine;
-  parts.cg_offset_y_m[0] = 0.02 * cosine;
-  parts.cg_offset_z_m[0] = 0.02 * sine;
-  parts.nozzle_misalignment_y_rad[0][2] = 0.003 * cosine;
-  parts.nozzle_misalignment_z_rad[0][2] = 0.003 * sine;
-  parts.nozzle_offset_y_m[0][2] = 0.001 * cosine;
-  parts.nozzle_offset_z_m[0][2] = 0.001 * sine;
+  polar.stages[0].thrust.misalignment_rad.magnitude = 0.01;
+  polar.stages[0].thrust.offset_m.magnitude = 0.005;
+  polar.stages[0].cg_offset_m.magnitude = 0.02;
+  polar.stages[0].nozzles[2].line.misalignment_rad.magnitude = 0.003;
+  polar.stages[0].nozzles[2].line.offset_m.magnitude = 0.001;
+  polar.stages[0].thrust.misalignment_rad.clock_rad = polar.stages[0].thrust.offset_m.clock_rad =
+      polar.stages[0].cg_offset_m.clock_rad = kClock;
+  polar.stages[0].nozzles[2].line.misalignment_rad.clock_rad =
+      polar.stages[0].nozzles[2].line.offset_m.clock_rad = kClock;
+  parts.stages[0].thrust.misalignment_rad.y = 0.01 * cosine;
+  parts.stages[0].thrust.misalignment_rad.z = 0.01 * sine;
+  parts.stages[0].thrust.offset_m.y = 0.005 * cosine;
+  parts.stages[0].thrust.offset_m.z = 0.005 * sine;
+  parts.stages[0].cg_offset_m.y = 0.02 * cosine;
+  parts.stages[0].cg_offset_m.z = 0.02 * sine;
+  parts.stages[0].nozzles[2].line.misalignment_rad.y = 0.003 * cosine;
+  parts.stages[0].nozzles[2].line.misalignment_rad.z = 0.003 * sine;
+  parts.stages[0].nozzles[2].line.offset_m.y = 0.001 * cosine;
+  parts.stages[0].nozzles[2].line.offset_m.z = 0.001 * sine;
   const LauncherStack a = model.PlantFor(polar).stacks[0], b = model.PlantFor(parts).stacks[0];
   EXPECT_GT((a.thrust_tilt - Matrix3::Identity()).norm(), 0.01);
   EXPECT_NEAR((a.thrust_tilt - b.thrust_tilt).norm(), 0.0, 1e-16);
@@ -156,8 +157,8 @@ TEST(Components, AreWhatMagnitudeAndClockStandFor) {
   EXPECT_NEAR(a.lateral_moment_z_kg_m, b.lateral_moment_z_kg_m, 1e-12);
   // Both together add.
   FlightInputs both = parts;
-  both.thrust_offset_m[0] = 0.005;
-  both.thrust_offset_clock_rad[0] = kClock;
+  both.stages[0].thrust.offset_m.magnitude = 0.005;
+  both.stages[0].thrust.offset_m.clock_rad = kClock;
   EXPECT_NEAR(model.PlantFor(both).stacks[0].thrust_offset_y_m, 2.0 * a.thrust_offset_y_m, 1e-17);
 }
 

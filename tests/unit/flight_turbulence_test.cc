@@ -23,8 +23,8 @@ FlightModel RoughModel(std::uint64_t seed = 11) {
 }
 FlightInputs Rough() {
   FlightInputs inputs;
-  inputs.turbulence_exceedance = 1e-3;
-  inputs.turbulence_wind_20ft_m_s = 15.0;
+  inputs.air.turbulence_exceedance = 1e-3;
+  inputs.air.turbulence_wind_20ft_m_s = 15.0;
   return inputs;
 }
 TurbulenceField FieldOf(const FlightModel& model, const FlightInputs& inputs, std::uint64_t case_index) {
@@ -98,13 +98,13 @@ TEST(FlightTurbulence, IsScaledAndLeftOutAsTheInputsSay) {
   const FlightModel model = RoughModel();
   FlightInputs inputs = Rough();
   const TurbulenceField field = FieldOf(model, inputs, 3);
-  inputs.turbulence_scale = 2.0;  // exact in binary
+  inputs.air.turbulence_scale = 2.0;  // exact in binary
   const TurbulenceField twice = FieldOf(model, inputs, 3);
   for (std::size_t node = 0; node < field.altitude_m.size(); ++node) {
     ASSERT_EQ(twice.north_m_s[node], 2.0 * field.north_m_s[node]);
     ASSERT_EQ(twice.up_m_s[node], 2.0 * field.up_m_s[node]);
   }
-  inputs.turbulence_exceedance = 0.0;
+  inputs.air.turbulence_exceedance = 0.0;
   EXPECT_EQ(model.PlantFor(inputs, 3).environment.turbulence, nullptr);
   EXPECT_EQ(model.PlantFor(Rough()).environment.turbulence, nullptr) << "no case, no draws";
 }

@@ -256,7 +256,7 @@ TEST(ComputeDispersedMargins, AreThoseOfTheFlightsOwnPlant) {
 TEST(ComputeDispersedMargins, EndWithTheFlight) {
   const FlightModel model(HotStaged());
   FlightInputs hopeless;
-  hopeless.thrust_misalignment_rad = AllStages(20.0 * kRadPerDeg);
+  for (StageInputs& stage : hopeless.stages) stage.thrust.misalignment_rad.magnitude = 20.0 * kRadPerDeg;
   const DispersedMargins found = ComputeDispersedMargins(model, {hopeless, {}});
   EXPECT_NE(found.outcome, Outcome::kCompleted);
   EXPECT_LT(found.margins.size(), ComputeDispersedMargins(model, {}).margins.size());
@@ -331,7 +331,7 @@ TEST(MeasureMargins, AgreeWithTheComputedOnesOfAScheduledPid) {
 TEST(LoopInputs, ChangeTheLoopOfTheirStageAlone) {
   const FlightModel model(HotStaged());
   FlightInputs inputs;
-  inputs.thrust_misalignment_rad = AllStages(0.1 * kRadPerDeg);
+  for (StageInputs& stage : inputs.stages) stage.thrust.misalignment_rad.magnitude = 0.1 * kRadPerDeg;
   const FlightResult plain = Fly(model, inputs);
   inputs.loop_gain_factor = 0.7;
   inputs.loop_delay_s = 0.013;
@@ -349,7 +349,7 @@ TEST(LoopInputs, ADelayActsWithinATick) {
   // not.
   const FlightModel model(HotStaged());
   FlightInputs inputs;
-  inputs.thrust_misalignment_rad = AllStages(0.25 * kRadPerDeg);
+  for (StageInputs& stage : inputs.stages) stage.thrust.misalignment_rad.magnitude = 0.25 * kRadPerDeg;
   double last = 0.0;
   for (const double delay_s : {0.0, 0.004, 0.008, 0.010, 0.013, 0.020, 0.024}) {
     inputs.loop_delay_s = delay_s;

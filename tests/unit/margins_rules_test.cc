@@ -225,7 +225,7 @@ TEST(ComputeDispersedMargins, AreOfTheDispersedLawOnEverySideOfZeroError) {
   FlightInputs& inputs = order.inputs;
   inputs.pn_error_factor = 1.5;
   inputs.pn_rate_factor = 0.7;
-  inputs.thrust_misalignment_rad = AllStages(0.25 * kRadPerDeg);
+  for (StageInputs& stage : inputs.stages) stage.thrust.misalignment_rad.magnitude = 0.25 * kRadPerDeg;
   const LauncherPlant plant = model.PlantFor(inputs);
   const std::vector<MarginInstant> instants = MarginInstants(model, 10.0, inputs);
   const DispersedMargins found = ComputeDispersedMargins(model, order, 10.0);
@@ -298,8 +298,8 @@ TEST(MeasureMargins, AreNoneWhereAnErrorLeavesTheRulesRange) {
   const FlightModel model(definition);
   for (const bool in_yaw : {false, true}) {
     FlightInputs inputs;
-    inputs.thrust_offset_m[0] = 0.28;
-    inputs.thrust_offset_clock_rad[0] = in_yaw ? 0.0 : 0.5 * kPi;
+    inputs.stages[0].thrust.offset_m.magnitude = 0.28;
+    inputs.stages[0].thrust.offset_m.clock_rad = in_yaw ? 0.0 : 0.5 * kPi;
     const FlightResult flown = Fly(model, inputs);
     const auto metric = [&](const char* name) { return flown.metrics[MetricColumn(name)]; };
     ASSERT_EQ(flown.outcome, Outcome::kCompleted);

@@ -122,8 +122,8 @@ TEST(DispersionSpace, CorrelatedCoordinatesAreMixedByTheirWeights) {
   campaign.dispersions = {Of("a", normal, "wind_altitude_m"), Of("b", normal, "wind_width_m")};
   campaign.dispersions[1].mix = {{0, 0.6}, {1, 0.8}};
   const FlightInputs inputs = DispersionSpace(campaign).Inputs({{1.0, -3.0}})[0];
-  EXPECT_DOUBLE_EQ(inputs.wind_altitude_m, 12.0);
-  EXPECT_DOUBLE_EQ(inputs.wind_width_m, 10.0 + 2.0 * (0.6 - 2.4));
+  EXPECT_DOUBLE_EQ(inputs.air.wind_altitude_m, 12.0);
+  EXPECT_DOUBLE_EQ(inputs.air.wind_width_m, 10.0 + 2.0 * (0.6 - 2.4));
 }
 
 }  // namespace

@@ -92,7 +92,7 @@ TEST(ApartBoosters, MassesAreThoseOfTubesAtTheirPlaces) {
   for (const auto& angles : {std::vector<double>{30.0}, {0.0, 70.0, 200.0}, {10.0, 190.0}}) {
     const FlightDefinition definition = Boosted(angles);
     FlightInputs inputs;
-    inputs.further_flow_factor[0] = inputs.further_thrust_factor[0] = 1.2;
+    inputs.further[0].nozzle.flow_factor = inputs.further[0].nozzle.thrust_factor = 1.2;
     const LauncherPlant plant = FlightModel(definition).PlantFor(inputs);
     std::array<double, kLauncherSize> y{};
     RigidBodyState s;
@@ -116,8 +116,8 @@ TEST(ApartBoosters, ForcesAndTheEquationOfRotation) {
   FlightDefinition definition = Gimballed(angles);
   definition.vehicle.boosters.cant_rad = 8.0 * kDeg;
   FlightInputs inputs;
-  inputs.further_thrust_factor[1] = inputs.further_flow_factor[1] = 1.1;
-  inputs.further_misalignment_y_rad[2] = 0.01;
+  inputs.further[1].nozzle.thrust_factor = inputs.further[1].nozzle.flow_factor = 1.1;
+  inputs.further[2].nozzle.line.misalignment_rad.y = 0.01;
   const FlightModel model(definition);
   const LauncherPlant plant = model.PlantFor(inputs);
   const LauncherModel equations(plant);
@@ -215,7 +215,7 @@ TEST(ApartBoosters, DrivesHaveTheBandwidthOfTheirStage) {
 TEST(ApartBoosters, RippleBeginsAnewAtEachBurnout) {
   FlightDefinition definition = Gimballed({0.0, 180.0}, true);
   FlightInputs inputs;
-  inputs.thrust_misalignment_y_rad[0] = 0.5 * kDeg;
+  inputs.stages[0].thrust.misalignment_rad.y = 0.5 * kDeg;
   const FlightModel model(definition);
   FlightResult result;
   const auto ticks = TicksOf(definition, inputs, &result);
@@ -255,7 +255,7 @@ TEST(ApartBoosters, DelayedCommandsAreOfTheDrivesThatGotThem) {
   FlightDefinition definition = Gimballed({0.0, 180.0}, true);
   const int delay = definition.vehicle.stages[0].gimbal.delay_ticks = 3;
   FlightInputs inputs;
-  inputs.thrust_misalignment_y_rad[0] = 0.5 * kDeg;
+  inputs.stages[0].thrust.misalignment_rad.y = 0.5 * kDeg;
   for (const double part : {0.0, 0.5}) {  // a command within the tick: that of the tick before stands at it
     inputs.loop_delay_s = part * definition.autopilot.tick_s;
     const FlightModel model(definition);
@@ -288,7 +288,7 @@ TEST(ApartBoosters, DelayedCommandsAreOfTheDrivesThatGotThem) {
 TEST(ApartBoosters, BurnRatesMoveThrustAndBurnoutAtConstantImpulse) {
   const FlightDefinition definition = Boosted({0.0, 180.0});
   FlightInputs inputs;
-  inputs.further_thrust_factor[0] = inputs.further_flow_factor[0] = 1.05;
+  inputs.further[0].nozzle.thrust_factor = inputs.further[0].nozzle.flow_factor = 1.05;
   const LauncherPlant plant = FlightModel(definition).PlantFor(inputs);
   const MotorBurn &fast = plant.boosters->each[0].burn, &slow = plant.boosters->each[1].burn;
   EXPECT_NEAR(fast.vacuum_thrust_n, 1.05 * kThrust_n, 1e-9);
@@ -415,8 +415,8 @@ TEST(ApartBoosters, JudgesFlyTheSameFlight) {
   FlightDefinition definition = Gimballed({15.0, 195.0});
   definition.vehicle.boosters.cant_rad = 6.0 * kDeg;
   FlightInputs inputs;
-  inputs.further_thrust_factor[1] = inputs.further_flow_factor[1] = 1.03;
-  inputs.further_misalignment_z_rad[0] = 0.004;
+  inputs.further[1].nozzle.thrust_factor = inputs.further[1].nozzle.flow_factor = 1.03;
+  inputs.further[0].nozzle.line.misalignment_rad.z = 0.004;
   const auto engine = TicksOf(definition, inputs),
              judge = TicksOf(definition, inputs, nullptr, {.scheme = Scheme::kRungeKutta4});
   ASSERT_EQ(engine.size(), judge.size());

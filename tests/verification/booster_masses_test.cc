@@ -57,9 +57,9 @@ struct Drawn {
   FlightInputs Inputs() const {
     FlightInputs in;
     for (std::size_t k = 0; k < 2; ++k) {
-      in.booster_dry_mass_factor[k] = dry[k];
-      in.booster_propellant_factor[k] = load[k];
-      in.booster_mixture_ratio_factor[k] = ratio[k];
+      in.further[k].booster.dry_mass_factor = dry[k];
+      in.further[k].booster.propellant_factor = load[k];
+      in.further[k].booster.mixture_ratio_factor = ratio[k];
     }
     return in;
   }

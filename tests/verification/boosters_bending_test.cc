@@ -208,7 +208,7 @@ TEST(BoostersBending, DrawnMassesHaveModesNearTheNominalOnes) {
   const Vehicle nominal = Boosted();
   FlightInputs inputs;
   inputs.dry_mass_factor = {1.03, 0.97, 1.02, 1.0, 1.0, 1.0};
-  inputs.propellant_factor[0] = 1.01;
+  inputs.stages[0].propellant_factor = 1.01;
   const Vehicle vehicle = WithDispersedMasses(nominal, inputs);
   for (const unsigned gone : {0u, kBoostersGone}) {
     const StackModes near = BuildStackModes(nominal, 0, gone);

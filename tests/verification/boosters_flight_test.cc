@@ -120,8 +120,8 @@ TEST(Boosters, StayAsTheyAreWhereMassesAreDispersed) {
       {"fairing", 60.0, 0.2, 2.5, 1.0, 0.97, JettisonTrigger::kAtTime, 150.0}};
   const FlightModel model(definition);
   FlightInputs inputs;
-  inputs.dry_mass_factor[1] = 1.1;
-  inputs.propellant_factor[3] = 1.02;
+  inputs.stages[1].dry_mass_factor = 1.1;
+  inputs.stages[3].propellant_factor = 1.02;
   const double more_kg =
       0.1 * DryMass(definition.vehicle, 1) + 0.02 * definition.vehicle.stages[3].propellant_mass_kg;
   const double nominal_kg = model.nominal_plant().stacks[0].mass.fixed_mass_kg;

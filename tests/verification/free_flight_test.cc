@@ -42,7 +42,7 @@ FlightDefinition FreeDefinition(double elevation_rad, double delay_s, double ste
 
 FlightInputs Airless() {
   FlightInputs inputs;
-  inputs.density_factor = 1e-12;
+  inputs.air.density_factor = 1e-12;
   return inputs;
 }
 
@@ -64,8 +64,8 @@ double WorstConeError(double step_s) {
   constexpr double kSpin_rad_s = 5.0 * kTwoPi, kAcross_rad_s = 1.5;
   FlightDefinition definition = FreeDefinition(80.0 * kRadPerDeg, 20.5, step_s);
   FlightInputs inputs = Airless();
-  inputs.tip_off_roll_rad_s[0] = kSpin_rad_s;
-  inputs.tip_off_pitch_rad_s[0] = kAcross_rad_s;
+  inputs.stages[0].tip_off_roll_rad_s = kSpin_rad_s;
+  inputs.stages[0].tip_off_pitch_rad_s = kAcross_rad_s;
   double worst_rad = 0.0, start_s = 0.0;
   Vector3 axis_I, momentum_I, across_I;
   double rate_rad_s = 0.0, cone_rad = 0.0;
@@ -108,7 +108,7 @@ TEST(FreeFlight, OscillatesAtThePitchFrequencyOfLinearTheory) {
   definition.vehicle.stages[0].motor.thrust_n = 1.5e6;
   definition.vehicle.stages[0].motor.burning_time_s = 8.0;
   FlightInputs inputs;
-  inputs.tip_off_pitch_rad_s[0] = 0.05;
+  inputs.stages[0].tip_off_pitch_rad_s = 0.05;
   double phase = 0.0, before = 0.0, before_s = 0.0, last_phase = 0.0;
   int crossings = 0;
   double worst = 0.0;
@@ -287,9 +287,9 @@ TEST(FreeFlight, MeasuresTheIncidenceOffTheRail) {
   FlightDefinition definition = FreeDefinition(90.0 * kRadPerDeg, 1.0);
   definition.vehicle.rail->length_m = 6.0;
   FlightInputs inputs = Airless();
-  inputs.wind_max_speed_m_s = 12.0;
-  inputs.wind_altitude_m = 0.0;
-  inputs.wind_width_m = 50e3;
+  inputs.air.wind_max_speed_m_s = 12.0;
+  inputs.air.wind_altitude_m = 0.0;
+  inputs.air.wind_width_m = 50e3;
   FlightResult result;
   Samples(definition, inputs, &result);
   EXPECT_EQ(result.outcome, Outcome::kCompleted) << result.reason;
@@ -380,8 +380,8 @@ TEST(FreeFlight, AgreesWithCvode) {
   definition.vehicle.stages[0].motor.burning_time_s = 20.0;
   definition.vehicle.stages[1].spin_motors = SpinMotors{900.0, 1.5};
   FlightInputs inputs;
-  inputs.thrust_misalignment_rad = AllStages(0.1 * kRadPerDeg);
-  inputs.wind_max_speed_m_s = 20.0;
+  for (StageInputs& stage : inputs.stages) stage.thrust.misalignment_rad.magnitude = 0.1 * kRadPerDeg;
+  inputs.air.wind_max_speed_m_s = 20.0;
   const FlightModel model(definition);
   FlightOptions options;
   const FlightResult engine = Fly(model, inputs, options);
@@ -396,7 +396,7 @@ TEST(FreeFlight, AgreesWithCvode) {
 TEST(FreeFlight, TurnsFasterThanStepsFollowIsNoResult) {
   FlightDefinition definition = FreeDefinition(85.0 * kRadPerDeg, 1.0);
   FlightInputs inputs = Airless();
-  inputs.tip_off_roll_rad_s[0] = 32.5;  // the limit is 0.16 rad in 5 ms
+  inputs.stages[0].tip_off_roll_rad_s = 32.5;  // the limit is 0.16 rad in 5 ms
   FlightResult result;
   Samples(definition, inputs, &result);
   EXPECT_EQ(result.outcome, Outcome::kNumericalFailure);

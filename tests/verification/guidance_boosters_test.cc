@@ -129,7 +129,7 @@ TEST(GuidedCore, ArrivesAtItsPlace) {
   for (const double percent : {-0.3, 0.3}) {
     SCOPED_TRACE(percent);
     FlightInputs inputs;
-    inputs.specific_impulse_factor[0] = 1.0 + 0.01 * percent;
+    inputs.stages[0].specific_impulse_factor = 1.0 + 0.01 * percent;
     const FlightResult flown = Fly(model, inputs);
     ASSERT_EQ(flown.outcome, Outcome::kCompleted) << flown.reason;
     std::printf(

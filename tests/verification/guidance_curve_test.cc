@@ -67,8 +67,8 @@ TEST(GuidedCurve, DoesNotTakeABurnRateForAnImpulse) {
     for (const double impulse : {0.995, 1.0, 1.005}) {
       SCOPED_TRACE(testing::Message() << "burn rate " << rate << ", impulse " << impulse);
       FlightInputs inputs;
-      inputs.thrust_factor[3] = inputs.mass_flow_factor[3] = rate;
-      inputs.specific_impulse_factor[3] = impulse;
+      inputs.stages[3].thrust_factor = inputs.stages[3].mass_flow_factor = rate;
+      inputs.stages[3].specific_impulse_factor = impulse;
       const FlightResult flown = Fly(model, inputs);
       ASSERT_EQ(flown.outcome, Outcome::kCompleted) << flown.reason;
       const double axis_km = MetricOf(flown, "semi_major_axis_error_km");
@@ -88,7 +88,7 @@ TEST(GuidedCurve, WaitsForNoRoll) {
   for (const double thrust : {0.988, 0.99, 0.995}) {
     SCOPED_TRACE(thrust);
     FlightInputs inputs;
-    inputs.thrust_factor[2] = inputs.mass_flow_factor[2] = thrust;
+    inputs.stages[2].thrust_factor = inputs.stages[2].mass_flow_factor = thrust;
     const FlightResult flown = Fly(model, inputs);
     ASSERT_EQ(flown.outcome, Outcome::kCompleted) << flown.reason;
     std::printf("stage 3 at %.3f: waited %g s, axis %.3f km, inclination %.4f deg\n", thrust,

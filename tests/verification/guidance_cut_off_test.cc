@@ -101,7 +101,7 @@ TEST_P(GuidedLauncher, IsNoWorseThanOpenLoopWhateverAStageLacks) {
     for (const double percent : {-6.0, -2.0, -1.0, 1.0, 3.0}) {
       SCOPED_TRACE("stage " + std::to_string(stage + 1) + ", " + std::to_string(percent) + " %");
       FlightInputs inputs;
-      inputs.specific_impulse_factor[stage] = 1.0 + 0.01 * percent;
+      inputs.stages[stage].specific_impulse_factor = 1.0 + 0.01 * percent;
       const FlightResult open_flight = Fly(*open_, inputs), closed_flight = Fly(*closed_, inputs);
       if (open_flight.outcome != Outcome::kCompleted) continue;
       const Orbit open = OrbitOf(open_flight), closed = OrbitOf(closed_flight);
@@ -130,8 +130,8 @@ TEST_P(GuidedBySpeed, IsCutOffByMeasuredSpeed) {
   const double right_m_s = MetricOf(Fly(*closed_, inputs), "injection_velocity_error_m_s");
   double change2 = 0.0;
   for (std::size_t axis = 0; axis < 3; ++axis) {
-    inputs.navigation_velocity_error_m_s = {};
-    inputs.navigation_velocity_error_m_s[axis] = 1.0;
+    inputs.sensors.navigation_velocity_error_m_s = {};
+    inputs.sensors.navigation_velocity_error_m_s[axis] = 1.0;
     const double wrong_m_s = MetricOf(Fly(*closed_, inputs), "injection_velocity_error_m_s");
     change2 += std::pow(wrong_m_s - right_m_s, 2);
   }

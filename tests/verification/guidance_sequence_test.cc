@@ -54,7 +54,7 @@ TEST_P(CriterionDrop, IsPredictedWhereTheFlightMeetsIt) {
   fairing.trigger = GetParam();
   fairing.threshold = fairing.trigger == JettisonTrigger::kAtAltitude ? at_m : flux_w_m2;
   FlightInputs inputs;
-  inputs.thrust_factor[0] = 0.97;
+  inputs.stages[0].thrust_factor = 0.97;
   Burn burn;
   double left_s = 0.0;
   options.observe = [&](const TickSample& sample) {
@@ -169,7 +169,7 @@ TEST_P(MoreBurns, AreNoWorseThanOpenLoop) {
   for (std::size_t stage = 0; stage < definition.vehicle.stages.size(); ++stage) {
     for (const double percent : {-6.0, -3.0, 3.0}) {
       FlightInputs inputs;
-      inputs.specific_impulse_factor[stage] = 1.0 + 0.01 * percent;
+      inputs.stages[stage].specific_impulse_factor = 1.0 + 0.01 * percent;
       const FlightResult open = Fly(open_loop, inputs), with_two = Fly(two, inputs),
                          flown = Fly(more, inputs);
       if (open.outcome != Outcome::kCompleted) continue;

@@ -89,7 +89,7 @@ TEST(GuidedSpin, IsNoWorseThanOpenLoop) {
     for (const double percent : {-1.0, -0.3, 0.3, 1.0}) {
       SCOPED_TRACE(testing::Message() << "stage " << stage + 1 << " " << percent << " %");
       FlightInputs inputs;
-      inputs.specific_impulse_factor[stage] = 1.0 + 0.01 * percent;
+      inputs.stages[stage].specific_impulse_factor = 1.0 + 0.01 * percent;
       const Orbit with = OrbitOf(closed, inputs), without = OrbitOf(open, inputs);
       std::printf(
           "stage %zu %+.1f %%: axis %7.1f km, perigee %6.1f km, inclination %6.3f deg open loop; "

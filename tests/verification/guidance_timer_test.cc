@@ -68,7 +68,7 @@ TEST_P(GuidedTimers, ArriveWhereFixedDurationsMissByKilometres) {
 // before the ignition, and is not if it is computed in the burn.
 TEST_P(GuidedTimers, KnowInTheBurnWhatTheyDidNotKnowBefore) {
   FlightInputs inputs;
-  inputs.specific_impulse_factor[campaign_.vehicle.stages.size() - 1] = 0.995;
+  inputs.stages[campaign_.vehicle.stages.size() - 1].specific_impulse_factor = 0.995;
   const double steered_km =
       std::fabs(MetricOf(Fly(FlightModel(definition_), inputs), "semi_major_axis_error_km"));
   definition_.guidance.steers_last_burn = false;
@@ -83,7 +83,7 @@ TEST_P(GuidedTimers, KnowInTheBurnWhatTheyDidNotKnowBefore) {
 TEST_P(GuidedTimers, EndABurnByTheFilesDurationWithoutAPlan) {
   const FlightModel model(definition_);
   FlightInputs inputs;
-  inputs.navigation_velocity_error_m_s[0] = 1e200;
+  inputs.sensors.navigation_velocity_error_m_s[0] = 1e200;
   const int burn = static_cast<int>(campaign_.vehicle.stages.size()) - 2;
   double since_s = 0.0;
   FlightOptions options;

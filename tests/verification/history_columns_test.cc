@@ -47,7 +47,7 @@ FlightInputs Inputs() {
   inputs.nozzle_thrust_factor[0] = {0.95, 1.1, 1.0, 1.0};
   inputs.nozzle_thrust_factor[1] = {1.04, 0.9, 1.0, 1.01};
   for (std::size_t k = 0; k < 2; ++k)
-    inputs.further_thrust_factor[k] = inputs.further_flow_factor[k] = kFactors[k];
+    inputs.further[k].nozzle.thrust_factor = inputs.further[k].nozzle.flow_factor = kFactors[k];
   return inputs;
 }
 

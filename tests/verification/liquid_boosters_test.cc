@@ -103,7 +103,7 @@ TEST(LiquidBoosters, MassesAreThoseOfDrainingTanksAtTheirPlaces) {
   for (const auto& angles : {std::vector<double>{30.0}, {0.0, 70.0, 200.0}, {10.0, 190.0}}) {
     const FlightDefinition definition = Boosted(angles);
     FlightInputs inputs;
-    inputs.further_flow_factor[0] = inputs.further_thrust_factor[0] = 1.2;
+    inputs.further[0].nozzle.flow_factor = inputs.further[0].nozzle.thrust_factor = 1.2;
     const LauncherPlant plant = FlightModel(definition).PlantFor(inputs);
     const auto y = Far(Vector3::Zero());
     for (const double since_s : {0.0, 7.0, 15.0, 19.8}) {
@@ -150,7 +150,7 @@ TEST(LiquidBoosters, TurnByTheEquationOfRotation) {
     const FlightDefinition definition = Boosted(angles);
     const bool is_odd = angles.size() == 3;
     FlightInputs inputs;
-    if (is_odd) inputs.further_thrust_factor[1] = inputs.further_flow_factor[1] = 1.1;
+    if (is_odd) inputs.further[1].nozzle.thrust_factor = inputs.further[1].nozzle.flow_factor = 1.1;
     const LauncherPlant plant = FlightModel(definition).PlantFor(inputs);
     const Vector3 w(0.03, -0.05, 0.04);
     const auto y = Far(w);
@@ -282,7 +282,7 @@ TEST(LiquidBoosters, SeparationKeepsTheMomentumOfDifferentRests) {
   motor.cut_off = CutOff::kAtTime;
   motor.cut_off_s = 12.0;
   FlightInputs inputs;
-  inputs.further_thrust_factor[1] = inputs.further_flow_factor[1] = 1.1;
+  inputs.further[1].nozzle.thrust_factor = inputs.further[1].nozzle.flow_factor = 1.1;
   const LauncherPlant plant = FlightModel(definition).PlantFor(inputs);
   const std::vector<EachBooster>& each = plant.boosters->each;
   EXPECT_NEAR(each[0].burn.left_kg, 200.0, 1e-9);
@@ -314,8 +314,8 @@ FlightDefinition Steering() {
 TEST(LiquidBoosters, FlyAsCvodeFliesThem) {
   const FlightDefinition definition = Steering();
   FlightInputs inputs;
-  inputs.further_thrust_factor[1] = inputs.further_flow_factor[1] = 1.03;
-  inputs.further_misalignment_z_rad[0] = 0.004;
+  inputs.further[1].nozzle.thrust_factor = inputs.further[1].nozzle.flow_factor = 1.03;
+  inputs.further[0].nozzle.line.misalignment_rad.z = 0.004;
   const auto engine = TicksOf(definition, inputs),
              judge = TicksOf(definition, inputs, nullptr, {.scheme = Scheme::kCvode});
   ASSERT_EQ(engine.size(), judge.size());

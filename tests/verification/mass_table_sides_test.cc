@@ -111,8 +111,8 @@ TEST(MassTableSides, AreThoseOfTheBodiesByHand) {
 TEST(MassTableSides, ScaleWithTheDryMass) {
   const FlightDefinition definition = WithTable();
   FlightInputs in;
-  in.dry_mass_factor[0] = 1.1;
-  in.cg_offset_y_m[0] = -0.01;
+  in.stages[0].dry_mass_factor = 1.1;
+  in.stages[0].cg_offset_m.y = -0.01;
   const LauncherPlant plant = FlightModel(definition).PlantFor(in);
   LauncherPhase phase;
   phase.burning = true;
@@ -150,7 +150,7 @@ TEST(MassTableSides, AreTrimmedAsADispersedOffsetIs) {
     if (column != &table.yaw_inertia_kg_m2) column->clear();
   on_axis.vehicle.stages[0].flown_mass.rows = std::make_shared<const MassRows>(BuildMassRows(table, kDry_kg));
   FlightInputs dispersed;
-  dispersed.cg_offset_y_m[0] = dispersed.cg_offset_z_m[0] = 180.0 / 9000.0;
+  dispersed.stages[0].cg_offset_m.y = dispersed.stages[0].cg_offset_m.z = 180.0 / 9000.0;
   FlightResult result, same;
   const auto ticks = TicksOf(definition, {}, &result), others = TicksOf(on_axis, dispersed, &same);
   ASSERT_EQ(result.outcome, Outcome::kCompleted) << result.reason;

@@ -412,10 +412,10 @@ TEST(MassTables, GiveTheFlowItsDerivatives) {
 // Dispersed masses and a heavier payload are those of the tubes.
 TEST(MassTables, AreDispersedAsTubesAre) {
   FlightInputs inputs;
-  inputs.dry_mass_factor = AllStages(1.03);
-  inputs.dry_mass_factor[1] = 0.95;
-  inputs.propellant_factor[0] = 0.99;
-  inputs.propellant_factor[2] = 1.005;
+  for (StageInputs& stage : inputs.stages) stage.dry_mass_factor = 1.03;
+  inputs.stages[1].dry_mass_factor = 0.95;
+  inputs.stages[0].propellant_factor = 0.99;
+  inputs.stages[2].propellant_factor = 1.005;
   inputs.payload_mass_kg = 12.0;
   inputs.payload_element = 1.0;
   const LauncherPlant tubes = FlightModel(Slv4()).PlantFor(inputs);

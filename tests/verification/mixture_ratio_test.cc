@@ -40,8 +40,8 @@ constexpr TwoLiquids kLiquids{kOxygen_kg, kKerosene_kg, kRest_kg};
 
 FlightInputs Drawn(double load, double ratio) {
   FlightInputs in;
-  in.propellant_factor[0] = load;
-  in.mixture_ratio_factor[0] = ratio;
+  in.stages[0].propellant_factor = load;
+  in.stages[0].mixture_ratio_factor = ratio;
   return in;
 }
 

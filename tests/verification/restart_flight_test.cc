@@ -128,7 +128,7 @@ TEST(Restart, BurnsWhatTheFirstBurnLeft) {
   const FlightDefinition definition = Following(vehicle, ascent);
   FlightInputs inputs;
   for (const double flow : {1.0, 1.03}) {
-    inputs.mass_flow_factor[kFirstBurn] = flow;
+    inputs.stages[kFirstBurn].mass_flow_factor = flow;
     const Burns burns = FlyBurns(definition, inputs);
     ASSERT_EQ(burns.result.outcome, Outcome::kCompleted) << burns.result.reason;
     const Stage& engine = vehicle.stages[kFirstBurn];
@@ -167,8 +167,8 @@ TEST(Restart, ABendingStackRingsOn) {
     if (s.stack >= static_cast<int>(kFirstBurn)) samples.push_back(s);
   };
   FlightInputs inputs;
-  inputs.thrust_misalignment_rad[kFirstBurn] = inputs.thrust_misalignment_rad[kSecondBurn] =
-      0.25 * kRadPerDeg;
+  inputs.stages[kFirstBurn].thrust.misalignment_rad.magnitude =
+      inputs.stages[kSecondBurn].thrust.misalignment_rad.magnitude = 0.25 * kRadPerDeg;
   ASSERT_EQ(Fly(model, inputs, options).outcome, Outcome::kCompleted);
   const auto next = std::find_if(samples.begin(), samples.end(),
                                  [](const TickSample& s) { return s.stack == int{kSecondBurn}; });
@@ -219,7 +219,7 @@ TEST(CutOffAtVelocity, EndsAtThatSpeedInBothModels) {
   const Stage& engine = vehicle.stages[kFirstBurn];
   for (const double thrust : {1.0, 0.97, 1.03}) {
     FlightInputs inputs;
-    inputs.thrust_factor[kFirstBurn] = inputs.thrust_factor[kSecondBurn] = thrust;
+    inputs.stages[kFirstBurn].thrust_factor = inputs.stages[kSecondBurn].thrust_factor = thrust;
     const Burns burns = FlyBurns(definition, inputs);
     ASSERT_EQ(burns.result.outcome, Outcome::kCompleted) << burns.result.reason;
     EXPECT_NEAR(burns.end_m_s[kFirstBurn], kFirst_m_s, 1e-3);

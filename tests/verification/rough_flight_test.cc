@@ -20,8 +20,8 @@ FlightDefinition Rough() {
 
 FlightInputs InTurbulence() {
   FlightInputs inputs;
-  inputs.turbulence_exceedance = 1e-3;
-  inputs.turbulence_wind_20ft_m_s = 15.0;
+  inputs.air.turbulence_exceedance = 1e-3;
+  inputs.air.turbulence_wind_20ft_m_s = 15.0;
   return inputs;
 }
 
@@ -103,9 +103,9 @@ TEST(RoughFlight, TurbulenceIsTheCasesAndNothingElses) {
   EXPECT_EQ(one->north_m_s, field(inputs, 5)->north_m_s);
   EXPECT_NE(one->north_m_s, field(inputs, 6)->north_m_s);
   inputs.drag_factor = 1.1;
-  inputs.gyro_noise_rad_s = 1e-3;
+  inputs.sensors.gyro_noise_rad_s = 1e-3;
   EXPECT_EQ(one->up_m_s, field(inputs, 5)->up_m_s);
-  inputs.turbulence_scale = 2.0;
+  inputs.air.turbulence_scale = 2.0;
   for (std::size_t i = 0; i < one->east_m_s.size(); i += 100)
     EXPECT_NEAR(field(inputs, 5)->east_m_s[i], 2.0 * one->east_m_s[i], 1e-12);
   FlightDefinition other = Rough();

@@ -126,7 +126,7 @@ TEST(StepLimits, ADispersedActuatorBeyondIsRefusedAndSaysSo) {
   EXPECT_NEAR(MetricOf(Fly(model, inputs), "step_limit_fraction"), 150.0 * kTwoPi * 0.01 / kActuatorLimit_rad,
               1e-12);
   inputs.actuator_bandwidth_factor = 1.0;
-  inputs.stack_actuator_bandwidth_factor[2] = 2.0;
+  inputs.stages[2].actuator_bandwidth_factor = 2.0;
   const FlightResult refused = Fly(model, inputs);
   EXPECT_EQ(refused.outcome, Outcome::kNumericalFailure);
   EXPECT_EQ(refused.end_time_s, 0.0);
@@ -186,11 +186,11 @@ TEST(StepLimits, FasterBendingModesAreRefused) {
 TEST(StepLimits, MassesThatNoVehicleHasAreRefused) {
   const FlightModel model(Slv4Definition(DISPERSA_CAMPAIGNS));
   FlightInputs overfull, negative, light, tensor;
-  overfull.propellant_factor[1] = 1.2;
-  negative.dry_mass_factor[0] = -1.0;
+  overfull.stages[1].propellant_factor = 1.2;
+  negative.stages[0].dry_mass_factor = -1.0;
   light.payload_mass_kg = -100.0;  // less than another element weighs
   light.payload_element = 1.0;
-  tensor.product_of_inertia_xy_kg_m2[3] = 1e5;
+  tensor.stages[3].product_of_inertia_xy_kg_m2 = 1e5;
   EXPECT_EQ(Fly(model, overfull).reason,
             "the input propellant_factor_stage2 is 1.2; allowed: a number above 0 and not above 1.108225");
   EXPECT_EQ(Fly(model, negative).reason, "the input dry_mass_factor_stage1 is -1; allowed: a number above 0");

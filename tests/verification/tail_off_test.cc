@@ -105,8 +105,8 @@ TEST_P(Launchers, ReachTheOrbitOfABurnThatEndsAtOnce) {
                              MetricOf(at_once, "injection_velocity_error_m_s");
     // A drawn decay adds half of what it lasts longer at full thrust.
     FlightInputs longer;
-    longer.tail_off_factor = AllStages(1.0);
-    longer.tail_off_factor[decays.nominal_plant().stacks.size() - 1] = 1.2;
+    for (StageInputs& stage : longer.stages) stage.tail_off_factor = 1.0;
+    longer.stages[decays.nominal_plant().stacks.size() - 1].tail_off_factor = 1.2;
     const FlightResult drawn = Fly(decays, longer);
     const double gained_m_s =
                      MetricOf(drawn, "injection_velocity_m_s") - MetricOf(nominal, "injection_velocity_m_s"),
@@ -131,7 +131,7 @@ TEST(TailOff, TakesFromTheRestart) {
   const FlightModel model(DefinitionOf(Launcher("falcon9", kTail_s, false)));
   const std::size_t first = model.nominal_plant().stacks.size() - 2;
   FlightInputs longer;
-  longer.tail_off_factor[first] = 1.5;
+  longer.stages[first].tail_off_factor = 1.5;
   const auto left_kg = [&](const FlightInputs& inputs) {
     History history;
     history.step_s = 0.1;

@@ -280,8 +280,8 @@ TEST(TwoPlaneFlight, SwingsInEachPlaneAtItsOwnFrequency) {
 // is the same vehicle in the same wind, but for the roll angle.
 TEST(TwoPlaneFlight, TurnedByARightAngleFliesTheSameWay) {
   FlightInputs inputs;
-  inputs.wind_max_speed_m_s = 8.0;
-  inputs.wind_azimuth_rad = 300.0 * kRadPerDeg;
+  inputs.air.wind_max_speed_m_s = 8.0;
+  inputs.air.wind_azimuth_rad = 300.0 * kRadPerDeg;
   FlightDefinition straight = FreeDefinition(0.5 * kPi, 0.5 * kPi), turned = FreeDefinition(kPi, 0.5 * kPi),
                    other = turned;
   turned.vehicle.aerodynamics = Turned(turned.vehicle.aerodynamics);
