@@ -41,7 +41,8 @@ struct ApartBoosters {
   int count, first_bank;  ///< those of their nozzles
   bool turn_nozzles;
   MaskOf<T> attached;  ///< lanes that carry them
-  T nozzle_station_m, dry_station_m;
+  T nozzle_station_m, attachment_station_m;
+  T dry_station_m, dry_axial_m2, dry_across_m2;  ///< squares of the empty ones' radii of gyration
   T grain_station_m, outer2_m2, inner_per_kg_m2, length2_m2, radius2_m2;
   bool drains;  ///< tanks in place of grains: of the vehicle, the same in all lanes
   ApartBooster<T> each[kMaxBoosters];
@@ -56,14 +57,20 @@ DISPERSA_INLINE void SetBoosters(ApartBoosters<T>& a, int lane, const BoosterSet
   a.turn_nozzles = set.gimbal.limit_rad > 0.0;
   SetLane(a.attached, lane, are_attached);
   Lane(a.nozzle_station_m, lane) = set.nozzle_station_m;
-  Lane(a.dry_station_m, lane) = set.empty.first_moment_kg_m / set.empty.mass_kg;
+  Lane(a.attachment_station_m, lane) = set.attachment_station_m;
+  // Of all together: their distance from the axis counts whole in roll and by half across.
+  const double dry_m = set.empty.first_moment_kg_m / set.empty.mass_kg, apart2 = set.radius_m * set.radius_m;
+  Lane(a.dry_station_m, lane) = dry_m;
+  Lane(a.dry_axial_m2, lane) = set.empty.axial_inertia_kg_m2 / set.empty.mass_kg - apart2;
+  Lane(a.dry_across_m2, lane) =
+      set.empty.second_moment_kg_m2 / set.empty.mass_kg - 0.5 * apart2 - dry_m * dry_m;
   const BoosterPropellant& g = set.propellant;
   a.drains = g.drains;
   Lane(a.grain_station_m, lane) = g.station_m;
   Lane(a.outer2_m2, lane) = g.outer_radius_m * g.outer_radius_m;
   Lane(a.inner_per_kg_m2, lane) = g.drains ? 0.0 : a.count / g.kilograms_per_area_m2;
   Lane(a.length2_m2, lane) = g.length_m * g.length_m / 12.0;
-  Lane(a.radius2_m2, lane) = set.radius_m * set.radius_m;
+  Lane(a.radius2_m2, lane) = apart2;
   for (int k = 0; k < a.count; ++k) {
     ApartBooster<T>& one = a.each[k];
     const EachBooster& from = set.each.data()[k];

@@ -115,6 +115,7 @@ struct BoosterSet {
   BoosterPropellant propellant;
   JettisonedMass empty;  ///< of all together
   double nozzle_station_m = 0.0;
+  double attachment_station_m = 0.0;  ///< of the stage, which carries them there
   double radius_m = 0.0;
   double separation_delay_s = 0.0;
   std::vector<EachBooster> each = {};

@@ -180,6 +180,8 @@ struct Instant {
   Vector<T> force_n;  ///< all but gravitation, body axes
   NormalForce<T> normal;
   SideForce<T> side;  ///< unset unless the plant's lanes have a yaw plane
+  /// Of the boosters, about C; unset unless the vehicle has any.
+  Vector<T> boosters_n, boosters_n_m;
 };
 
 /// Accelerations of a body: of C in I, and of the rotation in B.
@@ -375,7 +377,8 @@ struct LoadsOf {
   Vector<T> force_n;     ///< all but gravitation
   Vector<T> moment_n_m;  ///< without the jet damping
   T thrust_n, flow_kg_s;
-  T jet_axial, jet_transverse;  ///< jet damping, per rad/s
+  T jet_axial, jet_transverse;         ///< jet damping, per rad/s
+  Vector<T> boosters_n, boosters_n_m;  ///< unset unless any burns
 };
 /// What bending makes of a force and a couple (about the axis at the place): the place has moved and turned,
 /// and they drive the modes. `arm`: from C to the place on the axis. Adds to the moment about C, and turns
@@ -412,6 +415,8 @@ DISPERSA_INLINE T AddBoosters(const FlyingPlant<T>& plant, const BurnPhase<T>& p
     const Vector<T> arm{masses.cg_station_m - plant.apart->nozzle_station_m, -masses.cg_y_m, -masses.cg_z_m};
     Bend(body, kAtBoosters, phase.boosting, arm, moment_n_m - Cross(arm, force_n), force_n, moment_n_m);
   }
+  o.boosters_n = Select(phase.boosting, force_n, Zero<T>());
+  o.boosters_n_m = Select(phase.boosting, moment_n_m, Zero<T>());
   o.thrust_n = Select(phase.boosting, o.thrust_n + beside.thrust_n, o.thrust_n);
   o.force_n = Select(phase.boosting, o.force_n + force_n, o.force_n);
   thrust.moment_n_m = Select(phase.boosting, thrust.moment_n_m + moment_n_m, thrust.moment_n_m);
@@ -573,6 +578,10 @@ DISPERSA_INLINE Rates<T> RatesOf(double earth_rate_rad_s, const FlyingPlant<T>& 
     const Vector<T> left{Fma(-axial_loss, s.w.x, moment.x), Fma(-transverse_loss, s.w.y, moment.y),
                          Fma(-transverse_loss, s.w.z, moment.z)};
     o.dw = TurnedUnder(TensorOffAxis(plant, masses), left, s.w);
+    if (plant.apart && instant) {
+      instant->boosters_n = any_burns ? loads.boosters_n : Zero<T>();
+      instant->boosters_n_m = any_burns ? loads.boosters_n_m : Zero<T>();
+    }
   }
   if (instant) {
     instant->altitude_m = around.altitude_m;

@@ -21,6 +21,7 @@ BoosterSet BuildBoosterSet(const Boosters& boosters, double thrust_factor, doubl
           BuildBoosterPropellant(boosters),
           BuildBoosterMass(boosters),
           boosters.nozzle_station_m,
+          boosters.attachment_station_m,
           boosters.radius_m,
           boosters.separation_delay_s,
           {},
@@ -214,11 +215,9 @@ void SetMasses(const Vehicle& vehicle, LauncherPlant& plant) {
     stack.mass_rows = vehicle.stages[i].flown_mass.rows;
     if (vehicle.stages[i].restarts)
       stack.loads = plant.stacks[i - 1].loads;
-    else if (HasSectionLoads(vehicle, i))
+    else if (HasSectionLoads(vehicle))
       stack.loads =
           std::make_shared<const LoadTable>(BuildLoadTable(vehicle, static_cast<int>(i), stack.loads.get()));
-    else if (vehicle.structure_beam)
-      stack.loads = std::make_shared<const LoadTable>(BuildLiftTable(vehicle, static_cast<int>(i)));
   }
   if (plant.bending_modes() == 0) return;
   const auto modes = [&](std::size_t i, const StackModes&) { return plant.stacks[i].bending->modes; };

@@ -556,7 +556,7 @@ FlightKind KindOf(const Vehicle& vehicle, const AutopilotConfig& autopilot, cons
   kind.is_controlled = course.is_controlled;
   kind.has_free_stage = std::any_of(vehicle.stages.begin(), vehicle.stages.end(),
                                     [](const Stage& stage) { return !stage.is_controlled(); });
-  kind.has_section_loads = HasSectionLoads(vehicle, 0);
+  kind.has_section_loads = HasSectionLoads(vehicle);
   kind.has_limits = HasLimits(vehicle.limits);
   kind.has_rail = vehicle.rail && vehicle.rail->length_m > 0.0;
   kind.ends = course.ends;
@@ -584,7 +584,7 @@ std::string NeedsOf(const Metric& metric) {
     case MetricNeeds::kFreeStage:
       return "a stage without gimbal";
     case MetricNeeds::kSectionLoads:
-      return "section loads of every stage: a profile and no boosters";
+      return "section loads: a profile, and of boosters their attachment_station";
     case MetricNeeds::kLimits:
       return "limits of the vehicle's structure";
     case MetricNeeds::kRail:

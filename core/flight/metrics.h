@@ -47,7 +47,7 @@ enum class MetricNeeds {
   kNothing,
   kControl,       ///< a stage that an autopilot controls
   kFreeStage,     ///< a stage that nothing controls
-  kSectionLoads,  ///< of every stack: a profile, and no boosters, whose loads on the core are not modelled
+  kSectionLoads,  ///< HasSectionLoads()
   kLimits,        ///< of the vehicle's structure
   kRail,
   kApogee,  ///< they end there, or later
@@ -63,7 +63,7 @@ struct FlightKind {
   ControlLaw pitch_law;
   bool is_controlled = true;
   bool has_free_stage = false;
-  bool has_section_loads = false;  ///< of every stack
+  bool has_section_loads = false;
   bool has_limits = false;
   bool has_rail = false;
   FlightEnd ends = FlightEnd::kInjection;

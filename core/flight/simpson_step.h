@@ -26,6 +26,7 @@
 // on them and the attitude turns steadily, the order is 4. tests/verification/ checks both.
 #pragma once
 
+#include "core/dynamics/booster_push.h"
 #include "core/dynamics/launcher_lanes.h"
 
 namespace dispersa::lanes {
@@ -71,6 +72,7 @@ class StepState {
     middle_ = &points_[1];
     end_ = &points_[2];
     for (int lane = 0; lane < kWidth<T>; ++lane) SetStack(lane, nominal, 0);
+    has_plain_sections_ = bending_.modes == 0 && !plant_.apart;
     motion_.p.x = T(earth_.equatorial_radius_m);
     motion_.q.w = T(1.0);
   }
@@ -236,6 +238,8 @@ class StepState {
                               Fma(-w.x, w.z, dw.y),           Fma(w.x, w.y, dw.z)};
     const NormalForce<T>& air = now.instant.normal;
     const SideForce<T>* const side = plant_.aero.has_yaw_plane ? &now.instant.side : nullptr;
+    if (has_plain_sections_) return LargestOf(plant_.sections, air, side, moved, seen_n_m);
+    if (plant_.apart && Any(apart_.attached)) return LargestBesideBoosters(air, side, moved, seen_n_m);
     if (bending_.modes == 0) return LargestOf(plant_.sections, air, side, moved, seen_n_m);
     return LargestOf(plant_.sections, air, side, moved, seen_n_m,
                      MomentsByBending(bending_, bending_state_, now.modal, plant_.sections, air, side));
@@ -432,6 +436,33 @@ class StepState {
   DISPERSA_INLINE Vector<T> CgVelocityAt(const TimedMasses<T>& masses, const Turn<T>& q) const {
     return plant_.flow_coriolis ? CgVelocityOf(masses, q) : Zero<T>();
   }
+  // Where some lane carries boosters: a lane without them is looked at as it would be alone.
+  DISPERSA_OUT_OF_LINE LargestMoment<T> LargestBesideBoosters(const NormalForce<T>& air,
+                                                              const SideForce<T>* side, BodyMotion<T> moved,
+                                                              T seen_n_m) const {
+    const Point& now = *start_;
+    const MotionAbout<T> about{now.masses.cg_station_m,
+                               now.masses.cg_y_m,
+                               now.masses.cg_z_m,
+                               now.masses.inverse_mass_1_kg * now.instant.force_n,
+                               motion_.w,
+                               now.rates.dw};
+    SectionMoments<T> further{};
+    LargestMoment<T> alone{};
+    if (bending_.modes > 0)
+      further = MomentsByBending(bending_, bending_state_, now.modal, plant_.sections, air, side);
+    else
+      alone = LargestOf(plant_.sections, air, side, moved, seen_n_m);
+    const Push<T> push = PushOf(apart_, about, {now.instant.boosters_n, now.instant.boosters_n_m});
+    AddPush(apart_, plant_.sections, about, push, further);
+    const Vector<T> beside = BesideCg(about);
+    moved.lateral_y_m_s2 = Select(apart_.attached, beside.y, moved.lateral_y_m_s2);
+    moved.lateral_z_m_s2 = Select(apart_.attached, beside.z, moved.lateral_z_m_s2);
+    const LargestMoment<T> with = LargestOf(plant_.sections, air, side, moved, seen_n_m, further);
+    if (bending_.modes > 0) return with;
+    return {Select(apart_.attached, with.moment_n_m, alone.moment_n_m),
+            Select(apart_.attached, with.station_m, alone.station_m)};
+  }
   static void SetTransition(const Actuators<T>& drives, Transition<T>& over, int lane, double time_s) {
     SetLane(over, lane,
             TransitionOver(Lane(drives.bandwidth2_1_s2, lane), Lane(drives.twice_damping_1_s, lane), time_s));
@@ -494,6 +525,7 @@ class StepState {
   Point *start_, *middle_, *end_;
   MaskOf<T> stale_, moved_, jumped_;
   bool any_stale_, any_moved_;
+  bool has_plain_sections_;                 ///< which neither bend nor carry boosters
   int most_banks_;                          ///< of any stage
   DriveBank<T> banks_[kBanks];              ///< those after the first take no time unless some stage has them
   mutable BankNozzles<T> nozzles_[kBanks];  ///< of the present evaluation

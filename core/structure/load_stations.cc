@@ -10,6 +10,8 @@
 #include "core/structure/load_table.h"
 #include "core/structure/mass_points.h"
 #include "core/vehicle/beam_masses.h"
+#include "core/vehicle/booster_course.h"
+#include "core/vehicle/mass.h"
 
 namespace dispersa {
 
@@ -18,7 +20,8 @@ namespace {
 constexpr int kEvenCandidates = 240;
 constexpr double kAhead_m = 1e-3;
 constexpr int kProportions = 36;
-// Of the propellant, and of the length by which the centre of pressure lies aft of slender-body theory's.
+// Of the range of propellant, and of the length by which the centre of pressure lies aft of slender-body
+// theory's.
 constexpr double kLevels[] = {0.0, 0.25, 0.5, 0.75, 1.0}, kAft[] = {-0.1, -0.05, 0.0, 0.05, 0.1};
 
 // Moments along the candidates, over the largest of each.
@@ -47,11 +50,16 @@ std::vector<double> Candidates(const BeamMasses& masses, double bottom_m, double
   return stations;
 }
 
-// A force at a station and the body's answer: the moments of the mass ahead. Plus `applied`.
-Moments Answer(const std::vector<double>& stations, const FreeBody& body, double force_at_m,
+// A side force at a station and a couple.
+struct SideLoad {
+  double force = 1.0, at_m = 0.0, couple_m = 0.0;
+};
+// A load and the body's answer: the moments of the mass ahead, less `applied`.
+Moments Answer(const std::vector<double>& stations, const FreeBody& body, const SideLoad& load,
                const Moments& applied) {
-  const double push = 1.0 / body.mass_kg,
-               turn = (body.cg_station_m - force_at_m) / body.inertia_kg_m2;  // its growth per metre ahead
+  const double push = load.force / body.mass_kg,
+               turn = (load.force * (body.cg_station_m - load.at_m) + load.couple_m) /
+                      body.inertia_kg_m2;  // its growth per metre ahead
   Moments moments(stations.size());
   double force_n = 0.0, about_nose_n_m = 0.0;  // of the mass ahead
   std::size_t next = 0;
@@ -80,28 +88,67 @@ Moments LiftAhead(const LiftDistribution& lift, const std::vector<double>& stati
   return moments;
 }
 
-std::vector<Moments> FamilyOf(const Vehicle& vehicle, int stage, const std::vector<double>& stations) {
+// Of boosters: a side force at their nozzles, and a couple. Both come in at their attachment.
+std::vector<Moments> ByBoosters(const std::vector<double>& stations, const FreeBody& body,
+                                const Boosters& boosters) {
+  const SideLoad force{1.0, boosters.nozzle_station_m, 0.0}, couple{0.0, 0.0, 1.0};
+  std::vector<Moments> moments;
+  for (const SideLoad& load : {force, couple}) {
+    Moments applied(stations.size(), 0.0);
+    for (std::size_t i = 0; i < stations.size(); ++i)
+      if (stations[i] >= boosters.attachment_station_m)
+        applied[i] = load.force * (stations[i] - load.at_m) + load.couple_m;
+    moments.push_back(Answer(stations, body, load, applied));
+  }
+  return moments;
+}
+
+// Both in any proportion.
+void AddBoth(const Moments& one, const Moments& other, std::vector<Moments>& family) {
+  for (int k = 0; k < kProportions; ++k) {
+    const double angle = kPi * k / kProportions;
+    Moments both(one.size());
+    for (std::size_t i = 0; i < both.size(); ++i)
+      both[i] = std::fabs(Cos(angle) * one[i] + Sin(angle) * other[i]);
+    ScaleToLargest(both);
+    family.push_back(std::move(both));
+  }
+}
+
+// Adds those of a stack that burns its propellant from `full_kg` down to `least_kg`.
+void AddFamily(const Vehicle& vehicle, int stage, const std::vector<double>& stations, unsigned gone,
+               double least_kg, double full_kg, std::vector<Moments>& family) {
   const Stage& lowest = vehicle.stages[static_cast<std::size_t>(stage)];
   const LiftDistribution lift = DistributeLift(vehicle, stage);
-  std::vector<Moments> family;
   for (const double part : kLevels) {
-    const FreeBody body(BuildBeamMasses(vehicle, stage, part * lowest.propellant_mass_kg), stations);
-    const Moments by_pivot =
-        Answer(stations, body, lowest.gimbal.pivot_station_m, Moments(stations.size(), 0.0));
+    const double propellant_kg = least_kg + part * (full_kg - least_kg);
+    const FreeBody body(BuildBeamMasses(vehicle, stage, propellant_kg, gone), stations);
+    std::vector<Moments> others;
+    if (CarriedBy(vehicle, stage) & ~gone & kBoostersGone)
+      others = ByBoosters(stations, body, vehicle.boosters);
+    others.push_back(
+        Answer(stations, body, {1.0, lowest.gimbal.pivot_station_m, 0.0}, Moments(stations.size(), 0.0)));
     for (const double aft : kAft) {
       const double aft_m = aft * lowest.bottom_station_m;
-      const Moments by_air =
-          Answer(stations, body, lift.slender_station_m + aft_m, LiftAhead(lift, stations, aft_m));
-      for (int k = 0; k < kProportions; ++k) {
-        const double angle = kPi * k / kProportions;
-        Moments both(stations.size());
-        for (std::size_t i = 0; i < both.size(); ++i)
-          both[i] = std::fabs(Cos(angle) * by_air[i] + Sin(angle) * by_pivot[i]);
-        ScaleToLargest(both);
-        family.push_back(std::move(both));
-      }
+      const Moments by_air = Answer(stations, body, {1.0, lift.slender_station_m + aft_m, 0.0},
+                                    LiftAhead(lift, stations, aft_m));
+      for (const Moments& other : others) AddBoth(by_air, other, family);
     }
+    for (std::size_t i = 0; i + 1 < others.size(); ++i)
+      for (std::size_t k = i + 1; k < others.size(); ++k) AddBoth(others[i], others[k], family);
   }
+}
+
+std::vector<Moments> FamilyOf(const Vehicle& vehicle, int stage, const std::vector<double>& stations) {
+  const double full_kg = vehicle.stages[static_cast<std::size_t>(stage)].propellant_mass_kg;
+  std::vector<Moments> family;
+  if (!(CarriedBy(vehicle, stage) & kBoostersGone)) {
+    AddFamily(vehicle, stage, stations, 0u, 0.0, full_kg, family);
+    return family;
+  }
+  const BoosterCourse course(vehicle);
+  AddFamily(vehicle, stage, stations, 0u, course.StageAtBurnout(), full_kg, family);
+  AddFamily(vehicle, stage, stations, kBoostersGone, 0.0, course.StageAtSeparation(), family);
   return family;
 }
 

@@ -7,6 +7,7 @@
 #include "core/structure/load_stations.h"
 #include "core/structure/mass_points.h"
 #include "core/vehicle/beam_masses.h"
+#include "core/vehicle/mass.h"
 
 namespace dispersa {
 
@@ -32,7 +33,7 @@ LoadTable BuildLoadTable(const Vehicle& vehicle, int stage, const LoadTable* nom
                      });
   const double full = lowest.propellant_mass_kg;
   const auto masses_at = [&](double propellant_kg) {
-    return MassPointsOf(BuildBeamMasses(vehicle, stage, propellant_kg), stations);
+    return MassPointsOf(BuildBeamMasses(vehicle, stage, propellant_kg, kBoostersGone), stations);
   };
   const std::vector<MassPoint> masses[3] = {masses_at(0.0), masses_at(0.5 * full), masses_at(full)};
   for (std::size_t i = 0; i < stations.size(); ++i) {
@@ -56,12 +57,6 @@ LoadTable BuildLoadTable(const Vehicle& vehicle, int stage, const LoadTable* nom
     if (lowest.is_liquid()) table.first_kg_m[i] = parabola(first);
     table.second_kg_m2[i] = parabola(second);
   }
-  return table;
-}
-
-LoadTable BuildLiftTable(const Vehicle& vehicle, int stage) {
-  LoadTable table;
-  table.lift = DistributeLift(vehicle, stage);
   return table;
 }
 

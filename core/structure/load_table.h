@@ -33,13 +33,10 @@ struct LoadTable : LoadNumbers<double> {
   int stations = 0;
 };
 
-/// The table for the stack of stages `stage` (from 0) and above. Masses are those of the finite-element beam
-/// (beam_masses.h). `nominal`: a table of the same stack with other masses, whose stations it takes (null: it
-/// chooses its own).
+/// The table for the stack of stages `stage` (from 0) and above, without boosters, whose loads come and go in
+/// flight (dynamics/booster_push.h). Masses are those of the finite-element beam (beam_masses.h). `nominal`:
+/// a table of the same stack with other masses, whose stations it takes (null: it chooses its own).
 LoadTable BuildLoadTable(const Vehicle& vehicle, int stage, const LoadTable* nominal = nullptr);
-
-/// The same without loads of cross-sections: what boosters do to these is not modelled.
-LoadTable BuildLiftTable(const Vehicle& vehicle, int stage);
 
 /// A table without loads, for lanes without one. It is made here: code of one instruction set must not hold
 /// the destructor of a type that all share.

@@ -38,7 +38,7 @@ struct Boosters {
   Gimbal gimbal = {};                    ///< its drives (a limit of 0: the nozzles are fixed)
   std::vector<double> towards_rad = {};  ///< their hinges, as of a Nozzle
   bool steer_alone = false;              ///< the stage's own nozzles stay centred while they burn
-  double attachment_station_m = 0.0;     ///< of a beam, which carries them there (0: not given)
+  double attachment_station_m = 0.0;     ///< of the stage, which carries them there (0: not given)
   std::vector<Tank> tanks = {};          ///< of one, about its own axis, of a liquid engine, else empty
   bool are_spread = false;               ///< the angles are not the file's: SpreadOut() has set them
 
@@ -106,7 +106,9 @@ inline void Describe(Fields& fields, Boosters& boosters) {
                   "from detected burnout of the last; before the stage separates", 0.0);
   fields.Deciding(Decides::kFlightOnly, [&] {
     fields.Quantity("attachment_station", kLength, kPositive, boosters.attachment_station_m,
-                    "of structure_beam, which carries them by a rigid link", 0.0);
+                    "of the stage, which carries them there by a rigid link; bending and section loads "
+                    "need it",
+                    0.0);
   });
 }
 

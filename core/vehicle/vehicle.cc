@@ -271,6 +271,9 @@ void CheckBoosters(const Vehicle& vehicle, Checker& check) {
   check.Require(2.0 * b.radius_m >= core.diameter_m, "boosters.radius_m",
                 "puts their axes inside the stage that they stand beside",
                 "at least half its diameter_m, " + std::to_string(0.5 * core.diameter_m));
+  check.Require(b.attachment_station_m <= core.bottom_station_m, "boosters.attachment_station_m",
+                "lies aft of the stage that carries them",
+                "at most its bottom_station_m, " + std::to_string(core.bottom_station_m));
   check.Require(b.bottom_station_m > b.top_station_m, "boosters.bottom_station_m",
                 "is not aft of top_station_m", "a station larger than top_station_m");
   if (b.is_liquid()) {
@@ -346,8 +349,9 @@ int LastBurn(const Vehicle& vehicle, int stage) {
   return static_cast<int>(last);
 }
 
-bool HasSectionLoads(const Vehicle& vehicle, std::size_t stage) {
-  return !vehicle.profile.empty() && (stage > 0 || vehicle.boosters.count == 0);
+bool HasSectionLoads(const Vehicle& vehicle) {
+  const Boosters& boosters = vehicle.boosters;
+  return !vehicle.profile.empty() && (boosters.count == 0 || boosters.attachment_station_m > 0.0);
 }
 
 bool CutsOffInFlight(const Vehicle& vehicle) {
@@ -380,12 +384,12 @@ std::vector<StructProblem> Problems(const Vehicle& vehicle) {
   CheckAims(vehicle, check);
   CheckJettisons(vehicle, check);
   CheckBoosters(vehicle, check);
-  check.Require(!(vehicle.limits.bending_moment_n_m > 0.0) || HasSectionLoads(vehicle, 0),
+  check.Require(!(vehicle.limits.bending_moment_n_m > 0.0) || HasSectionLoads(vehicle),
                 "limits.bending_moment_n_m",
-                vehicle.profile.empty()
-                    ? "has no sections to hold for: the vehicle has no profile"
-                    : "holds for a part of the flight: boosters' loads on the core are not modelled",
-                "a limit of a vehicle with a profile and without boosters");
+                vehicle.profile.empty() ? "has no sections to hold for: the vehicle has no profile"
+                                        : "needs the station at which the first stage carries its boosters",
+                vehicle.profile.empty() ? "a limit of a vehicle with a profile"
+                                        : "a limit of a vehicle with boosters.attachment_station_m");
   const ReactionControl& rcs = vehicle.reaction_control;
   std::vector<StructProblem> problems = check.Take();
   for (std::size_t i = 0; problems.empty() && i < count; ++i)

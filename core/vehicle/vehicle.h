@@ -255,9 +255,9 @@ int LastBurn(const Vehicle& vehicle, int stage);
 /// Whether some engine is cut off at a velocity or by guidance: when it will is known only in flight.
 bool CutsOffInFlight(const Vehicle& vehicle);
 
-/// Whether a stack's bending moments are known: those of the first one are not beside boosters, whose loads
-/// on the core are not modelled.
-bool HasSectionLoads(const Vehicle& vehicle, std::size_t stage);
+/// Whether bending moments are known: of a body with a profile, and of one with boosters where the station is
+/// known at which it carries them.
+bool HasSectionLoads(const Vehicle& vehicle);
 /// Contradictions within a vehicle.
 std::vector<StructProblem> Problems(const Vehicle& vehicle);
 

@@ -82,23 +82,31 @@ TEST(BoostersFile, ReadThrustCurvesAndStandInTheId) {
   EXPECT_NE(LoadCampaign(files.Path("campaign.yaml")).flight_id, campaign.flight_id);
 }
 
-// Bending moments are known of the flight after the boosters have left: neither a limit nor a requirement can
-// hold for that.
-TEST(BoostersFile, LeaveNoBendingMomentToJudge) {
+// Where the stage carries its boosters must be known: else bending moments are those after they have left,
+// and neither a limit nor a requirement can hold for that.
+TEST(BoostersFile, LeaveNoBendingMomentToJudgeWithoutAnAttachment) {
   const InputFiles files;
   files.Edit("vehicle.yaml", "axial_load_g: 12,", "axial_load_g: 12, bending_moment_kn_m: 50,");
   files.Edit("campaign.yaml", "pitch_error_peak_deg, below: 0.5", "bending_moment_max_n_m, below: 5e4");
   EXPECT_EQ(files.Texts(CheckFile(files.Path("campaign.yaml")).errors), "");
   files.Edit("vehicle.yaml", kAfter, kBoosters);
-  EXPECT_EQ(
-      files.Texts(CheckFile(files.Path("campaign.yaml")).errors),
-      "vehicle.yaml:36:70: limits.bending_moment_kn_m: holds for a part of the flight: boosters' loads on "
-      "the core are not modelled, allowed: a limit of a vehicle with a profile and without boosters\n");
+  EXPECT_EQ(files.Texts(CheckFile(files.Path("campaign.yaml")).errors),
+            "vehicle.yaml:36:70: limits.bending_moment_kn_m: needs the station at which the first stage "
+            "carries its "
+            "boosters, allowed: a limit of a vehicle with boosters.attachment_station_m\n");
   files.Edit("vehicle.yaml", " bending_moment_kn_m: 50,", "");
   EXPECT_EQ(
       files.Texts(CheckFile(files.Path("campaign.yaml")).errors),
       "campaign.yaml:13:14: requirements[0].metric: 'bending_moment_max_n_m' is of flights with section "
-      "loads of every stage: a profile and no boosters, allowed: a metric that these flights have\n");
+      "loads: a profile, and of boosters their attachment_station, allowed: a metric that these flights "
+      "have\n");
+  files.Edit("vehicle.yaml", "nozzle_station_m: 9.7,", "nozzle_station_m: 9.7, attachment_station_m: 8.2,");
+  files.Edit("vehicle.yaml", "axial_load_g: 12,", "axial_load_g: 12, bending_moment_kn_m: 50,");
+  EXPECT_EQ(files.Texts(CheckFile(files.Path("campaign.yaml")).errors), "");
+  files.Edit("vehicle.yaml", "attachment_station_m: 8.2,", "attachment_station_m: 82,");
+  EXPECT_EQ(files.Texts(CheckFile(files.Path("campaign.yaml")).errors),
+            "vehicle.yaml:34:181: boosters.attachment_station_m: lies aft of the stage that carries them, "
+            "allowed: at most its bottom_station_m, 10.000000\n");
 }
 
 constexpr char kGrain[] =

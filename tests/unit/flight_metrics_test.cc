@@ -114,6 +114,8 @@ class MetricsRecorder {
             now.thrust_n,
             {f.x(), f.y(), f.z()},
             {},
+            {},
+            {},
             {}};
   }
   void EndStage() {
@@ -453,15 +455,17 @@ TEST(MetricsRecorder, PeaksOfFreeStagesAndGuidanceNeedTheirPart) {
 }
 
 // What is known of a part of the flight only is no maximum of the flight.
-TEST(MetricsRecorder, BendingMomentsNeedSectionLoadsOfEveryStage) {
+TEST(MetricsRecorder, BendingMomentsNeedTheBoostersAttachment) {
   FlightSums sums;
   sums.bending_moment_max_n_m = 25e3;
   sums.bending_moment_station_m = 6.0;
-  FlightDefinition beside = Definition(), bare = Definition();
-  beside.vehicle.boosters.count = 2;
+  FlightDefinition beside = Definition(), carried = Definition(), bare = Definition();
+  beside.vehicle.boosters.count = carried.vehicle.boosters.count = 2;
+  carried.vehicle.boosters.attachment_station_m = 5.0;
   bare.vehicle.profile.clear();
   for (const char* name : {"bending_moment_max_n_m", "bending_moment_station_m"}) {
     EXPECT_FALSE(std::isnan(Measure(sums, Definition()).metrics[MetricColumn(name)])) << name;
+    EXPECT_FALSE(std::isnan(Measure(sums, carried).metrics[MetricColumn(name)])) << name;
     EXPECT_TRUE(std::isnan(Measure(sums, beside).metrics[MetricColumn(name)])) << name;
     EXPECT_TRUE(std::isnan(Measure(sums, bare).metrics[MetricColumn(name)])) << name;
   }
