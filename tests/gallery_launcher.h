@@ -33,7 +33,8 @@ inline FlightInputs DrawnWithoutErrorsOfTheComputer(const CampaignFlights& fligh
 /// The same with masses, loads and specific impulses that it knows too.
 inline FlightInputs DrawnWithoutErrorsOfTheVehicle(const CampaignFlights& flights, std::uint64_t index) {
   FlightInputs inputs = DrawnWithoutErrorsOfTheComputer(flights, index);
-  inputs.dry_mass_factor = inputs.propellant_factor = inputs.specific_impulse_factor = AllStages(1.0);
+  for (StageInputs& stage : inputs.stages)
+    stage.dry_mass_factor = stage.propellant_factor = stage.specific_impulse_factor = 1.0;
   return inputs;
 }
 

@@ -31,7 +31,8 @@ inline FlightDefinition Slv4Definition(const std::string& campaigns,
 inline FlightInputs Table3Inputs() {
   FlightInputs inputs;
   for (StageInputs& stage : inputs.stages) stage.thrust.misalignment_rad.magnitude = 0.25 * kRadPerDeg;
-  inputs.thrust_misalignment_clock_rad = {0.5, 2.1, 3.7, 5.3};
+  const double clock_rad[] = {0.5, 2.1, 3.7, 5.3};
+  for (std::size_t i = 0; i < 4; ++i) inputs.stages[i].thrust.misalignment_rad.clock_rad = clock_rad[i];
   inputs.air.wind_max_speed_m_s = 60.96;
   inputs.air.wind_azimuth_rad = 280.0 * kRadPerDeg;
   inputs.drag_factor = 1.067;

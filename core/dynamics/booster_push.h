@@ -96,8 +96,8 @@ DISPERSA_INLINE Push<T> PushOf(const ApartBoosters<T>& a, const MotionAbout<T>& 
 /// Adds the push to the moments of the sections at and behind the attachment, of lanes that carry boosters. A
 /// section carries what accelerates the masses ahead of it, minus the forces there.
 template <class T>
-DISPERSA_INLINE void AddPush(const ApartBoosters<T>& a, const Sections<T>& body,
-                             const MotionAbout<T>& moved, const Push<T>& push, SectionMoments<T>& o) {
+DISPERSA_INLINE void AddPush(const ApartBoosters<T>& a, const Sections<T>& body, const MotionAbout<T>& moved,
+                             const Push<T>& push, SectionMoments<T>& o) {
   const T none(0.0);
   const Vector<T>& f = push.force_n;
   for (int i = 0; i < body.stations; ++i) {

@@ -376,7 +376,7 @@ FlightDefinition DefinitionOf(const Launcher& launcher) {
 FlightInputs InputsOf(const Launcher& launcher, std::uint64_t index) {
   Stream draws(3, index, "pairs");
   FlightInputs in = Table3Inputs();
-  for (double& factor : in.thrust_factor) factor = 1.0 + 0.002 * draws.Normal();
+  for (StageInputs& stage : in.stages) stage.thrust_factor = 1.0 + 0.002 * draws.Normal();
   for (StageInputs& stage : in.stages) stage.tail_off_factor = 1.2;
   // What is left of the wind after a rail was set for it.
   in.air.wind_max_speed_m_s = (launcher.course.is_controlled ? 30.0 : 3.0) * draws.Uniform();

@@ -20,14 +20,14 @@ const FlightModel& Model() {
 std::vector<FlightInputs> Flights() {
   std::vector<FlightInputs> all(5);
   all[1] = Table3Inputs();
-  all[2].gyro_noise_rad_s = 0.01 * kRadPerDeg;
+  all[2].sensors.gyro_noise_rad_s = 0.01 * kRadPerDeg;
   all[2].stages[2].tip_off_pitch_rad_s = 1.0 * kRadPerDeg;
   all[3].stuck_nozzle = 1.0;
   all[3].stuck_nozzle_stage = 1.0;
   all[3].stuck_nozzle_rad = 6.0 * kRadPerDeg;
-  all[4].gust_speed_m_s = 9.0;
-  all[4].gust_altitude_m = 9000.0;
-  all[4].gust_length_m = 500.0;
+  all[4].air.gust_speed_m_s = 9.0;
+  all[4].air.gust_altitude_m = 9000.0;
+  all[4].air.gust_length_m = 500.0;
   return all;
 }
 

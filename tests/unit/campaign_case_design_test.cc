@@ -139,7 +139,7 @@ TEST(CaseDesign, WhatIsNoFactorStaysRandomAndRepeatsWithOtherDraws) {
   const CaseDesign design(With(SamplingMethod::kCorners, {Of("a", TwoPoint(1.0, 0.8, 1.2), "drag_factor"),
                                                           Of("r", Normal(0.0, 1.0), "gyro_bias_yaw_deg_s")}));
   EXPECT_EQ(design.Draw(0).drag_factor, design.Draw(2).drag_factor);
-  EXPECT_NE(design.Draw(0).gyro_bias_yaw_rad_s, design.Draw(2).gyro_bias_yaw_rad_s);
+  EXPECT_NE(design.Draw(0).sensors.gyro_bias_yaw_rad_s, design.Draw(2).sensors.gyro_bias_yaw_rad_s);
 }
 
 TEST(CaseDesign, OneAtATimeMovesOneFactorAndHoldsTheOthersAtNominal) {
@@ -196,11 +196,11 @@ TEST(CaseDesign, SobolIsStratifiedInPowersOfTwo) { ExpectStratified(SamplingMeth
 
 TEST(CaseDesign, SeedAndMethodChangeTheDraws) {
   Campaign campaign = With(SamplingMethod::kMonteCarlo, {Of("a", Uniform(0.0, 1.0), "wind_altitude_m")});
-  const double one = CaseDesign(campaign).Draw(3).wind_altitude_m;
+  const double one = CaseDesign(campaign).Draw(3).air.wind_altitude_m;
   campaign.sampling.seed = 43;
-  EXPECT_NE(CaseDesign(campaign).Draw(3).wind_altitude_m, one);
+  EXPECT_NE(CaseDesign(campaign).Draw(3).air.wind_altitude_m, one);
   campaign.sampling = {SamplingMethod::kLatinHypercube, 64, 42};
-  EXPECT_NE(CaseDesign(campaign).Draw(3).wind_altitude_m, one);
+  EXPECT_NE(CaseDesign(campaign).Draw(3).air.wind_altitude_m, one);
 }
 
 /// The share of draws at most x against the distribution function, over 4000 cases: within 4 standard errors
@@ -209,7 +209,7 @@ void ExpectLaw(const ScalarDistribution& distribution, const std::vector<std::pa
   const CaseDesign design(With(SamplingMethod::kMonteCarlo, {Of("w", distribution, "wind_altitude_m")}));
   for (const auto& [x, probability] : law) {
     int below = 0;
-    for (std::uint64_t k = 0; k < 4000; ++k) below += design.Draw(k).wind_altitude_m <= x;
+    for (std::uint64_t k = 0; k < 4000; ++k) below += design.Draw(k).air.wind_altitude_m <= x;
     EXPECT_NEAR(below / 4000.0, probability, 0.032) << x;
   }
 }
@@ -249,7 +249,7 @@ TEST(CaseDesign, CorrelatedNormalsAreAndOthersStay) {
   constexpr int kCases = 4000;
   for (std::uint64_t k = 0; k < kCases; ++k) {
     const FlightInputs in = together.Draw(k);
-    EXPECT_EQ(in.air.wind_altitude_m, apart.Draw(k).wind_altitude_m);
+    EXPECT_EQ(in.air.wind_altitude_m, apart.Draw(k).air.wind_altitude_m);
     ab += in.air.wind_altitude_m * in.air.wind_width_m / kCases;
     bb += in.air.wind_width_m * in.air.wind_width_m / kCases;
   }
@@ -267,7 +267,7 @@ TEST(CaseDesign, SobolColumnsBelongToTheirNames) {
   const CaseDesign more(With(SamplingMethod::kSobol, {thrust, drag, wind}));
   for (std::uint64_t k = 0; k < 64; ++k) {
     EXPECT_EQ(few.Draw(k).drag_factor, more.Draw(k).drag_factor);
-    EXPECT_EQ(few.Draw(k).wind_altitude_m, more.Draw(k).wind_altitude_m);
+    EXPECT_EQ(few.Draw(k).air.wind_altitude_m, more.Draw(k).air.wind_altitude_m);
   }
 }
 
@@ -301,9 +301,9 @@ TEST(CaseDesign, ReplicatesAreDesignsOfTheirOwn) {
     for (std::uint64_t replicate = 0; replicate < 4; ++replicate) {
       std::set<int> strata;
       for (std::uint64_t k = 0; k < 16; ++k) {
-        const double value = design.Draw(16 * replicate + k).wind_altitude_m;
+        const double value = design.Draw(16 * replicate + k).air.wind_altitude_m;
         if (replicate == 0) {
-          EXPECT_EQ(value, one.Draw(k).wind_altitude_m);
+          EXPECT_EQ(value, one.Draw(k).air.wind_altitude_m);
         }
         strata.insert(static_cast<int>(16.0 * value));
         all.insert(value);

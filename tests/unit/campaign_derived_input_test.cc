@@ -66,8 +66,8 @@ TEST(DerivedInput, FollowsFromTheDrawsInTheUnitsOfItsColumns) {
       expected.lift_factor = 1.0 + 0.5 * (before.stages[0].thrust_factor - 1.0);
       const FlightInputs drawn = derived.Draw(k);
       EXPECT_EQ(drawn.lift_factor, expected.lift_factor) << method;
-      EXPECT_NEAR(drawn.wind_azimuth_rad, before.gust_azimuth_rad + 10.0 * kRadPerDeg, 1e-15);
-      expected.wind_azimuth_rad = drawn.wind_azimuth_rad;
+      EXPECT_NEAR(drawn.air.wind_azimuth_rad, before.air.gust_azimuth_rad + 10.0 * kRadPerDeg, 1e-15);
+      expected.air.wind_azimuth_rad = drawn.air.wind_azimuth_rad;
       EXPECT_EQ(InputValues(drawn), InputValues(expected)) << "and nothing else changes";
     }
   }

@@ -169,11 +169,13 @@ TEST(BoostersFile, ReadDispersionsOfTheirMasses) {
              "  booster_mixture_ratio: {distribution: normal, sigma_percent: 1, per: vehicle}\n  thrust: ");
   EXPECT_EQ(files.Texts(CheckFile(files.Path("campaign.yaml")).errors), "");
   const FlightInputs in = CaseDesign(LoadCampaign(files.Path("campaign.yaml"))).Draw(3);
-  for (const auto* drawn : {&in.booster_dry_mass_factor, &in.booster_propellant_factor}) {
-    EXPECT_NE((*drawn)[0], 1.0);
-    EXPECT_NE((*drawn)[0], (*drawn)[1]);
-    EXPECT_NE((*drawn)[1], (*drawn)[2]);
-    EXPECT_EQ((*drawn)[3], 1.0);
+  for (double BoosterInputs::*const factor :
+       {&BoosterInputs::dry_mass_factor, &BoosterInputs::propellant_factor}) {
+    const auto drawn = [&](std::size_t k) { return in.further[k].booster.*factor; };
+    EXPECT_NE(drawn(0), 1.0);
+    EXPECT_NE(drawn(0), drawn(1));
+    EXPECT_NE(drawn(1), drawn(2));
+    EXPECT_EQ(drawn(3), 1.0);
   }
   EXPECT_NE(in.further[0].booster.mixture_ratio_factor, 1.0);
   EXPECT_EQ(in.further[0].booster.mixture_ratio_factor, in.further[2].booster.mixture_ratio_factor);
@@ -252,11 +254,13 @@ TEST(BoostersFile, OfSomeAlikeDrawEachItsOwn) {
   EXPECT_EQ(b.angles_rad[0], 0.0);
   EXPECT_NEAR(b.angles_rad[1], kPi, 1e-15);
   const FlightInputs in = CaseDesign(campaign).Draw(3);
-  for (const auto* drawn : {&in.booster_dry_mass_factor, &in.booster_propellant_factor}) {
-    EXPECT_NE((*drawn)[0], 1.0);
-    EXPECT_NE((*drawn)[1], 1.0);
-    EXPECT_NE((*drawn)[0], (*drawn)[1]);
-    EXPECT_EQ((*drawn)[2], 1.0);
+  for (double BoosterInputs::*const factor :
+       {&BoosterInputs::dry_mass_factor, &BoosterInputs::propellant_factor}) {
+    const auto drawn = [&](std::size_t k) { return in.further[k].booster.*factor; };
+    EXPECT_NE(drawn(0), 1.0);
+    EXPECT_NE(drawn(1), 1.0);
+    EXPECT_NE(drawn(0), drawn(1));
+    EXPECT_EQ(drawn(2), 1.0);
   }
   EXPECT_NE(campaign.canonical_yaml.find("count: 2"), std::string::npos);
   EXPECT_EQ(campaign.canonical_yaml.find("angles_deg"), std::string::npos);

@@ -307,7 +307,7 @@ TEST(Dispersions, GyroNoiseHasItsStandardDeviation) {
   // Falls back at once: only the first tick counts.
   inputs.stages[0].thrust_factor = 0.1;
   FlightInputs quiet = inputs;
-  quiet.gyro_noise_rad_s = 0.0;
+  quiet.sensors.gyro_noise_rad_s = 0.0;
   const auto command = [&](const FlightInputs& in, std::uint64_t case_index) {
     std::vector<double> yaw;
     FlightOptions options;

@@ -49,9 +49,9 @@ TEST(GuidedFlight, OfAnOpenLoopHasNoneOfIt) {
   definition.guidance.closed_loop = false;
   const FlightModel model(definition);
   FlightInputs navigated = Table3Inputs();
-  navigated.navigation_position_error_m = {1e3, 1e3, 1e3};
-  navigated.navigation_velocity_error_m_s = {10.0, 10.0, 10.0};
-  navigated.accelerometer_scale_factor = 1.1;
+  navigated.sensors.navigation_position_error_m = {1e3, 1e3, 1e3};
+  navigated.sensors.navigation_velocity_error_m_s = {10.0, 10.0, 10.0};
+  navigated.sensors.accelerometer_scale_factor = 1.1;
   EXPECT_EQ(Fly(model, navigated).digest, Fly(model, Table3Inputs()).digest);
 }
 
@@ -102,7 +102,7 @@ TEST(GuidedFlight, FindsOutAboutTheLastMotorOnlyWhileItBurns) {
 // and makes more of it than open loop does.
 TEST(GuidedFlight, SaysThatItsTargetIsOutOfReach) {
   FlightInputs inputs;
-  for (double& factor : inputs.specific_impulse_factor) factor = 0.96;
+  for (StageInputs& stage : inputs.stages) stage.specific_impulse_factor = 0.96;
   FlightDefinition definition = Guided();
   const FlightResult flight = Fly(FlightModel(definition), inputs);
   definition.guidance.closed_loop = false;

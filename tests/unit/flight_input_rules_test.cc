@@ -153,7 +153,7 @@ TEST(InputRules, AllowTheNominalFlight) {
   EXPECT_EQ(
       WhyNotAllowed({campaign.vehicle, campaign.autopilot, campaign.guidance, campaign.course, nominal}), "");
   FlightInputs gust;
-  gust.gust_speed_m_s = 9.0;  // whose length is 0
+  gust.air.gust_speed_m_s = 9.0;  // whose length is 0
   EXPECT_EQ(WhyNotAllowed({campaign.vehicle, campaign.autopilot, campaign.guidance, campaign.course, gust}),
             "the input gust_length_m is 0; allowed: a number from 1 to 10000");
 }

@@ -66,8 +66,8 @@ class MetricsRecorder {
                         {t.v, t.v_rate_sign < 0.0 ? 1.0 : 0.0, p11, t.adaptation_norm * t.adaptation_norm});
     metrics_.AddDeflections(true, s.time_s, drives, s.command_rad.data(), s.limit_rad);
     sums_.rules_fired = t.rules_fired;
-    const double bottom_m = inputs_.gust_altitude_m;
-    const double top_m = inputs_.gust_speed_m_s != 0.0 ? bottom_m + inputs_.gust_length_m : bottom_m;
+    const double bottom_m = inputs_.air.gust_altitude_m;
+    const double top_m = inputs_.air.gust_speed_m_s != 0.0 ? bottom_m + inputs_.air.gust_length_m : bottom_m;
     const FlightDefinition& d = model_.definition();
     if (lanes::InTransient(s.time_s, s.since_ignition_s, s.instant.air.place.altitude_m, d.kick_start_s,
                            d.kick_end_s, bottom_m, top_m))
@@ -576,9 +576,9 @@ TEST(Ripple, ABurstOfASecondIsFound) {
 
 TEST(Ripple, GustsDoNotCount) {
   FlightInputs gust;
-  gust.gust_speed_m_s = 9.0;
-  gust.gust_altitude_m = 5000.0;
-  gust.gust_length_m = 1000.0;
+  gust.air.gust_speed_m_s = 9.0;
+  gust.air.gust_altitude_m = 5000.0;
+  gust.air.gust_length_m = 1000.0;
   const auto chatter = [](double t) { return std::lround(t / kTick_s) % 2 ? 1.0 : -1.0; };
   EXPECT_TRUE(std::isnan(RippleOf(0.0, 20.0, chatter, gust, 5500.0)));
   EXPECT_GT(RippleOf(0.0, 20.0, chatter, gust, 6500.0), 1.9);

@@ -54,7 +54,7 @@ TEST(InertialUnit, ErrorsTurnWithTheVehicle) {
   FlightDefinition definition = Slv4Definition(DISPERSA_CAMPAIGNS, "pid");
   const FlightModel model(definition);
   FlightInputs biased;
-  biased.gyro_bias_yaw_rad_s = 5.0e-5;
+  biased.sensors.gyro_bias_yaw_rad_s = 5.0e-5;
   Vector3 drift = Vector3::Zero();
   double last_s = 0.0, compared = 0.0;
   FlightOptions options;
@@ -62,11 +62,12 @@ TEST(InertialUnit, ErrorsTurnWithTheVehicle) {
     // Midpoint rule.
     const double h = s.time_s - last_s;
     const Vector3 half =
-        drift + 0.5 * h * (Vector3(0.0, 0.0, biased.gyro_bias_yaw_rad_s) - s.state.w_IB_B.cross(drift));
-    drift += h * (Vector3(0.0, 0.0, biased.gyro_bias_yaw_rad_s) - s.state.w_IB_B.cross(half));
+        drift +
+        0.5 * h * (Vector3(0.0, 0.0, biased.sensors.gyro_bias_yaw_rad_s) - s.state.w_IB_B.cross(drift));
+    drift += h * (Vector3(0.0, 0.0, biased.sensors.gyro_bias_yaw_rad_s) - s.state.w_IB_B.cross(half));
     last_s = s.time_s;
     if (!s.burning || s.since_ignition_s < 20.0) return;
-    const Vector3 naive(0.0, 0.0, biased.gyro_bias_yaw_rad_s * s.time_s);
+    const Vector3 naive(0.0, 0.0, biased.sensors.gyro_bias_yaw_rad_s * s.time_s);
     // The loop's own errors are hundredths of a degree.
     EXPECT_LT((s.error.angle_rad - drift).norm(), 0.05 * kRadPerDeg) << s.time_s;
     if (s.stack == 2) {

@@ -87,8 +87,8 @@ TEST(FlightTurbulence, ComponentsAreIndependentFromNodeToNode) {
 TEST(FlightTurbulence, FollowsFromSeedAndCaseAlone) {
   const TurbulenceField field = FieldOf(RoughModel(), Rough(), 3);
   FlightInputs others = Table3Inputs();
-  others.turbulence_exceedance = Rough().turbulence_exceedance;
-  others.turbulence_wind_20ft_m_s = Rough().turbulence_wind_20ft_m_s;
+  others.air.turbulence_exceedance = Rough().air.turbulence_exceedance;
+  others.air.turbulence_wind_20ft_m_s = Rough().air.turbulence_wind_20ft_m_s;
   EXPECT_EQ(FieldOf(RoughModel(), others, 3).up_m_s, field.up_m_s);
   EXPECT_NE(FieldOf(RoughModel(), Rough(), 4).up_m_s, field.up_m_s);
   EXPECT_NE(FieldOf(RoughModel(12), Rough(), 3).up_m_s, field.up_m_s);

@@ -31,7 +31,7 @@ double ValueAt(const ScalarDistribution& distribution, double z, bool absolute =
   Campaign campaign;
   campaign.dispersions = {Of("w", distribution, "wind_altitude_m", absolute)};
   const DispersionSpace space(campaign);
-  return space.Inputs({{z}})[0].wind_altitude_m;
+  return space.Inputs({{z}})[0].air.wind_altitude_m;
 }
 
 struct Law {

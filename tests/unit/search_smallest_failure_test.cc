@@ -157,8 +157,10 @@ TEST(DispersionSpace, AppliesWhatTheLawsMean) {
   point[drag] = -3.0;
   const FlightInputs inputs = space.Inputs({Point(point.size(), 0.0), point})[1];
   EXPECT_NEAR(inputs.drag_factor, 1.0 - 0.067, 1e-12);
-  EXPECT_EQ(inputs.thrust_factor, AllStages(1.0));
-  EXPECT_EQ(inputs.thrust_misalignment_rad, AllStages(0.0));
+  for (const StageInputs& stage : inputs.stages) {
+    EXPECT_EQ(stage.thrust_factor, 1.0);
+    EXPECT_EQ(stage.thrust.misalignment_rad.magnitude, 0.0);
+  }
 }
 
 }  // namespace

@@ -26,9 +26,10 @@ Vehicle Flexible() { return LoadVehicle(DISPERSA_CAMPAIGNS "/vehicles/slv4_flexi
 
 FlightInputs Draws(double dry, double propellant, double payload_kg) {
   FlightInputs inputs;
-  inputs.dry_mass_factor = {1.0 + dry, 1.0 - dry, 1.0 + dry, 1.0 - dry, 1.0, 1.0};
-  inputs.propellant_factor = {
-      1.0 - propellant, 1.0 + propellant, 1.0 - propellant, 1.0 + propellant, 1.0, 1.0};
+  for (std::size_t i = 0; i < 4; ++i) {
+    inputs.stages[i].dry_mass_factor = i % 2 == 0 ? 1.0 + dry : 1.0 - dry;
+    inputs.stages[i].propellant_factor = i % 2 == 0 ? 1.0 - propellant : 1.0 + propellant;
+  }
   inputs.payload_mass_kg = payload_kg;
   inputs.payload_element = 1.0;
   return inputs;

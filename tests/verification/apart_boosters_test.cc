@@ -203,7 +203,8 @@ TEST(ApartBoosters, GrainsLoseTheSpinOfWhatBurns) {
 TEST(ApartBoosters, DrivesHaveTheBandwidthOfTheirStage) {
   FlightInputs inputs;
   inputs.actuator_bandwidth_factor = 1.1;
-  inputs.stack_actuator_bandwidth_factor = {0.9, 0.5};
+  inputs.stages[0].actuator_bandwidth_factor = 0.9;
+  inputs.stages[1].actuator_bandwidth_factor = 0.5;
   const LauncherPlant plant = FlightModel(Gimballed({0.0, 180.0})).PlantFor(inputs);
   EXPECT_NEAR(plant.boosters->gimbal.bandwidth_rad_s, 30.0 * 1.1 * 0.9, 1e-12);
   EXPECT_NEAR(plant.stacks[0].gimbal.bandwidth_rad_s, 25.0 * 1.1 * 0.9, 1e-12);

@@ -27,8 +27,8 @@ constexpr double kDryFactor[2] = {1.08, 0.95}, kThrustFactor[2] = {1.04, 0.93}, 
 FlightDefinition Boosted(double attachment_m, bool liquid) {
   FlightDefinition definition = Slv4Definition(DISPERSA_CAMPAIGNS);
   Boosters& b = definition.vehicle.boosters;
-  b = {2,  kDry_kg, kPropellant_kg, kRadius_m,          2.0 * kShell_m, kTop_m, kBottom_m, kNozzle_m,
-       {}, {22.0, 24.05, 0.6, 0.2}, 0.5};
+  b = {2,         kDry_kg, kPropellant_kg,          kRadius_m, 2.0 * kShell_m, kTop_m, kBottom_m,
+       kNozzle_m, {},      {22.0, 24.05, 0.6, 0.2}, 0.5};
   b.motor.thrust_n = kThrust_n;
   b.motor.burning_time_s = 30.0;
   b.angles_rad = {kAngles_rad[0], kAngles_rad[1]};
@@ -81,7 +81,8 @@ class Instant {
     s.v_IC_I = rate_I.cross(s.p_EoC_I) + Rotate(s.q_IB, Vector3(400.0, sign * 9.0, sign * -14.0));
     s.w_IB_B = turns ? Vector3(0.0, sign * 0.3, -0.2) : Rotate(Inverse(s.q_IB), rate_I);
     WriteState(s, y.data());
-    for (int i = 0; i < kNozzles; ++i) y[static_cast<std::size_t>(kNozzleAngle + i)] = sign * (i < 2 ? 0.02 : -0.01);
+    for (int i = 0; i < kNozzles; ++i)
+      y[static_cast<std::size_t>(kNozzleAngle + i)] = sign * (i < 2 ? 0.02 : -0.01);
     rate_ = s.w_IB_B;
 
     LauncherPhase phase;
@@ -145,12 +146,13 @@ class Instant {
       const Vector3 push = kThrust_n * kThrustFactor[k] * plant.boosters->each[k].along;
       core_n -= push;
       if (!carries)
-        force(Vector3(kNozzle_m, kRadius_m * std::cos(kAngles_rad[k]), kRadius_m * std::sin(kAngles_rad[k])), push);
+        force(Vector3(kNozzle_m, kRadius_m * std::cos(kAngles_rad[k]), kRadius_m * std::sin(kAngles_rad[k])),
+              push);
     }
     const LiftDistribution& lift = plant.stacks[0].loads->lift;
     for (const LiftPiece& piece : lift.pieces) {
-      const double share = piece.area_to - piece.area_from +
-                           (air_.xcp_station_m - lift.slender_station_m) * piece.shift_1_m;
+      const double share =
+          piece.area_to - piece.area_from + (air_.xcp_station_m - lift.slender_station_m) * piece.shift_1_m;
       const Vector3 f = -air_.normal_n * share * Vector3(0.0, air_.across_y, air_.across_z);
       core_n -= f;
       if (piece.Middle() > station_m) force(Vector3(piece.Middle(), 0.0, 0.0), f);
@@ -162,8 +164,7 @@ class Instant {
       for (const Part& part : OfBoosters()) parts.push_back(part);
     for (const Part& part : parts) {
       const Vector3 r(cg_.x() - part.place.x(), part.place.y() - cg_.y(), part.place.z() - cg_.z());
-      const Vector3 accelerated =
-          specific_ + turning_.cross(r) + rate_.cross(rate_.cross(r));
+      const Vector3 accelerated = specific_ + turning_.cross(r) + rate_.cross(rate_.cross(r));
       force(part.place, -part.kg * accelerated);
       const Vector3 inertia(part.axial_kg_m2, part.across_kg_m2, part.across_kg_m2);
       moment -= inertia.cwiseProduct(turning_) + rate_.cross(Vector3(inertia.cwiseProduct(rate_)));
@@ -180,7 +181,8 @@ class Instant {
     std::vector<Part> parts;
     for (std::size_t k = 0; k < 2; ++k) {
       const double y_m = kRadius_m * std::cos(kAngles_rad[k]), z_m = kRadius_m * std::sin(kAngles_rad[k]);
-      const double shell2 = kShell_m * kShell_m, length_m = kBottom_m - kTop_m, dry_kg = kDry_kg * kDryFactor[k];
+      const double shell2 = kShell_m * kShell_m, length_m = kBottom_m - kTop_m,
+                   dry_kg = kDry_kg * kDryFactor[k];
       parts.push_back({dry_kg, dry_kg * shell2, dry_kg * (0.5 * shell2 + length_m * length_m / 12.0),
                        Vector3(0.5 * (kTop_m + kBottom_m), y_m, z_m)});
       if (!(burning_ >> k & 1u)) continue;  // spent
@@ -189,7 +191,8 @@ class Instant {
       for (const Tank& tank : b.tanks) {
         const double in_kg = kLeft[k] * tank.propellant_mass_kg;
         const double height_m = 0.9 * (tank.bottom_station_m - tank.top_station_m) * kLeft[k];
-        parts.push_back({in_kg, 0.0, in_kg * (tank.diameter_m * tank.diameter_m / 16.0 + height_m * height_m / 12.0),
+        parts.push_back({in_kg, 0.0,
+                         in_kg * (tank.diameter_m * tank.diameter_m / 16.0 + height_m * height_m / 12.0),
                          Vector3(tank.bottom_station_m - 0.5 * height_m, y_m, z_m)});
       }
       if (b.is_liquid()) continue;

@@ -207,7 +207,9 @@ TEST(BoostersBending, BoostersThatBurnFasterHardlyChangeTheModes) {
 TEST(BoostersBending, DrawnMassesHaveModesNearTheNominalOnes) {
   const Vehicle nominal = Boosted();
   FlightInputs inputs;
-  inputs.dry_mass_factor = {1.03, 0.97, 1.02, 1.0, 1.0, 1.0};
+  inputs.stages[0].dry_mass_factor = 1.03;
+  inputs.stages[1].dry_mass_factor = 0.97;
+  inputs.stages[2].dry_mass_factor = 1.02;
   inputs.stages[0].propellant_factor = 1.01;
   const Vehicle vehicle = WithDispersedMasses(nominal, inputs);
   for (const unsigned gone : {0u, kBoostersGone}) {

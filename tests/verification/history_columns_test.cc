@@ -44,8 +44,9 @@ FlightDefinition Definition() {
 
 FlightInputs Inputs() {
   FlightInputs inputs;
-  inputs.nozzle_thrust_factor[0] = {0.95, 1.1, 1.0, 1.0};
-  inputs.nozzle_thrust_factor[1] = {1.04, 0.9, 1.0, 1.01};
+  const double factor[2][kNozzles] = {{0.95, 1.1, 1.0, 1.0}, {1.04, 0.9, 1.0, 1.01}};
+  for (std::size_t i = 0; i < 2; ++i)
+    for (std::size_t k = 0; k < kNozzles; ++k) inputs.stages[i].nozzles[k].thrust_factor = factor[i][k];
   for (std::size_t k = 0; k < 2; ++k)
     inputs.further[k].nozzle.thrust_factor = inputs.further[k].nozzle.flow_factor = kFactors[k];
   return inputs;

@@ -58,7 +58,8 @@ TEST(ThrustCurveFlight, KeepsTheStepsOrder) { ExpectOrder({}); }
 
 TEST(ThrustCurveFlight, KeepsTheStepsOrderWithDispersedRates) {
   FlightInputs inputs = Table3Inputs();
-  inputs.mass_flow_factor = inputs.thrust_factor;  // a burn rate: the curve is drawn together in time
+  // A burn rate: the curve is drawn together in time.
+  for (StageInputs& stage : inputs.stages) stage.mass_flow_factor = stage.thrust_factor;
   ExpectOrder(inputs);
 }
 

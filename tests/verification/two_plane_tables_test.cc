@@ -244,7 +244,7 @@ double WorstSwing(bool in_yaw, int swings) {
   const AeroTable& plane = in_yaw ? table.yaw_plane[0] : table;
   const double slope = plane.cn[1] / plane.incidence_rad[1], xcp_m = plane.xcp_station_m[0];
   FlightInputs inputs;
-  (in_yaw ? inputs.tip_off_yaw_rad_s : inputs.tip_off_pitch_rad_s)[0] = 0.05;
+  (in_yaw ? inputs.stages[0].tip_off_yaw_rad_s : inputs.stages[0].tip_off_pitch_rad_s) = 0.05;
   double phase = 0.0, before = 0.0, before_s = 0.0, last_phase = 0.0, worst = 0.0;
   int crossings = 0;
   for (const TickSample& s : Samples(definition, inputs)) {
