@@ -72,6 +72,12 @@ class Batch {
   /// Until the queue has no more flights and no lane flies.
   void Run();
 
+  // ---- what events of parts change (part_events.h) ----
+  LaneMemory<T>& lanes() { return m_; }
+  void SetMass(int lane);
+  void SetShape(int lane);
+  void FindJudges();
+
  private:
   static constexpr int kLanes = kWidth<T>;
   using M = MaskOf<T>;
@@ -80,11 +86,8 @@ class Batch {
   void Refill();
   void Start(int lane, FlightRecord* record);
   void SetStack(int lane, int stack);
-  void SetMass(int lane);
-  void SetShape(int lane);
   void SetStop(int lane);
   void SetUnsteered(int lane);
-  void FindJudges();
   void End(int lane, Outcome outcome, const char* reason);
   LauncherPhase PhaseOf(int lane) const;
   LaneView ViewOf(int lane) const;

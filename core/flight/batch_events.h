@@ -2,6 +2,7 @@
 #pragma once
 
 #include "core/flight/batch.h"
+#include "core/flight/part_events.h"
 
 namespace dispersa::lanes {
 inline namespace DISPERSA_ISA {
@@ -123,17 +124,6 @@ void Batch<T>::Happen(int lane) {
       if (const double torque_n_m = record.SpinTorque(event.stage); torque_n_m != 0.0)
         m_.step.SetRollTorque(lane, torque_n_m);
       break;
-    case EventKind::kSpinEnd:
-      m_.step.SetRollTorque(lane, 0.0);
-      break;
-    case EventKind::kRailExit: {
-      StateValues y;
-      m_.step.ReadLane(lane, y);
-      record.LeaveRail(y);
-      FindJudges();
-      m_.step.WriteLane(lane, y);
-      break;
-    }
     case EventKind::kBurnout:
       BurnOut(lane, event.stage);
       break;
@@ -149,33 +139,15 @@ void Batch<T>::Happen(int lane) {
       SetStack(lane, event.stage + 1);
       break;
     }
-    case EventKind::kBoosterBurnout:
-      m_.metrics.AddLoadsOfLane(lane,
-                                m_.step.InstantOf(lane, m_.at.time_s));  // they peak here, between ticks
-      // Commands of one unit turn other nozzles, or move the body less, from here on: no swing of a nozzle.
-      record.ripple.Interrupt();
-      record.limit_cycle.Interrupt();
-      if (m_.step.BurnOutBooster(lane, event.booster) && m_.step.plant().nozzles_listed)
-        m_.computer.SetNozzles(lane, record.plant.LayoutOf(0, false));
-      break;
-    case EventKind::kBoosterSeparation: {
-      StateValues y;
-      m_.step.ReadLane(lane, y);
-      const double time_s = Lane(m_.at.time_s, lane);
-      // Computed from the burn itself, because the last evaluation is of an earlier time.
-      const double since_ignition_s = time_s - Lane(m_.step.phase().ignition_s, lane);
-      const double propellant_kg = record.plant.stacks.data()->burn.Propellant(since_ignition_s);
-      record.LetGoOfBoosters(slot.jettisoned, time_s, propellant_kg, y);
-      slot.jettisoned |= kBoostersGone;
-      m_.step.WriteLane(lane, y);
-      m_.step.DropBoosters(lane);
-      SetMass(lane);
-      SetShape(lane);
+    case EventKind::kPart: {
+      bool is_silent = false;
+      PartEvents::At(event.part, [&](auto of) {
+        is_silent = of.is_silent;
+        of.Happen(*this, lane, event);
+      });
+      if (is_silent) return;
       break;
     }
-    case EventKind::kKink:
-      m_.step.PassKink(lane);
-      return;
   }
   StateValues y;
   m_.step.ReadLane(lane, y);

@@ -13,6 +13,7 @@
 #include "core/environment/ground_track.h"
 #include "core/flight/history_columns.h"
 #include "core/flight/own_metrics.h"
+#include "core/flight/part_events.h"
 #include "core/flight/rail_slide.h"
 #include "core/flight/sequence.h"
 #include "core/flight/step_limits.h"
@@ -33,40 +34,10 @@ std::vector<FlightEvent> EventsOf(const FlightModel& model, const LauncherPlant&
       BuildTimeline(definition.vehicle, burns, definition.autopilot.tick_s, last_ignition_s,
                     definition.earlier_ignition_s, in);
   std::vector<FlightEvent> events;
-  for (std::size_t i = 0; i < timeline.size(); ++i) {
-    const int stage = static_cast<int>(i);
-    const StageTimes& t = timeline[i];
-    events.push_back({t.ignition_s, EventKind::kIgnition, stage});
-    const std::size_t first = events.size();
-    for (const double kink_s : burns[i].Kinks(t.ignition_s))
-      events.push_back({kink_s, EventKind::kKink, stage});
-    if (i == 0 && plant.boosters) {
-      const double tick_s = definition.autopilot.tick_s;
-      const MotorBurn* last = &plant.boosters->each[0].burn;
-      for (std::size_t k = 0; k < plant.boosters->each.size(); ++k) {
-        const MotorBurn& burn = plant.boosters->each[k].burn;
-        for (const double kink_s : burn.Kinks(t.ignition_s))
-          events.push_back({kink_s, EventKind::kKink, stage});
-        events.push_back({BuildBoosterTimes(definition.vehicle.boosters, burn, t, tick_s).burnout_s,
-                          EventKind::kBoosterBurnout, stage, static_cast<int>(k)});
-        if (burn.duration_s > last->duration_s) last = &burn;
-      }
-      const double separation_s =
-          BuildBoosterTimes(definition.vehicle.boosters, *last, t, tick_s).separation_s;
-      events.push_back({separation_s, EventKind::kBoosterSeparation, stage});
-    }
-    const bool leaves_rail = i == 0 && rail_exit_s >= 0.0,
-               slides_on = leaves_rail && rail_exit_s >= t.burnout_s;
-    if (leaves_rail && !slides_on) events.push_back({rail_exit_s, EventKind::kRailExit, stage});
-    if (const auto& spin = definition.vehicle.stages[i].spin_motors;
-        spin && t.ignition_s + spin->duration_s < t.burnout_s)
-      events.push_back({t.ignition_s + spin->duration_s, EventKind::kSpinEnd, stage});
-    std::stable_sort(events.begin() + static_cast<std::ptrdiff_t>(first), events.end(),
-                     [](const FlightEvent& a, const FlightEvent& b) { return a.time_s < b.time_s; });
-    events.push_back({t.burnout_s, EventKind::kBurnout, stage});
-    if (slides_on) events.push_back({rail_exit_s, EventKind::kRailExit, stage});
-    if (i + 1 < timeline.size()) events.push_back({t.separation_s, EventKind::kSeparation, stage});
-  }
+  for (std::size_t i = 0; i < timeline.size(); ++i)
+    AddEvents({definition.vehicle, plant, static_cast<int>(i), timeline[i], definition.autopilot.tick_s,
+               i == 0 ? rail_exit_s : -1.0},
+              i + 1 == timeline.size(), events);
   return events;
 }
 
@@ -260,9 +231,8 @@ void FlightRecord::StandOnRail() {
   };
   bool leaves = false, separates = false;
   for (const FlightEvent& event : events) {
-    const bool burns_out = event.kind == EventKind::kBurnout,
-               boosters = event.kind == EventKind::kBoosterBurnout;
-    separates = event.kind == EventKind::kSeparation || event.kind == EventKind::kBoosterSeparation;
+    const bool burns_out = event.kind == EventKind::kBurnout, boosters = Is<BoosterBurnout>(event);
+    separates = event.kind == EventKind::kSeparation || Is<BoosterSeparation>(event);
     if (!burns_out && !boosters && !separates) continue;
     leaves = ends_at(event.time_s);
     if (leaves || separates) break;
@@ -271,7 +241,7 @@ void FlightRecord::StandOnRail() {
       phase.boosters_burning = 0;
       phase.burnt = true;
     } else {
-      phase.boosters_burning &= ~(1u << event.booster);
+      phase.boosters_burning &= ~(1u << event.item);
     }
   }
   // Without thrust it slides on until it stops.

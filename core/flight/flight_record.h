@@ -25,22 +25,15 @@ namespace dispersa {
 class OwnMetricsMeter;
 class RailSlide;
 
-/// Events of the plant at their own times, in the order in which they happen.
-enum class EventKind {
-  kIgnition,
-  kBurnout,
-  kSeparation,
-  kBoosterBurnout,  ///< of one
-  kBoosterSeparation,
-  kSpinEnd,   ///< the spin motors burn out
-  kRailExit,  ///< the vehicle leaves its rail
-  kKink,      ///< the thrust's ramp ends or begins: nothing but a step that ends there
-};
+/// Events at their own times, in the order in which they happen: a stage's own, and those of its parts
+/// (part_events.h).
+enum class EventKind { kIgnition, kBurnout, kSeparation, kPart };
 struct FlightEvent {
   double time_s;
   EventKind kind;
   int stage;
-  int booster = -1;  ///< which burns out
+  int part = -1;  ///< place in PartEvents
+  int item = -1;  ///< its booster
 };
 
 /// The state of a flight outside its lane, as kLauncherSize doubles (launcher.h).
