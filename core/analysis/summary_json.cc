@@ -149,12 +149,8 @@ Json NominalJson(const CaseResult& nominal, const CampaignSummary& summary) {
           {"digest", nominal.digest.Hex()}};
 }
 
-}  // namespace
-
-std::string SummaryJson(const CampaignSummary& summary) {
-  Json json;
-  json["schema"] = "dispersa/summary/1";
-  json["campaign"] = {
+Json CampaignJson(const CampaignSummary& summary) {
+  Json json = {
       {"name", summary.name},
       {"id", summary.id},
       {"flight_id", summary.flight_id},
@@ -170,58 +166,77 @@ std::string SummaryJson(const CampaignSummary& summary) {
       {"reference", summary.reference},
       {"autopilot", summary.autopilot}};
   if (summary.python_law)
-    json["campaign"]["python_law"] = {{"name", summary.python_law->name},
-                                      {"sha256", summary.python_law->sha256}};
-  json["engine"] = summary.engine;
-  json["reference_orbit"] = {
-      {"altitude_km", Number(summary.reference_orbit.altitude_m * 1e-3)},
-      {"velocity_m_s", Number(summary.reference_orbit.velocity_m_s)},
-      {"flight_path_angle_deg", Number(summary.reference_orbit.flight_path_angle_rad * kDegPerRad)},
-      {"inclination_deg", Number(summary.reference_orbit.inclination_rad * kDegPerRad)}};
-  json["verdict"] = CampaignVerdictName(summary.verdict);
-  json["design_study"] = !IsIndependent(summary.sampling);
-  json["warnings"] = Warnings(summary);
-  json["flown"] = summary.flown;
-  json["outcomes"] = Json::object();
-  for (int i = 0; i < kOutcomeCount; ++i) {
-    json["outcomes"][OutcomeName(static_cast<Outcome>(i))] = summary.outcomes[static_cast<std::size_t>(i)];
-  }
-  json["lost_flights"] = Json::array();
+    json["python_law"] = {{"name", summary.python_law->name}, {"sha256", summary.python_law->sha256}};
+  return json;
+}
+
+Json ReferenceOrbitJson(const CampaignSummary& summary) {
+  const auto& orbit = summary.reference_orbit;
+  return {{"altitude_km", Number(orbit.altitude_m * 1e-3)},
+          {"velocity_m_s", Number(orbit.velocity_m_s)},
+          {"flight_path_angle_deg", Number(orbit.flight_path_angle_rad * kDegPerRad)},
+          {"inclination_deg", Number(orbit.inclination_rad * kDegPerRad)}};
+}
+
+Json OutcomesJson(const CampaignSummary& summary) {
+  Json json = Json::object();
+  for (int i = 0; i < kOutcomeCount; ++i)
+    json[OutcomeName(static_cast<Outcome>(i))] = summary.outcomes[static_cast<std::size_t>(i)];
+  return json;
+}
+
+Json LostFlightsJson(const CampaignSummary& summary) {
+  Json list = Json::array();
   for (const LostFlight& lost : summary.lost_flights) {
-    json["lost_flights"].push_back({{"case_index", lost.case_index},
-                                    {"outcome", OutcomeName(lost.outcome)},
-                                    {"end_time_s", Number(lost.end_time_s)},
-                                    {"end_stage", lost.end_stage},
-                                    {"reason", lost.reason}});
+    list.push_back({{"case_index", lost.case_index},
+                    {"outcome", OutcomeName(lost.outcome)},
+                    {"end_time_s", Number(lost.end_time_s)},
+                    {"end_stage", lost.end_stage},
+                    {"reason", lost.reason}});
   }
-  json["limits"] = {{"exceeded", summary.beyond_limits}, {"loads", Json::array()}};
+  return list;
+}
+
+Json LimitsJson(const CampaignSummary& summary) {
+  Json loads = Json::array();
   for (const CampaignSummary::Limit& one : summary.limits) {
-    json["limits"]["loads"].push_back(
-        {{"metric", one.metric},
-         {"limit", one.limit},
-         {"exceeded", one.exceeded},
-         {"largest", OrNull(one.largest)},
-         {"largest_case", one.largest ? Json(one.largest_case) : Json(nullptr)}});
+    loads.push_back({{"metric", one.metric},
+                     {"limit", one.limit},
+                     {"exceeded", one.exceeded},
+                     {"largest", OrNull(one.largest)},
+                     {"largest_case", one.largest ? Json(one.largest_case) : Json(nullptr)}});
   }
-  json["load_checks"] = Json::array();
+  return {{"exceeded", summary.beyond_limits}, {"loads", std::move(loads)}};
+}
+
+Json LoadChecksJson(const CampaignSummary& summary) {
+  Json list = Json::array();
   for (const LoadCheck& check : summary.load_checks)
-    json["load_checks"].push_back({{"metric", check.metric}, {"n", check.n}, {"failures", check.failures}});
-  json["near_step_limit"] = summary.near_step_limit;
-  json["requirements"] = Json::array();
-  for (const RequirementSummary& requirement : summary.requirements) {
-    json["requirements"].push_back(RequirementJson(requirement));
-  }
-  json["joint"] = {{"method", summary.holm ? "holm" : "each"},
-                   {"overall_risk", summary.overall_risk},
-                   {"any_risk", summary.any_risk},
-                   {"requirements_id", summary.requirements_id},
-                   {"registered_requirements_id", summary.registered_requirements_id},
-                   {"sentence", JointRiskSentence(summary)}};
-  json["metrics"] = Json::object();
+    list.push_back({{"metric", check.metric}, {"n", check.n}, {"failures", check.failures}});
+  return list;
+}
+
+Json RequirementsJson(const CampaignSummary& summary) {
+  Json list = Json::array();
+  for (const RequirementSummary& requirement : summary.requirements)
+    list.push_back(RequirementJson(requirement));
+  return list;
+}
+
+Json JointRiskJson(const CampaignSummary& summary) {
+  return {{"method", summary.holm ? "holm" : "each"},
+          {"overall_risk", summary.overall_risk},
+          {"any_risk", summary.any_risk},
+          {"requirements_id", summary.requirements_id},
+          {"registered_requirements_id", summary.registered_requirements_id},
+          {"sentence", JointRiskSentence(summary)}};
+}
+
+Json MetricsJson(const CampaignSummary& summary) {
+  Json json = Json::object();
   for (const MetricSummary& metric : summary.metrics) {
     const MetricInfo info = DescribeMetric(metric.name);
-    Json& of =
-        json["metrics"][metric.name] = {{"group", info.group}, {"label", info.title}, {"unit", info.unit}};
+    Json& of = json[metric.name] = {{"group", info.group}, {"label", info.title}, {"unit", info.unit}};
     of.update(StatisticsJson(metric.statistics));
     of["skewness"] = Number(metric.skewness);
     of["percentile_confidence"] = kPercentileConfidence;
@@ -232,11 +247,14 @@ std::string SummaryJson(const CampaignSummary& summary) {
     }
   }
   for (const OwnMetric& metric : summary.own_metrics)
-    json["metrics"][metric.name].update({{"expression", metric.expression}, {"description", metric.meaning}});
-  json["injection"] = summary.injection ? InjectionJson(*summary.injection) : Json(nullptr);
-  json["drivers"] = Json::object();
+    json[metric.name].update({{"expression", metric.expression}, {"description", metric.meaning}});
+  return json;
+}
+
+Json DriversJson(const CampaignSummary& summary) {
+  Json json = Json::object();
   for (const MetricDrivers& metric : summary.drivers) {
-    Json& list = json["drivers"][metric.metric] = Json::array();
+    Json& list = json[metric.metric] = Json::array();
     for (const Driver& driver : metric.drivers) {
       list.push_back({{"input", driver.input},
                       {"key", driver.key},
@@ -249,64 +267,123 @@ std::string SummaryJson(const CampaignSummary& summary) {
                       {"correlated_with", driver.correlated_with}});
     }
   }
-  json["failure_drivers"] = Json::array();
+  return json;
+}
+
+Json FailureInputsJson(const FailureDrivers& requirement) {
+  Json list = Json::array();
+  for (const FailureDriver& driver : requirement.drivers) {
+    list.push_back({{"input", driver.input},
+                    {"key", driver.key},
+                    {"feature", driver.feature},
+                    {"larger", driver.larger},
+                    {"p", Number(driver.p)},
+                    {"false_discovery_rate", Number(driver.false_discovery_rate)}});
+  }
+  return list;
+}
+
+Json FailurePairsJson(const FailureDrivers& requirement) {
+  Json list = Json::array();
+  for (const FailurePair& pair : requirement.pairs) {
+    list.push_back({{"inputs", {pair.first, pair.second}},
+                    {"keys", {pair.first_key, pair.second_key}},
+                    {"features", {pair.first_feature, pair.second_feature}},
+                    {"correlation", Number(pair.correlation)},
+                    {"p", Number(pair.p)},
+                    {"false_discovery_rate", Number(pair.false_discovery_rate)}});
+  }
+  return list;
+}
+
+Json FailureDriversJson(const CampaignSummary& summary) {
+  Json list = Json::array();
   for (const FailureDrivers& requirement : summary.failure_drivers) {
-    Json list = Json::array();
-    for (const FailureDriver& driver : requirement.drivers) {
-      list.push_back({{"input", driver.input},
-                      {"key", driver.key},
-                      {"feature", driver.feature},
-                      {"larger", driver.larger},
-                      {"p", Number(driver.p)},
-                      {"false_discovery_rate", Number(driver.false_discovery_rate)}});
-    }
-    Json pairs = Json::array();
-    for (const FailurePair& pair : requirement.pairs) {
-      pairs.push_back({{"inputs", {pair.first, pair.second}},
-                       {"keys", {pair.first_key, pair.second_key}},
-                       {"features", {pair.first_feature, pair.second_feature}},
-                       {"correlation", Number(pair.correlation)},
-                       {"p", Number(pair.p)},
-                       {"false_discovery_rate", Number(pair.false_discovery_rate)}});
-    }
-    json["failure_drivers"].push_back({{"metric", requirement.metric},
-                                       {"basis", requirement.nearest ? "nearest" : "failed"},
-                                       {"flights", requirement.flights},
-                                       {"inputs", std::move(list)},
-                                       {"pairs", std::move(pairs)}});
+    list.push_back({{"metric", requirement.metric},
+                    {"basis", requirement.nearest ? "nearest" : "failed"},
+                    {"flights", requirement.flights},
+                    {"inputs", FailureInputsJson(requirement)},
+                    {"pairs", FailurePairsJson(requirement)}});
   }
-  json["quarantined"] = Json::array();
-  for (const QuarantinedCase& quarantined : summary.quarantined) {
-    json["quarantined"].push_back({{"case_index", quarantined.case_index}, {"reason", quarantined.reason}});
-  }
-  json["worst_cases"] = Json::array();
+  return list;
+}
+
+Json QuarantinedJson(const CampaignSummary& summary) {
+  Json list = Json::array();
+  for (const QuarantinedCase& quarantined : summary.quarantined)
+    list.push_back({{"case_index", quarantined.case_index}, {"reason", quarantined.reason}});
+  return list;
+}
+
+Json WorstCasesJson(const CampaignSummary& summary) {
+  Json list = Json::array();
   for (const WorstCases& worst : summary.worst_cases) {
     for (const WorstCase& one : worst.cases) {
-      json["worst_cases"].push_back(
-          {{"metric", worst.metric},
-           {"case_index", one.case_index},
-           {"value", OrNull(one.value)},
-           {"outcome", OutcomeName(one.outcome)},
-           {"replay", summary.python_law ? Json(nullptr) : Json(ReplayCommand(one.case_index))}});
+      list.push_back({{"metric", worst.metric},
+                      {"case_index", one.case_index},
+                      {"value", OrNull(one.value)},
+                      {"outcome", OutcomeName(one.outcome)},
+                      {"replay", summary.python_law ? Json(nullptr) : Json(ReplayCommand(one.case_index))}});
     }
   }
-  json["inputs"] = Json::object();
+  return list;
+}
+
+Json InputsJson(const CampaignSummary& summary) {
+  Json json = Json::object();
   for (const DispersionSummary& dispersion : summary.dispersions)
-    json["inputs"][dispersion.input] = {{"key", dispersion.key}, {"unit", SplitUnit(dispersion.input).unit}};
-  json["dispersions"] = Json::array();
+    json[dispersion.input] = {{"key", dispersion.key}, {"unit", SplitUnit(dispersion.input).unit}};
+  return json;
+}
+
+Json DispersionsJson(const CampaignSummary& summary) {
+  Json list = Json::array();
   for (const DispersionSummary& dispersion : summary.dispersions) {
-    json["dispersions"].push_back({{"dispersion", dispersion.dispersion},
-                                   {"input", dispersion.input},
-                                   {"key", dispersion.key},
-                                   {"declared", dispersion.declared},
-                                   {"expected_mean", OrNull(dispersion.expected_mean)},
-                                   {"expected_std", OrNull(dispersion.expected_std)},
-                                   {"consistent", OrNull(dispersion.consistent)},
-                                   {"drawn", StatisticsJson(dispersion.drawn)}});
+    list.push_back({{"dispersion", dispersion.dispersion},
+                    {"input", dispersion.input},
+                    {"key", dispersion.key},
+                    {"declared", dispersion.declared},
+                    {"expected_mean", OrNull(dispersion.expected_mean)},
+                    {"expected_std", OrNull(dispersion.expected_std)},
+                    {"consistent", OrNull(dispersion.consistent)},
+                    {"drawn", StatisticsJson(dispersion.drawn)}});
   }
-  json["envelope"] = summary.envelope ? Json{{"flights", summary.envelope->flights},
-                                             {"extreme_flights", summary.envelope->extreme_flights}}
-                                      : Json(nullptr);
+  return list;
+}
+
+Json EnvelopeJson(const CampaignSummary& summary) {
+  if (!summary.envelope) return nullptr;
+  return {{"flights", summary.envelope->flights}, {"extreme_flights", summary.envelope->extreme_flights}};
+}
+
+}  // namespace
+
+std::string SummaryJson(const CampaignSummary& summary) {
+  Json json;
+  json["schema"] = "dispersa/summary/1";
+  json["campaign"] = CampaignJson(summary);
+  json["engine"] = summary.engine;
+  json["reference_orbit"] = ReferenceOrbitJson(summary);
+  json["verdict"] = CampaignVerdictName(summary.verdict);
+  json["design_study"] = !IsIndependent(summary.sampling);
+  json["warnings"] = Warnings(summary);
+  json["flown"] = summary.flown;
+  json["outcomes"] = OutcomesJson(summary);
+  json["lost_flights"] = LostFlightsJson(summary);
+  json["limits"] = LimitsJson(summary);
+  json["load_checks"] = LoadChecksJson(summary);
+  json["near_step_limit"] = summary.near_step_limit;
+  json["requirements"] = RequirementsJson(summary);
+  json["joint"] = JointRiskJson(summary);
+  json["metrics"] = MetricsJson(summary);
+  json["injection"] = summary.injection ? InjectionJson(*summary.injection) : Json(nullptr);
+  json["drivers"] = DriversJson(summary);
+  json["failure_drivers"] = FailureDriversJson(summary);
+  json["quarantined"] = QuarantinedJson(summary);
+  json["worst_cases"] = WorstCasesJson(summary);
+  json["inputs"] = InputsJson(summary);
+  json["dispersions"] = DispersionsJson(summary);
+  json["envelope"] = EnvelopeJson(summary);
   json["nominal"] = summary.nominal ? NominalJson(*summary.nominal, summary) : Json(nullptr);
   return json.dump(2) + "\n";
 }

@@ -26,8 +26,7 @@ FlightOrder Spoilt(const FlightInputs& unspoilt, int stage, double gain_db, doub
   inputs.loop_gain_factor = Pow(10.0, gain_db / 20.0);
   inputs.loop_delay_s = delay_s;
   // Towards a corner between pitch and yaw, so that both axes work.
-  for (StageInputs& stage : inputs.stages) stage.thrust.misalignment_rad.magnitude = kMisalignment_rad;
-  for (StageInputs& stage : inputs.stages) stage.thrust.misalignment_rad.clock_rad = 0.25 * kPi;
+  for (StageInputs& each : inputs.stages) each.thrust.misalignment_rad = {kMisalignment_rad, 0.25 * kPi};
   return order;
 }
 

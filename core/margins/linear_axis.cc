@@ -29,10 +29,7 @@ const Gimbal& DrivesOf(const LauncherPlant& plant, const TickSample& sample,
                                                                                    : of_boosters;
 }
 
-}  // namespace
-
-AxisPlant LineariseAxis(const LauncherPlant& plant, const TickSample& sample, Axis axis,
-                        const SensorModel& sensors, LateralPath path) {
+LauncherPhase PhaseOf(const TickSample& sample) {
   LauncherPhase phase;
   phase.stack = sample.stack;
   phase.burning = true;
@@ -40,119 +37,188 @@ AxisPlant LineariseAxis(const LauncherPlant& plant, const TickSample& sample, Ax
   phase.expelled_mass_kg = sample.expelled_mass_kg;
   phase.jettisoned = sample.jettisoned;
   phase.boosters_burning = sample.boosters_burning;
+  return phase;
+}
 
-  const LauncherStack& stack = plant.stacks[static_cast<std::size_t>(sample.stack)];
-  std::array<double, kMostDrives> pattern{};
-  const NozzleLayout& layout = plant.LayoutOf(sample.stack, sample.boosting);
-  const int drives = layout.banks() * kDrives;
-  for (int i = 0; i < drives; ++i)
-    if (NozzleOf(i) != sample.stuck_nozzle) pattern[static_cast<std::size_t>(i)] = layout.allocation[i][axis];
-  Vector3 about = Vector3::Zero();
-  about[axis] = 1.0;
+/// One axis of the flight's equations at one instant. Its linear state: attitude, rate, deflection, its rate,
+/// the modes' coordinates, their rates, and the drift.
+class AxisAtInstant {
+ public:
+  AxisAtInstant(const LauncherPlant& plant, const TickSample& sample, Axis axis, LateralPath path);
 
+  AxisPlant Linear(const SensorModel& sensors) const;
+
+ private:
+  /// Of axis, modes and drift, where one linear state or the command (kCommand) departs by `step`.
+  Eigen::VectorXd Accelerations(int departed, double step) const;
+  /// The slope of the accelerations along one linear state or the command.
+  void PutSlope(int departed, double step, AxisPlant& linear) const;
+  void PutEquations(AxisPlant& linear) const;
+  void PutDrives(AxisPlant& linear) const;
+  void PutSensors(const SensorModel& sensors, AxisPlant& linear) const;
+  double ModeSlope(int column, int mode) const;
+  double ModeTable(int column, int mode) const;
+  Eigen::RowVectorXd RateAt(int column) const;
+
+  static constexpr int kCommand = -1;
+
+  const LauncherPlant& plant_;
+  const TickSample& sample_;
+  const Axis axis_;
+  const LauncherStack& stack_;
+  const LauncherModel equations_;
+  const LauncherPhase phase_;
+  std::array<double, kMostDrives> pattern_{};  ///< deflection of each drive for one of the axis
+  int drives_;
+  Vector3 about_ = Vector3::Zero();  ///< in B
+  Vector3 across_I_;
   // The modes of the plane that the axis turns in; nothing here twists.
-  const int modes = stack.bending && axis != kRoll ? stack.bending->modes : 0;
-  const int plane = axis == kPitch ? 1 : 0;
-  const int first_mode = plane * kModes;
+  const int modes_;
+  const int plane_;
+  const int first_mode_;
+  const bool drifts_;
+  const int size_;
+  const int drift_;  ///< place of the drift in the linear state; no place: its size
+};
 
-  const bool drifts = path == LateralPath::kDrifts && axis != kRoll;
-  const int size = 4 + 2 * modes + (drifts ? 1 : 0);
-  const int drift = drifts ? size - 1 : size;
-  const Vector3 across_I = Rotate(sample.state.q_IB, Vector3::UnitX().cross(about));
+AxisAtInstant::AxisAtInstant(const LauncherPlant& plant, const TickSample& sample, Axis axis,
+                             LateralPath path)
+    : plant_(plant),
+      sample_(sample),
+      axis_(axis),
+      stack_(plant.stacks[static_cast<std::size_t>(sample.stack)]),
+      equations_(plant),
+      phase_(PhaseOf(sample)),
+      modes_(stack_.bending && axis != kRoll ? stack_.bending->modes : 0),
+      plane_(axis == kPitch ? 1 : 0),
+      first_mode_(plane_ * kModes),
+      drifts_(path == LateralPath::kDrifts && axis != kRoll),
+      size_(4 + 2 * modes_ + (drifts_ ? 1 : 0)),
+      drift_(drifts_ ? size_ - 1 : size_) {
+  const NozzleLayout& layout = plant.LayoutOf(sample.stack, sample.boosting);
+  drives_ = layout.banks() * kDrives;
+  for (int i = 0; i < drives_; ++i)
+    if (NozzleOf(i) != sample.stuck_nozzle)
+      pattern_[static_cast<std::size_t>(i)] = layout.allocation[i][axis];
+  about_[axis] = 1.0;
+  across_I_ = Rotate(sample.state.q_IB, Vector3::UnitX().cross(about_));
+}
 
-  const LauncherModel equations(plant);
-  // The accelerations of axis, modes and drift where one state, by its place in the linear plant, or the
-  // command (-1) departs by `step`.
-  const auto accelerations = [&](int departed, double step) {
-    RigidBodyState state = sample.state;
-    if (departed == 0) state.q_IB = state.q_IB * FromRotationVector(step * about);
-    if (departed == 1) state.w_IB_B += step * about;
-    if (departed == drift) state.v_IC_I += step * across_I;
-    std::array<double, kLauncherSize> y{}, dydt{};
-    WriteState(state, y.data());
-    LauncherPhase at = phase;
-    for (std::size_t i = 0; i < static_cast<std::size_t>(drives); ++i) {
-      const int drive = static_cast<int>(i);
-      y[static_cast<std::size_t>(AngleOf(drive))] =
-          sample.nozzle_rad[i] + (departed == 2 ? step * pattern[i] : 0.0);
-      y[static_cast<std::size_t>(RateOf(drive))] = departed == 3 ? step * pattern[i] : 0.0;
-      at.command_rad[i] = sample.nozzle_rad[i] + (departed == -1 ? step * pattern[i] : 0.0);
-    }
-    std::copy(sample.bending.begin(), sample.bending.end(), y.begin() + kModalState);
-    if (departed >= 4 + modes && departed < drift)
-      y[static_cast<std::size_t>(kModalRate + first_mode + departed - 4 - modes)] += step;
-    else if (departed >= 4 && departed < drift)
-      y[static_cast<std::size_t>(kModalState + first_mode + departed - 4)] += step;
-    equations.Derivative(at, sample.time_s, y.data(), dydt.data());
-    const RigidBodyState rates = ReadState(dydt.data());
-    Eigen::VectorXd found(2 + modes);
-    found[0] = rates.w_IB_B[axis];
-    found[1 + modes] = rates.v_IC_I.dot(across_I);
-    for (int k = 0; k < modes; ++k)
-      found[1 + k] = dydt[static_cast<std::size_t>(kModalRate + first_mode + k)];
-    return found;
-  };
-
-  const Gimbal& gimbal = DrivesOf(plant, sample, pattern);
-  const double w = gimbal.bandwidth_rad_s;
+AxisPlant AxisAtInstant::Linear(const SensorModel& sensors) const {
   AxisPlant linear;
-  linear.drifts = drifts;
-  linear.a = Eigen::MatrixXd::Zero(size, size);
-  linear.b = Eigen::VectorXd::Zero(size);
-  const auto put = [&](int departed, double step) {
-    const Eigen::VectorXd slope =
-        (accelerations(departed, step) - accelerations(departed, -step)) / (2.0 * step);
-    for (int k = 0; k <= modes + (drifts ? 1 : 0); ++k) {
-      const int row = k == 0 ? 1 : 3 + modes + k;  // the drift's follows the modes'
-      (departed < 0 ? linear.b[row] : linear.a(row, departed)) = slope[k];
-    }
-  };
-  put(0, kAngleStep_rad);
-  put(1, kRateStep_rad_s);
-  put(2, kAngleStep_rad);
-  if (stack.gimbal.nozzle_inertia_kg_m2 > 0.0) {
-    put(3, kRateStep_rad_s);
-    put(-1, kAngleStep_rad);
+  linear.drifts = drifts_;
+  linear.a = Eigen::MatrixXd::Zero(size_, size_);
+  linear.b = Eigen::VectorXd::Zero(size_);
+  PutEquations(linear);
+  PutDrives(linear);
+  PutSensors(sensors, linear);
+  return linear;
+}
+
+Eigen::VectorXd AxisAtInstant::Accelerations(int departed, double step) const {
+  RigidBodyState state = sample_.state;
+  if (departed == 0) state.q_IB = state.q_IB * FromRotationVector(step * about_);
+  if (departed == 1) state.w_IB_B += step * about_;
+  if (departed == drift_) state.v_IC_I += step * across_I_;
+  std::array<double, kLauncherSize> y{}, dydt{};
+  WriteState(state, y.data());
+  LauncherPhase at = phase_;
+  for (std::size_t i = 0; i < static_cast<std::size_t>(drives_); ++i) {
+    const int drive = static_cast<int>(i);
+    y[static_cast<std::size_t>(AngleOf(drive))] =
+        sample_.nozzle_rad[i] + (departed == 2 ? step * pattern_[i] : 0.0);
+    y[static_cast<std::size_t>(RateOf(drive))] = departed == 3 ? step * pattern_[i] : 0.0;
+    at.command_rad[i] = sample_.nozzle_rad[i] + (departed == kCommand ? step * pattern_[i] : 0.0);
   }
-  for (int k = 0; k < modes; ++k) {
-    put(4 + k, kDeflectionStep_m);
-    put(4 + modes + k, kDeflectionStep_m);
-    linear.a(4 + k, 4 + modes + k) = 1.0;
+  std::copy(sample_.bending.begin(), sample_.bending.end(), y.begin() + kModalState);
+  if (departed >= 4 + modes_ && departed < drift_)
+    y[static_cast<std::size_t>(kModalRate + first_mode_ + departed - 4 - modes_)] += step;
+  else if (departed >= 4 && departed < drift_)
+    y[static_cast<std::size_t>(kModalState + first_mode_ + departed - 4)] += step;
+  equations_.Derivative(at, sample_.time_s, y.data(), dydt.data());
+  const RigidBodyState rates = ReadState(dydt.data());
+  Eigen::VectorXd found(2 + modes_);
+  found[0] = rates.w_IB_B[axis_];
+  found[1 + modes_] = rates.v_IC_I.dot(across_I_);
+  for (int k = 0; k < modes_; ++k)
+    found[1 + k] = dydt[static_cast<std::size_t>(kModalRate + first_mode_ + k)];
+  return found;
+}
+
+void AxisAtInstant::PutSlope(int departed, double step, AxisPlant& linear) const {
+  const Eigen::VectorXd slope =
+      (Accelerations(departed, step) - Accelerations(departed, -step)) / (2.0 * step);
+  for (int k = 0; k <= modes_ + (drifts_ ? 1 : 0); ++k) {
+    const int row = k == 0 ? 1 : 3 + modes_ + k;  // the drift's follows the modes'
+    (departed == kCommand ? linear.b[row] : linear.a(row, departed)) = slope[k];
   }
-  if (drifts) put(drift, kDriftStep_m_s);
+}
+
+void AxisAtInstant::PutEquations(AxisPlant& linear) const {
+  PutSlope(0, kAngleStep_rad, linear);
+  PutSlope(1, kRateStep_rad_s, linear);
+  PutSlope(2, kAngleStep_rad, linear);
+  if (stack_.gimbal.nozzle_inertia_kg_m2 > 0.0) {
+    PutSlope(3, kRateStep_rad_s, linear);
+    PutSlope(kCommand, kAngleStep_rad, linear);
+  }
+  for (int k = 0; k < modes_; ++k) {
+    PutSlope(4 + k, kDeflectionStep_m, linear);
+    PutSlope(4 + modes_ + k, kDeflectionStep_m, linear);
+    linear.a(4 + k, 4 + modes_ + k) = 1.0;
+  }
+  if (drifts_) PutSlope(drift_, kDriftStep_m_s, linear);
   linear.a(0, 1) = 1.0;
+}
+
+void AxisAtInstant::PutDrives(AxisPlant& linear) const {
+  const Gimbal& gimbal = DrivesOf(plant_, sample_, pattern_);
+  const double w = gimbal.bandwidth_rad_s;
   linear.a(2, 3) = 1.0;
   linear.a(3, 2) = -w * w;
   linear.a(3, 3) = -2.0 * gimbal.damping_ratio * w;
   linear.b[3] = w * w;
+}
 
-  linear.attitude = Eigen::RowVectorXd::Unit(size, 0);
+void AxisAtInstant::PutSensors(const SensorModel& sensors, AxisPlant& linear) const {
+  linear.attitude = Eigen::RowVectorXd::Unit(size_, 0);
+  for (int k = 0; k < modes_; ++k) linear.attitude[4 + k] = ModeSlope(BendingTable::kUnitSlope, k);
   linear.rates.clear();
-  const BendingTable* const table = stack.BendingWithout(sample.jettisoned);
-  const SensorModel::Weights& weights = sensors.stages[static_cast<std::size_t>(sample.stack)];
-  const double sign = axis == kPitch ? 1.0 : -1.0;
-  const auto slope_of = [&](int column, int mode) {
-    const double propellant = stack.burn.Propellant(sample.since_ignition_s);
-    return sign * plant.bending.slope_factor *
-           table->At(table->planes == 1 ? 0 : plane, mode, column, propellant);
-  };
-  const auto rate_at = [&](int column) {
-    Eigen::RowVectorXd row = Eigen::RowVectorXd::Unit(size, 1);
-    for (int k = 0; k < modes; ++k) row[4 + modes + k] = slope_of(column, k);
-    return row;
-  };
-  for (int k = 0; k < modes; ++k) linear.attitude[4 + k] = slope_of(BendingTable::kUnitSlope, k);
-  if (weights.unit != 0.0) linear.rates.push_back({rate_at(BendingTable::kUnitSlope), {}, weights.unit, 0.0});
+  const SensorModel::Weights& weights = sensors.stages[static_cast<std::size_t>(sample_.stack)];
+  if (weights.unit != 0.0) linear.rates.push_back({RateAt(BendingTable::kUnitSlope), {}, weights.unit, 0.0});
   for (std::size_t g = 0; g < sensors.gyros.size(); ++g) {
     if (weights.gyro[g] == 0.0) continue;
-    linear.rates.push_back({rate_at(BendingTable::kGyroSlope + static_cast<int>(g)), sensors.gyros[g].section,
+    linear.rates.push_back({RateAt(BendingTable::kGyroSlope + static_cast<int>(g)), sensors.gyros[g].section,
                             weights.gyro[g], 0.5 * (sensors.gyros[g].sample_ticks - 1)});
   }
-  if (modes > 0)
-    linear.lowest_mode_rad_s = plant.bending.frequency_factor[0] *
-                               table->At(table->planes == 1 ? 0 : plane, 0, BendingTable::kFrequency,
-                                         stack.burn.Propellant(sample.since_ignition_s));
-  return linear;
+  if (modes_ > 0)
+    linear.lowest_mode_rad_s = plant_.bending.frequency_factor[0] * ModeTable(BendingTable::kFrequency, 0);
+}
+
+/// How a place turns with a mode, in the axis' sense.
+double AxisAtInstant::ModeSlope(int column, int mode) const {
+  const double sign = axis_ == kPitch ? 1.0 : -1.0;
+  return sign * plant_.bending.slope_factor * ModeTable(column, mode);
+}
+
+double AxisAtInstant::ModeTable(int column, int mode) const {
+  const BendingTable* const table = stack_.BendingWithout(sample_.jettisoned);
+  return table->At(table->planes == 1 ? 0 : plane_, mode, column,
+                   stack_.burn.Propellant(sample_.since_ignition_s));
+}
+
+/// The rate that a place shows.
+Eigen::RowVectorXd AxisAtInstant::RateAt(int column) const {
+  Eigen::RowVectorXd row = Eigen::RowVectorXd::Unit(size_, 1);
+  for (int k = 0; k < modes_; ++k) row[4 + modes_ + k] = ModeSlope(column, k);
+  return row;
+}
+
+}  // namespace
+
+AxisPlant LineariseAxis(const LauncherPlant& plant, const TickSample& sample, Axis axis,
+                        const SensorModel& sensors, LateralPath path) {
+  return AxisAtInstant(plant, sample, axis, path).Linear(sensors);
 }
 
 LinearLaw LineariseLaw(const AutopilotModel& autopilot, int stage, double since_ignition_s, Axis axis,

@@ -1,12 +1,30 @@
 // Maps values to positions in a chart, and chooses the round numbers at its axis.
 #pragma once
 
+#include <algorithm>
+#include <cmath>
+#include <limits>
 #include <string>
 #include <vector>
 
 #include "core/pages/svg_chart.h"
 
 namespace dispersa {
+
+/// From the least to the largest of the values added. Empty: low > high.
+struct ChartRange {
+  double low = std::numeric_limits<double>::infinity();
+  double high = -std::numeric_limits<double>::infinity();
+
+  void Add(double value, bool positive_only) {
+    if (!std::isfinite(value) || (positive_only && value <= 0.0)) return;
+    low = std::min(low, value);
+    high = std::max(high, value);
+  }
+  void Add(const std::vector<double>& values, bool positive_only) {
+    for (const double value : values) Add(value, positive_only);
+  }
+};
 
 struct Tick {
   double value;

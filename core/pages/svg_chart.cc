@@ -5,7 +5,6 @@
 #include <algorithm>
 #include <cmath>
 #include <cstdint>
-#include <limits>
 #include <set>
 #include <utility>
 
@@ -30,23 +29,9 @@ std::string Coordinate(double value) {
   return text == "-0" ? "0" : text;
 }
 
-struct AxisRange {
-  double low = std::numeric_limits<double>::infinity();
-  double high = -std::numeric_limits<double>::infinity();
-
-  void Add(double value, bool positive_only) {
-    if (!std::isfinite(value) || (positive_only && value <= 0.0)) return;
-    low = std::min(low, value);
-    high = std::max(high, value);
-  }
-  void Add(const std::vector<double>& values, bool positive_only) {
-    for (const double value : values) Add(value, positive_only);
-  }
-};
-
 /// Whether a limit is shown: one that lies farther from the data than these are wide would press them
 /// together.
-bool Near(double limit, const ChartAxis& axis, const AxisRange& data) {
+bool Near(double limit, const ChartAxis& axis, const ChartRange& data) {
   if (axis.low && axis.high) return limit >= *axis.low && limit <= *axis.high;
   const double span = data.high - data.low;
   if (!(span > 0.0)) return true;
@@ -224,77 +209,155 @@ void SvgChart::Shade(double from, double to, const std::string& label) {
   spans_.push_back({from, to, label});
 }
 
-std::string SvgChart::Svg(const std::string& description) const {
-  const double bottom = height_ - kBottom;
-  const double right = width_ - kRight;
+/// A chart as it is drawn: which series it shows, how far its axes reach, and where each part lies.
+class SvgChart::Picture {
+ public:
+  explicit Picture(const SvgChart& chart);
 
-  std::vector<std::string> legends;
-  for (const Series& series : series_) legends.push_back(series.legend);
-  std::vector<bool> drawn(series_.size(), true);
+  std::string Svg(const std::string& description) const;
 
-  AxisRange x_range;
-  for (const Series& series : series_) {
-    if (series.kind != Series::Kind::kVerticalLimit) x_range.Add(series.x, x_.logarithmic);
-  }
-  const AxisRange x_data = x_range;
-  for (std::size_t i = 0; i < series_.size(); ++i) {
-    if (series_[i].kind != Series::Kind::kVerticalLimit) continue;
-    const double limit = series_[i].x[0];
-    drawn[i] = Near(limit, x_, x_data);
-    if (!drawn[i]) legends[i] += limit > x_data.high ? " (far to the right)" : " (far to the left)";
-    const double room = 0.03 * (x_data.high - x_data.low);  // a limit shall not lie on the frame
-    if (drawn[i]) x_range.Add(std::vector{limit - room, limit + room}, x_.logarithmic);
-  }
-  const ChartScale xs(x_, x_range.low, x_range.high, kLeft, right, std::max(3, width_ / 90));
-
-  AxisRange y_range;
-  for (const Series& series : series_) {
-    if (series.kind == Series::Kind::kVerticalLimit || series.kind == Series::Kind::kHorizontalLimit)
-      continue;
-    if (series.kind == Series::Kind::kBars) {
-      y_range.Add(0.0, y_.logarithmic);
-      y_range.Add(series.low, y_.logarithmic);
-      continue;
-    }
-    for (std::size_t i = 0; i < series.x.size(); ++i) {  // only what the x axis shows
-      if (!(series.x[i] >= xs.low() && series.x[i] <= xs.high())) continue;
-      y_range.Add(series.low[i], y_.logarithmic);
-      if (!series.high.empty()) y_range.Add(series.high[i], y_.logarithmic);
-    }
-  }
-  const AxisRange y_data = y_range;
-  for (std::size_t i = 0; i < series_.size(); ++i) {
-    if (series_[i].kind != Series::Kind::kHorizontalLimit) continue;
-    const double limit = series_[i].low[0];
-    drawn[i] = Near(limit, y_, y_data);
-    if (drawn[i]) y_range.Add(limit, y_.logarithmic);
-    if (!drawn[i] && !legends[i].empty()) legends[i] += limit > y_data.high ? " (far above)" : " (far below)";
-  }
-
-  // The legend decides where the plot begins.
-  struct Entry {
+ private:
+  struct LegendEntry {
     const Series* series;
     const std::string* text;
     double x;
     int row;
   };
-  std::vector<Entry> entries;
-  double legend_x = kLeft;
-  int rows = 0;
-  for (std::size_t i = 0; i < series_.size(); ++i) {
-    if (legends[i].empty()) continue;
-    const double width = 32.0 + kCharacter * static_cast<double>(legends[i].size());
-    if (rows == 0 || legend_x + width > width_ - kRight) {
-      ++rows;
-      legend_x = kLeft;
-    }
-    entries.push_back({&series_[i], &legends[i], legend_x, rows - 1});
-    legend_x += width;
-  }
-  const double top = kTitleRow + kLegendRow * rows + (spans_.empty() ? 4.0 : kMarkRow);
-  const ChartScale ys(y_, y_range.low, y_range.high, bottom, top, 5);
+  struct SpanParts {
+    std::string labels;  ///< above the plot
+    std::string shapes;  ///< inside it
+  };
 
-  // What the page's script needs to tell values from positions.
+  // Stages of the layout, in their order.
+  std::vector<std::string> Legends() const;
+  ChartScale HorizontalScale();
+  ChartRange VerticalRange();
+  std::vector<LegendEntry> PlacedLegend() const;
+  double Top() const;
+
+  std::string Opening(const std::string& description) const;
+  SpanParts Spans() const;
+  std::string Ticks() const;
+  std::string PlotOpening() const;
+  std::string Drawn(const Series& series) const;
+  std::string Lines(const Series& series, const std::string& named) const;
+  std::string Dots(const Series& series, const std::string& named) const;
+  std::string Areas(const Series& series, const std::string& named) const;
+  std::string Boxes(const Series& series) const;
+  std::string AxisLabels() const;
+  std::string Legend() const;
+
+  const SvgChart& chart_;
+  const double bottom_;
+  const double right_;
+  std::vector<std::string> legends_;  ///< of each series
+  std::vector<bool> drawn_;           ///< of each series: not a limit far from the data
+  const ChartScale xs_;
+  const ChartRange y_range_;
+  const std::vector<LegendEntry> entries_;
+  const double top_;
+  const ChartScale ys_;
+};
+
+SvgChart::Picture::Picture(const SvgChart& chart)
+    : chart_(chart),
+      bottom_(chart.height_ - kBottom),
+      right_(chart.width_ - kRight),
+      legends_(Legends()),
+      drawn_(chart.series_.size(), true),
+      xs_(HorizontalScale()),
+      y_range_(VerticalRange()),
+      entries_(PlacedLegend()),
+      top_(Top()),
+      ys_(chart.y_, y_range_.low, y_range_.high, bottom_, top_, 5) {}
+
+std::vector<std::string> SvgChart::Picture::Legends() const {
+  std::vector<std::string> legends;
+  for (const Series& series : chart_.series_) legends.push_back(series.legend);
+  return legends;
+}
+
+ChartScale SvgChart::Picture::HorizontalScale() {
+  const ChartAxis& axis = chart_.x_;
+  ChartRange range;
+  for (const Series& series : chart_.series_) {
+    if (series.kind != Series::Kind::kVerticalLimit) range.Add(series.x, axis.logarithmic);
+  }
+  const ChartRange data = range;
+  for (std::size_t i = 0; i < chart_.series_.size(); ++i) {
+    if (chart_.series_[i].kind != Series::Kind::kVerticalLimit) continue;
+    const double limit = chart_.series_[i].x[0];
+    drawn_[i] = Near(limit, axis, data);
+    if (!drawn_[i]) legends_[i] += limit > data.high ? " (far to the right)" : " (far to the left)";
+    const double room = 0.03 * (data.high - data.low);  // a limit shall not lie on the frame
+    if (drawn_[i]) range.Add(std::vector{limit - room, limit + room}, axis.logarithmic);
+  }
+  return {axis, range.low, range.high, kLeft, right_, std::max(3, chart_.width_ / 90)};
+}
+
+ChartRange SvgChart::Picture::VerticalRange() {
+  const ChartAxis& axis = chart_.y_;
+  ChartRange range;
+  for (const Series& series : chart_.series_) {
+    if (series.kind == Series::Kind::kVerticalLimit || series.kind == Series::Kind::kHorizontalLimit)
+      continue;
+    if (series.kind == Series::Kind::kBars) {
+      range.Add(0.0, axis.logarithmic);
+      range.Add(series.low, axis.logarithmic);
+      continue;
+    }
+    for (std::size_t i = 0; i < series.x.size(); ++i) {  // only what the x axis shows
+      if (!(series.x[i] >= xs_.low() && series.x[i] <= xs_.high())) continue;
+      range.Add(series.low[i], axis.logarithmic);
+      if (!series.high.empty()) range.Add(series.high[i], axis.logarithmic);
+    }
+  }
+  const ChartRange data = range;
+  for (std::size_t i = 0; i < chart_.series_.size(); ++i) {
+    if (chart_.series_[i].kind != Series::Kind::kHorizontalLimit) continue;
+    const double limit = chart_.series_[i].low[0];
+    drawn_[i] = Near(limit, axis, data);
+    if (drawn_[i]) range.Add(limit, axis.logarithmic);
+    if (!drawn_[i] && !legends_[i].empty())
+      legends_[i] += limit > data.high ? " (far above)" : " (far below)";
+  }
+  return range;
+}
+
+std::vector<SvgChart::Picture::LegendEntry> SvgChart::Picture::PlacedLegend() const {
+  std::vector<LegendEntry> entries;
+  double x = kLeft;
+  int rows = 0;
+  for (std::size_t i = 0; i < chart_.series_.size(); ++i) {
+    if (legends_[i].empty()) continue;
+    const double width = 32.0 + kCharacter * static_cast<double>(legends_[i].size());
+    if (rows == 0 || x + width > chart_.width_ - kRight) {
+      ++rows;
+      x = kLeft;
+    }
+    entries.push_back({&chart_.series_[i], &legends_[i], x, rows - 1});
+    x += width;
+  }
+  return entries;
+}
+
+/// The legend decides where the plot begins.
+double SvgChart::Picture::Top() const {
+  const int rows = entries_.empty() ? 0 : entries_.back().row + 1;
+  return kTitleRow + kLegendRow * rows + (chart_.spans_.empty() ? 4.0 : kMarkRow);
+}
+
+std::string SvgChart::Picture::Svg(const std::string& description) const {
+  const SpanParts spans = Spans();
+  std::string svg = Opening(description) + spans.labels + Ticks() + PlotOpening() + spans.shapes;
+  for (std::size_t i = 0; i < chart_.series_.size(); ++i)
+    if (drawn_[i]) svg += Drawn(chart_.series_[i]);
+  return svg + "</svg>" + Segment(kLeft, bottom_, right_, bottom_, "axis") + AxisLabels() + Legend() +
+         "</svg>";
+}
+
+/// The element with what the page's script needs to tell values from positions.
+std::string SvgChart::Picture::Opening(const std::string& description) const {
   const auto axis = [](const ChartAxis& described, const ChartScale& scale, double from, double to) {
     return fmt::format("{} {} {} {} {}{}", ShortestText(scale.low()), ShortestText(scale.high()),
                        Coordinate(from), Coordinate(to), described.logarithmic ? "log" : "linear",
@@ -302,126 +365,160 @@ std::string SvgChart::Svg(const std::string& description) const {
   };
   std::string svg = fmt::format(
       "<svg class=\"chart\" viewBox=\"0 0 {} {}\" role=\"img\" aria-label=\"{}\" data-x=\"{}\" data-y=\"{}\"",
-      width_, height_, HtmlText(description), axis(x_, xs, kLeft, right), axis(y_, ys, bottom, top));
-  if (!x_metric_.empty()) svg += fmt::format(" data-mx=\"{}\"", x_metric_);
-  if (!y_metric_.empty()) svg += fmt::format(" data-my=\"{}\"", y_metric_);
-  svg += ">";
+      chart_.width_, chart_.height_, HtmlText(description), axis(chart_.x_, xs_, kLeft, right_),
+      axis(chart_.y_, ys_, bottom_, top_));
+  if (!chart_.x_metric_.empty()) svg += fmt::format(" data-mx=\"{}\"", chart_.x_metric_);
+  if (!chart_.y_metric_.empty()) svg += fmt::format(" data-my=\"{}\"", chart_.y_metric_);
+  return svg + ">";
+}
 
-  std::string spans, labels;
-  for (const Span& span : spans_) {
-    if (span.to < xs.low() || span.from > xs.high()) continue;
-    const double from = xs.At(std::max(span.from, xs.low()));
-    const double to = xs.At(std::min(span.to, xs.high()));
+SvgChart::Picture::SpanParts SvgChart::Picture::Spans() const {
+  SpanParts parts;
+  for (const Span& span : chart_.spans_) {
+    if (span.to < xs_.low() || span.from > xs_.high()) continue;
+    const double from = xs_.At(std::max(span.from, xs_.low()));
+    const double to = xs_.At(std::min(span.to, xs_.high()));
     if (span.to > span.from) {
-      spans +=
+      parts.shapes +=
           fmt::format("<rect class=\"shade\" x=\"{}\" y=\"{}\" width=\"{}\" height=\"{}\"/>",
-                      Coordinate(from), Coordinate(top), Coordinate(to - from), Coordinate(bottom - top));
-      labels += Text(0.5 * (from + to), top - 3.0, "mark-label", "middle", span.label);
+                      Coordinate(from), Coordinate(top_), Coordinate(to - from), Coordinate(bottom_ - top_));
+      parts.labels += Text(0.5 * (from + to), top_ - 3.0, "mark-label", "middle", span.label);
     } else {
-      spans += Segment(from, top, from, bottom, "mark");
-      const bool inside = from + kCharacter * static_cast<double>(span.label.size()) < width_;
-      labels +=
-          Text(from + (inside ? 1.0 : -1.0), top - 3.0, "mark-label", inside ? "start" : "end", span.label);
+      parts.shapes += Segment(from, top_, from, bottom_, "mark");
+      const bool inside = from + kCharacter * static_cast<double>(span.label.size()) < chart_.width_;
+      parts.labels +=
+          Text(from + (inside ? 1.0 : -1.0), top_ - 3.0, "mark-label", inside ? "start" : "end", span.label);
     }
   }
-  svg += labels + "<g class=\"ticks\">";
-  for (const Tick& tick : ys.ticks()) {
-    const double y = ys.At(tick.value);
-    svg += Segment(kLeft, y, right, y, "grid");
+  return parts;
+}
+
+std::string SvgChart::Picture::Ticks() const {
+  std::string svg = "<g class=\"ticks\">";
+  for (const Tick& tick : ys_.ticks()) {
+    const double y = ys_.At(tick.value);
+    svg += Segment(kLeft, y, right_, y, "grid");
     svg += Text(kLeft - 6.0, y + 4.0, "tick", "end", tick.label);
   }
-  for (const Tick& tick : xs.ticks()) {
-    const double x = xs.At(tick.value);
-    svg += Segment(x, bottom, x, bottom + 4.0, "axis");
-    svg += Text(x, bottom + 17.0, "tick", "middle", tick.label);
+  for (const Tick& tick : xs_.ticks()) {
+    const double x = xs_.At(tick.value);
+    svg += Segment(x, bottom_, x, bottom_ + 4.0, "axis");
+    svg += Text(x, bottom_ + 17.0, "tick", "middle", tick.label);
   }
-  // A view of its own, so that a zoom changes nothing but what it shows; a little larger than the axes, so
-  // that nothing on them is cut.
-  constexpr double kRim = 3.0;
-  const std::string frame =
-      fmt::format("{} {} {} {}", Coordinate(kLeft - kRim), Coordinate(top - kRim),
-                  Coordinate(right - kLeft + 2.0 * kRim), Coordinate(bottom - top + 2.0 * kRim));
-  svg += fmt::format(
-      "</g><svg class=\"plot\" x=\"{}\" y=\"{}\" width=\"{}\" height=\"{}\" viewBox=\"{}\" "
-      "preserveAspectRatio=\"none\">{}",
-      Coordinate(kLeft - kRim), Coordinate(top - kRim), Coordinate(right - kLeft + 2.0 * kRim),
-      Coordinate(bottom - top + 2.0 * kRim), frame, spans);
+  return svg + "</g>";
+}
 
-  for (std::size_t n = 0; n < series_.size(); ++n) {
-    const Series& series = series_[n];
-    if (!drawn[n]) continue;
-    const std::string named = fmt::format(" data-s=\"{}\"", HtmlText(series.legend));
-    switch (series.kind) {
-      case Series::Kind::kLine:
-        for (const auto& run : Runs(series.x, series.low, xs, ys, y_.logarithmic)) {
-          svg += fmt::format("<path class=\"{}\"{}{} d=\"{}\"/>", series.style, named,
-                             series.case_index ? fmt::format(" data-case=\"{}\"", *series.case_index) : "",
-                             Path(run));
-        }
-        break;
-      case Series::Kind::kPoints: {
-        // One path of strokes without length, whose round ends are the dots: an element a case would be
-        // heavy.
-        std::string dots;
-        std::set<std::pair<long, long>> taken;
-        for (std::size_t i = 0; i < series.x.size(); ++i) {
-          if (!std::isfinite(series.x[i]) || !std::isfinite(series.low[i])) continue;
-          const double x = xs.At(series.x[i]);
-          const double y = ys.At(series.low[i]);
-          // Of many dots one a pixel is seen.
-          if (series.x.size() > kManyPoints && !taken.insert({std::lround(x), std::lround(y)}).second)
-            continue;
-          dots += "M" + Coordinate(x) + " " + Coordinate(y) + "h0";
-        }
-        svg += fmt::format("<path class=\"{}\"{} d=\"{}\"/>", series.style, named, dots);
-        break;
-      }
-      case Series::Kind::kBand: {
-        const auto lows = Runs(series.x, series.low, xs, ys, y_.logarithmic);
-        const auto highs = Runs(series.x, series.high, xs, ys, y_.logarithmic);
-        for (std::size_t i = 0; i < std::min(lows.size(), highs.size()); ++i) {
-          std::vector<Point> outline = highs[i];
-          outline.insert(outline.end(), lows[i].rbegin(), lows[i].rend());
-          svg += fmt::format("<path class=\"{}\"{} d=\"{}Z\"/>", series.style, named, Path(outline));
-        }
-        break;
-      }
-      case Series::Kind::kBars:
-        for (std::size_t i = 0; i + 1 < series.x.size(); ++i) {
-          if (series.low[i] <= 0.0) continue;
-          const double from = xs.At(series.x[i]);
-          const double y = ys.At(series.low[i]);
-          svg += fmt::format(
-              "<rect class=\"bar\" x=\"{}\" y=\"{}\" width=\"{}\" height=\"{}\"><title>{} to {}: {}"
-              "</title></rect>",
-              Coordinate(from), Coordinate(y), Coordinate(std::max(xs.At(series.x[i + 1]) - from - 0.6, 0.6)),
-              Coordinate(bottom - y), ReadableText(series.x[i]), ReadableText(series.x[i + 1]),
-              ReadableText(series.low[i]));
-        }
-        break;
-      case Series::Kind::kVerticalLimit:
-        svg += Segment(xs.At(series.x[0]), top, xs.At(series.x[0]), bottom, series.style.c_str(), named);
-        break;
-      case Series::Kind::kHorizontalLimit:
-        svg += Segment(kLeft, ys.At(series.low[0]), right, ys.At(series.low[0]), series.style.c_str(), named);
-        break;
+/// A view of its own, so that a zoom changes nothing but what it shows; a little larger than the axes, so
+/// that nothing on them is cut.
+std::string SvgChart::Picture::PlotOpening() const {
+  constexpr double kRim = 3.0;
+  const std::string x = Coordinate(kLeft - kRim), y = Coordinate(top_ - kRim);
+  const std::string width = Coordinate(right_ - kLeft + 2.0 * kRim);
+  const std::string height = Coordinate(bottom_ - top_ + 2.0 * kRim);
+  return fmt::format(
+      "<svg class=\"plot\" x=\"{0}\" y=\"{1}\" width=\"{2}\" height=\"{3}\" viewBox=\"{0} {1} {2} {3}\" "
+      "preserveAspectRatio=\"none\">",
+      x, y, width, height);
+}
+
+std::string SvgChart::Picture::Drawn(const Series& series) const {
+  const std::string named = fmt::format(" data-s=\"{}\"", HtmlText(series.legend));
+  switch (series.kind) {
+    case Series::Kind::kLine:
+      return Lines(series, named);
+    case Series::Kind::kPoints:
+      return Dots(series, named);
+    case Series::Kind::kBand:
+      return Areas(series, named);
+    case Series::Kind::kBars:
+      return Boxes(series);
+    case Series::Kind::kVerticalLimit: {
+      const double x = xs_.At(series.x[0]);
+      return Segment(x, top_, x, bottom_, series.style.c_str(), named);
+    }
+    case Series::Kind::kHorizontalLimit: {
+      const double y = ys_.At(series.low[0]);
+      return Segment(kLeft, y, right_, y, series.style.c_str(), named);
     }
   }
+  return "";
+}
 
-  svg += "</svg>" + Segment(kLeft, bottom, right, bottom, "axis");
-  svg += Text(0.5 * (kLeft + right), height_ - 8.0, "label", "middle", x_.label);
-  svg += Text(4.0, 13.0, "label", "start", y_.label);
-  for (const Entry& entry : entries) {
+std::string SvgChart::Picture::Lines(const Series& series, const std::string& named) const {
+  std::string svg;
+  for (const auto& run : Runs(series.x, series.low, xs_, ys_, chart_.y_.logarithmic)) {
+    svg +=
+        fmt::format("<path class=\"{}\"{}{} d=\"{}\"/>", series.style, named,
+                    series.case_index ? fmt::format(" data-case=\"{}\"", *series.case_index) : "", Path(run));
+  }
+  return svg;
+}
+
+/// One path of strokes without length, whose round ends are the dots: an element a case would be heavy.
+std::string SvgChart::Picture::Dots(const Series& series, const std::string& named) const {
+  std::string dots;
+  std::set<std::pair<long, long>> taken;
+  for (std::size_t i = 0; i < series.x.size(); ++i) {
+    if (!std::isfinite(series.x[i]) || !std::isfinite(series.low[i])) continue;
+    const double x = xs_.At(series.x[i]);
+    const double y = ys_.At(series.low[i]);
+    // Of many dots one a pixel is seen.
+    if (series.x.size() > kManyPoints && !taken.insert({std::lround(x), std::lround(y)}).second) continue;
+    dots += "M" + Coordinate(x) + " " + Coordinate(y) + "h0";
+  }
+  return fmt::format("<path class=\"{}\"{} d=\"{}\"/>", series.style, named, dots);
+}
+
+std::string SvgChart::Picture::Areas(const Series& series, const std::string& named) const {
+  const auto lows = Runs(series.x, series.low, xs_, ys_, chart_.y_.logarithmic);
+  const auto highs = Runs(series.x, series.high, xs_, ys_, chart_.y_.logarithmic);
+  std::string svg;
+  for (std::size_t i = 0; i < std::min(lows.size(), highs.size()); ++i) {
+    std::vector<Point> outline = highs[i];
+    outline.insert(outline.end(), lows[i].rbegin(), lows[i].rend());
+    svg += fmt::format("<path class=\"{}\"{} d=\"{}Z\"/>", series.style, named, Path(outline));
+  }
+  return svg;
+}
+
+std::string SvgChart::Picture::Boxes(const Series& series) const {
+  std::string svg;
+  for (std::size_t i = 0; i + 1 < series.x.size(); ++i) {
+    if (series.low[i] <= 0.0) continue;
+    const double from = xs_.At(series.x[i]);
+    const double y = ys_.At(series.low[i]);
+    svg += fmt::format(
+        "<rect class=\"bar\" x=\"{}\" y=\"{}\" width=\"{}\" height=\"{}\"><title>{} to {}: {}"
+        "</title></rect>",
+        Coordinate(from), Coordinate(y), Coordinate(std::max(xs_.At(series.x[i + 1]) - from - 0.6, 0.6)),
+        Coordinate(bottom_ - y), ReadableText(series.x[i]), ReadableText(series.x[i + 1]),
+        ReadableText(series.low[i]));
+  }
+  return svg;
+}
+
+std::string SvgChart::Picture::AxisLabels() const {
+  return Text(0.5 * (kLeft + right_), chart_.height_ - 8.0, "label", "middle", chart_.x_.label) +
+         Text(4.0, 13.0, "label", "start", chart_.y_.label);
+}
+
+std::string SvgChart::Picture::Legend() const {
+  std::string svg;
+  for (const LegendEntry& entry : entries_) {
     const double y = kTitleRow + kLegendRow * entry.row + 9.0;
-    const bool area = entry.series->kind == Series::Kind::kBand || entry.series->kind == Series::Kind::kBars;
-    svg += area ? fmt::format("<rect class=\"{}\" x=\"{}\" y=\"{}\" width=\"18\" height=\"10\"/>",
-                              entry.series->style, Coordinate(entry.x), Coordinate(y - 9.0))
-                : Segment(entry.x + (entry.series->kind == Series::Kind::kPoints ? 12.0 : 0.0), y - 4.0,
-                          entry.x + (entry.series->kind == Series::Kind::kPoints ? 12.0 : 18.0), y - 4.0,
-                          entry.series->style.c_str());
+    const Series::Kind kind = entry.series->kind;
+    const std::string& style = entry.series->style;
+    const bool dot = kind == Series::Kind::kPoints;
+    svg += kind == Series::Kind::kBand || kind == Series::Kind::kBars
+               ? fmt::format("<rect class=\"{}\" x=\"{}\" y=\"{}\" width=\"18\" height=\"10\"/>", style,
+                             Coordinate(entry.x), Coordinate(y - 9.0))
+               : Segment(entry.x + (dot ? 12.0 : 0.0), y - 4.0, entry.x + (dot ? 12.0 : 18.0), y - 4.0,
+                         style.c_str());
     svg += Text(entry.x + 22.0, y, "legend", "start", *entry.text);
   }
-  return svg + "</svg>";
+  return svg;
 }
+
+std::string SvgChart::Svg(const std::string& description) const { return Picture(*this).Svg(description); }
 
 }  // namespace dispersa

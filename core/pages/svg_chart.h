@@ -49,6 +49,7 @@ class SvgChart {
   std::string Svg(const std::string& description) const;
 
  private:
+  class Picture;
   struct Series {
     enum class Kind { kLine, kPoints, kBand, kBars, kVerticalLimit, kHorizontalLimit };
     Kind kind;

@@ -105,6 +105,112 @@ double NominalMetric(const PaperStudy& study, const char* name) {
   return study.nominal.metrics[MetricColumn(name)];
 }
 
+/// Campaigns of Figure 10, with Table 3 off and on.
+struct RobustnessSet {
+  const char* title;
+  const char* quiet;
+  const char* disturbed;
+};
+constexpr RobustnessSet kRobustnessSets[] = {
+    {"all 16 corners", "aero20_quiet", "aero20"},
+    {"one at a time", "aero20_one_at_a_time_quiet", "aero20_one_at_a_time"},
+    {"Monte Carlo, uniform", "aero20_monte_carlo_quiet", "aero20_monte_carlo"}};
+
+/// Every varied flight in the initial pitch-over.
+std::string VariedFlights(const PaperStudy& study, const char* name, PaperColumn column, const char* label,
+                          const std::string& caption) {
+  SvgChart chart({.label = kTimeAxis, .low = 0.0, .high = KickEnd(study)}, {.label = label}, 520, 280);
+  const std::vector<SampledFlight>& flights = study.at(name).flights.histories;
+  for (std::size_t i = 0; i < flights.size(); ++i)
+    chart.Line(Times(flights[i][column].size()), flights[i][column], "line-0 thin",
+               i == 0 ? "varied flights" : "");
+  const std::vector<double> time_s = NominalColumn(study, "time_s");
+  const bool pitch = column == kPitchLaunch;
+  chart.Line(time_s, NominalColumn(study, pitch ? "pitch_program_deg" : "pitch_error_deg"),
+             pitch ? "program" : "line-1", pitch ? "reference" : "nominal");
+  return Figure(chart.Svg(caption), HtmlText(caption));
+}
+
+std::string WholeFlightBands(const PaperStudy& study, const char* name) {
+  const StudyFlights& flights = study.at(name).flights;
+  const FlightBands bands = BandsOf(flights, kPitchError);
+  SvgChart chart({.label = kTimeAxis}, {.label = "pitch error, °"}, 520, 280);
+  MarkStages(study, &chart);
+  if (!bands.bands.empty()) {
+    chart.Band(bands.time_s, bands.bands[0].min, bands.bands[0].max, "band-outer", "min–max");
+    chart.Band(bands.time_s, bands.bands[0].p05, bands.bands[0].p95, "band-inner", "5–95 %");
+    chart.Line(bands.time_s, bands.bands[0].p50, "line-0", "median");
+  }
+  const std::string caption = fmt::format("Whole flight: {}, {} flights.", name, flights.histories.size());
+  return Figure(chart.Svg(caption), HtmlText(caption));
+}
+
+std::string RobustnessFigures(const PaperStudy& study) {
+  std::string html =
+      "<div class=\"figures\">\n" +
+      VariedFlights(study, "aero20_quiet", kPitchLaunch, "pitch, °",
+                    "As in the paper: pitch in the initial pitch-over, the 16 corners.") +
+      VariedFlights(study, "aero20_quiet", kPitchError, "pitch error, °", "Their pitch errors.") +
+      VariedFlights(study, "aero20_one_at_a_time_quiet", kPitchError, "pitch error, °",
+                    "One factor at a time.");
+  for (const char* name : {"aero20_monte_carlo_quiet", "aero20_monte_carlo", "aero20"})
+    html += WholeFlightBands(study, name);
+  return html + "</div>\n";
+}
+
+/// A row for each campaign, and what all of them have in common.
+struct RobustnessResults {
+  std::string table;
+  std::size_t lost = 0, flown = 0;
+  double worst_peak_deg = 0.0;  ///< of the completed flights
+};
+
+RobustnessResults ResultsOf(const PaperStudy& study) {
+  HtmlTable table({{"Set"},
+                   {"Table 3"},
+                   {"flights", true},
+                   {"lost", true},
+                   {"RMS, median", true},
+                   {"RMS, largest", true},
+                   {"peak, median", true},
+                   {"peak, largest", true},
+                   {"limit cycle, largest", true}});
+  RobustnessResults results;
+  for (const RobustnessSet& set : kRobustnessSets) {
+    for (const char* name : {set.quiet, set.disturbed}) {
+      const CaseColumns& cases = study.at(name).flights.cases;
+      const MetricDigest rms = Digested(cases, "pitch_error_rms_deg");
+      const MetricDigest peak = Digested(cases, "pitch_error_peak_deg");
+      const MetricDigest cycle = Digested(cases, "deflection_limit_cycle_deg");
+      results.lost += rms.lost;
+      results.flown += rms.n;
+      if (std::isfinite(peak.max)) results.worst_peak_deg = std::max(results.worst_peak_deg, peak.max);
+      table.Row({set.title, name == set.disturbed ? "on" : "off", fmt::format("{}", rms.n),
+                 fmt::format("{}", rms.lost), Degrees(rms.p50), Degrees(rms.max), Degrees(peak.p50),
+                 Degrees(peak.max), Degrees(cycle.max)});
+    }
+  }
+  results.table = table.Html();
+  return results;
+}
+
+/// Which corner is worst, with Table 3 off.
+std::string WorstCorner(const CaseColumns& corners) {
+  const std::vector<double> peaks = CompletedValues(corners, "pitch_error_peak_deg");
+  const auto badness = [](double value) { return std::isfinite(value) ? value : HUGE_VAL; };
+  const auto worst = std::max_element(peaks.begin(), peaks.end(),
+                                      [&](double a, double b) { return badness(a) < badness(b); });
+  if (worst == peaks.end()) return "";
+  const auto row = static_cast<std::size_t>(worst - peaks.begin());
+  const auto input = [&](const char* name) {
+    return corners.inputs[static_cast<std::size_t>(FindInput(name))][row];
+  };
+  return fmt::format(
+      " The worst corner without Table 3 is drag {:g}, lift {:g}, CG {:g}, CP {:g} times nominal: {}.",
+      input("drag_factor"), input("lift_factor"), input("cg_factor"), input("cp_factor"),
+      std::isfinite(*worst) ? "peak " + Degrees(*worst) : std::string("lost"));
+}
+
 }  // namespace
 
 std::string PaperPitchSection(const PaperStudy& study) {
@@ -179,110 +285,22 @@ std::string PaperPitchSection(const PaperStudy& study) {
 }
 
 std::string PaperRobustnessSection(const PaperStudy& study) {
-  struct Set {
-    const char* title;
-    const char* quiet;
-    const char* disturbed;
-  };
-  const Set sets[] = {{"all 16 corners", "aero20_quiet", "aero20"},
-                      {"one at a time", "aero20_one_at_a_time_quiet", "aero20_one_at_a_time"},
-                      {"Monte Carlo, uniform", "aero20_monte_carlo_quiet", "aero20_monte_carlo"}};
-  const double kick_end_s = KickEnd(study);
   std::vector<std::string> names;
-  for (const Set& set : sets) {
+  for (const RobustnessSet& set : kRobustnessSets) {
     names.push_back(set.quiet);
     names.push_back(set.disturbed);
   }
-  std::string html = "<h2 id=\"fig10\">Fig. 10: drag, lift, CG and CP ±20 %</h2>\n" +
-                     PaperSource(study, names) + "<div class=\"figures\">\n";
-
-  const auto curves = [&](const char* name, PaperColumn column, const char* label,
-                          const std::string& caption) {
-    SvgChart chart({.label = kTimeAxis, .low = 0.0, .high = kick_end_s}, {.label = label}, 520, 280);
-    const std::vector<SampledFlight>& flights = study.at(name).flights.histories;
-    for (std::size_t i = 0; i < flights.size(); ++i)
-      chart.Line(Times(flights[i][column].size()), flights[i][column], "line-0 thin",
-                 i == 0 ? "varied flights" : "");
-    const std::vector<double> time_s = NominalColumn(study, "time_s");
-    const bool pitch = column == kPitchLaunch;
-    chart.Line(time_s, NominalColumn(study, pitch ? "pitch_program_deg" : "pitch_error_deg"),
-               pitch ? "program" : "line-1", pitch ? "reference" : "nominal");
-    html += Figure(chart.Svg(caption), HtmlText(caption));
-  };
-  curves("aero20_quiet", kPitchLaunch, "pitch, °",
-         "As in the paper: pitch in the initial pitch-over, the 16 corners.");
-  curves("aero20_quiet", kPitchError, "pitch error, °", "Their pitch errors.");
-  curves("aero20_one_at_a_time_quiet", kPitchError, "pitch error, °", "One factor at a time.");
-  for (const char* name : {"aero20_monte_carlo_quiet", "aero20_monte_carlo", "aero20"}) {
-    const StudyFlights& flights = study.at(name).flights;
-    const FlightBands bands = BandsOf(flights, kPitchError);
-    SvgChart chart({.label = kTimeAxis}, {.label = "pitch error, °"}, 520, 280);
-    MarkStages(study, &chart);
-    if (!bands.bands.empty()) {
-      chart.Band(bands.time_s, bands.bands[0].min, bands.bands[0].max, "band-outer", "min–max");
-      chart.Band(bands.time_s, bands.bands[0].p05, bands.bands[0].p95, "band-inner", "5–95 %");
-      chart.Line(bands.time_s, bands.bands[0].p50, "line-0", "median");
-    }
-    const std::string caption = fmt::format("Whole flight: {}, {} flights.", name, flights.histories.size());
-    html += Figure(chart.Svg(caption), HtmlText(caption));
-  }
-  html += "</div>\n";
-
-  HtmlTable table({{"Set"},
-                   {"Table 3"},
-                   {"flights", true},
-                   {"lost", true},
-                   {"RMS, median", true},
-                   {"RMS, largest", true},
-                   {"peak, median", true},
-                   {"peak, largest", true},
-                   {"limit cycle, largest", true}});
-  std::size_t lost = 0, flown = 0;
-  double worst_peak = 0.0;
-  std::string verdicts;
-  for (const Set& set : sets) {
-    for (const char* name : {set.quiet, set.disturbed}) {
-      const CaseColumns& cases = study.at(name).flights.cases;
-      const MetricDigest rms = Digested(cases, "pitch_error_rms_deg");
-      const MetricDigest peak = Digested(cases, "pitch_error_peak_deg");
-      const MetricDigest cycle = Digested(cases, "deflection_limit_cycle_deg");
-      lost += rms.lost;
-      flown += rms.n;
-      if (std::isfinite(peak.max)) worst_peak = std::max(worst_peak, peak.max);
-      table.Row({set.title, name == set.disturbed ? "on" : "off", fmt::format("{}", rms.n),
-                 fmt::format("{}", rms.lost), Degrees(rms.p50), Degrees(rms.max), Degrees(peak.p50),
-                 Degrees(peak.max), Degrees(cycle.max)});
-    }
-  }
-  html += table.Html();
-
-  // Which corner is worst, with Table 3 off.
-  const CaseColumns& corners = study.at("aero20_quiet").flights.cases;
-  const std::vector<double> peaks = CompletedValues(corners, "pitch_error_peak_deg");
-  std::string corner;
-  const auto badness = [](double value) { return std::isfinite(value) ? value : HUGE_VAL; };
-  const auto worst = std::max_element(peaks.begin(), peaks.end(),
-                                      [&](double a, double b) { return badness(a) < badness(b); });
-  if (worst != peaks.end()) {
-    const auto row = static_cast<std::size_t>(worst - peaks.begin());
-    const auto input = [&](const char* name) {
-      return corners.inputs[static_cast<std::size_t>(FindInput(name))][row];
-    };
-    corner = fmt::format(
-        " The worst corner without Table 3 is drag {:g}, lift {:g}, CG {:g}, CP {:g} times nominal: {}.",
-        input("drag_factor"), input("lift_factor"), input("cg_factor"), input("cp_factor"),
-        std::isfinite(*worst) ? "peak " + Degrees(*worst) : std::string("lost"));
-  }
-  html += PaperFindings(
-      "The controller follows the reference pitch for all variations of ±20 %.",
-      fmt::format("{} of {} flights are lost; the largest peak error of the completed ones is {}.{}", lost,
-                  flown, Degrees(worst_peak), corner),
-      "The paper shows the pitch angle of some variations in the pitch-over; at that scale errors of tenths "
-      "of a degree do "
-      "not show. “±20 % of CG and CP” is read as their distance from the nose of the current stack, with the "
-      "inertia held; "
-      "the paper does not say from where.");
-  return html;
+  const RobustnessResults results = ResultsOf(study);
+  return "<h2 id=\"fig10\">Fig. 10: drag, lift, CG and CP ±20 %</h2>\n" + PaperSource(study, names) +
+         RobustnessFigures(study) + results.table +
+         PaperFindings(
+             "The controller follows the reference pitch for all variations of ±20 %.",
+             fmt::format("{} of {} flights are lost; the largest peak error of the completed ones is {}.{}",
+                         results.lost, results.flown, Degrees(results.worst_peak_deg),
+                         WorstCorner(study.at("aero20_quiet").flights.cases)),
+             "The paper shows the pitch angle of some variations in the pitch-over; at that scale errors of "
+             "tenths of a degree do not show. “±20 % of CG and CP” is read as their distance from the nose "
+             "of the current stack, with the inertia held; the paper does not say from where.");
 }
 
 }  // namespace dispersa

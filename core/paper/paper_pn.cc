@@ -125,15 +125,8 @@ std::string BadPnTable(const PaperStudy& study) {
   return "<h3>A P_n that is refused</h3>\n" + table.Html();
 }
 
-}  // namespace
-
-std::string PaperPnSection(const PaperStudy& study) {
-  const PaperFlights& curves = study.at("pn_curves");
-  const CaseColumns& sweep = study.at("pn_sweep").flights.cases;
-  const AxisConfig& pitch = curves.campaign.autopilot.pitch;
-  std::string html =
-      "<h2 id=\"fig5\">Fig. 5: the choice of P_n</h2>\n" + PaperSource(study, {"pn_curves", "pn_sweep"});
-
+/// P_n of each stage, with the equation that it comes from.
+std::string GainTable(const AxisConfig& pitch) {
   HtmlTable table(
       {{"Stage"}, {"kp, 1/s²", true}, {"kd, 1/s", true}, {"p12", true}, {"p22", true}, {"γ", true}});
   for (std::size_t i = 0; i < pitch.gains.size(); ++i) {
@@ -142,102 +135,125 @@ std::string PaperPnSection(const PaperStudy& study) {
                ReadableText(pitch.gains[i].kd_1_s), ReadableText(p(0, 1)), ReadableText(p(1, 1)),
                ReadableText(pitch.adaptation.gamma[i])});
   }
-  html += fmt::format(
-              "<p>P solves AᵀP + PA = −Q for the error dynamics s² + kd s + kp of each stage and Q = [[{}, "
-              "{}], [{}, "
-              "{}]]; its last column is P_n. Below, both components are scaled in all stages at once.</p>\n",
-              ReadableText(pitch.adaptation.q(0, 0)), ReadableText(pitch.adaptation.q(0, 1)),
-              ReadableText(pitch.adaptation.q(1, 0)), ReadableText(pitch.adaptation.q(1, 1))) +
-          table.Html("narrow");
+  return fmt::format(
+             "<p>P solves AᵀP + PA = −Q for the error dynamics s² + kd s + kp of each stage and Q = [[{}, "
+             "{}], [{}, {}]]; its last column is P_n. Below, both components are scaled in all stages at "
+             "once.</p>\n",
+             ReadableText(pitch.adaptation.q(0, 0)), ReadableText(pitch.adaptation.q(0, 1)),
+             ReadableText(pitch.adaptation.q(1, 0)), ReadableText(pitch.adaptation.q(1, 1))) +
+         table.Html("narrow");
+}
 
-  const double kick_end_s = 10.0 * std::ceil(0.1 * (curves.campaign.reference.program.t2_s + 5.0));
+/// The flown metrics over the two components of P_n.
+std::string MetricMaps(const CaseColumns& sweep) {
+  return Figure(HeatMapSvg(Map(sweep, sweep.metrics[MetricColumn("pitch_error_rms_deg")],
+                               "RMS pitch error of powered flight, °"),
+                           "RMS pitch error over the two components of P_n"),
+                "RMS pitch error of powered flight over the two factors. The frame is the P_n of the "
+                "Lyapunov equation.") +
+         Figure(HeatMapSvg(Map(sweep, sweep.metrics[MetricColumn("deflection_limit_cycle_deg")],
+                               "worst limit cycle, ° peak to peak"),
+                           "Worst limit cycle over the two components of P_n"),
+                fmt::format("Worst deflection peak to peak within one second, away from ignitions and the "
+                            "pitch-over: a limit cycle above {}°.",
+                            kLimitCycle_deg));
+}
+
+/// The computed margins over the two components of P_n.
+std::string MarginMaps(const PaperStudy& study, const CaseColumns& sweep) {
   std::vector<double> gains_db, phases_deg;
   for (const LeastMargins& margins : study.pn_margins) {
     gains_db.push_back(margins.gain_db);
     phases_deg.push_back(margins.phase_deg);
   }
-  html +=
-      "<div class=\"figures\">\n" +
-      Curves(study, kick_end_s, 0.5,
-             "Pitch error in the initial pitch-over, as in the paper’s figure. A curve that "
-             "leaves the frame diverges or swings beyond it.") +
-      WholeCurves(
-          study, 180.0,
-          "The same to the burnout of stage 3, whatever its size: the largest error of each second. A curve "
-          "ends where the vehicle is lost.") +
-      Figure(HeatMapSvg(Map(sweep, sweep.metrics[MetricColumn("pitch_error_rms_deg")],
-                            "RMS pitch error of powered flight, °"),
-                        "RMS pitch error over the two components of P_n"),
-             "RMS pitch error of powered flight over the two factors. The frame is the P_n of the Lyapunov "
-             "equation.") +
-      Figure(HeatMapSvg(Map(sweep, sweep.metrics[MetricColumn("deflection_limit_cycle_deg")],
-                            "worst limit cycle, ° peak to peak"),
-                        "Worst limit cycle over the two components of P_n"),
-             fmt::format(
-                 "Worst deflection peak to peak within one second, away from ignitions and the pitch-over: a "
-                 "limit cycle above {}°.",
-                 kLimitCycle_deg)) +
-      Figure(HeatMapSvg(Map(sweep, gains_db, "least computed gain margin, dB"),
-                        "Least computed gain margin over the two components of P_n"),
-             fmt::format("Gain margin of the pitch loop with the adaptation at work, the least of the "
-                         "flight; the gate is "
-                         "{:g} dB. 0: the linearised loop is unstable.",
-                         kGainMarginGate_db)) +
-      Figure(HeatMapSvg(Map(sweep, phases_deg, "least computed phase margin, °"),
-                        "Least computed phase margin over the two components of P_n"),
-             fmt::format("Phase margin likewise; the gate is {:g}°.", kPhaseMarginGate_deg)) +
-      "</div>\n" + BadPnTable(study);
+  return Figure(HeatMapSvg(Map(sweep, gains_db, "least computed gain margin, dB"),
+                           "Least computed gain margin over the two components of P_n"),
+                fmt::format("Gain margin of the pitch loop with the adaptation at work, the least of the "
+                            "flight; the gate is {:g} dB. 0: the linearised loop is unstable.",
+                            kGainMarginGate_db)) +
+         Figure(HeatMapSvg(Map(sweep, phases_deg, "least computed phase margin, °"),
+                           "Least computed phase margin over the two components of P_n"),
+                fmt::format("Phase margin likewise; the gate is {:g}°.", kPhaseMarginGate_deg));
+}
 
-  // The paper's claim is about departures from the optimum.
+std::string PnFigures(const PaperStudy& study, const CaseColumns& sweep) {
+  const double kick_end_s =
+      10.0 * std::ceil(0.1 * (study.at("pn_curves").campaign.reference.program.t2_s + 5.0));
+  return "<div class=\"figures\">\n" +
+         Curves(study, kick_end_s, 0.5,
+                "Pitch error in the initial pitch-over, as in the paper’s figure. A curve that leaves the "
+                "frame diverges or swings beyond it.") +
+         WholeCurves(study, 180.0,
+                     "The same to the burnout of stage 3, whatever its size: the largest error of each "
+                     "second. A curve ends where the vehicle is lost.") +
+         MetricMaps(sweep) + MarginMaps(study, sweep) + "</div>\n";
+}
+
+/// Rows of the sweep; as many as the sweep has: none.
+struct PnChoices {
+  std::size_t lost = 0, cycling = 0;  ///< numbers of rows
+  std::size_t nominal, best, worst;
+};
+
+PnChoices ChoicesOf(const CaseColumns& sweep, const std::vector<double>& rms, const std::vector<double>& x,
+                    const std::vector<double>& y) {
+  PnChoices found{.nominal = sweep.rows(), .best = sweep.rows(), .worst = sweep.rows()};
+  for (std::size_t i = 0; i < sweep.rows(); ++i) {
+    if (x[i] == 1.0 && y[i] == 1.0) found.nominal = i;
+    const HeatMapCell::Region region = RegionOf(sweep, i);
+    found.lost += region == HeatMapCell::Region::kLost;
+    found.cycling += region == HeatMapCell::Region::kLimitCycle;
+    if (region == HeatMapCell::Region::kLost) continue;
+    if (region == HeatMapCell::Region::kSound && (found.best == sweep.rows() || rms[i] < rms[found.best]))
+      found.best = i;
+    if (found.worst == sweep.rows() || rms[i] > rms[found.worst]) found.worst = i;
+  }
+  return found;
+}
+
+/// The paper's claim is about departures from the optimum.
+std::string WhatDeparturesDo(const PaperStudy& study, const CaseColumns& sweep) {
   const std::vector<double>& rms = sweep.metrics[MetricColumn("pitch_error_rms_deg")];
   const std::vector<double> x = Input(sweep, "pn_error_factor");
   const std::vector<double> y = Input(sweep, "pn_rate_factor");
-  std::size_t lost = 0, cycling = 0, nominal = sweep.rows(), best = sweep.rows(), worst = sweep.rows();
-  for (std::size_t i = 0; i < sweep.rows(); ++i) {
-    if (x[i] == 1.0 && y[i] == 1.0) nominal = i;
-    const HeatMapCell::Region region = RegionOf(sweep, i);
-    lost += region == HeatMapCell::Region::kLost;
-    cycling += region == HeatMapCell::Region::kLimitCycle;
-    if (region == HeatMapCell::Region::kLost) continue;
-    if (region == HeatMapCell::Region::kSound && (best == sweep.rows() || rms[i] < rms[best])) best = i;
-    if (worst == sweep.rows() || rms[i] > rms[worst]) worst = i;
-  }
-  std::string found;
-  if (nominal < sweep.rows() && best < sweep.rows() && worst < sweep.rows()) {
-    found = fmt::format(
-        "Of {} choices {} lose the vehicle and {} more run into a limit cycle. With the P_n of the Lyapunov "
-        "equation the RMS "
-        "error is {}; the best choice that neither loses the vehicle nor cycles has {} (factors {:g} and "
-        "{:g}), the worst "
-        "completed one {} (factors {:g} and {:g}).",
-        sweep.rows(), lost, cycling, Degrees(rms[nominal]), Degrees(rms[best]), x[best], y[best],
-        Degrees(rms[worst]), x[worst], y[worst]);
-    const auto margins = [&](std::size_t i) {
-      return fmt::format("{:.1f} dB and {:.1f}°", study.pn_margins[i].gain_db, study.pn_margins[i].phase_deg);
-    };
-    found += fmt::format(
-        " <b>{}</b> The computed margins, least of the flight, are {} at the Lyapunov equation’s and {} at "
-        "that best choice.",
-        rms[best] < rms[nominal] ? fmt::format("The figure’s claim is not reproduced: departing from the "
-                                               "Lyapunov equation’s P_n lowers the "
-                                               "error to {:.2g} of its own.",
-                                               rms[best] / rms[nominal])
-                                 : "As the figure claims, no departure lowers the error.",
-        margins(nominal), margins(best));
-  }
-  html += PaperFindings(
-      "Performance deteriorates as P_n departs from its optimal values, and a poor choice makes the loop "
-      "unstable. P is "
-      "called positive semi-definite.",
-      found,
-      "P must be definite, not semi-definite. Any two positive numbers are the last column of some positive "
-      "definite P with "
-      "some Q, so positivity alone proves little: the check here is that P_n belongs to the configured gains "
-      "and Q. Only "
-      "γ·P_n enters the law, so a larger P_n is a larger adaptation gain: it tracks better until the "
-      "actuator’s lag turns "
-      "adaptation into a limit cycle.");
-  return html;
+  const PnChoices of = ChoicesOf(sweep, rms, x, y);
+  if (of.nominal == sweep.rows() || of.best == sweep.rows() || of.worst == sweep.rows()) return "";
+  const auto margins = [&](std::size_t i) {
+    return fmt::format("{:.1f} dB and {:.1f}°", study.pn_margins[i].gain_db, study.pn_margins[i].phase_deg);
+  };
+  return fmt::format(
+             "Of {} choices {} lose the vehicle and {} more run into a limit cycle. With the P_n of the "
+             "Lyapunov equation the RMS error is {}; the best choice that neither loses the vehicle nor "
+             "cycles has {} (factors {:g} and {:g}), the worst completed one {} (factors {:g} and {:g}).",
+             sweep.rows(), of.lost, of.cycling, Degrees(rms[of.nominal]), Degrees(rms[of.best]), x[of.best],
+             y[of.best], Degrees(rms[of.worst]), x[of.worst], y[of.worst]) +
+         fmt::format(
+             " <b>{}</b> The computed margins, least of the flight, are {} at the Lyapunov equation’s and {} "
+             "at that best choice.",
+             rms[of.best] < rms[of.nominal]
+                 ? fmt::format("The figure’s claim is not reproduced: departing from the Lyapunov equation’s "
+                               "P_n lowers the error to {:.2g} of its own.",
+                               rms[of.best] / rms[of.nominal])
+                 : "As the figure claims, no departure lowers the error.",
+             margins(of.nominal), margins(of.best));
+}
+
+}  // namespace
+
+std::string PaperPnSection(const PaperStudy& study) {
+  const CaseColumns& sweep = study.at("pn_sweep").flights.cases;
+  return "<h2 id=\"fig5\">Fig. 5: the choice of P_n</h2>\n" + PaperSource(study, {"pn_curves", "pn_sweep"}) +
+         GainTable(study.at("pn_curves").campaign.autopilot.pitch) + PnFigures(study, sweep) +
+         BadPnTable(study) +
+         PaperFindings(
+             "Performance deteriorates as P_n departs from its optimal values, and a poor choice makes the "
+             "loop unstable. P is called positive semi-definite.",
+             WhatDeparturesDo(study, sweep),
+             "P must be definite, not semi-definite. Any two positive numbers are the last column of some "
+             "positive definite P with some Q, so positivity alone proves little: the check here is that P_n "
+             "belongs to the configured gains and Q. Only γ·P_n enters the law, so a larger P_n is a larger "
+             "adaptation gain: it tracks better until the actuator’s lag turns adaptation into a limit "
+             "cycle.");
 }
 
 }  // namespace dispersa

@@ -39,56 +39,48 @@ CLI::Validator IsHttpAddress() {
       "");
 }
 
-}  // namespace
-
-int RunCoordinator(int argc, char** argv) {
-  PrepareFiles();
-  LogForDaemon("dispersa-coordinator");
-  NetworkOptions network;
+/// What the command line says.
+struct CoordinatorOptions {
   RunRequest request;
-  std::optional<double> patience_s;
-  Admission admission;
-  CLI::App app(
-      "With --data: flies the campaigns that clients launch on the dispersa-worker processes of a DDS "
-      "domain,\n"
-      "until it is stopped. With a campaign: flies this campaign, writes its reports and ends.",
-      "dispersa-coordinator");
-  bool json = false;
-  BeginCommandLine(app, json, "with --version, or for an error: print one JSON object");
   ClientOptions clients;
-  std::string& data = clients.data;
+  std::string metrics, web, web_token;
+  bool behind_tls = false;
+  std::vector<std::string> keep, quotas;
   bool health = false;
   std::optional<double> audit;
-  std::vector<std::string> keep, quotas;
-  app.add_option("campaign", request.campaign.name, "campaign file")->type_name(kFileType);
-  app.add_option("--data", data, "folder for the launched campaigns, made if it does not exist")
-      ->type_name(kFolderType);
-  std::string metrics;
+  NetworkOptions network;
+  Admission admission;
+  std::optional<double> patience_s;
+  bool json = false;
+};
+
+void AddWebOptions(CLI::App& app, CoordinatorOptions& options) {
   app.add_option(
-         "--metrics", metrics,
+         "--metrics", options.metrics,
          "with --data: PORT of 127.0.0.1, or ADDRESS:PORT (0.0.0.0: all interfaces), that serves figures "
          "in\nPrometheus' text format to everybody who reaches it")
       ->type_name("TEXT")
       ->check(IsHttpAddress());
-  std::string web, web_token;
-  bool behind_tls = false;
   app.add_option(
-         "--web", web,
+         "--web", options.web,
          "with --data: PORT of 127.0.0.1, or ADDRESS:PORT, of web pages to read campaigns by; without a "
          "token for the\nuser of the coordinator alone; beyond 127.0.0.1 they need --web-token and "
          "--web-behind-tls")
       ->type_name("TEXT")
       ->check(IsHttpAddress());
-  app.add_option("--web-token", web_token, "with --web: file whose first line readers have to know")
+  app.add_option("--web-token", options.web_token, "with --web: file whose first line readers have to know")
       ->type_name(kFileType);
-  app.add_flag("--web-behind-tls", behind_tls,
+  app.add_flag("--web-behind-tls", options.behind_tls,
                "with --web: a proxy that speaks TLS stands before it and sets X-Forwarded-Proto");
-  app.add_option("--max-cases", clients.max_cases,
+}
+
+void AddLimits(CLI::App& app, CoordinatorOptions& options) {
+  app.add_option("--max-cases", options.clients.max_cases,
                  "with --data: largest number of cases of a campaign, because each case takes memory; a "
                  "launch of more is refused\n(default: 5000000)")
       ->transform(WholeNumber(1, kMostCases));
   app.add_option(
-         "--keep", keep,
+         "--keep", options.keep,
          "with --data: 90d deletes a campaign 90 days after its end; 200GB deletes the campaigns that "
          "ended first\nwhile all of them take more; may be given twice; default: keep all")
       ->type_name("TEXT")
@@ -101,88 +93,138 @@ int RunCoordinator(int argc, char** argv) {
           },
           ""));
   app.add_option(
-         "--quota", quotas,
+         "--quota", options.quotas,
          "with --data: limits of each owner's campaigns, as cases=1000000,campaigns=20,places=4,disk=200GB: "
          "cases and\ncampaigns that have not ended, campaigns that fly at once, disk space; "
          "ann:cases=5000000,disk=none: those\nof one owner; may be given several times; default: none")
       ->type_name("TEXT")
       ->check(CLI::Validator([](const std::string& text) { return Quotas().Add(text); }, ""));
+}
+
+void AddFlightOptions(CLI::App& app, CoordinatorOptions& options) {
   app.add_flag(
-      "--health", health,
+      "--health", options.health,
       "ask the coordinator of the domain on this machine whether it answers: exit code 0 if it does");
   app.add_option(
-         "--audit", audit,
+         "--audit", options.audit,
          "share of the results, 0 to 1, that the coordinator flies again; a worker whose result "
          "differs is expelled, and\nall its results are flown again; 0: none; default: 0.01, and none "
          "if the control law is a plug-in")
       ->check(CLI::Range(0.0, 1.0));
-  app.add_option("--out", request.out, "result folder; default: results/<name>-<first 8 of id>")
+  app.add_option("--out", options.request.out, "result folder; default: results/<name>-<first 8 of id>")
       ->type_name(kFolderType);
-  app.add_option("--cases", request.overrides.cases, "number of cases, instead of the file's")
+  app.add_option("--cases", options.request.overrides.cases, "number of cases, instead of the file's")
       ->transform(WholeNumber(1, kMostCases));
-  app.add_option("--seed", request.overrides.seed, "seed, instead of the file's");
-  app.add_flag("--resume", request.resume, "continue in a result folder of the same flight id");
-  app.add_option("--domain", network.domain, "DDS domain")
+  app.add_option("--seed", options.request.overrides.seed, "seed, instead of the file's");
+  app.add_flag("--resume", options.request.resume, "continue in a result folder of the same flight id");
+}
+
+void AddNetworkOptions(CLI::App& app, CoordinatorOptions& options) {
+  app.add_option("--domain", options.network.domain, "DDS domain")
       ->envname("DISPERSA_DOMAIN")
       ->transform(WholeNumber(0, 99));
-  app.add_option("--address", network.address, "IPv4 address of the only network interface to use")
+  app.add_option("--address", options.network.address, "IPv4 address of the only network interface to use")
       ->check(CLI::ValidIPV4);
-  app.add_option("--keys", admission.keys, kKeysHelp)->type_name(kFolderType);
-  app.add_flag("--insecure", admission.insecure, kInsecureHelp);
-  app.add_flag("--allow-plugins", admission.allow_plugins, kAllowPluginsHelp);
-  app.add_option("--patience", patience_s,
+  app.add_option("--keys", options.admission.keys, kKeysHelp)->type_name(kFolderType);
+  app.add_flag("--insecure", options.admission.insecure, kInsecureHelp);
+  app.add_flag("--allow-plugins", options.admission.allow_plugins, kAllowPluginsHelp);
+  app.add_option("--patience", options.patience_s,
                  "end with exit code 5 after this number of seconds without a worker; default: never")
       ->check(CLI::NonNegativeNumber);
+}
+
+/// The program's end, or none: `options` then has what the arguments say.
+std::optional<ExitCode> ReadArguments(int argc, char** argv, CoordinatorOptions& options) {
+  CLI::App app(
+      "With --data: flies the campaigns that clients launch on the dispersa-worker processes of a DDS "
+      "domain,\n"
+      "until it is stopped. With a campaign: flies this campaign, writes its reports and ends.",
+      "dispersa-coordinator");
+  BeginCommandLine(app, options.json, "with --version, or for an error: print one JSON object");
+  app.add_option("campaign", options.request.campaign.name, "campaign file")->type_name(kFileType);
+  app.add_option("--data", options.clients.data,
+                 "folder for the launched campaigns, made if it does not exist")
+      ->type_name(kFolderType);
+  AddWebOptions(app, options);
+  AddLimits(app, options);
+  AddFlightOptions(app, options);
+  AddNetworkOptions(app, options);
   app.footer(
       "Example: dispersa-coordinator --data /var/lib/dispersa --domain 7 --keys coordinator-main\n"
       "         dispersa-worker --domain 7 --peer coordinator-host --keys worker-node1\n"
       "         dispersa-coordinator campaigns/table3.yaml --out results/table3 --address 127.0.0.1");
-  if (const auto code = ParseCommandLine(app, argc, argv)) return *code;
-  if (int(health) + int(!data.empty()) + int(!request.campaign.name.empty()) != 1) {
-    return EndFor(InputError("give one of --data, a campaign file, or --health"), json);
+  return ParseCommandLine(app, argc, argv);
+}
+
+void CheckTask(const CoordinatorOptions& options) {
+  const std::string& campaign = options.request.campaign.name;
+  if (int(options.health) + int(!options.clients.data.empty()) + int(!campaign.empty()) != 1)
+    throw InputError("give one of --data, a campaign file, or --health");
+  if (campaign == kStandardInput) {
+    throw InputError(
+        "the campaign cannot come from standard input: a coordinator may restart itself and read it again",
+        "a campaign file");
   }
-  if (request.campaign.name == kStandardInput) {
-    return EndFor(InputError("the campaign cannot come from standard input: a coordinator may restart itself "
-                             "and read it again",
-                             "a campaign file"),
-                  json);
-  }
-  for (const std::string& limit : keep) ReadRetention(limit, &clients.retention);
-  if (!metrics.empty()) ReadHttpAddress(metrics, &clients.prometheus.emplace());
-  for (const std::string& limits : quotas) clients.quotas.Add(limits);
+}
+
+WebOptions WebOf(const CoordinatorOptions& options) {
+  WebOptions web;
+  ReadHttpAddress(options.web, &web.address);
+  if (!options.web_token.empty()) web.token = ReadWebToken(options.web_token);
+  web.behind_tls = options.behind_tls;
+  if (const std::string problem = WhyTooOpen(web); !problem.empty()) throw InputError(problem);
+  return web;
+}
+
+/// With what the validators of the options have accepted as text.
+ClientOptions ClientsOf(const CoordinatorOptions& options) {
+  ClientOptions clients = options.clients;
+  for (const std::string& limit : options.keep) ReadRetention(limit, &clients.retention);
+  if (!options.metrics.empty()) ReadHttpAddress(options.metrics, &clients.prometheus.emplace());
+  for (const std::string& limits : options.quotas) clients.quotas.Add(limits);
+  if (!options.web.empty()) clients.web = WebOf(options);
+  return clients;
+}
+
+int DoTask(const CoordinatorOptions& options, std::vector<std::string> command) {
+  CheckTask(options);
   CatchStopSignals();
+  if (options.health) {
+    const std::string host = options.network.address.empty() ? "127.0.0.1" : options.network.address;
+    return AskHealth(Admit(options.network, options.admission, {Role::kCoordinator, Role::kClient}, host),
+                     host);
+  }
+  const ClientOptions clients = ClientsOf(options);
+  const NetworkOptions network = Admit(options.network, options.admission, {Role::kCoordinator});
+  AdmitPlugins(options.admission.allow_plugins);
+  if (clients.data.empty() && !options.request.resume) command.emplace_back("--resume");
+  const ServeOptions serve{network, options.audit, std::move(command)};
+  if (!clients.data.empty()) {
+    umask(0077);  // what clients have launched is nobody else's on this machine
+    return ServeClients(serve, clients);
+  }
+  return EndOutput(ServeCampaign(serve, options.request, options.patience_s));
+}
+
+}  // namespace
+
+int RunCoordinator(int argc, char** argv) {
+  PrepareFiles();
+  LogForDaemon("dispersa-coordinator");
+  CoordinatorOptions options;
+  if (const auto code = ReadArguments(argc, argv, options)) return *code;
   try {
-    if (health) {
-      const std::string host = network.address.empty() ? "127.0.0.1" : network.address;
-      return AskHealth(Admit(network, admission, {Role::kCoordinator, Role::kClient}, host), host);
-    }
-    if (!web.empty()) {
-      WebOptions& options = clients.web.emplace();
-      ReadHttpAddress(web, &options.address);
-      if (!web_token.empty()) options.token = ReadWebToken(web_token);
-      options.behind_tls = behind_tls;
-      if (const std::string problem = WhyTooOpen(options); !problem.empty()) throw InputError(problem);
-    }
-    network = Admit(network, admission, {Role::kCoordinator});
-    AdmitPlugins(admission.allow_plugins);
-    std::vector<std::string> again(argv, argv + argc);
-    if (data.empty() && !request.resume) again.emplace_back("--resume");
-    const ServeOptions options{network, audit, std::move(again)};
-    if (!data.empty()) {
-      umask(0077);  // what clients have launched is nobody else's on this machine
-      return ServeClients(options, clients);
-    }
-    return EndOutput(ServeCampaign(options, request, patience_s));
+    return DoTask(options, std::vector<std::string>(argv, argv + argc));
   } catch (const InputError& error) {
-    return EndFor(error, json);
+    return EndFor(error, options.json);
   } catch (const Failure& failure) {
-    return EndFor(failure, json);
+    return EndFor(failure, options.json);
   } catch (const NetworkError& error) {
-    return EndFor(Failure{kExitBadInput, error.what()}, json);
+    return EndFor(Failure{kExitBadInput, error.what()}, options.json);
   } catch (const ResultError& error) {
-    return EndFor(Failure{ExitCodeOf(error), error.what()}, json);
+    return EndFor(Failure{ExitCodeOf(error), error.what()}, options.json);
   } catch (const std::exception& error) {
-    return EndFor(FailureOf(error), json);
+    return EndFor(FailureOf(error), options.json);
   }
 }
 
