@@ -13,9 +13,7 @@ import product_sources
 LIMIT = 100
 # Functions that may be longer, and folders with such functions. One that is not needed fails.
 EXEMPT = {
-    "DeclareInputs": "a table: a line for each input",
     "MakeRows": "a table: a row for each dispersion",
-    "StepOf": "the engine's step, where a call costs",
     "core/guidance": "the corrector, written with its equations",
 }
 
