@@ -66,14 +66,14 @@ class Batch {
         has_plugin_(model.autopilot().plugin != nullptr),
         has_free_stage_(model.has_free_stage()),
         flies_on_(definition_.course.ends != FlightEnd::kInjection) {
-    m_.Configure(model);
+    lanes_.Configure(model);
   }
 
   /// Until the queue has no more flights and no lane flies.
   void Run();
 
   // ---- what events of parts change (part_events.h) ----
-  LaneMemory<T>& lanes() { return m_; }
+  LaneMemory<T>& lanes() { return lanes_; }
   void SetMass(int lane);
   void SetShape(int lane);
   void FindJudges();
@@ -127,7 +127,7 @@ class Batch {
   unsigned patience_ = 0;                 ///< passes until the queue is asked again
   bool any_judged_ = false;
   int most_steps_ = 1;
-  LaneMemory<T> m_{};
+  LaneMemory<T> lanes_{};
 };
 
 /// Passes between two questions to an empty queue while other lanes fly.
@@ -152,7 +152,7 @@ void Batch<T>::Refill() {
     return;
   }
   for (int lane = 0; lane < kLanes; ++lane) {
-    while (m_.at.slot[lane].record == nullptr) {
+    while (lanes_.at.slot[lane].record == nullptr) {
       FlightRecord* record = queue_.Next(flying_ == 0);
       if (record == nullptr) {
         patience_ = kPatience;
@@ -165,7 +165,7 @@ void Batch<T>::Refill() {
 
 template <class T>
 void Batch<T>::Start(int lane, FlightRecord* record) {
-  m_.StartFlight(lane, record);
+  lanes_.StartFlight(lane, record);
   ++flying_;
   FindJudges();
   SetStack(lane, 0);
@@ -174,7 +174,7 @@ void Batch<T>::Start(int lane, FlightRecord* record) {
     return;
   }
   // Events before lift-off happen at lift-off.
-  const Slot& slot = m_.at.slot[lane];
+  const Slot& slot = lanes_.at.slot[lane];
   while (slot.record != nullptr && slot.NextEvent() != nullptr && slot.NextEvent()->time_s <= kSameInstant_s)
     Happen(lane);
   if (slot.record != nullptr) SetStop(lane);
@@ -185,7 +185,7 @@ template <class T>
 void Batch<T>::FindJudges() {
   any_judged_ = false;
   most_steps_ = 1;
-  for (const Slot& each : m_.at.slot) {
+  for (const Slot& each : lanes_.at.slot) {
     if (each.record == nullptr) continue;
     any_judged_ |= each.record->replaces_steps();
     if (each.record->options.steps_per_tick > most_steps_) most_steps_ = each.record->options.steps_per_tick;
@@ -194,68 +194,70 @@ void Batch<T>::FindJudges() {
 
 template <class T>
 void Batch<T>::SetStack(int lane, int stack) {
-  Slot& slot = m_.at.slot[lane];
+  Slot& slot = lanes_.at.slot[lane];
   slot.stack = stack;
   slot.stuck_nozzle = -1;
-  m_.computer.EndCommands(lane);
-  m_.step.SetStack(lane, slot.record->plant, stack);
+  lanes_.computer.EndCommands(lane);
+  lanes_.step.SetStack(lane, slot.record->plant, stack);
   SetUnsteered(lane);
   SetMass(lane);
   SetShape(lane);
   // Boosters burn, or would, while the first stack is as it was at lift-off.
-  if (m_.step.plant().nozzles_listed)
-    m_.computer.SetNozzles(lane, slot.record->plant.LayoutOf(stack, stack == 0));
+  if (lanes_.step.plant().nozzles_listed)
+    lanes_.computer.SetNozzles(lane, slot.record->plant.LayoutOf(stack, stack == 0));
 }
 
 /// Thrusters hold a stage without gimbal while it coasts.
 template <class T>
 void Batch<T>::SetUnsteered(int lane) {
-  const Slot& slot = m_.at.slot[lane];
+  const Slot& slot = lanes_.at.slot[lane];
   const bool is_fixed = slot.record->plant.stacks.data()[slot.stack].gimbal.fixed;
-  SetLane(m_.at.unsteered, lane, slot.past_last_burn || (is_fixed && !(Bits(m_.at.coasting) >> lane & 1u)));
+  SetLane(lanes_.at.unsteered, lane,
+          slot.past_last_burn || (is_fixed && !(Bits(lanes_.at.coasting) >> lane & 1u)));
 }
 
 /// Sets the mass of the bodies that the lane's stack still carries.
 template <class T>
 void Batch<T>::SetMass(int lane) {
-  const Slot& slot = m_.at.slot[lane];
+  const Slot& slot = lanes_.at.slot[lane];
   if (slot.jettisoned == 0) return;
   StackMass mass;
   slot.record->MassWithout(slot.stack, slot.jettisoned, mass);
-  m_.step.SetMass(lane, mass, slot.record->BendingWithout(slot.stack, slot.jettisoned));
+  lanes_.step.SetMass(lane, mass, slot.record->BendingWithout(slot.stack, slot.jettisoned));
 }
 
 /// Sets the aerodynamics of the lane's stack: those after its jettisons, with the motor burning or out.
 template <class T>
 void Batch<T>::SetShape(int lane) {
-  const Slot& slot = m_.at.slot[lane];
+  const Slot& slot = lanes_.at.slot[lane];
   const LauncherStack& stack = slot.record->plant.stacks.data()[slot.stack];
   if (stack.aero_variants.get() == nullptr) return;
-  const bool burning = Bits(m_.step.phase().burning) >> lane & 1u;
-  m_.step.SetShape(lane, stack, stack.AeroAfter(slot.jettisoned, burning));
+  const bool burning = Bits(lanes_.step.phase().burning) >> lane & 1u;
+  lanes_.step.SetShape(lane, stack, stack.AeroAfter(slot.jettisoned, burning));
 }
 
 template <class T>
 void Batch<T>::SetStop(int lane) {
-  const FlightEvent* next = m_.at.slot[lane].NextEvent();
-  Lane(m_.at.stop_s, lane) = Min(next != nullptr ? next->time_s : kFarFuture, m_.computer.switch_s(lane));
+  const FlightEvent* next = lanes_.at.slot[lane].NextEvent();
+  Lane(lanes_.at.stop_s, lane) =
+      Min(next != nullptr ? next->time_s : kFarFuture, lanes_.computer.switch_s(lane));
 }
 
 template <class T>
 void Batch<T>::End(int lane, Outcome outcome, const char* reason) {
-  const Slot& slot = m_.at.slot[lane];
+  const Slot& slot = lanes_.at.slot[lane];
   FlightRecord* record = slot.record;
   StateValues y;
-  m_.step.ReadLane(lane, y);
-  if (Bits(m_.step.phase().burning) >> lane & 1u) m_.metrics.EndStage(lane, slot.stack, record->sums);
-  m_.metrics.Read(lane, record->sums);
-  record->sums.expelled_kg = Lane(m_.step.phase().expelled_kg, lane);
+  lanes_.step.ReadLane(lane, y);
+  if (Bits(lanes_.step.phase().burning) >> lane & 1u) lanes_.metrics.EndStage(lane, slot.stack, record->sums);
+  lanes_.metrics.Read(lane, record->sums);
+  record->sums.expelled_kg = Lane(lanes_.step.phase().expelled_kg, lane);
   record->sums.rules_fired =
-      static_cast<std::uint32_t>(ToBits(Lane(m_.computer.memory(kPitch).rules_fired, lane)));
-  record->End(outcome, reason, Lane(m_.at.time_s, lane), slot.stack, y);
-  m_.at.EndFlight(lane);
-  m_.computer.EndCommands(lane);
-  m_.step.EndFlight(lane);
+      static_cast<std::uint32_t>(ToBits(Lane(lanes_.computer.memory(kPitch).rules_fired, lane)));
+  record->End(outcome, reason, Lane(lanes_.at.time_s, lane), slot.stack, y);
+  lanes_.at.EndFlight(lane);
+  lanes_.computer.EndCommands(lane);
+  lanes_.step.EndFlight(lane);
   --flying_;
   patience_ = 0;
   queue_.Done(record);
@@ -264,39 +266,39 @@ void Batch<T>::End(int lane, Outcome outcome, const char* reason) {
 template <class T>
 LauncherPhase Batch<T>::PhaseOf(int lane) const {
   LauncherPhase phase;
-  phase.stack = m_.at.slot[lane].stack;
-  phase.jettisoned = m_.at.slot[lane].jettisoned;
-  phase.boosters_burning = m_.step.BoostersBurning(lane);
-  phase.burning = Bits(m_.step.phase().burning) >> lane & 1u;
-  phase.burnt = Bits(m_.step.phase().burnt) >> lane & 1u;
-  phase.ignition_s = Lane(m_.step.phase().ignition_s, lane);
-  phase.expelled_mass_kg = Lane(m_.step.phase().expelled_kg, lane);
+  phase.stack = lanes_.at.slot[lane].stack;
+  phase.jettisoned = lanes_.at.slot[lane].jettisoned;
+  phase.boosters_burning = lanes_.step.BoostersBurning(lane);
+  phase.burning = Bits(lanes_.step.phase().burning) >> lane & 1u;
+  phase.burnt = Bits(lanes_.step.phase().burnt) >> lane & 1u;
+  phase.ignition_s = Lane(lanes_.step.phase().ignition_s, lane);
+  phase.expelled_mass_kg = Lane(lanes_.step.phase().expelled_kg, lane);
   for (int axis = 0; axis < 3; ++axis)
-    phase.control_torque_n_m.data()[axis] = Lane(m_.step.phase().control_torque_n_m[axis], lane);
+    phase.control_torque_n_m.data()[axis] = Lane(lanes_.step.phase().control_torque_n_m[axis], lane);
   for (int i = 0; i < model_.nominal_plant().nozzle_banks() * kDrives; ++i)
-    phase.command_rad.data()[i] = Lane(m_.step.command_rad(i / kDrives)[i % kDrives], lane);
-  phase.stuck_nozzle = m_.at.slot[lane].stuck_nozzle;
+    phase.command_rad.data()[i] = Lane(lanes_.step.command_rad(i / kDrives)[i % kDrives], lane);
+  phase.stuck_nozzle = lanes_.at.slot[lane].stuck_nozzle;
   return phase;
 }
 
 template <class T>
 LaneView Batch<T>::ViewOf(int lane) const {
   LaneView view;
-  view.time_s = Lane(m_.at.time_s, lane);
-  m_.step.ReadLane(lane, view.y);
+  view.time_s = Lane(lanes_.at.time_s, lane);
+  lanes_.step.ReadLane(lane, view.y);
   view.phase = PhaseOf(lane);
-  view.coasting = Bits(m_.at.coasting) >> lane & 1u;
-  view.unsteered = Bits(m_.at.unsteered) >> lane & 1u;
+  view.coasting = Bits(lanes_.at.coasting) >> lane & 1u;
+  view.unsteered = Bits(lanes_.at.unsteered) >> lane & 1u;
   for (int axis = 0; axis < kAxes; ++axis) {
-    view.error_angle_rad[axis] = Lane(m_.errors.angle_rad[axis], lane);
-    view.error_rate_rad_s[axis] = Lane(m_.errors.rate_rad_s[axis], lane);
-    view.thrusters[axis] = static_cast<int>(Lane(m_.computer.thruster(axis).direction, lane));
+    view.error_angle_rad[axis] = Lane(lanes_.errors.angle_rad[axis], lane);
+    view.error_rate_rad_s[axis] = Lane(lanes_.errors.rate_rad_s[axis], lane);
+    view.thrusters[axis] = static_cast<int>(Lane(lanes_.computer.thruster(axis).direction, lane));
     // Without thrust the lane's autopilot does not act. The values in its place come from neighbouring lanes.
-    if (!view.phase.burning || (Bits(m_.at.unsteered) >> lane & 1u)) continue;
-    view.gimbal_rad[axis] = Lane(m_.computer.output().deflection_rad[axis], lane);
+    if (!view.phase.burning || (Bits(lanes_.at.unsteered) >> lane & 1u)) continue;
+    view.gimbal_rad[axis] = Lane(lanes_.computer.output().deflection_rad[axis], lane);
     view.axes[axis] = TelemetryOf(model_.autopilot().laws.data()[axis].config,
-                                  m_.computer.output().axes[axis], m_.computer.memory(axis), lane);
-    ReadLaneValues<T>(m_.computer.memory(axis), lane, view.memories[axis]);
+                                  lanes_.computer.output().axes[axis], lanes_.computer.memory(axis), lane);
+    ReadLaneValues<T>(lanes_.computer.memory(axis), lane, view.memories[axis]);
   }
   return view;
 }

@@ -9,27 +9,27 @@ inline namespace DISPERSA_ISA {
 
 template <class T>
 void Batch<T>::Advance() {
-  const T target = m_.at.next_tick * T(tick_s_);
-  if (Any(m_.at.live & (m_.at.stop_s <= target + T(kSameInstant_s))))
+  const T target = lanes_.at.next_tick * T(tick_s_);
+  if (Any(lanes_.at.live & (lanes_.at.stop_s <= target + T(kSameInstant_s))))
     AdvanceThroughEvents(target);
   else
-    Step(m_.at.live, target);
-  m_.at.tick = Select(m_.at.live, m_.at.next_tick, m_.at.tick);
+    Step(lanes_.at.live, target);
+  lanes_.at.tick = Select(lanes_.at.live, lanes_.at.next_tick, lanes_.at.tick);
 }
 
 /// Each lane through its own stops. An event as good as on the tick happens on the tick.
 template <class T>
 void Batch<T>::AdvanceThroughEvents(T target) {
-  unsigned pending = Bits(m_.at.live);
+  unsigned pending = Bits(lanes_.at.live);
   while (pending != 0) {
-    T to = m_.at.time_s;
+    T to = lanes_.at.time_s;
     M moving = NoLane<T>();
     unsigned due = 0;  // lanes whose next event happens where this step ends
     for (int lane = 0; lane < kLanes; ++lane) {
       if (!(pending >> lane & 1u)) continue;
-      const double now = Lane(m_.at.time_s, lane), end = Lane(target, lane);
+      const double now = Lane(lanes_.at.time_s, lane), end = Lane(target, lane);
       double goal = end;
-      if (const FlightEvent* next = m_.at.slot[lane].NextEvent()) {
+      if (const FlightEvent* next = lanes_.at.slot[lane].NextEvent()) {
         const double event_s = next->time_s;
         if (event_s < end - kSameInstant_s && event_s > now + kSameInstant_s) {
           goal = event_s;
@@ -40,7 +40,7 @@ void Batch<T>::AdvanceThroughEvents(T target) {
           due |= 1u << lane;
         }
       }
-      if (const double switch_s = m_.computer.switch_s(lane); switch_s < goal) {
+      if (const double switch_s = lanes_.computer.switch_s(lane); switch_s < goal) {
         goal = switch_s > now ? switch_s : now;
         due &= ~(1u << lane);
       }
@@ -50,44 +50,45 @@ void Batch<T>::AdvanceThroughEvents(T target) {
     if (Any(moving)) Step(moving, to);
     for (int lane = 0; lane < kLanes; ++lane) {
       if (!(pending >> lane & 1u)) continue;
-      Slot& slot = m_.at.slot[lane];
+      Slot& slot = lanes_.at.slot[lane];
       if (slot.record == nullptr) {  // the step failed
         pending &= ~(1u << lane);
         continue;
       }
-      if (m_.computer.switch_s(lane) <= Lane(m_.at.time_s, lane)) {
-        m_.computer.Switch(lane, m_.step);
+      if (lanes_.computer.switch_s(lane) <= Lane(lanes_.at.time_s, lane)) {
+        lanes_.computer.Switch(lane, lanes_.step);
       } else if (due >> lane & 1u) {
         Happen(lane);
-      } else if (Lane(m_.at.time_s, lane) >= Lane(target, lane)) {
+      } else if (Lane(lanes_.at.time_s, lane) >= Lane(target, lane)) {
         pending &= ~(1u << lane);
       }
       if (slot.record == nullptr) pending &= ~(1u << lane);
     }
   }
   for (int lane = 0; lane < kLanes; ++lane)
-    if (m_.at.slot[lane].record != nullptr) SetStop(lane);
+    if (lanes_.at.slot[lane].record != nullptr) SetStop(lane);
 }
 
 template <class T>
 void Batch<T>::Step(M moving, T to) {
   StateValues before[kLanes];
   if (any_judged_)
-    for (int lane = 0; lane < kLanes; ++lane) m_.step.ReadLane(lane, before[lane]);
-  const T from = m_.at.time_s;
+    for (int lane = 0; lane < kLanes; ++lane) lanes_.step.ReadLane(lane, before[lane]);
+  const T from = lanes_.at.time_s;
   M failed = NoLane<T>();
   if (most_steps_ == 1) {
-    const M accepted = m_.step.Step(moving, All(moving | !m_.at.live), from, to);
+    const M accepted = lanes_.step.Step(moving, All(moving | !lanes_.at.live), from, to);
     failed = moving & !accepted;
-    m_.at.time_s = Select(accepted, to, from);
+    lanes_.at.time_s = Select(accepted, to, from);
   }
   for (int i = 1; most_steps_ > 1 && i <= most_steps_; ++i) {
     const T part(static_cast<double>(i));
-    const M steps = moving & !failed & (part <= m_.at.steps_a_tick);
-    const T end = Select(part >= m_.at.steps_a_tick, to, Fma(part / m_.at.steps_a_tick, to - from, from));
-    const M accepted = m_.step.Step(steps, false, m_.at.time_s, end);
+    const M steps = moving & !failed & (part <= lanes_.at.steps_a_tick);
+    const T end =
+        Select(part >= lanes_.at.steps_a_tick, to, Fma(part / lanes_.at.steps_a_tick, to - from, from));
+    const M accepted = lanes_.step.Step(steps, false, lanes_.at.time_s, end);
     failed = failed | (steps & !accepted);
-    m_.at.time_s = Select(accepted, end, m_.at.time_s);
+    lanes_.at.time_s = Select(accepted, end, lanes_.at.time_s);
   }
   if (any_judged_) Judge(moving, from, to, before, failed);
   if (!Any(failed)) return;
@@ -100,39 +101,39 @@ void Batch<T>::Step(M moving, T to) {
 template <class T>
 void Batch<T>::Judge(M moving, T from, T to, StateValues* states, M& failed) {
   for (int lane = 0; lane < kLanes; ++lane) {
-    if (!(Bits(moving) >> lane & 1u) || !m_.at.slot[lane].record->replaces_steps()) continue;
+    if (!(Bits(moving) >> lane & 1u) || !lanes_.at.slot[lane].record->replaces_steps()) continue;
     const bool holds =
-        m_.at.slot[lane].record->Judge(PhaseOf(lane), Lane(from, lane), Lane(to, lane), states[lane]);
+        lanes_.at.slot[lane].record->Judge(PhaseOf(lane), Lane(from, lane), Lane(to, lane), states[lane]);
     SetLane(failed, lane, !holds);
-    Lane(m_.at.time_s, lane) = holds ? Lane(to, lane) : Lane(from, lane);
-    m_.step.WriteLane(lane, states[lane]);
+    Lane(lanes_.at.time_s, lane) = holds ? Lane(to, lane) : Lane(from, lane);
+    lanes_.step.WriteLane(lane, states[lane]);
   }
 }
 
 template <class T>
 void Batch<T>::Happen(int lane) {
-  Slot& slot = m_.at.slot[lane];
-  const FlightEvent event = *m_.at.slot[lane].NextEvent();
+  Slot& slot = lanes_.at.slot[lane];
+  const FlightEvent event = *lanes_.at.slot[lane].NextEvent();
   ++slot.next_event;
   FlightRecord& record = *slot.record;
   switch (event.kind) {
     case EventKind::kIgnition:
-      m_.step.Ignite(lane, event.time_s, event.stage == 0);
+      lanes_.step.Ignite(lane, event.time_s, event.stage == 0);
       SetShape(lane);
       Ignite(lane, event.stage);
       SetUnsteered(lane);
       if (const double torque_n_m = record.SpinTorque(event.stage); torque_n_m != 0.0)
-        m_.step.SetRollTorque(lane, torque_n_m);
+        lanes_.step.SetRollTorque(lane, torque_n_m);
       break;
     case EventKind::kBurnout:
       BurnOut(lane, event.stage);
       break;
     case EventKind::kSeparation: {
       StateValues y;
-      m_.step.ReadLane(lane, y);
+      lanes_.step.ReadLane(lane, y);
       record.Separate(event.stage, slot.jettisoned, y);
-      m_.step.WriteLane(lane, y);
-      SetLane(m_.at.coasting, lane,
+      lanes_.step.WriteLane(lane, y);
+      SetLane(lanes_.at.coasting, lane,
               definition_.course.is_controlled &&
                   (event.stage + 2 == static_cast<int>(record.plant.stacks.size()) ||
                    definition_.vehicle.stages.data()[event.stage + 1].ignition == IgnitionTrigger::kTimer));
@@ -150,11 +151,11 @@ void Batch<T>::Happen(int lane) {
     }
   }
   StateValues y;
-  m_.step.ReadLane(lane, y);
-  record.AddToDigest(Lane(m_.at.time_s, lane), y);
+  lanes_.step.ReadLane(lane, y);
+  record.AddToDigest(Lane(lanes_.at.time_s, lane), y);
   if (record.watched) record.WatchEvent(ViewOf(lane));
   // The last event is the last stage's burnout.
-  if (m_.at.slot[lane].NextEvent() == nullptr) EndPowered(lane);
+  if (lanes_.at.slot[lane].NextEvent() == nullptr) EndPowered(lane);
 }
 
 /// After its last burn a flight is completed, or goes on until its apogee: as a rigid body in the air, as a
@@ -165,9 +166,9 @@ void Batch<T>::EndPowered(int lane) {
     End(lane, Outcome::kCompleted, "");
     return;
   }
-  m_.at.slot[lane].past_last_burn = true;
+  lanes_.at.slot[lane].past_last_burn = true;
   SetUnsteered(lane);
-  const Instant<double> now = m_.step.InstantOf(lane, m_.at.time_s);
+  const Instant<double> now = lanes_.step.InstantOf(lane, lanes_.at.time_s);
   if (now.altitude_m > kFallAir_m) FallFrom(lane, now.mass_kg);
 }
 
@@ -175,49 +176,50 @@ void Batch<T>::EndPowered(int lane) {
 template <class T>
 void Batch<T>::FallFrom(int lane, double mass_kg) {
   StateValues y;
-  m_.step.ReadLane(lane, y);
+  lanes_.step.ReadLane(lane, y);
   const char* reason = "";
-  const Outcome outcome = m_.at.slot[lane].record->Fall(Lane(m_.at.time_s, lane), mass_kg, y, &reason);
+  const Outcome outcome =
+      lanes_.at.slot[lane].record->Fall(Lane(lanes_.at.time_s, lane), mass_kg, y, &reason);
   End(lane, outcome, reason);
 }
 
 template <class T>
 void Batch<T>::Ignite(int lane, int stage) {
-  Slot& slot = m_.at.slot[lane];
+  Slot& slot = lanes_.at.slot[lane];
   FlightRecord& record = *slot.record;
-  SetLane(m_.at.coasting, lane, false);
-  m_.sensors.StartStage(lane, model_.sensors().stages.data()[stage]);
-  m_.computer.StartStage(lane, stage, m_.at, m_.step.phase().burning);
+  SetLane(lanes_.at.coasting, lane, false);
+  lanes_.sensors.StartStage(lane, model_.sensors().stages.data()[stage]);
+  lanes_.computer.StartStage(lane, stage, lanes_.at, lanes_.step.phase().burning);
 
   const FlightInputs& in = record.inputs;
   slot.stuck_nozzle = -1;
   const int stuck = static_cast<int>(in.stuck_nozzle + 0.5);
   if (static_cast<int>(in.stuck_nozzle_stage + 0.5) == stage + 1 && stuck > 0) {
     slot.stuck_nozzle = stuck - 1;
-    m_.step.StickNozzle(lane, record.plant.stacks.data()[stage].gimbal, slot.stuck_nozzle,
-                        in.stuck_nozzle_rad);
+    lanes_.step.StickNozzle(lane, record.plant.stacks.data()[stage].gimbal, slot.stuck_nozzle,
+                            in.stuck_nozzle_rad);
   }
   if (stage > 0 && stage + 1 == static_cast<int>(record.plant.stacks.size())) {
     StateValues y;
-    m_.step.ReadLane(lane, y);
-    record.HandOver(Lane(m_.at.time_s, lane), y);
+    lanes_.step.ReadLane(lane, y);
+    record.HandOver(Lane(lanes_.at.time_s, lane), y);
   }
 }
 
 template <class T>
 void Batch<T>::BurnOut(int lane, int stage) {
-  FlightRecord& record = *m_.at.slot[lane].record;
+  FlightRecord& record = *lanes_.at.slot[lane].record;
   StateValues y;
-  m_.step.ReadLane(lane, y);
+  lanes_.step.ReadLane(lane, y);
   // Loads peak here, between ticks.
-  const Instant<double> now = m_.step.InstantOf(lane, m_.at.time_s);
-  m_.metrics.AddLoadsOfLane(lane, now);
-  m_.metrics.EndStage(lane, stage, record.sums);
+  const Instant<double> now = lanes_.step.InstantOf(lane, lanes_.at.time_s);
+  lanes_.metrics.AddLoadsOfLane(lane, now);
+  lanes_.metrics.EndStage(lane, stage, record.sums);
   record.ripple.Interrupt();
   record.limit_cycle.Interrupt();
-  m_.sensors.EndStage(lane);
-  m_.computer.EndStage(lane);
-  m_.step.BurnOut(lane);
+  lanes_.sensors.EndStage(lane);
+  lanes_.computer.EndStage(lane);
+  lanes_.step.BurnOut(lane);
   SetShape(lane);
   if (stage + 1 == static_cast<int>(record.plant.stacks.size())) record.Inject(now.altitude_m, y);
 }

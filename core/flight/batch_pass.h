@@ -11,18 +11,18 @@ inline constexpr double kImpactDepth_m = 10.0;
 
 template <class T>
 void Batch<T>::Pass() {
-  m_.at.next_tick = Select(m_.at.live, m_.at.tick + T(1.0), m_.at.tick);
+  lanes_.at.next_tick = Select(lanes_.at.live, lanes_.at.tick + T(1.0), lanes_.at.tick);
   Measure();
   const M powered = Powered();
-  if (Any(powered)) m_.computer.Steer(powered, m_.at, m_.sensed, m_.step);
-  if (Any(m_.at.coasting)) m_.computer.HoldCoast(m_.at, m_.sensed, m_.step);
-  m_.step.EvaluateStart(m_.at.time_s);
+  if (Any(powered)) lanes_.computer.Steer(powered, lanes_.at, lanes_.sensed, lanes_.step);
+  if (Any(lanes_.at.coasting)) lanes_.computer.HoldCoast(lanes_.at, lanes_.sensed, lanes_.step);
+  lanes_.step.EvaluateStart(lanes_.at.time_s);
   if (has_jettisons_) LetGo();
   if (cuts_off_in_flight_) CutOff();
   if (definition_.guidance.closed_loop) Guide();
-  const M loaded = m_.at.live & !m_.at.coasting;
-  m_.metrics.AddLoads(loaded, m_.step.now());
-  m_.metrics.AddMoment(loaded, m_.step.LargestMomentNow(m_.metrics.sums.bending_moment_max_n_m));
+  const M loaded = lanes_.at.live & !lanes_.at.coasting;
+  lanes_.metrics.AddLoads(loaded, lanes_.step.now());
+  lanes_.metrics.AddMoment(loaded, lanes_.step.LargestMomentNow(lanes_.metrics.sums.bending_moment_max_n_m));
   if (has_free_stage_) MeterFree();
   Meter(Powered());
   WatchAndDigest();
@@ -37,124 +37,128 @@ void Batch<T>::Measure() {
   const ReferenceRows& reference = model_.reference_rows();
   const double* row[kLanes];
   for (int lane = 0; lane < kLanes; ++lane) {
-    const Slot& slot = m_.at.slot[lane];
-    const double tick = Lane(m_.at.tick, lane);
+    const Slot& slot = lanes_.at.slot[lane];
+    const double tick = Lane(lanes_.at.tick, lane);
     row[lane] =
         reference.rows.data() + ReferenceRows::kRowSize * static_cast<long>(Min(tick, reference.last_tick));
     if (definition_.guidance.closed_loop && slot.IsGuided()) row[lane] = slot.record->guided->RowAt(tick);
   }
   T now[ReferenceRows::kRowSize];
   LoadRow(row, 2, now);
-  m_.errors = ErrorsAgainst(now, m_.step.motion().q, m_.step.motion().w);
-  m_.sensed.errors = m_.errors;
-  if (has_plugin_) m_.sensed.body_rate_rad_s = m_.step.motion().w;
-  if (!m_.sensors.AreImperfect(m_.step, m_.at.live)) return;
-  const auto seen = m_.sensors.Measure(m_.at, m_.step);
+  lanes_.errors = ErrorsAgainst(now, lanes_.step.motion().q, lanes_.step.motion().w);
+  lanes_.sensed.errors = lanes_.errors;
+  if (has_plugin_) lanes_.sensed.body_rate_rad_s = lanes_.step.motion().w;
+  if (!lanes_.sensors.AreImperfect(lanes_.step, lanes_.at.live)) return;
+  const auto seen = lanes_.sensors.Measure(lanes_.at, lanes_.step);
   const AttitudeErrors<T> shown = ErrorsAgainst(now, seen.attitude, seen.rate_rad_s);
-  AttitudeErrors<T>& sensed = m_.sensed.errors;
+  AttitudeErrors<T>& sensed = lanes_.sensed.errors;
   sensed.angle_rad = Select(seen.imperfect, shown.angle_rad, sensed.angle_rad);
   sensed.rate_rad_s = Select(seen.imperfect, shown.rate_rad_s, sensed.rate_rad_s);
   if (!has_plugin_) return;
-  m_.sensed.body_rate_rad_s = Select(seen.imperfect, seen.rate_rad_s, m_.sensed.body_rate_rad_s);
+  lanes_.sensed.body_rate_rad_s = Select(seen.imperfect, seen.rate_rad_s, lanes_.sensed.body_rate_rad_s);
 }
 
 /// Lanes that steer by their nozzles.
 template <class T>
 MaskOf<T> Batch<T>::Powered() const {
-  const M burning = m_.at.live & m_.step.phase().burning;
-  return has_free_stage_ ? burning & !m_.at.unsteered : burning;
+  const M burning = lanes_.at.live & lanes_.step.phase().burning;
+  return has_free_stage_ ? burning & !lanes_.at.unsteered : burning;
 }
 
 /// Jettisons, which the flight computer decides on its ticks.
 template <class T>
 void Batch<T>::LetGo() {
   for (int lane = 0; lane < kLanes; ++lane) {
-    if (!(Bits(m_.at.live) >> lane & 1u)) continue;
-    Slot& slot = m_.at.slot[lane];
+    if (!(Bits(lanes_.at.live) >> lane & 1u)) continue;
+    Slot& slot = lanes_.at.slot[lane];
     StateValues y;
-    m_.step.ReadLane(lane, y);
+    lanes_.step.ReadLane(lane, y);
     const unsigned due = slot.record->LetGo(
-        slot.stack, slot.jettisoned, Lane(m_.at.time_s, lane), Lane(m_.step.now().altitude_m, lane),
-        Lane(m_.step.density_kg_m3(), lane), Lane(m_.step.propellant_kg(), lane), y);
+        slot.stack, slot.jettisoned, Lane(lanes_.at.time_s, lane), Lane(lanes_.step.now().altitude_m, lane),
+        Lane(lanes_.step.density_kg_m3(), lane), Lane(lanes_.step.propellant_kg(), lane), y);
     if (due == 0) continue;
     slot.jettisoned |= due;
-    m_.step.WriteLane(lane, y);
+    lanes_.step.WriteLane(lane, y);
     SetMass(lane);
     SetShape(lane);
-    slot.record->AddToDigest(Lane(m_.at.time_s, lane), y);
+    slot.record->AddToDigest(Lane(lanes_.at.time_s, lane), y);
     if (slot.record->watched) slot.record->WatchEvent(ViewOf(lane));
   }
-  m_.step.EvaluateStart(m_.at.time_s);
+  lanes_.step.EvaluateStart(lanes_.at.time_s);
 }
 
 /// Ends of burns that the flight computer commands.
 template <class T>
 void Batch<T>::CutOff() {
-  const unsigned burning = Bits(m_.at.live & m_.step.phase().burning);
+  const unsigned burning = Bits(lanes_.at.live & lanes_.step.phase().burning);
   for (int lane = 0; lane < kLanes; ++lane)
-    if (burning >> lane & 1u) CutOffAt(lane, m_.computer.CutOffTime(lane, m_.at, m_.step));
+    if (burning >> lane & 1u) CutOffAt(lane, lanes_.computer.CutOffTime(lane, lanes_.at, lanes_.step));
 }
 
 template <class T>
 void Batch<T>::CutOffAt(int lane, double at_s) {
-  Slot& slot = m_.at.slot[lane];
+  Slot& slot = lanes_.at.slot[lane];
   FlightRecord& record = *slot.record;
   // By then it has burnt out, or nobody commands it.
-  if (at_s >= Lane(m_.step.phase().ignition_s, lane) + record.plant.stacks.data()[slot.stack].burn.duration_s)
+  if (at_s >=
+      Lane(lanes_.step.phase().ignition_s, lane) + record.plant.stacks.data()[slot.stack].burn.duration_s)
     return;
   record.CutOff(slot.stack, at_s);
-  m_.step.ShortenBurn(lane, record.plant.stacks.data()[slot.stack].burn);
-  m_.computer.Commanded(lane, record.plant.stacks.data()[slot.stack].burn.tail_s > 0.0);
+  lanes_.step.ShortenBurn(lane, record.plant.stacks.data()[slot.stack].burn);
+  lanes_.computer.Commanded(lane, record.plant.stacks.data()[slot.stack].burn.tail_s > 0.0);
   SetStop(lane);
 }
 
 template <class T>
 void Batch<T>::Guide() {
   for (int lane = 0; lane < kLanes; ++lane)
-    if (m_.computer.WantsToGuide(lane, m_.at) && m_.computer.Guide(lane, m_.at, m_.sensed, m_.step))
+    if (lanes_.computer.WantsToGuide(lane, lanes_.at) &&
+        lanes_.computer.Guide(lane, lanes_.at, lanes_.sensed, lanes_.step))
       SetStop(lane);
 }
 
 /// Metrics of this tick.
 template <class T>
 void Batch<T>::Meter(M powered) {
-  const T pitch_error = -m_.errors.angle_rad.y;
-  if (Any(m_.at.coasting)) m_.metrics.AddCoast(m_.at.coasting, m_.at.time_s, pitch_error);
+  const T pitch_error = -lanes_.errors.angle_rad.y;
+  if (Any(lanes_.at.coasting)) lanes_.metrics.AddCoast(lanes_.at.coasting, lanes_.at.time_s, pitch_error);
   if (!Any(powered)) return;
-  const AxisOutput<T>& pitch = m_.computer.output().axes[kPitch];
+  const AxisOutput<T>& pitch = lanes_.computer.output().axes[kPitch];
   const LyapunovSample<T> law{pitch.v, Select(pitch.v_rate_sign < T(0.0), T(1.0), T(0.0)),
-                              m_.computer.law(kPitch).p11, pitch.departure_norm2};
-  m_.metrics.AddPowered(powered, T(tick_s_), m_.at.time_s,
-                        {-m_.errors.angle_rad.x, pitch_error, -m_.errors.angle_rad.z}, law);
-  const bool listed = m_.step.plant().nozzles_listed;
+                              lanes_.computer.law(kPitch).p11, pitch.departure_norm2};
+  lanes_.metrics.AddPowered(powered, T(tick_s_), lanes_.at.time_s,
+                            {-lanes_.errors.angle_rad.x, pitch_error, -lanes_.errors.angle_rad.z}, law);
+  const bool listed = lanes_.step.plant().nozzles_listed;
   if (listed) {
     typename LaneMetrics<T>::Travel travel{T(0.0), T(0.0), NoLane<T>()};
-    for (int bank = 0; bank < m_.step.plant().banks; ++bank) {
-      const BankState<T>& drives = m_.step.drives(bank);
-      m_.metrics.AddToTravel(powered & m_.step.plant().bank[bank].driven, m_.at.time_s, bank, drives.first,
-                             drives.second, m_.step.command_rad(bank), m_.computer.allocation(bank), travel);
+    for (int bank = 0; bank < lanes_.step.plant().banks; ++bank) {
+      const BankState<T>& drives = lanes_.step.drives(bank);
+      lanes_.metrics.AddToTravel(powered & lanes_.step.plant().bank[bank].driven, lanes_.at.time_s, bank,
+                                 drives.first, drives.second, lanes_.step.command_rad(bank),
+                                 lanes_.computer.allocation(bank), travel);
     }
-    m_.metrics.EndTravel(powered, m_.computer.allocation(0).per_drive, travel);
+    lanes_.metrics.EndTravel(powered, lanes_.computer.allocation(0).per_drive, travel);
   } else {
-    m_.metrics.AddDeflections(powered, m_.at.time_s, m_.step.drives(0).first, m_.step.command_rad(0),
-                              m_.computer.limit_rad());
+    lanes_.metrics.AddDeflections(powered, lanes_.at.time_s, lanes_.step.drives(0).first,
+                                  lanes_.step.command_rad(0), lanes_.computer.limit_rad());
   }
 
-  const M is_transient = InTransient(m_.at.time_s, m_.at.time_s - m_.step.phase().ignition_s,
-                                     m_.step.now().altitude_m, definition_.kick_start_s,
-                                     definition_.kick_end_s, m_.metrics.gust_bottom_m, m_.metrics.gust_top_m);
+  const M is_transient =
+      InTransient(lanes_.at.time_s, lanes_.at.time_s - lanes_.step.phase().ignition_s,
+                  lanes_.step.now().altitude_m, definition_.kick_start_s, definition_.kick_end_s,
+                  lanes_.metrics.gust_bottom_m, lanes_.metrics.gust_top_m);
   const unsigned metered = Bits(powered), interrupted = Bits(is_transient);
-  const T* n = m_.step.drives(0).first.angle_rad;
+  const T* n = lanes_.step.drives(0).first.angle_rad;
   T roll = T(0.25) * ((n[0] - n[1]) + (n[2] - n[3]));
   T pitch_angle = T(0.5) * (n[0] + n[1]), yaw = T(0.5) * (n[2] + n[3]);
   if (listed) {
-    roll = m_.computer.FeltAboutAll(kRoll, m_.step);
-    pitch_angle = m_.computer.FeltAboutAll(kPitch, m_.step);
-    yaw = m_.computer.FeltAboutAll(kYaw, m_.step);
+    roll = lanes_.computer.FeltAboutAll(kRoll, lanes_.step);
+    pitch_angle = lanes_.computer.FeltAboutAll(kPitch, lanes_.step);
+    yaw = lanes_.computer.FeltAboutAll(kYaw, lanes_.step);
   }
   for (int lane = 0; lane < kLanes; ++lane) {
     if (!(metered >> lane & 1u)) continue;
-    FlightRecord& record = *m_.at.slot[lane].record;
+    FlightRecord& record = *lanes_.at.slot[lane].record;
     if (interrupted >> lane & 1u) {
       record.ripple.Interrupt();
       record.limit_cycle.Interrupt();
@@ -167,58 +171,58 @@ void Batch<T>::Meter(M powered) {
 
 template <class T>
 void Batch<T>::WatchAndDigest() {
-  const unsigned due =
-      Bits(m_.at.live & ((m_.at.tick >= m_.at.next_digest_tick) | (m_.at.tick >= m_.at.next_row_tick)));
+  const unsigned due = Bits(lanes_.at.live & ((lanes_.at.tick >= lanes_.at.next_digest_tick) |
+                                              (lanes_.at.tick >= lanes_.at.next_row_tick)));
   if (due == 0) return;
   const long second = static_cast<long>(1.0 / tick_s_ + 0.5);
   for (int lane = 0; lane < kLanes; ++lane) {
     if (!(due >> lane & 1u)) continue;
-    FlightRecord& record = *m_.at.slot[lane].record;
-    const long tick = static_cast<long>(Lane(m_.at.tick, lane));
+    FlightRecord& record = *lanes_.at.slot[lane].record;
+    const long tick = static_cast<long>(Lane(lanes_.at.tick, lane));
     if (record.watched) {
       LaneView view = ViewOf(lane);
       view.has_error = true;
       record.Watch(view, record.history_ticks > 0 && tick % record.history_ticks == 0);
-      Lane(m_.at.next_row_tick, lane) =
-          record.every_tick ? Lane(m_.at.tick, lane)
+      Lane(lanes_.at.next_row_tick, lane) =
+          record.every_tick ? Lane(lanes_.at.tick, lane)
                             : static_cast<double>((tick / record.history_ticks + 1) * record.history_ticks);
     }
-    if (static_cast<double>(tick) < Lane(m_.at.next_digest_tick, lane)) continue;
+    if (static_cast<double>(tick) < Lane(lanes_.at.next_digest_tick, lane)) continue;
     if (tick % second == 0) {
       StateValues y;
-      m_.step.ReadLane(lane, y);
-      record.AddToDigest(Lane(m_.at.time_s, lane), y);
+      lanes_.step.ReadLane(lane, y);
+      record.AddToDigest(Lane(lanes_.at.time_s, lane), y);
     }
-    Lane(m_.at.next_digest_tick, lane) = static_cast<double>((tick / second + 1) * second);
+    Lane(lanes_.at.next_digest_tick, lane) = static_cast<double>((tick / second + 1) * second);
   }
 }
 
 /// Metrics of stages that nothing controls.
 template <class T>
 void Batch<T>::MeterFree() {
-  const M free = m_.at.live & m_.at.unsteered;
+  const M free = lanes_.at.live & lanes_.at.unsteered;
   if (!Any(free)) return;
-  const Instant<T>& now = m_.step.now();
-  const BodyInFlow<T>& aero = m_.step.plant().aero;
+  const Instant<T>& now = lanes_.step.now();
+  const BodyInFlow<T>& aero = lanes_.step.plant().aero;
   T foremost_m = now.normal.xcp_station_m;
   if (aero.has_yaw_plane) foremost_m = Min(foremost_m, now.side.xcp_station_m);
-  m_.metrics.AddFree(free, m_.step.motion().w.x, now.qbar_pa,
-                     (foremost_m - m_.step.cg_station_m()) / aero.span_m);
+  lanes_.metrics.AddFree(free, lanes_.step.motion().w.x, now.qbar_pa,
+                         (foremost_m - lanes_.step.cg_station_m()) / aero.span_m);
 }
 
 /// Ends the flights that have passed their apogee, or lets them fall on from there.
 template <class T>
 void Batch<T>::FlyOn() {
   for (int lane = 0; lane < kLanes; ++lane) {
-    Slot& slot = m_.at.slot[lane];
+    Slot& slot = lanes_.at.slot[lane];
     if (slot.record == nullptr || !slot.past_last_burn) continue;
     // Near the apogee only: altitude grows along the vertical, which is within 0.2 deg of the radius.
-    const Vector<double> p = LaneOf(m_.step.motion().p, lane), v = LaneOf(m_.step.motion().v, lane);
+    const Vector<double> p = LaneOf(lanes_.step.motion().p, lane), v = LaneOf(lanes_.step.motion().v, lane);
     if (Dot(p, v) > 0.01 * Sqrt(Dot(p, p) * Dot(v, v))) continue;
     StateValues y;
-    m_.step.ReadLane(lane, y);
+    lanes_.step.ReadLane(lane, y);
     if (slot.record->Climbs(y)) continue;
-    FallFrom(lane, Lane(m_.step.now().mass_kg, lane));
+    FallFrom(lane, Lane(lanes_.step.now().mass_kg, lane));
   }
 }
 
@@ -226,34 +230,34 @@ template <class T>
 void Batch<T>::CheckEnds() {
   const LossOfControl& loss = definition_.vehicle.loss_of_control;
   const T lost_angle2(loss.attitude_error_rad * loss.attitude_error_rad);
-  const T angle2 = Dot(m_.errors.angle_rad, m_.errors.angle_rad);
-  const T rate2 = Dot(m_.step.motion().w, m_.step.motion().w);
+  const T angle2 = Dot(lanes_.errors.angle_rad, lanes_.errors.angle_rad);
+  const T rate2 = Dot(lanes_.step.motion().w, lanes_.step.motion().w);
   const T lowest(definition_.vehicle.site.altitude_m - kImpactDepth_m);
   M is_lost = angle2 > lost_angle2;
   M is_fast = rate2 > T(loss.rate_rad_s * loss.rate_rad_s);
   if (has_free_stage_ || flies_on_) {
     const double turn_rad_s = kTurnLimit_rad / tick_s_;
-    is_lost = is_lost & !m_.at.unsteered;
-    is_fast = (is_fast & !m_.at.unsteered) | (m_.at.unsteered & (rate2 > T(turn_rad_s * turn_rad_s)));
+    is_lost = is_lost & !lanes_.at.unsteered;
+    is_fast = (is_fast & !lanes_.at.unsteered) | (lanes_.at.unsteered & (rate2 > T(turn_rad_s * turn_rad_s)));
   }
-  const M is_low = m_.step.now().altitude_m < lowest;
-  const M is_late = m_.at.time_s > T(kTimeLimit_s);
-  M suspects = m_.at.live & (is_lost | is_fast | is_low | is_late | (m_.at.lost_ticks > T(0.0)));
+  const M is_low = lanes_.step.now().altitude_m < lowest;
+  const M is_late = lanes_.at.time_s > T(kTimeLimit_s);
+  M suspects = lanes_.at.live & (is_lost | is_fast | is_low | is_late | (lanes_.at.lost_ticks > T(0.0)));
   const StructuralLimits& limits = definition_.vehicle.limits;
   if (limits.terminate) {
     const auto above = [](T value, double limit) { return value > T(limit > 0.0 ? limit : kFarFuture); };
-    suspects =
-        suspects | (m_.at.live & (above(m_.metrics.sums.q_max_pa, limits.q_max_pa) |
-                                  above(m_.metrics.sums.q_alpha_max_pa_rad, limits.q_alpha_pa_rad) |
-                                  above(m_.metrics.sums.axial_load_max_g, limits.axial_load_g) |
-                                  above(m_.metrics.sums.lateral_load_max_g, limits.lateral_load_g) |
-                                  above(m_.metrics.sums.bending_moment_max_n_m, limits.bending_moment_n_m)));
+    suspects = suspects | (lanes_.at.live &
+                           (above(lanes_.metrics.sums.q_max_pa, limits.q_max_pa) |
+                            above(lanes_.metrics.sums.q_alpha_max_pa_rad, limits.q_alpha_pa_rad) |
+                            above(lanes_.metrics.sums.axial_load_max_g, limits.axial_load_g) |
+                            above(lanes_.metrics.sums.lateral_load_max_g, limits.lateral_load_g) |
+                            above(lanes_.metrics.sums.bending_moment_max_n_m, limits.bending_moment_n_m)));
   }
   if (has_plugin_) {
     for (int lane = 0; lane < kLanes; ++lane)
-      if (m_.at.slot[lane].record != nullptr && m_.at.slot[lane].record->law->failure() != nullptr)
-        End(lane, Outcome::kNumericalFailure, m_.at.slot[lane].record->law->failure());
-    suspects = suspects & m_.at.live;
+      if (lanes_.at.slot[lane].record != nullptr && lanes_.at.slot[lane].record->law->failure() != nullptr)
+        End(lane, Outcome::kNumericalFailure, lanes_.at.slot[lane].record->law->failure());
+    suspects = suspects & lanes_.at.live;
   }
   if (!Any(suspects)) return;
   for (int lane = 0; lane < kLanes; ++lane) {
@@ -261,17 +265,17 @@ void Batch<T>::CheckEnds() {
     // A sample stands for all ticks up to the next sample: in the coast these are several.
     const double lost_ticks =
         Bits(is_lost) >> lane & 1u
-            ? Lane(m_.at.lost_ticks, lane) + Lane(m_.at.next_tick, lane) - Lane(m_.at.tick, lane)
+            ? Lane(lanes_.at.lost_ticks, lane) + Lane(lanes_.at.next_tick, lane) - Lane(lanes_.at.tick, lane)
             : 0.0;
-    Lane(m_.at.lost_ticks, lane) = lost_ticks;
+    Lane(lanes_.at.lost_ticks, lane) = lost_ticks;
     FlightSums loads;
-    m_.metrics.Read(lane, loads);
+    lanes_.metrics.Read(lane, loads);
     if (lost_ticks > 0.0 && lost_ticks * tick_s_ >= loss.for_s)
-      End(lane, Outcome::kLostControl, m_.at.slot[lane].record->lost_attitude);
-    else if ((Bits(is_fast) & Bits(m_.at.unsteered)) >> lane & 1u)
+      End(lane, Outcome::kLostControl, lanes_.at.slot[lane].record->lost_attitude);
+    else if ((Bits(is_fast) & Bits(lanes_.at.unsteered)) >> lane & 1u)
       End(lane, Outcome::kNumericalFailure, "turns faster than the integration's steps follow");
     else if (Bits(is_fast) >> lane & 1u)
-      End(lane, Outcome::kLostControl, m_.at.slot[lane].record->lost_rate);
+      End(lane, Outcome::kLostControl, lanes_.at.slot[lane].record->lost_rate);
     else if (Bits(is_low) >> lane & 1u)
       End(lane, Outcome::kImpact, "fell below the launch site");
     else if (limits.terminate && ExceedsStructure(limits, loads))
