@@ -5,7 +5,7 @@
 
 #include "core/dynamics/launcher.h"
 #include "core/flight/flight_model.h"
-#include "core/structure/bending_table.h"
+#include "core/modes/mode_table.h"
 
 namespace dispersa {
 
@@ -25,7 +25,7 @@ struct BendingInSpace {
     return dydt;
   }
   double propellant_kg() const { return plant.stacks[0].burn.Propellant(time_s); }
-  const BendingTable& table() const { return *plant.stacks[0].bending; }
+  const ModeTable& table() const { return *plant.stacks[0].bending; }
   double At(int mode, int column) const { return table().At(0, mode, column, propellant_kg()); }
 
   Vehicle vehicle;

@@ -15,7 +15,7 @@
 
 #include "core/dynamics/body_sections.h"
 #include "core/math/lane_vector.h"
-#include "core/structure/bending_table.h"
+#include "core/modes/mode_table.h"
 
 namespace dispersa::lanes {
 inline namespace DISPERSA_ISA {
@@ -32,7 +32,7 @@ struct ModeNow {
 /// next.
 template <class T>
 struct ModeRows {
-  T low[BendingTable::kRowSize], rise[BendingTable::kRowSize];
+  T low[ModeTable::kRowSize], rise[ModeTable::kRowSize];
 };
 
 /// A number of plane y and of plane z.
@@ -43,10 +43,10 @@ struct OfPlanes {
 
 /// The bending of each lane's stack.
 template <class T>
-struct FlownModes : BendingFactorsOf<T> {
+struct StackBending : BendingFactorsOf<T> {
   int modes = 0;   ///< of any stack: the same in all lanes, as
   int planes = 1;  ///< 1: plane z is plane y in every stack
-  const BendingTable* table[kWidth<T>] = {};
+  const ModeTable* table[kWidth<T>] = {};
   /// The levels that each lane is between, read from its table: the propellant of the upper one, by how much
   /// the next has less, and the range in which they stay the right ones (none: nothing is read yet).
   T level_kg, span_kg, from_kg, to_kg;
@@ -68,15 +68,15 @@ struct FlownModes : BendingFactorsOf<T> {
   }
   /// Slopes that sensors feel: of the inertial unit, and of each gyro.
   DISPERSA_INLINE T UnitSlope(int plane, int mode) const {
-    return this->slope_factor * ColumnAt(plane, mode, BendingTable::kUnitSlope);
+    return this->slope_factor * ColumnAt(plane, mode, ModeTable::kUnitSlope);
   }
   DISPERSA_INLINE T GyroSlope(int plane, int mode, int gyro) const {
-    return this->slope_factor * ColumnAt(plane, mode, BendingTable::kGyroSlope + gyro);
+    return this->slope_factor * ColumnAt(plane, mode, ModeTable::kGyroSlope + gyro);
   }
 };
 /// The modes of another stack, or of one that has let go of a body (null: it is rigid).
 template <class T>
-DISPERSA_INLINE void SetTable(FlownModes<T>& b, int lane, const BendingTable* table) {
+DISPERSA_INLINE void SetTable(StackBending<T>& b, int lane, const ModeTable* table) {
   b.table[lane] = table != nullptr && table->modes > 0 ? table : nullptr;
   Lane(b.from_kg, lane) = Lane(b.to_kg, lane) = 0.0;
 }
@@ -94,9 +94,9 @@ struct ModalForce {
 
 /// Reads the levels about each lane's propellant. A flight needs it once for each level.
 template <class T>
-DISPERSA_OUT_OF_LINE void ReadLevels(FlownModes<T>& b, T propellant_kg) {
+DISPERSA_OUT_OF_LINE void ReadLevels(StackBending<T>& b, T propellant_kg) {
   constexpr double kInfinity = __builtin_inf();
-  alignas(128) static constexpr double kNone[BendingTable::kRowSize] = {};
+  alignas(128) static constexpr double kNone[ModeTable::kRowSize] = {};
   int level[kWidth<T>], next[kWidth<T>];
   for (int lane = 0; lane < kWidth<T>; ++lane) {
     level[lane] = next[lane] = 0;
@@ -125,7 +125,7 @@ DISPERSA_OUT_OF_LINE void ReadLevels(FlownModes<T>& b, T propellant_kg) {
     for (int mode = 0; mode < b.modes; ++mode) {
       const double *low[kWidth<T>], *high[kWidth<T>];
       for (int lane = 0; lane < kWidth<T>; ++lane) {
-        const BendingTable* table = b.table[lane];
+        const ModeTable* table = b.table[lane];
         low[lane] = high[lane] = kNone;
         if (table == nullptr || mode >= table->modes) continue;
         const int of = table->planes == 1 ? 0 : plane;
@@ -133,9 +133,9 @@ DISPERSA_OUT_OF_LINE void ReadLevels(FlownModes<T>& b, T propellant_kg) {
         high[lane] = table->Row(of, next[lane], mode);
       }
       ModeRows<T>& rows = b.rows[plane][mode];
-      LoadRow(low, BendingTable::kRowSize / 4, rows.low);
-      LoadRow(high, BendingTable::kRowSize / 4, rows.rise);
-      for (int i = 0; i < BendingTable::kRowSize; ++i) rows.rise[i] = rows.rise[i] - rows.low[i];
+      LoadRow(low, ModeTable::kRowSize / 4, rows.low);
+      LoadRow(high, ModeTable::kRowSize / 4, rows.rise);
+      for (int i = 0; i < ModeTable::kRowSize; ++i) rows.rise[i] = rows.rise[i] - rows.low[i];
     }
   }
 }
@@ -143,7 +143,7 @@ DISPERSA_OUT_OF_LINE void ReadLevels(FlownModes<T>& b, T propellant_kg) {
 /// Sets the values that depend on the lane's propellant. Columns that a step needs once are looked up where
 /// they are needed.
 template <class T>
-DISPERSA_INLINE void ShapesAt(FlownModes<T>& b, T propellant_kg) {
+DISPERSA_INLINE void ShapesAt(StackBending<T>& b, T propellant_kg) {
   if (Any(!((propellant_kg < b.from_kg) & (propellant_kg >= b.to_kg)))) ReadLevels(b, propellant_kg);
   b.within = Clamp((b.level_kg - propellant_kg) / b.span_kg, T(0.0), T(1.0));
   for (int plane = 0; plane < b.planes; ++plane) {
@@ -152,14 +152,15 @@ DISPERSA_INLINE void ShapesAt(FlownModes<T>& b, T propellant_kg) {
         return b.ColumnAt(plane, mode, column);
       };
       ModeNow<T>& m = b.now[plane][mode];
-      const T tabulated = at(BendingTable::kFrequency);
+      const T tabulated = at(ModeTable::kFrequency);
       const auto flies = tabulated > T(0.0);
       const T frequency = Select(flies, tabulated * b.frequency_factor.data()[mode], T(1.0));
       m.stiffness_1_s2 = frequency * frequency;
-      m.decay_1_s = b.damping_ratio * frequency;
+      const T damping_ratio = at(ModeTable::kDamping) * b.damping_factor;
+      m.decay_1_s = damping_ratio * frequency;
       m.damping_1_s = T(2.0) * m.decay_1_s;
-      m.damped_frequency_rad_s = frequency * Sqrt(Fma(-b.damping_ratio, b.damping_ratio, T(1.0)));
-      m.inverse_mass_1_kg = at(BendingTable::kInverseMass);
+      m.damped_frequency_rad_s = frequency * Sqrt(Fma(-damping_ratio, damping_ratio, T(1.0)));
+      m.inverse_mass_1_kg = at(ModeTable::kInverseMass);
     }
   }
 }
@@ -175,19 +176,19 @@ struct ForcePlace {
   int deflection, slope, residual, relieved;
 };
 /// Of the stage's nozzles.
-inline constexpr ForcePlace kAtPivot{BendingTable::kPivotDeflection, BendingTable::kPivotSlope,
-                                     BendingTable::kResidual, 0};
+inline constexpr ForcePlace kAtPivot{ModeTable::kPivotDeflection, ModeTable::kPivotSlope,
+                                     ModeTable::kResidual, 0};
 /// Of the boosters' rigid link, at the station of their nozzles. Their force along the axis relieves the beam
 /// behind the link.
-inline constexpr ForcePlace kAtBoosters{BendingTable::kBoosterDeflection, BendingTable::kBoosterSlope, 0,
-                                        BendingTable::kBehindBoosters};
+inline constexpr ForcePlace kAtBoosters{ModeTable::kBoosterDeflection, ModeTable::kBoosterSlope, 0,
+                                        ModeTable::kBehindBoosters};
 /// The shapes of the modes there.
 template <class T>
 struct PlaceShapes {
   OfPlanes<T> deflection[kModes], slope_1_m[kModes];
 };
 template <class T>
-DISPERSA_INLINE PlaceShapes<T> ShapesOf(const FlownModes<T>& b, const ForcePlace& place) {
+DISPERSA_INLINE PlaceShapes<T> ShapesOf(const StackBending<T>& b, const ForcePlace& place) {
   PlaceShapes<T> o;
   for (int mode = 0; mode < b.modes; ++mode) {
     o.deflection[mode] = b.ColumnsAt(mode, place.deflection);
@@ -199,7 +200,7 @@ DISPERSA_INLINE PlaceShapes<T> ShapesOf(const FlownModes<T>& b, const ForcePlace
 /// answer them at once (residual flexibility: R. H. MacNeal, A hybrid method of component mode synthesis,
 /// Computers & Structures 1, 1971).
 template <class T>
-DISPERSA_INLINE Bent<T> BentAt(const FlownModes<T>& b, const BendingState<T>& s, const ForcePlace& place,
+DISPERSA_INLINE Bent<T> BentAt(const StackBending<T>& b, const BendingState<T>& s, const ForcePlace& place,
                                const PlaceShapes<T>& shapes, const Vector<T>& force_n,
                                const Vector<T>& couple_n_m) {
   Bent<T> o{T(0.0), T(0.0), T(0.0), T(0.0)};
@@ -220,7 +221,7 @@ DISPERSA_INLINE Bent<T> BentAt(const FlownModes<T>& b, const BendingState<T>& s,
 }
 /// How far the inertial unit is turned against the mean axes, rad about x, y, z.
 template <class T>
-DISPERSA_INLINE Vector<T> UnitTurn(const FlownModes<T>& b, const BendingState<T>& s) {
+DISPERSA_INLINE Vector<T> UnitTurn(const StackBending<T>& b, const BendingState<T>& s) {
   Vector<T> turn = Zero<T>();
   for (int mode = 0; mode < b.modes; ++mode) {
     turn.y = Fma(b.UnitSlope(1, mode), s.q_m[1][mode], turn.y);
@@ -230,7 +231,7 @@ DISPERSA_INLINE Vector<T> UnitTurn(const FlownModes<T>& b, const BendingState<T>
 }
 /// Rotation rate of the inertial unit against the mean axes, rad/s. With `gyro` from 0 on: of that gyro.
 template <class T>
-DISPERSA_INLINE Vector<T> TurnRate(const FlownModes<T>& b, const BendingState<T>& s, int gyro) {
+DISPERSA_INLINE Vector<T> TurnRate(const StackBending<T>& b, const BendingState<T>& s, int gyro) {
   Vector<T> rate = Zero<T>();
   for (int mode = 0; mode < b.modes; ++mode) {
     const T y = gyro < 0 ? b.UnitSlope(0, mode) : b.GyroSlope(0, mode, gyro);
@@ -243,7 +244,7 @@ DISPERSA_INLINE Vector<T> TurnRate(const FlownModes<T>& b, const BendingState<T>
 
 /// Adds a force and a couple at a place to the modes' generalised forces.
 template <class T>
-DISPERSA_INLINE void DriveAt(const FlownModes<T>& b, const BendingState<T>& s, const ForcePlace& place,
+DISPERSA_INLINE void DriveAt(const StackBending<T>& b, const BendingState<T>& s, const ForcePlace& place,
                              const PlaceShapes<T>& shapes, const Vector<T>& force_n,
                              const Vector<T>& couple_n_m, ModalForce<T>& o) {
   for (int mode = 0; mode < b.modes; ++mode) {
@@ -275,9 +276,9 @@ struct LiftNow {
 };
 /// `aft_m`: of the centre of pressure behind that of slender-body theory.
 template <class T>
-DISPERSA_INLINE LiftNow<T> LiftOf(const FlownModes<T>& b, int plane, int mode, int effect, T aft_m) {
+DISPERSA_INLINE LiftNow<T> LiftOf(const StackBending<T>& b, int plane, int mode, int effect, T aft_m) {
   const auto by = [&](LiftCause cause) __attribute__((always_inline)) {
-    return b.ColumnAt(plane, mode, BendingTable::LiftColumn(cause, effect));
+    return b.ColumnAt(plane, mode, ModeTable::LiftColumn(cause, effect));
   };
   return {Fma(aft_m, by(kSlopeShift), by(kSlopeSlender)), Fma(aft_m, by(kRateShift), by(kRateSlender))};
 }
@@ -289,7 +290,7 @@ struct LiftPlanes {
 };
 /// `side`: of the yaw plane (null: as the pitch plane).
 template <class T>
-DISPERSA_INLINE LiftPlanes<T> LiftPlanesOf(const FlownModes<T>& b, const Sections<T>& body,
+DISPERSA_INLINE LiftPlanes<T> LiftPlanesOf(const StackBending<T>& b, const Sections<T>& body,
                                            const NormalForce<T>& air, const SideForce<T>* side) {
   const T aft_m = air.xcp_station_m - body.slender_station_m;
   if (side == nullptr) return {{aft_m, aft_m}, b.planes == 1};
@@ -298,7 +299,7 @@ DISPERSA_INLINE LiftPlanes<T> LiftPlanesOf(const FlownModes<T>& b, const Section
 /// The effects of a mode's motion in both planes: `slope_n` and `rate_n` are the normal forces per radian
 /// times q and q' / V.
 template <class T>
-DISPERSA_INLINE void AddLift(const FlownModes<T>& b, int mode, int effect, const LiftPlanes<T>& planes,
+DISPERSA_INLINE void AddLift(const StackBending<T>& b, int mode, int effect, const LiftPlanes<T>& planes,
                              const OfPlanes<T>& slope_n, const OfPlanes<T>& rate_n, T& y, T& z) {
   const LiftNow<T> of_y = LiftOf(b, 0, mode, effect, planes.aft_m.y);
   const LiftNow<T> of_z = planes.are_one ? of_y : LiftOf(b, 1, mode, effect, planes.aft_m.z);
@@ -309,7 +310,7 @@ DISPERSA_INLINE void AddLift(const FlownModes<T>& b, int mode, int effect, const
 /// The additional effects of the flow on a body that bends. Added to the body's force, to its moment about C,
 /// and to the modes. `side`: of the yaw plane (null: as the pitch plane).
 template <class T>
-DISPERSA_INLINE void BendFlow(const FlownModes<T>& b, const BendingState<T>& s, const Sections<T>& body,
+DISPERSA_INLINE void BendFlow(const StackBending<T>& b, const BendingState<T>& s, const Sections<T>& body,
                               T cg_station_m, const SideForce<T>* side, FlowForce<T>& flow,
                               ModalForce<T>& o) {
   const NormalForce<T>& air = flow.normal;
@@ -327,8 +328,8 @@ DISPERSA_INLINE void BendFlow(const FlownModes<T>& b, const BendingState<T>& s, 
     AddLift(b, mode, kFirstEffect, planes, slope_n, rate_n, first_n_m[0], first_n_m[1]);
     for (int other = 0; other < b.modes; ++other)
       AddLift(b, mode, kWorkEffects + other, planes, slope_n, rate_n, of_y[other], of_z[other]);
-    const OfPlanes<T> slender = b.ColumnsAt(mode, BendingTable::kStraightLift);
-    const OfPlanes<T> shift = b.ColumnsAt(mode, BendingTable::kStraightLift + 1);
+    const OfPlanes<T> slender = b.ColumnsAt(mode, ModeTable::kStraightLift);
+    const OfPlanes<T> shift = b.ColumnsAt(mode, ModeTable::kStraightLift + 1);
     of_y[mode] = Fma(straight_n[0], Fma(planes.aft_m.y, shift.y, slender.y), of_y[mode]);
     of_z[mode] = Fma(straight_n[1], Fma(planes.aft_m.z, shift.z, slender.z), of_z[mode]);
   }
@@ -341,7 +342,7 @@ DISPERSA_INLINE void BendFlow(const FlownModes<T>& b, const BendingState<T>& s, 
 /// Adds bending's part to the sections' moments: `drive` is Q / m, `side` as in BendFlow. A function of its
 /// own: rigid vehicles do not need it.
 template <class T>
-DISPERSA_OUT_OF_LINE SectionMoments<T> MomentsByBending(const FlownModes<T>& b, const BendingState<T>& s,
+DISPERSA_OUT_OF_LINE SectionMoments<T> MomentsByBending(const StackBending<T>& b, const BendingState<T>& s,
                                                         const ModalForce<T>& drive, const Sections<T>& body,
                                                         const NormalForce<T>& air, const SideForce<T>* side) {
   SectionMoments<T> o;
@@ -362,7 +363,7 @@ DISPERSA_OUT_OF_LINE SectionMoments<T> MomentsByBending(const FlownModes<T>& b, 
     for (int i = 0; i < body.stations; ++i) {
       T &y_n_m = o.y_n_m[i], &z_n_m = o.z_n_m[i];
       AddLift(b, mode, kSectionEffects + i, planes, slope_n, rate_n, y_n_m, z_n_m);
-      const OfPlanes<T> inertia = b.ColumnsAt(mode, BendingTable::kMomentAt + i);
+      const OfPlanes<T> inertia = b.ColumnsAt(mode, ModeTable::kMomentAt + i);
       y_n_m = Fma(moved.y, inertia.y, y_n_m);
       z_n_m = Fma(moved.z, inertia.z, z_n_m);
     }
@@ -372,12 +373,12 @@ DISPERSA_OUT_OF_LINE SectionMoments<T> MomentsByBending(const FlownModes<T>& b, 
 
 /// Ends the sum of generalised forces: compression by the force along the axis, over the masses.
 template <class T>
-DISPERSA_INLINE void FinishDrive(const FlownModes<T>& b, const BendingState<T>& s, T axial_n,
+DISPERSA_INLINE void FinishDrive(const StackBending<T>& b, const BendingState<T>& s, T axial_n,
                                  ModalForce<T>& o) {
   for (int mode = 0; mode < b.modes; ++mode) {
     T shortened_y(0.0), shortened_z(0.0);
     for (int other = 0; other < b.modes; ++other) {
-      const OfPlanes<T> with = b.ColumnsAt(mode, BendingTable::kShortening + other);
+      const OfPlanes<T> with = b.ColumnsAt(mode, ModeTable::kShortening + other);
       shortened_y = Fma(with.y, s.q_m[0][other], shortened_y);
       shortened_z = Fma(with.z, s.q_m[1][other], shortened_z);
     }
@@ -395,7 +396,7 @@ struct Swing {
   T aa[kPlanes][kModes], ar[kPlanes][kModes], ra[kPlanes][kModes], rr[kPlanes][kModes];
 };
 template <class T>
-DISPERSA_INLINE Swing<T> SwingOver(const FlownModes<T>& b, T time_s) {
+DISPERSA_INLINE Swing<T> SwingOver(const StackBending<T>& b, T time_s) {
   Swing<T> o;
   o.time_s = time_s;
   for (int plane = 0; plane < b.planes; ++plane)
@@ -414,7 +415,7 @@ DISPERSA_INLINE Swing<T> SwingOver(const FlownModes<T>& b, T time_s) {
 }
 /// Twice the time.
 template <class T>
-DISPERSA_INLINE Swing<T> Twice(const FlownModes<T>& b, const Swing<T>& s) {
+DISPERSA_INLINE Swing<T> Twice(const StackBending<T>& b, const Swing<T>& s) {
   Swing<T> o = s;
   o.time_s = s.time_s + s.time_s;
   for (int plane = 0; plane < b.planes; ++plane)
@@ -431,7 +432,7 @@ DISPERSA_INLINE Swing<T> Twice(const FlownModes<T>& b, const Swing<T>& s) {
 /// The modes after the time of `swing` under drives d0 + d1 t + d2 t², exactly: a particular motion a + b t +
 /// c t² plus the free motion of the rest.
 template <class T>
-DISPERSA_INLINE BendingState<T> Swung(const FlownModes<T>& b, const Swing<T>& swing,
+DISPERSA_INLINE BendingState<T> Swung(const StackBending<T>& b, const Swing<T>& swing,
                                       const BendingState<T>& from, const ModalForce<T>& d0,
                                       const ModalForce<T>& d1, const ModalForce<T>& d2) {
   BendingState<T> to = from;

@@ -4,7 +4,7 @@
 
 #include "core/dynamics/body_flow.h"
 #include "core/math/lane_vector.h"
-#include "core/structure/load_table.h"
+#include "core/modes/load_table.h"
 
 namespace dispersa::lanes {
 inline namespace DISPERSA_ISA {

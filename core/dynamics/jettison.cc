@@ -151,7 +151,7 @@ class MeanMotion {
 }  // namespace
 
 void TakeAlong(const LauncherStack& below, unsigned jettisoned, const double* modal, RigidBodyState& above) {
-  const BendingTable* const table = below.BendingWithout(jettisoned);
+  const ModeTable* const table = below.BendingWithout(jettisoned);
   if (table == nullptr) return;
   MeanMotion mean;
   for (int plane = 0; plane < kPlanes; ++plane)
@@ -159,16 +159,16 @@ void TakeAlong(const LauncherStack& below, unsigned jettisoned, const double* mo
       const auto at = [&](int column) {
         return table->At(table->planes == 1 ? 0 : plane, mode, column, below.burn.left_kg);
       };
-      mean.Add(plane, at(BendingTable::kUpperShift), at(BendingTable::kUpperTurn),
-               modal[plane * kModes + mode], modal[(kPlanes + plane) * kModes + mode]);
+      mean.Add(plane, at(ModeTable::kUpperShift), at(ModeTable::kUpperTurn), modal[plane * kModes + mode],
+               modal[(kPlanes + plane) * kModes + mode]);
     }
   mean.Give(above);
 }
 
 void LetGoBent(const LauncherStack& stack, unsigned before, unsigned after, double propellant_kg,
                double* modal, RigidBodyState& left) {
-  if (!stack.lighter_bending) return;
-  const ModalPassage passage = stack.lighter_bending->Passage(before, after, propellant_kg);
+  if (!stack.modes || stack.bending->modes == 0) return;
+  const ModalPassage passage = stack.modes->Passage(before, after, propellant_kg);
   const int modes = stack.bending->modes;
   MeanMotion mean;
   double flown[2 * kPlanes * kModes];

@@ -143,7 +143,7 @@ struct OneLane {
   lanes::BankNozzles<double> nozzles[kBanks];  ///< of the plant's banks
   lanes::Actuators<double> drives[kBanks]{};
   // Unset in a vehicle that does not bend.
-  lanes::FlownModes<double> bending;
+  lanes::StackBending<double> bending;
   lanes::BendingState<double> bending_state;
   mutable lanes::ModalForce<double> modal;  ///< of the last evaluation
 

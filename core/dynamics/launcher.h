@@ -8,8 +8,7 @@
 
 #include "core/dynamics/aerodynamics.h"
 #include "core/dynamics/rigid_body.h"
-#include "core/structure/bending_table.h"
-#include "core/structure/jettisoned_bending.h"
+#include "core/modes/flown_modes.h"
 #include "core/vehicle/mass.h"
 #include "core/vehicle/nozzle_layout.h"
 #include "core/vehicle/propulsion.h"
@@ -85,17 +84,15 @@ struct LauncherStack {
   /// propellant lies about the axis. The inertia's off-diagonal elements are their negatives.
   double product_xy_kg_m2 = 0.0, product_xz_kg_m2 = 0.0, product_yz_kg_m2 = 0.0;
   std::shared_ptr<const LoadTable> loads;
-  std::shared_ptr<const StackModes> modes;      ///< of the nominal masses (null: it is rigid)
-  std::shared_ptr<const BendingTable> bending;  ///< with all it carries at lift-off (null: it is rigid)
-  std::shared_ptr<const JettisonedBending> lighter_bending;  ///< null: it is rigid, or jettisons nothing
+  std::shared_ptr<const FlownModes> modes;   ///< null: it is rigid
+  std::shared_ptr<const ModeTable> bending;  ///< of them with all it carries at lift-off
 
   /// The variant that fits best after these bodies have left (bits of LauncherPhase::jettisoned): the one
   /// without the most of them and with none that is still there. Null: that of `aerodynamics`.
   const AeroVariant* AeroAfter(unsigned jettisoned, bool burning) const;
   /// Without what has been jettisoned (bits of LauncherPhase::jettisoned). Null: it is rigid.
-  const BendingTable* BendingWithout(unsigned jettisoned) const {
-    if (jettisoned == 0 || !lighter_bending) return bending.get();
-    return &lighter_bending->Without(jettisoned);
+  const ModeTable* BendingWithout(unsigned jettisoned) const {
+    return jettisoned == 0 || !modes ? bending.get() : modes->Without(jettisoned).get();
   }
 };
 

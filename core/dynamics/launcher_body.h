@@ -359,7 +359,7 @@ DISPERSA_INLINE NozzleReaction<T> ReactionOf(const FlyingPlant<T>& plant, const 
 template <class T>
 struct BentBody {
   static constexpr bool kBends = true;
-  const FlownModes<T>* bending;
+  const StackBending<T>* bending;
   const BendingState<T>* state;
   ModalForce<T>* modal;  ///< receives Q / m
 };
@@ -387,7 +387,7 @@ template <class T>
 DISPERSA_INLINE void Bend(const BentBody<T>& bent, const ForcePlace& place, MaskOf<T> acts,
                           const Vector<T>& arm, Vector<T> couple_n_m, Vector<T>& force_n,
                           Vector<T>& moment_n_m) {
-  const FlownModes<T>& b = *bent.bending;
+  const StackBending<T>& b = *bent.bending;
   const PlaceShapes<T> shapes = ShapesOf(b, place);
   const Bent<T> at = BentAt(b, *bent.state, place, shapes, force_n, couple_n_m);
   const Vector<T> turn{T(0.0), at.about_y_rad, at.about_z_rad}, moved{T(0.0), at.y_m, at.z_m};

@@ -145,7 +145,7 @@ DISPERSA_INLINE void SetPlant(FlyingPlant<T>& p, int lane, const LauncherPlant& 
 
 /// The bending of a lane on its stack. ShapesAt sets the values that depend on propellant.
 template <class T>
-DISPERSA_INLINE void SetModes(FlownModes<T>& b, int lane, const LauncherPlant& plant, int stack) {
+DISPERSA_INLINE void SetModes(StackBending<T>& b, int lane, const LauncherPlant& plant, int stack) {
   SetTable(b, lane, plant.stacks.data()[stack].bending.get());
   SetLane<BendingFactorsOf>(b, lane, plant.bending);
   b.modes = plant.bending_modes();

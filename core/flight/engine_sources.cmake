@@ -2,7 +2,7 @@
 # sorted paths relative to ROOT. Statistics and reports only read results.
 function(engine_sources root out)
   set(patterns "")
-  foreach(module IN ITEMS math input expressions random environment vehicle structure control dynamics guidance flight optimization trajectory
+  foreach(module IN ITEMS math input expressions random environment vehicle structure modes control dynamics guidance flight optimization trajectory
           campaign campaign_yaml containment cases)
     list(APPEND patterns "${root}/core/${module}/*.h" "${root}/core/${module}/*.cc")
   endforeach()

@@ -132,6 +132,31 @@ void SetAerodynamics(const Vehicle& vehicle, const AeroTable& table, LauncherSta
       variants.empty() ? nullptr : std::make_shared<const std::vector<AeroVariant>>(std::move(variants));
 }
 
+void SetMassesAndLoads(const Vehicle& vehicle, LauncherPlant& plant) {
+  plant.jettisoned_masses = BuildJettisonedMasses(vehicle);
+  const std::vector<StackMass> masses = BuildStackMasses(vehicle);
+  for (std::size_t i = 0; i < masses.size(); ++i) {
+    LauncherStack& stack = plant.stacks[i];
+    stack.mass = masses[i];
+    stack.mass_rows = vehicle.stages[i].flown_mass.rows;
+    if (vehicle.stages[i].restarts)
+      stack.loads = plant.stacks[i - 1].loads;
+    else if (HasSectionLoads(vehicle))
+      stack.loads =
+          std::make_shared<const LoadTable>(BuildLoadTable(vehicle, static_cast<int>(i), stack.loads.get()));
+  }
+}
+
+// `modes_of`: those of a stage's stack.
+template <typename ModesOf>
+void SetModes(const Vehicle& vehicle, const ModesOf& modes_of, LauncherPlant& plant) {
+  for (std::size_t i = 0; i < plant.stacks.size(); ++i) {
+    LauncherStack& stack = plant.stacks[i];
+    stack.modes = vehicle.stages[i].restarts ? plant.stacks[i - 1].modes : modes_of(i, stack);
+    stack.bending = stack.modes ? stack.modes->Without(0u) : nullptr;
+  }
+}
+
 }  // namespace
 
 LauncherPlant BuildNominalPlant(const Vehicle& vehicle) {
@@ -154,7 +179,7 @@ LauncherPlant BuildNominalPlant(const Vehicle& vehicle) {
     plant.stacks.push_back(stack);
     plant.jettisons.insert(plant.jettisons.end(), stage.jettisoned.begin(), stage.jettisoned.end());
   }
-  SetMasses(vehicle, plant);
+  SetMassesAndLoads(vehicle, plant);
   if (const Boosters& boosters = vehicle.boosters; boosters.count > 0) {
     BoosterSet set = BuildBoosterSet(boosters, 1.0, 1.0);
     for (std::size_t k = 0; k < boosters.angles_rad.size(); ++k)
@@ -170,58 +195,14 @@ LauncherPlant BuildNominalPlant(const Vehicle& vehicle) {
   return plant;
 }
 
-namespace {
-
-// The bending of every stack. `modes_of`: how many fly of a stage's, which has these with all it carries. Of
-// a plant that has its nominal modes: as many, near these.
-template <typename ModesOf>
-void SetBending(const Vehicle& vehicle, const ModesOf& modes_of, LauncherPlant& plant) {
-  std::shared_ptr<const Vehicle> kept;  // by the stacks that jettison
-  for (std::size_t i = 0; i < plant.stacks.size(); ++i) {
-    LauncherStack& stack = plant.stacks[i];
-    if (vehicle.stages[i].restarts) {
-      stack.modes = plant.stacks[i - 1].modes;
-      stack.bending = plant.stacks[i - 1].bending;
-      stack.lighter_bending = plant.stacks[i - 1].lighter_bending;
-      continue;
-    }
-    const int stage = static_cast<int>(i);
-    // A table of modes is of the nominal masses, and is scaled to others as it stands.
-    const StackModes* const near = stack.modes && stack.modes->basis ? stack.modes.get() : nullptr;
-    if (near && stack.bending->modes == 0) continue;
-    const auto whole = std::make_shared<const StackModes>(
-        near ? BuildStackModesNear(vehicle, *near, stack.bending->modes) : BuildStackModes(vehicle, stage));
-    const int modes = modes_of(i, *whole);
-    stack.bending = std::make_shared<const BendingTable>(
-        BuildBendingTable(vehicle, *whole, *stack.loads, modes, near ? stack.bending.get() : nullptr));
-    if (!stack.modes) stack.modes = whole;
-    const std::shared_ptr<const JettisonedBending> nominal = std::move(stack.lighter_bending);
-    stack.lighter_bending = nullptr;
-    if (modes == 0 || CarriedBy(vehicle, stage) == 0) continue;
-    if (!kept) kept = std::make_shared<const Vehicle>(vehicle);
-    stack.lighter_bending =
-        std::make_shared<const JettisonedBending>(kept, whole, stack.bending, stack.loads, nominal);
-  }
-}
-
-}  // namespace
-
-void SetMasses(const Vehicle& vehicle, LauncherPlant& plant) {
-  plant.jettisoned_masses = BuildJettisonedMasses(vehicle);
-  const std::vector<StackMass> masses = BuildStackMasses(vehicle);
-  for (std::size_t i = 0; i < masses.size(); ++i) {
-    LauncherStack& stack = plant.stacks[i];
-    stack.mass = masses[i];
-    stack.mass_rows = vehicle.stages[i].flown_mass.rows;
-    if (vehicle.stages[i].restarts)
-      stack.loads = plant.stacks[i - 1].loads;
-    else if (HasSectionLoads(vehicle))
-      stack.loads =
-          std::make_shared<const LoadTable>(BuildLoadTable(vehicle, static_cast<int>(i), stack.loads.get()));
-  }
-  if (plant.bending_modes() == 0) return;
-  const auto modes = [&](std::size_t i, const StackModes&) { return plant.stacks[i].bending->modes; };
-  SetBending(vehicle, modes, plant);
+void SetMasses(const std::shared_ptr<const Vehicle>& vehicle, LauncherPlant& plant) {
+  SetMassesAndLoads(*vehicle, plant);
+  SetModes(
+      *vehicle,
+      [&](std::size_t, const LauncherStack& stack) {
+        return stack.modes ? stack.modes->Of(vehicle, stack.loads) : nullptr;
+      },
+      plant);
 }
 
 void CommandCutOffOf(const Vehicle& vehicle, int stage, double since_ignition_s, LauncherPlant& plant) {
@@ -231,18 +212,11 @@ void CommandCutOffOf(const Vehicle& vehicle, int stage, double since_ignition_s,
 }
 
 void AddBending(const Vehicle& vehicle, double tick_s, LauncherPlant& plant) {
-  if (!vehicle.structure_beam || vehicle.structure_beam->flown_modes == 0) return;
-  plant.bending.damping_ratio = vehicle.structure_beam->damping_ratio;
-  const double highest_rad_s = kPi / tick_s;
-  SetBending(
+  const auto kept = std::make_shared<const Vehicle>(vehicle);
+  SetModes(
       vehicle,
-      [&](std::size_t i, const StackModes& whole) {
-        const int stage = static_cast<int>(i);
-        const unsigned carried = CarriedBy(vehicle, stage);
-        if (carried == 0) return ModesBelow(vehicle, whole, highest_rad_s);
-        // Without a mass no frequency is lower: what flies with none of the bodies flies with any.
-        const StackModes bare = BuildStackModes(vehicle, stage, carried);
-        return std::min(ModesBelow(vehicle, whole, highest_rad_s), ModesBelow(vehicle, bare, highest_rad_s));
+      [&](std::size_t stage, const LauncherStack& stack) {
+        return FlownModesBelow(kPi / tick_s, kept, static_cast<int>(stage), stack.loads);
       },
       plant);
 }
@@ -696,7 +670,7 @@ LauncherPlant FlightModel::PlantFor(const FlightInputs& inputs,
   plant.cg_factor = in.cg_factor;
   plant.inertia_factor = in.inertia_factor;
   plant.bending.frequency_factor = in.bending_frequency_factor;
-  plant.bending.damping_ratio *= in.bending_damping_factor;
+  plant.bending.damping_factor = in.bending_damping_factor;
   plant.bending.slope_factor = in.bending_slope_factor;
   plant.environment.density.scale *= in.air.density_factor;
 
@@ -714,10 +688,10 @@ LauncherPlant FlightModel::PlantFor(const FlightInputs& inputs,
     plant.environment.turbulence = std::make_shared<const TurbulenceField>(
         TurbulenceOf(in, *definition_.turbulence_path, definition_.noise_seed, *case_index));
 
-  std::optional<Vehicle> dispersed;
+  std::shared_ptr<const Vehicle> dispersed;
   if (ChangesMasses(in)) {
-    dispersed = WithDispersedMasses(definition_.vehicle, in);
-    SetMasses(*dispersed, plant);
+    dispersed = std::make_shared<const Vehicle>(WithDispersedMasses(definition_.vehicle, in));
+    SetMasses(dispersed, plant);
   }
   const Vehicle& vehicle = dispersed ? *dispersed : definition_.vehicle;
 

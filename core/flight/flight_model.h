@@ -124,9 +124,9 @@ class FlightModel {
 LauncherPlant BuildNominalPlant(const Vehicle& vehicle);
 /// Gives every stack the masses of a vehicle with the same stages. Section loads follow, and for a bending
 /// vehicle as many modes as before.
-void SetMasses(const Vehicle& vehicle, LauncherPlant& plant);
-/// Gives a vehicle with a beam that flies its bending: modes that stay below half the sampling frequency all
-/// the burn.
+void SetMasses(const std::shared_ptr<const Vehicle>& vehicle, LauncherPlant& plant);
+/// Gives a vehicle the modes that its sources have (core/modes): those that stay below half the sampling
+/// frequency all the burn.
 void AddBending(const Vehicle& vehicle, double tick_s, LauncherPlant& plant);
 /// Angular acceleration per radian of deflection, over the time since ignition, of a nominal stack that
 /// ignites at `ignition_s`. `jettison_s`: as FlightDefinition's.

@@ -482,7 +482,7 @@ void FlightRecord::MassWithout(int stack, unsigned jettisoned, StackMass& mass) 
   mass = MassOf(plant, stack, jettisoned);
 }
 
-const BendingTable* FlightRecord::BendingWithout(int stack, unsigned jettisoned) const {
+const ModeTable* FlightRecord::BendingWithout(int stack, unsigned jettisoned) const {
   return plant.stacks[static_cast<std::size_t>(stack)].BendingWithout(jettisoned);
 }
 

@@ -104,7 +104,7 @@ class FlightRecord {
   unsigned LetGo(int stack, unsigned jettisoned, double time_s, double altitude_m, double density_kg_m3,
                  double propellant_kg, double* y);
   void MassWithout(int stack, unsigned jettisoned, StackMass& mass) const;
-  const BendingTable* BendingWithout(int stack, unsigned jettisoned) const;
+  const ModeTable* BendingWithout(int stack, unsigned jettisoned) const;
   /// A stage's engine, if a speed ends its burn; else null.
   const Motor* CutOffEngine(int stage) const;
   /// Its engine gets the command of its cut-off at `time_s`: events from there on are new.

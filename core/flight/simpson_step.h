@@ -57,7 +57,7 @@ class StepState {
   // ---- what it moves under ----
   const FlyingPlant<T>& plant() const { return plant_; }
   const BurnPhase<T>& phase() const { return phase_; }
-  const FlownModes<T>& bending() const { return bending_; }
+  const StackBending<T>& bending() const { return bending_; }
   const T* command_rad(int bank) const { return banks_[bank].command_rad; }  ///< at the actuators, kDrives
 
   /// Of an object of zeros. No lane flies: each computes along on numbers that do no harm.
@@ -100,7 +100,7 @@ class StepState {
     MarkMoved(lane);
   }
   /// Of the stack without what it has jettisoned: its masses and its modes (null: it is rigid).
-  void SetMass(int lane, const StackMass& mass, const BendingTable* bending) {
+  void SetMass(int lane, const StackMass& mass, const ModeTable* bending) {
     lanes::SetStack(plant_.stack, lane, mass);
     SetTable(bending_, lane, bending);
     MarkMoved(lane);
@@ -514,7 +514,7 @@ class StepState {
   BendingState<T> bending_state_;
   FlyingPlant<T> plant_;
   BurnPhase<T> phase_;
-  FlownModes<T> bending_;
+  StackBending<T> bending_;
   static_assert(kValues<T, RigidMotion<T>> == kRigidBodySize);
   static_assert(kModalState + kValues<T, BendingState<T>> == kBentLauncherSize);
 

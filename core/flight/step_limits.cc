@@ -38,14 +38,14 @@ unsigned AllJettisoned(const LauncherPlant& plant) {
 // flies: without what the stack jettisons, as no frequency is lower with less mass.
 template <typename F>
 void EachMode(const LauncherPlant& plant, std::size_t stack, F f) {
-  const BendingTable* table = plant.stacks[stack].BendingWithout(AllJettisoned(plant));
+  const ModeTable* table = plant.stacks[stack].BendingWithout(AllJettisoned(plant));
   if (table == nullptr) return;
   for (int mode = 0; mode < table->modes; ++mode) {
     double highest_rad_s = 0.0;
     for (int plane = 0; plane < table->planes; ++plane)
       for (std::size_t level = 0; level < table->propellant_kg.size(); ++level)
-        highest_rad_s = std::max(highest_rad_s,
-                                 table->Row(plane, static_cast<int>(level), mode)[BendingTable::kFrequency]);
+        highest_rad_s =
+            std::max(highest_rad_s, table->Row(plane, static_cast<int>(level), mode)[ModeTable::kFrequency]);
     f(mode, plant.bending.frequency_factor[static_cast<std::size_t>(mode)] * highest_rad_s);
   }
 }

@@ -57,7 +57,7 @@ class AxisAtInstant {
   void PutDrives(AxisPlant& linear) const;
   void PutSensors(const SensorModel& sensors, AxisPlant& linear) const;
   double ModeSlope(int column, int mode) const;
-  double ModeTable(int column, int mode) const;
+  double Tabulated(int column, int mode) const;
   Eigen::RowVectorXd RateAt(int column) const;
 
   static constexpr int kCommand = -1;
@@ -182,27 +182,27 @@ void AxisAtInstant::PutDrives(AxisPlant& linear) const {
 
 void AxisAtInstant::PutSensors(const SensorModel& sensors, AxisPlant& linear) const {
   linear.attitude = Eigen::RowVectorXd::Unit(size_, 0);
-  for (int k = 0; k < modes_; ++k) linear.attitude[4 + k] = ModeSlope(BendingTable::kUnitSlope, k);
+  for (int k = 0; k < modes_; ++k) linear.attitude[4 + k] = ModeSlope(ModeTable::kUnitSlope, k);
   linear.rates.clear();
   const SensorModel::Weights& weights = sensors.stages[static_cast<std::size_t>(sample_.stack)];
-  if (weights.unit != 0.0) linear.rates.push_back({RateAt(BendingTable::kUnitSlope), {}, weights.unit, 0.0});
+  if (weights.unit != 0.0) linear.rates.push_back({RateAt(ModeTable::kUnitSlope), {}, weights.unit, 0.0});
   for (std::size_t g = 0; g < sensors.gyros.size(); ++g) {
     if (weights.gyro[g] == 0.0) continue;
-    linear.rates.push_back({RateAt(BendingTable::kGyroSlope + static_cast<int>(g)), sensors.gyros[g].section,
+    linear.rates.push_back({RateAt(ModeTable::kGyroSlope + static_cast<int>(g)), sensors.gyros[g].section,
                             weights.gyro[g], 0.5 * (sensors.gyros[g].sample_ticks - 1)});
   }
   if (modes_ > 0)
-    linear.lowest_mode_rad_s = plant_.bending.frequency_factor[0] * ModeTable(BendingTable::kFrequency, 0);
+    linear.lowest_mode_rad_s = plant_.bending.frequency_factor[0] * Tabulated(ModeTable::kFrequency, 0);
 }
 
 /// How a place turns with a mode, in the axis' sense.
 double AxisAtInstant::ModeSlope(int column, int mode) const {
   const double sign = axis_ == kPitch ? 1.0 : -1.0;
-  return sign * plant_.bending.slope_factor * ModeTable(column, mode);
+  return sign * plant_.bending.slope_factor * Tabulated(column, mode);
 }
 
-double AxisAtInstant::ModeTable(int column, int mode) const {
-  const BendingTable* const table = stack_.BendingWithout(sample_.jettisoned);
+double AxisAtInstant::Tabulated(int column, int mode) const {
+  const ModeTable* const table = stack_.BendingWithout(sample_.jettisoned);
   return table->At(table->planes == 1 ? 0 : plane_, mode, column,
                    stack_.burn.Propellant(sample_.since_ignition_s));
 }

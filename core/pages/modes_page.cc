@@ -68,7 +68,7 @@ std::string ShapeFigure(const Vehicle& vehicle, const StackModes& stack, std::si
   return Figure(chart.Svg(caption), HtmlText(caption));
 }
 
-std::string ModeTable(const Vehicle& vehicle, const StackModes& stack) {
+std::string TableOfModes(const Vehicle& vehicle, const StackModes& stack) {
   const std::vector<BeamSensor> places = ShownStations(vehicle, stack.stage);
   std::vector<HtmlTable::Column> columns = {{"Propellant, kg", true},
                                             {"mode", true},
@@ -130,7 +130,7 @@ std::string ModesPage(const Vehicle& vehicle, const std::vector<StackModes>& sta
                         is_last ? "" : " and all above", HtmlText(WithoutText(vehicle, stack)));
     for (std::size_t plane = 0; plane < PlanesOf(stack); ++plane)
       page += ShapeFigure(vehicle, stack, plane) + FrequencyFigure(stack, plane);
-    page += "</div>\n" + ModeTable(vehicle, stack);
+    page += "</div>\n" + TableOfModes(vehicle, stack);
     for (std::size_t plane = 0; plane < PlanesOf(stack); ++plane)
       if (const std::string mesh = MeshText(stack, plane); !mesh.empty())
         page += fmt::format("<p>Plane {}: {}.</p>\n", PlaneText(stack, plane), mesh);

@@ -22,7 +22,7 @@ double TunedPlant::FirstMode(int stage, double at_s) const {
     const double left_s = boosters->burn.duration_s + boosters->separation_delay_s;
     if (propellant_kg < stack.burn.Propellant(left_s)) gone = kBoostersGone;
   }
-  return stack.BendingWithout(gone)->At(0, 0, BendingTable::kFrequency, propellant_kg);
+  return stack.BendingWithout(gone)->At(0, 0, ModeTable::kFrequency, propellant_kg);
 }
 
 }  // namespace dispersa

@@ -11,10 +11,10 @@ namespace {
 
 using lanes::BendingState;
 using lanes::FlowForce;
-using lanes::FlownModes;
 using lanes::ModalForce;
 using lanes::NormalForce;
 using lanes::Sections;
+using lanes::StackBending;
 
 constexpr const lanes::SideForce<double>* kRound = nullptr;  // both planes have the same air
 constexpr double kCg_m = 11.0, kXcp_m = 8.0, kSpeed_m_s = 400.0, kSlope_n = 6e5;
@@ -54,8 +54,8 @@ constexpr double kSmall_n = 1e-8;  // rounding of forces of 1e5 N on arms of 20 
 
 // A body that moves aside meets the flow at its speed over the airspeed; one that is turned, at its turn.
 TEST(BendingFlow, OfARigidMotionIsTheFlowOfTheMovedBody) {
-  const BendingTable table = MadeUpTable(RigidMotions());
-  const FlownModes<double> bending = BendingOf(table, 0.0);
+  const ModeTable table = MadeUpTable(RigidMotions());
+  const StackBending<double> bending = BendingOf(table, 0.0);
   BendingState<double> s{};
   s.rate_m_s[0][0] = 3.0;           // towards +y
   s.rate_m_s[1][0] = -2.0;          // towards -z
@@ -101,8 +101,8 @@ std::array<double, kStrips> ForcesByBending(const std::vector<MadeUpMode>& modes
 // A turning body's places meet the flow at their own speeds, and where the cross-section does not grow the
 // incidence does.
 TEST(BendingFlow, OfATurningBodyIsThatOfEachPlacesSpeed) {
-  const BendingTable table = MadeUpTable(RigidMotions());
-  const FlownModes<double> bending = BendingOf(table, 0.0);
+  const ModeTable table = MadeUpTable(RigidMotions());
+  const StackBending<double> bending = BendingOf(table, 0.0);
   const LoadTable loads = MadeUpLoads();
   const double aft_m = kXcp_m - loads.lift.slender_station_m;
   for (int plane = 0; plane < kPlanes; ++plane) {
@@ -132,8 +132,8 @@ TEST(BendingFlow, OfATurningBodyIsThatOfEachPlacesSpeed) {
 
 // A bent body's forces do work on each mode by their places.
 TEST(BendingFlow, DrivesEachModeByTheWorkOfItsStrips) {
-  const BendingTable table = MadeUpTable(TwoPlanes());
-  const FlownModes<double> bending = BendingOf(table, 0.0);
+  const ModeTable table = MadeUpTable(TwoPlanes());
+  const StackBending<double> bending = BendingOf(table, 0.0);
   const Sections<double> body = BodySections();
   const Incidence straight{-0.03, 0.04};
   BendingState<double> s{};
@@ -170,8 +170,8 @@ TEST(BendingFlow, DrivesEachModeByTheWorkOfItsStrips) {
 }
 
 TEST(BendingFlow, InVacuumIsNothingHoweverTheBodyRings) {
-  const BendingTable table = MadeUpTable(TwoPlanes());
-  const FlownModes<double> bending = BendingOf(table, 0.0);
+  const ModeTable table = MadeUpTable(TwoPlanes());
+  const StackBending<double> bending = BendingOf(table, 0.0);
   BendingState<double> s{};
   s.q_m[0][0] = s.q_m[1][1] = 0.1;
   s.rate_m_s[0][1] = s.rate_m_s[1][0] = 5.0;
@@ -190,9 +190,9 @@ TEST(BendingFlow, InVacuumIsNothingHoweverTheBodyRings) {
 // A section carries what the masses ahead of it take to be accelerated by the modes, less the flow's forces
 // there.
 TEST(BendingSections, CarryTheMassesAheadLessTheirAir) {
-  const BendingTable table = MadeUpTable(TwoPlanes());
+  const ModeTable table = MadeUpTable(TwoPlanes());
   constexpr double kDamping = 0.04;
-  const FlownModes<double> bending = BendingOf(table, 0.0, kDamping);
+  const StackBending<double> bending = BendingOf(table, 0.0, kDamping);
   const Sections<double> body = BodySections();
   BendingState<double> s{};
   ModalForce<double> driven{};
@@ -212,7 +212,8 @@ TEST(BendingSections, CarryTheMassesAheadLessTheirAir) {
       double acceleration[2];
       for (std::size_t mode = 0; mode < 2; ++mode) {
         const double w = TwoPlanes()[plane][mode].frequency_rad_s;
-        acceleration[mode] = driven.drive_m_s2[plane][mode] - 2.0 * kDamping * w * s.rate_m_s[plane][mode] -
+        acceleration[mode] = driven.drive_m_s2[plane][mode] -
+                             2.0 * kDamping * TwoPlanes()[plane][mode].damping * w * s.rate_m_s[plane][mode] -
                              w * w * s.q_m[plane][mode];
       }
       for (int station = 0; station < body.stations; ++station) {
@@ -237,10 +238,10 @@ TEST(BendingSections, CarryTheMassesAheadLessTheirAir) {
 // A body whose air has two planes of symmetry: each plane is that of a body of revolution in that plane's
 // air.
 TEST(BendingFlow, OfTwoPlanesIsThatOfEach) {
-  const BendingTable one = MadeUpTable({TwoPlanes()[0]}), two = MadeUpTable(TwoPlanes());
+  const ModeTable one = MadeUpTable({TwoPlanes()[0]}), two = MadeUpTable(TwoPlanes());
   const Sections<double> body = BodySections();
-  for (const BendingTable* table : {&one, &two}) {
-    const FlownModes<double> bending = BendingOf(*table, 0.0);
+  for (const ModeTable* table : {&one, &two}) {
+    const StackBending<double> bending = BendingOf(*table, 0.0);
     BendingState<double> s{};
     for (int plane = 0; plane < kPlanes; ++plane)
       for (int mode = 0; mode < 2; ++mode) {
@@ -289,7 +290,7 @@ struct Everything {
   BendingState<double> later;
   lanes::SectionMoments<double> sections;
 };
-Everything Of(const FlownModes<double>& b, const BendingState<double>& s, Incidence at,
+Everything Of(const StackBending<double>& b, const BendingState<double>& s, Incidence at,
               lanes::Vector<double> force, lanes::Vector<double> couple) {
   const Sections<double> body = BodySections();
   Everything o{};
@@ -309,8 +310,8 @@ Everything Of(const FlownModes<double>& b, const BendingState<double>& s, Incide
 // A quarter turn about x takes y to z and z to -y. Results in the turned axes are turned, and otherwise the
 // same.
 TEST(BendingPlanes, AreOneAnotherTurnedByAQuarterAboutX) {
-  const BendingTable table = MadeUpTable({TwoPlanes()[0]});
-  const FlownModes<double> b = BendingOf(table, 0.0, 0.01);
+  const ModeTable table = MadeUpTable({TwoPlanes()[0]});
+  const StackBending<double> b = BendingOf(table, 0.0, 0.01);
   BendingState<double> s{}, turned{};
   for (int mode = 0; mode < 2; ++mode) {
     s.q_m[0][mode] = 0.02 - 0.03 * mode;

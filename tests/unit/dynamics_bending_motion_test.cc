@@ -10,8 +10,8 @@ namespace dispersa::dynamics_bending_motion_test {
 namespace {
 
 using lanes::BendingState;
-using lanes::FlownModes;
 using lanes::ModalForce;
+using lanes::StackBending;
 
 using Number = double (MadeUpMode::*)(double) const;
 
@@ -41,8 +41,8 @@ Turned TurnedAt(double station_m, const double (&y)[kModes], const double (&z)[k
 
 class BendingMotion : public testing::Test {
  protected:
-  const BendingTable table_ = MadeUpTable(TwoPlanes());
-  const FlownModes<double> bending_ = BendingOf(table_, 0.0);
+  const ModeTable table_ = MadeUpTable(TwoPlanes());
+  const StackBending<double> bending_ = BendingOf(table_, 0.0);
   const BendingState<double> state_ = SomeState();
 };
 
@@ -60,13 +60,13 @@ TEST_F(BendingMotion, DisplacesAndTurnsThePivot) {
 // Each load at the pivot moves and turns it by its plane's residual flexibility: work is positive, and a
 // couple moves it by as much as a force turns it.
 TEST_F(BendingMotion, LoadsAtThePivotBendWhatDoesNotFly) {
-  BendingTable table = MadeUpTable(TwoPlanes());
+  ModeTable table = MadeUpTable(TwoPlanes());
   const double residual[kPlanes][3] = {{2e-8, 3e-9, 5e-9}, {7e-8, 1.1e-8, 1.3e-8}};
   for (int plane = 0; plane < kPlanes; ++plane)
     for (int i = 0; i < 3; ++i)
-      table.rows[static_cast<std::size_t>(table.Row(plane, 0, 0) - table.rows.data() +
-                                          BendingTable::kResidual + i)] = residual[plane][i];
-  const FlownModes<double> bending = BendingOf(table, 0.0);
+      table.rows[static_cast<std::size_t>(table.Row(plane, 0, 0) - table.rows.data() + ModeTable::kResidual +
+                                          i)] = residual[plane][i];
+  const StackBending<double> bending = BendingOf(table, 0.0);
   const auto at = [&](lanes::Vector<double> force, lanes::Vector<double> couple) {
     return BentAtPivot(bending, BendingState<double>{}, force, couple);
   };
@@ -170,20 +170,22 @@ struct Oscillator {
   }
 };
 Oscillator OscillatorOf(std::size_t plane, std::size_t mode, double damping_ratio) {
-  return {TwoPlanes()[plane][mode].frequency_rad_s, damping_ratio};
+  const MadeUpMode of = TwoPlanes()[plane][mode];
+  return {of.frequency_rad_s, of.damping * damping_ratio};
 }
 
 TEST_F(BendingMotion, FreeModesSwingAsDampedOscillators) {
   for (const double damping_ratio : {0.0, 0.02, 0.6}) {
-    const FlownModes<double> bending = BendingOf(table_, 0.0, damping_ratio);
+    const StackBending<double> bending = BendingOf(table_, 0.0, damping_ratio);
     for (const double time_s : {0.005, 0.37}) {
       const BendingState<double> to =
           lanes::Swung(bending, lanes::SwingOver(bending, time_s), state_, {}, {}, {});
       for (std::size_t plane = 0; plane < kPlanes; ++plane)
         for (std::size_t mode = 0; mode < 2; ++mode) {
           // q = e^(-s t) (A cos d t + B sin d t).
-          const double w = TwoPlanes()[plane][mode].frequency_rad_s, s = damping_ratio * w;
-          const double d = w * std::sqrt(1.0 - damping_ratio * damping_ratio);
+          const Oscillator of = OscillatorOf(plane, mode, damping_ratio);
+          const double w = of.frequency_rad_s, s = of.damping_ratio * w;
+          const double d = w * std::sqrt(1.0 - of.damping_ratio * of.damping_ratio);
           const double a = state_.q_m[plane][mode], b = (state_.rate_m_s[plane][mode] + s * a) / d;
           const double e = std::exp(-s * time_s), cosine = std::cos(d * time_s), sine = std::sin(d * time_s);
           EXPECT_NEAR(to.q_m[plane][mode], e * (a * cosine + b * sine), 1e-15);
@@ -198,7 +200,7 @@ TEST_F(BendingMotion, FreeModesSwingAsDampedOscillators) {
 // it.
 TEST_F(BendingMotion, DrivenModesFollowAParabolaExactly) {
   constexpr double kDamping = 0.05;
-  const FlownModes<double> bending = BendingOf(table_, 0.0, kDamping);
+  const StackBending<double> bending = BendingOf(table_, 0.0, kDamping);
   BendingState<double> from{};
   ModalForce<double> d0{}, d1{}, d2{};
   const auto parabola = [](std::size_t plane, std::size_t mode, int power) {
@@ -226,7 +228,7 @@ TEST_F(BendingMotion, DrivenModesFollowAParabolaExactly) {
 }
 
 TEST_F(BendingMotion, TwiceATimeIsOneSwingAndThenAnother) {
-  const FlownModes<double> bending = BendingOf(table_, 0.0, 0.03);
+  const StackBending<double> bending = BendingOf(table_, 0.0, 0.03);
   const lanes::Swing<double> once = lanes::SwingOver(bending, 0.04), twice = lanes::Twice(bending, once);
   EXPECT_EQ(twice.time_s, 0.08);
   // Drives that change: those of the second half are d(t + 0.04).

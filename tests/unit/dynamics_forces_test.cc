@@ -130,10 +130,10 @@ TEST(Forces, OfACrossAreThoseOfTheListThatItIs) {
 // A thrust that acts beside the axis turns the pivots besides pushing them: virtual work on each mode.
 TEST(Forces, BesideTheAxisDriveTheModesByTheirCouple) {
   Case straight = CaseOf("bending", Bending(), true);
-  BendingTable stiff = *straight.plant.stacks[0].bending;  // the pivot turns with the modes alone
-  for (std::size_t row = 0; row < stiff.rows.size(); row += BendingTable::kRowSize)
-    for (std::size_t i = 0; i < 3; ++i) stiff.rows[row + BendingTable::kResidual + i] = 0.0;
-  straight.plant.stacks[0].bending = std::make_shared<const BendingTable>(std::move(stiff));
+  ModeTable stiff = *straight.plant.stacks[0].bending;  // the pivot turns with the modes alone
+  for (std::size_t row = 0; row < stiff.rows.size(); row += ModeTable::kRowSize)
+    for (std::size_t i = 0; i < 3; ++i) stiff.rows[row + ModeTable::kResidual + i] = 0.0;
+  straight.plant.stacks[0].bending = std::make_shared<const ModeTable>(std::move(stiff));
   straight.y.fill(0.0);
   RigidBodyState s;
   s.p_EoC_I = {Wgs84().equatorial_radius_m + 2e6, 0.0, 0.0};
@@ -146,13 +146,13 @@ TEST(Forces, BesideTheAxisDriveTheModesByTheirCouple) {
   std::array<double, kLauncherSize> from{}, to{};
   LauncherModel(straight.plant).Derivative(straight.phase, kTime_s, straight.y.data(), from.data());
   LauncherModel(beside.plant).Derivative(beside.phase, kTime_s, beside.y.data(), to.data());
-  const BendingTable& table = *straight.plant.stacks[0].bending;
+  const ModeTable& table = *straight.plant.stacks[0].bending;
   const double propellant_kg = straight.plant.stacks[0].burn.Propellant(kTime_s);
   for (int mode = 0; mode < table.modes; ++mode) {
     const auto at = [&](int column) { return table.At(0, mode, column, propellant_kg); };
     // The point of action moves along x by z times the turn about y, and by -y times the turn about z, which
     // is -slope.
-    const double per_metre = 200e3 * at(BendingTable::kPivotSlope) * at(BendingTable::kInverseMass);
+    const double per_metre = 200e3 * at(ModeTable::kPivotSlope) * at(ModeTable::kInverseMass);
     const std::size_t y = static_cast<std::size_t>(kModalRate + mode), z = y + kModes;
     EXPECT_NEAR(to[y] - from[y], y_m * per_metre, 1e-9) << mode;
     EXPECT_NEAR(to[z] - from[z], z_m * per_metre, 1e-9) << mode;

@@ -13,7 +13,7 @@
 #include "core/flight/tick_sample.h"
 #include "core/math/constants.h"
 #include "core/math/rotation.h"
-#include "core/structure/bending_table.h"
+#include "core/modes/mode_table.h"
 #include "core/vehicle/mass.h"
 #include "tests/unit/sample_vehicle.h"
 

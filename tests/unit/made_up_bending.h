@@ -6,7 +6,7 @@
 #include <vector>
 
 #include "core/dynamics/bending.h"
-#include "core/structure/bending_table.h"
+#include "core/modes/mode_table.h"
 
 namespace dispersa {
 
@@ -18,6 +18,7 @@ struct MadeUpMode {
   double frequency_rad_s = 10.0;
   double mass_kg = 500.0;
   std::array<double, kModes> shortening{};
+  double damping = 1.0;  ///< of the ratio that BendingOf() gives
 
   double Deflection(double s) const { return powers[0] + s * (powers[1] + s * (powers[2] + s * powers[3])); }
   double Slope(double s) const { return powers[1] + s * (2.0 * powers[2] + s * 3.0 * powers[3]); }
@@ -64,23 +65,23 @@ std::array<double, kStrips> StripForces(const LoadTable& loads, double aft_m, co
   return force;
 }
 
-inline std::array<double, BendingTable::kRowSize> RowOf(const std::vector<MadeUpMode>& modes,
-                                                        std::size_t which, const LoadTable& loads) {
+inline std::array<double, ModeTable::kRowSize> RowOf(const std::vector<MadeUpMode>& modes, std::size_t which,
+                                                     const LoadTable& loads) {
   const MadeUpMode& mode = modes[which];
-  std::array<double, BendingTable::kRowSize> row{};
-  row[BendingTable::kFrequency] = mode.frequency_rad_s;
-  row[BendingTable::kInverseMass] = 1.0 / mode.mass_kg;
-  row[BendingTable::kPivotDeflection] = mode.Deflection(kBodyPivot_m);
-  row[BendingTable::kPivotSlope] = mode.Slope(kBodyPivot_m);
-  row[BendingTable::kUnitSlope] = mode.Slope(kBodyUnit_m);
-  for (std::size_t i = 0; i < kRateGyros; ++i)
-    row[BendingTable::kGyroSlope + i] = mode.Slope(kBodyGyros_m[i]);
-  for (std::size_t i = 0; i < kModes; ++i) row[BendingTable::kShortening + i] = mode.shortening[i];
+  std::array<double, ModeTable::kRowSize> row{};
+  row[ModeTable::kFrequency] = mode.frequency_rad_s;
+  row[ModeTable::kInverseMass] = 1.0 / mode.mass_kg;
+  row[ModeTable::kDamping] = mode.damping;
+  row[ModeTable::kPivotDeflection] = mode.Deflection(kBodyPivot_m);
+  row[ModeTable::kPivotSlope] = mode.Slope(kBodyPivot_m);
+  row[ModeTable::kUnitSlope] = mode.Slope(kBodyUnit_m);
+  for (std::size_t i = 0; i < kRateGyros; ++i) row[ModeTable::kGyroSlope + i] = mode.Slope(kBodyGyros_m[i]);
+  for (std::size_t i = 0; i < kModes; ++i) row[ModeTable::kShortening + i] = mode.shortening[i];
   const auto straight = StripForces(loads, 0.0, [](double) { return 1.0; });
   for (std::size_t i = 0; i < kStrips; ++i) {
     const LiftPiece& strip = loads.lift.pieces[i];
-    row[BendingTable::kStraightLift] += straight[i] * mode.Deflection(strip.Middle());
-    row[BendingTable::kStraightLift + 1] += strip.shift_1_m * mode.Deflection(strip.Middle());
+    row[ModeTable::kStraightLift] += straight[i] * mode.Deflection(strip.Middle());
+    row[ModeTable::kStraightLift + 1] += strip.shift_1_m * mode.Deflection(strip.Middle());
   }
   for (const bool by_rate : {false, true}) {
     const auto at = [&](double s) { return by_rate ? mode.Deflection(s) : mode.Slope(s); };
@@ -88,13 +89,13 @@ inline std::array<double, BendingTable::kRowSize> RowOf(const std::vector<MadeUp
     for (std::size_t i = 0; i < kStrips; ++i) {
       const double place_m = loads.lift.pieces[i].Middle();
       const auto add = [&](double force, LiftCause cause) {
-        double* const effects = row.data() + BendingTable::LiftColumn(cause, 0);
+        double* const effects = row.data() + ModeTable::LiftColumn(cause, 0);
         effects[kForceEffect] += force;
         effects[kFirstEffect] += force * place_m;
         for (std::size_t j = 0; j < modes.size(); ++j)
           effects[kWorkEffects + j] += force * modes[j].Deflection(place_m);
         for (std::size_t k = i; k + 1 < kStrips; ++k)
-          row[static_cast<std::size_t>(BendingTable::LiftColumn(cause, kSectionEffects)) + k] +=
+          row[static_cast<std::size_t>(ModeTable::LiftColumn(cause, kSectionEffects)) + k] +=
               force * (loads.station_m[k] - place_m);
       };
       add(slender[i], by_rate ? kRateSlender : kSlopeSlender);
@@ -104,7 +105,7 @@ inline std::array<double, BendingTable::kRowSize> RowOf(const std::vector<MadeUp
   for (std::size_t i = 0; i + 1 < kStrips; ++i)
     for (std::size_t k = 0; k <= i; ++k) {
       const double place_m = loads.lift.pieces[k].Middle();
-      row[BendingTable::kMomentAt + i] +=
+      row[ModeTable::kMomentAt + i] +=
           BodyMass(k) * mode.Deflection(place_m) * (loads.station_m[i] - place_m);
     }
   return row;
@@ -112,9 +113,9 @@ inline std::array<double, BendingTable::kRowSize> RowOf(const std::vector<MadeUp
 
 /// Of one propellant level, so that shapes do not change. `planes`: the modes of plane y, and of plane z
 /// where it differs.
-inline BendingTable MadeUpTable(const std::vector<std::vector<MadeUpMode>>& planes) {
+inline ModeTable MadeUpTable(const std::vector<std::vector<MadeUpMode>>& planes) {
   const LoadTable loads = MadeUpLoads();
-  BendingTable table;
+  ModeTable table;
   table.modes = static_cast<int>(planes[0].size());
   table.planes = static_cast<int>(planes.size());
   table.propellant_kg = {0.0};
@@ -127,14 +128,14 @@ inline BendingTable MadeUpTable(const std::vector<std::vector<MadeUpMode>>& plan
 }
 
 /// One lane that bends as a table says.
-inline lanes::FlownModes<double> BendingOf(const BendingTable& table, double propellant_kg,
-                                           double damping_ratio = 0.0) {
-  lanes::FlownModes<double> bending{};
+inline lanes::StackBending<double> BendingOf(const ModeTable& table, double propellant_kg,
+                                             double damping_ratio = 0.0) {
+  lanes::StackBending<double> bending{};
   bending.modes = table.modes;
   bending.planes = table.planes;
   lanes::SetTable(bending, 0, &table);
   for (double& factor : bending.frequency_factor) factor = 1.0;
-  bending.damping_ratio = damping_ratio;
+  bending.damping_factor = damping_ratio;
   bending.slope_factor = 1.0;
   lanes::ShapesAt(bending, propellant_kg);
   return bending;
@@ -142,19 +143,19 @@ inline lanes::FlownModes<double> BendingOf(const BendingTable& table, double pro
 
 /// Two different modes in each of two different planes.
 inline std::vector<std::vector<MadeUpMode>> TwoPlanes() {
-  return {{{{1.0, -0.3, 0.01, 0.0004}, 12.0, 400.0, {0.02, 0.005}},
-           {{-0.8, 0.25, -0.02, 0.0006}, 31.0, 250.0, {0.005, 0.07}}},
-          {{{0.9, -0.2, 0.005, 0.0007}, 14.0, 500.0, {0.03, -0.004}},
-           {{-0.5, 0.35, -0.03, 0.0005}, 37.0, 300.0, {-0.004, 0.06}}}};
+  return {{{{1.0, -0.3, 0.01, 0.0004}, 12.0, 400.0, {0.02, 0.005}, 1.0},
+           {{-0.8, 0.25, -0.02, 0.0006}, 31.0, 250.0, {0.005, 0.07}, 1.5}},
+          {{{0.9, -0.2, 0.005, 0.0007}, 14.0, 500.0, {0.03, -0.004}, 0.5},
+           {{-0.5, 0.35, -0.03, 0.0005}, 37.0, 300.0, {-0.004, 0.06}, 0.75}}};
 }
 
 /// The pivots, and what drives the modes there.
-inline lanes::Bent<double> BentAtPivot(const lanes::FlownModes<double>& b,
+inline lanes::Bent<double> BentAtPivot(const lanes::StackBending<double>& b,
                                        const lanes::BendingState<double>& s, lanes::Vector<double> force_n,
                                        lanes::Vector<double> couple_n_m) {
   return lanes::BentAt(b, s, lanes::kAtPivot, lanes::ShapesOf(b, lanes::kAtPivot), force_n, couple_n_m);
 }
-inline void DriveAtPivot(const lanes::FlownModes<double>& b, const lanes::BendingState<double>& s,
+inline void DriveAtPivot(const lanes::StackBending<double>& b, const lanes::BendingState<double>& s,
                          lanes::Vector<double> force_n, lanes::Vector<double> couple_n_m,
                          lanes::ModalForce<double>& to) {
   lanes::DriveAt(b, s, lanes::kAtPivot, lanes::ShapesOf(b, lanes::kAtPivot), force_n, couple_n_m, to);

@@ -4,8 +4,8 @@
 
 #include <cmath>
 
+#include "core/modes/beam_table.h"
 #include "core/structure/bending_modes.h"
-#include "core/structure/bending_table.h"
 #include "core/structure/mass_points.h"
 #include "core/vehicle/mass.h"
 #include "tests/unit/flexible_sample.h"
@@ -117,12 +117,12 @@ TEST(BendingModes, AreOfOnePlaneWhereTheStackIsRound) {
                of_z = stacks[0].levels[1].back().modes[0].frequency_rad_s;
   EXPECT_EQ(ModesBelow(vehicle, stacks[0], 0.5 * (of_y + of_z)), 0);
   EXPECT_GE(ModesBelow(vehicle, stacks[0], 1.001 * of_z), 1);
-  const BendingTable table = BuildBendingTable(vehicle, stacks[0], loads, 1),
-                     round = BuildBendingTable(vehicle, stacks[1], loads, 1);
+  const ModeTable table = BuildBeamTable(vehicle, stacks[0], loads, 1),
+                  round = BuildBeamTable(vehicle, stacks[1], loads, 1);
   EXPECT_EQ(table.planes, 2);
   EXPECT_EQ(round.planes, 1);
-  EXPECT_EQ(table.Row(0, 1, 0)[BendingTable::kFrequency], of_y);
-  EXPECT_EQ(table.Row(1, 1, 0)[BendingTable::kFrequency], of_z);
+  EXPECT_EQ(table.Row(0, 1, 0)[ModeTable::kFrequency], of_y);
+  EXPECT_EQ(table.Row(1, 1, 0)[ModeTable::kFrequency], of_z);
 }
 
 TEST(ShownStations, AreThoseOfTheSensorsStillThereAndThePivot) {
@@ -139,7 +139,7 @@ TEST(ShownStations, AreThoseOfTheSensorsStillThereAndThePivot) {
 
 // The work that a force along the axis does against a bent beam: each element is compressed by what has to be
 // pushed ahead of it. A uniform beam's share ahead grows evenly; a mass at its nose is ahead of all.
-TEST(BendingTable, ShorteningCountsTheMassAhead) {
+TEST(ModeTable, ShorteningCountsTheMassAhead) {
   Vehicle vehicle = FlexibleSample();
   vehicle.structure_beam->elements = 24;
   vehicle.structure_beam->propellant_levels = 2;
@@ -152,7 +152,7 @@ TEST(BendingTable, ShorteningCountsTheMassAhead) {
   vehicle.structure_beam->stages[1].lumped_masses = {payload};
   const std::vector<StackModes> stacks = BuildBendingModes(vehicle);
   const LoadTable loads{};
-  const BendingTable table = BuildBendingTable(vehicle, stacks[1], loads, 2);
+  const ModeTable table = BuildBeamTable(vehicle, stacks[1], loads, 2);
   // Empty: 1 t payload fixed at 2 m, 1 t evenly from 1 to 10.5 m.
   const BendingLevel& empty = stacks[1].levels[0].back();
   ASSERT_EQ(empty.propellant_kg, 0.0);
@@ -169,8 +169,8 @@ TEST(BendingTable, ShorteningCountsTheMassAhead) {
         sum += ahead * slope(j) * slope(k) * 9.5 / kPlaces;
       }
       // The table sums at 400 places, and the payload counts at one of them.
-      EXPECT_NEAR(table.Row(0, 1, k)[BendingTable::kShortening + j], sum,
-                  5e-3 * table.Row(0, 1, j)[BendingTable::kShortening + j]);
+      EXPECT_NEAR(table.Row(0, 1, k)[ModeTable::kShortening + j], sum,
+                  5e-3 * table.Row(0, 1, j)[ModeTable::kShortening + j]);
     }
 }
 

@@ -10,9 +10,9 @@
 
 #include "core/campaign_yaml/load.h"
 #include "core/flight/dispersed_vehicle.h"
+#include "core/modes/beam_table.h"
+#include "core/modes/load_table.h"
 #include "core/structure/beam_mesh.h"
-#include "core/structure/bending_table.h"
-#include "core/structure/load_table.h"
 #include "core/structure/near_modes.h"
 #include "core/vehicle/mass.h"
 #include "tests/liquid_stage.h"
@@ -36,7 +36,7 @@ FlightInputs Draws(double dry, double propellant, double payload_kg) {
 }
 
 // The largest departure of a column from another table's, against the largest value of that column.
-double DepartureOf(const BendingTable& table, const BendingTable& from, int column) {
+double DepartureOf(const ModeTable& table, const ModeTable& from, int column) {
   double largest = 0.0, departure = 0.0;
   for (std::size_t level = 0; level < table.propellant_kg.size(); ++level)
     for (int mode = 0; mode < table.modes; ++mode) {
@@ -119,26 +119,26 @@ TEST(NodeMasses, AreTheMassMatrix) {
 struct Departures {
   double frequency = 0.0, mass = 0.0, pivot = 0.0, unit_slope = 0.0, moment = 0.0;
 
-  Departures(const BendingTable& table, const BendingTable& whole)
-      : frequency(DepartureOf(table, whole, BendingTable::kFrequency)),
-        mass(DepartureOf(table, whole, BendingTable::kInverseMass)),
-        pivot(DepartureOf(table, whole, BendingTable::kPivotDeflection)),
-        unit_slope(DepartureOf(table, whole, BendingTable::kUnitSlope)),
-        moment(DepartureOf(table, whole, BendingTable::kMomentAt + 3)) {}
+  Departures(const ModeTable& table, const ModeTable& whole)
+      : frequency(DepartureOf(table, whole, ModeTable::kFrequency)),
+        mass(DepartureOf(table, whole, ModeTable::kInverseMass)),
+        pivot(DepartureOf(table, whole, ModeTable::kPivotDeflection)),
+        unit_slope(DepartureOf(table, whole, ModeTable::kUnitSlope)),
+        moment(DepartureOf(table, whole, ModeTable::kMomentAt + 3)) {}
 };
 
 struct DispersedStack {
   StackModes nominal, sought, whole;
-  BendingTable of_nominal, of_sought, of_whole;
+  BeamTable of_nominal, of_sought, of_whole;
 
   DispersedStack(const Vehicle& from, const Vehicle& vehicle, int stage, int modes = 3)
       : nominal(BuildStackModes(from, stage)),
         sought(BuildStackModesNear(vehicle, nominal, modes)),
         whole(BuildStackModes(vehicle, stage)) {
     const LoadTable loads = BuildLoadTable(vehicle, stage);
-    of_nominal = BuildBendingTable(from, nominal, loads, modes);
-    of_sought = BuildBendingTable(vehicle, sought, loads, modes, &of_nominal);
-    of_whole = BuildBendingTable(vehicle, whole, loads, modes);
+    of_nominal = BuildBeamTable(from, nominal, loads, modes);
+    of_sought = BuildBeamTable(vehicle, sought, loads, modes, &of_nominal);
+    of_whole = BuildBeamTable(vehicle, whole, loads, modes);
   }
 };
 
@@ -246,12 +246,12 @@ TEST(NearModes, ThatAreNotRecognisedAreSolvedAsAWhole) {
 }
 
 // Places that the nominal table has found give the same bits as places found anew.
-TEST(BendingTable, IsTheSameWithPlacesOfTheNominalOne) {
+TEST(ModeTable, IsTheSameWithPlacesOfTheNominalOne) {
   const Vehicle nominal = Flexible(), vehicle = WithDispersedMasses(nominal, Draws(0.03, 0.01, 20.0));
   for (int stage = 0; stage < 4; ++stage) {
     const DispersedStack stack(nominal, vehicle, stage);
     EXPECT_EQ(stack.of_sought.places, stack.of_nominal.places);
-    EXPECT_TRUE(BuildBendingTable(vehicle, stack.sought, BuildLoadTable(vehicle, stage), 3).rows ==
+    EXPECT_TRUE(BuildBeamTable(vehicle, stack.sought, BuildLoadTable(vehicle, stage), 3).rows ==
                 stack.of_sought.rows)
         << stage;
   }

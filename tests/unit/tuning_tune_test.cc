@@ -160,7 +160,7 @@ TEST(Tune, KnowsWhenBoostersHaveLeftAVehicleThatBends) {
   const FlightModel& model = flights.model();
   const LauncherStack& stack = model.nominal_plant().stacks[0];
   const auto first_mode = [&](unsigned gone, double at_s) {
-    return stack.BendingWithout(gone)->At(0, 0, BendingTable::kFrequency, stack.burn.Propellant(at_s));
+    return stack.BendingWithout(gone)->At(0, 0, ModeTable::kFrequency, stack.burn.Propellant(at_s));
   };
   const TunedPlant plant{campaign, model};
   EXPECT_EQ(plant.FirstMode(0, 0.0), first_mode(0, 0.0));

@@ -8,7 +8,7 @@
 
 #include "core/math/constants.h"
 #include "core/math/functions.h"
-#include "core/structure/load_table.h"
+#include "core/modes/load_table.h"
 #include "core/vehicle/beam_masses.h"
 #include "core/vehicle/burning_stack.h"
 #include "core/vehicle/mass.h"

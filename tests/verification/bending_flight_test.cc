@@ -82,12 +82,12 @@ TEST(BendingFlight, ALoadAtThePivotTurnsItAsTheBeamHoweverFewModesFly) {
     ASSERT_NEAR(by_couple.deflection / by_force.slope_1_m, 1.0, 1e-6);
     double found[3], of_modes[3] = {};
     for (int i = 0; i < 3; ++i)
-      found[i] = flight.At(0, static_cast<BendingTable::Column>(BendingTable::kResidual + i));
+      found[i] = flight.At(0, static_cast<ModeTable::Column>(ModeTable::kResidual + i));
     for (int mode = 0; mode < modes; ++mode) {
-      const double deflection = flight.At(mode, BendingTable::kPivotDeflection),
-                   slope = flight.At(mode, BendingTable::kPivotSlope),
-                   softness = flight.At(mode, BendingTable::kInverseMass) /
-                              std::pow(flight.At(mode, BendingTable::kFrequency), 2);
+      const double deflection = flight.At(mode, ModeTable::kPivotDeflection),
+                   slope = flight.At(mode, ModeTable::kPivotSlope),
+                   softness = flight.At(mode, ModeTable::kInverseMass) /
+                              std::pow(flight.At(mode, ModeTable::kFrequency), 2);
       of_modes[0] += softness * deflection * deflection;
       of_modes[1] += softness * deflection * slope;
       of_modes[2] += softness * slope * slope;
@@ -117,16 +117,16 @@ TEST(BendingFlight, ResidualFlexibilityTurnsAndMovesTheThrust) {
       tilted.y[kNozzleAngle + nozzle] = tilted.phase.command_rad[nozzle] = angle;
     }
     InSpace stiff = tilted;
-    BendingTable without = tilted.table();
-    for (std::size_t row = 0; row < without.rows.size(); row += BendingTable::kRowSize)
-      for (std::size_t i = 0; i < 3; ++i) without.rows[row + BendingTable::kResidual + i] = 0.0;
-    stiff.plant.stacks[0].bending = std::make_shared<const BendingTable>(std::move(without));
+    ModeTable without = tilted.table();
+    for (std::size_t row = 0; row < without.rows.size(); row += ModeTable::kRowSize)
+      for (std::size_t i = 0; i < 3; ++i) without.rows[row + ModeTable::kResidual + i] = 0.0;
+    stiff.plant.stacks[0].bending = std::make_shared<const ModeTable>(std::move(without));
     const auto rates = tilted.Rates(), before = stiff.Rates();
     const std::size_t across = plane == 1 ? 5 : 4, about = plane == 1 ? 11 : 12;
     const double side = 0.5 * thrust * std::sin(angle) * (plane == 1 ? 1.0 : -1.0);
     const double along = 0.5 * thrust * (1.0 + std::cos(angle));
-    const double moved = side * flight.At(0, static_cast<BendingTable::Column>(BendingTable::kResidual)),
-                 turned = side * flight.At(0, static_cast<BendingTable::Column>(BendingTable::kResidual + 1));
+    const double moved = side * flight.At(0, static_cast<ModeTable::Column>(ModeTable::kResidual)),
+                 turned = side * flight.At(0, static_cast<ModeTable::Column>(ModeTable::kResidual + 1));
     const double turned_n = -along * turned;
     EXPECT_GT(std::fabs(turned_n), 1e-3 * std::fabs(side));
     EXPECT_NEAR((rates[across] - before[across]) / (turned_n / mass.mass_kg), 1.0, 1e-3) << plane;
@@ -157,8 +157,8 @@ TEST(BendingFlight, ASteadyForceBendsTheBodyAsItBendsTheBeam) {
       const auto rates = flight.Rates();
       double slope = 0.0;
       for (int mode = 0; mode < modes; ++mode) {
-        const double w = flight.At(mode, BendingTable::kFrequency);
-        slope += flight.At(mode, BendingTable::kUnitSlope) *
+        const double w = flight.At(mode, ModeTable::kFrequency);
+        slope += flight.At(mode, ModeTable::kUnitSlope) *
                  rates[static_cast<std::size_t>(kModalRate + plane * kModes + mode)] / (w * w);
       }
       const double expected = plane == 1 ? exact : -exact;
@@ -187,7 +187,7 @@ TEST(BendingFlight, FreeModesRingAndLeaveTheBodyAlone) {
   for (const double damping_ratio : {0.0, 0.01}) {
     InSpace flight(Flexible());
     flight.phase.burning = false;
-    flight.plant.bending.damping_ratio = damping_ratio;
+    flight.plant.bending.damping_factor = damping_ratio / flight.vehicle.structure_beam->damping_ratio;
     flight.y[12] = 0.02;
     InSpace rigid = flight;
     for (int plane = 0; plane < kPlanes; ++plane)
@@ -209,7 +209,7 @@ TEST(BendingFlight, FreeModesRingAndLeaveTheBodyAlone) {
       for (int mode = 0; mode < 3; ++mode) {
         const int at = plane * kModes + mode;
         const double q0 = flight.y[static_cast<std::size_t>(kModalState + at)];
-        const double w = flight.table().At(0, mode, BendingTable::kFrequency, full);
+        const double w = flight.table().At(0, mode, ModeTable::kFrequency, full);
         const double d = w * std::sqrt(1.0 - damping_ratio * damping_ratio), s = damping_ratio * w;
         const double e = std::exp(-s * t) * q0;
         EXPECT_NEAR(y[kModalState + at], e * (std::cos(d * t) + s / d * std::sin(d * t)), 1e-11);
@@ -321,9 +321,9 @@ TEST(BendingFlight, TurningNozzlesPushTheirPivotsAndTurnTheBody) {
   EXPECT_NEAR(moved[11] - still[11], turn, 1e-9);
   EXPECT_NEAR(moved[12] - still[12], turn, 1e-9);
   for (int mode = 0; mode < 3; ++mode) {
-    const double drive = flight.At(mode, BendingTable::kInverseMass) *
-                         (force * flight.At(mode, BendingTable::kPivotDeflection) +
-                          16.0 * acceleration * flight.At(mode, BendingTable::kPivotSlope));
+    const double drive = flight.At(mode, ModeTable::kInverseMass) *
+                         (force * flight.At(mode, ModeTable::kPivotDeflection) +
+                          16.0 * acceleration * flight.At(mode, ModeTable::kPivotSlope));
     const std::size_t z = static_cast<std::size_t>(kModalRate + kModes + mode), y = z - kModes;
     EXPECT_NEAR(moved[z] - still[z], drive, 1e-9);
     EXPECT_NEAR(moved[y] - still[y], -drive, 1e-9);
@@ -337,8 +337,8 @@ TEST(BendingFlight, ABentBodyTurnsAndMovesItsThrustAndIsCompressedByIt) {
   const MassProperties mass = flight.plant.stacks[0].mass.At(flight.propellant_kg());
   const double lever = flight.plant.stacks[0].gimbal.pivot_station_m - mass.cg_station_m;
   for (int mode = 0; mode < 3; ++mode) {
-    const double turn = flight.At(mode, BendingTable::kPivotSlope) * q;
-    const double moved = flight.At(mode, BendingTable::kPivotDeflection) * q;
+    const double turn = flight.At(mode, ModeTable::kPivotSlope) * q;
+    const double moved = flight.At(mode, ModeTable::kPivotDeflection) * q;
     // Plane z: turned nose up by +turn about y; plane y: by -turn about z.
     for (int plane = 0; plane < kPlanes; ++plane) {
       InSpace bent = flight;
@@ -349,13 +349,12 @@ TEST(BendingFlight, ABentBodyTurnsAndMovesItsThrustAndIsCompressedByIt) {
       const double moment = lever * side + moved * thrust;  // about y; about z the other way
       const double about = (plane == 1 ? 1.0 : -1.0) * moment / mass.transverse_inertia_kg_m2;
       EXPECT_NEAR(rates[plane == 1 ? 11 : 12] - straight[plane == 1 ? 11 : 12], about, 1e-9);
-      const double w = flight.At(mode, BendingTable::kFrequency);
+      const double w = flight.At(mode, ModeTable::kFrequency);
       for (int other = 0; other < 3; ++other) {
         const double drive =
-            flight.At(other, BendingTable::kInverseMass) *
-            (side * flight.At(other, BendingTable::kPivotDeflection) +
-             thrust * q *
-                 flight.At(other, static_cast<BendingTable::Column>(BendingTable::kShortening + mode)));
+            flight.At(other, ModeTable::kInverseMass) *
+            (side * flight.At(other, ModeTable::kPivotDeflection) +
+             thrust * q * flight.At(other, static_cast<ModeTable::Column>(ModeTable::kShortening + mode)));
         const std::size_t at = static_cast<std::size_t>(kModalRate + plane * kModes + other);
         EXPECT_NEAR(rates[at], drive - (other == mode ? w * w * q : 0.0), 1e-8);
       }

@@ -11,7 +11,7 @@
 #include "core/dynamics/jettison.h"
 #include "core/flight/flight_model.h"
 #include "core/flight/simpson_step.h"
-#include "core/structure/load_table.h"
+#include "core/modes/load_table.h"
 #include "core/vehicle/mass.h"
 #include "tests/liquid_stage.h"
 #include "tests/slv4_flight.h"

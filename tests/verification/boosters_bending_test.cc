@@ -285,8 +285,8 @@ TEST(BoostersBending, ASteadyForceOfTheirNozzlesBendsTheBodyAsItBendsTheBeam) {
       const auto rates = flight.Rates();
       double slope = 0.0;
       for (int mode = 0; mode < modes; ++mode) {
-        const double w = flight.At(mode, BendingTable::kFrequency);
-        slope += flight.At(mode, BendingTable::kUnitSlope) *
+        const double w = flight.At(mode, ModeTable::kFrequency);
+        slope += flight.At(mode, ModeTable::kUnitSlope) *
                  rates[static_cast<std::size_t>(kModalRate + plane * kModes + mode)] / (w * w);
       }
       const double error = std::fabs(slope / exact - 1.0);
@@ -350,8 +350,8 @@ TEST(BoostersBending, ABentBodyMovesTheirThrustAndIsCompressedByWhatItCarries) {
         const double about = (plane == 1 ? 1.0 : -1.0) * moment / mass.transverse_inertia_kg_m2;
         EXPECT_NEAR(rates[turning] - straight[turning], about, 1e-5 * std::fabs(about));
         for (int other = 0; other < 3; ++other) {
-          const double w = flight.At(other, BendingTable::kFrequency);
-          const double driven = flight.At(other, BendingTable::kInverseMass) *
+          const double w = flight.At(other, ModeTable::kFrequency);
+          const double driven = flight.At(other, ModeTable::kInverseMass) *
                                 (core_side * shape(other, pivot_m).deflection +
                                  boost_side * at_nozzle(other) + carried(mode, other) * q);
           const std::size_t at = static_cast<std::size_t>(kModalRate + plane * kModes + other);
@@ -372,8 +372,8 @@ TEST(BoostersBending, AnOddThrustTurnsTheirLink) {
   const auto odd = flight.Rates();
   const double lever_m = kRadius_m * std::sqrt(0.5);
   for (int mode = 0; mode < 3; ++mode) {
-    const double turned = flight.At(mode, BendingTable::kInverseMass) *
-                          flight.At(mode, BendingTable::kBoosterSlope) * lever_m * kMore_n;
+    const double turned = flight.At(mode, ModeTable::kInverseMass) *
+                          flight.At(mode, ModeTable::kBoosterSlope) * lever_m * kMore_n;
     for (int plane = 0; plane < kPlanes; ++plane) {
       const std::size_t at = static_cast<std::size_t>(kModalRate + plane * kModes + mode);
       EXPECT_NEAR(odd[at] - even[at], turned, 1e-6 * std::fabs(turned)) << mode << plane;
@@ -534,12 +534,12 @@ TEST(BoostersBending, MarginsSeeTheStackWithoutThemWhenTheyHaveLeft) {
     const AxisPlant linear = LineariseAxis(plant, s, kPitch, model.sensors());
     const unsigned gone = s.time_s > 30.0 ? kBoostersGone : 0u;
     const double propellant_kg = plant.stacks[0].burn.Propellant(s.since_ignition_s);
-    const BendingTable& table = *plant.stacks[0].BendingWithout(gone);
-    EXPECT_DOUBLE_EQ(linear.lowest_mode_rad_s, table.At(0, 0, BendingTable::kFrequency, propellant_kg));
-    EXPECT_DOUBLE_EQ(linear.attitude[4], table.At(0, 0, BendingTable::kUnitSlope, propellant_kg));
-    EXPECT_NE(linear.attitude[4], plant.stacks[0]
-                                      .BendingWithout(gone ^ kBoostersGone)
-                                      ->At(0, 0, BendingTable::kUnitSlope, propellant_kg));
+    const ModeTable& table = *plant.stacks[0].BendingWithout(gone);
+    EXPECT_DOUBLE_EQ(linear.lowest_mode_rad_s, table.At(0, 0, ModeTable::kFrequency, propellant_kg));
+    EXPECT_DOUBLE_EQ(linear.attitude[4], table.At(0, 0, ModeTable::kUnitSlope, propellant_kg));
+    EXPECT_NE(
+        linear.attitude[4],
+        plant.stacks[0].BendingWithout(gone ^ kBoostersGone)->At(0, 0, ModeTable::kUnitSlope, propellant_kg));
   }
 }
 

@@ -11,6 +11,7 @@
 #include "core/dynamics/jettison.h"
 #include "core/flight/flight.h"
 #include "core/flight/tick_sample.h"
+#include "core/modes/beam_source.h"
 #include "core/structure/free_body.h"
 #include "core/vehicle/mass.h"
 #include "tests/slv4_flight.h"
@@ -93,7 +94,7 @@ TEST(JettisonedBending, LeavesTheMassesTheirMomentum) {
       state.q_IB = FromRotationVector(Vector3(0.3, -0.7, 1.1));
       const RigidBodyState before = state;
       LetGoBent(stack, 0u, 1u, 0.0, modal, state);
-      const ModalPassage passage = stack.lighter_bending->Passage(0u, 1u, 0.0);
+      const ModalPassage passage = stack.modes->Passage(0u, 1u, 0.0);
       for (int k = 0; k < 3; ++k) {
         const double onto = passage.onto[plane][k][mode];
         EXPECT_DOUBLE_EQ(modal[plane * kModes + k], onto * q_m);
@@ -137,11 +138,9 @@ TEST(JettisonedBending, KeepsTheShape) {
     const auto loads = std::make_shared<const LoadTable>(BuildLoadTable(vehicle, kStage));
     const auto whole = std::make_shared<const StackModes>(BuildStackModes(vehicle, kStage));
     const StackModes left = BuildStackModes(vehicle, kStage, 1u);
-    const auto table =
-        std::make_shared<const BendingTable>(BuildBendingTable(vehicle, *whole, *loads, modes));
     // At a level of both tables, whose shapes are then the modes' own.
     const BendingLevel old = whole->levels[0].front(), now = left.levels[0].front();
-    const JettisonedBending bending(kept, whole, table, loads);
+    const BeamSource bending(kept, whole, loads, modes);
     const ModalPassage passage = bending.Passage(0u, 1u, old.propellant_kg);
     const double cg_m = FreeBody(BuildBeamMasses(vehicle, kStage, old.propellant_kg, 1u), {}).cg_station_m;
     double worst = 0.0;

@@ -9,7 +9,8 @@
 #include "core/dynamics/body_sections.h"
 #include "core/flight/flight_model.h"
 #include "core/math/constants.h"
-#include "core/structure/bending_table.h"
+#include "core/modes/mode_table.h"
+#include "core/structure/bending_modes.h"
 #include "core/vehicle/mass.h"
 #include "tests/liquid_stage.h"
 #include "tests/slv4_flight.h"
@@ -169,7 +170,7 @@ void ExpectRinging(const Vehicle& vehicle, std::size_t at_level) {
   LauncherPlant plant = BuildNominalPlant(vehicle);
   const std::vector<StackModes> stacks = BuildBendingModes(vehicle);
   AddBending(vehicle, 0.01, plant);
-  const BendingTable& table = *plant.stacks[0].bending;
+  const ModeTable& table = *plant.stacks[0].bending;
   const LoadTable& loads = *plant.stacks[0].loads;
   const BendingLevel& level = stacks[0].levels[0][at_level];
   constexpr double kStep_m = 0.02;
@@ -197,7 +198,7 @@ void ExpectRinging(const Vehicle& vehicle, std::size_t at_level) {
       };
       held.push_back(stiffness * (slope(s + kStep_m) - slope(s - kStep_m)) / (2.0 * kStep_m));
       loaded.push_back(omega2 * table.Row(0, static_cast<int>(at_level),
-                                          static_cast<int>(mode))[BendingTable::kMomentAt + i]);
+                                          static_cast<int>(mode))[ModeTable::kMomentAt + i]);
       most = std::max(most, std::fabs(held.back()));
     }
     EXPECT_GT(held.size(), 10u);

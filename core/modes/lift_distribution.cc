@@ -1,4 +1,4 @@
-#include "core/structure/lift_distribution.h"
+#include "core/modes/lift_distribution.h"
 
 #include <algorithm>
 #include <cmath>

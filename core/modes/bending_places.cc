@@ -1,4 +1,4 @@
-#include "core/structure/bending_places.h"
+#include "core/modes/bending_places.h"
 
 #include <algorithm>
 

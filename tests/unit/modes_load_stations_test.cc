@@ -1,5 +1,5 @@
 // The chosen cross-sections see the largest bending moment of loads that they were not chosen by.
-#include "core/structure/load_stations.h"
+#include "core/modes/load_stations.h"
 
 #include <gtest/gtest.h>
 
@@ -8,12 +8,12 @@
 
 #include "core/campaign_yaml/load.h"
 #include "core/math/constants.h"
+#include "core/modes/lift_distribution.h"
+#include "core/modes/load_table.h"
 #include "core/structure/free_body.h"
-#include "core/structure/lift_distribution.h"
-#include "core/structure/load_table.h"
 #include "core/vehicle/mass.h"
 
-namespace dispersa::structure_load_stations_test {
+namespace dispersa::modes_load_stations_test {
 namespace {
 
 /// The moments on sections of a body that a unit force at `at_m` accelerates; the force acts behind all of
@@ -211,4 +211,4 @@ TEST(LoadStations, OfDrawnMassesAreTheNominalOnes) {
 }
 
 }  // namespace
-}  // namespace dispersa::structure_load_stations_test
+}  // namespace dispersa::modes_load_stations_test

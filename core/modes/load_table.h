@@ -4,7 +4,7 @@
 
 #include <array>
 
-#include "core/structure/lift_distribution.h"
+#include "core/modes/lift_distribution.h"
 
 namespace dispersa {
 

@@ -1,4 +1,4 @@
-#include "core/structure/jettisoned_bending.h"
+#include "core/modes/beam_source.h"
 
 #include <algorithm>
 #include <utility>
@@ -40,40 +40,62 @@ auto ByNumber(const std::vector<StationShape>& shapes) {
 
 }  // namespace
 
-JettisonedBending::JettisonedBending(std::shared_ptr<const Vehicle> vehicle,
-                                     std::shared_ptr<const StackModes> whole,
-                                     std::shared_ptr<const BendingTable> table,
-                                     std::shared_ptr<const LoadTable> loads,
-                                     std::shared_ptr<const JettisonedBending> near)
+BeamSource::BeamSource(std::shared_ptr<const Vehicle> vehicle, std::shared_ptr<const StackModes> whole,
+                       std::shared_ptr<const LoadTable> loads, int modes,
+                       std::shared_ptr<const BeamSource> near)
     : vehicle_(std::move(vehicle)),
       stage_(whole->stage),
       loads_(std::move(loads)),
       near_(std::move(near)),
-      modes_(table->modes),
+      modes_(modes),
       carried_(CarriedBy(*vehicle_, stage_)) {
-  made_[0] = std::make_unique<const Lighter>(Lighter{std::move(whole), std::move(table)});
+  const BeamTable* const near_table = near_ ? near_->Lighter(0u).table.get() : nullptr;
+  auto table =
+      std::make_shared<const BeamTable>(BuildBeamTable(*vehicle_, *whole, *loads_, modes_, near_table));
+  made_[0] = std::make_unique<const Stack>(Stack{std::move(whole), std::move(table)});
 }
 
-const BendingTable& JettisonedBending::Without(unsigned gone) const { return *Of(gone).table; }
+std::shared_ptr<const BeamSource> BeamSource::Below(double highest_rad_s,
+                                                    std::shared_ptr<const Vehicle> vehicle, int stage,
+                                                    std::shared_ptr<const LoadTable> loads) {
+  auto whole = std::make_shared<const StackModes>(BuildStackModes(*vehicle, stage));
+  int modes = ModesBelow(*vehicle, *whole, highest_rad_s);
+  // Without a mass no frequency is lower: what flies with none of the bodies flies with any.
+  if (const unsigned carried = CarriedBy(*vehicle, stage))
+    modes = std::min(modes, ModesBelow(*vehicle, BuildStackModes(*vehicle, stage, carried), highest_rad_s));
+  return std::make_shared<const BeamSource>(std::move(vehicle), std::move(whole), std::move(loads), modes);
+}
 
-const JettisonedBending::Lighter& JettisonedBending::Of(unsigned gone) const {
+std::shared_ptr<const ModeSource> BeamSource::Of(std::shared_ptr<const Vehicle> vehicle,
+                                                 std::shared_ptr<const LoadTable> loads) const {
+  const StackModes& nominal = *Lighter(0u).modes;
+  // A table of modes is of the nominal masses, and is scaled to others as it stands.
+  const bool is_solved = nominal.basis != nullptr;
+  if (is_solved && modes_ == 0) return shared_from_this();
+  auto whole = std::make_shared<const StackModes>(is_solved ? BuildStackModesNear(*vehicle, nominal, modes_)
+                                                            : BuildStackModes(*vehicle, stage_));
+  return std::make_shared<const BeamSource>(std::move(vehicle), std::move(whole), std::move(loads), modes_,
+                                            is_solved ? shared_from_this() : nullptr);
+}
+
+const BeamSource::Stack& BeamSource::Lighter(unsigned gone) const {
   gone &= carried_;
   const std::lock_guard<std::mutex> lock(mutex_);
-  std::unique_ptr<const Lighter>& made = made_[gone];
+  std::unique_ptr<const Stack>& made = made_[gone];
   if (!made) {
-    const Lighter* const near = near_ ? &near_->Of(gone) : nullptr;
+    const Stack* const near = near_ ? &near_->Lighter(gone) : nullptr;
     auto modes =
         std::make_shared<const StackModes>(near ? BuildStackModesNear(*vehicle_, *near->modes, modes_)
                                                 : BuildStackModes(*vehicle_, stage_, gone));
-    auto table = std::make_shared<const BendingTable>(
-        BuildBendingTable(*vehicle_, *modes, *loads_, modes_, near ? near->table.get() : nullptr));
-    made = std::make_unique<const Lighter>(Lighter{std::move(modes), std::move(table)});
+    auto table = std::make_shared<const BeamTable>(
+        BuildBeamTable(*vehicle_, *modes, *loads_, modes_, near ? near->table.get() : nullptr));
+    made = std::make_unique<const Stack>(Stack{std::move(modes), std::move(table)});
   }
   return *made;
 }
 
-ModalPassage JettisonedBending::Passage(unsigned before, unsigned after, double propellant_kg) const {
-  const Lighter &from = Of(before), &to = Of(after);
+ModalPassage BeamSource::Passage(unsigned before, unsigned after, double propellant_kg) const {
+  const Stack &from = Lighter(before), &to = Lighter(after);
   const FreeBody rest(BuildBeamMasses(*vehicle_, stage_, propellant_kg, after & carried_),
                       from.modes->station_m[0]);
   ModalPassage passage;

@@ -7,11 +7,11 @@
 
 #include "core/campaign_yaml/load.h"
 #include "core/math/constants.h"
-#include "core/structure/bending_table.h"
-#include "core/structure/lift_distribution.h"
+#include "core/modes/beam_table.h"
+#include "core/modes/lift_distribution.h"
 #include "core/vehicle/mould_line.h"
 
-namespace dispersa::structure_lift_distribution_test {
+namespace dispersa::modes_lift_distribution_test {
 namespace {
 
 Vehicle Flexible() { return LoadVehicle(DISPERSA_CAMPAIGNS "/vehicles/slv4_flexible.yaml"); }
@@ -81,10 +81,10 @@ TEST(LiftDistribution, ConvergesAsTheSquareOfItsPieces) {
       loads.lift =
           DistributeLift(vehicle, static_cast<int>(stage),
                          {loads.station_m.begin(), loads.station_m.begin() + loads.stations}, pieces);
-      return BuildBendingTable(vehicle, stacks[stage], loads, 3);
+      return BuildBeamTable(vehicle, stacks[stage], loads, 3);
     };
-    const BendingTable fine = table_of(4 * kLiftPieces);
-    const auto error_of = [&](const BendingTable& table, int from, int count) {
+    const ModeTable fine = table_of(4 * kLiftPieces);
+    const auto error_of = [&](const ModeTable& table, int from, int count) {
       double size = 0.0, error = 0.0;
       for (int level = 0; level < static_cast<int>(fine.propellant_kg.size()); ++level)
         for (int mode = 0; mode < 3; ++mode)
@@ -97,13 +97,13 @@ TEST(LiftDistribution, ConvergesAsTheSquareOfItsPieces) {
     };
     double before = 0.0;
     for (const int pieces : {kLiftPieces / 4, kLiftPieces / 2, kLiftPieces}) {
-      const BendingTable table = table_of(pieces);
-      double largest = std::max(error_of(table, BendingTable::kStraightLift, 1),
-                                error_of(table, BendingTable::kStraightLift + 1, 1));
+      const ModeTable table = table_of(pieces);
+      double largest = std::max(error_of(table, ModeTable::kStraightLift, 1),
+                                error_of(table, ModeTable::kStraightLift + 1, 1));
       for (int cause = 0; cause < kLiftCauses; ++cause) {
-        largest = std::max(largest, error_of(table, BendingTable::LiftColumn(cause, kWorkEffects), 3));
-        largest = std::max(largest,
-                           error_of(table, BendingTable::LiftColumn(cause, kSectionEffects), kLoadStations));
+        largest = std::max(largest, error_of(table, ModeTable::LiftColumn(cause, kWorkEffects), 3));
+        largest =
+            std::max(largest, error_of(table, ModeTable::LiftColumn(cause, kSectionEffects), kLoadStations));
       }
       if (before > 0.0) {
         EXPECT_LT(largest, 0.27 * before) << "stack " << stage << ", " << pieces << " pieces";
@@ -121,7 +121,7 @@ TEST(LiftDistribution, DrivesTheModesAsTheMouldLineSays) {
   const double length_m = vehicle.stages[0].bottom_station_m;
   const std::vector<MouldSection> body = CutMouldLine(vehicle.profile, length_m);
   const std::vector<StackModes> stacks = BuildBendingModes(vehicle);
-  const BendingTable table = BuildBendingTable(vehicle, stacks[0], BuildLoadTable(vehicle, 0), 3);
+  const ModeTable table = BuildBeamTable(vehicle, stacks[0], BuildLoadTable(vehicle, 0), 3);
   const BendingLevel& full = stacks[0].levels[0].front();
   const double base2 = body.back().aft_radius_m * body.back().aft_radius_m;
   for (std::size_t mode = 0; mode < 3; ++mode) {
@@ -141,12 +141,12 @@ TEST(LiftDistribution, DrivesTheModesAsTheMouldLineSays) {
       lift = next;
     }
     const double* row = table.Row(0, 0, static_cast<int>(mode));
-    EXPECT_NEAR(row[BendingTable::kStraightLift], straight, 1e-3 * std::fabs(straight)) << mode;
-    EXPECT_NEAR(row[BendingTable::LiftColumn(kSlopeSlender, kWorkEffects + static_cast<int>(mode))], work,
+    EXPECT_NEAR(row[ModeTable::kStraightLift], straight, 1e-3 * std::fabs(straight)) << mode;
+    EXPECT_NEAR(row[ModeTable::LiftColumn(kSlopeSlender, kWorkEffects + static_cast<int>(mode))], work,
                 1e-3 * std::fabs(work))
         << mode;
   }
 }
 
 }  // namespace
-}  // namespace dispersa::structure_lift_distribution_test
+}  // namespace dispersa::modes_lift_distribution_test

@@ -1,10 +1,10 @@
-#include "core/structure/load_table.h"
+#include "core/modes/load_table.h"
 
 #include <algorithm>
 #include <vector>
 
 #include "core/math/functions.h"
-#include "core/structure/load_stations.h"
+#include "core/modes/load_stations.h"
 #include "core/structure/mass_points.h"
 #include "core/vehicle/beam_masses.h"
 #include "core/vehicle/mass.h"

@@ -1,13 +1,13 @@
-#include "core/structure/load_stations.h"
+#include "core/modes/load_stations.h"
 
 #include <algorithm>
 #include <cmath>
 
 #include "core/math/constants.h"
 #include "core/math/functions.h"
+#include "core/modes/lift_distribution.h"
+#include "core/modes/load_table.h"
 #include "core/structure/free_body.h"
-#include "core/structure/lift_distribution.h"
-#include "core/structure/load_table.h"
 #include "core/structure/mass_points.h"
 #include "core/vehicle/beam_masses.h"
 #include "core/vehicle/booster_course.h"

@@ -43,7 +43,7 @@ struct LiftDistribution {
 
 /// Pieces of a section of the mould line, and of an eighth of the stack's length, at least. Twice as many
 /// quarter the error; with these it is 0.03 % of the greatest force of its kind, over modes and propellant,
-/// on SLV-4 (structure_lift_distribution_test).
+/// on SLV-4 (modes_lift_distribution_test).
 inline constexpr int kLiftPieces = 32;
 
 /// The distribution for the stack of stages `stage` (from 0) and above. No piece lies on both sides of one of

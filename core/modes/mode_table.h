@@ -1,14 +1,14 @@
-// Bending data of one stack for flights: for each mode a row over the propellant, at the places of forces and
-// sensors. Plain data for dynamics/bending.h. bending_modes.h has the modes themselves.
+// The modes of one stack for flights: for each a row over the propellant, at the places of forces and
+// sensors. Plain data for dynamics/bending.h. Its rows come from one source of modes (beam_table.h) or from
+// several (flown_modes.h).
 #pragma once
 
 #include <array>
-#include <memory>
 #include <vector>
 
 #include "core/math/aligned_rows.h"
-#include "core/structure/bending_modes.h"
-#include "core/structure/load_table.h"
+#include "core/modes/load_table.h"
+#include "core/vehicle/structure_beam.h"
 
 namespace dispersa {
 
@@ -35,17 +35,16 @@ enum LiftCause : int { kSlopeSlender, kSlopeShift, kRateSlender, kRateShift, kLi
 template <class T>
 struct BendingFactorsOf {
   std::array<T, kModes> frequency_factor{T(1.0), T(1.0), T(1.0), T(1.0), T(1.0)};  ///< of each mode
-  T damping_ratio = T(0.0);
+  T damping_factor = T(1.0);                                                       ///< of every mode's ratio
   T slope_factor = T(1.0);  ///< of the slopes that sensors feel
 };
 using BendingFactors = BendingFactorsOf<double>;
 
-class BendingPlaces;  ///< places of a stack's mesh, found once for all masses (bending_places.h)
-
-struct BendingTable {
-  /// Columns. Frequency (rad/s) and 1 / generalised mass. At the pivot: deflection and slope. Slopes at the
-  /// inertial unit and at each rate gyro. Shortening with each mode. Work on the mode of the straight body's
-  /// lift, by slender-body theory and by shift.
+struct ModeTable {
+  /// Columns. Frequency (rad/s), 1 / generalised mass and damping ratio. At the pivot: deflection and slope.
+  /// Slopes at the inertial unit and at each rate gyro. Shortening with each mode: by how much a newton along
+  /// the axis lowers the stiffness. Work on the mode of the straight body's lift, by slender-body theory and
+  /// by shift.
   ///
   /// From kLiftAt on: effects of the lift by a unit of the mode, by cause and effect, for a normal force of 1
   /// per radian. These are the columns of each step. If there is a stage above: mean displacement of its
@@ -73,13 +72,15 @@ struct BendingTable {
     kBoosterSlope = 46,
     kBehindBoosters = 47,
     kResidual = 52,
+    kDamping = 55,
     kMomentAt = 56,
     kSectionsAt = kMomentAt + kLoadStations,
     kRowSize = kSectionsAt + int{kLiftCauses} * kLoadStations
   };
   static_assert(kGyroSlope + kRateGyros == kShortening && kShortening + kModes == kStraightLift &&
                 kLiftAt + int{kLiftCauses} * int{kSectionEffects} == kUpperTurn &&
-                kBehindBoosters + kModes == kResidual && kResidual + 3 <= kMomentAt && kRowSize % 4 == 0);
+                kBehindBoosters + kModes == kResidual && kResidual + 3 == kDamping && kDamping < kMomentAt &&
+                kRowSize % 4 == 0);
   static constexpr int LiftColumn(int cause, int effect) {
     return effect < kSectionEffects ? kLiftAt + kSectionEffects * cause + effect
                                     : kSectionsAt + kLoadStations * cause + effect - kSectionEffects;
@@ -89,8 +90,6 @@ struct BendingTable {
   int planes = 1;                     ///< 1: plane z is plane y
   std::vector<double> propellant_kg;  ///< of the levels, falling
   AlignedRows rows;                   ///< by plane, level, mode; linear between levels, held beyond
-  /// Of the mesh of its modes (null: made up).
-  std::shared_ptr<const BendingPlaces> places;
 
   /// A column at a propellant, for uses outside flights.
   double At(int plane, int mode, int column, double propellant_kg) const;
@@ -100,23 +99,5 @@ struct BendingTable {
     return rows.data() + kRowSize * ((plane * levels + level) * modes + mode);
   }
 };
-
-/// Number of modes of a stack that fly: at most the beam's flown_modes. It ends before the first mode with a
-/// frequency above `highest_rad_s` at any time of the burn.
-int ModesBelow(const Vehicle& vehicle, const StackModes& stack, double highest_rad_s);
-
-/// The table of the first `modes` modes of one stack.
-///
-/// `shortening` of modes j and k: the integral of w_j' w_k' over the beam, weighted with the share of the
-/// mass that lies ahead. The axial force F carried by the stack lowers the stiffness by F times that (the
-/// potential energy of a compressed beam, e.g. S. Timoshenko and J. Gere, "Theory of Elastic
-/// Stability", 1.11; drag taken as carried like thrust). The thrust of boosters enters the beam at their
-/// link, so the beam behind carries so much less: that times the shortening `behind` the link, without the
-/// weight.
-///
-/// `near`: the table of the same stack with its nominal masses, or null. It saves time where the mesh is the
-/// same.
-BendingTable BuildBendingTable(const Vehicle& vehicle, const StackModes& stack, const LoadTable& loads,
-                               int modes, const BendingTable* near = nullptr);
 
 }  // namespace dispersa

@@ -6,8 +6,8 @@
 #include <deque>
 #include <vector>
 
+#include "core/modes/load_table.h"
 #include "core/structure/bending_modes.h"
-#include "core/structure/load_table.h"
 #include "core/structure/mass_points.h"
 #include "core/structure/node_masses.h"
 

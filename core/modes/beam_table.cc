@@ -1,4 +1,4 @@
-#include "core/structure/bending_table.h"
+#include "core/modes/beam_table.h"
 
 #include <algorithm>
 #include <deque>
@@ -6,7 +6,7 @@
 #include <optional>
 
 #include "core/math/functions.h"
-#include "core/structure/bending_places.h"
+#include "core/modes/bending_places.h"
 #include "core/structure/free_body.h"
 #include "core/vehicle/beam_masses.h"
 #include "core/vehicle/mass.h"
@@ -22,7 +22,7 @@ bool FliesAtAllLevels(const StackModes& stack, std::size_t mode, double highest_
   return true;
 }
 
-using FourColumns = std::array<FourShapes, BendingTable::kRowSize>;
+using FourColumns = std::array<FourShapes, ModeTable::kRowSize>;
 
 // The values of a level's first modes at the nodes, side by side.
 ShapeColumns SideBySide(const BendingLevel& level, std::size_t modes) {
@@ -112,7 +112,7 @@ void AddLift(const LoadTable& loads, const LiftShapes& four, const std::vector<L
         sum[cause] = sum[cause] + four.force[i][cause] * factor;
     }
     for (int cause = 0; cause < kLiftCauses; ++cause)
-      columns[static_cast<std::size_t>(BendingTable::LiftColumn(cause, effect))] =
+      columns[static_cast<std::size_t>(ModeTable::LiftColumn(cause, effect))] =
           sum[static_cast<std::size_t>(cause)];
   };
   add(kForceEffect, pieces.size(), [](std::size_t) { return 1.0; });
@@ -139,17 +139,6 @@ std::optional<FreeBody> UpperOf(const Vehicle& vehicle, const StackModes& stack)
 
 }  // namespace
 
-double BendingTable::At(int plane, int mode, int column, double kg) const {
-  std::size_t level = 0;
-  while (level + 2 < propellant_kg.size() && kg < propellant_kg[level + 1]) ++level;
-  const int low = static_cast<int>(level);
-  if (propellant_kg.size() == 1) return Row(plane, 0, mode)[column];
-  const double fraction =
-      std::clamp((propellant_kg[level] - kg) / (propellant_kg[level] - propellant_kg[level + 1]), 0.0, 1.0);
-  const double from = Row(plane, low, mode)[column], to = Row(plane, low + 1, mode)[column];
-  return from + fraction * (to - from);
-}
-
 int ModesBelow(const Vehicle& vehicle, const StackModes& stack, double highest_rad_s) {
   int modes = 0;
   while (modes < std::min(kModes, vehicle.structure_beam->flown_modes) &&
@@ -163,8 +152,9 @@ namespace {
 // The parts of a plane at which its modes are read, the same at every level of propellant.
 struct PlaneParts {
   const PlanePlaces& places;
-  const Boosters* boosters;     // null: it carries none
-  const FreeBody* upper;        // null: nothing is above
+  const Boosters* boosters;  // null: it carries none
+  const FreeBody* upper;     // null: nothing is above
+  double damping_ratio;
   BeamPlace pivot, unit, link;  // link: the boosters'
   std::vector<BeamPlace> gyros;
   std::deque<MassPlace> found;  // that `places` did not know
@@ -178,6 +168,7 @@ PlaneParts PartsOf(const Vehicle& vehicle, const StackModes& stack, std::size_t 
   PlaneParts parts{places,
                    has_boosters ? &vehicle.boosters : nullptr,
                    upper,
+                   vehicle.structure_beam->damping_ratio,
                    place_at(stage.gimbal.pivot_station_m),
                    place_at(vehicle.sensors.inertial_unit_station_m),
                    {},
@@ -215,12 +206,13 @@ LevelShapes ShapesOf(const Vehicle& vehicle, const StackModes& stack, const Load
 }
 
 void SetStations(const PlaneParts& parts, const FourShapes* modes, FourColumns& columns) {
+  columns[ModeTable::kDamping] = parts.damping_ratio;
   const FourStations at_pivot = FourAt(parts.pivot, modes);
-  columns[BendingTable::kPivotDeflection] = at_pivot.deflection;
-  columns[BendingTable::kPivotSlope] = at_pivot.slope_1_m;
-  columns[BendingTable::kUnitSlope] = FourAt(parts.unit, modes).slope_1_m;
+  columns[ModeTable::kPivotDeflection] = at_pivot.deflection;
+  columns[ModeTable::kPivotSlope] = at_pivot.slope_1_m;
+  columns[ModeTable::kUnitSlope] = FourAt(parts.unit, modes).slope_1_m;
   for (std::size_t g = 0; g < parts.gyros.size(); ++g)
-    columns[BendingTable::kGyroSlope + g] = FourAt(parts.gyros[g], modes).slope_1_m;
+    columns[ModeTable::kGyroSlope + g] = FourAt(parts.gyros[g], modes).slope_1_m;
 }
 
 // By each of all modes, with these four.
@@ -229,9 +221,9 @@ void SetShortening(const PlaneParts& parts, const LevelShapes& level, std::size_
   for (std::size_t j = 0; j < count; ++j) {
     const SlopesBehind behind(parts.places.piece_m(), Values(level.slopes[j / 4].get()) + j % 4,
                               level.slopes[four].get());
-    columns[BendingTable::kShortening + j] = behind.ByMass(level.points, level.at_points);
+    columns[ModeTable::kShortening + j] = behind.ByMass(level.points, level.at_points);
     if (parts.boosters)
-      columns[BendingTable::kBehindBoosters + j] =
+      columns[ModeTable::kBehindBoosters + j] =
           behind.At(parts.places.EdgeBefore(parts.boosters->attachment_station_m));
   }
 }
@@ -240,8 +232,8 @@ void SetShortening(const PlaneParts& parts, const LevelShapes& level, std::size_
 void SetBoosters(const PlaneParts& parts, const FourShapes* modes, FourColumns& columns) {
   const FourStations at_link = FourAt(parts.link, modes);
   const double behind_m = parts.boosters->nozzle_station_m - parts.boosters->attachment_station_m;
-  columns[BendingTable::kBoosterDeflection] = at_link.deflection + at_link.slope_1_m * behind_m;
-  columns[BendingTable::kBoosterSlope] = at_link.slope_1_m;
+  columns[ModeTable::kBoosterDeflection] = at_link.deflection + at_link.slope_1_m * behind_m;
+  columns[ModeTable::kBoosterSlope] = at_link.slope_1_m;
 }
 
 // The work of the straight body's lift.
@@ -249,7 +241,7 @@ void AddStraightLift(const LoadTable& loads, const LiftShapes& four, FourColumns
   for (std::size_t i = 0; i < loads.lift.pieces.size(); ++i) {
     const LiftPiece& piece = loads.lift.pieces[i];
     const FourShapes deflection = four.at[PlanePlaces::MiddleOf(i)].deflection;
-    FourShapes* const lift = &columns[BendingTable::kStraightLift];
+    FourShapes* const lift = &columns[ModeTable::kStraightLift];
     lift[0] = lift[0] + (piece.area_to - piece.area_from) * deflection;
     lift[1] = lift[1] + piece.shift_1_m * deflection;
   }
@@ -259,8 +251,8 @@ void AddStraightLift(const LoadTable& loads, const LiftShapes& four, FourColumns
 void SetUpper(const PlaneParts& parts, const FourShapes* modes, FourColumns& columns) {
   const FourStations mean = parts.upper->MeanOf(
       [&](const MassPoint&, std::size_t i) { return FourAt(parts.at_upper[i]->place, modes); });
-  columns[BendingTable::kUpperShift] = mean.deflection;
-  columns[BendingTable::kUpperTurn] = mean.slope_1_m;
+  columns[ModeTable::kUpperShift] = mean.deflection;
+  columns[ModeTable::kUpperTurn] = mean.slope_1_m;
 }
 
 // Bending moments by the inertia of the modes.
@@ -271,41 +263,41 @@ void SetMoments(const LoadTable& loads, const LevelShapes& level, const FourShap
   for (std::size_t i = 0; i < points; ++i) of_points[i] = FourAt(level.at_points[i]->place, modes);
   const auto at_point = [&](const MassPoint&, std::size_t i) { return of_points[i]; };
   for (std::size_t i = 0; i < static_cast<std::size_t>(loads.stations); ++i)
-    columns[BendingTable::kMomentAt + i] = InertiaMoment(level.points, loads.station_m[i], at_point);
+    columns[ModeTable::kMomentAt + i] = InertiaMoment(level.points, loads.station_m[i], at_point);
 }
 
 // The rows of these four modes, or of those of them that fly.
 void AppendRows(const BendingLevel& level, std::size_t four, std::size_t count, const FourColumns& columns,
-                BendingTable& table) {
+                ModeTable& table) {
   for (std::size_t mode = 4 * four; mode < std::min(count, 4 * four + 4); ++mode) {
     const std::size_t row = table.rows.size();
     const double* const lane = Values(columns.data()) + mode % 4;
     for (std::size_t column = 0; column < columns.size(); ++column) table.rows.push_back(lane[4 * column]);
-    table.rows[row + BendingTable::kFrequency] = level.modes[mode].frequency_rad_s;
-    table.rows[row + BendingTable::kInverseMass] = 1.0 / level.modes[mode].generalized_mass_kg;
+    table.rows[row + ModeTable::kFrequency] = level.modes[mode].frequency_rad_s;
+    table.rows[row + ModeTable::kInverseMass] = 1.0 / level.modes[mode].generalized_mass_kg;
   }
 }
 
 // Of the modes whose rows begin at `row`.
 void SetResidual(const BendingLevel& level, const PlaneParts& parts, std::size_t row, std::size_t count,
-                 BendingTable& table) {
+                 ModeTable& table) {
   if (level.by_pivot_load[0].deflection.empty()) return;
   const StationShape by_force = parts.pivot.Of(level.by_pivot_load[0]),
                      by_couple = parts.pivot.Of(level.by_pivot_load[1]);
   double residual[3] = {by_force.deflection, by_force.slope_1_m, by_couple.slope_1_m};
   for (std::size_t mode = 0; mode < count; ++mode) {
-    const double* const of = table.rows.data() + row + BendingTable::kRowSize * mode;
-    const double deflection = of[BendingTable::kPivotDeflection], slope = of[BendingTable::kPivotSlope];
-    const double softness = of[BendingTable::kInverseMass] / Square(of[BendingTable::kFrequency]);
+    const double* const of = table.rows.data() + row + ModeTable::kRowSize * mode;
+    const double deflection = of[ModeTable::kPivotDeflection], slope = of[ModeTable::kPivotSlope];
+    const double softness = of[ModeTable::kInverseMass] / Square(of[ModeTable::kFrequency]);
     residual[0] -= softness * deflection * deflection;
     residual[1] -= softness * deflection * slope;
     residual[2] -= softness * slope * slope;
   }
-  for (std::size_t i = 0; i < 3; ++i) table.rows[row + BendingTable::kResidual + i] = residual[i];
+  for (std::size_t i = 0; i < 3; ++i) table.rows[row + ModeTable::kResidual + i] = residual[i];
 }
 
 void AppendLevel(const LoadTable& loads, const BendingLevel& level, const PlaneParts& parts,
-                 const LevelShapes& of, std::size_t count, BendingTable& table) {
+                 const LevelShapes& of, std::size_t count, ModeTable& table) {
   const std::size_t row = table.rows.size();
   for (std::size_t four = 0; four < of.shapes.fours; ++four) {
     const FourShapes* const modes = of.shapes.Four(four);
@@ -325,9 +317,9 @@ void AppendLevel(const LoadTable& loads, const BendingLevel& level, const PlaneP
 
 }  // namespace
 
-BendingTable BuildBendingTable(const Vehicle& vehicle, const StackModes& stack, const LoadTable& loads,
-                               int modes, const BendingTable* near) {
-  BendingTable table;
+BeamTable BuildBeamTable(const Vehicle& vehicle, const StackModes& stack, const LoadTable& loads, int modes,
+                         const BeamTable* near) {
+  BeamTable table;
   table.modes = modes;
   table.planes = stack.axisymmetric ? 1 : 2;
   for (const BendingLevel& level : stack.levels[0]) table.propellant_kg.push_back(level.propellant_kg);
@@ -341,7 +333,7 @@ BendingTable BuildBendingTable(const Vehicle& vehicle, const StackModes& stack, 
   const std::size_t count = static_cast<std::size_t>(modes);
   for (std::size_t p = 0; p < static_cast<std::size_t>(table.planes); ++p) {
     PlaneParts parts = PartsOf(vehicle, stack, p, table.places->Of(p), upper ? &*upper : nullptr);
-    table.rows.reserve(table.planes * stack.levels[p].size() * count * BendingTable::kRowSize);
+    table.rows.reserve(table.planes * stack.levels[p].size() * count * ModeTable::kRowSize);
     for (const BendingLevel& level : stack.levels[p])
       AppendLevel(loads, level, parts, ShapesOf(vehicle, stack, loads, level, count, parts), count, table);
   }
