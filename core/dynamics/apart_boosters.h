@@ -14,6 +14,7 @@
 // J_k the inertia about C of a kilogram at the propellant's surface.
 #pragma once
 
+#include "core/dynamics/body_flow.h"
 #include "core/dynamics/launcher.h"
 #include "core/dynamics/off_axis.h"
 #include "core/math/lane_vector.h"
@@ -45,6 +46,9 @@ struct ApartBoosters {
   T dry_station_m, dry_axial_m2, dry_across_m2;  ///< squares of the empty ones' radii of gyration
   T grain_station_m, outer2_m2, inner_per_kg_m2, length2_m2, radius2_m2;
   bool drains;  ///< tanks in place of grains: of the vehicle, the same in all lanes
+  /// The air of the stage without boosters, if the vehicle's tables know it.
+  bool knows_core_air;
+  BodyInFlow<T> core_air;
   ApartBooster<T> each[kMaxBoosters];
   // Now, of all that are attached.
   T flow_kg_s;

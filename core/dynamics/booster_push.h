@@ -1,8 +1,8 @@
 // Loads that boosters put on the first stage's sections, of W vehicles side by side (core/math/lanes.h).
 //
 // The boosters together are a free body that moves with the vehicle. Their attachment passes on what is left
-// of their forces when their own masses are accelerated. So a section at or behind the attachment carries
-// this push; a section ahead of it feels nothing. Frames and signs as in launcher_body.h.
+// of their forces, the air's among them, when their own masses are accelerated. So a section at or behind the
+// attachment carries this push; a section ahead of it feels nothing. Frames and signs as in launcher_body.h.
 #pragma once
 
 #include "core/dynamics/apart_boosters.h"
@@ -32,6 +32,51 @@ template <class T>
 struct Push {
   Vector<T> force_n, moment_n_m;
 };
+
+/// The flow on the stage and on its boosters. What it does to the stage is that without boosters, if the
+/// vehicle's tables know it. The rest acts on the boosters. Else all acts on the stage.
+template <class T>
+struct FlowBeside {
+  NormalForce<T> stage;
+  SideForce<T> stage_side;
+  Push<T> boosters;  ///< without drag, which acts along the axis
+};
+/// `side`: of the yaw plane (null: as the pitch plane).
+template <class T>
+DISPERSA_INLINE FlowBeside<T> FlowOf(const ApartBoosters<T>& a, const MotionAbout<T>& about, T mach,
+                                     T incidence_rad, T qbar_pa, const NormalForce<T>& air,
+                                     const SideForce<T>* side) {
+  const SideForce<T> whole_side = side ? *side : SideForce<T>{air.normal_n, air.slope_n, air.xcp_station_m};
+  FlowBeside<T> o{air, whole_side, {Zero<T>(), Zero<T>()}};
+  if (!a.knows_core_air) return o;
+  const T qs = qbar_pa * a.core_air.area_m2;
+  const Coefficients<T> c = CoefficientsAt(a.core_air, mach, incidence_rad);
+  const auto to = [&a](T & value, T of_stage) __attribute__((always_inline)) {
+    value = Select(a.attached, of_stage, value);
+  };
+  to(o.stage.normal_n, qs * c.cn);
+  to(o.stage.slope_n, qs * c.cn_slope_1_rad);
+  to(o.stage.xcp_station_m, c.xcp_station_m);
+  to(o.stage_side.normal_n, o.stage.normal_n);
+  to(o.stage_side.slope_n, o.stage.slope_n);
+  to(o.stage_side.xcp_station_m, o.stage.xcp_station_m);
+  if (a.core_air.has_yaw_plane) {
+    const YawPlane<T> yaw = YawPlaneAt(a.core_air, mach, incidence_rad);
+    to(o.stage_side.normal_n, qs * yaw.cn);
+    to(o.stage_side.slope_n, qs * yaw.cn_slope_1_rad);
+    to(o.stage_side.xcp_station_m, yaw.xcp_station_m);
+  }
+  const auto moment = [&about](T normal_n, T station_m) __attribute__((always_inline)) {
+    return normal_n * (about.cg_station_m - station_m);
+  };
+  const T y_n_m = moment(whole_side.normal_n, whole_side.xcp_station_m) -
+                  moment(o.stage_side.normal_n, o.stage_side.xcp_station_m);
+  const T z_n_m = moment(air.normal_n, air.xcp_station_m) - moment(o.stage.normal_n, o.stage.xcp_station_m);
+  o.boosters = {{T(0.0), -((whole_side.normal_n - o.stage_side.normal_n) * air.across_y),
+                 -((air.normal_n - o.stage.normal_n) * air.across_z)},
+                {T(0.0), z_n_m * air.across_z, -(y_n_m * air.across_y)}};
+  return o;
+}
 
 /// Sums over the boosters' masses about C: mass times place, and the tensor of inertia.
 template <class T>

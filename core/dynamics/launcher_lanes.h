@@ -42,6 +42,14 @@ DISPERSA_INLINE void SetShape(BodyInFlow<T>& b, int lane, const LauncherStack& s
   Lane(b.span_m, lane) = variant->body.span_m;
 }
 
+/// The air of the first stack without its boosters.
+template <class T>
+DISPERSA_INLINE void SetCoreAir(ApartBoosters<T>& a, int lane, const LauncherStack& first) {
+  const AeroVariant* const alone = first.AeroAfter(kBoostersGone, true);
+  a.knows_core_air = alone != nullptr;
+  if (a.knows_core_air) SetShape(a.core_air, lane, first, alone);
+}
+
 DISPERSA_INLINE NozzleDepartureOf<double> DepartureOf(const NozzleDeparture& nozzle) {
   NozzleDepartureOf<double> departs{MatrixAt(nozzle.tilt.data()), nozzle.offset_y_m, nozzle.offset_z_m};
   for (int row = 0; row < 3; ++row)
@@ -137,6 +145,7 @@ DISPERSA_INLINE void SetPlant(FlyingPlant<T>& p, int lane, const LauncherPlant& 
   if (p.apart) {
     p.apart->first_bank = plant.stacks.data()[0].layout.banks();
     SetBoosters(*p.apart, lane, *plant.boosters.get(), stack == 0);
+    SetCoreAir(*p.apart, lane, plant.stacks.data()[0]);
   }
   if (p.sides) SetSides(*p.sides, lane, s.mass);  // what is jettisoned is on the axis
   SetLane(p.departs, lane, SetBanks(p, lane, s, plant.nozzle_banks()));

@@ -449,16 +449,21 @@ class StepState {
                                now.rates.dw};
     SectionMoments<T> further{};
     LargestMoment<T> alone{};
+    const FlowBeside<T> flow =
+        FlowOf(apart_, about, now.instant.mach, now.instant.incidence_rad, now.instant.qbar_pa, air, side);
+    const SideForce<T>* const of_yaw = side ? &flow.stage_side : nullptr;
     if (bending_.modes > 0)
-      further = MomentsByBending(bending_, bending_state_, now.modal, plant_.sections, air, side);
+      further = MomentsByBending(bending_, bending_state_, now.modal, plant_.sections, flow.stage, of_yaw);
     else
       alone = LargestOf(plant_.sections, air, side, moved, seen_n_m);
-    const Push<T> push = PushOf(apart_, about, {now.instant.boosters_n, now.instant.boosters_n_m});
+    const Push<T> push = PushOf(apart_, about,
+                                {now.instant.boosters_n + flow.boosters.force_n,
+                                 now.instant.boosters_n_m + flow.boosters.moment_n_m});
     AddPush(apart_, plant_.sections, about, push, further);
     const Vector<T> beside = BesideCg(about);
     moved.lateral_y_m_s2 = Select(apart_.attached, beside.y, moved.lateral_y_m_s2);
     moved.lateral_z_m_s2 = Select(apart_.attached, beside.z, moved.lateral_z_m_s2);
-    const LargestMoment<T> with = LargestOf(plant_.sections, air, side, moved, seen_n_m, further);
+    const LargestMoment<T> with = LargestOf(plant_.sections, flow.stage, of_yaw, moved, seen_n_m, further);
     if (bending_.modes > 0) return with;
     return {Select(apart_.attached, with.moment_n_m, alone.moment_n_m),
             Select(apart_.attached, with.station_m, alone.station_m)};

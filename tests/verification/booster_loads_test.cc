@@ -8,6 +8,7 @@
 #include <memory>
 #include <vector>
 
+#include "core/dynamics/aero_grid.h"
 #include "core/dynamics/jettison.h"
 #include "core/flight/flight_model.h"
 #include "core/flight/simpson_step.h"
@@ -21,6 +22,8 @@ namespace {
 
 constexpr double kDry_kg = 150.0, kPropellant_kg = 900.0, kRadius_m = 0.97, kThrust_n = 80e3,
                  kNozzle_m = 26.4, kTop_m = 21.0, kBottom_m = 26.5, kShell_m = 0.31, kSince_s = 5.0;
+// Of the normal force, and how far the core's lies ahead of that of all.
+constexpr double kCorePart = 0.6, kCoreAhead_m = 1.5;
 constexpr double kAngles_rad[2] = {0.35, 2.2};
 constexpr double kDryFactor[2] = {1.08, 0.95}, kThrustFactor[2] = {1.04, 0.93}, kLeft[2] = {0.9, 0.7};
 
@@ -51,7 +54,7 @@ struct Part {
 class Instant {
  public:
   // `turns`: in empty space. Else in air, at rest against the Earth's rotation.
-  Instant(double attachment_m, bool liquid, bool turns, double sign, unsigned burning)
+  Instant(double attachment_m, bool liquid, bool turns, double sign, unsigned burning, bool apart_air = false)
       : definition_(Boosted(attachment_m, liquid)), burning_(burning) {
     FlightInputs inputs;
     for (std::size_t k = 0; k < 2; ++k) {
@@ -60,6 +63,15 @@ class Instant {
     }
     plant = FlightModel(definition_).PlantFor(inputs);
     plant.jet_damping = plant.flow_coriolis = false;
+    if (apart_air) {
+      part_ = kCorePart;
+      ahead_m_ = kCoreAhead_m;
+      AeroVariant core{kBoostersGone, false, plant.stacks[0].aerodynamics, nullptr};
+      for (double& cn : core.body.cn.table.z) cn *= part_;
+      for (double& xcp_m : core.body.xcp_station_m.table.z) xcp_m -= ahead_m_;
+      core.grid = std::make_shared<const AeroGrid>(BuildAeroGrid(core.body));
+      plant.stacks[0].aero_variants = std::make_shared<const std::vector<AeroVariant>>(1, core);
+    }
     const auto hold = [](MotorBurn& burn, double left) {
       burn.full_flow_kg_s = 0.0;
       burn.curve = nullptr;
@@ -150,13 +162,16 @@ class Instant {
               push);
     }
     const LiftDistribution& lift = plant.stacks[0].loads->lift;
+    const Vector3 air_n = -air_.normal_n * Vector3(0.0, air_.across_y, air_.across_z);
+    core_n -= air_n;
+    const double core_m = air_.xcp_station_m - ahead_m_;
     for (const LiftPiece& piece : lift.pieces) {
       const double share =
-          piece.area_to - piece.area_from + (air_.xcp_station_m - lift.slender_station_m) * piece.shift_1_m;
-      const Vector3 f = -air_.normal_n * share * Vector3(0.0, air_.across_y, air_.across_z);
-      core_n -= f;
-      if (piece.Middle() > station_m) force(Vector3(piece.Middle(), 0.0, 0.0), f);
+          piece.area_to - piece.area_from + (core_m - lift.slender_station_m) * piece.shift_1_m;
+      if (piece.Middle() > station_m) force(Vector3(piece.Middle(), 0.0, 0.0), part_ * share * air_n);
     }
+    if (!carries && part_ < 1.0)
+      force(Vector3((air_.xcp_station_m - part_ * core_m) / (1.0 - part_), 0.0, 0.0), (1.0 - part_) * air_n);
     // What is left besides the drag, which acts along the axis.
     force(Vector3(definition_.vehicle.stages[0].gimbal.pivot_station_m, 0.0, 0.0), core_n);
     std::vector<Part> parts = CoreBehind(station_m);
@@ -236,6 +251,7 @@ class Instant {
 
   FlightDefinition definition_;
   unsigned burning_;
+  double part_ = 1.0, ahead_m_ = 0.0;  // of the air that acts on the core
   Vector3 rate_, turning_, specific_, force_n_, cg_;
   mutable lanes::NormalForce<double> air_{};
 };
@@ -248,7 +264,7 @@ TEST(BoosterLoads, HoldTheBalanceOfWhatLiesBehindTheSection) {
       for (const bool turns : {false, true})
         for (const double sign : {1.0, -1.0})
           for (const unsigned burning : {3u, 2u}) {
-            const Instant now(attachment_m, liquid, turns, sign, burning);
+            const Instant now(attachment_m, liquid, turns, sign, burning, burning == 3u || sign > 0.0);
             const LoadTable& table = *now.plant.stacks[0].loads;
             ASSERT_GT(table.stations, 10);
             double largest = 0.0, at_m = 0.0;
