@@ -8,6 +8,7 @@
 #include "core/flight/flight.h"
 #include "core/flight/lane_engine.h"
 #include "core/input/input_error.h"
+#include "core/math/assertion.h"
 
 namespace dispersa {
 namespace {
@@ -41,7 +42,11 @@ class FlyingCases : public FlightQueue {
   }
   void Done(FlightRecord* record) override {
     const auto ended = flying_.extract(record);
-    cases_.Done(ResultOf(flights_.rows(), record->options.case_index, record->inputs, record->Result()));
+    DISPERSA_ASSERT(!ended.empty(), record->options.case_index);
+    CaseResult result =
+        ResultOf(flights_.rows(), record->options.case_index, record->inputs, record->Result());
+    DISPERSA_ASSERT(flights_.IsResult(result), result.case_index, result.end_stage, result.metrics.size());
+    cases_.Done(std::move(result));
   }
 
  private:

@@ -5,6 +5,7 @@
 #include "core/environment/atmosphere.h"
 #include "core/input/fields.h"
 #include "core/input/number_text.h"
+#include "core/math/assertion.h"
 
 namespace dispersa {
 namespace {
@@ -54,6 +55,8 @@ void Describe(Fields& fields, WeatherTable& table) {
 }
 
 LevelAir AirOfLevel(const WeatherTable& table, std::size_t level) {
+  DISPERSA_ASSERT(level < table.altitude_m.size(), level, table.altitude_m.size());
+  DISPERSA_ASSERT(!table.pressure_pa.empty() || !table.density_kg_m3.empty());
   const auto energy = [&] { return kGasConstant_j_kg_k * table.temperature_k[level]; };
   if (table.pressure_pa.empty()) {
     const double density = table.density_kg_m3[level];

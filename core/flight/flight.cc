@@ -5,6 +5,7 @@
 #include "core/flight/flight_queue.h"
 #include "core/flight/lane_engine.h"
 #include "core/flight/launch_frame.h"
+#include "core/math/assertion.h"
 
 namespace dispersa {
 
@@ -22,7 +23,8 @@ class OrderQueue : public FlightQueue {
   }
   void Done(FlightRecord* record) override {
     std::size_t i = 0;
-    while (records_[i].get() != record) ++i;
+    while (i < next_ && records_[i].get() != record) ++i;
+    DISPERSA_ASSERT(i < next_, next_);
     results_[i] = record->Result();
     records_[i].reset();
   }

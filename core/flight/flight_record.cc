@@ -18,6 +18,7 @@
 #include "core/flight/sequence.h"
 #include "core/flight/step_limits.h"
 #include "core/flight/tick_sample.h"
+#include "core/math/assertion.h"
 #include "core/math/functions.h"
 #include "core/vehicle/cut_off.h"
 
@@ -38,6 +39,7 @@ std::vector<FlightEvent> EventsOf(const FlightModel& model, const LauncherPlant&
     AddEvents({definition.vehicle, plant, static_cast<int>(i), timeline[i], definition.autopilot.tick_s,
                i == 0 ? rail_exit_s : -1.0},
               i + 1 == timeline.size(), events);
+  DISPERSA_ASSERT(!events.empty() && events.front().kind == EventKind::kIgnition, events.size());
   return events;
 }
 

@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <cmath>
 
+#include "core/math/assertion.h"
 #include "core/math/matrices.h"
 
 namespace dispersa {
@@ -59,7 +60,8 @@ SensorModel BuildSensors(const Vehicle& vehicle, const AutopilotConfig& autopilo
   model.stages.resize(vehicle.stages.size());
   for (const GyroShare& share : autopilot.rate_gyros) {
     std::size_t gyro = 0;
-    if (FindGyro(vehicle, share.gyro, &gyro) == nullptr) continue;
+    const bool is_there = FindGyro(vehicle, share.gyro, &gyro) != nullptr;
+    DISPERSA_ASSERT(is_there);
     model.uses_gyros = true;
     for (std::size_t stage = 0; stage < model.stages.size(); ++stage) {
       if (share.stage != 0 && share.stage != static_cast<int>(stage) + 1) continue;

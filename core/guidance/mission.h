@@ -13,6 +13,7 @@
 #include "core/guidance/engine_levels.h"
 #include "core/guidance/guidance_config.h"
 #include "core/guidance/guidance_limits.h"
+#include "core/math/assertion.h"
 #include "core/math/linear.h"
 #include "core/vehicle/bodies.h"
 #include "core/vehicle/propulsion.h"
@@ -91,9 +92,15 @@ struct GuidedStage {
   /// any.
   bool SeeLeft(unsigned bodies, double at_s);
   /// Duration of a burn that uses up the propellant. Precondition of both: is_engine().
-  double Depletes() const { return levels->TimeOf(usable_kg / burn.full_flow_kg_s); }
+  double Depletes() const {
+    DISPERSA_ASSERT(is_engine());
+    return levels->TimeOf(usable_kg / burn.full_flow_kg_s);
+  }
   /// Propellant burnt by an engine, kg.
-  double Burnt(double duration_s) const { return burn.full_flow_kg_s * levels->Sum(duration_s); }
+  double Burnt(double duration_s) const {
+    DISPERSA_ASSERT(is_engine());
+    return burn.full_flow_kg_s * levels->Sum(duration_s);
+  }
 };
 
 /// A flight that falls below this altitude comes back into the air at orbital speed: 7 Pa at 105 km. Nozzles

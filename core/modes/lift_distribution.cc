@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <cmath>
 
+#include "core/math/assertion.h"
 #include "core/math/functions.h"
 #include "core/vehicle/mould_line.h"
 
@@ -10,8 +11,11 @@ namespace dispersa {
 
 LiftDistribution DistributeLift(const Vehicle& vehicle, int stage, const std::vector<double>& cuts_m,
                                 int pieces) {
+  DISPERSA_ASSERT(stage >= 0 && stage < std::ssize(vehicle.stages) && pieces > 0, stage, pieces);
   const double bottom_m = vehicle.stages[static_cast<std::size_t>(stage)].bottom_station_m;
   const std::vector<MouldSection> body = CutMouldLine(vehicle.profile, bottom_m);
+  // Sums of lengths in a file have rounding.
+  DISPERSA_ASSERT(body.back().end_m > bottom_m - 1e-3, body.back().end_m, bottom_m);
   const double base2 = Square(body.back().aft_radius_m);
   LiftDistribution lift;
   double planform = 0.0, planform_moment = 0.0, area = 0.0;

@@ -6,6 +6,7 @@
 #include <cmath>
 #include <vector>
 
+#include "core/math/assertion.h"
 #include "core/math/functions.h"
 #include "core/results/text.h"
 #include "core/vehicle/mass.h"
@@ -220,6 +221,9 @@ class Drawing {
 
 }  // namespace
 
-std::string VehicleDrawing(const Vehicle& vehicle) { return Drawing(vehicle).Svg(); }
+std::string VehicleDrawing(const Vehicle& vehicle) {
+  DISPERSA_ASSERT(!vehicle.stages.empty() && vehicle.stages.front().bottom_station_m > 0.0);
+  return Drawing(vehicle).Svg();
+}
 
 }  // namespace dispersa

@@ -5,6 +5,7 @@
 #include <optional>
 #include <utility>
 
+#include "core/math/assertion.h"
 #include "core/structure/beam_elements.h"
 #include "core/structure/beam_mesh.h"
 #include "core/structure/free_free_modes.h"
@@ -313,6 +314,9 @@ StationShape ShapeOf(const StackModes& stack, BeamPlane plane, const BentShape& 
 }
 
 StackModes BuildStackModes(const Vehicle& vehicle, int stage, unsigned gone) {
+  DISPERSA_ASSERT(stage >= 0 && stage < std::ssize(vehicle.stages), stage);
+  DISPERSA_ASSERT(
+      vehicle.structure_beam.has_value() && !vehicle.stages[static_cast<std::size_t>(stage)].restarts, stage);
   const StructureBeam& beam = *vehicle.structure_beam;
   StackModes stack;
   stack.stage = stage;

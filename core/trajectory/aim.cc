@@ -29,6 +29,7 @@ AimedEllipse EllipseOf(const TrajectoryProblem& problem) {
 }
 
 AimedPlace PlaceAimedAt(const TrajectoryProblem& problem) {
+  DISPERSA_ASSERT(problem.target_true_anomaly_rad || !problem.is_entered_anywhere);
   const double mu = Wgs84().mu_m3_s2;
   const AimedEllipse ellipse = EllipseOf(problem);
   const SinCos anomaly = SineCosine(problem.target_true_anomaly_rad.value_or(0.0));

@@ -1,5 +1,6 @@
 #include "core/vehicle/aerodynamics_build_up.h"
 
+#include "core/math/assertion.h"
 #include "core/math/constants.h"
 #include "core/math/functions.h"
 #include "core/vehicle/drag.h"
@@ -203,6 +204,7 @@ class Stack {
 }  // namespace
 
 std::vector<AeroTable> BuildAerodynamics(const Vehicle& vehicle) {
+  DISPERSA_ASSERT(!vehicle.profile.empty() && ProfileProblems(vehicle.profile).empty());
   std::vector<AeroTable> tables;
   for (std::size_t i = 0; i < vehicle.stages.size(); ++i) tables.push_back(Stack(vehicle, i).Table());
   return tables;

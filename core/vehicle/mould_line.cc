@@ -66,6 +66,7 @@ std::vector<StructProblem> ProfileProblems(const std::vector<ProfileSection>& pr
 std::vector<MouldSection> CutMouldLine(const std::vector<ProfileSection>& profile, double end_station_m) {
   // A remainder shorter than this is rounding in the file's sums of lengths, not a section.
   constexpr double kSliver_m = 1e-6;
+  DISPERSA_ASSERT(end_station_m > 0.0 && ProfileProblems(profile).empty(), end_station_m);
   std::vector<MouldSection> body;
   double start_m = 0.0;
   double radius_m = 0.0;

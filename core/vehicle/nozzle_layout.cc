@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <cmath>
 
+#include "core/math/assertion.h"
 #include "core/math/constants.h"
 #include "core/math/functions.h"
 #include "core/math/matrices.h"
@@ -187,6 +188,7 @@ NozzleLayout Allocated(Placed placed, double command_limit_rad, const EffectOfDr
 }  // namespace
 
 NozzleLayout BuildNozzleLayout(const Gimbal& gimbal) {
+  DISPERSA_ASSERT(NozzleProblems(gimbal, "").empty());
   if (gimbal.fixed) {  // in parts, as those of a cross on the axis
     NozzleLayout fixed;
     fixed.nozzles = kNozzles;

@@ -4,6 +4,7 @@
 #include <cmath>
 #include <cstdio>
 
+#include "core/math/assertion.h"
 #include "core/vehicle/mould_line.h"
 #include "core/vehicle/plausibility_checks.h"
 
@@ -90,6 +91,7 @@ void Apply(std::span<const Check> checks, const Subject& subject, const std::str
 
 std::vector<PlausibilityFinding> Plausibility(const Vehicle& vehicle) {
   using namespace plausibility;
+  DISPERSA_ASSERT(!vehicle.stages.empty());
   const std::vector<StageFigures> figures = FiguresOf(vehicle);
   std::vector<PlausibilityFinding> findings;
   std::size_t body = 0;

@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <cmath>
 
+#include "core/math/assertion.h"
 #include "core/math/constants.h"
 #include "core/math/functions.h"
 #include "core/vehicle/beam_masses.h"
@@ -267,6 +268,9 @@ double BeamSection::ShearStiffness(BeamPlane plane, double station_m) const {
   return PlaneFactor(*this, plane) * coefficient * area * modulus_pa / (2.0 * (1.0 + poisson_ratio));
 }
 
-std::vector<StructProblem> BeamProblems(const Vehicle& vehicle) { return BeamChecker(vehicle).Run(); }
+std::vector<StructProblem> BeamProblems(const Vehicle& vehicle) {
+  DISPERSA_ASSERT(vehicle.structure_beam.has_value());
+  return BeamChecker(vehicle).Run();
+}
 
 }  // namespace dispersa

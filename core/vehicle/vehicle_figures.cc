@@ -2,6 +2,7 @@
 
 #include <algorithm>
 
+#include "core/math/assertion.h"
 #include "core/math/constants.h"
 #include "core/math/functions.h"
 #include "core/vehicle/cut_off.h"
@@ -57,6 +58,7 @@ double BoostedDeltaV(const Vehicle& vehicle, const MotorBurn& core, const MotorB
 }  // namespace
 
 std::vector<StageFigures> FiguresOf(const Vehicle& vehicle) {
+  DISPERSA_ASSERT(!vehicle.stages.empty());
   std::vector<StageFigures> all;
   for (std::size_t i = 0; i < vehicle.stages.size(); ++i) {
     const Stage& stage = vehicle.stages[i];
