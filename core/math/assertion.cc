@@ -2,11 +2,10 @@
 
 #include <cstdio>
 #include <string>
+#include <string_view>
 
 namespace dispersa {
 namespace {
-
-constexpr std::string_view kEngineFault = "engine fault: ";
 
 // From the repository's root on: where it was built is of no use elsewhere.
 std::string_view InRepository(std::string_view file) {
@@ -17,11 +16,9 @@ std::string_view InRepository(std::string_view file) {
 
 }  // namespace
 
-bool IsEngineFault(std::string_view message) { return message.starts_with(kEngineFault); }
-
 void FailAssertion(const char* condition, const char* file, int line, const char* names,
                    std::initializer_list<AssertedValue> values) {
-  std::string text(kEngineFault);
+  std::string text = "engine fault: ";
   text += std::string(InRepository(file)) + ":" + std::to_string(line) + ": " + condition + " does not hold";
   if (values.size() > 0) text += std::string(", ") + names + ":";
   for (const AssertedValue& each : values) {

@@ -4,7 +4,6 @@
 
 #include <initializer_list>
 #include <stdexcept>
-#include <string_view>
 
 namespace dispersa {
 
@@ -13,8 +12,6 @@ class AssertionFailed : public std::logic_error {
  public:
   using std::logic_error::logic_error;
 };
-/// Whether a message is that of an AssertionFailed, of another process too.
-bool IsEngineFault(std::string_view message);
 
 struct AssertedValue {
   template <typename Number>

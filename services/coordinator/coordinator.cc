@@ -5,7 +5,6 @@
 #include <utility>
 
 #include "core/flight/engine_version.h"
-#include "core/math/assertion.h"
 #include "services/coordinator/service.h"
 #include "services/program/exit_code.h"
 
@@ -55,6 +54,7 @@ void Coordinator::Step(std::chrono::milliseconds timeout) {
     });
     for (const Auditor::Verdict& verdict : auditor_->Take())
       dispatcher_.Audited(verdict.flight_id, verdict.claim, verdict.truth);
+    for (const Auditor::Fault& fault : auditor_->TakeFaults()) dispatcher_.Break(fault.flight_id, fault.what);
   }
   LookForRevocations();
   Send(dispatcher_.Tick(now_s_));
@@ -116,12 +116,7 @@ void Coordinator::Handle(const CoordinatorEvent& event) {
   } else if (const auto* refusal = std::get_if<CampaignRefusal>(&event.what)) {
     dispatcher_.On(event.sender, *refusal, now_s_);
   } else if (const auto* report = std::get_if<Report>(&event.what)) {
-    std::vector<const FlownCase*> accepted;
-    try {
-      accepted = dispatcher_.On(event.sender, *report, now_s_);
-    } catch (const AssertionFailed& fault) {
-      dispatcher_.Break(report->flight_id, fault.what());
-    }
+    const std::vector<const FlownCase*> accepted = dispatcher_.On(event.sender, *report, now_s_);
     if (accepted.empty() || !link_.HasResultObservers()) return;
     for (const FlownCase* flown : accepted)
       link_.Publish(dispatcher_.FlightIdOf(report->flight_id), report->worker, *flown);

@@ -20,18 +20,24 @@ constexpr double kExpirePeriod_s = 1.0;
 constexpr std::size_t kMaxAcknowledged = 4096;
 constexpr std::size_t kMaxRemembered = 1000;
 constexpr std::uint32_t kCreditsPerSlot = 32;  // more than a slot with the widest lanes asks for
+constexpr std::size_t kFaultyWorkers = 2;      // with so many a fault is no machine's: the campaign ends
 
 }  // namespace
 
 Dispatcher::Dispatcher(std::uint64_t epoch, std::string engine_version, const DispatcherOptions& options)
-    : epoch_(epoch), engine_version_(std::move(engine_version)), options_(options) {}
+    : epoch_(epoch), engine_version_(std::move(engine_version)), options_(options) {
+  DISPERSA_ASSERT(epoch != 0);
+}
 
 void Dispatcher::BeginCampaign(CampaignBook& book, int priority) {
   FlyingCampaign& campaign = campaigns_[book.campaign().result_id()];
+  DISPERSA_ASSERT(campaign.book == nullptr || campaign.book == &book);
   campaign.book = &book;
   campaign.priority = priority;
-  book.KeepAudit(options_.audit);
-  for (const auto& [id, worker] : workers_) book.ledger().Join(id, worker.hello, worker.heard_s);
+  book.Guard([&] {
+    book.KeepAudit(options_.audit);
+    for (const auto& [id, worker] : workers_) book.ledger().Join(id, worker.hello, worker.heard_s);
+  });
 }
 
 void Dispatcher::EndCampaign(const std::string& flight_id) {
@@ -134,10 +140,10 @@ bool Dispatcher::Join(const std::string& sender, const WorkerStatus& status, dou
   // The number of credits is limited, whatever the worker says: cases must be left for others.
   worker.hello = {status.engine_version, status.slots,
                   std::min(status.credits, kCreditsPerSlot * status.slots)};
-  for (auto& [flight_id, campaign] : campaigns_) {
-    if (!campaign.refused_by.contains(status.worker))
+  ForEach([&](const std::string&, FlyingCampaign& campaign) {
+    if (!campaign.refused_by.contains(status.worker) && !campaign.faulty.contains(status.worker))
       campaign.book->ledger().Join(status.worker, worker.hello, now_s);
-  }
+  });
   return true;
 }
 
@@ -149,14 +155,18 @@ void Dispatcher::Refuse(const std::string& worker, const std::string& reason) {
 }
 
 void Dispatcher::TakeClaims(const OnClaims& fly) {
-  for (auto& [flight_id, campaign] : campaigns_) fly(campaign.book->campaign(), campaign.book->TakeClaims());
+  ForEach([&](const std::string&, FlyingCampaign& campaign) {
+    fly(campaign.book->campaign(), campaign.book->TakeClaims());
+  });
 }
 
 void Dispatcher::Audited(const std::string& flight_id, const Claim& claim, const Digest& truth) {
   const auto campaign = campaigns_.find(flight_id);
   if (campaign == campaigns_.end()) return;  // closed meanwhile
   ++audits_;
-  if (campaign->second.book->Settle(claim, truth)) return;
+  bool agrees = true;
+  campaign->second.book->Guard([&] { agrees = campaign->second.book->Settle(claim, truth); });
+  if (agrees) return;
   Expel(Sentence(expelled_, claim.worker, claim.host.empty() ? HostOf(claim.worker) : claim.host,
                  "case " + std::to_string(claim.case_index) + " of campaign " +
                      campaign->second.book->campaign().name +
@@ -181,7 +191,7 @@ void Dispatcher::Expel(const ExpulsionMap& names, bool is_news) {
       TellRefusal(worker, expulsion.reason);
       Lose(worker, WorkerEnd::kKilled, "expelled");
     }
-    for (auto& [flight_id, campaign] : campaigns_) campaign.book->Disown(name);
+    ForEach([&name = name](const std::string&, FlyingCampaign& campaign) { campaign.book->Disown(name); });
   }
 }
 
@@ -206,7 +216,8 @@ void Dispatcher::Compare(Worker& worker, const WorkerStatus& status, double now_
       if (sent == worker.sent.end()) continue;
       const auto campaign = campaigns_.find(sent->second.flight_id);
       if (campaign == campaigns_.end()) continue;
-      campaign->second.book->Start(id, started.case_index, started.attempt, now_s);
+      CampaignBook& book = *campaign->second.book;
+      book.Guard([&] { book.Start(id, started.case_index, started.attempt, now_s); });
       begun[sent->second.flight_id].push_back(started.case_index);
     }
   }
@@ -226,11 +237,11 @@ void Dispatcher::Compare(Worker& worker, const WorkerStatus& status, double now_
   for (const std::uint64_t attempt : held) {
     if (!worker.sent.contains(attempt)) worker.orders.revoked.push_back(attempt);
   }
-  for (auto& [flight_id, campaign] : campaigns_) {
+  ForEach([&](const std::string& flight_id, FlyingCampaign& campaign) {
     Ledger& ledger = campaign.book->ledger();
     if (status.state == WorkerState::kDraining) ledger.Withdraw(id, begun[flight_id]);
     if (held.empty() && status.started.empty()) ledger.Idle(id);
-  }
+  });
 }
 
 std::vector<const FlownCase*> Dispatcher::On(const std::string& sender, const Report& report, double now_s) {
@@ -249,10 +260,17 @@ std::vector<const FlownCase*> Dispatcher::On(const std::string& sender, const Re
     known->second.orders.acknowledged.push_back(report.number);  // nobody wants it any more
     return {};
   }
+  std::vector<const FlownCase*> accepted;
+  campaign->second.book->Guard(
+      [&] { Take(sender, report, known->second, campaign->second, accepted, now_s); });
+  return accepted;
+}
+
+void Dispatcher::Take(const std::string& sender, const Report& report, Worker& worker,
+                      FlyingCampaign& campaign, std::vector<const FlownCase*>& accepted, double now_s) {
   // Results for an earlier coordinator are as good as any; its assignments mean nothing.
   const bool follows = report.coordinator_epoch == epoch_;
-  CampaignBook& book = *campaign->second.book;
-  std::vector<const FlownCase*> accepted;
+  CampaignBook& book = *campaign.book;
   for (const FlownCase& flown : report.flown) {
     if (flown.is_quarantined && !book.campaign().autopilot.plugin) {
       Disagree(sender, "it quarantines a case although the campaign has no plug-in");
@@ -264,22 +282,21 @@ std::vector<const FlownCase*> Dispatcher::On(const std::string& sender, const Re
       continue;
     }
     if (!MayReturn(sender, report, flown, book)) {
-      if (!workers_.contains(report.worker)) return accepted;  // expelled
+      if (!workers_.contains(report.worker)) return;  // expelled
       continue;
     }
     const Acceptance acceptance =
-        book.Accept(report.worker, known->second.host, follows ? flown.attempt : 0, flown.result, now_s);
+        book.Accept(report.worker, worker.host, follows ? flown.attempt : 0, flown.result, now_s);
     if (acceptance == Acceptance::kAccepted) {
       accepted.push_back(&flown);
-      known->second.is_known = true;
+      worker.is_known = true;
     }
   }
-  if (!report.flown.empty()) campaign->second.unstored.emplace_back(report.worker, report.number);
-  if (!follows) return accepted;
+  if (!report.flown.empty()) campaign.unstored.emplace_back(report.worker, report.number);
+  if (!follows) return;
   for (const StartedCase& started : report.started) {
     book.Start(report.worker, started.case_index, started.attempt, now_s);
   }
-  return accepted;
 }
 
 bool Dispatcher::MayReturn(const std::string& sender, const Report& report, const FlownCase& flown,
@@ -314,14 +331,27 @@ void Dispatcher::On(const std::string& sender, const CampaignRefusal& refusal, d
   }
   known->second.heard_s = known->second.last_report_s = now_s;
   const std::string reason = Printable(refusal.reason, 1000);
-  if (!campaign->second.refused_by.emplace(refusal.worker, reason).second) return;
-  LogError("worker {} refuses the campaign {}: {}", refusal.worker, campaign->second.book->campaign().name,
-           reason);
-  refusal_ = reason;
-  campaign->second.book->ledger().Lost(refusal.worker, WorkerEnd::kLeft, *refusal_);
+  CampaignBook& book = *campaign->second.book;
+  if (refusal.engine_fault) {
+    NoteFault(refusal, reason, campaign->second, known->second);
+  } else {
+    if (!campaign->second.refused_by.emplace(refusal.worker, reason).second) return;
+    LogError("worker {} refuses the campaign {}: {}", refusal.worker, book.campaign().name, reason);
+    refusal_ = reason;
+  }
+  book.Guard([&] { book.ledger().Lost(refusal.worker, WorkerEnd::kLeft, reason); });
   known->second.ForgetSent(refusal.flight_id);
-  // Another worker would find the same, or worse: another result.
-  if (IsEngineFault(reason)) campaign->second.book->Break(reason);
+}
+
+// One worker may have bad memory, or another library. What two of them find is the program's: a third would
+// find the same, or worse, another result.
+void Dispatcher::NoteFault(const CampaignRefusal& refusal, const std::string& reason,
+                           FlyingCampaign& campaign, Worker& worker) {
+  worker.is_faulty = true;
+  if (!campaign.faulty.insert(refusal.worker).second) return;
+  LogError("worker {} leaves with a fault of its own in the campaign {}: {}", refusal.worker,
+           campaign.book->campaign().name, reason);
+  if (campaign.faulty.size() >= kFaultyWorkers) campaign.book->Break(reason);
 }
 
 void Dispatcher::Break(const std::string& flight_id, const std::string& fault) {
@@ -336,16 +366,18 @@ std::string Dispatcher::FlightIdOf(const std::string& result_id) const {
 
 std::optional<std::string> Dispatcher::RefusalByAll(const std::string& flight_id) const {
   const auto campaign = campaigns_.find(flight_id);
-  if (campaign == campaigns_.end() || workers_.empty()) return std::nullopt;
-  const std::map<std::string, std::string>& refused_by = campaign->second.refused_by;
-  const bool by_all = std::all_of(workers_.begin(), workers_.end(),
-                                  [&](const auto& worker) { return refused_by.contains(worker.first); });
-  if (!by_all) return std::nullopt;
+  if (campaign == campaigns_.end()) return std::nullopt;
+  std::vector<std::string> reasons;
+  for (const auto& [id, worker] : workers_) {
+    if (worker.is_faulty) continue;  // it leaves: others take its place
+    const auto refused = campaign->second.refused_by.find(id);
+    if (refused == campaign->second.refused_by.end()) return std::nullopt;
+    reasons.push_back(refused->second);
+  }
+  if (reasons.empty()) return std::nullopt;
   // Others may lack leave to fly any law.
-  const auto of_law = std::find_if(workers_.begin(), workers_.end(), [&](const auto& worker) {
-    return IsOfTheLaw(refused_by.at(worker.first));
-  });
-  return refused_by.at((of_law == workers_.end() ? workers_.begin() : of_law)->first);
+  const auto of_law = std::find_if(reasons.begin(), reasons.end(), IsOfTheLaw);
+  return of_law == reasons.end() ? reasons.front() : *of_law;
 }
 
 std::optional<TextPart> Dispatcher::On(const TextRequest& request, std::size_t limit, double now_s) {
@@ -393,9 +425,9 @@ std::vector<std::string> Dispatcher::TakeUnresponsive() {
 std::vector<std::string> Dispatcher::TakeForgotten() { return std::exchange(forgotten_, {}); }
 
 std::vector<Orders> Dispatcher::Tick(double now_s) {
-  for (auto& [flight_id, campaign] : campaigns_) {
+  ForEach([&](const std::string&, FlyingCampaign& campaign) {
     if (campaign.book->FlushIfDue(now_s)) Acknowledge(campaign);
-  }
+  });
   const auto due = std::stable_partition(endings_.begin(), endings_.end(),
                                          [&](const Ending& ending) { return ending.due_s > now_s; });
   const std::vector<Ending> ended(due, endings_.end());
@@ -450,14 +482,14 @@ void Dispatcher::LoseSilent(double now_s) {
 void Dispatcher::Expire(double now_s) {
   if (now_s - expired_s_ < kExpirePeriod_s) return;
   expired_s_ = now_s;
-  for (auto& [flight_id, campaign] : campaigns_) {
+  ForEach([&](const std::string& flight_id, FlyingCampaign& campaign) {
     for (const std::string& stuck : campaign.book->ledger().Expire(now_s)) {
       LogWarning("worker {} has reported nothing for too long; its cases return to the queue", stuck);
       if (supervised_.contains(stuck)) unresponsive_.insert(stuck);
       if (const auto worker = workers_.find(stuck); worker != workers_.end())
         worker->second.ForgetSent(flight_id);
     }
-  }
+  });
 }
 
 void Dispatcher::Assign(double now_s) {
@@ -473,6 +505,7 @@ void Dispatcher::Assign(double now_s) {
 }
 
 bool Dispatcher::AssignTo(const std::string& id, Worker& worker, double now_s) {
+  if (worker.is_faulty) return false;
   std::uint64_t batches = 0;
   std::vector<FlyingCampaign*> by_right;
   for (auto& [flight_id, campaign] : campaigns_) {
@@ -492,22 +525,23 @@ bool Dispatcher::AssignTo(const std::string& id, Worker& worker, double now_s) {
   }
   for (FlyingCampaign* campaign : by_right) {
     if (!campaign->book->pause().empty() || !campaign->book->breakdown().empty()) continue;
-    Ledger& ledger = campaign->book->ledger();
-    try {
-      if (auto assignment = ledger.GiveTo(id, batches - ledger.Batches(id), now_s)) {
-        GiveOrder(worker, campaign->book->campaign().result_id(), assignment->attempt,
-                  std::move(assignment->cases), now_s);
-        return true;
-      }
-    } catch (const AssertionFailed& fault) {
-      campaign->book->Break(fault.what());
-    }
+    bool given = false;
+    campaign->book->Guard([&] {
+      Ledger& ledger = campaign->book->ledger();
+      auto assignment = ledger.GiveTo(id, batches - ledger.Batches(id), now_s);
+      if (!assignment) return;
+      given = true;
+      GiveOrder(worker, campaign->book->campaign().result_id(), assignment->attempt,
+                std::move(assignment->cases), now_s);
+    });
+    if (given) return true;
   }
   return false;
 }
 
 void Dispatcher::GiveOrder(Worker& worker, const std::string& flight_id, std::uint64_t attempt,
                            std::vector<std::uint64_t> cases, double now_s) {
+  DISPERSA_ASSERT(!cases.empty() && campaigns_.contains(flight_id), attempt);
   worker.sent[attempt] = {flight_id, now_s};
   worker.orders.assignments.push_back({flight_id, attempt, std::move(cases)});
 }
@@ -525,14 +559,17 @@ void Dispatcher::Worker::ForgetSent(const std::string& flight_id) {
 }
 
 void Dispatcher::Lose(const std::string& worker, WorkerEnd end, const std::string& reason) {
+  // A fault of the program is no case's, however its process ends.
+  if (const auto found = workers_.find(worker); found != workers_.end() && found->second.is_faulty)
+    end = WorkerEnd::kLeft;
   const bool known = workers_.erase(worker) > 0;
   const bool supervised = supervised_.erase(worker) > 0;
   if (supervised) ended_.insert(worker);
   unresponsive_.erase(worker);
-  for (auto& [flight_id, campaign] : campaigns_) {
-    campaign.book->ledger().Lost(worker, end, reason);
+  ForEach([&](const std::string&, FlyingCampaign& campaign) {
     std::erase_if(campaign.unstored, [&](const auto& report) { return report.first == worker; });
-  }
+    campaign.book->ledger().Lost(worker, end, reason);
+  });
   forgotten_.push_back(worker);
   if (!known || supervised || led_by_younger_.contains(worker)) return;
   if (end == WorkerEnd::kLeft) {

@@ -110,6 +110,7 @@ class Dispatcher {
     CampaignBook* book = nullptr;
     int priority = 0;
     std::map<std::string, std::string> refused_by;  ///< workers that cannot fly it, and why
+    std::set<std::string> faulty;  ///< workers of which the program broke a rule of its own in its flights
     std::vector<std::pair<std::string, std::uint64_t>>
         unstored;  ///< worker, report: acknowledged when stored
   };
@@ -129,6 +130,7 @@ class Dispatcher {
     double report_due_s = 0.0;   ///< the next one is due so long after it, by the last status
     std::int64_t results = 0;    ///< that came
     bool is_known = false;       ///< one of them was accepted
+    bool is_faulty = false;      ///< its program broke a rule of its own: it leaves
     std::optional<std::int64_t>
         unreported;  ///< cases flown minus `results`: the least value, when all had come
     double last_orders_s = 0.0;
@@ -138,7 +140,17 @@ class Dispatcher {
     void ForgetSent(const std::string& flight_id);
   };
 
+  /// Does something for each flying campaign, guarded by its book.
+  template <typename Action>
+  void ForEach(Action action) {
+    for (auto& [flight_id, campaign] : campaigns_)
+      campaign.book->Guard([&, &id = flight_id, &each = campaign] { action(id, each); });
+  }
   bool Join(const std::string& sender, const WorkerStatus& status, double now_s);
+  void Take(const std::string& sender, const Report& report, Worker& worker, FlyingCampaign& campaign,
+            std::vector<const FlownCase*>& accepted, double now_s);
+  void NoteFault(const CampaignRefusal& refusal, const std::string& reason, FlyingCampaign& campaign,
+                 Worker& worker);
   void LeaveToYounger(const std::string& worker, double now_s);
   void Refuse(const std::string& worker, const std::string& reason);
   /// Whether a result that it returned is to be looked at any further.

@@ -112,6 +112,10 @@ ExitCode ServeCampaign(const ServeOptions& options, const RunRequest& request,
   std::optional<Watchdog> watchdog(std::in_place, options.again, coordinator.StartPulse());
   while (!book.refusal() && !book.Complete() && !StopRequested()) {
     coordinator.Step(kRound);
+    if (!book.breakdown().empty()) {
+      coordinator.Dismiss();
+      throw Failure{kExitInternalError, book.breakdown()};
+    }
     watchdog->Note(coordinator.ReceivesReports(), true);
     if (!attendance.Check(coordinator.joined() > 0, coordinator.now_s())) {
       book.Flush();

@@ -145,7 +145,9 @@ void Service::CloseRefused() {
 void Service::CloseComplete() {
   std::vector<std::string> complete;
   for (auto& [id, flying] : flying_) {
-    if (flying.book->Complete() && flying.book->TryFlush()) complete.push_back(id);
+    flying.book->Guard([&id = id, &book = *flying.book, &complete] {
+      if (book.Complete() && book.TryFlush()) complete.push_back(id);
+    });
   }
   for (const std::string& id : complete) {
     if (const CampaignBook& book = *flying_.at(id).book; book.IsAudited()) {

@@ -2,11 +2,17 @@
 
 #include <utility>
 
+#include "core/math/assertion.h"
 #include "core/random/draws.h"
 
 namespace dispersa {
 
+Audit::Audit(const AuditOptions& options) : options_(options) {
+  DISPERSA_ASSERT(options.share >= 0.0 && options.share <= 1.0, options.share);
+}
+
 void Audit::Consider(const Claim& claim) {
+  DISPERSA_ASSERT(!claim.worker.empty(), claim.case_index);
   const bool is_first = known_workers_.insert(claim.worker).second;
   if (is_first || Stream(options_.salt, claim.case_index, "audit").Uniform() < options_.share) Add(claim);
 }
@@ -14,6 +20,11 @@ void Audit::Consider(const Claim& claim) {
 std::vector<Claim> Audit::Take() {
   flying_ += waiting_.size();
   return std::exchange(waiting_, {});
+}
+
+void Audit::Settle() {
+  DISPERSA_ASSERT(flying_ > 0);
+  --flying_;
 }
 
 void Audit::Drop(const std::string& worker) {

@@ -26,7 +26,7 @@ struct AuditOptions {
 /// because one forger may own two workers that agree.
 class Audit {
  public:
-  explicit Audit(const AuditOptions& options) : options_(options) {}
+  explicit Audit(const AuditOptions& options);
 
   /// Selects the first result of each worker, and the given share of all results.
   void Consider(const Claim& claim);
@@ -34,7 +34,7 @@ class Audit {
   void Add(const Claim& claim) { waiting_.push_back(claim); }
   /// Results to be flown again now. Call Settle once for each of them.
   std::vector<Claim> Take();
-  void Settle() { --flying_; }
+  void Settle();
   /// Forgets all results of the workers that `worker` denotes: they need not be flown again.
   void Drop(const std::string& worker);
   bool IsSettled() const { return waiting_.empty() && flying_ == 0; }

@@ -6,6 +6,7 @@
 #include <utility>
 
 #include "core/containment/interrupted.h"
+#include "core/math/assertion.h"
 #include "core/results/fingerprint.h"
 #include "services/log/log.h"
 
@@ -31,8 +32,7 @@ class Auditor::Queue : public CaseQueue {
     return flying_.back().case_index;
   }
   void Done(CaseResult result) override {
-    const auto claim = std::find_if(flying_.begin(), flying_.end(),
-                                    [&](const Claim& each) { return each.case_index == result.case_index; });
+    const auto claim = Find(result.case_index);
     const Lock lock(auditor_.mutex_);
     auditor_.verdicts_.push_back({flight_id_, std::move(*claim), Fingerprint(result)});
     flying_.erase(claim);
@@ -40,8 +40,7 @@ class Auditor::Queue : public CaseQueue {
 
   // A case that cannot be flown here is no evidence against a worker.
   void Quarantined(std::uint64_t case_index, const std::string& reason) override {
-    const auto claim = std::find_if(flying_.begin(), flying_.end(),
-                                    [&](const Claim& each) { return each.case_index == case_index; });
+    const auto claim = Find(case_index);
     LogWarning("case {} is not audited: {}", case_index, reason);
     const Lock lock(auditor_.mutex_);
     const Digest claimed = claim->fingerprint;
@@ -50,6 +49,13 @@ class Auditor::Queue : public CaseQueue {
   }
 
  private:
+  std::vector<Claim>::iterator Find(std::uint64_t case_index) {
+    const auto claim = std::find_if(flying_.begin(), flying_.end(),
+                                    [&](const Claim& each) { return each.case_index == case_index; });
+    DISPERSA_ASSERT(claim != flying_.end(), case_index);
+    return claim;
+  }
+
   Auditor& auditor_;
   std::string flight_id_;
   std::vector<Claim> flying_;
@@ -83,6 +89,11 @@ void Auditor::Fly(const Campaign& campaign, std::vector<Claim> claims) {
 std::vector<Auditor::Verdict> Auditor::Take() {
   const Lock lock(mutex_);
   return std::exchange(verdicts_, {});
+}
+
+std::vector<Auditor::Fault> Auditor::TakeFaults() {
+  const Lock lock(mutex_);
+  return std::exchange(faults_, {});
 }
 
 std::string Auditor::Await() {
@@ -119,6 +130,10 @@ void Auditor::FlyForEver() {
       FlightsOf(flight_id)->FlyCases(queue);
     } catch (const Interrupted&) {
       return;  // this process ends
+    } catch (const AssertionFailed& fault) {
+      const Lock lock(mutex_);
+      faults_.push_back({flight_id, fault.what()});
+      work_.at(flight_id).claims.clear();
     }
     const Lock lock(mutex_);
     work_.at(flight_id).is_flown = false;

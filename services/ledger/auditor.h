@@ -25,12 +25,19 @@ class Auditor {
     Digest truth;
   };
 
+  /// A rule of the program was broken in flights of this campaign: they end, without verdicts.
+  struct Fault {
+    std::string flight_id;
+    std::string what;
+  };
+
   Auditor();
   ~Auditor();
 
   void Fly(const Campaign& campaign, std::vector<Claim> claims);
   /// Verdicts since the last call.
   std::vector<Verdict> Take();
+  std::vector<Fault> TakeFaults();
 
  private:
   class Queue;
@@ -50,6 +57,7 @@ class Auditor {
   std::condition_variable changed_;
   std::map<std::string, Work> work_ DISPERSA_GUARDED_BY(mutex_);  ///< by flight id
   std::vector<Verdict> verdicts_ DISPERSA_GUARDED_BY(mutex_);
+  std::vector<Fault> faults_ DISPERSA_GUARDED_BY(mutex_);
   bool closed_ DISPERSA_GUARDED_BY(mutex_) = false;
   std::jthread thread_;
 };

@@ -73,6 +73,7 @@ CampaignBook::CampaignBook(const Campaign& campaign, std::unique_ptr<ResultStore
       rule_(RuleOf(campaign, *store_)),
       ledger_(EngineVersion(), rule_ ? rule_->target() : campaign.sampling.cases, options) {
   const std::uint64_t cases = ledger_.Progress().total;
+  DISPERSA_ASSERT(!rule_ || cases > 0);
   for (const auto& [case_index, fingerprint] : store_->Fingerprints()) {
     if (case_index < cases) ledger_.MarkDone(case_index, fingerprint);
   }
@@ -101,6 +102,7 @@ void CampaignBook::KeepAudit(const AuditOptions& options) {
 }
 
 bool CampaignBook::Settle(const Claim& claim, const Digest& truth) {
+  DISPERSA_ASSERT(audit_ && claim.case_index < ledger_.Progress().total, claim.case_index);
   audit_->Settle();
   if (claim.is_dispute) ledger_.SettleConflict();
   if (claim.fingerprint != truth) return false;
@@ -129,7 +131,10 @@ bool CampaignBook::Try(Action action) {
 void CampaignBook::Break(const std::string& fault) {
   if (!breakdown_.empty()) return;
   LogError("campaign {} ends: {}", Title(campaign_), fault);
-  TryFlush();
+  try {
+    Try([this] { Flush(); });
+  } catch (const AssertionFailed&) {  // what is to be stored may be what is broken
+  }
   breakdown_ = fault;
 }
 
@@ -140,6 +145,7 @@ void CampaignBook::Disown(const std::string& worker) {
 }
 
 void CampaignBook::RemoveResultsOf(const std::string& worker) {
+  DISPERSA_ASSERT(results_.empty(), results_.size());  // one that is stored later would stay
   const std::vector<std::uint64_t> cases = store_->Disown(worker);
   if (cases.empty()) return;
   LogWarning("campaign {}: {} results of worker {} are removed; their cases are flown again",
@@ -151,6 +157,7 @@ void CampaignBook::RemoveResultsOf(const std::string& worker) {
 
 // Two results, of which one at least is wrong: both are flown again.
 void CampaignBook::Dispute(Claim claim) {
+  DISPERSA_ASSERT(audit_ && !claim.is_dispute, claim.case_index);
   std::optional<std::string> other;
   Try([&] {
     Flush();
@@ -211,6 +218,8 @@ bool CampaignBook::Complete() {
   if (!ledger_.Complete() || !disowned_.empty() || (audit_ && !audit_->IsSettled())) return false;
   std::vector<std::uint64_t> quarantined_indices;
   for (const CaseBlames& blamed : ledger_.Quarantined()) quarantined_indices.push_back(blamed.case_index);
+  DISPERSA_ASSERT(quarantined_indices.size() + ledger_.Progress().done == ledger_.Progress().total,
+                  quarantined_indices.size(), ledger_.Progress().done, ledger_.Progress().total);
   // A rule that was made anew, after a worker's results were removed, begins below what was asked for before.
   while (rule_ && rule_->Advance(quarantined_indices)) {
     if (rule_->target() <= ledger_.Progress().total) continue;
@@ -234,6 +243,7 @@ Acceptance CampaignBook::Accept(const std::string& worker, const std::string& ho
   auto start = starts_.extract({worker, result.case_index});
   switch (acceptance) {
     case Acceptance::kAccepted:
+      DISPERSA_ASSERT(ledger_.IsResult(result.case_index, claim.fingerprint), result.case_index);
       CompareWithExpected(result, worker);
       results_.push_back(result);
       if (rule_) rule_->Add(result);
@@ -278,13 +288,18 @@ bool CampaignBook::FlushIfDue(double now_s) {
 }
 
 bool CampaignBook::TryFlush() {
-  if (!breakdown_.empty() || !Try([this] { Flush(); })) return false;
+  if (!breakdown_.empty()) return false;
+  bool is_stored = false;
+  Guard([&] { is_stored = Try([this] { Flush(); }); });
+  if (!is_stored) return false;
   if (!pause_.empty()) LogInfo("campaign {} continues: the disk has space again", Title(campaign_));
   pause_.clear();
   return true;
 }
 
 void CampaignBook::Flush() {
+  DISPERSA_ASSERT(results_.size() == records_.size(), results_.size(), records_.size());
+  DISPERSA_ASSERT(flown_now_ >= results_.size(), flown_now_, results_.size());
   if (!results_.empty()) {
     store_->Store(results_, records_);
     results_.clear();
@@ -306,6 +321,7 @@ void CampaignBook::Flush() {
                                                  : "every attempt to fly it ended or hung its worker"});
     }
     quarantined_ = ledger_.Progress().quarantined;
+    DISPERSA_ASSERT(ledger_.Quarantined().size() == quarantined_, quarantined_);
   }
 }
 

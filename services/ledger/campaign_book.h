@@ -13,6 +13,7 @@
 #include "core/analysis/stopping_rule.h"
 #include "core/campaign/campaign.h"
 #include "core/campaign/case_design.h"
+#include "core/math/assertion.h"
 #include "core/results/result_folder.h"
 #include "core/results/result_store.h"
 #include "services/ledger/audit.h"
@@ -39,7 +40,10 @@ class CampaignBook {
 
   const Campaign& campaign() const { return campaign_; }
   /// Only of a book that was made with a folder.
-  const ResultFolder& folder() const { return *folder_; }
+  const ResultFolder& folder() const {
+    DISPERSA_ASSERT(folder_ != nullptr);
+    return *folder_;
+  }
   Ledger& ledger() { return ledger_; }
   const Ledger& ledger() const { return ledger_; }
   /// Whether nothing is left to fly. When all cases up to the present look are settled and a requirement is
@@ -59,6 +63,15 @@ class CampaignBook {
   const std::string& breakdown() const { return breakdown_; }
   /// After a fault of the program: what has been accepted is stored, and nothing follows.
   void Break(const std::string& fault);
+  /// Does something with this book or its ledger. A broken rule of the program breaks this book alone.
+  template <typename Action>
+  void Guard(Action action) {
+    try {
+      action();
+    } catch (const AssertionFailed& fault) {
+      Break(fault.what());
+    }
+  }
   /// Results that were accepted and are not stored yet.
   std::uint64_t unstored() const { return results_.size(); }
 
@@ -69,7 +82,10 @@ class CampaignBook {
   /// Starts a tally from the stored results. Call it before the first result arrives.
   void KeepTally();
   /// The state of the requirements after the accepted results. The book keeps a tally.
-  const RunningTally& tally() const { return *tally_; }
+  const RunningTally& tally() const {
+    DISPERSA_ASSERT(tally_.has_value());
+    return *tally_;
+  }
 
   /// From now on the campaign is complete only when its audit is; stored results are audited too. No effect
   /// if the share is 0, or when called again.

@@ -8,6 +8,7 @@
 #include <vector>
 
 #include "core/flight/digest.h"
+#include "core/math/assertion.h"
 
 namespace dispersa {
 
@@ -22,15 +23,18 @@ class CaseTable {
   std::uint64_t size() const { return size_; }
   /// Adds cases at the end.
   void Extend(std::uint64_t size) {
+    DISPERSA_ASSERT(size >= size_, size, size_);
     blocks_.resize((size + kBlock - 1) / kBlock);
     size_ = size;
   }
   CaseState StateOf(std::uint64_t index) const {
+    DISPERSA_ASSERT(index < size_, index, size_);
     const auto& block = blocks_[index / kBlock];
     return block ? block->states[index % kBlock] : CaseState::kWaiting;
   }
   /// The fingerprint of a case that is done.
   Digest FingerprintOf(std::uint64_t index) const {
+    DISPERSA_ASSERT(index < size_, index, size_);
     const auto& block = blocks_[index / kBlock];
     return block ? block->fingerprints[index % kBlock] : Digest();
   }
@@ -49,6 +53,7 @@ class CaseTable {
   };
 
   Block& Touch(std::uint64_t index) {
+    DISPERSA_ASSERT(index < size_, index, size_);
     auto& block = blocks_[index / kBlock];
     if (!block) block = std::make_unique<Block>();
     return *block;

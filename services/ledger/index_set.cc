@@ -40,6 +40,7 @@ bool IndexSet::Remove(std::uint64_t index) {
     interval->second = index;
   }
   if (index + 1 < end) end_of_.emplace(index + 1, end);
+  DISPERSA_ASSERT(count_ > 0, index);
   --count_;
   return true;
 }
@@ -47,6 +48,7 @@ bool IndexSet::Remove(std::uint64_t index) {
 std::vector<std::uint64_t> IndexSet::TakeRun(std::uint64_t limit) {
   if (end_of_.empty()) return {};
   const auto [first, end] = *end_of_.begin();
+  DISPERSA_ASSERT(limit > 0 && first < end && end - first <= count_, limit, first, end, count_);
   const std::uint64_t size = std::min(limit, end - first);
   std::vector<std::uint64_t> run(size);
   std::iota(run.begin(), run.end(), first);

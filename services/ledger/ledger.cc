@@ -21,6 +21,9 @@ Ledger::Ledger(std::string engine_version, std::uint64_t cases, const LedgerOpti
       options_(options),
       cases_(cases),
       next_attempt_(options.attempt_base + 1) {
+  DISPERSA_ASSERT(options.blames_to_quarantine > 0 && options.first_assignments > 0,
+                  options.blames_to_quarantine, options.first_assignments);
+  DISPERSA_ASSERT(options.side_by_side > 0 && options.max_batch > 0, options.side_by_side, options.max_batch);
   waiting_.AddRange(0, cases);
   progress_.total = cases;
 }
@@ -35,13 +38,15 @@ void Ledger::MarkDone(std::uint64_t case_index, const Digest& fingerprint) {
 }
 
 void Ledger::CheckSums() const {
+  DISPERSA_ASSERT(progress_.total == cases_.size(), progress_.total, cases_.size());
   DISPERSA_ASSERT(
-      progress_.total == cases_.size() && progress_.done + progress_.quarantined <= progress_.total,
-      progress_.total, cases_.size(), progress_.done, progress_.quarantined);
+      progress_.done + progress_.quarantined + waiting_.Count() + suspects_.Count() <= progress_.total,
+      progress_.done, progress_.quarantined, waiting_.Count(), suspects_.Count(), progress_.total);
 }
 
 void Ledger::RequireSecondFlight(std::uint64_t case_index, const std::string& flown_by) {
   DISPERSA_ASSERT(case_index < cases_.size(), case_index, cases_.size());
+  DISPERSA_ASSERT(flown_by.empty() || cases_.StateOf(case_index) == CaseState::kDone, case_index);
   second_flights_[case_index].first = flown_by;
 }
 
@@ -57,11 +62,23 @@ void Ledger::Extend(std::uint64_t cases) {
 void Ledger::Reopen(const std::vector<std::uint64_t>& cases) {
   for (const std::uint64_t case_index : cases) {
     if (case_index >= cases_.size() || cases_.StateOf(case_index) != CaseState::kDone) continue;
+    DISPERSA_ASSERT(progress_.done > 0, case_index);
     --progress_.done;
     if (const auto flight = second_flights_.find(case_index); flight != second_flights_.end())
       flight->second = {};
-    Return(case_index);
+    if (IsHeld(case_index)) {
+      cases_.Set(case_index, CaseState::kAssigned);
+    } else {
+      Return(case_index);
+    }
   }
+  CheckSums();
+}
+
+// A worker may hold a case that another one returned: it was taken from that one, or needs a second flight.
+bool Ledger::IsHeld(std::uint64_t case_index) const {
+  return std::any_of(workers_.begin(), workers_.end(),
+                     [&](const auto& each) { return each.second.held.contains(case_index); });
 }
 
 bool Ledger::WasGiven(const std::string& worker, std::uint64_t case_index) const {
@@ -82,6 +99,7 @@ void Ledger::RememberGiven(const std::string& worker, std::uint64_t case_index) 
   std::erase(workers, worker);
   if (workers.size() == kRememberedWorkers) workers.erase(workers.begin());
   workers.push_back(worker);
+  DISPERSA_ASSERT(workers.size() <= kRememberedWorkers, case_index, workers.size());
 }
 
 std::optional<std::string> Ledger::Join(const std::string& worker, const WorkerHello& hello, double now_s) {
@@ -93,6 +111,7 @@ std::optional<std::string> Ledger::Join(const std::string& worker, const WorkerH
   if (is_new) {
     entry->second.last_report_s = now_s;
   } else {
+    DISPERSA_ASSERT(slots_ >= entry->second.hello.slots, slots_, entry->second.hello.slots);
     slots_ -= entry->second.hello.slots;
   }
   slots_ += hello.slots;
@@ -126,6 +145,7 @@ void Ledger::Settle(const std::string& worker, std::uint64_t case_index, std::ui
     if (held != entry->second.held.end() && held->second.attempt == attempt) {
       if (held->second.started_s) {
         const double duration_s = now_s - *held->second.started_s;
+        DISPERSA_ASSERT(duration_s >= 0.0, duration_s);
         longest_case_s_ = std::max(longest_case_s_, duration_s);
         mean_case_s_ =
             mean_case_s_ == 0.0 ? duration_s : mean_case_s_ + kMeanWeight * (duration_s - mean_case_s_);
@@ -150,14 +170,19 @@ bool Ledger::Quarantine(const std::string& worker, std::uint64_t case_index, std
     return !std::exchange(flight->second.is_settled, true);
   }
   if (state == CaseState::kDone || state == CaseState::kQuarantined) return false;
-  if (state == CaseState::kWaiting) waiting_.Remove(case_index);
-  if (state == CaseState::kSuspect) suspects_.Remove(case_index);
+  TakeOut(case_index, state);
   blames_[case_index].push_back(reason);
   quarantined_at_once_.insert(case_index);
   cases_.Set(case_index, CaseState::kQuarantined);
   ++progress_.quarantined;
   CheckSums();
   return false;
+}
+
+void Ledger::TakeOut(std::uint64_t case_index, CaseState state) {
+  if (state != CaseState::kWaiting && state != CaseState::kSuspect) return;
+  const bool was_there = (state == CaseState::kWaiting ? waiting_ : suspects_).Remove(case_index);
+  DISPERSA_ASSERT(was_there, case_index);
 }
 
 Acceptance Ledger::Finished(const std::string& worker, std::uint64_t case_index, std::uint64_t attempt,
@@ -180,9 +205,11 @@ Acceptance Ledger::Finished(const std::string& worker, std::uint64_t case_index,
     ++progress_.duplicates;
     return Acceptance::kDuplicate;
   }
-  if (state == CaseState::kWaiting) waiting_.Remove(case_index);
-  if (state == CaseState::kSuspect) suspects_.Remove(case_index);
-  if (state == CaseState::kQuarantined) --progress_.quarantined;
+  TakeOut(case_index, state);
+  if (state == CaseState::kQuarantined) {
+    DISPERSA_ASSERT(progress_.quarantined > 0, case_index);
+    --progress_.quarantined;
+  }
   blames_.erase(case_index);
   quarantined_at_once_.erase(case_index);
   cases_.SetDone(case_index, fingerprint);
@@ -196,6 +223,7 @@ void Ledger::Lost(const std::string& worker, WorkerEnd end, const std::string& r
   const auto entry = workers_.find(worker);
   if (entry == workers_.end()) return;
   const bool blames = end == WorkerEnd::kCrashed || end == WorkerEnd::kSilent;
+  DISPERSA_ASSERT(slots_ >= entry->second.hello.slots, slots_, entry->second.hello.slots);
   slots_ -= entry->second.hello.slots;
   const auto held = std::move(entry->second.held);
   workers_.erase(entry);
@@ -209,10 +237,12 @@ void Ledger::Lost(const std::string& worker, WorkerEnd end, const std::string& r
       Return(case_index);
     }
   }
+  CheckSums();
 }
 
 std::vector<std::string> Ledger::Expire(double now_s) {
   const double lease_s = Lease();
+  DISPERSA_ASSERT(lease_s > 0.0, lease_s);
   std::vector<std::string> stuck;
   for (auto& [id, worker] : workers_) {
     if (worker.held.empty()) continue;
@@ -239,6 +269,7 @@ std::vector<std::string> Ledger::Expire(double now_s) {
     }
   }
   TakeBackOverdue(now_s);
+  CheckSums();
   return stuck;
 }
 
@@ -307,6 +338,7 @@ std::optional<Assignment> Ledger::GiveTo(const std::string& worker, std::uint64_
     return Give(worker, to, std::move(again), now_s);
   if (!waiting_.Empty()) return Give(worker, to, waiting_.TakeRun(BatchSize()), now_s);
   if (suspects_.Empty() || !to.held.empty() || elsewhere > 0) return std::nullopt;
+  DISPERSA_ASSERT(to.batches.empty(), to.batches.size());
   to.alone = true;
   return Give(worker, to, suspects_.TakeRun(1), now_s);
 }
@@ -323,6 +355,8 @@ void Ledger::Withdraw(const std::string& worker, const std::vector<std::uint64_t
     Release(entry->second, here);
     if (cases_.StateOf(case_index) == CaseState::kAssigned) Return(case_index);
   }
+  DISPERSA_ASSERT(entry->second.held.size() <= begun.size(), entry->second.held.size(), begun.size());
+  CheckSums();
 }
 
 std::vector<std::uint64_t> Ledger::Owed(const std::string& worker, std::uint64_t attempt) const {
@@ -332,6 +366,7 @@ std::vector<std::uint64_t> Ledger::Owed(const std::string& worker, std::uint64_t
   for (const auto& [case_index, held] : entry->second.held) {
     if (held.attempt == attempt) owed.push_back(case_index);
   }
+  DISPERSA_ASSERT(owed.size() == entry->second.batches.at(attempt), attempt, owed.size());
   return owed;
 }
 
@@ -411,22 +446,27 @@ std::uint64_t Ledger::BatchSize() const {
   const double by_lanes = by_duration * static_cast<double>(options_.side_by_side);
   const double wanted = std::min(by_lanes, static_cast<double>(std::min(share, options_.max_batch)));
   const auto size = static_cast<std::uint64_t>(std::max(wanted, 1.0));
+  DISPERSA_ASSERT(size <= std::max<std::uint64_t>(options_.max_batch, 1), size);
   // Whole packs, so that no lane flies alone.
   return size > options_.side_by_side ? size - size % options_.side_by_side : size;
 }
 
 Assignment Ledger::Give(const std::string& id, Worker& worker, std::vector<std::uint64_t> cases,
                         double now_s) {
+  DISPERSA_ASSERT(!cases.empty());
   if (worker.held.empty())
     worker.last_report_s = worker.last_returned_s = now_s;  // an idle worker has nothing to report
   const std::uint64_t attempt = next_attempt_++;
   for (const std::uint64_t case_index : cases) {
-    if (cases_.StateOf(case_index) == CaseState::kDone) {
+    const CaseState state = cases_.StateOf(case_index);
+    DISPERSA_ASSERT(state != CaseState::kAssigned && state != CaseState::kQuarantined, case_index);
+    if (state == CaseState::kDone) {
       second_flights_.at(case_index).is_flown = true;
     } else {
       cases_.Set(case_index, CaseState::kAssigned);
     }
-    worker.held[case_index] = Held{attempt, std::nullopt};
+    const bool is_new = worker.held.emplace(case_index, Held{attempt, std::nullopt}).second;
+    DISPERSA_ASSERT(is_new, case_index, attempt);
   }
   worker.batches[attempt] = cases.size();
   return {id, attempt, std::move(cases)};
@@ -434,21 +474,28 @@ Assignment Ledger::Give(const std::string& id, Worker& worker, std::vector<std::
 
 void Ledger::Release(Worker& worker, std::map<std::uint64_t, Held>::iterator held) {
   const auto batch = worker.batches.find(held->second.attempt);
+  DISPERSA_ASSERT(batch != worker.batches.end() && batch->second > 0, held->first, held->second.attempt);
   if (--batch->second == 0) worker.batches.erase(batch);
   Drop(held->first, false);
   worker.held.erase(held);
-  if (worker.held.empty()) worker.alone = false;
+  if (!worker.held.empty()) return;
+  DISPERSA_ASSERT(worker.batches.empty(), worker.batches.size());
+  worker.alone = false;
 }
 
 void Ledger::Return(std::uint64_t case_index) {
+  const CaseState state = cases_.StateOf(case_index);
+  DISPERSA_ASSERT(state == CaseState::kAssigned || state == CaseState::kDone, case_index);
   const bool suspect = blames_.contains(case_index);
   cases_.Set(case_index, suspect ? CaseState::kSuspect : CaseState::kWaiting);
   (suspect ? suspects_ : waiting_).Add(case_index);
 }
 
 void Ledger::Blame(std::uint64_t case_index, const std::string& reason) {
+  DISPERSA_ASSERT(cases_.StateOf(case_index) == CaseState::kAssigned, case_index);
   std::vector<std::string>& reasons = blames_[case_index];
   reasons.push_back(reason);
+  DISPERSA_ASSERT(std::ssize(reasons) <= options_.blames_to_quarantine, case_index, reasons.size());
   if (std::ssize(reasons) < options_.blames_to_quarantine) {
     Return(case_index);
     return;

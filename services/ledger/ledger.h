@@ -176,6 +176,9 @@ class Ledger {
   std::vector<std::uint64_t> SecondFlightsFor(const std::string& id, const Worker& worker) const;
   void TakeBackOverdue(double now_s);
   bool IsAnyoneQuick() const;
+  bool IsHeld(std::uint64_t case_index) const;
+  // Out of the queue that it waits in, if it waits.
+  void TakeOut(std::uint64_t case_index, CaseState state);
   // Its result is still welcome.
   void RememberGiven(const std::string& worker, std::uint64_t case_index);
   // A worker holds it no longer, without a result.

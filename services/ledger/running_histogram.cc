@@ -3,6 +3,8 @@
 #include <algorithm>
 #include <cmath>
 
+#include "core/math/assertion.h"
+
 namespace dispersa {
 namespace {
 
@@ -13,6 +15,7 @@ constexpr int kFinest = 40;  // binary digits
 }  // namespace
 
 void RunningHistogram::Add(double value) {
+  DISPERSA_ASSERT(std::isfinite(value), value);
   ++n_;
   if (value != 0.0) {
     while (exponent_ < std::ilogb(value) - kFinest) Coarsen();
@@ -33,11 +36,13 @@ void RunningHistogram::Add(double value) {
   const auto at = static_cast<std::size_t>(bin() - first_);
   if (at >= counts_.size()) counts_.resize(at + 1);
   ++counts_[at];
+  DISPERSA_ASSERT(counts_.size() <= kMaxBins, counts_.size(), value);
 }
 
 HistogramBins RunningHistogram::Bins(std::size_t most) const {
   RunningHistogram coarse = *this;
-  while (coarse.counts_.size() > std::max<std::size_t>(most, 2)) coarse.Coarsen();
+  DISPERSA_ASSERT(most >= 2, most);
+  while (coarse.counts_.size() > most) coarse.Coarsen();
   const double width = std::ldexp(1.0, coarse.exponent_);
   return {static_cast<double>(coarse.first_) * width, width, coarse.counts_};
 }

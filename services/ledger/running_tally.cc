@@ -5,6 +5,7 @@
 #include "core/analysis/campaign_summary.h"
 #include "core/analysis/requirement_summary.h"
 #include "core/flight/metrics.h"
+#include "core/math/assertion.h"
 #include "core/results/sampling_text.h"
 #include "core/statistics/intervals.h"
 
@@ -15,6 +16,7 @@ RunningTally::RunningTally(const Campaign& campaign)
       failures_(requirements_.size()),
       independent_(IsIndependent(campaign.sampling.method)) {
   const MetricList metrics = MetricsOf(campaign);
+  metric_count_ = metrics.size();
   for (const Requirement& requirement : requirements_)
     columns_.push_back(metrics.PositionOf(requirement.metric));
   for (const std::string& metric : KeyMetrics(campaign)) {
@@ -25,11 +27,13 @@ RunningTally::RunningTally(const Campaign& campaign)
 }
 
 void RunningTally::Add(const CaseResult& result) {
+  DISPERSA_ASSERT(result.metrics.size() == metric_count_, result.case_index, result.metrics.size());
   ++n_;
   for (std::size_t i = 0; i < requirements_.size(); ++i) {
     const bool met = result.outcome == Outcome::kCompleted &&
                      LimitsOf(requirements_[i]).Meets(result.metrics[columns_[i]]);
     failures_[i] += met ? 0 : 1;
+    DISPERSA_ASSERT(failures_[i] <= n_, failures_[i], n_);
   }
   if (result.outcome != Outcome::kCompleted) return;
   for (MetricHistogram& histogram : histograms_) {

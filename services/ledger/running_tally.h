@@ -48,6 +48,7 @@ class RunningTally {
   std::vector<std::size_t> columns_;  ///< of their metrics
   std::vector<std::int64_t> failures_;
   std::vector<MetricHistogram> histograms_;
+  std::size_t metric_count_ = 0;  ///< of a result
   std::int64_t n_ = 0;
   bool independent_;
 };

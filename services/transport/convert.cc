@@ -126,12 +126,13 @@ idl::TextV1 ToIdl(const TextPart& part) {
   return message;
 }
 
-idl::CampaignRefusalV1 ToIdl(const CampaignRefusal& refusal) {
-  idl::CampaignRefusalV1 message;
+idl::CampaignRefusalV2 ToIdl(const CampaignRefusal& refusal) {
+  idl::CampaignRefusalV2 message;
   message.worker(refusal.worker);
   message.coordinator_epoch(refusal.coordinator_epoch);
   message.flight_id(refusal.flight_id);
   message.reason(refusal.reason);
+  message.engine_fault(refusal.engine_fault);
   return message;
 }
 
@@ -227,9 +228,9 @@ std::optional<TextPart> FromIdl(const idl::TextV1& part) {
                   part.size(),   part.offset(),    Bytes(part.bytes())};
 }
 
-std::optional<CampaignRefusal> FromIdl(const idl::CampaignRefusalV1& refusal) {
-  return CampaignRefusal{refusal.worker(), refusal.coordinator_epoch(), refusal.flight_id(),
-                         refusal.reason()};
+std::optional<CampaignRefusal> FromIdl(const idl::CampaignRefusalV2& refusal) {
+  return CampaignRefusal{refusal.worker(), refusal.coordinator_epoch(), refusal.flight_id(), refusal.reason(),
+                         refusal.engine_fault()};
 }
 
 std::optional<CampaignProgress> FromIdl(const idl::ProgressV1& progress) {

@@ -104,7 +104,7 @@ struct CoordinatorLink::Impl {
     Writer<idl::ResultV2PubSubType> results;
     std::optional<Reader<idl::ReportV3PubSubType>> reports;
     std::optional<Reader<idl::TextRequestV1PubSubType>> text_requests;
-    std::optional<Reader<idl::CampaignRefusalV1PubSubType>> campaign_refusals;
+    std::optional<Reader<idl::CampaignRefusalV2PubSubType>> campaign_refusals;
     std::optional<Reader<idl::RequestV1PubSubType>> requests;
     std::optional<Reader<idl::WorkerStatusV2PubSubType>> statuses;
   };

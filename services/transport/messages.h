@@ -92,6 +92,7 @@ struct CampaignRefusal {
   std::uint64_t coordinator_epoch = 0;
   std::string flight_id;
   std::string reason;
+  bool engine_fault = false;  ///< a rule of the worker's program is broken: it leaves
 };
 
 /// How far a campaign is.

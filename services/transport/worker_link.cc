@@ -71,7 +71,7 @@ struct WorkerLink::Impl {
   dds::Subscriber* subscriber;
   std::optional<Writer<idl::ReportV3PubSubType>> reports;
   std::optional<Writer<idl::TextRequestV1PubSubType>> text_requests;
-  std::optional<Writer<idl::CampaignRefusalV1PubSubType>> campaign_refusals;
+  std::optional<Writer<idl::CampaignRefusalV2PubSubType>> campaign_refusals;
   std::optional<Writer<idl::WorkerStatusV2PubSubType>> statuses;
   std::optional<Reader<idl::OrdersV1PubSubType>> orders;
   std::optional<Reader<idl::TextV1PubSubType>> texts;

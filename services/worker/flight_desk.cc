@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <utility>
 
+#include "core/math/assertion.h"
 #include "services/transport/validity.h"
 
 namespace dispersa {
@@ -32,11 +33,13 @@ void FlightDesk::On(const Orders& orders, double now_s) {
   for (const std::uint64_t number : orders.acknowledged) {
     const auto owed = owed_.find(number);
     if (owed == owed_.end()) continue;
+    DISPERSA_ASSERT(unstored_ >= owed->second.report.flown.size(), unstored_, number);
     unstored_ -= owed->second.report.flown.size();
     if (owed->second.report.coordinator_epoch == epoch_) {
       for (const FlownCase& flown : owed->second.report.flown) {
         const auto attempt = attempts_.find(flown.attempt);
         if (attempt == attempts_.end()) continue;
+        DISPERSA_ASSERT(attempt->second.unstored > 0, flown.attempt);
         --attempt->second.unstored;
         DropAttempt(attempt);
       }
@@ -131,12 +134,14 @@ std::optional<CampaignText> FlightDesk::TakeText() {
 }
 
 void FlightDesk::Loaded(const std::string& flight_id, std::shared_ptr<const CampaignFlights> flights,
-                        const std::string& problem) {
+                        const std::string& problem, bool engine_fault) {
   const auto campaign = campaigns_.find(flight_id);
   if (campaign == campaigns_.end()) return;
+  DISPERSA_ASSERT(problem.empty() || flights == nullptr);
   campaign->second.ready = problem.empty();
   campaign->second.flights = std::move(flights);
   campaign->second.problem = problem;
+  campaign->second.engine_fault = engine_fault;
   if (problem.empty()) return;
   refused_.insert(flight_id);
   std::erase_if(queue_, [&](const Job& job) {
@@ -222,11 +227,13 @@ void FlightDesk::Give(const Job& job, FlownCase flown, double now_s) {
   mean_flight_s_ =
       mean_flight_s_ == 0.0 ? seconds : mean_flight_s_ + kMeanWeight * (seconds - mean_flight_s_);
   ++flown_;
+  DISPERSA_ASSERT(in_flight_ > 0, job.case_index);
   --in_flight_;
   if (job.coordinator_epoch == epoch_) {
     if (const auto flying = flying_.find({job.attempt, job.case_index}); flying != flying_.end())
       flying_.erase(flying);
     if (const auto attempt = attempts_.find(job.attempt); attempt != attempts_.end()) {
+      DISPERSA_ASSERT(attempt->second.unflown > 0, job.attempt);
       --attempt->second.unflown;
       ++attempt->second.unstored;
     }
@@ -283,7 +290,8 @@ FlightDesk::Due FlightDesk::Tick(double now_s) {
       due.text_requests.push_back({options_.worker, flight_id, campaign.text.text.size()});
     }
     for (const std::string& flight_id : std::exchange(refused_, {})) {
-      due.refusals.push_back({options_.worker, epoch_, flight_id, campaigns_[flight_id].problem});
+      const KnownCampaign& campaign = campaigns_[flight_id];
+      due.refusals.push_back({options_.worker, epoch_, flight_id, campaign.problem, campaign.engine_fault});
     }
   }
   const bool deaf = now_s - std::max(heard_s_, connected_s_) > patience_s_;

@@ -63,7 +63,7 @@ class FlightDesk {
   std::optional<CampaignText> TakeText();
   /// The outcome of reading it: its flights, or why it cannot be flown here.
   void Loaded(const std::string& flight_id, std::shared_ptr<const CampaignFlights> flights,
-              const std::string& problem);
+              const std::string& problem, bool engine_fault = false);
 
   /// The next case to fly, if there is one. The caller must then send the output of TakeReports before the
   /// flight. So the coordinator knows which case to blame if the flight ends this process.
@@ -100,7 +100,8 @@ class FlightDesk {
   struct KnownCampaign {
     bool ready = false;  ///< loaded
     std::shared_ptr<const CampaignFlights> flights;
-    std::string problem;  ///< not empty: cannot be flown here
+    std::string problem;        ///< not empty: cannot be flown here
+    bool engine_fault = false;  ///< the problem is this program's own
     CampaignText text;
     std::uint64_t size = 0;
     bool complete = false, taken = false;

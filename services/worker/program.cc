@@ -97,8 +97,12 @@ int RunWorker(int argc, char** argv) {
       pthread_sigmask(SIG_UNBLOCK, &ends, nullptr);
       std::raise(signal);
     }).detach();
-    worker.Run();
-    code = worker.problem().empty() ? kExitDone : EndFor(Failure{kExitIncomplete, worker.problem()}, json);
+    const WorkerExit exit = worker.Run();
+    code = worker.problem().empty()
+               ? kExitDone
+               : EndFor(Failure{exit == WorkerExit::kFault ? kExitInternalError : kExitIncomplete,
+                                worker.problem()},
+                        json);
     std::_Exit(code);  // the other threads still use what a return would destroy
   } catch (const NetworkError& error) {
     code = EndFor(Failure{kExitBadInput, error.what()}, json);

@@ -99,6 +99,7 @@ void Worker::Connect() {
 
 void Worker::Load(const CampaignText& text) {
   std::string problem;
+  bool engine_fault = false;
   std::shared_ptr<const CampaignFlights> flights;
   try {
     if (text.engine_version != EngineVersion()) {
@@ -116,7 +117,9 @@ void Worker::Load(const CampaignText& text) {
     }
   } catch (const std::exception& error) {
     problem = error.what();
+    engine_fault = dynamic_cast<const AssertionFailed*>(&error) != nullptr;
   }
+  if (engine_fault) return Break(text.flight_id, problem);
   if (!problem.empty()) flights.reset();
   if (!problem.empty()) LogError("campaign {} is refused: {}", text.name, problem);
   {
@@ -154,6 +157,7 @@ class Worker::SlotQueue : public CaseQueue {
   Job Take(std::uint64_t case_index) {
     const auto found = std::find_if(flying_.begin(), flying_.end(),
                                     [&](const Job& each) { return each.case_index == case_index; });
+    DISPERSA_ASSERT(found != flying_.end(), case_index);
     Job job = std::move(*found);
     flying_.erase(found);
     return job;
@@ -183,7 +187,7 @@ void Worker::FlyForEver() {
 void Worker::Break(const std::string& flight_id, const std::string& fault) {
   const Lock lock(mutex_);
   if (fault_.empty()) fault_ = fault;
-  desk_.Loaded(flight_id, nullptr, fault);
+  desk_.Loaded(flight_id, nullptr, fault, true);
 }
 
 std::optional<Job> Worker::Next(bool wait) {
@@ -262,15 +266,19 @@ std::optional<WorkerExit> Worker::Exit(double now_s) {
 }
 
 WorkerExit Worker::Leave(WorkerExit exit) {
-  FlightDesk::Due last;
+  FlightDesk::Due last, left;
   {
     const Lock lock(mutex_);
     closed_ = true;
     last = desk_.Tick(Now());
-    last.status = desk_.Status(WorkerState::kLeft);
+    last.status.reset();
+    left.status = desk_.Status(WorkerState::kLeft);
   }
   work_.notify_all();
   Send(last);
+  // Statuses have a socket of their own, and nobody listens to a worker that has left.
+  if (link_ && exit == WorkerExit::kFault) link_->Drain(kFarewell);
+  Send(left);
   if (link_) link_->Drain(kFarewell);
   const Lock lock(mutex_);
   link_.reset();

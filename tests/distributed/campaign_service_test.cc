@@ -402,6 +402,29 @@ TEST_F(CampaignServiceTest, OldCampaignsAndThoseBeyondTheSizeAreDeletedTheOldest
   EXPECT_THAT(left(), ElementsAre(false, false, false)) << "and never what flies";
 }
 
+TEST_F(CampaignServiceTest, AnEngineFaultOfTwoWorkersFailsThatCampaignAlone) {
+  StartService();
+  const Campaign campaign = Smoke(2), other = Smoke(2, 7);
+  const std::string id = Launch(campaign), other_id = Launch(other);
+  ASSERT_TRUE(Reaches(id, CampaignState::kFlying));
+  ASSERT_TRUE(Reaches(other_id, CampaignState::kFlying));
+  for (const char* worker : {"v", "w"}) {
+    workforce_.Join(worker);
+    service_->Step();
+    EXPECT_EQ(service_->View(id).entry->state, CampaignState::kFlying);
+    workforce_.dispatcher.On(worker,
+                             CampaignRefusal{worker, MadeUpWorkforce::kEpoch, campaign.flight_id,
+                                             "engine fault: core/a.cc:1: x does not hold", true},
+                             workforce_.time_s);
+  }
+  service_->Step();
+  const CatalogueEntry& entry = *service_->View(id).entry;
+  EXPECT_EQ(
+      std::string(CampaignStateName(entry.state)) + " " + std::to_string(entry.code) + ": " + entry.problem,
+      "failed 1: engine fault: core/a.cc:1: x does not hold");
+  EXPECT_EQ(service_->View(other_id).entry->state, CampaignState::kFlying);
+}
+
 TEST_F(CampaignServiceTest, ACampaignThatNoWorkerCanFlySaysWhy) {
   StartService();
   const Campaign campaign = Smoke(2);

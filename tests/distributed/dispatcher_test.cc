@@ -588,17 +588,88 @@ TEST_F(DispatcherTest, ARefusalForAnEarlierCoordinatorMeansNothing) {
   EXPECT_THAT(Tick(0.2).assignments, testing::SizeIs(2));
 }
 
-TEST_F(DispatcherTest, AnEngineFaultOfOneWorkerEndsTheCampaignAndBlamesNoCase) {
+const std::string kFault = "engine fault: core/a.cc:1: x does not hold";
+
+TEST_F(DispatcherTest, AfterAnEngineFaultOfOneWorkerAnotherGetsItsCases) {
   Open(2);
   dispatcher_.On("s", Status(), 0.0);
   EXPECT_THAT(Tick(0.0).assignments, testing::SizeIs(2));
-  const std::string fault = "engine fault: core/a.cc:1: x does not hold";
-  dispatcher_.On("s", CampaignRefusal{"w", kEpoch, kFlight, fault}, 0.1);
-  EXPECT_EQ(book_->breakdown(), fault);
+  for (const double now_s : {0.1, 0.2})  // it says so at each case that it is given
+    dispatcher_.On("s", CampaignRefusal{"w", kEpoch, kFlight, kFault, true}, now_s);
+  EXPECT_EQ(book_->breakdown(), "");
+  EXPECT_EQ(dispatcher_.RefusalByAll(kFlight), std::nullopt) << "others may come";
+  EXPECT_EQ(dispatcher_.refusal(), std::nullopt);
+  EXPECT_EQ(Progress().waiting, 2u);
+  dispatcher_.On("s", Status(), 0.3);
+  EXPECT_THAT(Tick(0.3).assignments, IsEmpty()) << "it is leaving";
+  dispatcher_.On("other", Status("other"), 0.4);
+  EXPECT_THAT(Tick(0.4, "other").assignments, testing::SizeIs(2));
+}
+
+TEST_F(DispatcherTest, AnEngineFaultOfASecondWorkerEndsTheCampaign) {
+  Open(2);
+  for (const char* worker : {"a", "b", "c"}) {
+    dispatcher_.On(worker, Status(worker), 0.0);
+    dispatcher_.Tick(0.0);
+  }
+  dispatcher_.On("a", CampaignRefusal{"a", kEpoch, kFlight, "engine fault: another", true}, 0.1);
+  EXPECT_EQ(book_->breakdown(), "");
+  dispatcher_.On("b", CampaignRefusal{"b", kEpoch, kFlight, kFault, true}, 0.2);
+  EXPECT_EQ(book_->breakdown(), kFault);
   EXPECT_EQ(Progress().waiting, 2u);
   EXPECT_EQ(Progress().quarantined, 0u);
-  dispatcher_.On("other", Status("other"), 0.2);
-  EXPECT_THAT(Tick(0.5).assignments, IsEmpty()) << "no other worker gets them";
+  EXPECT_THAT(Tick(0.5, "c").assignments, IsEmpty()) << "no other worker gets them";
+}
+
+TEST_F(DispatcherTest, OnlyAWorkerThatSaysSoHasAFault) {
+  Open(2);
+  for (const char* worker : {"a", "b"}) dispatcher_.On(worker, Status(worker), 0.0);
+  for (const char* worker : {"a", "b"})
+    dispatcher_.On(worker, CampaignRefusal{worker, kEpoch, kFlight, kFault, false}, 0.1);
+  EXPECT_EQ(book_->breakdown(), "") << "whatever its words are";
+  EXPECT_EQ(dispatcher_.RefusalByAll(kFlight), kFault);
+}
+
+// A process that ends with a fault of its own is a crash to its parent. It flies for two campaigns.
+TEST_F(DispatcherTest, AnEngineFaultBlamesNoCaseOfAnyCampaign) {
+  const std::string other_flight(64, 'e');
+  auto store = std::make_unique<MemoryStore>();
+  CampaignBook other(MadeUp(other_flight, 1), std::move(store), {.attempt_base = 1000});
+  Open(1);
+  dispatcher_.BeginCampaign(other);
+  JoinSupervised();
+  std::vector<StartedCase> started;
+  for (const FlyOrder& order : Tick(0.0).assignments) {
+    dispatcher_.On("s", Report{"w", kEpoch, 0, order.flight_id, {}, {{0, order.attempt}}}, 0.1);
+    started.push_back({0, order.attempt});
+  }
+  ASSERT_THAT(started, testing::SizeIs(2));
+  dispatcher_.On("s", CampaignRefusal{"w", kEpoch, kFlight, kFault, true}, 0.2);
+  dispatcher_.WorkerEnded("w", WorkerEnd::kCrashed, "exit code 1", 0.3);
+  dispatcher_.Tick(1.0);
+  EXPECT_EQ(dispatcher_.joined(), 0u);
+  dispatcher_.On("n", Status("n"), 1.1);
+  EXPECT_THAT(Tick(1.1, "n").assignments, testing::SizeIs(2))
+      << "suspects would fly alone, one after the other";
+  EXPECT_EQ(other.breakdown(), "");
+  dispatcher_.EndCampaign(other_flight);
+}
+
+TEST_F(DispatcherTest, ARuleThatBreaksInOneBookEndsItsCampaignAlone) {
+  const std::string other_flight(64, 'e');
+  CampaignBook other(MadeUp(other_flight, 1), std::make_unique<MemoryStore>(), {.attempt_base = 1000});
+  Open(1);
+  dispatcher_.BeginCampaign(other);
+  dispatcher_.On("s", Status(), 5.0);
+  for (const FlyOrder& order : Tick(5.0).assignments)
+    dispatcher_.On("s", Report{"w", kEpoch, 0, order.flight_id, {}, {{0, order.attempt}}}, 5.0);
+  Fly(1, 0, 4.0);  // before it was begun
+  EXPECT_THAT(book_->breakdown(), testing::StartsWith("engine fault: services/ledger/ledger.cc:"));
+  EXPECT_THAT(book_->breakdown(), testing::EndsWith("duration_s >= 0.0 does not hold, duration_s: -1"));
+  EXPECT_EQ(other.breakdown(), "");
+  dispatcher_.On("s", Report{"w", kEpoch, 2, other_flight, {{1001, ResultOf(0)}}, {}}, 6.0);
+  EXPECT_TRUE(other.Complete());
+  dispatcher_.EndCampaign(other_flight);
 }
 
 TEST_F(DispatcherTest, AWorkerThatRefusedACampaignGetsNoCaseOfIt) {

@@ -163,6 +163,17 @@ TEST_F(FlightDeskTest, ACampaignThatDoesNotLoadIsRefusedEachTime) {
   EXPECT_THAT(desk_.Tick(2.1).refusals, SizeIs(1));
 }
 
+TEST_F(FlightDeskTest, AFaultOfTheProgramIsSaidAsSuch) {
+  const std::string other(64, 'e');
+  desk_.On(Say({{kFlight, 3, {10}}, {other, 4, {10}}}), 0.0);
+  desk_.Loaded(kFlight, nullptr, "engine fault: core/a.cc:1: x does not hold", true);
+  desk_.Loaded(other, nullptr, "line 1: bad");
+  std::map<std::string, bool> faults;
+  for (const CampaignRefusal& refusal : desk_.Tick(0.1).refusals)
+    faults[refusal.flight_id] = refusal.engine_fault;
+  EXPECT_EQ(faults, (std::map<std::string, bool>{{kFlight, true}, {other, false}}));
+}
+
 TEST_F(FlightDeskTest, WithoutAWordTheConnectionIsMadeAnewEverMoreSeldom) {
   std::vector<double> anew;
   for (double now_s = 0.0; now_s < 100.0; now_s += 0.5) {

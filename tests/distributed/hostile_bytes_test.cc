@@ -97,7 +97,7 @@ TEST(HostileBytes, EveryDecoderSurvivesDamagedSamples) {
   Fuzz<idl::WorkerStatusV2PubSubType>(ToIdl(SampleStatus()));
   Fuzz<idl::TextRequestV1PubSubType>(ToIdl(TextRequest{"w", "f", 3}));
   Fuzz<idl::TextV1PubSubType>(ToIdl(TextPart{"w", "f", "n", "e", 9, 2, "bytes"}));
-  Fuzz<idl::CampaignRefusalV1PubSubType>(ToIdl(CampaignRefusal{"w", 1, "f", "r"}));
+  Fuzz<idl::CampaignRefusalV2PubSubType>(ToIdl(CampaignRefusal{"w", 1, "f", "r"}));
   Fuzz<idl::ProgressV1PubSubType>(ToIdl(CampaignProgress{1, "i", "f", "n", "s", 2, 3, 4, 5, 6}));
   Fuzz<idl::RequestV1PubSubType>(ToIdl(Request{"c", 1, "list", "{}", "data"}));
   Fuzz<idl::ReplyV1PubSubType>(ToIdl(Reply{"c", 1, 0, "{}", "data"}));

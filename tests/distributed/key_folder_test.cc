@@ -347,7 +347,7 @@ TEST(Permissions, EachRoleMayWhatItNeeds) {
   };
   const std::string t = " dispersa/";
   EXPECT_EQ(rules(Role::kWorker), "publish" + t + "WorkerStatusV2" + t + "ReportV3" + t + "TextRequestV1" +
-                                      t + "CampaignRefusalV1 in wnode1_*\nsubscribe" + t + "OrdersV1" + t +
+                                      t + "CampaignRefusalV2 in wnode1_*\nsubscribe" + t + "OrdersV1" + t +
                                       "TextV1 in wnode1_*\n");
   EXPECT_EQ(rules(Role::kClient), "publish" + t + "RequestV1 in w_read_node1_*\nsubscribe" + t +
                                       "ReplyV1 in w_read_node1_*\nsubscribe" + t + "ProgressV1" + t +
@@ -356,7 +356,7 @@ TEST(Permissions, EachRoleMayWhatItNeeds) {
   EXPECT_EQ(rules(Role::kCoordinator), "publish" + t + "ProgressV1" + t + "ResultV2 in \npublish" + t +
                                            "OrdersV1" + t + "TextV1" + t + "ReplyV1 in w*\nsubscribe" + t +
                                            "WorkerStatusV2" + t + "ReportV3" + t + "TextRequestV1" + t +
-                                           "CampaignRefusalV1" + t + "RequestV1 in *\npublish" + t +
+                                           "CampaignRefusalV2" + t + "RequestV1 in *\npublish" + t +
                                            "RequestV1 in wnode1_*\nsubscribe" + t + "ReplyV1 in wnode1_*\n");
 }
 

@@ -147,13 +147,14 @@ TEST_F(Transport, CarriesWhatAWorkerSaysToTheLastBit) {
   EXPECT_EQ(request->offset, 17u);
 
   const auto refusal = AwaitFrom<CampaignRefusal>(coordinator, [&] {
-    worker->Send(CampaignRefusal{"u1", 99, kFlight, "cannot"});
+    worker->Send(CampaignRefusal{"u1", 99, kFlight, "cannot", true});
   });
   ASSERT_TRUE(refusal);
   EXPECT_EQ(refusal->worker, "u1");
   EXPECT_EQ(refusal->coordinator_epoch, 99u);
   EXPECT_EQ(refusal->flight_id, kFlight);
   EXPECT_EQ(refusal->reason, "cannot");
+  EXPECT_TRUE(refusal->engine_fault);
 }
 
 TEST_F(Transport, OrdersReachOnlyTheWorkerTheyAreMeantFor) {

@@ -357,6 +357,28 @@ TEST(Ledger, ACaseThatWasFlownIsNoSuspectAnyMore) {
   EXPECT_EQ(ledger.Progress().quarantined, 1u);
 }
 
+// The result of one worker came late, when another one flew the case already. Then the first one is expelled.
+TEST(Ledger, ACaseThatSomebodyFliesIsNotWaitingWhenItsResultIsRemoved) {
+  Ledger ledger("1", 1);
+  ledger.Join("late", kHello, 0.0);
+  const auto first = ledger.Assign(0.0);
+  ASSERT_THAT(first, SizeIs(1));
+  ledger.Expire(100.0);
+  ledger.Join("b", kHello, 100.0);
+  const auto second = ledger.Assign(100.0);
+  ASSERT_THAT(second, SizeIs(1));
+  EXPECT_EQ(second[0].worker, "b");
+  EXPECT_EQ(ledger.Finished("late", 0, first[0].attempt, ResultOf(0), 101.0), Acceptance::kAccepted);
+  ledger.Lost("late", WorkerEnd::kKilled, "expelled");
+  ledger.Reopen({0});
+  EXPECT_EQ(ledger.Progress().waiting, 0u);
+  EXPECT_EQ(ledger.Progress().assigned, 1u);
+  EXPECT_THAT(ledger.Assign(102.0), testing::IsEmpty());
+  EXPECT_EQ(ledger.Batches("b"), 1u);
+  ledger.Lost("b", WorkerEnd::kLeft, "it left");
+  EXPECT_EQ(ledger.Progress().waiting, 1u) << "nobody flies it any more";
+}
+
 TEST(Ledger, AssignmentsOfOtherCampaignsCountAsCredits) {
   Ledger ledger("1", 3, {.side_by_side = 1});
   ledger.Join("w", kHello, 0.0);  // two credits

@@ -24,12 +24,11 @@ TEST(Assertion, SaysWhereAndByWhichValuesItIsBroken) {
   const double part = 0.25;
   EXPECT_EQ(Said([&] { DISPERSA_ASSERT(n == 3 && part < 1.0, n, part); }), "nothing");
   const std::string with = Said([&] { DISPERSA_ASSERT(n < 3, n, part); });
-  EXPECT_TRUE(IsEngineFault(with)) << with;
+  EXPECT_TRUE(with.starts_with("engine fault: ")) << with;
   EXPECT_TRUE(with.ends_with("math_assertion_test.cc:" + std::to_string(__LINE__ - 2) +
                              ": n < 3 does not hold, n, part: 3 0.25"))
       << with;
   EXPECT_TRUE(Said([&] { DISPERSA_ASSERT(n < 3); }).ends_with(": n < 3 does not hold"));
-  EXPECT_FALSE(IsEngineFault("the control law is not deterministic"));
 }
 
 TEST(Assertion, RulesOfTheLibraryRunInTheReleaseBuild) {

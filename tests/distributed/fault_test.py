@@ -1,0 +1,87 @@
+"""Workers in which a rule of the program breaks: what they hold is flown by others, and a second one ends the campaign.
+
+Environment as of processes.py; DISPERSA_FAULTY_WORKER: dispersa-worker with such a fault in one campaign.
+"""
+import json
+import os
+import pathlib
+import shutil
+import subprocess
+
+from processes import BINARIES, CAMPAIGN, PATIENCE_S, Run, main, wait_for
+from service_case import ServiceCase
+
+FAULT = "tests/tools/faulty_worker.cc:"
+FAULTY = os.environ["DISPERSA_FAULTY_WORKER"]
+CASES = 40
+
+
+class FaultTest(ServiceCase):
+    DOMAIN = "54"
+
+    def campaign(self, name):
+        """A file of the campaign under another name."""
+        text = pathlib.Path(CAMPAIGN).read_text().replace("name: smoke\n", f"name: {name}\n")
+        for kind in ("vehicles", "references", "autopilots"):
+            text = text.replace(f": {kind}/", f": {pathlib.Path(CAMPAIGN).parent}/{kind}/")
+        file = self.root / f"{name}.yaml"
+        file.write_text(text)
+        return file
+
+    def launch_both(self):
+        self.start_coordinator()
+        return [self.dispersa("launch", self.campaign(name), "--cases", CASES, "--seed", seed).strip()
+                for seed, name in enumerate(("flawed", "sound"), 1)]
+
+    def fly_faulty(self):
+        """A worker with the fault, until it has ended."""
+        worker = self.start(FAULTY, env={**os.environ, "DISPERSA_FAULTY_CAMPAIGN": "flawed"})
+        self.assertEqual(worker.wait(timeout=PATIENCE_S), 1)
+
+    def log_text(self):
+        return self.log.read_text()
+
+    def test_the_cases_of_the_first_one_are_flown_by_others(self):
+        flawed, sound = self.launch_both()
+        self.fly_faulty()
+        self.assertIn(FAULT, self.log_text())
+        self.assertIn("leaves with a fault of its own in the campaign flawed: engine fault: ", self.log_text())
+        self.assertEqual(self.status(flawed)["state"], "flying")
+        self.start_worker()
+        for identity, name, seed in ((flawed, "flawed", 1), (sound, "sound", 2)):
+            reference = Run(self.root / name, "--workers", 0, "--cases", CASES, "--seed", seed,
+                            campaign=self.campaign(name)).finish()
+            self.dispersa("watch", identity, code=reference.code)
+            self.assertEqual(self.status(identity)["quarantined"], 0)
+            self.assert_same_folder(identity, reference)
+
+    def test_a_second_one_ends_that_campaign_alone(self):
+        flawed, sound = self.launch_both()
+        self.fly_faulty()
+        self.fly_faulty()
+        wait_for(lambda: self.status(flawed)["state"] == "failed", "the end of the campaign")
+        self.assertEqual(self.status(flawed)["quarantined"], 0)
+        self.assertRegex(json.dumps(self.status(flawed)), "engine fault: .*faulty_worker.cc:.*does not hold")
+        self.dispersa("watch", flawed, code=1)
+        self.assertIn(self.status(sound)["state"], ("flying", "reporting", "done"))
+        self.start_worker()
+        self.dispersa("watch", sound)
+        self.assertEqual(self.status(sound)["done"], CASES)
+
+    def test_a_run_replaces_the_first_one_and_ends_with_the_second(self):
+        programs = self.data / "bin"
+        programs.mkdir()
+        shutil.copy(BINARIES / "dispersa", programs / "dispersa")
+        shutil.copy(FAULTY, programs / "dispersa-worker")
+        done = subprocess.run([programs / "dispersa", "run", self.campaign("flawed"), "--workers", "1", "--out",
+                               self.data / "out"], capture_output=True, text=True, timeout=PATIENCE_S,
+                              env={**os.environ, "DISPERSA_FAULTY_CAMPAIGN": "flawed"})
+        self.assertEqual(done.returncode, 5, done.stderr)
+        self.assertIn(FAULT, done.stderr)
+        workers = json.loads((self.data / "out/execution.json").read_text())["workers"]
+        self.assertEqual(len(workers), 2, done.stderr)
+        self.assertEqual(workers[0]["end"], "exit code 1")
+
+
+if __name__ == "__main__":
+    main()
