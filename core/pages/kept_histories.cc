@@ -2,7 +2,6 @@
 
 #include <fmt/format.h>
 
-#include <charconv>
 #include <fstream>
 #include <map>
 #include <nlohmann/json.hpp>
@@ -10,8 +9,10 @@
 #include <string_view>
 
 #include "core/flight/engine_version.h"
+#include "core/math/assertion.h"
 #include "core/results/fingerprint.h"
 #include "core/results/gzip.h"
+#include "core/results/number_csv.h"
 #include "core/results/output_file.h"
 #include "core/statistics/summary.h"
 
@@ -35,24 +36,11 @@ std::vector<std::string> FilesOf(const HistoryFlights& flights) {
   return files;
 }
 
-/// A CSV file of numbers, as HistoryCsv and BandsCsv write it: its rows behind the header. An empty cell is
-/// undefined.
-std::vector<std::vector<double>> Numbers(std::string_view csv) {
-  std::vector<std::vector<double>> rows;
-  std::size_t at = csv.find('\n') + 1;
-  while (at < csv.size()) {
-    std::vector<double>& row = rows.emplace_back();
-    bool is_last = false;
-    while (!is_last) {
-      const std::size_t end = csv.find_first_of(",\n", at);
-      double value = kUndefined;
-      std::from_chars(csv.data() + at, csv.data() + end, value);
-      row.push_back(value);
-      is_last = csv[end] == '\n';
-      at = end + 1;
-    }
-  }
-  return rows;
+/// The rows of a file as HistoryCsv and BandsCsv write it.
+std::vector<std::vector<double>> RowsOf(std::string_view csv) {
+  std::optional<NumberCsv> table = ReadNumberCsv(csv);
+  DISPERSA_ASSERT(table.has_value(), csv.size());
+  return std::move(table->rows);
 }
 
 std::vector<fs::path> Others(const fs::path& directory, const std::map<std::string, std::string>& files) {
@@ -74,7 +62,7 @@ FlightBands BandsIn(std::string_view csv, const std::vector<int>& columns, doubl
   bands.step_s = step_s;
   for (const int column : columns)
     bands.bands.push_back({.column = HistoryColumns()[static_cast<std::size_t>(column)]});
-  for (const std::vector<double>& row : Numbers(csv)) {
+  for (const std::vector<double>& row : RowsOf(csv)) {
     std::size_t at = 0;
     bands.time_s.push_back(row[at++]);
     bands.flying.push_back(static_cast<std::size_t>(row[at++]));
@@ -88,7 +76,7 @@ FlightBands BandsIn(std::string_view csv, const std::vector<int>& columns, doubl
 History HistoryIn(std::string_view csv, const AutopilotConfig& autopilot) {
   const std::vector<int> columns = HistoryColumnsUnder(autopilot);
   History history;
-  for (const std::vector<double>& row : Numbers(csv)) {
+  for (const std::vector<double>& row : RowsOf(csv)) {
     const std::size_t begin = history.values.size();
     history.values.resize(begin + HistoryColumns().size(), kUndefined);
     for (std::size_t i = 0; i < columns.size(); ++i)

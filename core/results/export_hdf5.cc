@@ -4,7 +4,11 @@
 #include <cerrno>
 #include <cstdint>
 #include <filesystem>
+#include <fstream>
+#include <optional>
+#include <sstream>
 #include <string>
+#include <string_view>
 #include <system_error>
 #include <utility>
 #include <vector>
@@ -15,7 +19,9 @@
 #include "core/results/case_columns.h"
 #include "core/results/export.h"
 #include "core/results/file_system.h"
+#include "core/results/gzip.h"
 #include "core/results/metric_catalogue.h"
+#include "core/results/number_csv.h"
 #include "core/results/result_error.h"
 
 namespace dispersa {
@@ -117,6 +123,129 @@ class Hdf5File {
   Handle group_creation_;
 };
 
+void WriteColumn(Hdf5File& output, const std::string& path, const std::string& unit,
+                 const std::vector<double>& values) {
+  output.Numbers(path, values);
+  output.Attribute(path, "unit", unit);
+}
+
+void WriteProvenance(Hdf5File& output, const ResultFolder& folder, const std::string& incomplete) {
+  output.Attribute("/", "schema", "dispersa/hdf5/1");
+  for (const char* key : {"name", "campaign_id", "flight_id", "engine", "seed", "cases", "sampling"})
+    output.Attribute("/", key, folder.Provenance(key));
+  if (!incomplete.empty()) output.Attribute("/", "incomplete", incomplete);
+}
+
+/// What a case has beside inputs and metrics.
+struct CaseOutcomes {
+  std::vector<double> end_time_s;
+  std::vector<std::uint64_t> end_stage;
+  std::vector<std::string> outcome, reason, digest;
+
+  void Add(const CaseResult& result) {
+    outcome.push_back(OutcomeName(result.outcome));
+    end_time_s.push_back(result.end_time_s);
+    end_stage.push_back(static_cast<std::uint64_t>(result.end_stage));
+    reason.push_back(result.reason);
+    digest.push_back(result.digest.Hex());
+  }
+};
+
+void WriteCases(Hdf5File& output, const std::vector<std::uint64_t>& index, const CaseOutcomes& outcomes) {
+  output.Group("/cases");
+  output.Integers("/cases/case_index", index);
+  output.Texts("/cases/outcome", outcomes.outcome);
+  output.Numbers("/cases/end_time_s", outcomes.end_time_s);
+  output.Integers("/cases/end_stage", outcomes.end_stage);
+  output.Texts("/cases/reason", outcomes.reason);
+  output.Texts("/cases/digest", outcomes.digest);
+}
+
+void WriteInputs(Hdf5File& output, const ResultFolder& folder, const CaseColumns& cases) {
+  output.Group("/inputs");
+  for (const std::size_t i : folder.inputs().positions()) {
+    const std::string path = "/inputs/" + InputColumns()[i].name;
+    WriteColumn(output, path, SplitUnit(InputColumns()[i].name).unit, cases.inputs[i].Values());
+    output.Attribute(path, "key", InputKey(static_cast<int>(i)));
+  }
+  output.Group("/nominal");
+  std::vector<std::string> names, units, keys;
+  std::vector<double> constants;
+  for (const std::size_t i : folder.inputs().constants()) {
+    names.push_back(InputColumns()[i].name);
+    units.push_back(SplitUnit(names.back()).unit);
+    keys.push_back(InputKey(static_cast<int>(i)));
+    constants.push_back(folder.inputs().constant(i));
+  }
+  output.Texts("/nominal/input", names);
+  output.Numbers("/nominal/value", constants);
+  output.Texts("/nominal/unit", units);
+  output.Texts("/nominal/key", keys);
+}
+
+void WriteMetrics(Hdf5File& output, const ResultFolder& folder, const CaseColumns& cases) {
+  output.Group("/metrics");
+  for (const std::size_t i : folder.metrics()) {
+    const std::string& name = folder.metric_list().NameAt(i);
+    const MetricInfo info = DescribeMetric(name);
+    const std::string path = "/metrics/" + name;
+    WriteColumn(output, path, info.unit, cases.metrics[i].Values());
+    output.Attribute(path, "group", info.group);
+    output.Attribute(path, "label", info.title);
+    if (!info.over.empty()) output.Attribute(path, "defined_over", info.over);
+  }
+}
+
+constexpr std::string_view kHistoryEnding = ".csv.gz";
+
+/// Those of the folder's report, if it has written any.
+std::vector<std::filesystem::path> HistoryFiles(const ResultFolder& folder) {
+  std::vector<std::filesystem::path> files;
+  std::error_code error;
+  for (std::filesystem::directory_iterator entry(folder.directory() / "histories", error), end;
+       !error && entry != end; entry.increment(error))
+    if (entry->path().filename().string().ends_with(kHistoryEnding)) files.push_back(entry->path());
+  std::sort(files.begin(), files.end());
+  return files;
+}
+
+NumberCsv ReadHistory(const std::filesystem::path& file) {
+  std::ostringstream bytes;
+  const std::ifstream stream(file, std::ios::binary);
+  if (!stream) FailFile(file.string(), "cannot be read", errno);
+  bytes << stream.rdbuf();
+  const std::optional<std::string> text = Gunzip(std::move(bytes).str());
+  std::optional<NumberCsv> table = text ? ReadNumberCsv(*text) : std::nullopt;
+  if (!table) {
+    throw ResultError(ResultError::Kind::kFile,
+                      file.string() + ": no history, or damaged; `dispersa report` writes it anew");
+  }
+  return *std::move(table);
+}
+
+/// A column of bands ends in its statistic: altitude_m_p50.
+std::string HistoryUnit(const std::string& column) {
+  const std::string unit = SplitUnit(column).unit;
+  return unit.empty() ? SplitUnit(column.substr(0, column.rfind('_'))).unit : unit;
+}
+
+void WriteHistories(Hdf5File& output, const ResultFolder& folder) {
+  const std::vector<std::filesystem::path> files = HistoryFiles(folder);
+  if (files.empty()) return;
+  output.Group("/histories");
+  for (const std::filesystem::path& file : files) {
+    const std::string name = file.filename().string();
+    const std::string group = "/histories/" + name.substr(0, name.size() - kHistoryEnding.size());
+    const NumberCsv table = ReadHistory(file);
+    output.Group(group.c_str());
+    std::vector<double> values(table.rows.size());
+    for (std::size_t i = 0; i < table.columns.size(); ++i) {
+      for (std::size_t row = 0; row < values.size(); ++row) values[row] = table.rows[row][i];
+      WriteColumn(output, group + "/" + table.columns[i], HistoryUnit(table.columns[i]), values);
+    }
+  }
+}
+
 }  // namespace
 
 void ExportHdf5(const ResultFolder& folder, const std::filesystem::path& file,
@@ -124,17 +253,9 @@ void ExportHdf5(const ResultFolder& folder, const std::filesystem::path& file,
   H5dont_atexit();  // after a full disk the library's last rites end the process with SIGSEGV
   H5Eset_auto2(H5E_DEFAULT, nullptr, nullptr);  // what goes wrong is thrown, not printed
   const std::vector<std::size_t>& in_rows = folder.inputs().positions();
-  std::vector<double> end_time_s;
-  std::vector<std::uint64_t> end_stage;
-  std::vector<std::string> outcome, reason, digest;
-  const CaseColumns cases =
-      ReadColumns(folder, {in_rows.begin(), in_rows.end()}, [&](const CaseResult& result) {
-        outcome.push_back(OutcomeName(result.outcome));
-        end_time_s.push_back(result.end_time_s);
-        end_stage.push_back(static_cast<std::uint64_t>(result.end_stage));
-        reason.push_back(result.reason);
-        digest.push_back(result.digest.Hex());
-      });
+  CaseOutcomes outcomes;
+  const CaseColumns cases = ReadColumns(folder, {in_rows.begin(), in_rows.end()},
+                                        [&](const CaseResult& result) { outcomes.Add(result); });
 
   const std::filesystem::path temporary = file.string() + ".tmp";
   std::error_code ignored;
@@ -142,50 +263,11 @@ void ExportHdf5(const ResultFolder& folder, const std::filesystem::path& file,
   try {
     {
       Hdf5File output(temporary);
-      output.Attribute("/", "schema", "dispersa/hdf5/1");
-      for (const char* key : {"name", "campaign_id", "flight_id", "engine", "seed", "cases", "sampling"})
-        output.Attribute("/", key, folder.Provenance(key));
-      if (!incomplete.empty()) output.Attribute("/", "incomplete", incomplete);
-      output.Group("/cases");
-      output.Integers("/cases/case_index", cases.index);
-      output.Texts("/cases/outcome", outcome);
-      output.Numbers("/cases/end_time_s", end_time_s);
-      output.Integers("/cases/end_stage", end_stage);
-      output.Texts("/cases/reason", reason);
-      output.Texts("/cases/digest", digest);
-      const auto column = [&](const std::string& path, const std::string& unit, const CaseColumn& values) {
-        output.Numbers(path, values.Values());
-        output.Attribute(path, "unit", unit);
-      };
-      output.Group("/inputs");
-      for (const std::size_t i : in_rows) {
-        const std::string path = "/inputs/" + InputColumns()[i].name;
-        column(path, SplitUnit(InputColumns()[i].name).unit, cases.inputs[i]);
-        output.Attribute(path, "key", InputKey(static_cast<int>(i)));
-      }
-      output.Group("/nominal");
-      std::vector<std::string> names, units, keys;
-      std::vector<double> constants;
-      for (const std::size_t i : folder.inputs().constants()) {
-        names.push_back(InputColumns()[i].name);
-        units.push_back(SplitUnit(names.back()).unit);
-        keys.push_back(InputKey(static_cast<int>(i)));
-        constants.push_back(folder.inputs().constant(i));
-      }
-      output.Texts("/nominal/input", names);
-      output.Numbers("/nominal/value", constants);
-      output.Texts("/nominal/unit", units);
-      output.Texts("/nominal/key", keys);
-      output.Group("/metrics");
-      for (const std::size_t i : folder.metrics()) {
-        const std::string& name = folder.metric_list().NameAt(i);
-        const MetricInfo info = DescribeMetric(name);
-        const std::string path = "/metrics/" + name;
-        column(path, info.unit, cases.metrics[i]);
-        output.Attribute(path, "group", info.group);
-        output.Attribute(path, "label", info.title);
-        if (!info.over.empty()) output.Attribute(path, "defined_over", info.over);
-      }
+      WriteProvenance(output, folder, incomplete);
+      WriteCases(output, cases.index, outcomes);
+      WriteInputs(output, folder, cases);
+      WriteMetrics(output, folder, cases);
+      WriteHistories(output, folder);
       output.Close();
     }
     std::filesystem::rename(temporary, file);

@@ -106,10 +106,11 @@ void AddExportCommand(CLI::App& app, Invocation& invocation) {
       {"csv", ExportFormat::kCsv},         {"geojson", ExportFormat::kGeoJson}, {"hdf5", ExportFormat::kHdf5},
       {"jsonl", ExportFormat::kJsonLines}, {"junit", ExportFormat::kJUnit},     {"kml", ExportFormat::kKml}};
   command
-      ->add_option("--format", options->format,
-                   "csv or jsonl: one line for each case; hdf5: one dataset for each column; junit: a test "
-                   "case for each requirement; geojson or kml: impact points of spent stages and lost "
-                   "flights, whose cases are flown again, and footprints")
+      ->add_option(
+          "--format", options->format,
+          "csv or jsonl: one line for each case; hdf5: one dataset for each column, also of histories; "
+          "junit: a test case for each requirement; geojson or kml: impact points of spent stages and lost "
+          "flights, whose cases are flown again, and footprints")
       ->required()
       ->transform(CLI::CheckedTransformer(formats).description(CLI::detail::generate_map(formats, true)));
   const std::map<std::string, bool> columns = {{"all", false}, {"varying", true}};

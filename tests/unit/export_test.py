@@ -3,6 +3,7 @@
 DISPERSA_BINARIES and DISPERSA_CAMPAIGNS name the folders of the programs and of the campaigns.
 """
 import csv
+import gzip
 import json
 import os
 import pathlib
@@ -364,6 +365,62 @@ with h5py.File(sys.argv[1]) as file:
         self.assertEqual(done.returncode, 2)
         self.assertEqual(done.stderr, f"--out: {self.folder / 'none' / 'results.h5'} cannot be written: there is no folder "
                                       f"{self.folder / 'none'}, allowed: a file in a folder that exists\n")
+
+    def test_without_histories_it_has_none(self):
+        done = run(DEBIAN_PYTHON, "-I", "-c", "import h5py, sys; print(sorted(h5py.File(sys.argv[1])))", self.file)
+        self.assertEqual(done.stdout, "['cases', 'inputs', 'metrics', 'nominal']\n", done.stderr)
+
+
+class Hdf5Histories(unittest.TestCase):
+    @classmethod
+    def setUpClass(cls):
+        cls.folder = pathlib.Path(tempfile.mkdtemp(prefix="dispersa-export-"))
+        cls.addClassCleanup(shutil.rmtree, cls.folder)
+        cls.results = cls.folder / "results"
+        done = dispersa("run", CAMPAIGNS / "smoke.yaml", "--workers", "0", "--quiet", "--out", cls.results)
+        assert done.returncode == 0, done.stderr
+
+    def export(self):
+        return dispersa("export", self.results, "--format", "hdf5", "--out", self.folder / "results.h5")
+
+    def test_every_written_history_is_there(self):
+        done = self.export()
+        self.assertEqual(done.returncode, 0, done.stderr)
+        script = """
+import h5py, json, math, sys
+with h5py.File(sys.argv[1]) as file:
+    print(json.dumps({history: {name: [None if math.isnan(value) else value for value in data[:]] for name, data in columns.items()}
+                      for history, columns in file["histories"].items()}))
+    print(json.dumps([file["histories"][path].attrs["unit"].decode() for path in
+                      ("nominal/altitude_m", "nominal/mach", "bands/altitude_m_p50", "bands/flights")]))
+"""
+        done = run(DEBIAN_PYTHON, "-I", "-c", script, self.folder / "results.h5")
+        self.assertEqual(done.returncode, 0, done.stderr)
+        read, units = map(json.loads, done.stdout.splitlines())
+        self.assertEqual(units, ["m", "", "m", ""])
+        files = {file.name.removesuffix(".csv.gz"): file for file in (self.results / "histories").glob("*.csv.gz")}
+        self.assertEqual(set(read), set(files))
+        self.assertGreaterEqual(len(files), 4, "nominal, bands and two cases")
+        for history, file in files.items():
+            with gzip.open(file, "rt", newline="") as stream:
+                rows = list(csv.DictReader(stream))
+            self.assertEqual(set(read[history]), set(rows[0]))
+            for name in rows[0]:
+                self.assertEqual(read[history][name], [float(row[name]) if row[name] else None for row in rows],
+                                 f"{history} {name}")
+
+    def test_a_damaged_history_is_named(self):
+        history = self.results / "histories" / "nominal.csv.gz"
+        whole = history.read_bytes()
+        try:
+            for damaged in (whole[:-9], gzip.compress(b"time_s,mach\n0,1\n1\n"), gzip.compress(b"time_s\nx\n")):
+                history.write_bytes(damaged)
+                done = self.export()
+                self.assertEqual(done.returncode, 1)
+                self.assertIn(f"{history}: no history, or damaged; `dispersa report` writes it anew", done.stderr)
+                self.assertFalse((self.folder / "results.h5.tmp").exists())
+        finally:
+            history.write_bytes(whole)
 
 
 if __name__ == "__main__":
