@@ -172,8 +172,7 @@ double PutScoutsFirst(const std::vector<Moments>& family, std::vector<std::size_
 }  // namespace
 
 LoadStations ChooseLoadStations(const Vehicle& vehicle, int stage, std::size_t most) {
-  DISPERSA_ASSERT(!vehicle.profile.empty() && (stage > 0 || vehicle.boosters.count == 0), stage,
-                  vehicle.boosters.count);
+  DISPERSA_ASSERT(!vehicle.profile.empty(), stage);
   DISPERSA_ASSERT(most > 0);
   const Stage& lowest = vehicle.stages[static_cast<std::size_t>(stage)];
   const std::vector<double> stations = Candidates(BuildBeamMasses(vehicle, stage, lowest.propellant_mass_kg),

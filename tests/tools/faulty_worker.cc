@@ -1,5 +1,6 @@
-// dispersa-worker in which a rule of the program breaks: in each first flight of the campaign that the variable
-// DISPERSA_FAULTY_CAMPAIGN names. The linker puts these functions in the place of CampaignFlights' own (--wrap).
+// dispersa-worker in which a rule of the program breaks: in each first flight of the campaign that the
+// variable DISPERSA_FAULTY_CAMPAIGN names. The linker puts these functions in the place of CampaignFlights'
+// own (--wrap).
 #include <cstdlib>
 #include <mutex>
 #include <set>

@@ -34,7 +34,8 @@ TEST(NumberCsv, MayHaveNoRows) {
 }
 
 TEST(NumberCsv, AnythingElseIsNone) {
-  for (const char* text : {"", "a", "a,b\n1,2", "a,b\n1\n", "a,b\n1,2,3\n", "a\nx\n", "a\n1x\n", "a,\n1,2\n", "\n"})
+  for (const char* text :
+       {"", "a", "a,b\n1,2", "a,b\n1\n", "a,b\n1,2,3\n", "a\nx\n", "a\n1x\n", "a,\n1,2\n", "\n"})
     EXPECT_FALSE(ReadNumberCsv(text)) << text;
 }
 
