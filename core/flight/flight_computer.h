@@ -1,9 +1,10 @@
 // The flight computer of W flights side by side (core/math/lanes.h): what sensors show goes in, commands to
-// actuators and thrusters come out, and events that it decides: cut-offs, jettisons, a new reference.
+// actuators and thrusters come out, and events that it decides: cut-offs, and those that guidance moves.
 //
 // Behind it stand alike the control laws (core/control), plug-ins, closed-loop guidance and the reaction
-// control. It knows the plant only through what sensors show and through the stage's configuration. A command
-// goes to the actuators through a line of delays (delay_line.h).
+// control. Of the plant it reads the stage's configuration and its time of ignition. Cut-offs see the true
+// speed, and guidance the true state, to which it adds errors of its own (guided_flight.h). Jettisons are the
+// record's decision. A command goes to the actuators through a line of delays (delay_line.h).
 #pragma once
 
 #include "core/control/autopilot_step.h"
