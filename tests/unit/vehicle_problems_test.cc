@@ -161,7 +161,7 @@ INSTANTIATE_TEST_SUITE_P(
             "LimitOfSectionsThatTheVehicleHasNot",
             [](Vehicle& v) { v.limits.bending_moment_n_m = 1e5; },
             {"limits.bending_moment_n_m: has no sections to hold for: the vehicle has no profile | a limit "
-             "of a vehicle with a profile and without boosters"}},
+             "of a vehicle with a profile"}},
         Mistake{"OneTableForTwoStacks",
                 [](Vehicle& v) { v.aerodynamics.pop_back(); },
                 {"aerodynamics.tables: has 1 tables | one table for each of the 2 stacks"}}),
