@@ -198,7 +198,8 @@ constexpr Row kRows[] = {
      "burnouts included",
      kLarger, [](const Measured& m) { return Largest(m.sums.lateral_load_max_g); }},
     {"bending_moment_max", kNewtonMetres, "max M", kLoads, "Bending moment, maximum",
-     "largest at the cross-sections where it can be largest (0.1 %), from inertia and flow ahead of them, "
+     "largest at the cross-sections where it can be largest (to 0.1 %, beside boosters 1.3 %), from inertia "
+     "and flow ahead of them, "
      "with bending; outside the coast",
      kLarger,
      [](const Measured& m) {
