@@ -623,11 +623,12 @@ TEST_F(DispatcherTest, AnEngineFaultOfASecondWorkerEndsTheCampaign) {
 
 TEST_F(DispatcherTest, OnlyAWorkerThatSaysSoHasAFault) {
   Open(2);
-  for (const char* worker : {"a", "b"}) dispatcher_.On(worker, Status(worker), 0.0);
+  for (const char* worker : {"a", "b", "c"}) dispatcher_.On(worker, Status(worker), 0.0);
+  dispatcher_.On("c", CampaignRefusal{"c", kEpoch, kFlight, "engine fault: another", true}, 0.1);
   for (const char* worker : {"a", "b"})
     dispatcher_.On(worker, CampaignRefusal{worker, kEpoch, kFlight, kFault, false}, 0.1);
   EXPECT_EQ(book_->breakdown(), "") << "whatever its words are";
-  EXPECT_EQ(dispatcher_.RefusalByAll(kFlight), kFault);
+  EXPECT_EQ(dispatcher_.RefusalByAll(kFlight), kFault) << "of those that stay";
 }
 
 // A process that ends with a fault of its own is a crash to its parent. It flies for two campaigns.
