@@ -134,7 +134,7 @@ TEST(MeasuredAir, GoesWithADispersionOfDensity) {
   for (double& density : thick.wind_table->density_kg_m3) density *= 1.1;
   for (double& pressure : thick.wind_table->pressure_pa) pressure *= 1.1;
   FlightInputs dense;
-  dense.density_factor = 1.1;
+  dense.air.density_factor = 1.1;
   EXPECT_LT(Apart(FlyOne(thick), FlyOne(plain, dense), "inertial_velocity_m_s"), 1e-6);
   EXPECT_GT(Apart(FlyOne(thick), FlyOne(plain), "inertial_velocity_m_s"), 1.0);
 
