@@ -14,7 +14,9 @@ void Batch<T>::Pass() {
   lanes_.at.next_tick = Select(lanes_.at.live, lanes_.at.tick + T(1.0), lanes_.at.tick);
   Measure();
   const M powered = Powered();
-  if (Any(powered)) lanes_.computer.Steer(powered, lanes_.at, lanes_.sensed, lanes_.step);
+  if (Any(powered) && lanes_.computer.Steer(powered, lanes_.at, lanes_.sensed, lanes_.step))
+    for (int lane = 0; lane < kLanes; ++lane)
+      if (lanes_.at.slot[lane].record != nullptr) SetStop(lane);
   if (Any(lanes_.at.coasting)) lanes_.computer.HoldCoast(lanes_.at, lanes_.sensed, lanes_.step);
   lanes_.step.EvaluateStart(lanes_.at.time_s);
   if (has_jettisons_) LetGo();

@@ -55,8 +55,9 @@ class DelayLine {
         same_delay_ &= delay_[i].part_s == 0.0 && delay_[i].whole_ticks == common_ticks_;
   }
 
-  /// This tick's commands into the line, and what leaves it now to the actuators.
-  void Pass(MaskOf<T> powered, T time_s, const T* command_rad, StepState<T>& step) {
+  /// This tick's commands into the line, and what leaves it now to the actuators. Returns whether a command
+  /// gets through within the tick: stops of lanes have changed.
+  bool Pass(MaskOf<T> powered, T time_s, const T* command_rad, StepState<T>& step) {
     const T roll = command_rad[kRoll], pitch = command_rad[kPitch], yaw = command_rad[kYaw];
     const bool listed = step.plant().nozzles_listed;
     for (int bank = 0; bank < step.plant().banks; ++bank) {
@@ -85,9 +86,13 @@ class DelayLine {
       }
     }
     at_ = (at_ + 1) & (kDelayLine - 1);
-    for (int lane = 0; !same_delay_ && lane < kLanes; ++lane)
-      if ((Bits(powered) >> lane & 1u) && delay_[lane].part_s > 0.0)
-        delay_[lane].switch_s = Lane(time_s, lane) + delay_[lane].part_s;
+    bool switches = false;
+    for (int lane = 0; !same_delay_ && lane < kLanes; ++lane) {
+      if (!(Bits(powered) >> lane & 1u) || !(delay_[lane].part_s > 0.0)) continue;
+      delay_[lane].switch_s = Lane(time_s, lane) + delay_[lane].part_s;
+      switches = true;
+    }
+    return switches;
   }
   /// When the lane's next command gets through within the tick (kFarFuture: none does).
   double switch_s(int lane) const { return delay_[lane].switch_s; }

@@ -57,8 +57,8 @@ class FlightComputer {
   }
 
   // ---- sensors in, commands out ----
-  /// A tick of powered lanes.
-  void Steer(M powered, const Standing<T>& at, const Sensed<T>& sensed, StepState<T>& step);
+  /// A tick of powered lanes. Returns whether a command gets through within the tick.
+  bool Steer(M powered, const Standing<T>& at, const Sensed<T>& sensed, StepState<T>& step);
   /// A tick of coasting lanes. Sets the tick of their next decision.
   void HoldCoast(Standing<T>& at, const Sensed<T>& sensed, StepState<T>& step);
   /// Time at which the lane's next command gets through within the tick, and its way there.
@@ -164,7 +164,7 @@ void FlightComputer<T>::StartStage(int lane, int stage, const Standing<T>& at, M
 }
 
 template <class T>
-void FlightComputer<T>::Steer(M powered, const Standing<T>& at, const Sensed<T>& sensed, StepState<T>& step) {
+bool FlightComputer<T>::Steer(M powered, const Standing<T>& at, const Sensed<T>& sensed, StepState<T>& step) {
   const bool listed = step.plant().nozzles_listed;
   AxisMemory<T> of_roll;
   if (listed) of_roll = axes_[kRoll];
@@ -173,12 +173,13 @@ void FlightComputer<T>::Steer(M powered, const Standing<T>& at, const Sensed<T>&
     SteerAxes<true>(powered, at, sensed, since_ignition_s);
   else
     SteerAxes<false>(powered, at, sensed, since_ignition_s);
-  line_.Pass(powered, at.time_s, gimbals_.deflection_rad, step);
-  if (!listed) return;
+  const bool switches = line_.Pass(powered, at.time_s, gimbals_.deflection_rad, step);
+  if (!listed) return switches;
   const M rolling = powered & (allocation(0).rolls_by_thrusters > T(0.0));
-  if (!Any(rolling)) return;
+  if (!Any(rolling)) return switches;
   Blend<T>(rolling, of_roll, axes_[kRoll]);  // restores roll memory: its command was not applied
   RollByThrusters(rolling, at, sensed, step);
+  return switches;
 }
 
 /// The commands of a law from a shared object or from Python: each lane by itself, in ordinary code.
