@@ -1,7 +1,6 @@
 // dispersa optimize: the trajectory that reaches the target orbit, as a reference file.
 #include <fmt/format.h>
 
-#include <algorithm>
 #include <cmath>
 #include <filesystem>
 #include <memory>
@@ -12,7 +11,6 @@
 #include "core/math/constants.h"
 #include "core/pages/trajectory_page.h"
 #include "services/cli/command.h"
-#include "services/cli/seed_study.h"
 #include "services/cli/terminal_observer.h"
 #include "services/cli/warn.h"
 #include "services/client/reference_search.h"
@@ -28,7 +26,6 @@ struct OptimizeOptions {
   std::string out;
   std::optional<std::uint64_t> seed;
   int threads = 0;  ///< 0: the processor's
-  int seeds = 0;    ///< 0: one optimisation that writes its reference; else a study that writes nothing
 };
 
 void PrintInjection(const OptimizationResult& result, const std::optional<CheckFlight>& check) {
@@ -76,26 +73,11 @@ void PrintText(const OptimizationResult& result, const std::optional<CheckFlight
   fmt::print("\nseed {}, {} ascents\n", reference.problem.seed, reference.evaluations);
 }
 
-ExitCode StudySeeds(const OptimizationInput& input, const OptimizeOptions& options, int threads,
-                    const GlobalOptions& global) {
-  Progress progress("optimize", global.quiet);
-  std::uint64_t done = 0;
-  const std::vector<SeedRow> rows = SearchOrInputError([&] {
-    return RunSeedStudy(input, options.seeds, SearchOptions(input, threads), [&](const SeedRow& row) {
-      progress.Show(++done, static_cast<std::uint64_t>(options.seeds), fmt::format("seed {}", row.seed));
-    });
-  });
-  fmt::print("{}", global.json ? SeedStudyJson(rows).dump(2) + "\n" : SeedStudyText(rows));
-  const bool all = std::all_of(rows.begin(), rows.end(), [](const SeedRow& row) { return row.reached; });
-  return all ? kExitDone : kExitRequirementFailed;
-}
-
 ExitCode Optimize(const OptimizeOptions& options, const GlobalOptions& global) {
   std::vector<InputProblem> warnings;
   const OptimizationInput input = LoadOptimization(options.campaign, options.seed, &warnings);
   Warn(warnings);
   const int threads = ThreadsOrAll(options.threads);
-  if (options.seeds > 0) return StudySeeds(input, options, threads, global);
   const std::filesystem::path file = options.out.empty() ? input.name + "_reference.yaml" : options.out;
   if (file == "-")
     throw InputError("--out: '-' is one stream, but optimize writes three files", "a file name");
@@ -132,11 +114,6 @@ void AddOptimizeCommand(CLI::App& app, Invocation& invocation) {
           "default <name>_reference.yaml. A reference that misses its target is written too, with a mark")
       ->type_name(kFileType);
   command->add_option("--seed", options->seed, "seed, instead of the file's");
-  command
-      ->add_option("--seeds", options->seeds,
-                   "optimise with this number of seeds, beginning with the file's or --seed, and print a "
-                   "table of the results; writes no file; exit code 3 unless every seed reaches the target")
-      ->transform(WholeNumber(1, 10000));
   command->add_option("--threads", options->threads, "threads; the result does not depend on them")
       ->transform(WholeNumber(1, 1024));
   command->footer(

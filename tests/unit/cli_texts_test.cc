@@ -14,7 +14,6 @@
 #include "core/pages/trajectory_page.h"
 #include "services/cli/campaign_text.h"
 #include "services/cli/progress.h"
-#include "services/cli/seed_study.h"
 #include "services/cli/terminal.h"
 #include "services/cli/vehicle_text.h"
 #include "services/client/reference_search.h"
@@ -180,98 +179,6 @@ TEST(EndFor, AFailurePrintsItsCodeAndText) {
     EXPECT_EQ(EndFor(Failure{code, "no coordinator"}, false), code);
     EXPECT_EQ(testing::internal::GetCapturedStdout(), "");
   }
-}
-
-/// Two searches: errors of both signs, so that the worst is told from the largest.
-std::vector<SeedRow> SampleRows() {
-  SeedRow one;
-  one.seed = 7;
-  one.reached = true;
-  one.read_back = {.altitude_m = 0.5, .velocity_m_s = -0.002, .flight_path_angle_rad = 3e-6 * kRadPerDeg};
-  one.halved = {.altitude_m = 0.25, .velocity_m_s = 0.001, .flight_path_angle_rad = -2e-6 * kRadPerDeg};
-  one.check =
-      CheckFlight{Outcome::kCompleted,
-                  600.0,
-                  "",
-                  {.altitude_m = 1500.0, .velocity_m_s = -2.5, .flight_path_angle_rad = 0.05 * kRadPerDeg}};
-  one.program.alpha_max_rad = 4.0 * kRadPerDeg;
-  one.program.t1_s = 3.5;
-  one.program.t2_s = 160.0;
-  one.program.t3_s = 40.0;
-  one.program.coast_s = 250.25;
-  one.program.launch_azimuth_rad = 95.0 * kRadPerDeg;
-  one.q_alpha_max_pa_rad = 3000.5;
-  one.ascents = 1234;
-  one.wall_s = 12.5;
-  SeedRow other = one;
-  other.seed = 8;
-  other.reached = false;
-  other.read_back.altitude_m = -2.0;
-  other.program.coast_s = 240.0;
-  return {one, other};
-}
-
-TEST(SeedStudy, SaysTheWorstErrorAndTheRangeOfWhatWasFound) {
-  const std::vector<std::string> lines = Lines(SeedStudyText(SampleRows()));
-  ASSERT_EQ(lines.size(), 8u);
-  const auto row = [](const std::string& head, const std::string& dh, const std::string& coast) {
-    return head + dh +
-           "   -2.0000    3.0000    0.2500    1.0000   -2.0000     4.0000    3.500   40.000  160.000 " +
-           coast + "      95.0000    3000.5    1.5000    -2.5000    0.05000     1234     12.5";
-  };
-  EXPECT_EQ(lines[1], row("     7      yes", "    0.5000", "  250.2500"));
-  EXPECT_EQ(lines[2], row("     8       NO", "   -2.0000", "  240.0000"));
-  EXPECT_EQ(lines[3].substr(0, 75),
-            "worst              2.0000    2.0000    3.0000    0.2500    1.0000    2.0000");
-  EXPECT_EQ(lines[3].substr(147), "    1.5000     2.5000    0.05000                  ");
-  const std::string blank(60, ' ');
-  EXPECT_EQ(lines[4].substr(0, 124),
-            "least          " + blank + "     4.0000    3.500   40.000  160.000   240.0000");
-  EXPECT_EQ(lines[5].substr(0, 124),
-            "largest        " + blank + "     4.0000    3.500   40.000  160.000   250.2500");
-  EXPECT_EQ(lines[6], "reached from 1 of 2 seeds");
-}
-
-TEST(SeedStudy, AsJsonHasItsUnitsInTheNames) {
-  std::vector<SeedRow> rows = SampleRows();
-  const auto json = SeedStudyJson(rows);
-  EXPECT_EQ(json["schema"], "dispersa/optimize-seeds/1");
-  const auto& first = json["seeds"][0];
-  EXPECT_EQ(first["seed"], 7);
-  EXPECT_EQ(first["reached"], true);
-  EXPECT_EQ(json["seeds"][1]["reached"], false);
-  EXPECT_NEAR(first["altitude_error_m"], 0.5, 1e-12);
-  EXPECT_NEAR(first["velocity_error_mm_s"], -2.0, 1e-12);
-  EXPECT_NEAR(first["flight_path_angle_error_udeg"], 3.0, 1e-9);
-  EXPECT_NEAR(first["halved_altitude_error_m"], 0.25, 1e-12);
-  EXPECT_NEAR(first["halved_velocity_error_mm_s"], 1.0, 1e-12);
-  EXPECT_NEAR(first["halved_flight_path_angle_error_udeg"], -2.0, 1e-9);
-  EXPECT_NEAR(first["alpha_max_deg"], 4.0, 1e-12);
-  EXPECT_EQ(first["t1_s"], 3.5);
-  EXPECT_EQ(first["t2_s"], 160.0);
-  EXPECT_EQ(first["t3_s"], 40.0);
-  EXPECT_NEAR(first["launch_azimuth_deg"], 95.0, 1e-12);
-  EXPECT_EQ(first["flown_altitude_error_km"], 1.5);
-  EXPECT_EQ(first["flown_velocity_error_m_s"], -2.5);
-  EXPECT_NEAR(first["flown_flight_path_angle_error_deg"], 0.05, 1e-12);
-  EXPECT_EQ(first["ascents"], 1234);
-  // A value that one of the searches did not fly is in no row.
-  rows[1].check.reset();
-  EXPECT_FALSE(SeedStudyJson(rows)["seeds"][0].contains("flown_altitude_error_km"));
-  EXPECT_FALSE(SeedStudyJson(rows)["seeds"][1].contains("check_flight"));
-}
-
-// A check flight that is lost is said, and is no missing column alone.
-TEST(SeedStudy, SaysWhichCheckFlightIsLost) {
-  std::vector<SeedRow> rows = SampleRows();
-  rows[1].check = CheckFlight{Outcome::kLostControl, 26.0, "the attitude error is large"};
-  const std::vector<std::string> lines = Lines(SeedStudyText(rows));
-  EXPECT_EQ(lines[6], "seed 8: check flight: lost at 26 s, because the attitude error is large");
-  EXPECT_EQ(lines[7], "reached from 1 of 2 seeds");
-  const auto json = SeedStudyJson(rows);
-  EXPECT_EQ(json["seeds"][1]["check_flight"].dump(),
-            R"({"outcome":"lost_control","end_time_s":26.0,"reason":"the attitude error is large"})");
-  EXPECT_FALSE(json["seeds"][0].contains("flown_altitude_error_km"));
 }
 
 // A reference that reaches the target and cannot be flown is none.

@@ -1,6 +1,5 @@
 // The optimiser as its users see it: the target met to the metre, the same bytes for any number of threads, a
-// plain statement if a target is out of reach. `dispersa optimize campaigns/slv4_500km.yaml --seeds 20`
-// checks the first for 20 seeds.
+// plain statement if a target is out of reach.
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
