@@ -98,7 +98,10 @@ bool WorkerLink::HasMet() {
 }
 
 void WorkerLink::Drain(std::chrono::milliseconds timeout) {
-  impl_->statuses->Drain(static_cast<int>(timeout.count()));
+  const int each_ms = static_cast<int>(timeout.count());
+  impl_->reports->Drain(each_ms);
+  impl_->campaign_refusals->Drain(each_ms);
+  impl_->statuses->Drain(each_ms);
 }
 
 }  // namespace dispersa

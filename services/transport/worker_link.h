@@ -31,7 +31,8 @@ class WorkerLink {
   void Send(const CampaignRefusal& refusal);
   /// Whether a coordinator has let this worker in since the last call. It may be heard soon.
   bool HasMet();
-  /// Waits, at most so long, until the coordinator has the statuses that were sent.
+  /// Waits until the coordinator has the reports, refusals and statuses that were sent, at most so long for
+  /// each kind.
   void Drain(std::chrono::milliseconds timeout);
 
  private:

@@ -61,11 +61,11 @@ def end(processes):
         process.wait()
 
 
-def wait_for(condition, what, patience_s=PATIENCE_S):
-    deadline = time.monotonic() + patience_s
+def wait_for(condition, what):
+    deadline = time.monotonic() + PATIENCE_S
     while not condition():
         if time.monotonic() > deadline:
-            raise AssertionError(f"{what}: not within {patience_s} s")
+            raise AssertionError(f"{what}: not within {PATIENCE_S} s")
         time.sleep(0.02)
 
 
