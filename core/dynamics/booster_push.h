@@ -129,12 +129,8 @@ DISPERSA_INLINE Push<T> PushOf(const ApartBoosters<T>& a, const MotionAbout<T>& 
   const BoosterMasses<T> masses = MassesOf(a, moved);
   const Vector<T>&c = masses.first_kg_m, &w = moved.w, &dw = moved.dw;
   const Tensor<T>& j = masses.inertia;
-  const auto times = [&j](const Vector<T>& v) __attribute__((always_inline)) {
-    return Vector<T>{j.xx * v.x - (j.xy * v.y + j.xz * v.z), j.yy * v.y - (j.xy * v.x + j.yz * v.z),
-                     j.zz * v.z - (j.xz * v.x + j.yz * v.y)};
-  };
   const Vector<T> force = masses.kg * moved.acceleration_m_s2 + Cross(dw, c) + Cross(w, Cross(w, c));
-  const Vector<T> moment = times(dw) + Cross(w, times(w)) + Cross(c, moved.acceleration_m_s2);
+  const Vector<T> moment = j * dw + Cross(w, j * w) + Cross(c, moved.acceleration_m_s2);
   return {acting.force_n - force, acting.moment_n_m - moment};
 }
 

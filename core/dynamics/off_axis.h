@@ -79,12 +79,15 @@ DISPERSA_INLINE Tensor<T> TensorOf(const OffAxis<T>& off, T axial_kg_m2, T trans
           factor * Fma(-off.y_kg_m, z, off.yz_kg_m2)};
 }
 
+template <class T>
+DISPERSA_INLINE Vector<T> operator*(const Tensor<T>& i, const Vector<T>& v) {
+  return {i.xx * v.x - (i.xy * v.y + i.xz * v.z), i.yy * v.y - (i.xy * v.x + i.yz * v.z),
+          i.zz * v.z - (i.xz * v.x + i.yz * v.y)};
+}
 /// dw/dt of I dw/dt = `moment` - w x I w, by cofactors of I.
 template <class T>
 DISPERSA_INLINE Vector<T> TurnedUnder(const Tensor<T>& i, const Vector<T>& moment, const Vector<T>& w) {
-  const Vector<T> spin{i.xx * w.x - (i.xy * w.y + i.xz * w.z), i.yy * w.y - (i.xy * w.x + i.yz * w.z),
-                       i.zz * w.z - (i.xz * w.x + i.yz * w.y)};
-  const Vector<T> m = moment - Cross(w, spin);
+  const Vector<T> m = moment - Cross(w, i * w);
   const T c_xx = i.yy * i.zz - i.yz * i.yz, c_yy = i.xx * i.zz - i.xz * i.xz,
           c_zz = i.xx * i.yy - i.xy * i.xy;
   const T c_xy = i.xy * i.zz + i.xz * i.yz, c_xz = i.xz * i.yy + i.xy * i.yz,

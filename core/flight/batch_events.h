@@ -113,7 +113,7 @@ void Batch<T>::Judge(M moving, T from, T to, StateValues* states, M& failed) {
 template <class T>
 void Batch<T>::Happen(int lane) {
   Slot& slot = lanes_.at.slot[lane];
-  const FlightEvent event = *lanes_.at.slot[lane].NextEvent();
+  const FlightEvent event = *slot.NextEvent();
   ++slot.next_event;
   FlightRecord& record = *slot.record;
   switch (event.kind) {
@@ -155,7 +155,7 @@ void Batch<T>::Happen(int lane) {
   record.AddToDigest(Lane(lanes_.at.time_s, lane), y);
   if (record.watched) record.WatchEvent(ViewOf(lane));
   // The last event is the last stage's burnout.
-  if (lanes_.at.slot[lane].NextEvent() == nullptr) EndPowered(lane);
+  if (slot.NextEvent() == nullptr) EndPowered(lane);
 }
 
 /// After its last burn a flight is completed, or goes on until its apogee: as a rigid body in the air, as a

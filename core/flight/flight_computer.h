@@ -228,6 +228,16 @@ const T* FlightComputer<T>::FedForward(const Standing<T>& at, T* program) const 
   return program;
 }
 
+/// Two thrusters of an axis, of which each one's thrust acts at the axis' arm.
+struct ThrusterPair {
+  double thrust_n;  ///< of both
+  double tick_kg;   ///< that both expel in a tick
+};
+inline ThrusterPair PairOf(const ReactionControl& rcs, double tick_s) {
+  const double thrust_n = 2.0 * rcs.thrust_n;
+  return {thrust_n, thrust_n / (rcs.specific_impulse_s * kStandardGravity) * tick_s};
+}
+
 /// Roll control of stages whose nozzles cannot roll: the thrusters of the coast fire in the same cycles while
 /// the motor burns.
 template <class T>
@@ -242,13 +252,12 @@ void FlightComputer<T>::RollByThrusters(M rolling, const Standing<T>& at, const 
   decides = decides & rolling;
   StepThrusters(logic, autopilot.thruster_minimum_cycles, decides, sensed.errors.angle_rad.x,
                 sensed.errors.rate_rad_s.x, thrusters_[kRoll]);
-  const double couple_n = 2.0 * rcs.thrust_n;
-  const double flow_kg = couple_n / (rcs.specific_impulse_s * kStandardGravity) * tick_s_;  // a tick
+  const ThrusterPair pair = PairOf(rcs, tick_s_);
   const T direction = thrusters_[kRoll].direction;
   Vector<T> torque_n_m = step.phase().control_torque_n_m;
-  torque_n_m.x = T(couple_n * rcs.roll_arm_m) * direction;
+  torque_n_m.x = T(pair.thrust_n * rcs.roll_arm_m) * direction;
   step.SetControlTorque(rolling, torque_n_m);
-  step.Expel(rolling & (Abs(direction) > T(0.0)), T(flow_kg), Abs(direction));
+  step.Expel(rolling & (Abs(direction) > T(0.0)), T(pair.tick_kg), Abs(direction));
 }
 
 /// The coast: decisions fall on the thrusters' cycles, and on the first tick after an event.
@@ -271,20 +280,19 @@ void FlightComputer<T>::HoldCoast(Standing<T>& at, const Sensed<T>& sensed, Step
     if (next <= tick) next = tick + 1;
     Lane(at.next_tick, lane) = static_cast<double>(next);
   }
-  const double couple_n = 2.0 * rcs.thrust_n;
-  const double flow_kg = couple_n / (rcs.specific_impulse_s * kStandardGravity) * tick_s_;  // a tick
+  const ThrusterPair pair = PairOf(rcs, tick_s_);
   Vector<T> torque_n_m;
   T firing(0.0);
   for (int axis = 0; axis < kAxes; ++axis) {
     StepThrusters(logic, autopilot.thruster_minimum_cycles, at.coasting, sensed.errors.angle_rad[axis],
                   sensed.errors.rate_rad_s[axis], thrusters_[axis]);
     const T direction = thrusters_[axis].direction;
-    torque_n_m[axis] = T(couple_n * (axis == kRoll ? rcs.roll_arm_m : rcs.pitch_yaw_arm_m)) * direction;
+    torque_n_m[axis] = T(pair.thrust_n * (axis == kRoll ? rcs.roll_arm_m : rcs.pitch_yaw_arm_m)) * direction;
     firing = firing + Abs(direction);
   }
   step.SetControlTorque(at.coasting, torque_n_m);
   // A firing counts for as long as it lasts: until the next decision.
-  step.Expel(at.coasting & (firing > T(0.0)), T(flow_kg) * (at.next_tick - at.tick), firing);
+  step.Expel(at.coasting & (firing > T(0.0)), T(pair.tick_kg) * (at.next_tick - at.tick), firing);
 }
 
 }  // namespace DISPERSA_ISA
