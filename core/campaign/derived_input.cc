@@ -12,25 +12,19 @@ namespace {
 
 constexpr char kNames[] = "a column of cases.csv without 'input_', such as thrust_factor_stage1";
 
-std::vector<std::string> NamesOf(std::size_t stages) {
-  std::vector<std::string> names;
-  for (std::size_t i = 0; i < InputCount(stages); ++i) names.push_back(InputColumns()[i].name);
-  return names;
-}
-
 const DerivedInput* Find(const std::vector<DerivedInput>& derived, const std::string& input) {
   const auto found = std::find_if(derived.begin(), derived.end(),
                                   [&](const DerivedInput& one) { return one.input == input; });
   return found == derived.end() ? nullptr : &*found;
 }
 
-std::string UnknownText(const std::string& name, std::size_t stages) {
-  return "'" + name + "' is not an input of this vehicle's flights" + DidYouMean(name, NamesOf(stages));
+std::string UnknownText(const std::string& name, const Vehicle& vehicle) {
+  return "'" + name + "' is not an input of this vehicle's flights" + DidYouMean(name, InputNamesOf(vehicle));
 }
 
-bool IsKnown(const std::string& name, std::size_t stages) {
+bool IsKnown(const std::string& name, const Vehicle& vehicle) {
   const int column = FindInput(name);
-  return column >= 0 && column < static_cast<int>(InputCount(stages));
+  return column >= 0 && HasInput(vehicle, column);
 }
 
 double Value(const DerivedInput& derived, const FlightInputs& inputs) {
@@ -41,12 +35,11 @@ double Value(const DerivedInput& derived, const FlightInputs& inputs) {
 
 void Describe(Fields& fields, DerivedInput& derived, const std::vector<DerivedInput>& before,
               const std::vector<Dispersion>& dispersions, const Vehicle& vehicle) {
-  const std::size_t stages = ColumnClass(vehicle);
   fields.Text("input", derived.input, "a column of cases.csv without its prefix");
   fields.Text("expression", derived.text, "from drawn columns, in their units");
   if (derived.input.empty() || derived.text.empty()) return;
-  if (!IsKnown(derived.input, stages))
-    return fields.Refuse("input", UnknownText(derived.input, stages), kNames);
+  if (!IsKnown(derived.input, vehicle))
+    return fields.Refuse("input", UnknownText(derived.input, vehicle), kNames);
   derived.column = FindInput(derived.input);
   for (const Dispersion& dispersion : dispersions)
     if (!dispersion.replaces && std::find(dispersion.inputs.begin(), dispersion.inputs.end(),
@@ -63,7 +56,7 @@ void Describe(Fields& fields, DerivedInput& derived, const std::vector<DerivedIn
                              "an input that no expression takes");
   try {
     derived.expression = ParseExpression(derived.text, [&](const std::string& name) {
-      if (!IsKnown(name, stages)) throw UnknownName{UnknownText(name, stages), kNames};
+      if (!IsKnown(name, vehicle)) throw UnknownName{UnknownText(name, vehicle), kNames};
       if (name == derived.input || Find(before, name) != nullptr)
         throw UnknownName{"'" + name + "' is derived itself", "drawn inputs"};
       return NamedValue{FindInput(name), false};

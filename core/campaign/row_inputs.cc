@@ -36,28 +36,34 @@ Digest InputsDigest(const std::vector<double>& all) {
   return digester.Finish();
 }
 
+std::vector<double> ValuesAt(const std::vector<std::size_t>& positions, const std::vector<double>& values) {
+  std::vector<double> at;
+  for (const std::size_t position : positions) at.push_back(values[position]);
+  return at;
+}
+
 RowInputs::RowInputs(const Campaign& campaign)
     : column_class_(ColumnClass(campaign.vehicle)), all_(NominalInputs(column_class_)) {
   for (const int input : DispersedInputs(campaign)) positions_.push_back(static_cast<std::size_t>(input));
+  for (const int input : InputsOf(campaign.vehicle))
+    if (!PlaceOf(static_cast<std::size_t>(input))) constants_.push_back(static_cast<std::size_t>(input));
 }
 
-std::vector<std::size_t> RowInputs::constants() const {
-  std::vector<std::size_t> constants;
-  for (std::size_t i = 0; i < all_.size(); ++i)
-    if (!PlaceOf(i)) constants.push_back(i);
-  return constants;
+RowInputs::RowInputs(std::size_t column_class, std::vector<std::size_t> positions,
+                     const std::vector<std::pair<std::size_t, double>>& constants)
+    : column_class_(column_class), positions_(std::move(positions)), all_(NominalInputs(column_class)) {
+  for (const auto& [position, value] : constants) {
+    if (position >= all_.size()) continue;
+    constants_.push_back(position);
+    all_[position] = value;
+  }
+  std::sort(constants_.begin(), constants_.end());
 }
 
 std::optional<std::size_t> RowInputs::PlaceOf(std::size_t position) const {
   const auto found = std::find(positions_.begin(), positions_.end(), position);
   if (found == positions_.end()) return std::nullopt;
   return static_cast<std::size_t>(found - positions_.begin());
-}
-
-std::vector<double> RowInputs::RowOf(const std::vector<double>& all) const {
-  std::vector<double> row;
-  for (const std::size_t position : positions_) row.push_back(all[position]);
-  return row;
 }
 
 std::vector<double> RowInputs::AllOf(const std::vector<double>& row) const {

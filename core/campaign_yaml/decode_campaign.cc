@@ -86,15 +86,13 @@ void ReadListed(Fields& fields, const char* key, int input, const Vehicle& vehic
 
 // The columns of a list's table, each an input by its name in cases.csv.
 void DescribeListTable(Fields& fields, const InputNode& table, bool is_sound, Campaign& campaign) {
-  std::vector<std::string> names;
-  const std::size_t count = InputCount(ColumnClass(campaign.vehicle));
-  for (std::size_t i = 0; i < count; ++i) names.push_back(InputColumns()[i].name);
   const Vehicle vehicle = is_sound ? campaign.vehicle : Vehicle{};
   for (const InputMember& member : table.members) {
     const char* key = member.key.c_str();
     const int input = FindInput(member.key);
-    if (input < 0 || static_cast<std::size_t>(input) >= count) {
-      fields.Misplaced(key, {}, ("'{}' is not an input" + MeantInput(member.key, names)).c_str(),
+    if (input < 0 || (is_sound && !HasInput(vehicle, input))) {
+      const std::string meant = MeantInput(member.key, InputNamesOf(campaign.vehicle));
+      fields.Misplaced(key, {}, ("'{}' is not an input of this vehicle" + meant).c_str(),
                        "a column of cases.csv");
       continue;
     }

@@ -39,7 +39,7 @@ InputDeclarations& InputDeclarations::EachStage(int number, const double& of, co
                               stem + "_stage" + std::to_string(i + 1) + unit_suffix,
                               unit,
                               OffsetOf(of) + i * sizeof(StageInputs),
-                              {static_cast<int>(i) + 1, 0}});
+                              {Carrier::kStage, static_cast<int>(i) + 1, 0}});
   Disperse(number, dispersal, DrawnFor::kEachStage, stem + "_{stage}" + unit_suffix);
   return *this;
 }
@@ -56,16 +56,16 @@ InputDeclarations& InputDeclarations::EachNozzle(NozzleNumbers numbers, const do
            stem + "_stage" + std::to_string(i + 1) + "_" + kNozzleNames[nozzle] + unit_suffix,
            unit,
            OffsetOf(of) + i * sizeof(StageInputs) + nozzle * sizeof(NozzleInputs),
-           {static_cast<int>(i) + 1, static_cast<int>(nozzle)}});
+           {Carrier::kNozzle, static_cast<int>(i) + 1, static_cast<int>(nozzle)}});
   const std::size_t within = OffsetOf(of) - OffsetOf(*first);
   const auto* const beyond = reinterpret_cast<const double*>(&nominal_.further[0].nozzle);
-  Further(numbers.further, OffsetOf(*beyond) + within, stem, unit_suffix, unit);
+  Further(Carrier::kFurtherNozzle, numbers.further, OffsetOf(*beyond) + within, stem, unit_suffix, unit);
   return *this;
 }
 
 InputDeclarations& InputDeclarations::EachBooster(int number, const double& of, const std::string& stem) {
   Begin();
-  Further(number, OffsetOf(of), stem, "", 1.0);
+  Further(Carrier::kBooster, number, OffsetOf(of), stem, "", 1.0);
   return *this;
 }
 
@@ -73,8 +73,11 @@ InputDeclarations& InputDeclarations::EachMode(int number, const std::array<doub
                                                const std::string& stem, const Dispersal& dispersal) {
   Begin();
   for (std::size_t i = 0; i < kModes; ++i)
-    columns_.push_back(
-        {number, stem + "_mode" + std::to_string(i + 1), 1.0, OffsetOf(of[i]), {0, static_cast<int>(i)}});
+    columns_.push_back({number,
+                        stem + "_mode" + std::to_string(i + 1),
+                        1.0,
+                        OffsetOf(of[i]),
+                        {Carrier::kFlight, 0, static_cast<int>(i)}});
   Disperse(number, dispersal, DrawnFor::kEachMode, stem + "_{mode}");
   return *this;
 }
@@ -87,7 +90,7 @@ InputDeclarations& InputDeclarations::EachLevel(int number, const std::array<dou
                         stem + "_" + std::to_string(i + 1) + unit_suffix,
                         1.0,
                         OffsetOf(of[i]),
-                        {0, static_cast<int>(i)}});
+                        {Carrier::kFlight, 0, static_cast<int>(i)}});
   return *this;
 }
 
@@ -101,7 +104,7 @@ InputDeclarations& InputDeclarations::EachLaunchAxis(int number, const std::arra
   return *this;
 }
 
-void InputDeclarations::Further(int number, std::size_t offset, const std::string& stem,
+void InputDeclarations::Further(Carrier carrier, int number, std::size_t offset, const std::string& stem,
                                 const std::string& unit_suffix, double unit) {
   for (std::size_t i = 0; i < kFurtherNozzles; ++i)
     further_[i].push_back(
@@ -109,7 +112,7 @@ void InputDeclarations::Further(int number, std::size_t offset, const std::strin
          stem + "_nozzle" + std::to_string(kNozzles + 1 + static_cast<int>(i)) + unit_suffix,
          unit,
          offset + i * sizeof(FurtherInputs),
-         {0, static_cast<int>(i)}});
+         {carrier, 0, static_cast<int>(i)}});
 }
 
 template <typename Set>

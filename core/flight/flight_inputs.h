@@ -231,8 +231,8 @@ class InputDeclarations {
   template <typename Set>
   InputDeclarations& ForLast(Set set);
   std::vector<InputColumn>& ColumnsWith(std::size_t stage);
-  void Further(int number, std::size_t offset, const std::string& stem, const std::string& unit_suffix,
-               double unit);
+  void Further(Carrier carrier, int number, std::size_t offset, const std::string& stem,
+               const std::string& unit_suffix, double unit);
   void Disperse(int number, const Dispersal& dispersal, DrawnFor drawn_for, const std::string& column);
 
   const FlightInputs nominal_;

@@ -45,9 +45,12 @@ bool HasModes(const FlightParts& parts, const InputPlace& place) {
 }
 
 // Boosters are the last ones among the further nozzles.
+int FirstBooster(const Vehicle& vehicle) { return FurtherNozzlesBefore(vehicle, vehicle.stages.size()); }
+int FurtherNozzlesOf(const Vehicle& vehicle) {
+  return FirstBooster(vehicle) + static_cast<int>(vehicle.boosters.angles_rad.size());
+}
 bool IsBooster(const FlightParts& parts, const InputPlace& place) {
-  const int booster = place.item - FurtherNozzlesBefore(parts.vehicle, parts.vehicle.stages.size());
-  return booster >= 0 && booster < static_cast<int>(parts.vehicle.boosters.angles_rad.size());
+  return place.item >= FirstBooster(parts.vehicle) && place.item < FurtherNozzlesOf(parts.vehicle);
 }
 
 bool IsSteered(const FlightParts& parts, const InputPlace& place) {
@@ -57,7 +60,7 @@ bool IsSteered(const FlightParts& parts, const InputPlace& place) {
 
 // The next burn is of another body.
 bool Separates(const FlightParts& parts, const InputPlace& place) {
-  const Stage* next = StageAt(parts.vehicle, {place.stage + 1, 0});
+  const Stage* next = StageAt(parts.vehicle, {Carrier::kStage, place.stage + 1, 0});
   return next != nullptr && !next->restarts;
 }
 
@@ -276,6 +279,37 @@ std::string RangeText(const Vehicle& vehicle, int column) {
 bool IsAllowed(const Vehicle& vehicle, int column, double value) {
   return RangeOf(vehicle, column).Contains(value) &&
          !(ColumnAt(column).allowed.is_whole && value != std::floor(value));
+}
+
+bool HasInput(const Vehicle& vehicle, int column) {
+  const InputPlace& place = ColumnAt(column).place;
+  const Stage* stage = StageAt(vehicle, place);
+  switch (place.carrier) {
+    case Carrier::kFlight:
+      return true;
+    case Carrier::kStage:
+      return stage != nullptr;
+    case Carrier::kNozzle:
+      return stage != nullptr && place.item < NozzleCount(stage->gimbal);
+    case Carrier::kFurtherNozzle:
+      return place.item < FurtherNozzlesOf(vehicle);
+    case Carrier::kBooster:
+      return place.item >= FirstBooster(vehicle) && place.item < FurtherNozzlesOf(vehicle);
+  }
+  return false;
+}
+
+std::vector<int> InputsOf(const Vehicle& vehicle) {
+  std::vector<int> columns;
+  for (int column = 0; column < static_cast<int>(InputColumns().size()); ++column)
+    if (HasInput(vehicle, column)) columns.push_back(column);
+  return columns;
+}
+
+std::vector<std::string> InputNamesOf(const Vehicle& vehicle) {
+  std::vector<std::string> names;
+  for (const int column : InputsOf(vehicle)) names.push_back(ColumnAt(column).name);
+  return names;
 }
 
 bool IsRead(const FlightParts& parts, int column) {

@@ -3,6 +3,7 @@
 #pragma once
 
 #include <string>
+#include <vector>
 
 #include "core/control/autopilot_config.h"
 #include "core/flight/flight_course.h"
@@ -14,8 +15,12 @@ namespace dispersa {
 
 struct FlightInputs;
 
+/// What an input belongs to. A further nozzle is one beyond four of its stage, or a booster's. Modes and
+/// levels of a profile are the flight's: the same vehicle flies with them and without.
+enum class Carrier { kFlight, kStage, kNozzle, kFurtherNozzle, kBooster };
 /// Which of its kind an input is.
 struct InputPlace {
+  Carrier carrier = Carrier::kFlight;
   int stage = 0;  ///< 1-based; 0: of no stage
   int item = 0;   ///< its nozzle, mode, level or further nozzle, from 0
 };
@@ -52,6 +57,12 @@ Range RangeOf(const Vehicle& vehicle, int column);
 std::string RangeText(const Vehicle& vehicle, int column);
 /// Whether a value (internal unit) lies in RangeOf() and is whole where it must be.
 bool IsAllowed(const Vehicle& vehicle, int column, double value);
+/// Whether the vehicle has the part that the column belongs to. In every flight of a vehicle that does not,
+/// the input is nominal.
+bool HasInput(const Vehicle& vehicle, int column);
+/// The columns for which HasInput() holds, ascending.
+std::vector<int> InputsOf(const Vehicle& vehicle);
+std::vector<std::string> InputNamesOf(const Vehicle& vehicle);
 /// Whether some part of the flight reads the column.
 bool IsRead(const FlightParts& parts, int column);
 /// Why a flight cannot apply these inputs, as a sentence about the first one; empty if it can. Its `set` are

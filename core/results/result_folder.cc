@@ -65,14 +65,14 @@ constexpr char kNominal[] = "nominal";
 
 /// Vehicles of few stages, and without clusters of engines, have fewer inputs (ColumnClass).
 std::size_t ClassOf(const std::vector<std::string>& inputs) {
-  const std::string rare = "_stage" + std::to_string(kMaxStages);
-  std::size_t further = 0;
-  bool is_rare = false;
+  std::size_t stages = 0, further = 0;
   for (const std::string& name : inputs) {
-    further += name.starts_with("nozzle_flow_factor_nozzle");
-    is_rare = is_rare || name.find(rare) != std::string::npos;
+    const InputPlace& place = InputColumns()[static_cast<std::size_t>(FindInput(name))].place;
+    stages = std::max(stages, static_cast<std::size_t>(place.stage));
+    if (place.carrier == Carrier::kFurtherNozzle)
+      further = std::max(further, static_cast<std::size_t>(place.item) + 1);
   }
-  return further > 0 ? kMaxStages + further : is_rare ? kMaxStages : kUsualStages;
+  return further > 0 ? kMaxStages + further : stages;
 }
 
 /// Rows hold the inputs of which the table has columns. Every other one stands in the table `nominal`, which
@@ -93,11 +93,7 @@ RowInputs StoredInputs(Database& database, const fs::path& directory) {
     Statement select = database.Prepare(fmt::format("SELECT input, value FROM {}", kNominal));
     while (select.Step()) constants.emplace_back(position(select.Text(0)), select.Real(1));
   }
-  const std::size_t column_class = ClassOf(names);
-  std::vector<double> all(InputCount(column_class), kUndefined);
-  for (const auto& [input, value] : constants)
-    if (input < all.size()) all[input] = value;
-  return RowInputs(column_class, std::move(positions), std::move(all));
+  return RowInputs(ClassOf(names), std::move(positions), constants);
 }
 
 /// A law's own metrics are there if it was flown. Those that a kind of flight has are there together, or none

@@ -46,7 +46,12 @@ class LoadedCampaign {
 
   const Campaign& campaign() const { return campaign_; }
   const std::vector<InputProblem>& warnings() const { return warnings_; }
-  std::size_t stages() const { return ColumnClass(campaign_.vehicle); }
+  std::size_t column_class() const { return ColumnClass(campaign_.vehicle); }
+  /// Positions in InputColumns() of the vehicle's inputs.
+  std::vector<std::size_t> inputs() const {
+    const std::vector<int> inputs = InputsOf(campaign_.vehicle);
+    return {inputs.begin(), inputs.end()};
+  }
   /// Without the interpreter's lock: building takes a while.
   const CampaignFlights& flights() const {
     std::call_once(once_, [this] { flights_ = std::make_unique<const CampaignFlights>(campaign_); });
@@ -156,7 +161,7 @@ py::array Plan(const LoadedCampaign& campaign, std::uint64_t count) {
     const CaseDesign design(campaign.campaign());
     rows.reserve(count * in_rows.positions().size());
     for (std::uint64_t i = 0; i < count; ++i) {
-      const std::vector<double> inputs = in_rows.RowOf(InputValues(design.Draw(i), campaign.stages()));
+      const std::vector<double> inputs = in_rows.RowOf(InputValues(design.Draw(i), campaign.column_class()));
       rows.insert(rows.end(), inputs.begin(), inputs.end());
     }
   }
@@ -178,7 +183,7 @@ FlightInputs InputsOf(const LoadedCampaign& campaign, const CampaignFlights& fli
   FlightInputs inputs = case_index ? flights.Draw(*case_index) : FlightInputs{};
   for (const auto& [name, value] : replaced) {
     const int column = FindInput(name);
-    if (column < 0 || static_cast<std::size_t>(column) >= InputCount(campaign.stages()))
+    if (column < 0 || !HasInput(campaign.campaign().vehicle, column))
       throw InputError("inputs: '" + name + "' is not an input of this vehicle",
                        "a name of Campaign.input_names");
     const double applied = value * InputColumns()[static_cast<std::size_t>(column)].unit;
@@ -287,7 +292,8 @@ py::dict FlyOne(const LoadedCampaign& campaign, std::optional<std::uint64_t> cas
   const CaseResult result = observer.Watch([&] {
     const CampaignFlights& flights = with.flights();
     const FlightInputs inputs = InputsOf(campaign, flights, case_index, replaced);
-    applied = InputValues(flights.model().AsApplied(inputs), campaign.stages());
+    applied =
+        ValuesAt(campaign.inputs(), InputValues(flights.model().AsApplied(inputs), campaign.column_class()));
     return flights.Fly(inputs, case_index.value_or(0), step_s > 0.0 ? &history : nullptr, scheme);
   });
   py::dict flight = FlightValues(result, std::move(applied), MetricsOf(campaign.campaign()), with.metrics());
@@ -359,11 +365,10 @@ py::dict FlyMany(const LoadedCampaign& campaign, const std::vector<std::uint64_t
                             });
   });
   const RowInputs in_rows(campaign.campaign());
-  std::vector<std::size_t> inputs(InputCount(campaign.stages()));
-  std::iota(inputs.begin(), inputs.end(), std::size_t{0});
-  ResultColumns table(std::move(inputs), MetricsOf(campaign.campaign()), with.metrics());
+  const std::vector<std::size_t> inputs = campaign.inputs();
+  ResultColumns table(inputs, MetricsOf(campaign.campaign()), with.metrics());
   for (CaseResult& result : results) {
-    result.inputs = in_rows.AllOf(result.inputs);
+    result.inputs = ValuesAt(inputs, in_rows.AllOf(result.inputs));
     table.Add(result);
   }
   py::dict answer = table.Take();
@@ -399,7 +404,8 @@ void AddCampaigns(py::module_& module) {
       .def_property_readonly("canonical_yaml", text(&Campaign::canonical_yaml))
       .def_property_readonly("cases", [](const LoadedCampaign& c) { return c.campaign().sampling.cases; })
       .def_property_readonly("seed", [](const LoadedCampaign& c) { return c.campaign().sampling.seed; })
-      .def_property_readonly("stages", &LoadedCampaign::stages)
+      .def_property_readonly("stages",
+                             [](const LoadedCampaign& c) { return c.campaign().vehicle.stages.size(); })
       .def_property_readonly("metric_names",
                              [](const LoadedCampaign& c) {
                                return NamesOf(MetricsOf(c.campaign()), MeasuredMetrics(c.campaign()));
@@ -412,10 +418,11 @@ void AddCampaigns(py::module_& module) {
       .def_property_readonly(
           "dispersed",
           [](const LoadedCampaign& c) { return NamesOfInputs(RowInputs(c.campaign()).positions()); })
+      .def_property_readonly("input_names", [](const LoadedCampaign& c) { return NamesOfInputs(c.inputs()); })
       .def_property_readonly("input_keys",
                              [](const LoadedCampaign& c) {
                                std::vector<std::string> keys;
-                               for (std::size_t i = 0; i < InputCount(c.stages()); ++i)
+                               for (const std::size_t i : c.inputs())
                                  keys.push_back(InputKey(c.campaign(), static_cast<int>(i)));
                                return keys;
                              })

@@ -19,12 +19,6 @@ namespace py = pybind11;
 namespace dispersa {
 namespace {
 
-std::vector<std::string> InputNames(std::size_t stages) {
-  std::vector<std::string> names;
-  for (std::size_t i = 0; i < InputCount(stages); ++i) names.push_back(InputColumns()[i].name);
-  return names;
-}
-
 py::tuple MetricTuple(const std::string& name) {
   const MetricInfo info = DescribeMetric(name);
   return py::make_tuple(info.title, info.unit, info.definition, WorseName(info.worse));
@@ -42,7 +36,6 @@ PYBIND11_MODULE(_core, module) {
 
   py::register_exception_translator(Translate);
   module.def("engine_version", &EngineVersion);
-  module.def("input_names", &InputNames);
   module.def("describe", &MetricTuple);
   module.def("split_unit", [](const std::string& name) {
     const NameAndUnit split = SplitUnit(name);

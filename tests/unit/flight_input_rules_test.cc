@@ -13,6 +13,7 @@
 #include "core/campaign_yaml/load.h"
 #include "core/cases/campaign_flights.h"
 #include "core/environment/wind.h"
+#include "core/flight/flight_inputs.h"
 #include "core/input/number_text.h"
 #include "core/math/constants.h"
 #include "tests/unit/input_files.h"
@@ -278,6 +279,54 @@ TEST(InputReaders, AreNamedForTheColumnsOfAList) {
   EXPECT_THAT(messages("thrust_misalignment_clock_stage1_deg,thrust_misalignment_stage2_deg\n90,0.1\n"),
               testing::ElementsAre("sampling.table.thrust_misalignment_clock_stage1_deg: nothing uses it: it "
                                    "is a direction, and nothing draws its magnitude"));
+}
+
+// Falcon 9: three burns, nine nozzles and one. Soyuz: two stages with a cross, four boosters.
+TEST(InputsOfAVehicle, AreThoseOfItsParts) {
+  const struct {
+    const char* launcher;
+    const char* column;
+    bool is_had;
+  } rows[] = {
+      {"falcon9", "thrust_factor_stage3", true},
+      {"falcon9", "thrust_factor_stage4", false},
+      {"falcon9", "nozzle_thrust_factor_stage1_top", true},
+      {"falcon9", "nozzle_thrust_factor_stage2_right", true},
+      {"falcon9", "nozzle_thrust_factor_stage2_left", false},
+      {"falcon9", "nozzle_thrust_factor_stage4_right", false},
+      {"falcon9", "nozzle_offset_y_nozzle9_m", true},
+      {"falcon9", "nozzle_offset_y_nozzle10_m", false},
+      {"falcon9", "booster_dry_mass_factor_nozzle9", false},
+      {"falcon9", "bending_frequency_factor_mode5", true},
+      {"falcon9", "wind_profile_north_30_m_s", true},
+      {"falcon9", "payload_mass_kg", true},
+      {"soyuz", "thrust_factor_stage2", true},
+      {"soyuz", "thrust_factor_stage3", false},
+      {"soyuz", "nozzle_thrust_factor_stage2_top", true},
+      {"soyuz", "nozzle_thrust_factor_nozzle5", true},
+      {"soyuz", "booster_propellant_factor_nozzle5", true},
+      {"soyuz", "booster_propellant_factor_nozzle8", true},
+      {"soyuz", "booster_propellant_factor_nozzle9", false},
+      {"soyuz", "nozzle_thrust_factor_nozzle9", false},
+  };
+  for (const auto& row : rows) {
+    const Vehicle vehicle =
+        LoadVehicle(std::string(DISPERSA_CAMPAIGNS "/gallery/") + row.launcher + "/vehicle.yaml");
+    const std::vector<std::string> names = InputNamesOf(vehicle);
+    ASSERT_GE(FindInput(row.column), 0) << row.column;
+    EXPECT_EQ(HasInput(vehicle, FindInput(row.column)), row.is_had) << row.launcher << " " << row.column;
+    EXPECT_EQ(std::count(names.begin(), names.end(), row.column), row.is_had) << row.column;
+  }
+}
+
+// Neither an expression nor a list sets what no part of the vehicle carries.
+TEST(InputsOfAVehicle, AreAllThatACampaignMaySet) {
+  EXPECT_THAT(
+      Problems("sampling: {method: monte_carlo, cases: 1, seed: 1}\n"
+               "derived:\n  - {input: thrust_factor_stage5, expression: '1.1'}\n"),
+      HasSubstr("derived[0].input: 'thrust_factor_stage5' is not an input of this vehicle's flights"));
+  EXPECT_THAT(Problems(kList, "density_factor,thrust_factor_stage5\n1,1.1\n"),
+              HasSubstr("thrust_factor_stage5: 'thrust_factor_stage5' is not an input of this vehicle"));
 }
 
 }  // namespace

@@ -188,7 +188,7 @@ TEST(ResultFolder, AMetricNamedAfterAStageMakesNoVehicleOfManyStages) {
   const Campaign campaign = WithOwn({"q_stage6_pa"});
   ResultFolder::Create(temporary / "out", campaign).Append({{Measured(0, {1.0})}});
   const ResultFolder folder = ResultFolder::Open(temporary / "out");
-  EXPECT_EQ(folder.stages(), static_cast<std::size_t>(kUsualStages));
+  EXPECT_EQ(folder.stages(), ColumnClass(campaign.vehicle));
   EXPECT_EQ(folder.Load(0).metrics.back(), 1.0);
 }
 
@@ -368,6 +368,7 @@ std::string NamesOfInputs(const std::filesystem::path& folder, const std::string
 TEST(ResultFolder, RowsHoldTheInputsThatTheCampaignSetsAndATableTheOthersOnce) {
   TemporaryFolder temporary;
   Campaign campaign = MakeLimitedCampaign(3);
+  campaign.vehicle.stages.resize(2);
   campaign.derived.push_back({"cg_factor", "drag_factor", FindInput("cg_factor"), {}});
   ScalarDistribution constant;
   constant.values = {1.0};
@@ -377,7 +378,7 @@ TEST(ResultFolder, RowsHoldTheInputsThatTheCampaignSetsAndATableTheOthersOnce) {
       NamesOfInputs(temporary / "out", "name) FROM pragma_table_info('cases') WHERE name LIKE 'input%'"),
       "input_drag_factor,input_cg_factor,input_density_factor");
   EXPECT_EQ(Query(temporary / "out", "SELECT count(*) FROM nominal"),
-            std::to_string(InputCount(kUsualStages) - 3));
+            std::to_string(InputsOf(campaign.vehicle).size() - 3));
   EXPECT_EQ(Query(temporary / "out", "SELECT value FROM nominal WHERE input = 'wind_altitude_m'"), "12000.0");
   CaseResult result = MakeCase(1);
   ApplyEverywhere(folder.inputs(), 0.5, result);
@@ -387,10 +388,12 @@ TEST(ResultFolder, RowsHoldTheInputsThatTheCampaignSetsAndATableTheOthersOnce) {
   EXPECT_EQ(opened.Load(1).inputs_digest, result.inputs_digest);
   const auto nominal = nlohmann::json::parse(NominalJson(opened.inputs()));
   EXPECT_EQ(nominal["schema"], "dispersa/nominal/1");
-  EXPECT_EQ(nominal["inputs"].size(), InputCount(kUsualStages) - 3);
+  EXPECT_EQ(nominal["inputs"].size(), InputsOf(campaign.vehicle).size() - 3);
   EXPECT_EQ(nominal["inputs"]["wind_altitude_m"],
             (nlohmann::json{{"value", 12000.0}, {"unit", "m"}, {"key", "wind.altitude"}}));
   EXPECT_FALSE(nominal["inputs"].contains("density_factor"));
+  EXPECT_TRUE(nominal["inputs"].contains("thrust_factor_stage2"));
+  EXPECT_FALSE(nominal["inputs"].contains("thrust_factor_stage3")) << "the vehicle has no such stage";
 }
 
 // Nothing in the row would show it.

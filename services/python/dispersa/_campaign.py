@@ -125,7 +125,7 @@ class Campaign:
 
     @property
     def stages(self):
-        """The number of the vehicle's stages; inputs and metrics depend on it."""
+        """The number of the vehicle's stages."""
         return self._core.stages
 
     @property
@@ -151,8 +151,8 @@ class Campaign:
 
     @functools.cached_property
     def input_names(self):
-        """Names of all inputs of a case, with units; cases.csv has those in `dispersed` as input_NAME."""
-        return tuple(_core.input_names(self.stages))
+        """Names of all inputs of the vehicle's flights, with units; cases.csv has those in `dispersed` as input_NAME."""
+        return tuple(self._core.input_names)
 
     @functools.cached_property
     def input_keys(self):
