@@ -15,8 +15,6 @@ set(CPACK_DEBIAN_FILE_NAME DEB-DEFAULT)
 set(CPACK_DEBIAN_PACKAGE_SECTION science)
 set(CPACK_DEBIAN_PACKAGE_PRIORITY optional)
 set(CPACK_DEBIAN_PACKAGE_SHLIBDEPS ON)
-# `report --template` is written in it.
-set(CPACK_DEBIAN_PACKAGE_RECOMMENDS python3-jinja2)
 # The Python package, if it was built, gives arrays, tables and plots.
 set(CPACK_DEBIAN_PACKAGE_SUGGESTS "python3-numpy, python3-pandas, python3-matplotlib")
 # Never as the account of whoever packs.

@@ -8,6 +8,7 @@
 
 #include "core/analysis/footprints.h"
 #include "core/analysis/junit.h"
+#include "core/analysis/markdown.h"
 #include "core/math/constants.h"
 #include "core/results/cases_csv.h"
 #include "core/results/export.h"
@@ -24,7 +25,7 @@
 namespace dispersa {
 namespace {
 
-enum class ExportFormat { kCsv, kJsonLines, kHdf5, kJUnit, kGeoJson, kKml };
+enum class ExportFormat { kCsv, kJsonLines, kHdf5, kJUnit, kMarkdown, kGeoJson, kKml };
 
 struct ExportOptions {
   std::string directory;
@@ -83,6 +84,9 @@ ExitCode Export(const ExportOptions& options, const GlobalOptions& global) {
     case ExportFormat::kJUnit:
       WriteFile(options.out, JUnitXml(BuildSummary(stored.folder, stored.campaign)));
       break;
+    case ExportFormat::kMarkdown:
+      WriteFile(options.out, MarkdownReport(BuildSummary(stored.folder, stored.campaign)));
+      break;
   }
   if (global.json) {
     nlohmann::ordered_json object = {{"schema", "dispersa/export/1"}, {"file", options.out}};
@@ -103,13 +107,17 @@ void AddExportCommand(CLI::App& app, Invocation& invocation) {
   CLI::App* command = app.add_subcommand("export", "write the results of a folder for other tools");
   command->add_option("directory", options->directory, "result folder")->required()->type_name(kFolderType);
   const std::map<std::string, ExportFormat> formats = {
-      {"csv", ExportFormat::kCsv},         {"geojson", ExportFormat::kGeoJson}, {"hdf5", ExportFormat::kHdf5},
-      {"jsonl", ExportFormat::kJsonLines}, {"junit", ExportFormat::kJUnit},     {"kml", ExportFormat::kKml}};
+      {"csv", ExportFormat::kCsv},          {"geojson", ExportFormat::kGeoJson},
+      {"hdf5", ExportFormat::kHdf5},        {"jsonl", ExportFormat::kJsonLines},
+      {"junit", ExportFormat::kJUnit},      {"kml", ExportFormat::kKml},
+      {"markdown", ExportFormat::kMarkdown}};
   command
       ->add_option(
           "--format", options->format,
           "csv or jsonl: one line for each case; hdf5: one dataset for each column, also of histories; "
-          "junit: a test case for each requirement; geojson or kml: impact points of spent stages and lost "
+          "junit: a test case for each requirement; markdown: verdict, requirements and worst cases for a "
+          "merge "
+          "request; geojson or kml: impact points of spent stages and lost "
           "flights, whose cases are flown again, and footprints")
       ->required()
       ->transform(CLI::CheckedTransformer(formats).description(CLI::detail::generate_map(formats, true)));

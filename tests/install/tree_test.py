@@ -26,8 +26,8 @@ class Tree(unittest.TestCase):
                              "--quiet", "--out", self.folder / "results")
         self.assertIn(done.returncode, (0, 3, 4), done.stderr)
         self.assertEqual(len((self.folder / "results/cases.csv").read_text().splitlines()), 9)
-        again = self.dispersa("report", self.folder / "results", "--template", self.share / "campaigns/templates/report.md")
-        self.assertIn("table3", again.stdout, again.stderr)
+        again = self.dispersa("export", self.folder / "results", "--format", "markdown", "--out", "-")
+        self.assertIn("# table3: ", again.stdout, again.stderr)
 
     def test_every_file_that_a_campaign_names_is_there(self):
         kinds = ("campaign", "vehicle", "autopilot", "reference", "scenario")

@@ -75,7 +75,7 @@ class Words(unittest.TestCase):
         for line in (["run", ""], ["fly", ""], ["plan", ""], ["launch", ""], ["search", ""], ["tune", ""], ["margins", ""],
                      ["optimize", ""], ["modes", ""], ["validate", "one.yaml", ""], ["run", "a.yaml", "--autopilot", ""]):
             self.assertEqual(kinds(*line), ":file\tyaml\n", line)
-        for line in (["fly", "a.yaml", "--history", ""], ["report", "results", "--template", ""]):
+        for line in (["fly", "a.yaml", "--history", ""], ["export", "results", "--out", ""]):
             self.assertEqual(kinds(*line), ":file\n", line)
 
     def test_each_candidate_is_one_line_that_says_what_it_is(self):

@@ -1,4 +1,4 @@
-"""Exports, templates and the gate as a user calls them, on a small campaign.
+"""Exports and the gate as a user calls them, on a small campaign.
 
 DISPERSA_BINARIES and DISPERSA_CAMPAIGNS name the folders of the programs and of the campaigns.
 """
@@ -18,7 +18,7 @@ import xml.etree.ElementTree
 
 BINARIES = pathlib.Path(os.environ["DISPERSA_BINARIES"])
 CAMPAIGNS = pathlib.Path(os.environ["DISPERSA_CAMPAIGNS"])
-DEBIAN_PYTHON = "/usr/bin/python3"  # python3-jinja2 and python3-h5py belong to it
+DEBIAN_PYTHON = "/usr/bin/python3"  # python3-h5py belongs to it
 TIMEOUT_S = 300
 
 
@@ -40,11 +40,6 @@ class ExportTest(unittest.TestCase):
         assert done.returncode == 0, done.stderr
         with open(cls.results / "cases.csv", newline="") as stream:
             cls.rows = list(csv.DictReader(stream))
-
-    def template(self, text, name="template.md"):
-        file = self.folder / name
-        file.write_text(text)
-        return file
 
 
 class Columns(ExportTest):
@@ -188,12 +183,11 @@ class Incomplete(ExportTest):
         done = dispersa("compare", self.results, self.results, "--json")
         self.assertEqual((done.returncode, done.stderr, json.loads(done.stdout)["incomplete"]), (0, "", []))
 
-    def test_a_filled_template_says_what_is_missing(self):
-        folder = self.folder / "filled"
-        shutil.copytree(self.killed, folder)
-        shutil.copy(self.results / "summary.json", folder)
-        done = dispersa("report", folder, "--template", self.template("x"))
-        self.assertEqual((done.returncode, done.stdout, done.stderr), (5, "x", f"warning: {folder}: {self.words}\n"))
+    def test_markdown_says_what_is_missing(self):
+        file = self.folder / "missing.md"
+        done = dispersa("export", self.killed, "--format", "markdown", "--out", file)
+        self.assertEqual((done.returncode, done.stderr), (5, f"warning: {self.killed}: {self.words}\n"))
+        self.assertIn("# smoke: incomplete\n", file.read_text())
 
     def test_a_folder_without_any_case_is_refused(self):
         words = (f"{self.copy}: incomplete: 0 of {self.CASES} cases have a result; copy results.sqlite-wal too if this is a copy, "
@@ -249,46 +243,19 @@ class Ending(ExportTest):
                       done.stderr)
 
 
-class Templates(ExportTest):
-    def test_values_of_the_summary(self):
-        done = dispersa("report", self.results, "--template", self.template(
-            "{{ campaign.name }} {{ verdict }} {{ requirements[0].limit | number }} {{ 0.99731 | percent }}\n"
-            "{% for r in requirements %}\n{{ r.metric }}\n{% endfor %}\n{{ None | number }} {{ 12345.678 | number }}\n"))
+class Markdown(ExportTest):
+    def test_says_what_reviewers_read(self):
+        done = dispersa("export", self.results, "--format", "markdown", "--out", "-")
         self.assertEqual((done.returncode, done.stderr), (0, ""))
-        self.assertEqual(done.stdout, "smoke pass 1 99.731 %\npitch_error_peak_deg\n\u2013 12346\n")
-
-    def test_no_object_of_a_template(self):
-        done = dispersa("report", self.results, "--template", self.template("x"), "--json")
-        self.assertEqual((done.returncode, done.stderr), (2, "--template and --json cannot be used together, allowed: "
-                                                             "one of them\n"))
-        self.assertEqual(json.loads(done.stdout)["schema"], "dispersa/error/1")
-
-    def test_shipped_templates(self):
-        for name in ("report.md", "report.html"):
-            done = dispersa("report", self.results, "--template", CAMPAIGNS / "templates" / name, "--out", self.folder / name)
-            self.assertEqual((done.returncode, done.stdout, done.stderr), (0, "", ""))
-            text = (self.folder / name).read_text()
-            self.assertIn("smoke: pass", text)
-            self.assertIn("pitch_error_peak_deg", text)
-            self.assertNotRegex(text, r"\b(None|nan|inf)\b|Undefined")
-
-    def test_mistakes_name_their_line(self):
-        for text, line, what in [("a\n{{ campaign.nme }}\n", 2, "'dict object' has no attribute 'nme'"),
-                                 ("a\nb\n{% if %}\n", 3, "Expected an expression, got 'end of statement block'"),
-                                 ("{{ verdict | colour }}", 1, "No filter named 'colour'."),
-                                 ("\n{{ ''.__class__ }}", 2, "access to attribute '__class__' of 'str' object is unsafe."),
-                                 ("{{ 1 / 0 }}", 1, "division by zero"),
-                                 ("{% include '../secret' %}", 1, "no template named '../secret' beside it")]:
-            file = self.template(text)
-            done = dispersa("report", self.results, "--template", file)
-            self.assertEqual((done.returncode, done.stdout, done.stderr), (2, "", f"{file}:{line}: {what}\n"))
-        missing = self.folder / "missing.md"
-        done = dispersa("report", self.results, "--template", missing)
-        self.assertEqual((done.returncode, done.stderr), (2, f"{missing}: file not found, allowed: a file that exists\n"))
-
-    def test_html_is_escaped(self):
-        done = dispersa("report", self.results, "--template", self.template("{{ '<&>' }}", "template.html"))
-        self.assertEqual(done.stdout, "&lt;&amp;&gt;")
+        lines = done.stdout.splitlines()
+        self.assertEqual(lines[0], "# smoke: pass")
+        self.assertIn("- **pitch\\_error\\_peak\\_deg**: ", done.stdout)
+        self.assertIn("| `dispersa replay . --case ", done.stdout)
+        self.assertNotRegex(done.stdout, r"\b(None|nan|inf)\b")
+        heads = [at for at, line in enumerate(lines) if set(line) == {"|", "-"}]
+        self.assertEqual(len(heads), 3)
+        for at in heads:
+            self.assertEqual(lines[at - 1].count("|"), lines[at].count("|"))
 
     def test_the_gate_leaves_what_a_pipeline_attaches(self):
         artifacts = self.folder / "artifacts"
