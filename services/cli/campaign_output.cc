@@ -69,11 +69,10 @@ void AddOpenOption(CLI::App& command, bool& open) {
   command.add_flag("--open", open, "show report.html in the browser ($BROWSER, or xdg-open)");
 }
 
-void OpenPage(const std::filesystem::path& page) {
+void OpenInBrowser(std::string page) {
   const char* chosen = std::getenv("BROWSER");
   std::string program = chosen != nullptr && *chosen != '\0' ? chosen : "xdg-open";
-  std::string file = std::filesystem::absolute(page).string();
-  char* const arguments[] = {program.data(), file.data(), nullptr};
+  char* const arguments[] = {program.data(), page.data(), nullptr};
   posix_spawn_file_actions_t actions;
   posix_spawn_file_actions_init(&actions);
   for (const int stream : {STDIN_FILENO, STDOUT_FILENO, STDERR_FILENO})
@@ -81,7 +80,7 @@ void OpenPage(const std::filesystem::path& page) {
   pid_t pid = 0;
   const int error = posix_spawnp(&pid, arguments[0], &actions, nullptr, arguments, environ);
   posix_spawn_file_actions_destroy(&actions);
-  if (error != 0) LogWarning("--open: {}: {}; open {} yourself", program, std::strerror(error), file);
+  if (error != 0) LogWarning("{}: {}; open {} yourself", program, std::strerror(error), page);
 }
 
 void PrintSummary(const CampaignSummary& summary, const std::filesystem::path& directory, bool json) {

@@ -16,8 +16,9 @@ void AddGateOption(CLI::App& command, bool& gate);
 
 /// --open.
 void AddOpenOption(CLI::App& command, bool& open);
-/// Starts the browser with a page and does not wait for it: $BROWSER, or xdg-open. A failure is a warning.
-void OpenPage(const std::filesystem::path& page);
+/// Starts the browser with a file or an address and does not wait for it: $BROWSER, or xdg-open. A failure is
+/// a warning.
+void OpenInBrowser(std::string page);
 
 /// Prints the verdicts, the report's place, and as the last line "result: DIR". With `json`: summary.json
 /// plus `directory`.

@@ -30,7 +30,8 @@ ExitCode ReportAgain(const ReportCommand& options, const GlobalOptions& global) 
   const CampaignSummary summary =
       MakeReports(stored.folder, stored.campaign, UsableCores(), options.reflown, observer);
   PrintSummary(summary, stored.folder.directory(), global.json);
-  if (options.open) OpenPage(stored.folder.directory() / "report.html");
+  if (options.open)
+    OpenInBrowser(std::filesystem::absolute(stored.folder.directory() / "report.html").string());
   return CampaignExitCode(summary.standing.verdict, 0, options.gate);
 }
 

@@ -46,7 +46,7 @@ ExitCode Fly(const RunCommand& options, PreparedRun prepared, const GlobalOption
   try {
     const RunResult result = RunCampaign(std::move(prepared), run, observer);
     PrintSummary(result.summary, directory, global.json);
-    if (options.open) OpenPage(directory / "report.html");
+    if (options.open) OpenInBrowser(std::filesystem::absolute(directory / "report.html").string());
     return result.code;
   } catch (const Interrupted&) {
     observer.EndPhase();

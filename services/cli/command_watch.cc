@@ -4,16 +4,15 @@
 #include <chrono>
 #include <memory>
 #include <optional>
-#include <stdexcept>
 #include <thread>
 #include <utility>
 
+#include "core/input/input_error.h"
+#include "services/cli/campaign_output.h"
 #include "services/cli/campaign_text.h"
-#include "services/cli/live_page.h"
 #include "services/cli/progress.h"
 #include "services/cli/session_options.h"
 #include "services/log/log.h"
-#include "services/program/option_values.h"
 #include "services/program/stop_signal.h"
 
 namespace dispersa {
@@ -25,47 +24,35 @@ constexpr std::chrono::milliseconds kPeriod(500);
 constexpr std::chrono::seconds kPatience(3);  // of one attempt
 constexpr std::chrono::seconds kSayAgain(15);
 
-struct WatchOptions {
-  bool web = false;
-  std::uint16_t port = 0;
-};
-
-std::unique_ptr<LiveServer> OpenPage(const std::string& id, const WatchOptions& options) {
-  if (!options.web) return nullptr;
-  try {
-    auto page = std::make_unique<LiveServer>(options.port, LivePage(id));
-    Tell("watch: {}\n", page->Url());
-    std::fflush(stderr);
-    return page;
-  } catch (const std::runtime_error& error) {
-    throw Failure{kExitBadInput, fmt::format("--port: {}", error.what())};
+/// Opens the campaign's page in the coordinator's web application.
+void OpenCampaignPage(const std::string& id, Session& session) {
+  const Json status = Json::parse(session.Ask("status", {{"id", id}}).text);
+  const Json& web = status.at("web");
+  if (web.is_null())
+    throw InputError("--web: this coordinator serves no pages", "a coordinator that was started with --web");
+  const std::string path = "/campaign/" + status.at("campaigns").at(0).at("id").get<std::string>();
+  const std::string address = web.at("address");
+  if (web.at("behind_tls").get<bool>()) {
+    Tell("watch: {} below the address of the proxy before {}\n", path, address);
+    return;
   }
+  const std::string page = "http://" + address + path;
+  Tell("watch: {} on the coordinator's machine\n", page);
+  OpenInBrowser(page);
 }
 
-/// Shows a campaign wherever it is watched.
+/// Shows a campaign in the terminal.
 class Watcher {
  public:
-  Watcher(LiveServer* page, bool quiet) : page_(page), quiet_(quiet) {}
+  explicit Watcher(bool quiet) : quiet_(quiet) {}
 
   void Away(const Session& session) {
     silent_ += kPatience;
-    const std::string silence = session.Silence(silent_);
-    if (silent_ % kSayAgain == std::chrono::seconds(0)) LogWarning("{}; watch tries again", silence);
-    if (page_ != nullptr)
-      page_->Show(NoticeParts(silence + "; this page shows the state before. watch tries again."));
+    if (silent_ % kSayAgain == std::chrono::seconds(0))
+      LogWarning("{}; watch tries again", session.Silence(silent_));
   }
-  void Show(const Json& status, const std::optional<Json>& tally) {
+  void Show(const Json& campaign) {
     silent_ = std::chrono::seconds(0);
-    ShowText(status.at("campaigns").at(0));
-    if (page_ == nullptr) return;
-    LiveParts parts = StatusParts(status);
-    parts.merge(NoticeParts(""));
-    if (tally) parts.merge(TallyParts(*tally));
-    page_->Show(parts);
-  }
-
- private:
-  void ShowText(const Json& campaign) {
     if (!campaign.at("code").is_null()) return progress_.reset();
     if (!progress_) progress_.emplace(campaign.at("name").get<std::string>(), quiet_);
     const std::string before = std::exchange(state_, campaign.at("state").get<std::string>());
@@ -77,7 +64,7 @@ class Watcher {
       progress_->Show(campaign.at("done"), campaign.at("total"), note);
   }
 
-  LiveServer* page_;
+ private:
   bool quiet_;
   std::optional<Progress> progress_;
   std::string state_;
@@ -96,30 +83,19 @@ ExitCode PrintEnd(const Json& campaign, const GlobalOptions& global) {
 }
 
 // Waits for a coordinator that is away: a launched campaign goes on when the coordinator is back.
-ExitCode Watch(const std::string& id, const WatchOptions& options, Session& session,
-               const GlobalOptions& global) {
+ExitCode Watch(const std::string& id, bool web, Session& session, const GlobalOptions& global) {
   CatchStopSignals();
-  const std::unique_ptr<LiveServer> page = OpenPage(id, options);
-  Watcher watcher(page.get(), global.quiet);
+  if (web) OpenCampaignPage(id, session);
+  Watcher watcher(global.quiet);
   while (!StopRequested()) {
-    const auto reply = session.Try(page ? "status" : "list", {{"id", id}}, "", kPatience);
+    const auto reply = session.Try("list", {{"id", id}}, "", kPatience);
     if (!reply) {
       watcher.Away(session);
       continue;
     }
-    const Json status = Json::parse(reply->text);
-    const Json& campaign = status.at("campaigns").at(0);
-    std::optional<Json> tally;
-    // After the status: at the end it has all that the campaign came to.
-    if (page) {
-      if (const auto answer = session.Try("tally", {{"id", id}}, "", kPatience))
-        tally = Json::parse(answer->text);
-    }
-    watcher.Show(status, tally);
-    if (!campaign.at("code").is_null()) {
-      if (page) page->End();
-      return PrintEnd(campaign, global);
-    }
+    const Json campaign = Json::parse(reply->text).at("campaigns").at(0);
+    watcher.Show(campaign);
+    if (!campaign.at("code").is_null()) return PrintEnd(campaign, global);
     std::this_thread::sleep_for(kPeriod);
   }
   return kExitInterrupted;
@@ -130,17 +106,14 @@ ExitCode Watch(const std::string& id, const WatchOptions& options, Session& sess
 void AddWatchCommand(CLI::App& app, Invocation& invocation) {
   CLI::App* watch =
       app.add_subcommand("watch", "follow a campaign until it ends, and end with its exit code");
-  auto options = std::make_shared<WatchOptions>();
-  CLI::Option* web =
-      watch->add_flag("--web", options->web,
-                      "also serve a page for the browsers of this machine, and print its address on stderr");
-  watch->add_option("--port", options->port, "port of the page on 127.0.0.1; default: any free port")
-      ->needs(web)
-      ->transform(WholeNumber(1, 65535));
-  watch->footer("Example: dispersa watch 3f2a --web --port 8080");
+  auto web = std::make_shared<bool>(false);
+  watch->add_flag(
+      "--web", *web,
+      "also open the campaign's page of a coordinator with --web, and print its address on stderr");
+  watch->footer("Example: dispersa watch 3f2a --web");
   BindSession(watch, invocation,
-              [id = AddIdOption(watch), options](Session& session, const GlobalOptions& global) {
-                return Watch(*id, *options, session, global);
+              [id = AddIdOption(watch), web](Session& session, const GlobalOptions& global) {
+                return Watch(*id, *web, session, global);
               });
 }
 

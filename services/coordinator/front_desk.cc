@@ -87,12 +87,6 @@ Json ToJson(const CampaignView& view, std::size_t most) {
           {"requirements_unlisted", view.standings.size() - std::min(most, view.standings.size())}};
 }
 
-/// Twice the cube root of their number (Rice's rule), so that few cases make no comb.
-std::size_t BinsFor(std::int64_t n) {
-  return std::clamp(static_cast<std::size_t>(2.0 * std::cbrt(static_cast<double>(n))), std::size_t{6},
-                    RunningHistogram::kMaxBins);
-}
-
 Refused SnapshotIsGone(const CatalogueEntry& entry) {
   return Refused(kExitIncomplete, fmt::format("the snapshot of campaign {} is gone: repeat the backup",
                                               entry.id.substr(0, 8)));
@@ -170,8 +164,8 @@ bool IsLabel(const std::string& text) {
 
 }  // namespace
 
-FrontDesk::FrontDesk(Service& service, const Workforce& workforce, std::string everybody)
-    : service_(service), workforce_(workforce), everybody_(std::move(everybody)) {
+FrontDesk::FrontDesk(Service& service, const Workforce& workforce, std::string everybody, WebPages pages)
+    : service_(service), workforce_(workforce), everybody_(std::move(everybody)), pages_(std::move(pages)) {
   for (const auto& [id, entry] : service.catalogue().entries())
     RemoveDatabaseCopies(service.catalogue().ResultsOf(id));
 }
@@ -207,8 +201,6 @@ Reply FrontDesk::Answer(const Request& request) {
       reply.text = List(request.arguments);
     } else if (request.method == "status") {
       reply.text = Status(request.arguments);
-    } else if (request.method == "tally") {
-      reply.text = Tally(request.arguments);
     } else if (request.method == "files") {
       reply.text = Files(request.arguments);
     } else if (request.method == "read") {
@@ -433,51 +425,18 @@ std::vector<std::string> FrontDesk::Listed(std::size_t most) const {
 std::string FrontDesk::Status(const std::string& arguments) const {
   Json answer = Json::parse(List(arguments));
   answer["schema"] = "dispersa/status/1";
-  constexpr const char* kStates[] = {"ready", "flying", "draining", "left"};
   Json workers = Json::array();
   for (const Dispatcher::WorkerView& worker : workforce_.Workers()) {
     workers.push_back({{"id", worker.worker},
                        {"host", Printable(worker.host)},
                        {"slots", worker.slots},
-                       {"state", kStates[static_cast<int>(worker.state)]},
+                       {"state", WorkerStateName(worker.state)},
                        {"flown", worker.flown}});
   }
   answer["workers"] = std::move(workers);
-  return answer.dump();
-}
-
-// How a campaign stands, for those who watch it: bounded, however many cases it has.
-std::string FrontDesk::Tally(const std::string& arguments) const {
-  const std::string id = Named(Json::parse(arguments).at("id")).id;
-  Json answer = {{"schema", "dispersa/tally/1"}, {"id", id}, {"n", 0}};
-  Json requirements = Json::array(), histograms = Json::array();
-  if (const RunningTally* tally = service_.TallyOf(id)) {
-    answer["n"] = tally->n();
-    const std::vector<RequirementStanding> standings = tally->Standings();
-    for (std::size_t i = 0; i < standings.size(); ++i) {
-      const Requirement& requirement = tally->requirements()[i];
-      const Limits limits = LimitsOf(requirement);
-      requirements.push_back({{"metric", requirement.metric},
-                              {"above", Number(limits.low)},
-                              {"below", Number(limits.high)},
-                              {"every_case", requirement.every_case},
-                              {"probability", requirement.probability},
-                              {"consumer_risk", requirement.consumer_risk},
-                              {"n", standings[i].n},
-                              {"failures", standings[i].failures},
-                              {"so_far", standings[i].so_far}});
-    }
-    for (const MetricHistogram& histogram : tally->histograms()) {
-      const HistogramBins bins = histogram.values.Bins(BinsFor(histogram.values.n()));
-      histograms.push_back({{"metric", histogram.metric},
-                            {"n", histogram.values.n()},
-                            {"low", bins.low},
-                            {"width", bins.width},
-                            {"counts", bins.counts}});
-    }
-  }
-  answer["requirements"] = std::move(requirements);
-  answer["histograms"] = std::move(histograms);
+  answer["web"] = pages_.address.empty()
+                      ? Json(nullptr)
+                      : Json{{"address", pages_.address}, {"behind_tls", pages_.behind_tls}};
   return answer.dump();
 }
 

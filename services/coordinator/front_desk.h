@@ -22,12 +22,18 @@ struct Asker {
   Right right = Right::kRun;
 };
 
+/// Where the coordinator serves its pages.
+struct WebPages {
+  std::string address;      ///< "127.0.0.1:8080"; empty: nowhere
+  bool behind_tls = false;  ///< readers know a proxy's address instead
+};
+
 /// A request may come several times, since clients repeat it until the reply arrives: none does more the
 /// second time than the first.
 class FrontDesk {
  public:
   /// Without keys everybody who is heard is `everybody`, and may do all. With keys it is empty.
-  FrontDesk(Service& service, const Workforce& workforce, std::string everybody);
+  FrontDesk(Service& service, const Workforce& workforce, std::string everybody, WebPages pages = {});
 
   Reply Answer(const Request& request);
 
@@ -62,7 +68,6 @@ class FrontDesk {
   std::string List(const std::string& arguments) const;
   std::vector<std::string> Listed(std::size_t most) const;
   std::string Status(const std::string& arguments) const;
-  std::string Tally(const std::string& arguments) const;
   std::string Files(const std::string& arguments);
   std::string Journals() const;
   std::string Snapshot(const CatalogueEntry& entry, const std::string& name);
@@ -76,6 +81,7 @@ class FrontDesk {
   Service& service_;
   const Workforce& workforce_;
   std::string everybody_;
+  WebPages pages_;
   std::map<std::string, Upload> uploads_;  ///< by id
   DatabaseCopies copies_;
   std::map<std::string, CampaignSnapshot> snapshots_;  ///< by id: of the last backup

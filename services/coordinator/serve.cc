@@ -88,6 +88,12 @@ CampaignFile FilesBelow(const std::filesystem::path& data) {
   };
 }
 
+WebPages PagesOf(const ClientOptions& clients) {
+  if (!clients.web) return {};
+  const auto& [host, port] = clients.web->address;
+  return {fmt::format("{}:{}", host, port), clients.web->behind_tls};
+}
+
 PreparedRun PrepareUnlessStopped(const RunRequest& request) {
   try {
     return PrepareRun(request, StopRequested);
@@ -169,7 +175,7 @@ int ServeClients(const ServeOptions& options, const ClientOptions& clients) {
   service_options.reports_at_once = static_cast<std::size_t>(std::clamp(UsableCores(), 2, kMostReports));
   service_options.report_threads = std::max(1, UsableCores() / 2);
   Service service(service_options, coordinator);
-  FrontDesk front_desk(service, coordinator, EverybodyOn(options.network));
+  FrontDesk front_desk(service, coordinator, EverybodyOn(options.network), PagesOf(clients));
   ServingTimes times;
   coordinator.Serve([&](const Request& request) {
     const Stopwatch watch;
@@ -200,7 +206,7 @@ int ServeClients(const ServeOptions& options, const ClientOptions& clients) {
     const bool is_new =
         shown_changes != service.catalogue().changes() && web_pause.IsDue(coordinator.now_s());
     if (web && (web_period.IsDue(coordinator.now_s()) || is_new)) {
-      web->Set(web_rows.Make(service));
+      web->Set(web_rows.Make(service, coordinator));
       shown_changes = service.catalogue().changes();
     }
     if (counts_period.IsDue(coordinator.now_s())) LogCounts();

@@ -3,10 +3,12 @@
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <cmath>
 #include <utility>
 
 #include "core/results/requirement_text.h"
 #include "core/results/text.h"
+#include "services/transport/validity.h"
 
 namespace dispersa {
 namespace {
@@ -50,6 +52,21 @@ std::string WordsOf(const Requirement& requirement) {
                      PercentText(requirement.probability), PercentText(requirement.consumer_risk));
 }
 
+/// Twice the cube root of their number (Rice's rule), so that few cases make no comb.
+std::size_t BinsFor(std::int64_t n) {
+  return std::clamp(static_cast<std::size_t>(2.0 * std::cbrt(static_cast<double>(n))), std::size_t{6},
+                    RunningHistogram::kMaxBins);
+}
+
+LiveHistogram LiveOf(const MetricHistogram& histogram) {
+  const HistogramBins bins = histogram.values.Bins(BinsFor(histogram.values.n()));
+  LiveHistogram live{histogram.metric, static_cast<std::uint64_t>(histogram.values.n()), bins.low,
+                     bins.width,       {bins.counts.begin(), bins.counts.end()},         {}};
+  for (const double limit : {histogram.limits.low, histogram.limits.high})
+    if (std::isfinite(limit)) live.limits.push_back(limit);
+  return live;
+}
+
 CampaignRow RowOf(const CampaignView& view, const RunningTally* tally) {
   CampaignRow row = RowOf(*view.entry);
   row.problem = view.problem;
@@ -65,12 +82,22 @@ CampaignRow RowOf(const CampaignView& view, const RunningTally* tally) {
                                 tally->requirements()[i].probability, standing.n, standing.failures,
                                 std::nullopt, std::nullopt, standing.so_far});
   }
+  if (tally != nullptr)
+    for (const MetricHistogram& histogram : tally->histograms()) row.histograms.push_back(LiveOf(histogram));
   return row;
+}
+
+std::vector<WorkerRow> WorkersOf(const Workforce& workforce) {
+  std::vector<WorkerRow> rows;
+  for (const Dispatcher::WorkerView& worker : workforce.Workers())
+    rows.push_back({worker.worker, Printable(worker.host), WorkerStateName(worker.state),
+                    static_cast<int>(worker.slots), worker.flown});
+  return rows;
 }
 
 }  // namespace
 
-std::shared_ptr<const CampaignIndex> WebRows::Make(const Service& service) {
+std::shared_ptr<const CampaignIndex> WebRows::Make(const Service& service, const Workforce& workforce) {
   std::map<std::string, CampaignIndex::Row> ended;
   std::vector<CampaignIndex::Row> rows;
   for (const auto& [id, entry] : service.catalogue().entries()) {
@@ -86,7 +113,7 @@ std::shared_ptr<const CampaignIndex> WebRows::Make(const Service& service) {
     rows.push_back(row);
   }
   ended_ = std::move(ended);
-  return std::make_shared<CampaignIndex>(std::move(rows));
+  return std::make_shared<CampaignIndex>(std::move(rows), WorkersOf(workforce));
 }
 
 }  // namespace dispersa

@@ -13,7 +13,7 @@ namespace dispersa {
 /// Rows of campaigns that have ended are made once, so that thousands of them cost nothing each second.
 class WebRows {
  public:
-  std::shared_ptr<const CampaignIndex> Make(const Service& service);
+  std::shared_ptr<const CampaignIndex> Make(const Service& service, const Workforce& workforce);
 
  private:
   std::map<std::string, CampaignIndex::Row> ended_;  ///< by id

@@ -2,8 +2,6 @@
 #pragma once
 
 #include <chrono>
-#include <functional>
-#include <optional>
 #include <string>
 #include <string_view>
 #include <utility>
@@ -40,9 +38,6 @@ struct HttpAnswer {
   std::string type = kHtmlType;
   HttpPairs headers;
   std::chrono::milliseconds delay{0};  ///< before it is sent
-  /// What follows the body, asked several times a second on the server's own thread: it must not wait. Empty:
-  /// nothing new; none: nothing more.
-  std::function<std::optional<std::string>()> more;
 };
 
 /// To another address: `status` 302, or 303 after a form.

@@ -37,8 +37,6 @@ namespace http = boost::beast::http;
 using Clock = std::chrono::steady_clock;
 using Failing = boost::system::error_code;
 
-constexpr std::chrono::milliseconds kMorePeriod(50);
-constexpr std::chrono::milliseconds kPatienceOfMore(5000);  // for one part of an answer that goes on
 // A peer that is refused while it sends would lose the words of the refusal with its connection.
 constexpr std::chrono::milliseconds kFarewell(500);
 constexpr std::size_t kFarewellBytes = 1 << 20;
@@ -51,7 +49,7 @@ constexpr std::chrono::milliseconds kAnswerPerMb(20000);
 bool IsLoopback(const sockaddr_in& address) { return (ntohl(address.sin_addr.s_addr) >> 24) == 127; }
 
 HttpAnswer InWords(int status, const std::string& words) {
-  return {status, words + "\n", "text/plain; charset=utf-8", {}, {}, {}};
+  return {status, words + "\n", "text/plain; charset=utf-8", {}, {}};
 }
 
 std::string Small(boost::beast::string_view text) {
@@ -111,7 +109,7 @@ class HttpServer::Serving {
     std::uint64_t key;           // of an address, or on loopback of a user
     std::optional<uid_t> owner;  // on loopback
   };
-  enum class Stage { kReads, kIsLate, kIsHandled, kWaits, kWrites, kGoesOn, kLeaves };
+  enum class Stage { kReads, kIsLate, kIsHandled, kWaits, kWrites, kLeaves };
 
   struct Connection {
     Connection(asio::io_context& io, const HttpLimits& limits, asio::ip::tcp::socket its_socket,
@@ -129,7 +127,7 @@ class HttpServer::Serving {
     http::request_parser<http::string_body> parser;
     std::array<char, kPiece> dropped{};
     HttpAnswer answer;
-    std::string head, part;
+    std::string head;
     std::size_t droppable = kFarewellBytes;
     bool is_head = false, is_whole = false, is_cut = false;
   };
@@ -149,8 +147,6 @@ class HttpServer::Serving {
   void Handle(const Shared& connection);
   void Send(const Shared& connection, HttpAnswer answer);
   void SendNow(const Shared& connection);
-  void GoOn(const Shared& connection);
-  void SendPart(const Shared& connection, const std::optional<std::string>& part);
   void Drop(const Shared& connection);
   void Leave(const Shared& connection);
   std::string HeadOf(const HttpAnswer& answer) const;
@@ -374,11 +370,7 @@ std::string HttpServer::Serving::HeadOf(const HttpAnswer& answer) const {
     head += name + ": " + value + "\r\n";
   };
   add("Content-Type", answer.type);
-  if (answer.more) {
-    add("Transfer-Encoding", "chunked");
-  } else {
-    add("Content-Length", std::to_string(answer.body.size()));
-  }
+  add("Content-Length", std::to_string(answer.body.size()));
   add("Connection", "close");
   for (const auto& [name, value] : answer.headers) add(name, value);
   for (const auto& [name, value] : options_.headers) {
@@ -390,44 +382,16 @@ std::string HttpServer::Serving::HeadOf(const HttpAnswer& answer) const {
 }
 
 void HttpServer::Serving::SendNow(const Shared& connection) {
-  const bool goes_on = connection->answer.more && !connection->is_head;
   connection->stage = Stage::kWrites;
   connection->head = HeadOf(connection->answer);
   const std::array<asio::const_buffer, 2> all = {
       asio::buffer(connection->head),
-      connection->is_head || goes_on ? asio::const_buffer() : asio::buffer(connection->answer.body)};
-  asio::async_write(connection->socket, all, [this, connection, goes_on](const Failing& error, std::size_t) {
+      connection->is_head ? asio::const_buffer() : asio::buffer(connection->answer.body)};
+  asio::async_write(connection->socket, all, [this, connection](const Failing& error, std::size_t) {
     if (connection->is_cut) return;
     if (error) return Cut(connection);
-    if (!goes_on) return Leave(connection);
-    connection->stage = Stage::kGoesOn;
-    Drop(connection);
-    GoOn(connection);
+    Leave(connection);
   });
-}
-
-void HttpServer::Serving::GoOn(const Shared& connection) {
-  const std::optional<std::string> part = connection->answer.more();
-  if (!part || !part->empty()) return SendPart(connection, part);
-  connection->deadline.cancel();
-  connection->pause.expires_after(kMorePeriod);
-  connection->pause.async_wait([this, connection](const Failing& error) {
-    if (!error && !connection->is_cut) GoOn(connection);
-  });
-}
-
-void HttpServer::Serving::SendPart(const Shared& connection, const std::optional<std::string>& part) {
-  std::array<char, 24> size{};
-  std::snprintf(size.data(), size.size(), "%zx\r\n", part ? part->size() : 0);
-  connection->part = size.data() + part.value_or("") + "\r\n";
-  LimitTime(connection, kPatienceOfMore);
-  asio::async_write(connection->socket, asio::buffer(connection->part),
-                    [this, connection, is_last = !part](const Failing& error, std::size_t) {
-                      if (connection->is_cut) return;
-                      if (error) return Cut(connection);
-                      if (is_last) return Leave(connection);
-                      GoOn(connection);
-                    });
 }
 
 /// Reads what nobody wants, until the peer goes away.

@@ -1,4 +1,4 @@
-// The one skeleton of an HTTP server: web application, Prometheus figures and live page are handlers of it.
+// The one skeleton of an HTTP server: web application and Prometheus figures are handlers of it.
 #pragma once
 
 #include <chrono>

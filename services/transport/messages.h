@@ -11,6 +11,10 @@
 namespace dispersa {
 
 enum class WorkerState { kReady, kFlying, kDraining, kLeft };
+constexpr const char* WorkerStateName(WorkerState state) {
+  constexpr const char* kNames[] = {"ready", "flying", "draining", "left"};
+  return kNames[static_cast<int>(state)];
+}
 
 struct StartedCase {
   std::uint64_t case_index = 0;

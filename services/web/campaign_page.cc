@@ -2,6 +2,7 @@
 
 #include "core/pages/html_parts.h"
 #include "core/results/text.h"
+#include "services/web/flying_section.h"
 #include "services/web/pages.h"
 #include "services/web/web_parts.h"
 
@@ -79,7 +80,9 @@ std::string CampaignPart(const CampaignIndex& index, const CampaignRow& row, boo
   if (has_report)
     html += fmt::format("<p class=\"act\"><a class=\"button\" href=\"{}/report\">Open the report</a></p>\n",
                         LinkTo(row));
-  html += RequirementTable(row) + OthersOfDesign(index, row);
+  html += RequirementTable(row);
+  if (!row.has_ended) html += FlyingSection(index, row);
+  html += OthersOfDesign(index, row);
   html += fmt::format(
       "<h2>Identity</h2>\n<p>Campaign {}</p>\n{}<p class=\"soft\">This address is permanent while the "
       "coordinator "

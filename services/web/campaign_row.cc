@@ -21,7 +21,8 @@ std::string SearchedText(const CampaignRow& row) {
 
 }  // namespace
 
-CampaignIndex::CampaignIndex(std::vector<Row> rows) : rows_(std::move(rows)) {
+CampaignIndex::CampaignIndex(std::vector<Row> rows, std::vector<WorkerRow> workers)
+    : rows_(std::move(rows)), workers_(std::move(workers)) {
   std::sort(rows_.begin(), rows_.end(), [](const Row& a, const Row& b) { return a->order > b->order; });
   for (const Row& row : rows_) by_id_[row->id] = row.get();
 }

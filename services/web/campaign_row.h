@@ -21,6 +21,23 @@ struct RequirementOutcome {
   std::string verdict;                                 ///< that stands
 };
 
+/// Of the completed flights of a campaign that flies.
+struct LiveHistogram {
+  std::string metric;
+  std::uint64_t n = 0;
+  double low = 0.0, width = 0.0;
+  std::vector<double> counts;
+  std::vector<double> limits;  ///< of its requirement
+};
+
+struct WorkerRow {
+  std::string id;
+  std::string host;
+  std::string state;  ///< "ready", "flying", "draining", "left"
+  int slots = 0;
+  std::uint64_t flown = 0;  ///< cases
+};
+
 struct CampaignRow {
   std::string id;
   std::string name;
@@ -45,6 +62,7 @@ struct CampaignRow {
   double rate_per_s = 0.0;
   std::optional<double> eta_s;
   std::vector<RequirementOutcome> requirements;  ///< of a campaign that flies: so far
+  std::vector<LiveHistogram> histograms;         ///< of key metrics, while it flies
 };
 
 /// All campaigns at one moment. It does not change, so many threads may read it.
@@ -54,10 +72,11 @@ class CampaignIndex {
 
   CampaignIndex() = default;
   /// In any order.
-  explicit CampaignIndex(std::vector<Row> rows);
+  explicit CampaignIndex(std::vector<Row> rows, std::vector<WorkerRow> workers = {});
 
   /// Those launched last come first.
   const std::vector<Row>& rows() const { return rows_; }
+  const std::vector<WorkerRow>& workers() const { return workers_; }
   /// The campaign whose id begins so, if it is exactly one.
   const CampaignRow* Find(const std::string& prefix) const;
   /// Rows with each word of `text` in id, name, owner, state, verdict or a label, in either case of letters.
@@ -65,6 +84,7 @@ class CampaignIndex {
 
  private:
   std::vector<Row> rows_;
+  std::vector<WorkerRow> workers_;
   std::map<std::string, const CampaignRow*> by_id_;
 };
 

@@ -189,9 +189,8 @@ HttpAnswer WebServer::Answer(const HttpRequest& request) {
   if (request.method == "POST" && path == "/login") return LogIn(request);
   if (request.method != "GET") return Problem(404, "Not here", "There is no such page.");
   if (path == "/login") return Html(LoginPage(LocalPath(request.Parameter("next")), false));
-  if (path == "/style.css") return {200, WebStyleSheet(), "text/css; charset=utf-8", {}, {}, {}};
-  if (path == "/script.js")
-    return {200, std::string(WebScript()), "text/javascript; charset=utf-8", {}, {}, {}};
+  if (path == "/style.css") return {200, WebStyleSheet(), "text/css; charset=utf-8", {}, {}};
+  if (path == "/script.js") return {200, std::string(WebScript()), "text/javascript; charset=utf-8", {}, {}};
   if (path == "/")
     return Html(ListPage(*index(), request.Parameter("q"), PageNumber(request.Parameter("page"))));
   if (path == "/trend") return Html(TrendPage(*index(), request.Parameter("metric"), request.Parameter("q")));

@@ -40,17 +40,18 @@ class ApplicationInABrowser(ServiceCase):
         self.browser.devtools("Emulation.clearDeviceMetricsOverride")
 
     def test_a_campaign_from_its_launch_to_a_trend(self):
-        first = self.dispersa("launch", CAMPAIGN, "--cases", 40, "--label", "commit=1a2b3c4")
+        first = self.dispersa("launch", CAMPAIGN, "--cases", 400, "--label", "commit=1a2b3c4")
         time.sleep(1)  # the pages know it in less
         self.open(f"/campaign/{first}")
         self.assertIn("The token is in the file", self.text())
         self.browser.run("document.querySelector('[name=token]').value = arguments[0]; document.querySelector('.login').submit()", TOKEN)
-        self.wait_for(lambda: "0 of 40" in self.text(), "the page that was asked for")
+        self.wait_for(lambda: "0 of 400" in self.text(), "the page that was asked for")
         self.browser.run("window.stays = true")
         self.assert_fits(f"/campaign/{first}")
         self.open(f"/campaign/{first}")
         self.browser.run("window.stays = true")
         self.start("dispersa-worker", "--peer", "127.0.0.1")
+        self.wait_for(lambda: self.browser.run("return document.querySelectorAll('#histograms svg.chart').length") >= 4, "histograms")
         self.wait_for(lambda: "Open the report" in self.text(), "the end of the campaign")
         self.assertTrue(self.browser.run("return window.stays"), "the page was loaded again")
         self.assertIn("commit=1a2b3c4", self.text())

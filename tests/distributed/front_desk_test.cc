@@ -7,9 +7,11 @@
 #include <algorithm>
 #include <fstream>
 #include <nlohmann/json.hpp>
+#include <numeric>
 
 #include "core/results/result_folder.h"
 #include "made_up_service.h"
+#include "services/coordinator/web_rows.h"
 #include "services/program/exit_code.h"
 
 namespace dispersa::front_desk_test {
@@ -413,33 +415,36 @@ TEST_F(FrontDeskTest, TheStatusNamesTheWorkers) {
   workforce_.Join("w1", 3);
   const Json status = AskFor("status", Json::object());
   EXPECT_EQ(status.at("schema"), "dispersa/status/1");
+  EXPECT_TRUE(status.at("web").is_null());
   EXPECT_EQ(status.at("workers"),
             Json::parse(R"([{"id": "w1", "host": "host", "slots": 3, "state": "ready", "flown": 0}])"));
 }
 
-TEST_F(FrontDeskTest, TheTallyCountsWhatWasFlown) {
+TEST_F(FrontDeskTest, TheWebPagesCountWhatWasFlown) {
   const Campaign campaign = Smoke(5);
   const std::string id = Launch(campaign);
-  EXPECT_EQ(AskFor("tally", {{"id", id}}).at("requirements").size(), 0u) << "not open yet";
+  WebRows rows;
+  EXPECT_EQ(rows.Make(*service_, workforce_)->Find(id)->histograms.size(), 0u) << "not open yet";
   ASSERT_TRUE(Reaches(id, CampaignState::kFlying));
-  workforce_.Join("w");
+  workforce_.Join("w", 3);
   for (std::uint64_t i = 0; i < 3; ++i) {
     CaseResult result = MadeUpWorkforce::ResultOf(i);
     result.metrics[MetricColumn("pitch_error_peak_deg")] = i == 0 ? 1.0 : 0.25;
     workforce_.Return("w", campaign.flight_id, result);
   }
-  const Json tally = AskFor("tally", {{"id", id}});
-  EXPECT_EQ(tally.at("n"), 3);
-  const Json& requirement = tally.at("requirements").at(0);
-  EXPECT_EQ(requirement.at("metric"), "pitch_error_peak_deg");
-  EXPECT_EQ(requirement.at("below"), 1.0);
-  EXPECT_TRUE(requirement.at("above").is_null());
-  EXPECT_EQ(requirement.at("failures"), 1) << "1 is not below 1";
-  const Json& histogram = tally.at("histograms").at(0);
-  EXPECT_EQ(histogram.at("n"), 3);
-  std::int64_t counted = 0;
-  for (const Json& count : histogram.at("counts")) counted += count.get<std::int64_t>();
-  EXPECT_EQ(counted, 3);
+  const auto index = rows.Make(*service_, workforce_);
+  const RequirementOutcome& requirement = index->Find(id)->requirements.at(0);
+  EXPECT_EQ(requirement.metric, "pitch_error_peak_deg");
+  EXPECT_EQ(requirement.failures, 1) << "1 is not below 1";
+  const LiveHistogram& histogram = index->Find(id)->histograms.at(0);
+  EXPECT_EQ(histogram.metric, "pitch_error_peak_deg");
+  EXPECT_EQ(histogram.n, 3u);
+  EXPECT_EQ(std::accumulate(histogram.counts.begin(), histogram.counts.end(), 0.0), 3.0);
+  EXPECT_THAT(histogram.limits, testing::ElementsAre(1.0));
+  ASSERT_EQ(index->workers().size(), 1u);
+  EXPECT_EQ(index->workers()[0].id, "w");
+  EXPECT_EQ(index->workers()[0].slots, 3);
+  EXPECT_EQ(index->workers()[0].flown, 3u);
 }
 
 // Two clients with keys, and an administrator.
@@ -560,7 +565,7 @@ TEST_F(OwnersTest, KeysThatMayReadLookAndTakeAndNothingElse) {
   EXPECT_EQ(LaunchAs(eve_, Smoke(3)), lacks);
   EXPECT_EQ(LaunchAs(eve_, campaign), lacks);
   EXPECT_EQ(As(eve_, "upload", {{"id", "x"}, {"size", 1}, {"offset", 0}}, "x"), lacks);
-  for (const char* method : {"list", "status", "tally"})
+  for (const char* method : {"list", "status"})
     EXPECT_THAT(As(eve_, method, {{"id", campaign.id}}), testing::HasSubstr(campaign.id)) << method;
   As(ann_, "cancel", {{"id", campaign.id}});
   ASSERT_TRUE(Until([&] { return service_->IsAtRest(campaign.id); }));

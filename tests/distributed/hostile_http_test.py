@@ -1,4 +1,4 @@
-"""Requests without end, slow ones and many, to every page that the product serves: web application, Prometheus, live page.
+"""Requests without end, slow ones and many, to every page that the product serves: web application, Prometheus.
 
 A good request is answered meanwhile, and the program's memory stays as it is. Environment as of processes.py.
 """
@@ -72,15 +72,9 @@ class HostileHttpTest(ServiceCase):
         token.write_text(TOKEN + "\n")
         token.chmod(0o600)
         coordinator = self.start("dispersa-coordinator", "--data", self.data, "--web", WEB, "--web-token", token, "--metrics", FIGURES)
-        identity = self.dispersa("launch", CAMPAIGN).strip()
-        errors = self.root / f"{self.data.name}.watch"
-        with errors.open("w") as file:
-            watch = self.start("dispersa", "watch", identity, "--web", stderr=file)
-        wait_for(lambda: "\n" in errors.read_text(), "the page's address")
-        live = int(re.match(r"watch: http://127\.0\.0\.1:(\d+)/\n", errors.read_text()).group(1))
+        self.dispersa("launch", CAMPAIGN)
         # Port, the program behind it, a page to send to, a page that a good reader gets.
-        self.servers = {"web": (WEB, coordinator, "/login", "/"), "figures": (FIGURES, coordinator, "/metrics", "/metrics"),
-                        "live": (live, watch, "/", "/")}
+        self.servers = {"web": (WEB, coordinator, "/login", "/"), "figures": (FIGURES, coordinator, "/metrics", "/metrics")}
         for name in self.servers:
             wait_for(lambda name=name: self.answers(name), name)
 
@@ -283,10 +277,9 @@ class HostileHttpTest(ServiceCase):
                 answer += part
             connection.close()
             return answer.decode().partition(" ")[2]
-        for port, path in ((WEB + 10, "/"), (self.servers["live"][0], "/"), (self.servers["live"][0], "/events")):
-            answer = as_nobody(port, path)
-            self.assertTrue(answer.startswith("403 "), answer)
-            self.assertNotIn("smoke", answer)
+        answer = as_nobody(WEB + 10, "/")
+        self.assertTrue(answer.startswith("403 "), answer)
+        self.assertNotIn("smoke", answer)
         self.assertTrue(as_nobody(WEB + 10, "/", socket.AF_INET6, "::ffff:127.0.0.1").startswith("403 "))
         self.assertTrue(as_nobody(FIGURES, "/metrics").startswith("200 "))
         self.assertIn("Sign in", as_nobody(WEB, "/login"))

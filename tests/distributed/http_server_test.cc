@@ -168,36 +168,6 @@ TEST(HttpServer, AnswersThatNobodyReadsAreBounded) {
   EXPECT_THAT(AskHttp(server.port(), Head("GET /")), StartsWith("HTTP/1.1 200 "));
 }
 
-TEST(HttpServer, AnAnswerThatGoesOnEndsOrLosesItsReader) {
-  std::atomic<int> readers{0};
-  struct Reader {
-    explicit Reader(std::atomic<int>& its_count) : count(its_count) { ++count; }
-    ~Reader() { --count; }
-    std::atomic<int>& count;
-    int parts = 0;
-  };
-  const HttpServer server(SomeOptions(), [&](const HttpRequest& request) {
-    HttpAnswer answer;
-    answer.more = [reader = std::make_shared<Reader>(readers),
-                   lasts = request.path == "/lasts"]() -> std::optional<std::string> {
-      if (++reader->parts == 3 && !lasts) return std::nullopt;
-      return reader->parts < 3 ? "part" + std::to_string(reader->parts) : "";
-    };
-    return answer;
-  });
-  EXPECT_THAT(AskHttp(server.port(), Head("GET /")),
-              EndsWith("\r\n\r\n5\r\npart1\r\n5\r\npart2\r\n0\r\n\r\n"));
-  const int browser = Connected(server.port());
-  Say(browser, Head("GET /lasts"));
-  const auto until = [&](int wanted) {
-    for (int i = 0; i < 500 && readers != wanted; ++i) std::this_thread::sleep_for(milliseconds(10));
-    return readers.load();
-  };
-  EXPECT_EQ(until(1), 1);
-  close(browser);
-  EXPECT_EQ(until(0), 0) << "no part is due, and still it is noticed";
-}
-
 TEST(HttpServer, AFailedPageIsAnAnswer) {
   const HttpServer server(SomeOptions(),
                           [](const HttpRequest&) -> HttpAnswer { throw std::runtime_error("x"); });

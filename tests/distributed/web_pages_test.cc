@@ -158,6 +158,37 @@ TEST(WebCampaign, WhileItFliesItIsAskedForAgain) {
   EXPECT_THAT(part, Not(HasSubstr("<html")));
 }
 
+// While it flies: a histogram of each key metric with its limits, and who flies.
+TEST(WebCampaign, WhileItFliesShowsHistogramsAndWorkers) {
+  CampaignRow row = Row(1);
+  row.has_ended = false;
+  row.state = "flying";
+  row.done = 30;
+  row.histograms = {{"pitch_error_peak_deg", 28, 0.0, 0.5, {10, 18}, {0.9}},
+                    {"apogee_km", 30, 180.0, 20.0, {10, 20}, {185.0, 215.0}},
+                    {"q_max_pa", 0, 0.0, 0.0, {}, {}}};
+  std::vector<WorkerRow> workers = {{"0123456789ab", "<b>host", "flying", 3, 17}};
+  const auto part = [&] {
+    return CampaignPart(CampaignIndex({std::make_shared<CampaignRow>(row)}, workers), row, false);
+  };
+  std::string shown = part();
+  EXPECT_EQ(Count(shown, "<svg class=\"chart\""), 2u);
+  EXPECT_EQ(Count(shown, "class=\"limit\""), 3u);
+  EXPECT_THAT(shown,
+              HasSubstr("Pitch error, peak: histogram of 28 completed flights. 2 of 30 cases are lost"));
+  EXPECT_THAT(shown, HasSubstr("histogram of 30 completed flights.</figcaption>"));
+  EXPECT_THAT(shown, HasSubstr("&lt;b&gt;host"));
+  EXPECT_THAT(shown, HasSubstr("<code>01234567</code>"));
+  EXPECT_THAT(shown, HasSubstr(">17</td>"));
+  workers.clear();
+  EXPECT_THAT(part(), HasSubstr("There is no worker: the campaign waits."));
+  workers.resize(53);
+  EXPECT_THAT(part(), HasSubstr("and 3 more"));
+  row.has_ended = true;
+  EXPECT_THAT(part(), Not(HasSubstr("Workers")));
+  EXPECT_THAT(part(), Not(HasSubstr("histogram of")));
+}
+
 TEST(WebDifference, NamesInputsRequirementsEngineAndDriversThatDiffer) {
   CampaignRow a = Row(1), b = Row(2);
   a.engine = "one";

@@ -74,6 +74,22 @@ TEST_F(WebServerTest, OnLoopbackItsOwnUserReads) {
   EXPECT_THAT(Get("/", "", "evil.example"), StartsWith("HTTP/1.1 403")) << "a name that points here";
 }
 
+TEST_F(WebServerTest, OneHostThatIsThisMachineAndNoOther) {
+  Start();
+  const auto ask = [&](const std::string& hosts) {
+    return AskHttp(port_, "GET / HTTP/1.1\r\n" + hosts + "Connection: close\r\n\r\n");
+  };
+  for (const std::string host : {"127.0.0.1", "localhost", "localhost:9"})
+    EXPECT_THAT(ask("Host: " + host + "\r\n"), StartsWith("HTTP/1.1 200 ")) << host;
+  for (const std::string hosts :
+       {"Host: rebound.example\r\n", "Host: 127.0.0.1.example\r\n", "Host: \r\n", "",
+        "Host: 127.0.0.1\r\nHost: rebound.example\r\n", "Host: rebound.example\r\nHost: 127.0.0.1\r\n",
+        "Host: 127.0.0.1\r\nHost: 127.0.0.1\r\n"}) {
+    EXPECT_THAT(ask(hosts), StartsWith("HTTP/1.1 403 ")) << hosts;
+    EXPECT_THAT(ask(hosts), Not(HasSubstr("table3"))) << hosts;
+  }
+}
+
 TEST_F(WebServerTest, NothingIsChangedThroughIt) {
   Start();
   for (const char* method : {"POST", "PUT", "DELETE", "PATCH"}) {

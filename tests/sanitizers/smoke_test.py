@@ -5,7 +5,6 @@ whose bytes are expected; DISPERSA_NOOP_WORKER as of audit_test.py.
 """
 import os
 import pathlib
-import re
 import signal
 import socket
 import sqlite3
@@ -15,7 +14,6 @@ import urllib.request
 sys.path.insert(0, str(pathlib.Path(__file__).resolve().parents[1] / "distributed"))
 from processes import CAMPAIGN, PATIENCE_S, Run, content, main, wait_for  # noqa: E402
 from service_case import ServiceCase  # noqa: E402
-from web_test import Viewer  # noqa: E402
 
 REFERENCE = pathlib.Path(os.environ["DISPERSA_REFERENCE"]) / "dispersa"
 CASES = 40
@@ -48,14 +46,13 @@ class SmokeTest(ServiceCase):
         self.run_dispersa("workers", "--workers", 2)
 
     def start_coordinator(self):
-        self.metrics_port = free_port()
-        return self.start("dispersa-coordinator", "--data", self.data, "--audit", "0.2", "--metrics", self.metrics_port)
+        self.metrics_port, self.web_port = free_port(), free_port()
+        return self.start("dispersa-coordinator", "--data", self.data, "--audit", "0.2", "--metrics", self.metrics_port,
+                          "--web", self.web_port)
 
-    def start_viewer(self):
-        """Of the page of `watch --web`."""
-        address = re.compile(r"^watch: http://127\.0\.0\.1:(\d+)/$", re.M)
-        wait_for(lambda: address.search(self.log.read_text()), "the address of the page")
-        return Viewer(int(address.search(self.log.read_text())[1]))
+    def page(self, identity):
+        address = f"http://127.0.0.1:{self.web_port}/campaign/{identity}?part=1"
+        return urllib.request.urlopen(address, timeout=PATIENCE_S).read().decode()
 
     def done(self, identity):
         return self.status(identity)["done"]
@@ -73,8 +70,7 @@ class SmokeTest(ServiceCase):
         finite = self.dispersa("launch", CAMPAIGN, "--cases", CASES).strip()
         # Alone, so that its first result is audited: a worker that makes its results up is expelled.
         self.finish(self.start(os.environ["DISPERSA_NOOP_WORKER"]))
-        watcher = self.start("dispersa", "watch", finite, "--web")
-        viewer = self.start_viewer()
+        watcher = self.start("dispersa", "watch", finite, "--web", env={**os.environ, "BROWSER": "true"})
         worker = self.start_worker("--slots", 2)
         self.start_worker()
         self.wait_for_more(endless)
@@ -88,8 +84,8 @@ class SmokeTest(ServiceCase):
         self.assertIn("dispersa_", urllib.request.urlopen(f"http://127.0.0.1:{self.metrics_port}", timeout=PATIENCE_S).read().decode())
         self.dispersa("watch", finite, code=self.reference.code)
         self.assertEqual(watcher.wait(timeout=PATIENCE_S), self.reference.code)
-        viewer.thread.join(timeout=PATIENCE_S)
-        self.assertEqual(viewer.events[-1], "end")
+        wait_for(lambda: "Open the report" in self.page(finite), "the end on the page")
+        self.assertIn("Workers of this coordinator", self.page(endless))
         self.dispersa("cancel", endless)
         self.assert_same_folder(finite, self.reference)
         self.assert_same_rows(self.fetch(endless))

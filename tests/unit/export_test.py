@@ -239,7 +239,7 @@ class Ending(ExportTest):
         self.assertEqual(seen.read_text(), f"{self.results}/report.html")
         done = run(*command, env={**os.environ, "BROWSER": "no-such-browser"})
         self.assertEqual(done.returncode, 0)
-        self.assertIn(f"--open: no-such-browser: No such file or directory; open {self.results}/report.html yourself",
+        self.assertIn(f"no-such-browser: No such file or directory; open {self.results}/report.html yourself",
                       done.stderr)
 
 
