@@ -1,5 +1,5 @@
 // Every verdict, interval and bound, 20,000 times on made-up campaigns: the simulated rate of errors against
-// the stated one. Prints the table of core/statistics/README.md, and compares that table with it.
+// the stated one. Prints the table of tests/data/stats/error_rates.txt, and compares that table with it.
 #include <algorithm>
 #include <cmath>
 #include <cstdio>
@@ -62,8 +62,9 @@ double Share(const std::function<bool(int)>& happens) {
   return count / double{kRepetitions};
 }
 
-/// A rate of the table in core/statistics/README.md, which must hold the line as it comes out here. Standard
-/// errors are those of the repetitions; that any of fifty true lines is four of them off has less than 0.4 %.
+/// A rate of the table in tests/data/stats/error_rates.txt, which must hold the line as it comes out here.
+/// Standard errors are those of the repetitions; that any of fifty true lines is four of them off has less
+/// than 0.4 %.
 class Row {
  public:
   Row(std::string what, double rate) : what_(std::move(what)), rate_(rate) {}
@@ -105,12 +106,13 @@ class Row {
         "| " + what_ + " | " + Text("%.4f", rate_) + " | " + known + " | " + Text("%.4g", stated) + " |";
     std::printf("%s\n", line.c_str());
     std::fflush(stdout);
-    static const std::string readme = [] {
-      std::ifstream file(DISPERSA_TEST_DATA "/../../core/statistics/README.md");
+    static const std::string table = [] {
+      std::ifstream file(DISPERSA_TEST_DATA "/stats/error_rates.txt");
       return std::string(std::istreambuf_iterator<char>(file), {});
     }();
-    EXPECT_TRUE(readme.find(line) != std::string::npos) << "core/statistics/README.md says otherwise than\n"
-                                                        << line;
+    EXPECT_TRUE(table.find(line) != std::string::npos)
+        << "tests/data/stats/error_rates.txt says otherwise than\n"
+        << line;
   }
 
   std::string what_;

@@ -1,8 +1,7 @@
 """Uncertainties under which adaptation pays: variants of the adaptive fuzzy law against a PID, under uncertainties
 larger than those of Table 3.
 
-adaptation_search.py BINARIES CAMPAIGNS README writes the table between the README's <!-- adaptation:begin --> and
-<!-- adaptation:end -->. For each uncertainty every variant and the PID are tuned anew, by the same procedure with the
+adaptation_search.py BINARIES CAMPAIGNS prints the table. For each uncertainty every variant and the PID are tuned anew, by the same procedure with the
 same budget on the same cases of that uncertainty, then flown on others. About 15 minutes of one core.
 """
 import concurrent.futures
@@ -126,7 +125,7 @@ def rms(row):
 
 
 def main():
-    binaries, campaigns, readme = map(pathlib.Path, sys.argv[1:])
+    binaries, campaigns = map(pathlib.Path, sys.argv[1:])
     lines = ["| uncertain | law | median RMS | median ratio to PID | smaller than PID in | lost | least measured margins |",
              "|---|---|---|---|---|---|---|"]
     with tempfile.TemporaryDirectory(prefix="dispersa-adaptation-") as folder:
@@ -134,11 +133,7 @@ def main():
         with concurrent.futures.ThreadPoolExecutor(2) as pool:
             for rows in pool.map(search.rows_of, range(len(UNCERTAINTIES))):
                 lines += rows
-    text, count = re.subn(r"(<!-- adaptation:begin -->\n).*?(<!-- adaptation:end -->)",
-                          lambda m: m[1] + "\n".join(lines) + "\n" + m[2], readme.read_text(), flags=re.DOTALL)
-    if count != 1:
-        sys.exit(f"{readme}: no <!-- adaptation:begin --> and <!-- adaptation:end -->")
-    readme.write_text(text)
+    print("\n".join(lines))
 
 
 if __name__ == "__main__":

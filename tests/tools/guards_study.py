@@ -1,7 +1,6 @@
 """The effect of each guard of the adaptive law: the shipped autopilot with one guard changed at a time.
 
-guards_study.py BINARIES CAMPAIGNS README writes the table between the README's <!-- guards:begin --> and
-<!-- guards:end -->. The cases are those of seed 2, which no campaign, tuning or verdict uses. About 5 minutes.
+guards_study.py BINARIES CAMPAIGNS prints the table. The cases are those of seed 2, which no campaign, tuning or verdict uses. About 5 minutes.
 """
 import concurrent.futures
 import csv
@@ -83,19 +82,13 @@ def row_of(dispersa, campaigns, title, key, value):
 
 
 def main():
-    binaries, campaigns, readme = map(pathlib.Path, sys.argv[1:])
+    binaries, campaigns = map(pathlib.Path, sys.argv[1:])
     with concurrent.futures.ThreadPoolExecutor(2) as pool:
         rows = list(pool.map(lambda v: row_of(binaries / "dispersa", campaigns, *v), VARIANTS))
-    table = "\n".join([
+    print("\n".join([
         "| guard | median RMS | largest peak | worst ripple | `aero20`: pitch peak | yaw peak | lost | least computed "
         "margins, adapting | least measured |",
-        "|---|---|---|---|---|---|---|---|---|", *rows])
-    text = readme.read_text()
-    text, count = re.subn(r"(<!-- guards:begin -->\n).*?(<!-- guards:end -->)", lambda m: m[1] + table + "\n" + m[2], text,
-                          flags=re.DOTALL)
-    if count != 1:
-        sys.exit(f"{readme}: no <!-- guards:begin --> and <!-- guards:end -->")
-    readme.write_text(text)
+        "|---|---|---|---|---|---|---|---|---|", *rows]))
 
 
 if __name__ == "__main__":

@@ -1,8 +1,7 @@
 """The control laws side by side: every shipped autopilot on the same campaigns.
 
-laws_study.py BINARIES CAMPAIGNS README writes three tables between markers of the README: <!-- laws:begin --> (each law
-on each campaign), <!-- feed_forward:begin --> (each with the program fed forward) and <!-- stuck_nozzle:begin --> (whose
-roll axis loses the vehicle). No tuning has seen the cases. About 10 minutes of one core.
+laws_study.py BINARIES CAMPAIGNS prints three tables: each law on each campaign, each with the program fed forward, and
+whose roll axis loses the vehicle when a nozzle is stuck. No tuning has seen the cases. About 10 minutes of one core.
 """
 import csv
 import pathlib
@@ -113,16 +112,8 @@ def stuck_nozzle_table(dispersa, campaigns, folder):
     return lines
 
 
-def put(readme, name, lines):
-    text, count = re.subn(rf"(<!-- {name}:begin -->\n).*?(<!-- {name}:end -->)",
-                          lambda m: m[1] + "\n".join(lines) + "\n" + m[2], readme.read_text(), flags=re.DOTALL)
-    if count != 1:
-        sys.exit(f"{readme}: no <!-- {name}:begin --> and <!-- {name}:end -->")
-    readme.write_text(text)
-
-
 def main():
-    binaries, campaigns, readme = map(pathlib.Path, sys.argv[1:])
+    binaries, campaigns = map(pathlib.Path, sys.argv[1:])
     dispersa = binaries / "dispersa"
     with tempfile.TemporaryDirectory(prefix="dispersa-laws-") as folder:
         folder = pathlib.Path(folder)
@@ -139,9 +130,8 @@ def main():
             fed[law] = fly(dispersa, campaigns / "controllers.yaml", autopilot, dict(CAMPAIGNS)["controllers"],
                            folder / f"{law}-fed")
         stuck = stuck_nozzle_table(dispersa, campaigns, folder)
-    put(readme, "stuck_nozzle", stuck)
-    put(readme, "laws", laws_table(flown))
-    put(readme, "feed_forward", feed_forward_table(flown, fed))
+    for table in (laws_table(flown), feed_forward_table(flown, fed), stuck):
+        print("\n".join(table) + "\n")
 
 
 if __name__ == "__main__":

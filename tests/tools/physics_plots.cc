@@ -1,5 +1,5 @@
-// Draws the figures of core/README.md into core/images/, rewrites its tables of atmosphere, aerodynamics,
-// work and precision, and writes a page with all of it:
+// Draws the figures of the models' pages into core/images/, rewrites the tables of atmosphere and
+// aerodynamics in those pages, and writes a page with all of it, work and precision too:
 //   physics_plots PAGE.html
 #include <fmt/format.h>
 
@@ -18,29 +18,6 @@
 
 namespace dispersa {
 namespace {
-
-std::string WorkPrecisionTable(const std::vector<WorkPoint>& points) {
-  std::string table =
-      "| flight | tick, ms | scheme | CPU, ms | altitude, m | velocity, m/s | pitch error, ° | RMS, ° | "
-      "peak, ° |\n"
-      "|---|---|---|---|---|---|---|---|---|\n";
-  for (const WorkPoint& p : points) {
-    if (p.flight == "nominal" && p.tick_s != kShippedTick_s) continue;  // the page has them all
-    const bool exact = p.scheme == Scheme::kCvode;
-    const std::string scheme = p.scheme == Scheme::kSimpson ? "Simpson" : "ERK4";
-    const auto difference = [&](double value) {
-      return exact ? std::string("–") : fmt::format("{:.1e}", value);
-    };
-    table += fmt::format(
-        "| {} | {:g} | {} | {:.0f} | {} | {} | {} | {:.5f} | {:.4f} |\n", p.flight, 1e3 * p.tick_s,
-        exact          ? "CVODE"
-        : IsShipped(p) ? "**Simpson, 1 step (shipped)**"
-                       : fmt::format("{}, {} step{}", scheme, p.steps, p.steps > 1 ? "s" : ""),
-        1e3 * p.cpu_s, difference(p.altitude_difference_m), difference(p.velocity_difference_m_s),
-        difference(p.pitch_error_difference_deg), p.pitch_error_rms_deg, p.pitch_error_peak_deg);
-  }
-  return table;
-}
 
 // Replaces what stands between <!-- NAME:begin --> and <!-- NAME:end -->.
 void RewriteBlock(const std::string& path, const std::string& name, const std::string& text) {
@@ -73,10 +50,8 @@ void Draw(const std::string& page_path) {
   add("work_precision", WorkPrecisionSheet(points));
   page += "<pre>" + HtmlText(WorkPrecisionCsv(points)) + "</pre>\n</body>\n</html>\n";
   WriteFile(page_path, page);
-  const std::string readme = source + "/core/README.md";
-  RewriteBlock(readme, "atmosphere", AtmosphereTable(data));
-  RewriteBlock(readme, "aerodynamics", AerodynamicsTable(data));
-  RewriteBlock(readme, "work-precision", WorkPrecisionTable(points));
+  RewriteBlock(source + "/core/environment/README.md", "atmosphere", AtmosphereTable(data));
+  RewriteBlock(source + "/core/vehicle/README.md", "aerodynamics", AerodynamicsTable(data));
 }
 
 }  // namespace

@@ -1,4 +1,4 @@
-// The figures of core/README.md.
+// The figures of the models' pages.
 #pragma once
 
 #include <string>

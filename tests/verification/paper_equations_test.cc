@@ -215,7 +215,7 @@ Vector3 Transport(const Setting& setting, const PaperState& s) {
   return setting.omega_L().cross(setting.omega_L().cross(PositionInL(s)));
 }
 
-// The exact equations: (9) to (14) with every misprint of core/README.md corrected.
+// The exact equations: (9) to (14) with every misprint of services/docs/pages/verification.md corrected.
 PaperRates Exact(const Setting& setting, const PaperState& s) {
   const Given g = GivenAt(setting, s);
   // Nozzles right, left (z = ±r) and bottom, top (y = -r, +r), each turned in its plane; then the

@@ -143,7 +143,7 @@ FlightDefinition Flexible(const char* autopilot = "flexible") {
 
 // Actuators whose nozzles push the body as they turn, where they begin to be flagged. The law is one whose
 // bending margins suffice: a loop near its limit magnifies any difference between two methods
-// (core/README.md).
+// (core/dynamics/README.md).
 TEST(StepLimits, HeavyNozzlesNearTheirLimitAreAlmostCvodes) {
   FlightDefinition definition = Flexible("flexible_unscheduled");
   for (Stage& stage : definition.vehicle.stages) stage.gimbal.bandwidth_rad_s = kTwoPi * 16.0;
