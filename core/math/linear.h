@@ -1,4 +1,4 @@
-// Fixed-size linear algebra. Vectors carry their frames in their names (CONTRIBUTING.md): v_IB_I is the
+// Fixed-size linear algebra. Vectors carry their frames in their names (pages/words.md): v_IB_I is the
 // velocity of B relative to I, expressed in I.
 #pragma once
 

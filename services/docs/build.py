@@ -1,12 +1,15 @@
 """Builds the docs site: the pages beside this file, the README.md files beside the code, the Python tutorial, and what
 the programs say of themselves.
 
-    build.py --programs BIN --out SITE [--package FOLDER] [--python PROGRAM]
+    build.py --programs BIN --out SITE [--tables PROGRAM] [--package FOLDER] [--python PROGRAM]
 
 The README files keep their folders, so that their links to one another hold; a link to anything else of the repository
-becomes plain text. Everything is read from the repository, nothing from the network, and the pages ask for nothing.
+becomes plain text. A page has `<!-- table: NAME -->` where a table comes: NAME is one that the program docs_tables knows
+(tables.cc) or a CSV file of the repository. `<!-- changes -->` takes the snippets of changes/. Everything is read from
+the repository, nothing from the network, and the pages ask for nothing.
 """
 import argparse
+import csv
 import json
 import os
 import pathlib
@@ -19,6 +22,8 @@ import tempfile
 HERE = pathlib.Path(__file__).resolve().parent
 REPOSITORY = HERE.parent.parent
 LINK = re.compile(r"(!?)\[((?:[^\[\]]|\[[^\[\]]*\])*)\]\(([^)\s]+)\)")
+TABLE = re.compile(r"<!-- table: (.+?) -->")
+CHANGES = "<!-- changes -->"
 # Nothing here draws it: that would be a script from elsewhere.
 DIAGRAM = "\n*A diagram, as the text that Mermaid draws it from:*\n\n```text\n"
 
@@ -50,12 +55,30 @@ def commands_page(programs):
     return "\n".join(page)
 
 
-def exit_codes_page():
-    """The section of services/README.md, which a test holds to the programs."""
-    page = (REPOSITORY / "services" / "README.md").read_text()
-    section = page.split("## Exit codes\n", 1)[1].split("\n## ", 1)[0]
-    return ("# Exit codes\n\nEvery command ends with one of these codes. The code of `run`, `watch` and `report` is the "
-            f"campaign's verdict, so that a script or a pipeline can act on it. {section}")
+def changes():
+    """The snippets of changes since the last release, one after the other."""
+    return "\n\n".join(path.read_text().strip() for path in sorted((HERE / "changes").glob("*.md")))
+
+
+def csv_table(path):
+    """A CSV file as a table."""
+    with open(path, newline="") as file:
+        head, *rows = csv.reader(file)
+    lines = [head, ["---"] * len(head), *rows]
+    return "".join(f"| {' | '.join(cell.replace('|', chr(92) + '|') for cell in line)} |\n" for line in lines)
+
+
+def fill_tables(folder, program):
+    """Every mark of a table in the pages of a folder becomes the table."""
+    pages = {path: path.read_text() for path in folder.rglob("*.md")}
+    names = list(dict.fromkeys(name for text in pages.values() for name in TABLE.findall(text)))
+    tables = {name: csv_table(REPOSITORY / name) for name in names if name.endswith(".csv")}
+    done = subprocess.run([program, *(name for name in names if name not in tables)], capture_output=True, text=True, timeout=60)
+    if done.returncode != 0:
+        raise SystemExit(done.stderr)
+    tables.update(json.loads(done.stdout))
+    for path, text in pages.items():
+        path.write_text(TABLE.sub(lambda match: tables[match[1]].rstrip("\n"), text))
 
 
 def schemas_page(programs, folder):
@@ -122,14 +145,12 @@ def collect(programs, folder, python_reference):
         target.parent.mkdir(parents=True, exist_ok=True)
         if name == "commands.md":
             text = commands_page(programs)
-        elif name == "exit-codes.md":
-            text = exit_codes_page()
         elif name == "schemas.md":
             text = schemas_page(programs, folder)
         elif name == "services/python/reference.md":
             text = python_reference
         elif (HERE / "pages" / name).exists():
-            text = (HERE / "pages" / name).read_text()
+            text = (HERE / "pages" / name).read_text().replace(CHANGES, changes())
         else:
             source = REPOSITORY / name
             text = source.read_text() if source.exists() else cells_page(source.with_suffix(".py").read_text())
@@ -163,6 +184,7 @@ def search_from_a_folder(site):
 def main():
     parser = argparse.ArgumentParser(description=__doc__.split("\n")[0])
     parser.add_argument("--programs", type=pathlib.Path, required=True, help="folder of the built programs")
+    parser.add_argument("--tables", type=pathlib.Path, help="the program docs_tables; else that of the same build")
     parser.add_argument("--out", type=pathlib.Path, required=True, help="folder of the site")
     parser.add_argument("--package", type=pathlib.Path, help="folder with the built Python package, if there is one")
     parser.add_argument("--python", default="/usr/bin/python3", help="the Python for which it is built")
@@ -172,6 +194,7 @@ def main():
         (folder / "docs").mkdir()
         package = options.package.resolve() if options.package else None
         collect(options.programs.resolve(), folder / "docs", python_page(package, options.python))
+        fill_tables(folder / "docs", (options.tables or options.programs.parent / "tools" / "docs_tables").resolve())
         config = (HERE / "mkdocs.yml").read_text()
         (folder / "mkdocs.yml").write_text(f"docs_dir: {folder}/docs\nsite_dir: {folder}/site\n" + config)
         done = subprocess.run(["/usr/bin/python3", "-m", "mkdocs", "build", "--strict", "--quiet", "-f", folder / "mkdocs.yml"],

@@ -22,8 +22,8 @@ struct ExitMeaning {
   const char* meaning;
 };
 
-/// Every code with its meaning. If several hold, the first in this order is reported. services/README.md
-/// shows this table; a test compares the two.
+/// Every code with its meaning. If several hold, the first in this order is reported. The docs site shows
+/// this table (services/docs/tables.cc).
 const std::vector<ExitMeaning>& ExitMeanings();
 
 /// The code to report if both hold.

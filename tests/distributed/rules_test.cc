@@ -4,7 +4,6 @@
 #include <csignal>
 #include <cstdlib>
 #include <filesystem>
-#include <fstream>
 #include <iterator>
 #include <memory>
 #include <string>
@@ -62,15 +61,6 @@ TEST(Rules, OfTwoExitCodesTheWorseIsReported) {
       EXPECT_EQ(WorseOf(other, worse), worse);
     }
   }
-}
-
-TEST(Rules, ThePageOfExitCodesIsTheTable) {
-  std::ifstream stream(DISPERSA_TEST_DATA "/../../services/README.md");
-  const std::string page((std::istreambuf_iterator<char>(stream)), std::istreambuf_iterator<char>());
-  std::string table = "| code | means |\n|---|---|\n";
-  for (const ExitMeaning& one : ExitMeanings())
-    table += "| " + std::to_string(one.code) + " | " + one.meaning + " |\n";
-  EXPECT_NE(page.find(table), std::string::npos) << table;
 }
 
 // Statuses as waitpid gives them.

@@ -1,5 +1,9 @@
-"""The docs site: every page is there, every link and anchor has a target, and nothing is loaded from elsewhere."""
+"""The docs site: every page is there, every link and anchor has a target, nothing is loaded from elsewhere, and every key,
+metric, exit code and limit can be looked up.
+"""
 import html.parser
+import json
+import math
 import os
 import pathlib
 import re
@@ -13,7 +17,8 @@ BINARIES = pathlib.Path(os.environ["DISPERSA_BINARIES"])
 SERVICES = pathlib.Path(__file__).resolve().parents[2] / "services"
 BUILD = SERVICES / "docs" / "build.py"
 PAGES = ["index", "first-campaign", "your-vehicle", "your-control-law", "reading-the-report", "cluster", "commands",
-         "exit-codes", "glossary", "schemas", "core/index", "core/campaign_yaml/index", "core/statistics/index", "services/python/index",
+         "exit-codes", "glossary", "schemas", "input-files", "metrics", "limits", "anti-features", "words", "floating-point",
+         "dependencies", "testing", "unreleased", "core/index", "core/campaign_yaml/index", "core/statistics/index", "services/python/index",
          "services/python/tutorial/tutorial", "services/python/reference"]
 # What a page makes a browser load.
 LOADS = {("script", "src"), ("img", "src"), ("link", "href"), ("iframe", "src"), ("source", "src"), ("video", "src"),
@@ -23,13 +28,26 @@ LOADS = {("script", "src"), ("img", "src"), ("link", "href"), ("iframe", "src"),
 class Page(html.parser.HTMLParser):
     def __init__(self, text):
         super().__init__()
-        self.links, self.loads, self.anchors, self.words = [], [], set(), []
+        self.links, self.loads, self.anchors, self.words, self.rows = [], [], set(), [], []
+        self.codes, self.inside = set(), set()
         self.feed(text)
 
     def handle_data(self, data):
         self.words += data.split()
+        if "code" in self.inside:
+            self.codes.add(data)
+        if "td" in self.inside:
+            self.rows[-1][-1] += data
+
+    def handle_endtag(self, tag):
+        self.inside.discard(tag)
 
     def handle_starttag(self, tag, attributes):
+        self.inside.add(tag)
+        if tag == "tr":
+            self.rows.append([])
+        elif tag == "td":
+            self.rows[-1].append("")
         for name, value in attributes:
             if name == "id" or (tag == "a" and name == "name"):
                 self.anchors.add(value)
@@ -70,6 +88,58 @@ def problems(site):
             if re.match(r"(https?:)?//", url):
                 found.append(f"{sheet.relative_to(site)} loads {url}")
     return found
+
+
+def schema_keys(schema, found):
+    """The names of all keys of a schema, without units."""
+    if isinstance(schema, list):
+        for part in schema:
+            schema_keys(part, found)
+    elif isinstance(schema, dict):
+        found.update(schema.get("properties", {}))
+        for part in schema.values():
+            schema_keys(part, found)
+    return found
+
+
+# Rows of the page of limits, and the constants of the sources that they state.
+LIMITS = {
+    "cases of a campaign": ("core/campaign/campaign_fields.cc", "kMaxCases"),
+    "bytes of a Latin hypercube": ("core/campaign/campaign_fields.cc", "kMaxDesignBytes"),
+    "dispersions of a Sobol design": ("core/random/sobol.h", "kMaxDimensions"),
+    "replicates": ("core/campaign/campaign_fields.cc", "kMaxReplicates"),
+    "interim analyses": ("core/campaign/campaign_fields.cc", "kMaxLooks"),
+    "attempts that share": ("core/campaign/campaign_fields.cc", "kMaxAttempts"),
+    "custom metrics": ("core/flight/own_metrics.h", "kMaxOwnMetrics"),
+    "stages of a vehicle": ("core/math/stages.h", "kMaxStages"),
+    "boosters": ("core/vehicle/boosters.h", "kMaxBoosters"),
+    "nozzles of a stage": ("core/vehicle/nozzle_layout.h", "kListedNozzles"),
+    "nozzles of a vehicle": ("core/vehicle/nozzle_layout.h", "kFurtherNozzles"),
+    "jettisoned bodies": ("core/vehicle/bodies.h", "kMaxJettisons"),
+    "modes that fly": ("core/vehicle/structure_beam.h", "kMostFlownModes"),
+    "elements of a beam": ("core/structure/beam_mesh.h", "kMostElements"),
+    "corners of a thrust curve": ("core/vehicle/thrust_curve.h", "kThrustCurveCorners"),
+    "rows of a mass table": ("core/vehicle/mass_table.cc", "kMost"),
+    "seconds of simulated time": ("core/flight/flight_course.h", "kTimeLimit_s"),
+    "bytes of an input file": ("core/campaign_yaml/parse_yaml.cc", "kMaxBytes"),
+    "keys of a map": ("core/campaign_yaml/parse_yaml.cc", "kMaxKeys"),
+    "bytes of a key": ("core/campaign_yaml/parse_yaml.cc", "kMaxKeyBytes"),
+    "levels of maps": ("core/campaign_yaml/parse_yaml.cc", "kMaxDepth"),
+    "bytes of a plug-in": ("core/campaign_yaml/named_files.cc", "kLargestFileOfBytes"),
+    "characters of a result folder": ("core/results/database.cc", "kLongestPath"),
+    "slots of a worker": ("services/transport/validity.h", "kMaxSlots"),
+    "workers of a coordinator": ("services/transport/doors.h", "kMost", "kForWorkers"),
+    "clients and observers": ("services/transport/doors.h", "kMost", "kForOthers"),
+    "cases of a launched campaign": ("services/coordinator/service.h", "kDefaultMaxCases"),
+    "labels of a campaign": ("services/coordinator/catalogue.h", "kMaxLabels"),
+    "priority": ("services/coordinator/front_desk.cc", "kMostPriority"),
+}
+
+
+def constant(text, name):
+    """The value of a constant of a C++ source: a number, or one shifted."""
+    value, = re.findall(rf"\b{name} = (?:std::\w+\{{(\d+)\}}|(\d[\de.]*))(?: << (\d+))?[,;]", text)
+    return int(float(value[0] or value[1])) << int(value[2] or 0)
 
 
 class SiteTest(unittest.TestCase):
@@ -119,6 +189,43 @@ class SiteTest(unittest.TestCase):
         for page in self.site.rglob("*.html"):
             script, = re.findall(r"location.protocol === 'file:' && document.write\('<script src=\"([^\"]*)\">", page.read_text())
             self.assertTrue((page.parent / script).is_file(), page)
+
+    def page(self, name):
+        return Page((self.site / f"{name}.html").read_text())
+
+    def test_every_key_is_found(self):
+        """The schemas know the keys too, by another way."""
+        codes = self.page("input-files").codes
+        kinds = sorted((self.site / "schemas").glob("*.json"))
+        self.assertEqual(len(kinds), 5)
+        stems = {code[:-2] for code in codes if code.endswith("_*")}
+        for kind in kinds:
+            keys = schema_keys(json.loads(kind.read_text()), set())
+            self.assertGreater(len(keys), 10)
+            missing = {key for key in keys if key not in codes and not any(key.startswith(f"{stem}_") and key[len(stem) + 1:] in codes for stem in stems)}
+            self.assertEqual(missing, set(), kind.name)
+
+    def test_every_metric_is_found(self):
+        """The shells' completion knows the metrics too."""
+        names = subprocess.run([BINARIES / "dispersa", "completion", "words", "search", "x", "--metric", ""], capture_output=True,
+                               text=True, timeout=60, check=True).stdout.split()
+        self.assertGreater(len(names), 70)
+        wholes = {re.sub(r"_(stage\d|coast)(?=_|$)", "", name) for name in names}
+        self.assertEqual(wholes - self.page("metrics").codes, set())
+
+    def test_every_exit_code_is_found(self):
+        text = (SERVICES / "program" / "exit_code.h").read_text()
+        codes = set(re.findall(r"kExit\w+ = (\d+),", text))
+        self.assertIn("130", codes)
+        self.assertEqual(codes, {row[0] for row in self.page("exit-codes").rows if row})
+
+    def test_every_limit_is_found_and_true(self):
+        rows = [row for row in self.page("limits").rows if len(row) == 2 and row[1].replace(",", "").isdigit()]
+        self.assertEqual(len(rows), len(LIMITS))
+        for words, (source, *names) in LIMITS.items():
+            text = (SERVICES.parent / source).read_text()
+            row, = [row for row in rows if row[0].startswith(words)]
+            self.assertEqual(int(row[1].replace(",", "")), math.prod(constant(text, name) for name in names), row[0])
 
     def test_schemas_can_be_taken(self):
         self.assertTrue((self.site / "schemas" / "campaign.json").exists())

@@ -34,8 +34,9 @@
 namespace dispersa::capability_pairs_test {
 namespace {
 
-constexpr char kPage[] = DISPERSA_CAMPAIGNS "/../services/docs/pages/capabilities.md";
-constexpr char kBegin[] = "<!-- pairs:begin -->\n", kEnd[] = "<!-- pairs:end -->";
+// The tables of the site's page of capabilities.
+constexpr char kPairs[] = DISPERSA_CAMPAIGNS "/../services/docs/pairs.csv";
+constexpr char kRefused[] = DISPERSA_CAMPAIGNS "/../services/docs/refused_pairs.csv";
 
 // SLV-4 with capabilities. What it flies follows from the vehicle, by an ascent of its own.
 struct Launcher {
@@ -593,40 +594,40 @@ INSTANTIATE_TEST_SUITE_P(Of, Pair, testing::Range<std::size_t>(0, Capabilities()
                            return name;
                          });
 
-// The table of the page of capabilities: a row and a column for each.
-std::string Table() {
+// A row and a column for each capability; the reasons of what is refused.
+struct PairTables {
+  std::string pairs, refused = "capability,with,reason\n";
+};
+PairTables Tables() {
   const std::vector<Capability>& all = Capabilities();
-  std::string text = "| |", line = "|---|", refusals;
-  for (std::size_t i = 0; i < all.size(); ++i) {
-    text += " " + all[i].name + " |";
-    line += "---|";
-  }
-  text += "\n" + line + "\n";
+  PairTables tables;
+  for (const Capability& one : all) tables.pairs += "," + one.name;
   for (std::size_t row = 0; row < all.size(); ++row) {
-    text += "| " + all[row].name + " |";
+    tables.pairs += "\n" + all[row].name;
     for (std::size_t column = 0; column < all.size(); ++column) {
       const std::string refusal =
           row == column ? "" : Refusal(With({std::min(row, column), std::max(row, column)}));
-      text += row == column ? " |" : refusal.empty() ? " flies |" : " refused |";
+      tables.pairs += row == column ? "," : refusal.empty() ? ",flies" : ",refused";
       if (!refusal.empty() && row < column)
-        refusals += "- " + all[row].name + " with " + all[column].name + ": " + refusal + "\n";
+        tables.refused += all[row].name + "," + all[column].name + ",\"" + refusal + "\"\n";
     }
-    text += "\n";
   }
-  return text + (refusals.empty() ? "" : "\nRefused:\n\n" + refusals);
+  tables.pairs += "\n";
+  return tables;
+}
+
+void ExpectFile(const char* path, const std::string& wanted) {
+  std::ifstream file(path);
+  const std::string text{std::istreambuf_iterator<char>(file), {}};
+  if (std::getenv("DISPERSA_REWRITE_TABLES") != nullptr) std::ofstream(path) << wanted;
+  EXPECT_EQ(text, wanted) << "DISPERSA_REWRITE_TABLES=1 build/release/tests/property_tests "
+                             "--gtest_filter=CapabilityPage.*";
 }
 
 TEST(CapabilityPage, ListsWhatFliesTogether) {
-  std::ifstream file(kPage);
-  std::string page{std::istreambuf_iterator<char>(file), {}};
-  const std::size_t begin = page.find(kBegin), end = page.find(kEnd);
-  ASSERT_TRUE(begin != std::string::npos && end != std::string::npos) << kPage;
-  std::string written = page;
-  const std::size_t after = begin + sizeof kBegin - 1;
-  written.replace(after, end - after, Table());
-  if (std::getenv("DISPERSA_REWRITE_TABLES") != nullptr) std::ofstream(kPage) << written;
-  EXPECT_EQ(written, page) << "DISPERSA_REWRITE_TABLES=1 build/release/tests/property_tests "
-                              "--gtest_filter=CapabilityPage.*";
+  const PairTables tables = Tables();
+  ExpectFile(kPairs, tables.pairs);
+  ExpectFile(kRefused, tables.refused);
 }
 
 }  // namespace

@@ -2,12 +2,13 @@
 """Events of the gallery's nominal flights beside the published ones.
 
 gallery_table.py DISPERSA GALLERY            prints the tables
-gallery_table.py DISPERSA GALLERY --write    writes them into GALLERY/README.md, between their markers
-gallery_table.py DISPERSA GALLERY --check    compares README.md with them, and every difference with 2 %; ends with 1
+gallery_table.py DISPERSA GALLERY --write    writes them into the launchers' flown.csv, which the docs site shows
+gallery_table.py DISPERSA GALLERY --check    compares those files with them, and every difference with 2 %; ends with 1
                                              if a number is farther away and published.yaml does not explain it
 """
 
 import csv
+import io
 import pathlib
 import re
 import subprocess
@@ -79,15 +80,15 @@ def title_of(name):
 
 
 def compare(launcher, dispersa, gallery):
-    """Lines of the table, and what is farther from the published number than 2 % without an explanation."""
+    """Rows of the table, and what is farther from the published number than 2 % without an explanation."""
     folder = gallery / launcher
     vehicle = yaml.safe_load((folder / "vehicle.yaml").read_text())
     published = yaml.safe_load((folder / "published.yaml").read_text())
     rows = fly(dispersa, folder / "campaign.yaml")
     flown = events_of(rows, vehicle)
     shift = vehicle.get("hold_down_s", 0) if published["time_zero"] == "ignition" else 0
-    lines = ["| event | time, s: published | flown | altitude, km: published | flown | velocity, m/s: published | flown | difference |",
-             "|---|---|---|---|---|---|---|---|"]
+    table = [["event", "time, s: published", "flown", "altitude, km: published", "flown", "velocity, m/s: published", "flown",
+              "difference"]]
     beyond = []
     for event in published["events"]:
         row = flown.get(event.get("flown_as", event["event"]))
@@ -112,34 +113,29 @@ def compare(launcher, dispersa, gallery):
         if frame and event.get("velocity_m_s"):
             cells[4] += f", {frame.replace('_', ' ')}"
         note = f"; {event['explained']}" if "explained" in event else ""
-        lines.append(f"| {title_of(event['event'])} | {' | '.join(cells)} | {', '.join(differences)}{note} |")
-    return lines, beyond
+        table.append([title_of(event["event"]), *cells, ", ".join(differences) + note])
+    return table, beyond
 
 
 def main():
     dispersa, gallery = map(pathlib.Path, sys.argv[1:3])
     mode = sys.argv[3] if len(sys.argv) > 3 else ""
-    readme = gallery / "README.md"
-    text = readme.read_text()
-    wanted, beyond = text, []
+    is_bad = False
     for launcher in LAUNCHERS:
-        lines, farther = compare(launcher, dispersa, gallery)
-        beyond += farther
+        rows, beyond = compare(launcher, dispersa, gallery)
+        text = io.StringIO()
+        csv.writer(text, lineterminator="\n").writerows(rows)
+        file = gallery / launcher / "flown.csv"
         if mode == "":
-            print("\n".join([f"{launcher}:"] + lines))
-        begin, end = f"<!-- {launcher}:begin -->\n", f"<!-- {launcher}:end -->"
-        if begin not in wanted:
-            sys.exit(f"{readme}: no marker {begin.strip()}")
-        head, rest = wanted.split(begin)
-        wanted = head + begin + "\n".join(lines) + "\n" + end + rest.split(end)[1]
-    for line in beyond:
-        print(line)
-    if mode == "--write":
-        readme.write_text(wanted)
-    if mode == "--check":
-        if wanted != text:
-            print(f"{readme}: its tables are not those of today's flights; gallery_table.py --write")
-        sys.exit(1 if beyond or wanted != text else 0)
+            print(f"{launcher}:\n{text.getvalue()}")
+        elif mode == "--write":
+            file.write_text(text.getvalue())
+        elif file.read_text() != text.getvalue():
+            beyond.append(f"{file}: not of today's flights; gallery_table.py --write")
+        for line in beyond:
+            print(line)
+        is_bad |= bool(beyond)
+    sys.exit(1 if mode == "--check" and is_bad else 0)
 
 
 if __name__ == "__main__":

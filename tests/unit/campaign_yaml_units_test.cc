@@ -13,7 +13,7 @@
 #include "core/input/field_reader.h"
 #include "core/input/number_text.h"
 #include "core/input/units.h"
-#include "tests/unit/dimensions.h"
+#include "services/docs/dimensions.h"
 
 namespace dispersa::campaign_yaml_units_test {
 namespace {

@@ -17,6 +17,7 @@
 #include "core/flight/metrics.h"
 #include "core/math/constants.h"
 #include "core/math/functions.h"
+#include "core/results/metric_catalogue.h"
 #include "tests/unit/sample_vehicle.h"
 
 namespace dispersa::flight_metrics_test {
@@ -688,6 +689,19 @@ TEST(OutcomeNames, ReadBackAsTheyAreWritten) {
                                           "numerical_failure", "timeout"}));
   Outcome outcome;
   EXPECT_FALSE(ParseOutcome("exploded", &outcome));
+}
+
+// A unit at the end of a column's name is the one that people read; of an integral over time twice, the
+// square of seconds is no acceleration's.
+TEST(Metrics, TheirUnitsAreThoseOfTheirNames) {
+  for (const Metric& metric : Metrics()) {
+    if (metric.name == "pitch_error_itae_deg_s2")
+      EXPECT_EQ(metric.unit, "° s²");
+    else
+      EXPECT_EQ(metric.unit, SplitUnit(metric.name).unit) << metric.name;
+  }
+  EXPECT_EQ(SplitUnit("bending_moment_max_n_m").unit, "N m");
+  EXPECT_EQ(SplitUnit("bending_moment_max_n_m").stem, "bending_moment_max");
 }
 
 }  // namespace

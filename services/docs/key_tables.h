@@ -1,4 +1,4 @@
-// The keys of the input files as Markdown tables, from their descriptions.
+// The keys of the input files as Markdown tables of the docs site, from their descriptions.
 #pragma once
 
 #include <algorithm>
@@ -11,7 +11,7 @@
 
 #include "core/input/number_text.h"
 #include "core/input/read_value.h"
-#include "tests/unit/dimensions.h"
+#include "services/docs/dimensions.h"
 
 namespace dispersa {
 
@@ -209,6 +209,12 @@ class KeyRows : public Fields {
   std::string when_;
 };
 
+/// The text of a cell of a table.
+inline std::string EscapedCell(std::string text) {
+  for (std::size_t at = 0; (at = text.find('|', at)) != std::string::npos; at += 2) text.insert(at, "\\");
+  return text;
+}
+
 /// The table of a map. Maps in it that have a table of their own, as `has_table` says of a path, are one row.
 class KeyTable {
  public:
@@ -222,10 +228,6 @@ class KeyTable {
   }
 
  private:
-  static std::string Escaped(std::string text) {
-    for (std::size_t at = 0; (at = text.find('|', at)) != std::string::npos; at += 2) text.insert(at, "\\");
-    return text;
-  }
   static std::string Spaced(std::string name) {
     std::replace(name.begin(), name.end(), '_', ' ');
     return name;
@@ -239,8 +241,9 @@ class KeyTable {
       if (is_told) value += ", below";
       std::string when;
       for (const std::string& condition : row.when) when += (when.empty() ? "" : "; ") + condition;
-      text_ += "| " + depth + "`" + row.key + "` | " + Escaped(value) + " | " + Escaped(row.absent) + " | " +
-               Escaped(row.meaning) + (when.empty() ? "" : " (" + Escaped(when) + ")") + " |\n";
+      text_ += "| " + depth + "`" + row.key + "` | " + EscapedCell(value) + " | " + EscapedCell(row.absent) +
+               " | " + EscapedCell(row.meaning) + (when.empty() ? "" : " (" + EscapedCell(when) + ")") +
+               " |\n";
       if (!is_told) AddRows(row.inside, inner, depth + "· ");
     }
   }
