@@ -6,7 +6,6 @@ set(data "${CMAKE_INSTALL_DATADIR}/dispersa")
 # Everything that campaigns name, whatever its kind. `run` builds a repository.
 install(DIRECTORY campaigns DESTINATION "${data}" USE_SOURCE_PERMISSIONS
   PATTERN run EXCLUDE
-  PATTERN images EXCLUDE
   PATTERN reference.csv EXCLUDE  # what optimize leaves
   PATTERN reference.html EXCLUDE)
 install(DIRECTORY services/deploy DESTINATION "${data}" USE_SOURCE_PERMISSIONS)
@@ -14,7 +13,7 @@ install(FILES core/analysis/summary.schema.json DESTINATION "${data}/schemas")
 
 # Each README.md in its folder, so that their links lead somewhere.
 file(GLOB_RECURSE documents RELATIVE "${PROJECT_SOURCE_DIR}" CONFIGURE_DEPENDS
-  core/*.md services/*.md idl/*.md docker/*.md core/images/* campaigns/*.md campaigns/images/*)
+  core/*.md services/*.md idl/*.md docker/*.md core/images/* campaigns/*.md services/docs/pages/images/*.png)
 list(FILTER documents EXCLUDE REGEX "services/cli/starter/")  # what `init` writes
 foreach(document IN LISTS documents ITEMS README.md CONTRIBUTING.md CHANGELOG.md LICENSE)
   get_filename_component(folder "${document}" DIRECTORY)
