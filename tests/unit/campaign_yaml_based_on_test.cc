@@ -72,67 +72,6 @@ TEST(BasedOn, NamesAreRelativeToTheFileInWhichTheyStand) {
   EXPECT_EQ(ParseCampaign(list.canonical_yaml, "again").id, list.id);
 }
 
-struct BadBase {
-  const char* name;
-  const char* text;   ///< of derived.yaml, after its schema
-  const char* texts;  ///< of the problems
-};
-class BadBaseTest : public testing::TestWithParam<BadBase> {};
-
-TEST_P(BadBaseTest, IsReportedInFull) {
-  const InputFiles files;
-  files.Write("derived.yaml", std::string("schema: dispersa/campaign/1\n") + GetParam().text);
-  files.Write("loop.yaml", "schema: dispersa/campaign/1\nbased_on: ./derived.yaml\n");
-  files.Write("wrong.yaml", "schema: dispersa/campaign/1\nbased_on: campaign.yaml\nsampling: {cases: 0}\n");
-  files.Write("list.yaml", "- 1\n");
-  EXPECT_EQ(files.Texts(CheckFile(files.Path("derived.yaml")).errors), GetParam().texts);
-  try {
-    LoadCampaign(files.Path("derived.yaml"));
-    ADD_FAILURE() << "it was loaded";
-  } catch (const InputError& error) {
-    EXPECT_EQ(files.Texts(error.problems()), GetParam().texts);
-  }
-}
-
-constexpr BadBase kBadBases[] = {
-    {"ItsOwnBase", "based_on: derived.yaml\n",
-     "derived.yaml:2:11: based_on: 'derived.yaml' is based on this file itself, allowed: the name of a "
-     "campaign file that is not based on this one\n"},
-    {"ACycle", "based_on: loop.yaml\n",
-     "loop.yaml:2:11: based_on: 'derived.yaml' is based on this file itself, allowed: the name of a "
-     "campaign file that is not based on this one\n"},
-    {"NoFile", "based_on: none.yaml\n",
-     "derived.yaml:2:11: based_on: file 'none.yaml' not found, allowed: a file, named relative to this "
-     "one\n"},
-    {"AMap", "based_on: {name: x}\n",
-     "derived.yaml:2:11: based_on: a map is not a file name, allowed: the name of a campaign file\n"},
-    {"NoMap", "based_on: list.yaml\n",
-     "list.yaml:1:1: a list is not a campaign, allowed: the name of a campaign file\n"},
-    {"AnotherKind", "based_on: vehicle.yaml\n",
-     "vehicle.yaml:1:9: schema: 'dispersa/vehicle/1' is not the schema of this kind of file, allowed: "
-     "schema: dispersa/campaign/1\n"},
-    {"WrongInTheBase", "based_on: wrong.yaml\n",
-     "wrong.yaml:3:11: sampling: missing key 'method', allowed: one of monte_carlo, latin_hypercube, sobol, "
-     "corners, one_at_a_time, grid, list\n"
-     "wrong.yaml:3:11: sampling: missing key 'seed', allowed: a whole number from 0 to 18446744073709551615\n"
-     "wrong.yaml:3:19: sampling.cases: 0 is out of range, allowed: a whole number from 1 to 4294967295\n"},
-    {"NothingToLeaveOut", "based_on: wrong.yaml\nwithout: [dispersions.thrst, schema]\n",
-     "derived.yaml:3:11: without[0]: 'dispersions.thrst' is not a key of 'wrong.yaml' (did you mean "
-     "'dispersions.thrust'?), allowed: one of sampling, name, vehicle, reference, autopilot, "
-     "dispersions, dispersions.thrust_misalignment, dispersions.wind, dispersions.drag_coefficient, "
-     "dispersions.thrust, requirements\n"
-     "derived.yaml:3:30: without[1]: 'schema' is not a key of 'wrong.yaml', allowed: one of sampling, name, "
-     "vehicle, reference, autopilot, "
-     "dispersions, dispersions.thrust_misalignment, dispersions.wind, dispersions.drag_coefficient, "
-     "dispersions.thrust, requirements\n"},
-    {"NoList", "based_on: campaign.yaml\nwithout: requirements\n",
-     "derived.yaml:3:10: without: 'requirements' is not a list of keys, allowed: a list of keys of the file "
-     "that this one is based on\n"},
-};
-
-INSTANTIATE_TEST_SUITE_P(BasedOn, BadBaseTest, testing::ValuesIn(kBadBases),
-                         [](const auto& each) { return std::string(each.param.name); });
-
 TEST(BasedOn, LeavesNothingOutOfNothing) {
   const InputFiles files;
   files.Edit("campaign.yaml", "name:", "without: [requirements]\nname:");

@@ -1,4 +1,4 @@
-// Boosters in a vehicle file: values read, and messages about mistakes.
+// Boosters in a vehicle file: values read.
 #include <gtest/gtest.h>
 
 #include <string>
@@ -9,7 +9,7 @@
 #include "core/flight/flight_inputs.h"
 #include "core/math/constants.h"
 #include "core/vehicle/mass.h"
-#include "tests/unit/bad_input.h"
+#include "tests/unit/input_files.h"
 
 namespace dispersa::campaign_yaml_boosters_test {
 namespace {
@@ -82,33 +82,6 @@ TEST(BoostersFile, ReadThrustCurvesAndStandInTheId) {
   EXPECT_NE(LoadCampaign(files.Path("campaign.yaml")).flight_id, campaign.flight_id);
 }
 
-// Where the stage carries its boosters must be known: else bending moments are those after they have left,
-// and neither a limit nor a requirement can hold for that.
-TEST(BoostersFile, LeaveNoBendingMomentToJudgeWithoutAnAttachment) {
-  const InputFiles files;
-  files.Edit("vehicle.yaml", "axial_load_g: 12,", "axial_load_g: 12, bending_moment_kn_m: 50,");
-  files.Edit("campaign.yaml", "pitch_error_peak_deg, below: 0.5", "bending_moment_max_n_m, below: 5e4");
-  EXPECT_EQ(files.Texts(CheckFile(files.Path("campaign.yaml")).errors), "");
-  files.Edit("vehicle.yaml", kAfter, kBoosters);
-  EXPECT_EQ(files.Texts(CheckFile(files.Path("campaign.yaml")).errors),
-            "vehicle.yaml:36:70: limits.bending_moment_kn_m: needs the station at which the first stage "
-            "carries its "
-            "boosters, allowed: a limit of a vehicle with boosters.attachment_station_m\n");
-  files.Edit("vehicle.yaml", " bending_moment_kn_m: 50,", "");
-  EXPECT_EQ(
-      files.Texts(CheckFile(files.Path("campaign.yaml")).errors),
-      "campaign.yaml:13:14: requirements[0].metric: 'bending_moment_max_n_m' is of flights with section "
-      "loads: a profile, and of boosters their attachment_station, allowed: a metric that these flights "
-      "have\n");
-  files.Edit("vehicle.yaml", "nozzle_station_m: 9.7,", "nozzle_station_m: 9.7, attachment_station_m: 8.2,");
-  files.Edit("vehicle.yaml", "axial_load_g: 12,", "axial_load_g: 12, bending_moment_kn_m: 50,");
-  EXPECT_EQ(files.Texts(CheckFile(files.Path("campaign.yaml")).errors), "");
-  files.Edit("vehicle.yaml", "attachment_station_m: 8.2,", "attachment_station_m: 82,");
-  EXPECT_EQ(files.Texts(CheckFile(files.Path("campaign.yaml")).errors),
-            "vehicle.yaml:34:181: boosters.attachment_station_m: lies aft of the stage that carries them, "
-            "allowed: at most its bottom_station_m, 10.000000\n");
-}
-
 constexpr char kGrain[] =
     "grain: {top_station_m: 8, bottom_station_m: 8.9, outer_diameter_m: 0.28, inner_diameter_m: 0.1}";
 void MakeLiquid(const InputFiles& files) {
@@ -146,18 +119,6 @@ TEST(BoostersFile, ReadLiquidEnginesAndTanks) {
   EXPECT_EQ(kept.flight_id, campaign.flight_id);
 }
 
-TEST(BoostersFile, OfLiquidsHaveNoTemperatureOfTheGrain) {
-  const InputFiles files;
-  MakeLiquid(files);
-  files.Edit("vehicle.yaml", "count: 2,", "angles_deg: [0, 120, 240],");
-  files.Edit("campaign.yaml", "  thrust: ",
-             "  booster_temperature: {distribution: normal, sigma_k: 5, sensitivity_percent_k: 0.2}\n"
-             "  thrust: ");
-  EXPECT_EQ(files.Texts(CheckFile(files.Path("campaign.yaml")).errors),
-            "campaign.yaml:11:24: dispersions.booster_temperature: the boosters are liquid: pumps or tank "
-            "pressure set their flow, allowed: booster_burn_rate, or boosters with solid motors\n");
-}
-
 // Each its own, as the file says, and one for all.
 TEST(BoostersFile, ReadDispersionsOfTheirMasses) {
   const InputFiles files;
@@ -182,17 +143,6 @@ TEST(BoostersFile, ReadDispersionsOfTheirMasses) {
   files.Edit("campaign.yaml", "high_factor: 1.01", "high_factor: 9");
   EXPECT_NE(files.Texts(CheckFile(files.Path("campaign.yaml")).errors).find("a draw can be 9 (factor)"),
             std::string::npos);
-}
-
-TEST(BoostersFile, OfSolidsHaveNoMixture) {
-  const InputFiles files;
-  files.Edit("vehicle.yaml", kAfter, kBoosters);
-  files.Edit("vehicle.yaml", "count: 2,", "angles_deg: [0, 120, 240],");
-  files.Edit("campaign.yaml",
-             "  thrust: ", "  booster_mixture_ratio: {distribution: normal, sigma_percent: 1}\n  thrust: ");
-  EXPECT_EQ(files.Texts(CheckFile(files.Path("campaign.yaml")).errors),
-            "campaign.yaml:11:26: dispersions.booster_mixture_ratio: the boosters have no two tanks, whose "
-            "flows could differ, allowed: boosters with liquid engines of two propellants\n");
 }
 
 // Each with its place, its nozzle's drives, and dispersions of its own.
@@ -229,15 +179,6 @@ TEST(BoostersFile, ReadBodiesOfTheirOwn) {
             "booster_misalignment/z/booster2: nozzle_misalignment_z_nozzle6_deg\n"
             "booster_misalignment/y/booster3: nozzle_misalignment_y_nozzle7_deg\n"
             "booster_misalignment/z/booster3: nozzle_misalignment_z_nozzle7_deg\n");
-}
-
-TEST(BoostersFile, HaveNoDifferencesWhereThereAreNone) {
-  const InputFiles files;
-  files.Edit("campaign.yaml",
-             "  thrust: ", "  booster_dry_mass: {distribution: normal, sigma_percent: 1}\n  thrust: ");
-  EXPECT_EQ(files.Texts(CheckFile(files.Path("campaign.yaml")).errors),
-            "campaign.yaml:11:21: dispersions.booster_dry_mass: the vehicle has no boosters, allowed: a "
-            "vehicle with boosters\n");
 }
 
 // Boosters by their number stand at equal angles. The file stays.
@@ -288,52 +229,6 @@ TEST(BoostersFile, OfSomeAlikeStandInAListOfCases) {
             std::string::npos)
       << "there are two";
 }
-
-class BadBoostersTest : public testing::TestWithParam<BadInput> {};
-
-TEST_P(BadBoostersTest, AreReportedInFull) {
-  const InputFiles files;
-  files.Edit("vehicle.yaml", kAfter, kBoosters);
-  files.Edit("vehicle.yaml", GetParam().from, GetParam().to);
-  EXPECT_EQ(files.Texts(CheckFile(files.Path("vehicle.yaml")).errors), GetParam().texts);
-}
-
-constexpr BadInput kBadBoosters[] = {
-    {"One", "", "count: 2", "count: 1",
-     "vehicle.yaml:34:19: boosters.count: 1 is out of range, allowed: a whole number from 2 to 8\n"},
-    {"IntoEachOther", "", "count: 2", "angles_deg: [0, 10]",
-     "vehicle.yaml:34:28: boosters.angles_deg[1]: puts the booster into another one, 10.000000 deg beside "
-     "it, "
-     "allowed: angles at least 24.747250 deg apart\n"},
-    {"CantOfSomeAlike", "", "count: 2", "count: 2, cant_deg: 5",
-     "vehicle.yaml:34:32: boosters.cant_deg: boosters without angles are all alike, with fixed nozzles, "
-     "allowed: angles_deg in place of count\n"},
-    {"Inside", "", "radius_m: 0.7", "radius_m: 0.4",
-     "vehicle.yaml:34:73: boosters.radius_m: puts their axes inside the stage that they stand beside, "
-     "allowed: at least "
-     "half its diameter_m, 0.500000\n"},
-    {"Longer", "", "burning_time_s: 30", "burning_time_s: 61",
-     "vehicle.yaml:34:191: boosters.motor: burns, and the boosters leave, after 61.500000 s, the stage burns "
-     "60.300000 s, "
-     "allowed: boosters that leave while their stage burns\n"},
-    {"LiquidWithGrain", "", "motor: {thrust_kn: 5, burning_time_s: 30}",
-     "motor: {liquid: {thrust_kn: 5, specific_impulse_s: 300}}",
-     "vehicle.yaml:34:11: boosters: missing key 'tanks', allowed: a list of 1 or more\n"
-     "vehicle.yaml:34:249: boosters.grain: the motor is liquid, allowed: tanks in place of the grain\n"},
-    {"GrainTooThick", "", "outer_diameter_m: 0.28", "outer_diameter_m: 0.31",
-     "vehicle.yaml:34:294: boosters.grain.outer_diameter_m: is larger than the booster, allowed: at most "
-     "diameter_m\n"},
-    {"GrainOutside", "", "bottom_station_m: 8.9", "bottom_station_m: 9.9",
-     "vehicle.yaml:34:271: boosters.grain.bottom_station_m: lies aft of the booster's bottom_station_m, "
-     "allowed: at most "
-     "bottom_station_m of the booster\n"},
-    {"TooHeavy", "", "propellant_mass_kg: 60", "propellant_mass_kg: 600",
-     "vehicle.yaml:8:25: stages[0].propellant_mass_kg: leaves the stage no dry mass: lift-off mass less what "
-     "is above it "
-     "and its propellant is -740.000000 kg, allowed: less propellant than the stage's own mass\n"},
-};
-INSTANTIATE_TEST_SUITE_P(BoostersFile, BadBoostersTest, testing::ValuesIn(kBadBoosters),
-                         [](const auto& each) { return std::string(each.param.name); });
 
 }  // namespace
 }  // namespace dispersa::campaign_yaml_boosters_test

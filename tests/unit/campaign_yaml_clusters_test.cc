@@ -8,7 +8,7 @@
 #include "core/campaign/campaign.h"
 #include "core/campaign_yaml/load.h"
 #include "core/flight/flight_inputs.h"
-#include "tests/unit/bad_input.h"
+#include "tests/unit/input_files.h"
 
 namespace dispersa::campaign_yaml_clusters_test {
 namespace {

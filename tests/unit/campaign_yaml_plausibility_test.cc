@@ -7,7 +7,7 @@
 
 #include "core/campaign_yaml/load.h"
 #include "core/input/read_value.h"
-#include "tests/unit/bad_input.h"
+#include "tests/unit/input_files.h"
 
 namespace dispersa::campaign_yaml_plausibility_test {
 namespace {
@@ -189,92 +189,6 @@ TEST(CampaignYamlPlausibility, AReferenceThatMissesItsTargetSaysSo) {
   EXPECT_EQ(LoadReference({"again", WriteReference(campaign.reference)}).target_missed, "12 km short");
 }
 
-class BadTextTest : public testing::TestWithParam<BadInput> {};
-
-TEST_P(BadTextTest, IsReportedInFull) {
-  EXPECT_EQ(TextsAbout("campaign.yaml", GetParam()), GetParam().texts);
-}
-
-constexpr BadInput kBadTexts[] = {
-    {"Tab", "campaign.yaml", "  drag_coefficient", "\tdrag_coefficient",
-     "campaign.yaml:10:1: a tab indents the line, allowed: spaces\n"},
-    {"Latin1", "vehicle.yaml", "name: first", "name: premi\xe8re",
-     "vehicle.yaml:6:16: the byte 0xE8 is no UTF-8: the file is in another encoding, such as Latin-1, "
-     "allowed: text in "
-     "UTF-8\n"},
-    {"CutCharacter", "vehicle.yaml", "name: first", "name: \xe2\x82",
-     "vehicle.yaml:6:11: the byte 0xE2 is no UTF-8: the file is in another encoding, such as Latin-1, "
-     "allowed: text in "
-     "UTF-8\n"},
-    {"ConfidenceForRisk", "campaign.yaml", "consumer_risk: 0.10", "consumer_risk: 0.95",
-     "campaign.yaml:13:84: requirements[0].consumer_risk: 0.95 is out of range, it is a confidence (did you "
-     "mean "
-     "0.05?), allowed: a number above 0 and below 0.5\n"},
-    {"PercentForProbability", "campaign.yaml", "probability: 0.9973", "probability: 99.73",
-     "campaign.yaml:13:61: requirements[0].probability: 99.73 is out of range, it is in percent (did you "
-     "mean "
-     "0.9973?), allowed: a number above 0 and below 1\n"},
-    {"KilometresAnHour", "campaign.yaml", "max_speed_m_s", "max_speed_kmh",
-     "campaign.yaml:9:10: dispersions.wind.max_speed_kmh: the unit of 'max_speed_kmh' is not known here (did "
-     "you mean "
-     "'max_speed_km_h'?), allowed: max_speed_m_s, max_speed_km_s, max_speed_km_h\n"},
-    {"SpelledOut", "vehicle.yaml", "burning_time_s: 60, ignition_rise_s: 0.2, tail_off_s: 0.4, p",
-     "burning_time_seconds: 60, ignition_rise_s: 0.2, tail_off_s: 0.4, p",
-     "vehicle.yaml:11:28: stages[0].motor.burning_time_seconds: the unit of 'burning_time_seconds' is not "
-     "known here "
-     "(did you mean 'burning_time_s'?), allowed: burning_time_s, burning_time_ms\n"},
-    {"DesignBeyondMemory", "campaign.yaml", "method: monte_carlo, cases: 100",
-     "method: latin_hypercube, cases: 4000000000",
-     "campaign.yaml:6:44: sampling.cases: a Latin hypercube of 4000000000 cases and 10 dispersions takes 160 "
-     "GB of memory "
-     "in each process, allowed: up to 100000000 cases (4 GB), or method: monte_carlo or sobol, which take "
-     "none\n"},
-};
-
-INSTANTIATE_TEST_SUITE_P(Each, BadTextTest, testing::ValuesIn(kBadTexts),
-                         [](const auto& bad) { return std::string(bad.param.name); });
-
-TEST(CampaignYamlPlausibility, UnsortedWindNamesTheLineOfTheCulprit) {
-  const InputFiles files;
-  files.Write("wind.csv",
-              "# a sounding\naltitude_m,north_m_s,east_m_s\n0,1,2\n2000,3,4\n1500,5,6\n9000,7,8\n");
-  files.Edit("campaign.yaml", "  wind:", "  wind_profile: {table: wind.csv}\n  wind:");
-  EXPECT_EQ(
-      files.Texts(CheckFile(files.Path("campaign.yaml")).errors),
-      "wind.csv:5:1: altitude_m[2]: is not above the one before, allowed: values strictly increasing\n");
-}
-
-TEST(CampaignYamlPlausibility, KilometresAnHourAreASpeed) {
-  const InputFiles files;
-  files.Edit("campaign.yaml", "max_speed_m_s: ", "max_speed_km_h: ");
-  EXPECT_TRUE(CheckFile(files.Path("campaign.yaml")).errors.empty());
-}
-
-// Inside of a line a tab is legal YAML.
-TEST(CampaignYamlPlausibility, HarmlessTabsStay) {
-  const InputFiles files;
-  files.Edit("campaign.yaml", "name: trial", "name:\ttrial");
-  EXPECT_TRUE(CheckFile(files.Path("campaign.yaml")).errors.empty());
-}
-
-// Files of soundings write such values where nothing was measured.
-TEST(CampaignYamlPlausibility, WindsOfNoValueAreRefused) {
-  const InputFiles files;
-  files.Edit("campaign.yaml", "  wind:", "  wind_profile: {table: wind.csv}\n  wind:");
-  for (const std::string value : {"-9999", "9999", "999.9", "-500.1"}) {
-    files.Write("wind.csv", "altitude_m,north_m_s,east_m_s\n0,0,5\n5000," + value + ",5\n20000,0,5\n");
-    EXPECT_EQ(
-        files.Texts(CheckFile(files.Path("campaign.yaml")).errors),
-        "wind.csv:3:6: north_m_s[1]: " + value + " is out of range, allowed: a number from -500 to 500\n");
-    files.Write("wind.csv", "altitude_m,north_m_s,east_m_s\n0,0,5\n5000,0," + value + "\n20000,0,5\n");
-    EXPECT_EQ(
-        files.Texts(CheckFile(files.Path("campaign.yaml")).errors),
-        "wind.csv:3:8: east_m_s[1]: " + value + " is out of range, allowed: a number from -500 to 500\n");
-  }
-  files.Write("wind.csv", "altitude_m,north_m_s,east_m_s\n0,0,5\n5000,-500,500\n20000,0,5\n");
-  EXPECT_TRUE(CheckFile(files.Path("campaign.yaml")).errors.empty());
-}
-
 TEST(CampaignYamlPlausibility, AColumnMayHaveAnyUnit) {
   const InputFiles files;
   files.Edit("campaign.yaml", "  wind:", "  wind_profile: {table: wind.csv}\n  wind:");
@@ -290,20 +204,6 @@ TEST(CampaignYamlPlausibility, AColumnMayHaveAnyUnit) {
 TEST(CampaignYamlPlausibility, NoOtherUnitIsProposed) {
   EXPECT_EQ(DidYouMean("altitude_km", {"altitude_m"}), "");
   EXPECT_EQ(DidYouMean("altitud_m", {"altitude_m"}), " (did you mean 'altitude_m'?)");
-  const InputFiles files;
-  files.Edit("campaign.yaml", "  wind:", "  wind_profile: {table: wind.csv}\n  wind:");
-  files.Write("wind.csv", "altitude_ft,north_m_s,east_m_s\n0,0,5\n60000,0,5\n");
-  EXPECT_EQ(files.Texts(CheckFile(files.Path("campaign.yaml")).errors),
-            "wind.csv:1:1: the unit of 'altitude_ft' is not known here, allowed: altitude_m, altitude_km, "
-            "altitude_mm, altitude_um\n");
-}
-
-// 270 deg and 6 sigma of 20 deg are 390 deg.
-TEST(CampaignYamlPlausibility, ANormalDirectionMayPassNorth) {
-  const InputFiles files;
-  files.Edit("campaign.yaml", "azimuth: uniform",
-             "azimuth: {distribution: normal, mean_deg: 270, sigma_deg: 20}");
-  EXPECT_EQ(files.Texts(CheckFile(files.Path("campaign.yaml")).errors), "");
 }
 
 TEST(CampaignYamlPlausibility, AHighSiteNamesItsGround) {
@@ -344,18 +244,6 @@ TEST(CampaignYamlPlausibility, ARequirementOfTheWorseSideIsWarnedOf) {
                             "metric: injection_altitude_error_km, above: -0.75",
                             "metric: injection_altitude_error_km, below: 0.75"})
     EXPECT_EQ(said(sound), "") << sound;
-}
-
-// [95, 85] would search all but the ten degrees that are meant.
-TEST(CampaignYamlPlausibility, ReversedBoundsOfAnAzimuthAreRefused) {
-  const InputFiles files;
-  files.Edit("reference.yaml", "launch_azimuth_deg: [90, 170]", "launch_azimuth_deg: [170, 90]");
-  EXPECT_EQ(
-      files.Texts(CheckFile(files.Path("reference.yaml")).errors),
-      "reference.yaml:11:25: problem.bounds.launch_azimuth_deg: descends, and so goes through north, over "
-      "280 deg, allowed: [low, high]; through north at most half a turn, as [350, 10]\n");
-  files.Edit("reference.yaml", "launch_azimuth_deg: [170, 90]", "launch_azimuth_deg: [271, 90]");
-  EXPECT_EQ(files.Texts(CheckFile(files.Path("reference.yaml")).errors), "");
 }
 
 }  // namespace

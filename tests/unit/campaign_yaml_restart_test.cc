@@ -6,7 +6,6 @@
 #include "core/vehicle/beam_masses.h"
 #include "core/vehicle/mass.h"
 #include "core/vehicle/propulsion.h"
-#include "tests/unit/bad_input.h"
 #include "tests/unit/input_files.h"
 
 namespace dispersa::campaign_yaml_restart_test {

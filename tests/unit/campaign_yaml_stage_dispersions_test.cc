@@ -1,4 +1,4 @@
-// Dispersions of stages, masses, events and lift-off: the draws they become, and full texts for mistakes.
+// Dispersions of stages, masses, events and lift-off: the draws they become.
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
@@ -38,12 +38,6 @@ std::vector<std::string> Fed(const std::string& line) {
     all.push_back(text);
   }
   return all;
-}
-
-std::string Problems(const std::string& line) {
-  const InputFiles files;
-  SetDispersion(files, line);
-  return files.Texts(CheckFile(files.Path("campaign.yaml")).errors);
 }
 
 TEST(StageDispersions, NameTheirStages) {
@@ -136,73 +130,6 @@ TEST(StageDispersions, WhatTheTwoReadingsOfAMisalignmentHaveAboutAnAxis) {
   EXPECT_NEAR(three_sigma_deg("draw: per_axis, per: stage"), 0.25, 4.0 * 0.25 / std::sqrt(2.0 * 20000));
   EXPECT_NEAR(three_sigma_deg("clock_angle: uniform, per: stage"), 0.25 / std::sqrt(2.0),
               4.0 * 0.177 / std::sqrt(20000));
-}
-
-TEST(StageDispersions, WhatIsWrongIsSaidInFull) {
-  EXPECT_EQ(Problems("dry_mass: {distribution: normal, sigma_percent: 1, per: stage, stage: 3}"),
-            "campaign.yaml:8:73: dispersions.dry_mass.stage: '3' is no stage that this disperses, allowed: "
-            "one of 1 "
-            "to 2, or a list of them\n");
-  EXPECT_EQ(Problems("dry_mass: {distribution: normal, sigma_percent: 1, per: stage, stage: [1, 1]}"),
-            "campaign.yaml:8:77: dispersions.dry_mass.stage[1]: stage 1 is given twice, allowed: each stage "
-            "once\n");
-  EXPECT_EQ(
-      Problems("separation_delay: {distribution: constant, value_s: 1, per: stage, stage: 2}"),
-      "campaign.yaml:8:77: dispersions.separation_delay.stage: '2' is no stage that this disperses, allowed: "
-      "1\n");
-  EXPECT_EQ(
-      Problems("dry_mass: [{distribution: normal, sigma_percent: 1, per: stage, stage: 1}, {distribution: "
-               "normal, sigma_percent: 2, per: stage, stage: [1, 2]}]"),
-      "campaign.yaml:8:138: dispersions.dry_mass[1].stage: stage 1 is given twice, allowed: each stage in "
-      "one "
-      "of the list\n");
-  EXPECT_EQ(
-      Problems("dry_mass: []"),
-      "campaign.yaml:8:13: dispersions.dry_mass: the list is empty, allowed: a map, or a list of maps with "
-      "stage\n");
-  EXPECT_EQ(
-      Problems("dry_mass: {distribution: normal, sigma_percent: 20, per: stage}"),
-      "campaign.yaml:8:13: dispersions.dry_mass: a draw at 6 sigma is -0.2 (factor), allowed: a number above "
-      "0\n");
-  EXPECT_EQ(Problems("propellant_load: {distribution: uniform, bound_percent: 20, per: stage}"),
-            "campaign.yaml:8:20: dispersions.propellant_load: a draw can be 1.2 (factor), allowed: a number "
-            "above 0 "
-            "and not above 1.125\n");
-  EXPECT_EQ(
-      Problems("payload_mass: {distribution: uniform, bound_kg: 20, element: payload}"),
-      "campaign.yaml:8:64: dispersions.payload_mass.element: 'payload' is not an element of the last stage's "
-      "structure, allowed: one of case\n");
-  EXPECT_EQ(Problems("payload_mass: {distribution: uniform, bound_kg: 501, element: case}"),
-            "campaign.yaml:8:17: dispersions.payload_mass: a draw can be -501 (kg), allowed: a number above "
-            "-500\n");
-  EXPECT_EQ(
-      Problems("product_of_inertia: {}"),
-      "campaign.yaml:8:23: dispersions.product_of_inertia: no product is given, allowed: one or more of xy, "
-      "xz, yz\n");
-  EXPECT_EQ(
-      Problems("product_of_inertia: {xy: {distribution: uniform, bound_kg_m2: 1000, per: stage, stage: 2}}")
-          .substr(0, 97),
-      "campaign.yaml:8:28: dispersions.product_of_inertia.xy: a draw can be -1000 (kg_m2), allowed: a nu");
-  EXPECT_EQ(
-      Problems("separation_delay: {distribution: uniform, low_s: -0.6, high_s: 1, per: stage}"),
-      "campaign.yaml:8:21: dispersions.separation_delay: a draw can be -0.6 (s), allowed: a number not below "
-      "-0.5\n");
-  EXPECT_EQ(
-      Problems(
-          "thrust_offset: {distribution: normal, sigma_mm: 3, draw: per_axis, clock_angle: uniform, per: "
-          "stage}"),
-      "campaign.yaml:8:83: dispersions.thrust_offset.clock_angle: components have no direction besides, "
-      "allowed: draw: magnitude with clock_angle\n");
-  EXPECT_EQ(
-      Problems("thrust_offset: {distribution: normal, sigma_mm: 3, draw: axes, clock_angle: uniform, per: "
-               "stage}"),
-      "campaign.yaml:8:60: dispersions.thrust_offset.draw: 'axes' is not a choice, allowed: one of "
-      "magnitude, "
-      "per_axis\n");
-  EXPECT_EQ(Problems("initial_attitude_error: {}"),
-            "campaign.yaml:8:27: dispersions.initial_attitude_error: no axis is given, allowed: one or more "
-            "of roll, "
-            "pitch, yaw\n");
 }
 
 }  // namespace
