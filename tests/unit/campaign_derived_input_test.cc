@@ -38,21 +38,6 @@ Campaign With(const std::string& items, const std::string& method = "monte_carlo
   return LoadCampaign(files.Path("derived.yaml"));
 }
 
-std::string TextsOf(const std::string& items) {
-  std::string text = kDrawn;
-  text.replace(text.find("METHOD"), 6, "monte_carlo");
-  const auto line = std::count(text.begin(), text.end(), '\n') + 2;
-  const InputFiles files;
-  files.Write("derived.yaml", text + "derived:\n" + items);
-  std::string texts = files.Texts(CheckFile(files.Path("derived.yaml")).errors);
-  for (int item = 0; item < 2; ++item) {
-    const std::string at = "derived.yaml:" + std::to_string(line + item) + ":";
-    for (std::size_t i = 0; (i = texts.find(at)) != std::string::npos;)
-      texts.replace(i, at.size(), std::to_string(item + 1) + ":");
-  }
-  return texts;
-}
-
 constexpr char kFlow[] =
     "  - {input: lift_factor, expression: 1 + 0.5 * (thrust_factor_stage1 - 1)}\n"
     "  - {input: wind_azimuth_deg, expression: gust_azimuth_deg + 10}\n";
@@ -112,42 +97,6 @@ TEST(DerivedInput, WithoutAValueIsAFlightThatFails) {
   }
   EXPECT_GT(failed, 0);
   EXPECT_GT(flown, 0);
-}
-
-TEST(DerivedInput, IsRefusedWithItsPlace) {
-  constexpr char kNames[] =
-      ", allowed: a column of cases.csv without 'input_', such as thrust_factor_stage1\n";
-  EXPECT_EQ(
-      TextsOf("  - {input: densty_factor, expression: drag_factor}\n"),
-      std::string("1:13: derived[0].input: 'densty_factor' is not an input of this vehicle's flights (did "
-                  "you mean 'density_factor'?)") +
-          kNames);
-  EXPECT_EQ(TextsOf("  - {input: density_factor, expression: thrust_factor_stage5}\n"),
-            std::string(
-                "1:41: derived[0].expression: at character 1: 'thrust_factor_stage5' is not an input of this "
-                "vehicle's flights (did you mean 'thrust_factor_stage1'?)") +
-                kNames);
-  EXPECT_EQ(
-      TextsOf("  - {input: thrust_factor_stage2, expression: thrust_factor_stage1}\n"),
-      "1:13: derived[0].input: 'thrust_factor_stage2' is drawn by the dispersion 'thrust/stage2', allowed: "
-      "an input that no dispersion draws\n");
-  EXPECT_EQ(TextsOf("  - {input: density_factor, expression: thrust_factor_stage1}\n"
-                    "  - {input: drag_factor, expression: density_factor}\n"),
-            "2:38: derived[1].expression: at character 1: 'density_factor' is derived itself, allowed: drawn "
-            "inputs\n");
-  EXPECT_EQ(TextsOf("  - {input: density_factor, expression: thrust_factor_stage1}\n"
-                    "  - {input: density_factor, expression: thrust_factor_stage2}\n"),
-            "2:13: derived[1].input: 'density_factor' is derived twice, allowed: each input once\n");
-  EXPECT_EQ(
-      TextsOf("  - {input: density_factor, expression: log(gust_speed_m_s)}\n"),
-      "1:41: derived[0].expression: it has no value for the nominal flight's inputs, allowed: an expression "
-      "that is finite there\n");
-  EXPECT_EQ(
-      TextsOf("  - {input: drag_factor, expression: density_factor}\n"
-              "  - {input: density_factor, expression: thrust_factor_stage1}\n"),
-      "2:13: derived[1].input: the expression of 'drag_factor' takes 'density_factor', allowed: an input "
-      "that no expression takes\n");
-  EXPECT_NE(TextsOf("  - {input: density_factor, expression: max(thrust_factor_stage1)}\n"), "");
 }
 
 }  // namespace

@@ -72,12 +72,12 @@ TEST(BasedOn, NamesAreRelativeToTheFileInWhichTheyStand) {
   EXPECT_EQ(ParseCampaign(list.canonical_yaml, "again").id, list.id);
 }
 
-TEST(BasedOn, LeavesNothingOutOfNothing) {
+// Nor is what has mistakes loaded.
+TEST(BasedOn, NeedsAFile) {
   const InputFiles files;
-  files.Edit("campaign.yaml", "name:", "without: [requirements]\nname:");
-  EXPECT_THAT(files.Texts(CheckFile(files.Path("campaign.yaml")).errors),
-              HasSubstr(": without: is given without 'based_on', allowed: based_on: FILE\n"));
   EXPECT_THROW(ParseCampaign(kHead, "text"), InputError);
+  files.Write("derived.yaml", "schema: dispersa/campaign/1\nbased_on: none.yaml\n");
+  EXPECT_THROW(LoadCampaign(files.Path("derived.yaml")), InputError);
 }
 
 }  // namespace

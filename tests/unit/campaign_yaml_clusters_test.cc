@@ -71,13 +71,5 @@ TEST(ClustersFile, DispersionsNameEveryEngine) {
   EXPECT_GE(static_cast<std::size_t>(FindInput("nozzle_misalignment_nozzle10_deg")), count);
 }
 
-TEST(ClustersFile, ARingHasNoPlaceOfItsOwn) {
-  const Edited edited(
-      "nozzles: [{name: outer, ring: {count: 8, radius_m: 0.3}, y_m: 1, "
-      "turns_towards_deg: [90, 180]}], ");
-  const std::string texts = edited.files.Texts(CheckFile(edited.files.Path("vehicle.yaml")).errors);
-  EXPECT_NE(texts.find("y_m"), std::string::npos) << texts;
-}
-
 }  // namespace
 }  // namespace dispersa::campaign_yaml_clusters_test

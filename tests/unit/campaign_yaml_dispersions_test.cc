@@ -285,26 +285,6 @@ TEST(CampaignYamlDispersions, SamplesAndListsComeFromTables) {
   EXPECT_EQ(again.flight_id, campaign.flight_id);
 }
 
-TEST(CampaignYamlDispersions, AListThatNamesADispersionIsToldItsColumn) {
-  const InputFiles files;
-  files.Write("runs.csv", "drag_coefficient,thrust,wind_azimut_deg\n1,1,90\n1.1,1,180\n");
-  files.Edit("campaign.yaml", "method: monte_carlo, cases: 100, seed: 20260101",
-             "method: list, cases: 2, seed: 1, table: runs.csv");
-  const std::string allowed = ", allowed: a column of cases.csv\n";
-  EXPECT_EQ(
-      files.Texts(CheckFile(files.Path("campaign.yaml")).errors),
-      "runs.csv:1:1: drag_coefficient: 'drag_coefficient' is not an input of this vehicle (did you mean its "
-      "column "
-      "'drag_factor'?)" +
-          allowed +
-          "runs.csv:1:18: thrust: 'thrust' is not an input of this vehicle (did you mean its column "
-          "'thrust_factor_stage1'?)" +
-          allowed +
-          "runs.csv:1:25: wind_azimut_deg: 'wind_azimut_deg' is not an input of this vehicle (did you mean "
-          "'wind_azimuth_deg'?)" +
-          allowed);
-}
-
 TEST(CampaignYamlDispersions, CorrelationsAreRowsOfTheCholeskyFactor) {
   const InputFiles files;
   files.Edit("campaign.yaml", "requirements:",

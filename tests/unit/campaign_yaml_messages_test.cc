@@ -8,6 +8,7 @@
 //     check vehicle.yaml                       the file that is checked; `check vehicle.yaml warnings`
 //     = vehicle.yaml:4:1: ...                  all that is said, a line each; `none` where it is nothing
 //     ~ is out of range                        a part of what is said
+//     ! is out of range                        no part of it
 //
 // What stands before a file's first case is done in each. A case with a small letter is for others, by
 // `with`.
@@ -23,6 +24,8 @@
 
 namespace dispersa::campaign_yaml_messages_test {
 namespace {
+
+using testing::Not;
 
 using Lines = std::vector<std::string>;
 
@@ -105,6 +108,9 @@ TEST_P(InputMessages, AreSaidInFull) {
       ++judged;
     } else if (line[0] == '~') {
       EXPECT_THAT(said(), testing::HasSubstr(WithoutLastLineEnd(Block('~', lines, at))));
+      ++judged;
+    } else if (line[0] == '!') {
+      EXPECT_THAT(said(), Not(testing::HasSubstr(WithoutLastLineEnd(Block('!', lines, at)))));
       ++judged;
     } else {
       std::istringstream words(line);

@@ -130,51 +130,6 @@ TEST(CampaignYamlPlausibility, TheIdOfRequirementsIsOfWhatIsRequired) {
   EXPECT_NE(LoadCampaign(files.Path("campaign.yaml")).requirements_id, campaign.requirements_id);
 }
 
-TEST(CampaignYamlPlausibility, EveryCaseIsOfStudies) {
-  const InputFiles files;
-  files.Edit(
-      "campaign.yaml", "requirements:\n",
-      "requirements:\n  - {metric: yaw_error_peak_deg, below: 2, every_case: true, probability: 0.9}\n");
-  EXPECT_THAT(files.Texts(CheckFile(files.Path("campaign.yaml")).errors),
-              HasSubstr("'probability' and 'every_case' are both given, allowed: either every_case: true or "
-                        "probability and consumer_risk\n"));
-  files.Edit("campaign.yaml", "every_case: true, probability: 0.9}", "every_case: true}");
-  EXPECT_THAT(
-      files.Texts(CheckFile(files.Path("campaign.yaml")).errors),
-      HasSubstr("requirements[0].every_case: 'every_case' is of a design study, allowed: probability and "
-                "consumer_risk, or another sampling method\n"));
-  files.Edit("campaign.yaml", "method: monte_carlo", "method: sobol");
-  const Campaign study = LoadCampaign(files.Path("campaign.yaml"));
-  EXPECT_TRUE(study.requirements[0].every_case);
-}
-
-TEST(CampaignYamlPlausibility, PlansThatCannotDecideAreWarnedOf) {
-  const InputFiles files;
-  files.Edit(
-      "campaign.yaml", "requirements:\n",
-      "requirements:\n"
-      "  - {metric: yaw_error_peak_deg, below: 20, probability: 0.99999, consumer_risk: 0.49}\n"
-      "  - {metric: roll_error_peak_deg, below: -1, probability: 0.5, consumer_risk: 0.1}\n"
-      "  - {metric: roll_error_peak_deg, below: -1, probability: 0.5, consumer_risk: 0.1}\n"
-      "  - {metric: injection_altitude_error_km, within: [-1, 1], probability: 0.5, consumer_risk: 0.1}\n");
-  const std::string text = files.Texts(CheckFile(files.Path("campaign.yaml")).warnings);
-  for (const char* warning :
-       {"requirements[0].below: a flight whose error passes 15 deg for 0.5 s has lost control",
-        "requirements[0].consumer_risk: a vehicle that just misses passes with a probability of 49 %",
-        "cases can never show 99.999 % at a risk of 49 %",
-        "requirements[1].below: a magnitude is never below -1",
-        "requirements[2].metric: the same requirement stands in requirements[1]",
-        "requirements[3].within: guidance is open loop: nothing corrects what dispersed thrust and drag do "
-        "to the "
-        "orbit"})
-    EXPECT_THAT(text, HasSubstr(warning));
-  files.Edit("campaign.yaml", "method: monte_carlo", "method: sobol");
-  EXPECT_THAT(
-      files.Texts(CheckFile(files.Path("campaign.yaml")).warnings),
-      HasSubstr("requirements[0].probability: the points of a design study are chosen, so that they show no "
-                "probability (exit code 7)"));
-}
-
 TEST(CampaignYamlPlausibility, AReferenceThatMissesItsTargetSaysSo) {
   const InputFiles files;
   files.Edit("reference.yaml", "problem:", "target_missed: 12 km short\nproblem:");
@@ -204,46 +159,6 @@ TEST(CampaignYamlPlausibility, AColumnMayHaveAnyUnit) {
 TEST(CampaignYamlPlausibility, NoOtherUnitIsProposed) {
   EXPECT_EQ(DidYouMean("altitude_km", {"altitude_m"}), "");
   EXPECT_EQ(DidYouMean("altitud_m", {"altitude_m"}), " (did you mean 'altitude_m'?)");
-}
-
-TEST(CampaignYamlPlausibility, AHighSiteNamesItsGround) {
-  const InputFiles files;
-  const auto said = [&] {
-    const std::string text = files.Texts(CheckFile(files.Path("campaign.yaml")).warnings);
-    const std::size_t at = text.find("vehicle.yaml:3:62: site.altitude_m: ");
-    return at == std::string::npos ? text.find("ground") == std::string::npos ? "" : text
-                                   : text.substr(at, text.find('\n', at) - at);
-  };
-  files.Edit("campaign.yaml", "requirements:", "flight: {ends: impact}\nrequirements:");
-  EXPECT_EQ(said(), "");
-  files.Edit("vehicle.yaml", "altitude_m: 0}", "altitude_m: 201}");
-  EXPECT_EQ(said(),
-            "vehicle.yaml:3:62: site.altitude_m: the site is at 201 m, and flights end at 0 m: "
-            "descent.ground_altitude_m is not given, allowed: descent: {ground_altitude_m: x}, also where it "
-            "is 0");
-  files.Edit("vehicle.yaml", "hold_down_s", "descent: {ground_altitude_km: 0}\nhold_down_s");
-  EXPECT_EQ(said(), "");
-}
-
-TEST(CampaignYamlPlausibility, ARequirementOfTheWorseSideIsWarnedOf) {
-  const auto said = [](const std::string& requirement) {
-    const InputFiles files;
-    files.Edit("campaign.yaml", "metric: pitch_error_peak_deg, below: 0.5", requirement);
-    const std::string text = files.Texts(CheckFile(files.Path("campaign.yaml")).warnings);
-    const std::size_t at = text.find("worse ones");
-    return at == std::string::npos
-               ? ""
-               : text.substr(text.rfind('\n', at) + 1, text.find('\n', at) - text.rfind('\n', at) - 1);
-  };
-  EXPECT_EQ(said("metric: pitch_error_peak_deg, above: 0.75"),
-            "campaign.yaml:13:43: requirements[0].above: larger values of 'pitch_error_peak_deg' are the "
-            "worse ones, and these meet it, allowed: below, or within");
-  EXPECT_NE(said("metric: injection_altitude_error_km, above: 0.75"), "");
-  EXPECT_NE(said("metric: injection_altitude_error_km, below: -0.75"), "");
-  for (const char* sound : {"metric: pitch_error_peak_deg, below: 0.5", "metric: perigee_km, above: 300",
-                            "metric: injection_altitude_error_km, above: -0.75",
-                            "metric: injection_altitude_error_km, below: 0.75"})
-    EXPECT_EQ(said(sound), "") << sound;
 }
 
 }  // namespace

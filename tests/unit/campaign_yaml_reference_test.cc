@@ -220,35 +220,6 @@ TEST(CampaignYamlReference, AnEllipseIsGivenByItsAxisAndEnteredAtATrueAnomaly) {
   EXPECT_EQ(WriteReference(LoadReference({"reference.yaml", text})), text);
 }
 
-TEST(CampaignYamlReference, AnEllipseThatContradictsItselfIsRefused) {
-  const auto problem = [](const std::string& target) {
-    try {
-      WithTarget(target);
-    } catch (const std::exception& error) {
-      return std::string(error.what());
-    }
-    return std::string();
-  };
-  const auto has = [&](const std::string& target, const std::string& text) {
-    EXPECT_NE(problem(target).find(text), std::string::npos) << target << ": " << problem(target);
-  };
-  has("perigee_altitude_km: 200, apogee_altitude_km: 800, true_anomaly_deg: 5, entered_at: anywhere",
-      "problem.target.entered_at: 'entered_at' and 'true_anomaly' are both given, allowed: one of them");
-  has("semi_major_axis_km: 7000, eccentricity: 0.2",
-      "the perigee is below the equator's radius, allowed: semi_major_axis times (1 - eccentricity) above "
-      "6378.137 km");
-  has("semi_major_axis_km: 7000, eccentricity: 0, true_anomaly_deg: 5",
-      "a circle has no perigee from which an angle could count");
-  has("semi_major_axis_km: 7000, eccentricity: 1", "eccentricity");
-  has("semi_major_axis_km: 7000", "eccentricity");
-  has("semi_major_axis_km: 7000, eccentricity: 0, node_deg: 30",
-      "has no node_longitude_deg, but the problem's target names a node");
-  EXPECT_EQ(
-      problem("semi_major_axis_km: 7000, eccentricity: 0, true_anomaly_deg: 5, argument_of_perigee_deg: 30"),
-      "");
-  EXPECT_EQ(problem("perigee_altitude_km: 200, apogee_altitude_km: 800, true_anomaly_deg: -170"), "");
-}
-
 // 90 degrees at lift-off is exactly the constant that the loader makes of it.
 TEST(CampaignYamlReference, AnglesBecomeRadiansOnce) {
   const Reference reference = LoadReference(DISPERSA_TEST_DATA "/yaml/reference.yaml");

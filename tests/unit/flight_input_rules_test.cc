@@ -140,13 +140,6 @@ TEST(InputRules, HoldForAListAndForAFlight) {
   }
 }
 
-TEST(InputRules, AreToldWithTheCellOfAList) {
-  EXPECT_EQ(Problems(kList, "drag_factor,density_factor\n1.1,1\n1,-1\n"),
-            "rows.csv:3:3: density_factor[1]: -1 is out of range, allowed: a number above 0\n");
-  EXPECT_EQ(Problems(kList, "stuck_nozzle\n1.5\n"),
-            "rows.csv:2:1: stuck_nozzle[0]: 1.5 is no whole number, allowed: a whole number from 0 to 4\n");
-}
-
 // The nominal flight is flown by all of its values.
 TEST(InputRules, AllowTheNominalFlight) {
   const Campaign campaign = Load("sampling: {method: monte_carlo, cases: 1, seed: 1}\n");
@@ -157,38 +150,6 @@ TEST(InputRules, AllowTheNominalFlight) {
   gust.air.gust_speed_m_s = 9.0;  // whose length is 0
   EXPECT_EQ(WhyNotAllowed({campaign.vehicle, campaign.autopilot, campaign.guidance, campaign.course, gust}),
             "the input gust_length_m is 0; allowed: a number from 1 to 10000");
-}
-
-TEST(InputRules, HoldByEveryDoor) {
-  const std::string monte = "sampling: {method: monte_carlo, cases: 3, seed: 1}\ndispersions:\n  density: ";
-  const auto with = [](const char* method) {
-    return std::string("sampling: {method: ") + method + ", cases: 2, seed: 1}\ndispersions:\n  density: ";
-  };
-  const struct {
-    const char* door;
-    std::string rest;
-  } doors[] = {
-      {"constant", monte + "{distribution: constant, value_factor: -1}\n"},
-      {"constant in percent", monte + "{distribution: constant, value_percent: -200}\n"},
-      {"values", monte + "{distribution: values, values_factor: [1, -1]}\n"},
-      {"uniform", monte + "{distribution: uniform, low_factor: -1, high_factor: 2}\n"},
-      {"bound", monte + "{distribution: uniform, bound_percent: 200}\n"},
-      {"two_point", monte + "{distribution: two_point, plus_minus_percent: 200}\n"},
-      {"triangular", monte + "{distribution: triangular, low_factor: -1, high_factor: 2, mode_factor: 1}\n"},
-      {"truncated", monte + "{distribution: truncated_normal, sigma_percent: 50, low_factor: -1, "
-                            "high_factor: 3}\n"},
-      {"empirical", monte + "{distribution: empirical, samples_factor: [-1, 1, 1.1]}\n"},
-      {"tails of a normal", monte + "{distribution: normal, sigma_percent: 20}\n"},
-      {"grid", with("grid") + "{distribution: values, values_factor: [1, -1]}\n"},
-      {"corners", with("corners") + "{distribution: two_point, low_factor: -1, high_factor: 1}\n"},
-      {"one at a time",
-       with("one_at_a_time") + "{distribution: two_point, low_factor: -1, high_factor: 1}\n"},
-      {"derived",
-       "sampling: {method: monte_carlo, cases: 3, seed: 1}\nderived:\n  - {input: density_factor, "
-       "expression: drag_factor - 2}\n"},
-  };
-  for (const auto& door : doors)
-    EXPECT_THAT(Problems(door.rest), HasSubstr(", allowed: a number above 0")) << door.door;
 }
 
 // Only a flight's own draws show what an expression, or the product of two draws, comes to.
@@ -214,51 +175,6 @@ TEST(InputRules, AListedProfileIsFlown) {
   EXPECT_EQ(at.east_m_s, -20.0);
   const CampaignFlights falling(Load(kList, header + "500,400,2,4,-30,-10\n"));
   EXPECT_THAT(falling.FlyCase(0).reason, HasSubstr("the altitudes of the wind profile do not grow"));
-}
-
-// ---- which parts read an input ----
-
-std::vector<std::string> Unread(const std::string& vehicle, const std::string& dispersions) {
-  std::string text = kBase;
-  text.replace(text.find("slv4.yaml"), 9, vehicle);
-  const InputFiles files;
-  files.Write("rules.yaml",
-              text + "sampling: {method: monte_carlo, cases: 1, seed: 1}\ndispersions:\n" + dispersions);
-  std::vector<std::string> keys;
-  for (const UnusualDispersion& one : UnusualDispersions(LoadCampaign(files.Path("rules.yaml"))))
-    if (one.message.starts_with("nothing uses it: ")) keys.push_back(one.key + ": " + one.message.substr(17));
-  return keys;
-}
-
-TEST(InputReaders, AreNamedWhereThereAreNone) {
-  const struct {
-    const char* dispersion;
-    const char* unread;  ///< empty: read
-  } rows[] = {
-      {"  bending_frequency: {distribution: normal, three_sigma_percent: 30, per: vehicle}\n",
-       "dispersions.bending_frequency: the vehicle flies as a rigid body, or has fewer modes"},
-      {"  bending_damping: {distribution: normal, three_sigma_percent: 30}\n",
-       "dispersions.bending_damping: the vehicle flies as a rigid body, or has fewer modes"},
-      {"  fin_cant: {distribution: normal, three_sigma_deg: 0.5, per: stage}\n",
-       "dispersions.fin_cant: no stage that it draws for has fins"},
-      {"  tail_off: {distribution: normal, three_sigma_percent: 10, per: stage}\n",
-       "dispersions.tail_off: no stage that it draws for has a tail_off_*"},
-      {"  accelerometer_scale: {distribution: normal, three_sigma_percent: 0.1}\n",
-       "dispersions.accelerometer_scale: the flight has no closed-loop guidance, and the autopilot has "
-       "sensors of its own"},
-      {"  density: {distribution: normal, three_sigma_percent: 10}\n", ""},
-      {"  pn_error: {distribution: normal, three_sigma_percent: 10}\n", ""},
-      {"  actuator_bandwidth: {distribution: normal, three_sigma_percent: 10}\n", ""},
-      {"  gyro_bias: {roll: {distribution: normal, sigma_deg_s: 0.001}}\n", ""},
-      {"  ignition_delay: {distribution: uniform, low_s: 0, high_s: 0.1, per: stage}\n", ""},
-      {"  tip_off_rate: {roll: {distribution: normal, sigma_deg_s: 0.1}}\n", ""},
-  };
-  for (const auto& row : rows) {
-    const std::string expected = row.unread;
-    EXPECT_EQ(Unread("slv4.yaml", row.dispersion),
-              expected.empty() ? std::vector<std::string>{} : std::vector<std::string>{expected})
-        << row.dispersion;
-  }
 }
 
 // A list says the same of its columns, also of one that has a meaning only beside another.
