@@ -1,6 +1,7 @@
 #include "services/http/http_message.h"
 
 #include <algorithm>
+#include <optional>
 
 namespace dispersa {
 namespace {
