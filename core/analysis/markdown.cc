@@ -52,8 +52,7 @@ std::string Notes(const CampaignSummary& summary) {
 
 std::string RequirementRow(const RequirementSummary& requirement, const Standing::Requirement& standing) {
   const auto met = static_cast<double>(requirement.n - requirement.failures);
-  const std::string observed =
-      requirement.n == 0 ? "–" : ShareText(met / static_cast<double>(requirement.n));
+  const std::string observed = requirement.n == 0 ? "–" : ShareText(met / static_cast<double>(requirement.n));
   const auto number = [](const std::optional<double>& value) {
     return value ? RoundedText(*value) : std::string("–");
   };
@@ -86,10 +85,9 @@ std::string Worst(const CampaignSummary& summary) {
   std::string rows;
   for (const WorstCases& worst : summary.worst_cases)
     for (const WorstCase& one : worst.cases)
-      rows += fmt::format(
-          "| {} | {} | {} | {} | {} |\n", Plain(worst.metric), one.case_index,
-          one.value ? ReadableText(*one.value) : "–", Plain(OutcomeName(one.outcome)),
-          summary.python_law ? std::string("–") : "`" + ReplayCommand(one.case_index) + "`");
+      rows += fmt::format("| {} | {} | {} | {} | {} |\n", Plain(worst.metric), one.case_index,
+                          one.value ? ReadableText(*one.value) : "–", Plain(OutcomeName(one.outcome)),
+                          summary.python_law ? std::string("–") : "`" + ReplayCommand(one.case_index) + "`");
   if (rows.empty()) return "";
   return "\n## Worst cases\n\n| metric | case | value | outcome | to fly it again, in the result folder |\n"
          "|---|---|---|---|---|\n" +
@@ -105,12 +103,13 @@ std::string Statistics(const CampaignSummary& summary) {
     if (metric == summary.metrics.end() || metric->statistics.n == 0) continue;
     const MetricInfo info = DescribeMetric(metric->name);
     const Summary& of = metric->statistics;
-    rows += fmt::format("| {} | {} | {} | {} | {} | {} | {} |\n", Plain(metric->name), Plain(info.unit), of.n,
-                        ReadableText(of.p50), ReadableText(of.p95), ReadableText(of.p99),
-                        ReadableText(of.max));
+    rows +=
+        fmt::format("| {} | {} | {} | {} | {} | {} | {} |\n", Plain(metric->name), Plain(info.unit), of.n,
+                    ReadableText(of.p50), ReadableText(of.p95), ReadableText(of.p99), ReadableText(of.max));
   }
   if (rows.empty()) return "";
-  return "\n## Statistics of completed flights\n\n| metric | unit | flights | median | 95 % | 99 % | largest |\n"
+  return "\n## Statistics of completed flights\n\n| metric | unit | flights | median | 95 % | 99 % | largest "
+         "|\n"
          "|---|---|---|---|---|---|---|\n" +
          rows;
 }

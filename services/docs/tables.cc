@@ -2,8 +2,8 @@
 //
 //     docs_tables NAME...
 //
-// prints one JSON object with the Markdown of each named table: "keys vehicle.stages", "metrics", ... A map of
-// keys whose name is given too is left out of the table around it.
+// prints one JSON object with the Markdown of each named table: "keys vehicle.stages", "metrics", ... A map
+// of keys whose name is given too is left out of the table around it.
 #include <algorithm>
 #include <cstdio>
 #include <nlohmann/json.hpp>
@@ -135,7 +135,8 @@ nlohmann::ordered_json Tables(const std::vector<std::string>& names) {
   };
   const auto all = AllKeys();
   for (const auto& [name, rows] : all)
-    if (!is_named(keys + name)) throw std::invalid_argument("no page has the table of keys of '" + name + "'");
+    if (!is_named(keys + name))
+      throw std::invalid_argument("no page has the table of keys of '" + name + "'");
   nlohmann::ordered_json tables;
   for (const std::string& name : names) {
     std::string& table = tables.emplace(name, "").first->get_ref<std::string&>();
@@ -149,8 +150,9 @@ nlohmann::ordered_json Tables(const std::vector<std::string>& names) {
       table = ExitCodeTable();
     else if (const std::vector<KeyRow>* rows =
                  name.starts_with(keys) ? Find(all, name.substr(keys.size())) : nullptr)
-      table = KeyTable([&](const std::string& path) { return is_named(keys + path); })
-                  .Text(*rows, name.substr(keys.size()));
+      table = KeyTable([&](const std::string& path) {
+                return is_named(keys + path);
+              }).Text(*rows, name.substr(keys.size()));
     else
       throw std::invalid_argument("a page has the table '" + name + "', which there is not");
   }

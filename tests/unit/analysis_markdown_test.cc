@@ -71,9 +71,11 @@ TEST(Markdown, HasALineForEachRequirement) {
 
 TEST(Markdown, HasTheWorstCasesAndTheirStatistics) {
   const std::string text = MarkdownReport(MadeUp());
-  EXPECT_THAT(text, HasSubstr("| pitch\\_error\\_peak\\_deg | 3 | – | lost\\_control | `dispersa replay . --case 3` |\n"
-                              "| pitch\\_error\\_peak\\_deg | 11 | 0.875 | completed | `dispersa replay . --case "
-                              "11` |\n"));
+  EXPECT_THAT(
+      text,
+      HasSubstr("| pitch\\_error\\_peak\\_deg | 3 | – | lost\\_control | `dispersa replay . --case 3` |\n"
+                "| pitch\\_error\\_peak\\_deg | 11 | 0.875 | completed | `dispersa replay . --case "
+                "11` |\n"));
   EXPECT_THAT(text, HasSubstr("| pitch\\_error\\_peak\\_deg | ° | 39 | 0.25 | 0.5 | 0.75 | 0.875 |\n"));
   EXPECT_THAT(text, Not(HasSubstr("q\\_max\\_pa")));
   EXPECT_THAT(text, testing::EndsWith("\nCampaign `1a`, flights `2b`, engine `3c`.\n"));

@@ -10,6 +10,7 @@
 
 #include "core/dynamics/aero_grid.h"
 #include "core/dynamics/jettison.h"
+#include "core/flight/flight.h"
 #include "core/flight/flight_model.h"
 #include "core/flight/simpson_step.h"
 #include "core/modes/load_table.h"
@@ -356,6 +357,32 @@ TEST(BoosterLoads, OfALaneAreThoseThatItHasAlone) {
     EXPECT_EQ(lanes::Lane(side_by_side.moment_n_m, lane), alone.moment_n_m) << lane;
     EXPECT_EQ(lanes::Lane(side_by_side.station_m, lane), alone.station_m) << lane;
   }
+}
+
+// A beam a hundred times as stiff as SLV-4's moves with its masses as the rigid body does.
+TEST(BoosterLoads, OfAStiffBeamAreThoseOfTheRigidBody) {
+  const Vehicle bends = LoadVehicle(DISPERSA_CAMPAIGNS "/vehicles/slv4_flexible.yaml");
+  const auto largest = [&](double stiffer) {
+    FlightDefinition definition = Boosted(23.0, false);
+    if (stiffer > 0.0) {
+      StructureBeam& beam = definition.vehicle.structure_beam.emplace(*bends.structure_beam);
+      beam.flown_modes = 2;
+      for (BeamStage& stage : beam.stages)
+        for (BeamSection& section : stage.sections) section.modulus_pa *= stiffer;
+    }
+    FlightInputs inputs;
+    inputs.air.gust_speed_m_s = 9.0;
+    inputs.air.gust_altitude_m = 1500.0;
+    inputs.air.gust_length_m = 200.0;
+    const FlightModel model(definition);
+    const FlightResult flown = Fly(model, inputs);
+    EXPECT_EQ(flown.outcome, Outcome::kCompleted) << flown.reason;
+    return MetricOf(flown, "bending_moment_max_n_m");
+  };
+  const double rigid = largest(0.0), stiff = largest(100.0), less = largest(10.0);
+  EXPECT_GT(rigid, 1e4);
+  EXPECT_NEAR(stiff, rigid, 0.001 * rigid);  // 3e-4 above; ten times as stiff 1.5e-2
+  EXPECT_GT(std::fabs(less - rigid), 2.0 * std::fabs(stiff - rigid));
 }
 
 }  // namespace
