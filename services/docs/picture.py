@@ -46,7 +46,7 @@ def main():
     with tempfile.TemporaryDirectory(prefix="dispersa-picture-") as folder:
         report = fly(sys.argv[1], folder)
         page = pathlib.Path(folder) / "page.html"
-        page.write_text(re.sub(r" · by [^·<]+ on [^·<]+?(?= ·)", "", report))  # whose picture it is
+        page.write_text(re.sub(r" · (by [^·<]+ on|in) [^·<]+?(?= ·)", "", report))  # who made the picture, and how fast
         subprocess.run(["chromium", "--headless=new", "--no-sandbox", "--disable-gpu", "--hide-scrollbars",
                         f"--window-size={WIDTH},{HEIGHT}", f"--screenshot={PARTS.with_suffix('.png')}", page.as_uri()],
                        check=True, capture_output=True, timeout=120)

@@ -89,16 +89,18 @@ std::string NotesOf(const Metric& metric) {
 }
 
 std::string MetricTable() {
-  std::string table =
-      "| metric | symbol | unit | worse | definition | defined over | |\n|---|---|---|---|---|---|---|\n";
+  std::string table = "| metric | unit | worse | definition |\n|---|---|---|---|\n";
   for (const char* group : kMetricGroupTitles) {
     if (TitleOf(MetricGroup::kOwn) == std::string(group)) continue;  // of campaigns
-    table += "| **" + std::string(group) + "** | | | | | | |\n";
-    for (const Metric& metric : Metrics())
-      if (!metric.is_part && TitleOf(metric.group) == std::string(group))
-        table += "| `" + metric.name + "` | " + EscapedCell(metric.symbol) + " | " + metric.unit + " | " +
-                 WorseWord(metric.worse) + " | **" + metric.title + "**: " + EscapedCell(metric.definition) +
-                 " | " + metric.over + " | " + NotesOf(metric) + " |\n";
+    table += "| **" + std::string(group) + "** | | | |\n";
+    for (const Metric& metric : Metrics()) {
+      if (metric.is_part || TitleOf(metric.group) != std::string(group)) continue;
+      const std::string notes = NotesOf(metric);
+      table += "| `" + metric.name + "`<br>" + EscapedCell(metric.symbol) + " | " + metric.unit + " | " +
+               WorseWord(metric.worse) + " | **" + metric.title + "**" +
+               (metric.definition.empty() ? "" : ": " + EscapedCell(metric.definition)) +
+               "<br>*Defined over* " + metric.over + (notes.empty() ? "" : "; " + notes) + " |\n";
+    }
   }
   return table;
 }
