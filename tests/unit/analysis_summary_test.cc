@@ -709,18 +709,6 @@ TEST(SummaryJson, WritesUndefinedAsNull) {
   EXPECT_EQ(json["verdict"], "incomplete");
 }
 
-TEST(SummaryJson, DoesNotDependOnTheOrderOfArrival) {
-  TemporaryFolder temporary;
-  const Campaign campaign = MakeCampaign(30);
-  ResultFolder ascending = ResultFolder::Create(temporary / "ascending", campaign);
-  ResultFolder descending = ResultFolder::Create(temporary / "descending", campaign);
-  for (std::uint64_t k = 0; k < 30; ++k) {
-    ascending.Append({{MakeCase(k)}});
-    descending.Append({{MakeCase(29 - k)}});
-  }
-  EXPECT_EQ(SummaryJson(BuildSummary(ascending, campaign)), SummaryJson(BuildSummary(descending, campaign)));
-}
-
 const Requirement kExceeded = {.metric = "structural_limit_exceeded",
                                .below = 1.0,
                                .above = std::nullopt,

@@ -99,20 +99,6 @@ std::string WithRoll(const std::string& roll) {
   return all.substr(0, all.find("\nroll:")) + roll + all.substr(all.find("reaction_control:"));
 }
 
-TEST(WriteAutopilot, WritesThePidLawAndFilters) {
-  const std::string pid = kPidRoll + R"(  filters:
-    - {zeros_rad_s: 20, zeros_damping: 0.05, poles_rad_s: 20, poles_damping: 0.7, stage: 1}
-    - {poles_rad_s: 60, poles_damping: 0.7}
-  feed_forward: {lead_s: 0.066}
-  integral:
-    ki_1_s3: [9.5, 0]
-    bound_deg_s2: 20
-    reset_at_ignition: true
-)";
-  const std::string text = WithRoll(pid);
-  EXPECT_EQ(WriteAutopilot(LoadAutopilot({"text", text})), text);
-}
-
 TEST(WriteAutopilot, WritesAScheduleInFull) {
   const auto with_schedule = [](const std::string& schedule) {
     return WithRoll(kPidRoll + R"(  filters:
@@ -139,31 +125,6 @@ TEST(WriteAutopilot, WritesAScheduleInFull) {
       "    - {stage: 2, at_s: 3, kp_1_s2: 8, kd_1_s: 7, ki_1_s3: 2}\n");
   EXPECT_EQ(WriteAutopilot(LoadAutopilot({"text", short_text})), full_text);
   EXPECT_EQ(WriteAutopilot(LoadAutopilot({"text", full_text})), full_text);
-}
-
-TEST(ReadAutopilot, SaysWhereAScheduleIsWrong) {
-  const auto error_of = [](const std::string& entries) {
-    std::string text = kEverything;
-    const std::string gains = "    - {kp_1_s2: 7, kd_1_s: 8}\n";
-    text.insert(text.find(gains) + gains.size(), "  schedule:\n" + entries);
-    try {
-      LoadAutopilot({"text", text});
-    } catch (const InputError& error) {
-      return std::string(error.what());
-    }
-    return std::string();
-  };
-  EXPECT_EQ(
-      error_of("    - {stage: 1, at_s: 5, kp_1_s2: 6, kd_1_s: 6}\n"
-               "    - {stage: 1, at_s: 4, kp_1_s2: 6, kd_1_s: 6}\n"),
-      "text:45:24: roll.schedule[1].at_s: is not after the entry before, allowed: times since ignition that "
-      "rise, the first above 0, where the stage's own gains hold");
-  EXPECT_EQ(error_of("    - {stage: 1, at_s: 5, kp_1_s2: 6, kd_1_s: 6, gain: 3}\n"),
-            "text:44:50: roll.schedule[0].gain: unknown key 'gain', allowed: at_ms, at_s, filters, kd_1_s, "
-            "ki_1_s3, "
-            "kp_1_s2, stage");
-  EXPECT_EQ(error_of("    - {stage: 1, kp_1_s2: 6, kd_1_s: 6}\n"),
-            "text:44:7: roll.schedule[0]: missing key 'at_s' or 'at_ms', allowed: a number above 0");
 }
 
 TEST(ReadAutopilot, NamesALawInPythonButDoesNotHoldIt) {

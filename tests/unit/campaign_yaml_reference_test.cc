@@ -81,23 +81,6 @@ Reference RandomReference() {
   return reference;
 }
 
-TEST(CampaignYamlReference, IsAFixedPointOfWritingAndReading) {
-  const Reference original = RandomReference();
-  const std::string text = WriteReference(original);
-  const Reference read = LoadReference({"reference.yaml", text});
-  EXPECT_EQ(WriteReference(read), text);
-  const Reference again = LoadReference({"reference.yaml", WriteReference(read)});
-  ASSERT_EQ(again.attitude.knots.size(), 500u);
-  for (std::size_t i = 0; i < 500; ++i) {
-    const AttitudeKnot& knot = read.attitude.knots[i];
-    EXPECT_EQ(Bits(again.attitude.knots[i].pitch), Bits(knot.pitch));
-    EXPECT_EQ(Bits(again.attitude.knots[i].roll_rate), Bits(knot.roll_rate));
-    EXPECT_EQ(Bits(original.attitude.knots[i].time_s), Bits(knot.time_s));
-    // One unit in the last place of a number below 1.
-    EXPECT_NEAR(original.attitude.knots[i].pitch, knot.pitch, 1.2e-16);
-  }
-}
-
 TEST(CampaignYamlReference, KeepsEveryField) {
   const Reference original = RandomReference();
   const Reference read = LoadReference({"reference.yaml", WriteReference(original)});

@@ -365,24 +365,6 @@ TEST(CliProgram, ASearchThatMissesItsTargetWritesWhatItFound) {
   EXPECT_THAT(plan.error, HasSubstr("target_missed: the reference misses its own target: "));
 }
 
-TEST(CliProgram, NumbersOfCasesThatAreNone) {
-  for (const auto& [given, text] : std::vector<std::pair<std::string, std::string>>{
-           {"0", "'0' is out of range"},
-           {"-1", "'-1' is out of range"},
-           {"100000000000000000000", "'100000000000000000000' is out of range"},
-           {"1e3", "'1e3' is not a whole number"},
-           {"many", "'many' is not a whole number"}}) {
-    for (const std::string command : {"run", "plan", "launch"}) {
-      const Output output = Dispersa(command + " " + kSmoke + " --cases " + given);
-      EXPECT_EQ(output.code, 2) << given;
-      EXPECT_EQ(output.error,
-                "--cases: " + text +
-                    ", allowed: a whole number from 1 to 4294967295\nRun with --help for more information.\n")
-          << command;
-    }
-  }
-}
-
 TEST(CliProgram, ValidateAsJson) {
   const InputFiles files;
   EXPECT_EQ(
@@ -397,20 +379,6 @@ TEST(CliProgram, ValidateAsJson) {
       "      \"file\": \"nothing.yaml\",\n      \"line\": 1,\n      \"column\": 1,\n      \"path\": \"\",\n"
       "      \"message\": \"file not found\",\n"
       "      \"allowed\": \"a file that exists\"\n    }\n  ],\n  \"warnings\": [],\n  \"vehicles\": []\n}\n");
-}
-
-TEST(CliProgram, BadInputToAnyCommandIsTwoWithTheSameText) {
-  const InputFiles files;
-  files.Edit("vehicle.yaml", "propellant_mass_kg: 500", "propellant_mass_kg: -500");
-  const std::string text =
-      files.Path("vehicle.yaml") +
-      ":21:25: stages[1].propellant_mass_kg: -500 is out of range, allowed: a number above 0\n";
-  for (const std::string command : {"plan", "fly", "optimize", "run --workers 0"}) {
-    const Output output = Dispersa(command + " " + files.Path("campaign.yaml"));
-    EXPECT_EQ(output.code, 2) << command;
-    EXPECT_EQ(output.error, text) << command;
-    EXPECT_EQ(output.text, "") << command;
-  }
 }
 
 TEST(CliProgram, PlanPrintsTheInputsThatAFlightApplies) {
@@ -501,24 +469,6 @@ TEST(CliProgram, FlyWritesTheHistoryInTheOrderOfTheContract) {
     ASSERT_EQ(Cells(line).size(), columns) << line;
     ASSERT_THAT(line, Not(HasSubstr("nan")));
     ASSERT_THAT(line, Not(HasSubstr(",-0,")));
-  }
-}
-
-TEST(CliProgram, FlyRefusesWhatThereIsNot) {
-  const Output no_case = Dispersa("fly --case 12 " + kSmoke);
-  EXPECT_EQ(no_case.code, 2);
-  EXPECT_EQ(no_case.error, "--case: the campaign has no case 12, allowed: 0 to 11\n");
-  const Output integrator = Dispersa("fly --integrator euler " + kSmoke);
-  EXPECT_EQ(integrator.code, 2);
-  EXPECT_THAT(integrator.error,
-              StartsWith("--integrator: there is no 'euler', allowed: one of simpson, erk4, cvode\n"));
-}
-
-TEST(CliProgram, ReplayAndReportNeedAResultFolder) {
-  for (const std::string command : {"replay --case 0 ", "report "}) {
-    const Output output = Dispersa(command + "/nowhere");
-    EXPECT_EQ(output.code, 2) << command;
-    EXPECT_THAT(output.error, HasSubstr("/nowhere")) << command;
   }
 }
 

@@ -73,19 +73,5 @@ TEST(StepAxis, FiltersItsCommandInSeriesInTheStageOfEachSection) {
   }
 }
 
-TEST(Problems, NameAFilterThatCannotBeBuilt) {
-  AutopilotConfig autopilot = SampleAutopilot();
-  autopilot.pitch.filters = {{.poles_rad_s = 400.0, .poles_damping = 1.0, .stage = 3}};
-  std::vector<std::string> texts;
-  for (const StructProblem& p : Problems(autopilot, 2))
-    texts.push_back(p.path + ": " + p.message + ": " + p.allowed);
-  EXPECT_EQ(
-      texts,
-      (std::vector<std::string>{
-          "pitch.filters[0].poles_rad_s: is not below half of the sampling frequency: a frequency below pi / "
-          "tick_s",
-          "pitch.filters[0].stage: is not a stage of the vehicle: 1 to 2"}));
-}
-
 }  // namespace
 }  // namespace dispersa::control_filter_test

@@ -313,52 +313,5 @@ TEST(Clusters, VerniersSteerBesideFixedEngines) {
   EXPECT_GT(turned, 0.9 * kDeg);  // 50 times the misalignment
 }
 
-// The law divides by what the layout gives, so margins do not depend on it.
-TEST(Clusters, MarginsAreOfTheLayout) {
-  const auto margins = [](const FlightDefinition& definition) {
-    return ComputeMargins(FlightModel(definition), 1000.0);
-  };
-  const auto cross = margins(HighDefinition()), nine = margins(Definition(Octaweb()));
-  int seen = 0;
-  for (const ComputedMargins& m : cross) {
-    if (m.stage != 0) continue;
-    const auto same = std::find_if(nine.begin(), nine.end(), [&](const ComputedMargins& other) {
-      return other.place == m.place && other.axis == m.axis && other.time_s == m.time_s;
-    });
-    ASSERT_NE(same, nine.end());
-    EXPECT_NEAR(same->frozen.gain_up_db, m.frozen.gain_up_db, 0.05);
-    EXPECT_NEAR(same->frozen.phase_deg, m.frozen.phase_deg, 0.5);
-    ++seen;
-  }
-  EXPECT_GE(seen, 6);
-}
-
-TEST(Clusters, ProblemsOfRingsAndGroups) {
-  const auto text = [](const std::vector<Nozzle>& nozzles) {
-    Gimbal gimbal = SampleVehicle().stages[0].gimbal;
-    gimbal.nozzles = nozzles;
-    std::string all;
-    for (const StructProblem& p : NozzleProblems(gimbal, "gimbal"))
-      all += p.path + ": " + p.message + " | " + p.allowed + "\n";
-    return all;
-  };
-  EXPECT_EQ(text({RingOf(20, 0.5), RingOf(14, 0.3)}),
-            "gimbal.nozzles: are 34 in all | up to 33 nozzles of a stage\n");
-  Nozzle whole = Centre();
-  whole.thrust_share = 1.0;
-  EXPECT_EQ(text({whole, RingOf(8, 0.5)}),
-            "gimbal.nozzles: leave no thrust to outer1 | thrust_share that sum to less than 1 beside it\n");
-  Nozzle hinged = Centre(), fixed = RingOf(8, 0.5);
-  fixed.towards_rad = {};
-  hinged.group = fixed.group = "main";
-  EXPECT_EQ(text({hinged, fixed}),
-            "gimbal.nozzles[1].group: has nozzles with another number of hinges | nozzles with as many "
-            "turns_towards_deg in one group\n");
-  Nozzle same = Centre();
-  same.name = "outer3";
-  EXPECT_EQ(text({same, RingOf(8, 0.5)}),
-            "gimbal.nozzles: have two of the name outer3 | names that differ with the numbers of rings\n");
-}
-
 }  // namespace
 }  // namespace dispersa::flight_clusters_test

@@ -55,21 +55,6 @@ TEST(GuidedFlight, OfAnOpenLoopHasNoneOfIt) {
   EXPECT_EQ(Fly(model, navigated).digest, Fly(model, Table3Inputs()).digest);
 }
 
-TEST(GuidedFlight, IsTheSameEveryTimeAndWhoeverWatches) {
-  const FlightModel model(Guided());
-  const FlightResult first = Fly(model, Table3Inputs());
-  FlightOptions watched;
-  long ticks = 0;
-  watched.observe = [&](const TickSample&) { ++ticks; };
-  History history;
-  history.step_s = 0.1;
-  watched.history = &history;
-  const FlightResult second = Fly(model, Table3Inputs(), watched);
-  EXPECT_GT(ticks, 20000);
-  EXPECT_EQ(first.digest, second.digest);
-  EXPECT_EQ(MetricOf(first, "semi_major_axis_error_km"), MetricOf(second, "semi_major_axis_error_km"));
-}
-
 // The guidance takes what navigation says for true: it ends as far off as that was.
 TEST(GuidedFlight, MissesByWhatNavigationErrs) {
   const FlightModel model(Guided());

@@ -180,37 +180,6 @@ TEST(ProductsOfInertia, TurnTheVehicleAsEulerSays) {
   EXPECT_NEAR((turned - expected).norm(), 0.0, 1e-13 * expected.norm());
 }
 
-// Nothing acts: angular momentum and energy stay, and the body tumbles all the same.
-TEST(ProductsOfInertia, KeepAngularMomentumAndEnergy) {
-  FlightInputs inputs;
-  inputs.stages[0].product_of_inertia_xz_kg_m2 = 900.0;
-  inputs.stages[0].product_of_inertia_yz_kg_m2 = -400.0;
-  const LauncherModel equations(PlantOf(inputs));
-  struct Free {
-    const LauncherModel& equations;
-    static void Rhs(double t, const double* y, double* dydt, void* context) {
-      static_cast<Free*>(context)->equations.Derivative(LauncherPhase{}, t, y, dydt);
-    }
-  } free{equations};
-  RigidBodyState state;
-  state.p_EoC_I = {Wgs84().equatorial_radius_m + 2e7, 0.0, 0.0};
-  state.w_IB_B = {0.4, 0.1, -0.05};
-  std::array<double, kLauncherSize> y{};
-  WriteState(state, y.data());
-  const Matrix3 inertia = equations.Evaluate({}, 0.0, y.data()).loads.inertia_kg_m2;
-  const auto momentum = [&](const RigidBodyState& s) {
-    return Vector3(RotationMatrix(s.q_IB) * (inertia * s.w_IB_B));
-  };
-  const Vector3 before = momentum(state);
-  const double energy = state.w_IB_B.dot(inertia * state.w_IB_B);
-  Integrator integrator(Scheme::kRungeKutta4, kRigidLauncherSize, &Free::Rhs, &free, nullptr);
-  ASSERT_TRUE(integrator.Advance(0.0, 20.0, 4000, y.data()));
-  const RigidBodyState after = ReadState(y.data());
-  EXPECT_GT((after.w_IB_B - state.w_IB_B).norm(), 0.01);
-  EXPECT_NEAR((momentum(after) - before).norm() / before.norm(), 0.0, 1e-8);
-  EXPECT_NEAR(after.w_IB_B.dot(inertia * after.w_IB_B) / energy, 1.0, 1e-8);
-}
-
 TEST(StackFactors, ActOnTheirStackAlone) {
   FlightInputs inputs;
   inputs.stages[1].drag_factor = 1.1;

@@ -155,23 +155,6 @@ TEST(Outcome, TimeoutOfSimulatedTime) {
   EXPECT_NEAR(result.end_time_s, 86400.0, 0.51);
 }
 
-TEST(Fly, RecordingAHistoryChangesNothing) {
-  FlightInputs pushed;
-  pushed.stages[0].tip_off_pitch_rad_s = 1.0 * kRadPerDeg;
-  FlightInputs falling;
-  falling.stages[0].thrust_factor = 0.72;
-  FlightDefinition definition = HighDefinition();
-  definition.autopilot.reaction_control.cycle_ticks = 5;
-  for (const FlightInputs& inputs : {FlightInputs{}, pushed, falling}) {
-    History history;
-    const FlightResult with = FlyWith(inputs, definition, &history);
-    const FlightResult without = FlyWith(inputs, definition);
-    EXPECT_EQ(with.digest, without.digest);
-    EXPECT_EQ(with.end_time_s, without.end_time_s);
-    EXPECT_GT(history.rows(), 100u);
-  }
-}
-
 TEST(Fly, HistoryHasARowAnOutputStepAndAnEvent) {
   History history;
   history.step_s = 1.0;

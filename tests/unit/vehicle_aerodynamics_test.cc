@@ -111,21 +111,6 @@ TEST(MouldLine, CutsASectionWhereTheStackEnds) {
   EXPECT_NEAR(body[1].Slope(1.7), 0.2, 1e-12);
 }
 
-TEST(MouldLine, NamesEveryProblemOfAProfile) {
-  std::vector<std::string> texts;
-  for (const StructProblem& problem : ProfileProblems(
-           {{Shape::kFrustum, 1.0, 0.5}, {Shape::kCylinder, 1.0, 0.6}, {Shape::kTangentOgive, 1.0, 0.6}})) {
-    texts.push_back(problem.path + ": " + problem.message + " | " + problem.allowed);
-  }
-  EXPECT_THAT(texts, testing::ElementsAre(
-                         "profile[0].shape: has no tip | tangent_ogive or cone for the first section",
-                         "profile[1].aft_diameter_m: is not the diameter of the section before | a cylinder "
-                         "that keeps it; a frustum changes it",
-                         "profile[2].aft_diameter_m: is not larger than the section's before | a tangent "
-                         "ogive that widens"));
-  EXPECT_THAT(ProfileProblems(Launcher().profile), testing::IsEmpty());
-}
-
 // ---- Normal force ----
 
 TEST(NormalForce, SlenderConeHasTwoPerRadianAtTwoThirdsOfItsLength) {
@@ -458,29 +443,6 @@ TEST_F(LauncherTables, SignsHoldAtEveryMachNumberAndIncidence) {
     }
     for (const double value : table.cmq_per_rad) EXPECT_LT(value, 0.0);
     for (const double value : table.clp_per_rad) EXPECT_LT(value, 0.0);
-  }
-}
-
-TEST_F(LauncherTables, DragRisesAcrossMachOneAndFallsAfterwards) {
-  for (const AeroTable& table : tables_) {
-    double peak = 0.0;
-    double peak_mach = 0.0;
-    for (const double mach : table.mach) {
-      const double ca = At(table, table.ca, mach, 0.0);
-      if (ca > peak) {
-        peak = ca;
-        peak_mach = mach;
-      }
-    }
-    EXPECT_GE(peak_mach, 1.0);
-    EXPECT_LE(peak_mach, 1.3);
-    // Factors of slender launchers and sounding rockets are about 1.5 to 3.
-    const double rise = peak / At(table, table.ca, 0.6, 0.0);
-    EXPECT_GT(rise, 1.5);
-    EXPECT_LT(rise, 3.0);
-    for (double mach = peak_mach; mach < 20.0; mach += 0.25) {
-      EXPECT_LE(At(table, table.ca, mach + 0.25, 0.0), At(table, table.ca, mach, 0.0)) << mach;
-    }
   }
 }
 

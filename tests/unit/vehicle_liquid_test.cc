@@ -265,29 +265,5 @@ TEST(LoadTable, FollowsDrainingTanksWithinAFewPerCent) {
   }
 }
 
-std::vector<std::string> TextsOf(const std::function<void(Stage&)>& change) {
-  Vehicle vehicle = LiquidVehicle();
-  change(vehicle.stages[0]);
-  std::vector<std::string> texts;
-  for (const StructProblem& p : Problems(vehicle))
-    texts.push_back(p.path + " " + p.message + " | " + p.allowed);
-  return texts;
-}
-
-TEST(LiquidProblems, AreNamed) {
-  using Texts = std::vector<std::string>;
-  EXPECT_EQ(TextsOf([](Stage&) {}), Texts{});
-  EXPECT_EQ(
-      TextsOf([](Stage& s) { s.motor.residual_mass_kg = 4000.0; }),
-      Texts{
-          "stages[0].motor.liquid.residual_mass_kg leaves nothing to burn | 0 to below propellant_mass_kg"});
-  EXPECT_EQ(
-      TextsOf([](Stage& s) { s.tanks[1].propellant_mass_kg -= 100.0; }),
-      Texts{"stages[0].propellant_mass_kg is 4000.000000, the tanks hold 3900.000000 | the sum of the tanks' "
-            "propellant_mass_kg"});
-  EXPECT_EQ(TextsOf([](Stage& s) { s.tanks[0].density_kg_m3 *= 0.5; }).at(0).substr(0, 49),
-            "stages[0].tanks[0].propellant_mass_kg takes 6.717");
-}
-
 }  // namespace
 }  // namespace dispersa::vehicle_liquid_test

@@ -234,52 +234,5 @@ TEST(NozzleLayout, TheFlowsRadiusCountsEachNozzleByItsShare) {
   EXPECT_DOUBLE_EQ(BuildNozzleLayout(gimbal).flow_radius_m, 1.0);  // 0.2 of 5 m²
 }
 
-std::vector<std::string> Texts(std::vector<Nozzle> nozzles) {
-  std::vector<std::string> texts;
-  for (const StructProblem& p : NozzleProblems(With(std::move(nozzles)), "gimbal"))
-    texts.push_back(p.path + ": " + p.message + " | " + p.allowed);
-  return texts;
-}
-
-TEST(NozzleLayout, WhatCannotBeIsNamedInFull) {
-  const std::vector<double> both = {90.0 * kDeg, 180.0 * kDeg};
-  const std::string pitch_and_yaw =
-      " | hinges by which pitch and yaw are commanded, as turns_towards_deg: [90, 180] of one nozzle";
-  using Found = std::vector<std::string>;
-  EXPECT_EQ(Texts({{"a", 0.0, 0.0, 1.0, both, 0.0}}), Found{});
-  EXPECT_EQ(
-      Texts({{"a", 0.0, 0.0, 0.9, both, 0.0}}),
-      Found{"gimbal.nozzles: have shares of the thrust that sum to 0.900000 | thrust_share that sum to 1"});
-  EXPECT_EQ(Texts({{"a", 0.0, 0.2, 1.0, both, 0.0}}),
-            Found{"gimbal.nozzles: push beside the axis: the mean of their places, by thrust_share, is y "
-                  "0.000000 m, z "
-                  "0.200000 m | a mean on the axis, to 1 mm"});
-  EXPECT_EQ(
-      Texts({{"a", 0.0, 0.0, 1.0, {0.0, 60.0 * kDeg}, 0.0}}),
-      Found{"gimbal.nozzles[0].turns_towards_deg: has hinges that are not at right angles, but 60.000000 deg "
-            "apart | one direction, or two that are 90 deg apart"});
-  EXPECT_EQ(Texts({{"a", 0.0, 0.0, 1.0, both, 7.0 * kDeg}}),
-            Found{"gimbal.nozzles[0].limit_deg: is beyond the limit_deg of its drives | up to the gimbal's "
-                  "limit_deg"});
-  EXPECT_EQ(Texts({{"a", 1.0, 0.0, 0.5, both, 0.0}, {"a", -1.0, 0.0, 0.5, both, 0.0}}),
-            Found{"gimbal.nozzles[1].name: is that of another nozzle, a | a name of its own"});
-  EXPECT_EQ(Texts({{"a", 0.0, 0.0, 1.0, {90.0 * kDeg}, 0.0}}),
-            Found{"gimbal.nozzles: do not turn the vehicle in yaw" + pitch_and_yaw});
-  EXPECT_EQ(Texts({{"a", 0.0, 0.0, 1.0, {180.0 * kDeg}, 0.0}}),
-            Found{"gimbal.nozzles: do not turn the vehicle in pitch" + pitch_and_yaw});
-  EXPECT_EQ(Texts({{"a", 0.0, 0.0, 1.0, {}, 0.0}}),
-            (Found{"gimbal.nozzles: do not turn the vehicle in pitch" + pitch_and_yaw,
-                   "gimbal.nozzles: do not turn the vehicle in yaw" + pitch_and_yaw}));
-  EXPECT_EQ(Texts({{"a", 0.0, 0.0, 1.0, {45.0 * kDeg}, 0.0}}),
-            Found{"gimbal.nozzles: cannot turn the vehicle in pitch and in yaw one without the other" +
-                  pitch_and_yaw});
-  // The right one turns in pitch, the left one in yaw.
-  EXPECT_EQ(
-      Texts({{"a", 1.0, 0.0, 0.5, {90.0 * kDeg}, 0.0}, {"b", -1.0, 0.0, 0.5, {180.0 * kDeg}, 0.0}}),
-      Found{
-          "gimbal.nozzles: turn the vehicle in roll with every command of pitch or yaw, and cannot undo it | "
-          "hinges by which roll is commanded too, or none that turn the vehicle in roll"});
-}
-
 }  // namespace
 }  // namespace dispersa::vehicle_nozzle_layout_test
