@@ -25,6 +25,7 @@ import dispersa
 from program import CAMPAIGNS, SMOKE, folder_of, printed, program, resident_bytes
 
 PITCH = 1
+BRIEF = CAMPAIGNS.parent / "tests/data/brief/smoke.yaml"  # under a PD with long ticks
 
 
 def fused(a, b, c):
@@ -40,7 +41,7 @@ def pd(tick):
 class Laws(unittest.TestCase):
     @classmethod
     def setUpClass(cls):
-        cls.campaign = dispersa.load(SMOKE, autopilot=CAMPAIGNS / "autopilots/pd.yaml")
+        cls.campaign = dispersa.load(BRIEF)
 
     def test_a_pd_in_python_has_the_bits_of_the_built_in_one(self):
         built_in = self.campaign.fly(3)
@@ -65,7 +66,7 @@ class Laws(unittest.TestCase):
             ticks = flights.history(i)["law_telemetry_1"]
             ticks = ticks[numpy.isfinite(ticks)]
             self.assertTrue((numpy.diff(ticks) >= 0).all())
-            self.assertGreater(ticks[-1], 10000)
+            self.assertGreater(ticks[-1], 5000)
 
     def test_what_a_law_is_told(self):
         told = []
@@ -94,9 +95,9 @@ class Laws(unittest.TestCase):
                 raise LookupError(f"no gain at {tick.time_s:.2f} s")
             return pd(tick)
 
-        with self.assertRaisesRegex(LookupError, "no gain at 20.01 s"):
+        with self.assertRaisesRegex(LookupError, "no gain at 20.03 s"):
             self.campaign.fly(law=late)
-        with self.assertRaisesRegex(LookupError, "no gain at 20.01 s"):
+        with self.assertRaisesRegex(LookupError, "no gain at 20.03 s"):
             self.campaign.fly_many(3, law=late)
 
     def test_flights_that_raise_leave_nothing_behind(self):
@@ -106,10 +107,10 @@ class Laws(unittest.TestCase):
                     self.campaign.fly(law=lambda tick: None)
             gc.collect()
 
-        fly(20)
+        fly(10)
         before = resident_bytes()
-        fly(80)
-        self.assertLess(resident_bytes() - before, 80 * 8192)
+        fly(30)
+        self.assertLess(resident_bytes() - before, 30 * 8192)
 
     def test_what_a_law_may_not_return(self):
         for returned, said in ((None, r"None \(NoneType\)"), ("much", r"'much' \(str\)"), ([1.0, 2.0], r"\[1.0, 2.0\] \(list\)"),
@@ -143,7 +144,7 @@ class Laws(unittest.TestCase):
 
         with self.assertRaisesRegex(LookupError, "^'no gain'$|^no gain$") as caught:
             self.campaign.fly(7, law=late)
-        self.assertEqual(caught.exception.__notes__, ["raised by the control law in case 7, 20.01 s after lift-off"])
+        self.assertEqual(caught.exception.__notes__, ["raised by the control law in case 7, 20.03 s after lift-off"])
 
     def test_axes(self):
         with self.assertRaisesRegex(dispersa.BadInput, r"axes: \('climb',\) are not axes, allowed: some of roll, pitch and yaw"):
@@ -176,7 +177,7 @@ class Campaigns(unittest.TestCase):
     @classmethod
     def setUpClass(cls):
         cls.folder = folder_of(cls)
-        cls.campaign = dispersa.load(SMOKE, autopilot=CAMPAIGNS / "autopilots/pd.yaml", cases=3)
+        cls.campaign = dispersa.load(BRIEF, cases=3)
         cls.results = dispersa.run(cls.campaign, cls.folder / "flown", workers=0, law=pd)
 
     def text(self, name):
@@ -305,8 +306,7 @@ class Campaigns(unittest.TestCase):
             self.run_of(other, "resumed", resume=True)
         with self.assertRaises(dispersa.BadInput):
             dispersa.run(self.campaign, flown.directory, workers=0, resume=True)
-        more = dispersa.run(dispersa.load(SMOKE, autopilot=CAMPAIGNS / "autopilots/pd.yaml", cases=4), flown.directory, workers=0,
-                            law=pd, resume=True, histories=False)
+        more = dispersa.run(dispersa.load(BRIEF, cases=4), flown.directory, workers=0, law=pd, resume=True, histories=False)
         self.assertEqual((more.digest[:3], len(more)), (flown.digest, 4))
 
     def test_what_a_law_raises_ends_the_run(self):
@@ -320,8 +320,8 @@ class Campaigns(unittest.TestCase):
             return pd(tick)
 
         with self.assertRaisesRegex(LookupError, "no gain") as caught:
-            dispersa.run(dispersa.load(SMOKE), self.folder / "broken", workers=0, law=breaking)
-        self.assertRegex(caught.exception.__notes__[0], r"raised by the control law in case \d+.*, 30.01 s after lift-off")
+            dispersa.run(dispersa.load(BRIEF), self.folder / "broken", workers=0, law=breaking)
+        self.assertRegex(caught.exception.__notes__[0], r"raised by the control law in case \d+.*, 30.03 s after lift-off")
         left = dispersa.results(self.folder / "broken")
         self.assertEqual([outcome for outcome in left.outcome if outcome != "completed"], [], "no flight of a broken law counts")
 
@@ -339,11 +339,11 @@ class Campaigns(unittest.TestCase):
 
     def test_every_kind_of_autopilot_gives_its_axis(self):
         for file in sorted((CAMPAIGNS / "autopilots").glob("*.yaml")):
-            campaign = dispersa.load(SMOKE, cases=1)
-            if "flexible" not in file.name:
+            if "flexible" not in file.name:  # those are for a vehicle that bends
                 campaign = dispersa.load(SMOKE, autopilot=file, cases=1)
-            results = dispersa.run(campaign, self.folder / file.stem, workers=0, law=pd, histories=False)
-            self.assertEqual(results.outcome, ["completed"], file.name)
+                self.assertEqual(campaign.fly(law=pd, history=False).outcome, "completed", file.name)
+        campaign = dispersa.load(SMOKE, autopilot=CAMPAIGNS / "autopilots/composite_fuzzy.yaml", cases=1)  # has every key
+        self.assertEqual(dispersa.run(campaign, self.folder / "fuzzy", workers=0, law=pd, histories=False).outcome, ["completed"])
 
     def test_what_a_flight_remembers_ends_with_it(self):
         class Kept:
