@@ -10,17 +10,16 @@ constexpr double kSayAgain_s = 30.0;
 
 }  // namespace
 
-bool Attendance::Check(bool attended, double now_s) {
+void Attendance::Check(bool attended, double now_s) {
   if (attended) {
     present_s_ = said_s_ = now_s;
-    return true;
+    return;
   }
   if (now_s - said_s_ >= kSayAgain_s) {
     said_s_ = now_s;
     LogWarning("no worker for {:.0f} s; workers can join at port {}", now_s - present_s_,
                CoordinatorPort(domain_));
   }
-  return !patience_s_ || now_s - present_s_ <= *patience_s_;
 }
 
 }  // namespace dispersa

@@ -9,7 +9,6 @@
 #include <utility>
 #include <vector>
 
-#include "core/campaign_yaml/standard_input.h"
 #include "core/results/result_error.h"
 #include "services/coordinator/serve.h"
 #include "services/ledger/result_exit_code.h"
@@ -41,7 +40,6 @@ CLI::Validator IsHttpAddress() {
 
 /// What the command line says.
 struct CoordinatorOptions {
-  RunRequest request;
   ClientOptions clients;
   std::string metrics, web, web_token;
   bool behind_tls = false;
@@ -50,22 +48,20 @@ struct CoordinatorOptions {
   std::optional<double> audit;
   NetworkOptions network;
   Admission admission;
-  std::optional<double> patience_s;
   bool json = false;
 };
 
 void AddWebOptions(CLI::App& app, CoordinatorOptions& options) {
   app.add_option(
          "--metrics", options.metrics,
-         "with --data: PORT of 127.0.0.1, or ADDRESS:PORT (0.0.0.0: all interfaces), that serves figures "
-         "in\nPrometheus' text format to everybody who reaches it")
+         "PORT of 127.0.0.1, or ADDRESS:PORT (0.0.0.0: all interfaces), that serves figures in Prometheus' "
+         "text\nformat to everybody who reaches it")
       ->type_name("TEXT")
       ->check(IsHttpAddress());
-  app.add_option(
-         "--web", options.web,
-         "with --data: PORT of 127.0.0.1, or ADDRESS:PORT, of web pages to read campaigns by; without a "
-         "token for the\nuser of the coordinator alone; beyond 127.0.0.1 they need --web-token and "
-         "--web-behind-tls")
+  app.add_option("--web", options.web,
+                 "PORT of 127.0.0.1, or ADDRESS:PORT, of web pages to read campaigns by; without a "
+                 "token for the\nuser of the coordinator alone; beyond 127.0.0.1 they need --web-token and "
+                 "--web-behind-tls")
       ->type_name("TEXT")
       ->check(IsHttpAddress());
   app.add_option("--web-token", options.web_token, "with --web: file whose first line readers have to know")
@@ -76,13 +72,12 @@ void AddWebOptions(CLI::App& app, CoordinatorOptions& options) {
 
 void AddLimits(CLI::App& app, CoordinatorOptions& options) {
   app.add_option("--max-cases", options.clients.max_cases,
-                 "with --data: largest number of cases of a campaign, because each case takes memory; a "
+                 "largest number of cases of a campaign, because each case takes memory; a "
                  "launch of more is refused\n(default: 5000000)")
       ->transform(WholeNumber(1, kMostCases));
-  app.add_option(
-         "--keep", options.keep,
-         "with --data: 90d deletes a campaign 90 days after its end; 200GB deletes the campaigns that "
-         "ended first\nwhile all of them take more; may be given twice; default: keep all")
+  app.add_option("--keep", options.keep,
+                 "90d deletes a campaign 90 days after its end; 200GB deletes the campaigns that "
+                 "ended first\nwhile all of them take more; may be given twice; default: keep all")
       ->type_name("TEXT")
       ->check(CLI::Validator(
           [](const std::string& text) {
@@ -94,7 +89,7 @@ void AddLimits(CLI::App& app, CoordinatorOptions& options) {
           ""));
   app.add_option(
          "--quota", options.quotas,
-         "with --data: limits of each owner's campaigns, as cases=1000000,campaigns=20,places=4,disk=200GB: "
+         "limits of each owner's campaigns, as cases=1000000,campaigns=20,places=4,disk=200GB: "
          "cases and\ncampaigns that have not ended, campaigns that fly at once, disk space; "
          "ann:cases=5000000,disk=none: those\nof one owner; may be given several times; default: none")
       ->type_name("TEXT")
@@ -111,12 +106,6 @@ void AddFlightOptions(CLI::App& app, CoordinatorOptions& options) {
          "differs is expelled, and\nall its results are flown again; 0: none; default: 0.01, and none "
          "if the control law is a plug-in")
       ->check(CLI::Range(0.0, 1.0));
-  app.add_option("--out", options.request.out, "result folder; default: results/<name>-<first 8 of id>")
-      ->type_name(kFolderType);
-  app.add_option("--cases", options.request.overrides.cases, "number of cases, instead of the file's")
-      ->transform(WholeNumber(1, kMostCases));
-  app.add_option("--seed", options.request.overrides.seed, "seed, instead of the file's");
-  app.add_flag("--resume", options.request.resume, "continue in a result folder of the same flight id");
 }
 
 void AddNetworkOptions(CLI::App& app, CoordinatorOptions& options) {
@@ -128,20 +117,15 @@ void AddNetworkOptions(CLI::App& app, CoordinatorOptions& options) {
   app.add_option("--keys", options.admission.keys, kKeysHelp)->type_name(kFolderType);
   app.add_flag("--insecure", options.admission.insecure, kInsecureHelp);
   app.add_flag("--allow-plugins", options.admission.allow_plugins, kAllowPluginsHelp);
-  app.add_option("--patience", options.patience_s,
-                 "end with exit code 5 after this number of seconds without a worker; default: never")
-      ->check(CLI::NonNegativeNumber);
 }
 
 /// The program's end, or none: `options` then has what the arguments say.
 std::optional<ExitCode> ReadArguments(int argc, char** argv, CoordinatorOptions& options) {
   CLI::App app(
-      "With --data: flies the campaigns that clients launch on the dispersa-worker processes of a DDS "
-      "domain,\n"
-      "until it is stopped. With a campaign: flies this campaign, writes its reports and ends.",
+      "Flies the campaigns that clients launch on the dispersa-worker processes of a DDS domain, until it is "
+      "stopped.",
       "dispersa-coordinator");
   BeginCommandLine(app, options.json, "with --version, or for an error: print one JSON object");
-  app.add_option("campaign", options.request.campaign.name, "campaign file")->type_name(kFileType);
   app.add_option("--data", options.clients.data,
                  "folder for the launched campaigns, made if it does not exist")
       ->type_name(kFolderType);
@@ -151,20 +135,12 @@ std::optional<ExitCode> ReadArguments(int argc, char** argv, CoordinatorOptions&
   AddNetworkOptions(app, options);
   app.footer(
       "Example: dispersa-coordinator --data /var/lib/dispersa --domain 7 --keys coordinator-main\n"
-      "         dispersa-worker --domain 7 --peer coordinator-host --keys worker-node1\n"
-      "         dispersa-coordinator campaigns/table3.yaml --out results/table3 --address 127.0.0.1");
+      "         dispersa-worker --domain 7 --peer coordinator-host --keys worker-node1");
   return ParseCommandLine(app, argc, argv);
 }
 
 void CheckTask(const CoordinatorOptions& options) {
-  const std::string& campaign = options.request.campaign.name;
-  if (int(options.health) + int(!options.clients.data.empty()) + int(!campaign.empty()) != 1)
-    throw InputError("give one of --data, a campaign file, or --health");
-  if (campaign == kStandardInput) {
-    throw InputError(
-        "the campaign cannot come from standard input: a coordinator may restart itself and read it again",
-        "a campaign file");
-  }
+  if (options.health == !options.clients.data.empty()) throw InputError("give one of --data and --health");
 }
 
 WebOptions WebOf(const CoordinatorOptions& options) {
@@ -197,13 +173,8 @@ int DoTask(const CoordinatorOptions& options, std::vector<std::string> command) 
   const ClientOptions clients = ClientsOf(options);
   const NetworkOptions network = Admit(options.network, options.admission, {Role::kCoordinator});
   AdmitPlugins(options.admission.allow_plugins);
-  if (clients.data.empty() && !options.request.resume) command.emplace_back("--resume");
-  const ServeOptions serve{network, options.audit, std::move(command)};
-  if (!clients.data.empty()) {
-    umask(0077);  // what clients have launched is nobody else's on this machine
-    return ServeClients(serve, clients);
-  }
-  return EndOutput(ServeCampaign(serve, options.request, options.patience_s));
+  umask(0077);  // what clients have launched is nobody else's on this machine
+  return ServeClients({network, options.audit, std::move(command)}, clients);
 }
 
 }  // namespace

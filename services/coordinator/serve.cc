@@ -94,74 +94,7 @@ WebPages PagesOf(const ClientOptions& clients) {
   return {fmt::format("{}:{}", host, port), clients.web->behind_tls};
 }
 
-PreparedRun PrepareUnlessStopped(const RunRequest& request) {
-  try {
-    return PrepareRun(request, StopRequested);
-  } catch (const Interrupted&) {
-    throw Failure{kExitInterrupted, "stopped before the first case"};
-  }
-}
-
 }  // namespace
-
-ExitCode ServeCampaign(const ServeOptions& options, const RunRequest& request,
-                       std::optional<double> patience_s) {
-  PreparedRun prepared = PrepareUnlessStopped(request);
-  CampaignBook book(prepared.campaign, std::move(prepared.folder));
-  book.Expect(std::move(prepared.flown));
-  Coordinator coordinator(options.network, book, options.audit);
-  LogInfo("campaign {}, flight id {}, results in {}; domain {}, workers can join at port {}",
-          book.campaign().name, book.campaign().flight_id, book.folder().directory().string(),
-          options.network.domain, CoordinatorPort(options.network.domain));
-  Every progress_period(kProgress_s);
-  Attendance attendance(options.network.domain, patience_s);
-  std::optional<Watchdog> watchdog(std::in_place, options.again, coordinator.StartPulse());
-  while (!book.refusal() && !book.Complete() && !StopRequested()) {
-    coordinator.Step(kRound);
-    if (!book.breakdown().empty()) {
-      coordinator.Dismiss();
-      throw Failure{kExitInternalError, book.breakdown()};
-    }
-    watchdog->Note(coordinator.ReceivesReports(), true);
-    if (!attendance.Check(coordinator.joined() > 0, coordinator.now_s())) {
-      book.Flush();
-      throw Failure{
-          kExitIncomplete,
-          fmt::format("no worker for {:.0f} s: the run ends; repeat the command with --resume to continue",
-                      *patience_s)};
-    }
-    LogCounts();
-    if (progress_period.IsDue(coordinator.now_s())) {
-      const LedgerProgress progress = book.ledger().Progress();
-      LogInfo("{}/{} cases done, {} assigned, {} quarantined, {} workers", progress.done, progress.total,
-              progress.assigned, progress.quarantined, coordinator.joined());
-    }
-  }
-  watchdog.reset();
-  // Flush first: unstored results would be lost. Only a campaign that is complete on the disk dismisses its
-  // workers. A coordinator that stops or is killed here finds them again after its restart.
-  book.Flush();
-  if (book.refusal()) {
-    coordinator.Dismiss();
-    throw InputError(*book.refusal());
-  }
-  if (book.IsAudited()) LogInfo("{} results were flown again and agree", book.confirmed());
-  ReportOptions report;
-  report.threads = UsableCores();
-  report.progress = [](const std::string&, std::uint64_t, std::uint64_t) {
-    if (StopRequested()) throw Interrupted();
-  };
-  try {
-    if (StopRequested()) throw Interrupted();
-    coordinator.Dismiss();
-    const CampaignSummary summary = WriteReports(book.folder(), book.campaign(), report);
-    NoteEndedIn(ResultRoot(book.folder().directory()), book.folder(), book.campaign(), summary);
-    fmt::print("result: {}\n", book.folder().directory().string());
-    return CampaignExitCode(summary.standing.verdict, book.ledger().Progress().conflicts);
-  } catch (const Interrupted&) {
-    throw Failure{kExitInterrupted, "stopped; repeat the command with --resume to continue"};
-  }
-}
 
 // Workers stay when it ends: another coordinator on the same data takes them over.
 int ServeClients(const ServeOptions& options, const ClientOptions& clients) {
@@ -194,7 +127,7 @@ int ServeClients(const ServeOptions& options, const ClientOptions& clients) {
   std::uint64_t shown_changes = 0;
   Every web_period(kWeb_s), web_pause(kWebPause_s), prometheus_period(kPrometheus_s),
       counts_period(kLogCounts_s);
-  Attendance attendance(options.network.domain, std::nullopt);
+  Attendance attendance(options.network.domain);
   std::optional<Watchdog> watchdog(std::in_place, options.again, coordinator.StartPulse());
   while (!StopRequested()) {
     const Stopwatch round;

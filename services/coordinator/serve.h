@@ -8,7 +8,6 @@
 #include <vector>
 
 #include "services/coordinator/service.h"
-#include "services/ledger/prepare_run.h"
 #include "services/transport/network.h"
 #include "services/web/web_server.h"
 
@@ -21,10 +20,6 @@ struct ServeOptions {
   std::vector<std::string>
       again;  ///< command that replaces this program when it receives no messages any more
 };
-
-/// One campaign: serves it, writes its reports, ends. Ends early after `patience_s` without a worker.
-ExitCode ServeCampaign(const ServeOptions& options, const RunRequest& request,
-                       std::optional<double> patience_s);
 
 struct ClientOptions {
   std::string data;                            ///< folder

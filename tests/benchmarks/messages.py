@@ -27,9 +27,9 @@ class Service:
 
     def __init__(self, build, keys, cases, workers, flight_ms):
         self.folder = tempfile.TemporaryDirectory()
-        self.out = pathlib.Path(self.folder.name) / "out"
+        data = pathlib.Path(self.folder.name) / "data"
         self.cases = cases
-        network = {"coordinator": ["--address", "127.0.0.1"], "worker": ["--address", "127.0.0.1"]}
+        network = {role: ["--domain", "40", "--address", "127.0.0.1"] for role in ("coordinator", "worker", "client")}
         if keys:
             authority = pathlib.Path(self.folder.name) / "authority"
             subprocess.run([build / "bin/dispersa", "keys", "init", authority], check=True, stdout=subprocess.DEVNULL)
@@ -37,12 +37,14 @@ class Service:
                 subprocess.run([build / "bin/dispersa", "keys", "issue", authority, "--role", role, "--name", "one"], check=True,
                                stdout=subprocess.DEVNULL)
                 network[role] += ["--keys", authority / "issued" / f"{role}-one"]
-        daemon = [CAMPAIGN, "--cases", str(cases), "--out", self.out, "--audit", "0"] if cases else [
-            "--data", pathlib.Path(self.folder.name) / "data"]
-        self.coordinator = subprocess.Popen([build / "bin/dispersa-coordinator", *daemon, "--domain", "40",
+        self.coordinator = subprocess.Popen([build / "bin/dispersa-coordinator", "--data", data, "--audit", "0",
                                              *network["coordinator"]], stdout=subprocess.DEVNULL, stderr=subprocess.DEVNULL)
-        self.crew = [subprocess.Popen([build / "tools/noop_worker", "--domain", "40", "--flight-ms", str(flight_ms),
-                                       *network["worker"]], stderr=subprocess.DEVNULL) for _ in range(workers)]
+        self.crew = [subprocess.Popen([build / "tools/noop_worker", "--flight-ms", str(flight_ms), *network["worker"]],
+                                      stderr=subprocess.DEVNULL) for _ in range(workers)]
+        if cases:
+            launched = subprocess.run([build / "bin/dispersa", "launch", CAMPAIGN, "--cases", str(cases), *network["client"]],
+                                      check=True, capture_output=True, text=True)
+            self.out = data / launched.stdout.strip() / "results"
 
     def __enter__(self):
         return self

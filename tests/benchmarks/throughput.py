@@ -49,11 +49,14 @@ def stored(out):
         return 0
 
 
-def measure(build, cases, workers, out, processes):
-    campaign = pathlib.Path(__file__).resolve().parents[2] / "campaigns/smoke.yaml"
-    coordinator = subprocess.Popen([build / "bin/dispersa-coordinator", campaign, "--cases", str(cases), "--out", out,
-                                    "--audit", "0", *NETWORK], stdout=subprocess.DEVNULL, stderr=subprocess.DEVNULL)
+def measure(build, cases, workers, data, processes):
+    coordinator = subprocess.Popen([build / "bin/dispersa-coordinator", "--data", data, "--audit", "0", *NETWORK],
+                                   stdout=subprocess.DEVNULL, stderr=subprocess.DEVNULL)
     processes.append(coordinator)
+    campaign = pathlib.Path(__file__).resolve().parents[2] / "campaigns/smoke.yaml"
+    launched = subprocess.run([build / "bin/dispersa", "launch", campaign, "--cases", str(cases), *NETWORK], check=True,
+                              capture_output=True, text=True)
+    out = data / launched.stdout.strip() / "results"
     crew = [subprocess.Popen([build / "tools/noop_worker", *NETWORK]) for _ in range(workers)]
     processes += crew
     deadline = time.monotonic() + LIMIT_S
@@ -77,7 +80,7 @@ def main(build, cases=200_000, workers=2):
     processes = []
     with tempfile.TemporaryDirectory() as folder:
         try:
-            measure(build, cases, workers, pathlib.Path(folder) / "out", processes)
+            measure(build, cases, workers, pathlib.Path(folder) / "data", processes)
         finally:
             for process in processes:
                 process.kill()

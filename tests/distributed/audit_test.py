@@ -9,7 +9,7 @@ import sqlite3
 import subprocess
 import time
 
-from processes import CAMPAIGN, PATIENCE_S, content, main, wait_for
+from processes import CAMPAIGN, PATIENCE_S, main, wait_for
 from security_test import keys
 from service_case import ServiceCase
 
@@ -19,8 +19,8 @@ class AuditTest(ServiceCase):
     CASES = 200
 
     def test_a_forger_is_expelled_and_its_cases_are_flown_again(self):
-        coordinator = self.start("dispersa-coordinator", CAMPAIGN, "--cases", self.CASES, "--out", self.data / "out",
-                                 "--audit", 0.02)
+        self.start("dispersa-coordinator", "--data", self.data / "data", "--audit", 0.02)
+        identity = self.dispersa("launch", CAMPAIGN, "--cases", self.CASES).strip()
         # Alone, it returns whatever it likes until its first result has been flown again.
         forger = self.start(os.environ["DISPERSA_NOOP_WORKER"], stderr=subprocess.DEVNULL)
         self.assertEqual(forger.wait(timeout=PATIENCE_S), 0)
@@ -28,11 +28,10 @@ class AuditTest(ServiceCase):
                                                "the coordinator, gives other bits than the worker returned")
         wait_for(lambda: "results of worker" in self.log.read_text(), "removal of what it returned")
         self.start_worker()
-        self.assertEqual(coordinator.wait(timeout=2 * PATIENCE_S), self.reference.code, self.log.read_text())
+        self.dispersa("watch", identity, "--quiet", code=self.reference.code)
         self.assertRegex(self.log.read_text(), r"\d+ results were flown again and agree")
-        for name in ("cases.csv", "summary.json", "report.html"):
-            self.assertEqual(content(self.data / "out", name), content(self.reference.out, name), name)
-        with sqlite3.connect(f"file:{self.data}/out/results.sqlite?mode=ro", uri=True) as database:
+        out = self.assert_same_folder(identity, self.reference)
+        with sqlite3.connect(f"file:{out}/results.sqlite?mode=ro", uri=True) as database:
             workers = database.execute("SELECT count(DISTINCT worker), count(*) FROM execution").fetchone()
             self.assertEqual(workers, (1, self.CASES))
             self.assertGreater(database.execute("SELECT count(*) FROM audits").fetchone()[0], 0)

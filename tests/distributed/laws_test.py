@@ -14,7 +14,7 @@ import tempfile
 import time
 import unittest.mock
 
-from processes import BINARIES, CAMPAIGN, PATIENCE_S, Run, main, parent_and_name, stored, wait_for
+from processes import BINARIES, CAMPAIGN, PATIENCE_S, Run, main, parent_and_name, wait_for
 from service_case import ServiceCase
 
 SOURCE = pathlib.Path(os.environ["DISPERSA_SOURCE"])
@@ -154,14 +154,6 @@ class LawsTest(ServiceCase):
         self.dispersa("launch", campaign, code=2)
         self.assertTrue(self.error.startswith(words), self.error)
 
-    def test_a_campaigns_own_coordinator_compares_with_its_own_flights(self):
-        _, campaign = self.campaign(DIFFERS_BY_WORKER)
-        coordinator = self.start("dispersa-coordinator", campaign, "--cases", 20000, "--out", self.data / "out", *self.DAEMON)
-        self.start_worker()  # alone
-        self.assertEqual(coordinator.wait(timeout=PATIENCE_S), 2, self.log.read_text())
-        self.assertRegex(self.log.read_text(), REFUSAL)
-        self.assertLess(stored(self.data / "out"), 20000)
-
     def test_a_run_on_local_workers_is_refused_too(self):
         run = Run(self.root / "refused", "--workers", 2, "--cases", 2000, "--autopilot",
                   self.autopilot(DIFFERS_BY_WORKER)).finish()
@@ -240,15 +232,6 @@ class LawsTest(ServiceCase):
     def test_without_leave_it_is_refused_on_the_loopback_interface_too(self):
         _, campaign = self.campaign(0)
         words = "plugin.library: the control law is a shared object; this program runs shared objects only with --allow-plugins"
-        for network in ["--insecure"], self.NETWORK:
-            # Refused before anything is sent.
-            refused = subprocess.run([BINARIES / "dispersa-coordinator", campaign, *network, "--out", self.data / "out",
-                                      "--json"],
-                                     capture_output=True, text=True, timeout=PATIENCE_S)
-            self.assertEqual(refused.returncode, 2, refused.stderr)
-            self.assertIn(words, refused.stderr)
-            error = json.loads(refused.stdout)
-            self.assertEqual((error["code"], error["errors"][0]["path"]), (2, "autopilot.plugin.library"))
         self.start_coordinator()
         self.start("dispersa-worker", "--peer", "127.0.0.1")
         identity = self.dispersa("launch", campaign).strip()

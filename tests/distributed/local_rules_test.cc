@@ -8,7 +8,6 @@
 
 #include "services/client/execution_file.h"
 #include "services/client/local_workers.h"
-#include "services/coordinator/attendance.h"
 #include "services/program/exit_code.h"
 #include "temporary_folder.h"
 
@@ -18,16 +17,6 @@ namespace {
 using Json = nlohmann::ordered_json;
 using ::testing::IsEmpty;
 using ::testing::SizeIs;
-
-TEST(Attendance, ThePatienceRunsFromTheLastWorker) {
-  Attendance attendance(7, 10.0);
-  EXPECT_TRUE(attendance.Check(false, 9.0));
-  EXPECT_TRUE(attendance.Check(true, 50.0));
-  EXPECT_TRUE(attendance.Check(false, 60.0)) << "from the last time that there was one";
-  EXPECT_FALSE(attendance.Check(false, 60.1));
-  Attendance endless(7, std::nullopt);
-  EXPECT_TRUE(endless.Check(false, 1e9));
-}
 
 /// A worker process that ends at once, with a code.
 class EndingWorkers : public testing::Test {

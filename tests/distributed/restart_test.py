@@ -1,5 +1,4 @@
-"""Coordinators killed at random moments of campaigns with very short flights: each campaign must end when it is
-resumed.
+"""Coordinators killed at random moments of a campaign with very short flights: it must end.
 
 Environment as of processes.py. DISPERSA_RESTARTS: how many kills (default 15; tests/run --long: 300).
 """
@@ -14,11 +13,11 @@ import tempfile
 import time
 import unittest
 
-from processes import BINARIES, CAMPAIGN, PATIENCE_S, Run, end, main, shared_memory_segments, stored
+from processes import BINARIES, CAMPAIGN, PATIENCE_S, Run, content, end, main, shared_memory_segments, stored
 
 RESTARTS = int(os.environ.get("DISPERSA_RESTARTS", "15"))
 CASES = 400
-# Seconds in which a resumed coordinator ends: a worker finds it within 2 s, or makes its connection anew within 30 s.
+# Seconds in which a campaign ends: a worker finds it within 2 s, or makes its connection anew within 30 s.
 LIMIT_S = PATIENCE_S
 NETWORK = ["--domain", "37", "--address", "127.0.0.1"]
 
@@ -54,7 +53,12 @@ class RestartTest(unittest.TestCase):
                                                    stdout=subprocess.DEVNULL, stderr=log))
         return self.processes[-1]
 
-    def test_a_resumed_coordinator_always_ends(self):
+    def dispersa(self, *arguments, code=0):
+        done = subprocess.run([BINARIES / "dispersa", *map(str, arguments), *NETWORK], capture_output=True, text=True, timeout=LIMIT_S)
+        self.assertEqual(done.returncode, code, f"{done.stderr}{(self.root / 'log').read_text()[-4000:]}")
+        return done.stdout.strip()
+
+    def test_a_campaign_always_ends(self):
         campaign = write_tiny_campaign(self.root)
         reference = Run(self.root / "reference", "--workers", 0, "--cases", CASES, campaign=campaign).finish()
         draws = random.Random(int(os.environ.get("DISPERSA_SEED", "1")))
@@ -62,35 +66,30 @@ class RestartTest(unittest.TestCase):
         longest = 0.0
         while restarts < RESTARTS:
             cycles += 1
-            out = self.root / "out"
-            shutil.rmtree(out, ignore_errors=True)
+            data = self.root / "data"
+            shutil.rmtree(data, ignore_errors=True)
             (self.root / "log").write_text("")
             self.processes = []
             for _ in range(2):
                 self.start("dispersa-worker", "--peer", "127.0.0.1", "--slots", draws.choice([1, 2]))
-            arguments = ["dispersa-coordinator", campaign, "--cases", CASES, "--out", out, "--resume"]
-            coordinator = self.start(*arguments)
+            coordinator = self.start("dispersa-coordinator", "--data", data)
+            identity = self.dispersa("launch", campaign, "--cases", CASES)
             for _ in range(3):
                 time.sleep(draws.random() * 1.0)
-                if coordinator.poll() is not None:
-                    break
                 # SIGTERM too: it must not send the workers home.
                 coordinator.send_signal(draws.choice([signal.SIGKILL, signal.SIGKILL, signal.SIGTERM]))
                 coordinator.wait(timeout=PATIENCE_S)
                 restarts += 1
-                coordinator = self.start(*arguments)
+                coordinator = self.start("dispersa-coordinator", "--data", data)
             begun = time.monotonic()
             try:
-                coordinator.wait(timeout=LIMIT_S)
+                self.dispersa("watch", identity, "--quiet", code=reference.code)
             except subprocess.TimeoutExpired:
-                self.fail(f"cycle {cycles}: {stored(out)} of {CASES} cases, then nothing:\n"
+                self.fail(f"cycle {cycles}: {stored(data / identity / 'results')} of {CASES} cases, then nothing:\n"
                           f"{(self.root / 'log').read_text()[-4000:]}")
             longest = max(longest, time.monotonic() - begun)
-            self.assertIn(coordinator.returncode, (0, 3, 4), (self.root / "log").read_text()[-4000:])
-            self.assertEqual((out / "cases.csv").read_bytes(), reference.csv(), f"cycle {cycles}")
-            for worker in self.processes[:2]:
-                worker.kill()
-                worker.wait()
+            self.assertEqual(content(data / identity / "results", "cases.csv"), reference.csv(), f"cycle {cycles}")
+            end(self.processes)
         print(f"{restarts} restarts in {cycles} campaigns; the longest wait for an end was {longest:.1f} s")
 
 

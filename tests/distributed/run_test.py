@@ -1,4 +1,4 @@
-"""dispersa run and the daemons as processes: the same bytes whatever dies, and nothing left behind.
+"""dispersa run as processes: the same bytes whatever dies, and nothing left behind.
 
 Environment as of processes.py.
 """
@@ -38,13 +38,8 @@ class RunTest(unittest.TestCase):
 
     def setUp(self):
         self.runs = []
-        self.daemons = []
 
     def tearDown(self):
-        for daemon in self.daemons:
-            if daemon.poll() is None:
-                daemon.kill()
-            daemon.communicate()
         for run in self.runs:
             if run.process.poll() is None:
                 run.process.kill()
@@ -209,48 +204,6 @@ class RunTest(unittest.TestCase):
     def test_progress_goes_to_stderr(self):
         self.assertRegex(self.reference.stderr, rf"(?m)^\S+: {self.cases}/{self.cases} \(100 %\), .*/s, .*, in process$")
         self.assertEqual(self.reference.stdout.splitlines()[-1], f"result: {self.reference.out}")
-
-    def start_daemons(self, domain, out, *arguments):
-        """A coordinator, and two workers if there are none yet."""
-        network = ["--domain", str(domain), "--address", "127.0.0.1"]
-        coordinator = subprocess.Popen([BINARIES / "dispersa-coordinator", CAMPAIGN, "--cases", str(self.cases), "--out", out,
-                                        *network, *arguments], stdout=subprocess.PIPE, stderr=subprocess.PIPE, text=True)
-        self.daemons.append(coordinator)
-        if len(self.daemons) == 1:
-            for slots in ("1", "2"):
-                log = self.root / f"worker-{domain}-{slots}.log"
-                with log.open("w") as stderr:
-                    self.daemons.append(subprocess.Popen(
-                        [BINARIES / "dispersa-worker", *network, "--peer", "127.0.0.1", "--slots", slots],
-                        stderr=stderr))
-                self.daemons[-1].log = log
-        return coordinator
-
-    def finish_daemons(self, coordinator, out):
-        try:
-            stdout, stderr = coordinator.communicate(timeout=3 * PATIENCE_S)
-        except subprocess.TimeoutExpired:
-            coordinator.kill()
-            workers = [(worker.poll(), worker.log.read_text()) for worker in self.daemons[1:3]]
-            self.fail(f"{stored(out)} cases, then nothing: {coordinator.communicate()[1]}\nworkers: {workers}")
-        self.assertEqual(coordinator.returncode, self.reference.code, stderr)
-        self.assertEqual(stdout, f"result: {out}\n")
-        self.assertEqual((out / "cases.csv").read_bytes(), self.reference.csv())
-        for worker in self.daemons[1:3]:
-            self.assertEqual(worker.wait(timeout=PATIENCE_S), 0)
-
-    def test_the_daemons_give_the_same_bytes(self):
-        out = self.root / "daemons"
-        self.finish_daemons(self.start_daemons(39, out), out)
-
-    def test_workers_outlive_a_killed_coordinator(self):
-        out = self.root / "restarted"
-        coordinator = self.start_daemons(38, out)
-        wait_for(lambda: stored(out) > 0, "first results")
-        coordinator.kill()
-        coordinator.wait()
-        self.assertLess(stored(out), self.cases, "the campaign is too short for this test")
-        self.finish_daemons(self.start_daemons(38, out, "--resume"), out)
 
     def test_a_full_disk_is_incomplete(self):
         disk = self.root / "disk"

@@ -419,7 +419,6 @@ class SecurityTest(unittest.TestCase):
         for program, arguments in (
             ("dispersa-coordinator", ["--data", self.data]),
             ("dispersa-coordinator", ["--data", self.data, "--address", "10.1.2.3"]),
-            ("dispersa-coordinator", [CAMPAIGN, "--out", self.data / "out"]),
             ("dispersa-coordinator", ["--health", "--address", "10.1.2.3"]),
             ("dispersa-worker", ["--peer", "10.1.2.3"]),
             ("dispersa-worker", ["--peer", "127.0.0.1", "--address", "10.1.2.3"]),

@@ -12,7 +12,6 @@
 #include "core/flight/flight_inputs.h"
 #include "core/flight/metrics.h"
 #include "core/results/result_error.h"
-#include "services/coordinator/attendance.h"
 #include "services/coordinator/dispatcher.h"
 #include "tests/distributed/memory_store.h"
 #include "tests/nominal_inputs.h"
@@ -202,17 +201,6 @@ TEST_F(DispatchRules, OfTwoThatAreExpelledNeithersResultsStay) {
   EXPECT_TRUE(flying_.at('a').book->TryFlush());
   EXPECT_EQ(Progress('a').done, 1u);
   EXPECT_EQ(flying_.at('a').store->WorkerOf(1), "node2_y");
-}
-
-TEST(Attendance, PatienceIsFromTheLastMomentWithAWorker) {
-  Attendance patient(0, 50.0), endless(0, std::nullopt);
-  EXPECT_TRUE(patient.Check(true, 100.0));
-  EXPECT_TRUE(patient.Check(false, 140.0)) << "it says so, and waits";
-  EXPECT_TRUE(patient.Check(false, 150.0));
-  EXPECT_FALSE(patient.Check(false, 150.1));
-  EXPECT_TRUE(patient.Check(true, 151.0));
-  EXPECT_TRUE(patient.Check(false, 201.0));
-  EXPECT_TRUE(endless.Check(false, 1e9));
 }
 
 }  // namespace
