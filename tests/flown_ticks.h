@@ -1,6 +1,8 @@
 // The ticks of a flight, for tests that look into it.
 #pragma once
 
+#include <gtest/gtest.h>
+
 #include <vector>
 
 #include "core/flight/flight.h"
@@ -15,6 +17,25 @@ inline std::vector<TickSample> TicksOf(const FlightDefinition& definition, const
   options.observe = [&](const TickSample& sample) { ticks.push_back(sample); };
   const FlightResult flown = Fly(FlightModel(definition), inputs, options);
   if (result) *result = flown;
+  return ticks;
+}
+
+/// The samples between two times. The flight must reach the second, and goes no farther.
+inline std::vector<TickSample> TicksBetween(const FlightModel& model, const FlightInputs& inputs,
+                                            double from_s, double to_s,
+                                            Scheme scheme = FlightOptions{}.scheme) {
+  struct Reached {};
+  std::vector<TickSample> ticks;
+  FlightOptions options;
+  options.scheme = scheme;
+  options.observe = [&](const TickSample& sample) {
+    if (sample.time_s >= to_s) throw Reached();
+    if (sample.time_s > from_s) ticks.push_back(sample);
+  };
+  try {
+    ADD_FAILURE() << "ended before " << to_s << " s: " << Fly(model, inputs, options).reason;
+  } catch (const Reached&) {
+  }
   return ticks;
 }
 

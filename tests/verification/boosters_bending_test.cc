@@ -24,6 +24,7 @@
 #include "core/trajectory/ascent.h"
 #include "core/vehicle/mass.h"
 #include "tests/bending_in_space.h"
+#include "tests/flown_ticks.h"
 #include "tests/liquid_stage.h"
 #include "tests/slv4_flight.h"
 
@@ -444,15 +445,7 @@ FlightDefinition DefinitionOf(const Vehicle& vehicle) {
 }
 
 std::vector<TickSample> Flown(const FlightModel& model, Scheme scheme = FlightOptions{}.scheme) {
-  std::vector<TickSample> samples;
-  FlightOptions options;
-  options.scheme = scheme;
-  options.observe = [&](const TickSample& s) {
-    if (s.time_s > 25.0 && s.time_s < 40.0) samples.push_back(s);
-  };
-  const auto flown = Fly(model, Table3Inputs(), options);
-  EXPECT_EQ(flown.outcome, Outcome::kCompleted) << flown.reason;
-  return samples;
+  return TicksBetween(model, Table3Inputs(), 25.0, 40.0, scheme);
 }
 // The largest coordinate of a mode, and the largest difference between two flights.
 struct Apart {
@@ -523,14 +516,9 @@ TEST(BoostersBending, AlikeOnesFlyAsBodiesOfTheirOwn) {
 TEST(BoostersBending, MarginsSeeTheStackWithoutThemWhenTheyHaveLeft) {
   const FlightModel model(DefinitionOf(Boosted()));
   const LauncherPlant& plant = model.nominal_plant();
-  std::vector<TickSample> samples;
-  FlightOptions options;
-  options.observe = [&](const TickSample& s) {
-    if (s.stack == 0 && (s.time_s == 20.0 || s.time_s == 40.0)) samples.push_back(s);
-  };
-  Fly(model, {}, options);
-  ASSERT_EQ(samples.size(), 2u);
-  for (const TickSample& s : samples) {
+  std::vector<TickSample> samples = TicksBetween(model, {}, 19.995, 40.005);
+  ASSERT_EQ(samples.back().time_s, 40.0);
+  for (const TickSample& s : {samples.front(), samples.back()}) {
     const AxisPlant linear = LineariseAxis(plant, s, kPitch, model.sensors());
     const unsigned gone = s.time_s > 30.0 ? kBoostersGone : 0u;
     const double propellant_kg = plant.stacks[0].burn.Propellant(s.since_ignition_s);

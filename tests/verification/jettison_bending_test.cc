@@ -14,6 +14,7 @@
 #include "core/modes/beam_source.h"
 #include "core/structure/free_body.h"
 #include "core/vehicle/mass.h"
+#include "tests/flown_ticks.h"
 #include "tests/slv4_flight.h"
 
 namespace dispersa::jettison_bending_test {
@@ -168,18 +169,8 @@ FlightDefinition Definition(const Vehicle& vehicle, std::vector<double> jettison
 // In dense air, where a launcher would keep it: all that the change of modes could spoil is large there.
 TEST(JettisonedBending, FliesAsCvodeFliesIt) {
   const FlightModel model(Definition(WithFairing(60.0, 55.0), {55.0}));
-  std::vector<TickSample> by_cvode, flown;
-  FlightOptions options;
-  options.observe = [&](const TickSample& s) {
-    if (s.time_s > 50.0 && s.time_s < 65.0) by_cvode.push_back(s);
-  };
-  options.scheme = Scheme::kCvode;
-  ASSERT_EQ(Fly(model, Table3Inputs(), options).outcome, Outcome::kCompleted);
-  options.scheme = FlightOptions{}.scheme;
-  options.observe = [&](const TickSample& s) {
-    if (s.time_s > 50.0 && s.time_s < 65.0) flown.push_back(s);
-  };
-  ASSERT_EQ(Fly(model, Table3Inputs(), options).outcome, Outcome::kCompleted);
+  const std::vector<TickSample> by_cvode = TicksBetween(model, Table3Inputs(), 50.0, 65.0, Scheme::kCvode),
+                                flown = TicksBetween(model, Table3Inputs(), 50.0, 65.0);
   ASSERT_EQ(flown.size(), by_cvode.size());
   EXPECT_NE(model.nominal_plant().stacks[0].BendingWithout(1u),
             model.nominal_plant().stacks[0].bending.get());
