@@ -4,11 +4,10 @@ Environment as of processes.py; DISPERSA_FAULTY_WORKER: dispersa-worker with suc
 """
 import json
 import os
-import pathlib
 import shutil
 import subprocess
 
-from processes import BINARIES, CAMPAIGN, PATIENCE_S, Run, main, wait_for
+from processes import BINARIES, PATIENCE_S, Run, main, smoke_text, wait_for
 from service_case import ServiceCase
 
 FAULT = "tests/tools/faulty_worker.cc:"
@@ -21,11 +20,8 @@ class FaultTest(ServiceCase):
 
     def campaign(self, name):
         """A file of the campaign under another name."""
-        text = pathlib.Path(CAMPAIGN).read_text().replace("name: smoke\n", f"name: {name}\n")
-        for kind in ("vehicles", "references", "autopilots"):
-            text = text.replace(f": {kind}/", f": {pathlib.Path(CAMPAIGN).parent}/{kind}/")
         file = self.root / f"{name}.yaml"
-        file.write_text(text)
+        file.write_text(smoke_text(name))
         return file
 
     def launch_both(self):

@@ -14,17 +14,15 @@ import tempfile
 import time
 import unittest.mock
 
-from processes import BINARIES, CAMPAIGN, PATIENCE_S, Run, main, parent_and_name, wait_for
+from processes import BINARIES, BRIEF, PATIENCE_S, Run, main, parent_and_name, smoke_text, wait_for
 from service_case import ServiceCase
 
 SOURCE = pathlib.Path(os.environ["DISPERSA_SOURCE"])
-CASES = 24
+CASES = 16
 DIFFERS_BY_WORKER = 20
 CRASHES_IN_WORKERS = 27
 REFUSAL = (r"the control law pd_test is not deterministic: of case \d+, flown (by worker \S+|here before the campaign) and again by \S+, "
            r"metric_\w+ is '\S+' once and '\S+' again")
-
-
 IS_SLOW = 28
 NEIGHBOUR = "a-neighbours-campaign"  # its name
 
@@ -71,21 +69,24 @@ class LawsTest(ServiceCase):
         include = cls.root / "dispersa"
         include.mkdir()
         shutil.copy(SOURCE / "core/control/control_law.h", include)
+        cls.references = {}
 
     def autopilot(self, behaviour):
         """A PD, of which tests/plugins/law.c says what it does besides."""
         library = self.root / f"law{behaviour}.so"
         subprocess.run(["gcc", "-O2", "-fPIC", "-shared", f"-DDISPERSA_MISBEHAVES={behaviour}", f"-I{self.root}",
                         SOURCE / "tests/plugins/law.c", "-lm", "-o", library], check=True, timeout=PATIENCE_S)
-        text = (SOURCE / "campaigns/autopilots/pd.yaml").read_text()
         path = self.root / f"law{behaviour}.yaml"
-        path.write_text(text.replace("law: pd", "law: plugin").replace(
+        path.write_text((SOURCE / "tests/data/brief/pd.yaml").read_text().replace("law: pd", "law: plugin").replace(
             "tick_s:", f"plugin: {{library: {library.name}}}\ntick_s:"))
         return path
 
     def campaign(self, behaviour):
-        reference = Run(pathlib.Path(tempfile.mkdtemp(dir=self.root)), "--workers", 0, "--cases", CASES, "--autopilot",
-                        self.autopilot(behaviour)).finish()
+        """Its run in one process, flown once for all tests, and its file."""
+        if behaviour not in self.references:
+            self.references[behaviour] = Run(self.root / f"reference{behaviour}", "--workers", 0, "--cases", CASES, "--autopilot",
+                                             self.autopilot(behaviour), campaign=BRIEF).finish()
+        reference = self.references[behaviour]
         return reference, reference.out / "campaign.yaml"
 
     def test_a_service_flies_it(self):
@@ -156,7 +157,7 @@ class LawsTest(ServiceCase):
 
     def test_a_run_on_local_workers_is_refused_too(self):
         run = Run(self.root / "refused", "--workers", 2, "--cases", 2000, "--autopilot",
-                  self.autopilot(DIFFERS_BY_WORKER)).finish()
+                  self.autopilot(DIFFERS_BY_WORKER), campaign=BRIEF).finish()
         self.assertEqual(run.code, 2, run.stderr)
         self.assertRegex(run.stderr, REFUSAL)
         self.assertNotIn("result:", run.stdout)
@@ -171,8 +172,7 @@ class LawsTest(ServiceCase):
     # ---- secrets ----
 
     def slow_campaign(self, name, autopilot):
-        text = re.sub(r": ((?:vehicles|references|autopilots)/)", rf": {SOURCE}/campaigns/\1", pathlib.Path(CAMPAIGN).read_text())
-        text = re.sub(r"(?m)^autopilot: .*$", f"autopilot: {autopilot}", re.sub(r"(?m)^name: .*$", f"name: {name}", text))
+        text = re.sub(r"(?m)^autopilot: .*$", f"autopilot: {autopilot}", smoke_text(name))
         path = self.root / f"{name}.yaml"
         path.write_text(text)
         return path
@@ -206,7 +206,7 @@ class LawsTest(ServiceCase):
         launch = self.start("dispersa", "launch", self.slow_campaign("slow", slow), *folders["client"])
         wait_for(lambda: carriers(os.getpid()), "a law runs")
         seen = set()
-        for _ in range(50):
+        for _ in range(10):
             for pid in carriers(os.getpid()):
                 self.assertEqual(found_in(pid, secrets), set(), pathlib.Path(f"/proc/{pid}/cmdline").read_bytes())
                 seen.add(pid)
@@ -240,7 +240,8 @@ class LawsTest(ServiceCase):
         self.assertIn(words, self.status(identity)["problem"])
 
     def test_workers_of_a_run_take_what_its_campaign_names(self):
-        run = Run(self.root / "named", "--workers", 2, "--cases", CASES, "--autopilot", self.autopilot(0)).finish()
+        run = Run(self.root / "named", "--workers", 2, "--cases", CASES, "--autopilot", self.autopilot(0),
+                  campaign=BRIEF).finish()
         reference, _ = self.campaign(0)
         self.assertEqual(run.code, reference.code, run.stderr)
         self.assertEqual((run.out / "cases.csv").read_bytes(), (reference.out / "cases.csv").read_bytes())

@@ -2,9 +2,7 @@
 
 Environment as of processes.py.
 """
-import pathlib
-
-from processes import CAMPAIGN, Run, main
+from processes import Run, main, smoke_text
 from service_case import ServiceCase
 
 OWN = {"q_burn1_max_kpa": "max(qbar_pa while burn1) / 1000", "high_q_time_s": "time(qbar_pa > 30000)"}
@@ -15,9 +13,7 @@ class OwnMetricsTest(ServiceCase):
 
     def flown(self, name, metrics):
         """A campaign file and its run without workers."""
-        text = pathlib.Path(CAMPAIGN).read_text()
-        for kind in ("vehicles", "references", "autopilots"):
-            text = text.replace(f": {kind}/", f": {pathlib.Path(CAMPAIGN).parent}/{kind}/")
+        text = smoke_text()
         if metrics:
             items = "".join(f"  - {{name: {key}, expression: '{OWN[key]}'}}\n" for key in metrics)
             text = text.replace("requirements:\n", f"metrics:\n{items}requirements:\n")

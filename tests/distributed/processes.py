@@ -17,7 +17,9 @@ import time
 import unittest
 
 BINARIES = pathlib.Path(os.environ["DISPERSA_BINARIES"])
-CAMPAIGN = os.environ.get("DISPERSA_TEST_CAMPAIGN", str(pathlib.Path(os.environ["DISPERSA_CAMPAIGNS"], "smoke.yaml")))
+CAMPAIGNS = pathlib.Path(os.environ["DISPERSA_CAMPAIGNS"])
+CAMPAIGN = str(CAMPAIGNS / "smoke.yaml")
+BRIEF = str(CAMPAIGNS.parent / "tests/data/brief/smoke.yaml")  # its flights take half of the time
 ISOLATED = "DISPERSA_TEST_ISOLATED"
 PATIENCE_S = int(os.environ.get("DISPERSA_PATIENCE_S", "180"))  # for what takes seconds on an idle machine
 # Cases of a campaign in which something is to happen half-way: more than a worker of one slot may hold (9 assignments of 64 at
@@ -38,6 +40,12 @@ def _raise_loopback():
         name = struct.pack("16sh", b"lo", 0) + bytes(22)
         flags = struct.unpack("16sh", fcntl.ioctl(s, 0x8913, name)[:18])[1]  # SIOCGIFFLAGS
         fcntl.ioctl(s, 0x8914, struct.pack("16sh", b"lo", flags | 1) + bytes(22))  # SIOCSIFFLAGS, IFF_UP
+
+
+def smoke_text(name="smoke"):
+    """campaigns/smoke.yaml under this name, for any folder."""
+    text = (CAMPAIGNS / "smoke.yaml").read_text().replace("\nname: smoke\n", f"\nname: {name}\n")
+    return re.sub(r": ((?:vehicles|references|autopilots)/)", rf": {CAMPAIGNS}/\1", text)
 
 
 def is_running(pid):

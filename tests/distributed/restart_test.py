@@ -13,7 +13,7 @@ import tempfile
 import time
 import unittest
 
-from processes import BINARIES, CAMPAIGN, PATIENCE_S, Run, content, end, main, shared_memory_segments, stored
+from processes import BINARIES, CAMPAIGNS, PATIENCE_S, Run, content, end, main, shared_memory_segments, smoke_text, stored
 
 RESTARTS = int(os.environ.get("DISPERSA_RESTARTS", "15"))
 CASES = 400
@@ -24,15 +24,11 @@ NETWORK = ["--domain", "37", "--address", "127.0.0.1"]
 
 def write_tiny_campaign(folder):
     """The campaign of the tests with a vehicle that its first second of flight breaks."""
-    source = pathlib.Path(CAMPAIGN)
     vehicle, changed = re.subn(r"(?m)^limits: .*$", "limits: {axial_load_g: 0.5, terminate: true}",
-                               (source.parent / "vehicles/slv4.yaml").read_text())
+                               (CAMPAIGNS / "vehicles/slv4.yaml").read_text())
     assert changed == 1
     (folder / "vehicle.yaml").write_text(vehicle)
-    text = source.read_text().replace("vehicles/slv4.yaml", str(folder / "vehicle.yaml"))
-    for name in ("references", "autopilots", "winds"):
-        text = text.replace(f" {name}/", f" {source.parent}/{name}/")
-    (folder / "tiny.yaml").write_text(text)
+    (folder / "tiny.yaml").write_text(smoke_text().replace(f"{CAMPAIGNS}/vehicles/slv4.yaml", str(folder / "vehicle.yaml")))
     return folder / "tiny.yaml"
 
 

@@ -14,21 +14,19 @@ import tempfile
 import time
 import unittest
 
-from processes import (BINARIES, CAMPAIGN, ISOLATED, PATIENCE_S, Run, is_running, main, parent_and_name,
+from processes import (BINARIES, BRIEF, ISOLATED, PATIENCE_S, Run, is_running, main, parent_and_name,
                        shared_memory_segments, stored, wait_for)
 
-FLYING_S = 4.0   # of one core for a campaign of these tests: long enough to be killed half-way
 
+class RunCase(unittest.TestCase):
+    cases = 60
 
-class RunTest(unittest.TestCase):
     @classmethod
     def setUpClass(cls):
         cls.segments = shared_memory_segments()
         cls.root = pathlib.Path(tempfile.mkdtemp(prefix="dispersa-run-"))
-        probe = Run(cls.root / "probe", "--workers", 0, "--cases", 10).finish()
-        per_case_s = probe.execution()["flying_s"] / 10
-        cls.cases = min(max(int(FLYING_S / per_case_s), 600), 2000)  # a busy machine makes the probe slow
-        cls.reference = Run(cls.root / "reference", "--workers", 0, "--cases", cls.cases, "--no-histories").finish()
+        cls.reference = Run(cls.root / "reference", "--workers", 0, "--cases", cls.cases, "--no-histories",
+                            campaign=BRIEF).finish()
         if cls.reference.code not in (0, 3, 4):
             raise AssertionError(f"reference: exit code {cls.reference.code}\n{cls.reference.stderr}")
 
@@ -51,7 +49,7 @@ class RunTest(unittest.TestCase):
     def run_dispersa(self, name, *arguments, cases=None, histories=False, **options):
         """Flying cases again for the report takes twice as long as flying them, and no bytes of it are looked at here."""
         run = Run(self.root / name, "--cases", cases or self.cases, *arguments,
-                  *([] if histories else ["--no-histories"]), **options)
+                  *([] if histories else ["--no-histories"]), campaign=BRIEF, **options)
         self.runs.append(run)
         return run
 
@@ -61,74 +59,9 @@ class RunTest(unittest.TestCase):
         self.assertEqual((run.out / "summary.json").read_bytes(), (self.reference.out / "summary.json").read_bytes())
         self.assertEqual(run.stdout.splitlines()[-1], f"result: {run.out}")
 
-    def test_any_number_of_workers_gives_the_same_bytes(self):
-        rows = self.reference.csv().splitlines()
-        self.assertEqual(len(rows), self.cases + 1)
-        self.assertEqual([int(row.split(b",")[0]) for row in rows[1:]], list(range(self.cases)))
-        for workers in (1, 2, 3):
-            run = self.run_dispersa(f"workers{workers}", "--workers", workers)
-            wait_for(lambda: run.stored() > 0, "first results")
-            for pid in run.workers():
-                self.assertEqual(parent_and_name(pid), (run.process.pid, "dispersa-worker"))
-            self.assert_same(run.finish())
-            self.assertEqual(len(run.execution()["workers"]), workers)
 
-    def end_worker(self, name, how):
-        """How the worker that was sent this signal half-way ended. It is the only one, so nothing ends without another."""
-        run = self.run_dispersa(name, "--workers", 1)
-        run.wait_half_way(self.cases)
-        (victim,) = run.workers()
-        os.kill(victim, how)
-        self.assert_same(run.finish())
-        ends = {w["pid"]: w["end"] for w in run.execution()["workers"]}
-        self.assertEqual(len(ends), 2, "not replaced, or more than once")
-        return ends[victim]
-
-    def test_a_worker_killed_half_way(self):
-        self.assertEqual(self.end_worker("kill", signal.SIGKILL), "signal 9 (Killed)")
-
-    def test_a_worker_that_crashes_half_way(self):
-        # The case that it flew is blamed, flown again alone, and not quarantined.
-        self.assertEqual(self.end_worker("crash", signal.SIGSEGV), "signal 11 (Segmentation fault)")
-
-    def test_a_worker_that_stops_beating_is_killed_and_replaced(self):
-        self.assertEqual(self.end_worker("stop", signal.SIGSTOP), "signal 9 (Killed)")
-
-    def test_the_whole_run_killed_and_resumed(self):
-        run = self.run_dispersa("killed", "--workers", 2)
-        run.wait_half_way(self.cases)
-        pids = run.execution()["pids"]
-        self.assertEqual(len(pids), 3)
-        run.process.kill()
-        run.finish()
-        wait_for(lambda: not any(map(is_running, pids)), "end of the workers")
-        stored = run.stored()
-        self.assertGreater(stored, 0)
-        self.assertLess(stored, self.cases)
-        resumed = self.run_dispersa("killed", "--workers", 2, "--resume").finish()
-        self.assert_same(resumed)
-        self.assertEqual(resumed.execution()["cases_before"], stored)
-        self.assertEqual(resumed.execution()["cases_flown"], self.cases - stored)
-
-    def test_an_interrupted_run_tells_how_to_go_on(self):
-        for number in (signal.SIGINT, signal.SIGTERM):
-            for workers in (0, 2):
-                run = self.run_dispersa(f"interrupted{number}-{workers}", "--workers", workers, histories=True)
-                run.wait_half_way(self.cases)
-                run.process.send_signal(number)
-                asked = time.monotonic()
-                run.finish()
-                self.assertLess(time.monotonic() - asked, 10.0)
-                self.assertEqual(run.code, 130, run.stderr)
-                self.assertEqual(run.stdout, "")
-                command = (f"dispersa run {shlex.quote(CAMPAIGN)} --cases {self.cases} --workers {workers} "
-                           f"--out {run.out} --resume")
-                self.assertEqual(run.stderr.splitlines()[-1], f"interrupted; to continue: {command}")
-                self.assertTrue(0 < run.stored() < self.cases)
-        arguments = shlex.split(command)
-        resumed = subprocess.run([BINARIES / arguments[0], *arguments[1:]], capture_output=True, timeout=3 * PATIENCE_S)
-        self.assertEqual(resumed.returncode, self.reference.code)
-        self.assertEqual(run.csv(), self.reference.csv())
+class Whole(RunCase):
+    """Nothing interrupts the campaign."""
 
     def test_a_campaign_can_be_extended_and_never_shrinks(self):
         self.assertIn(self.run_dispersa("extended", "--workers", 1, cases=self.cases // 2).finish().code, (0, 3, 4))
@@ -205,6 +138,79 @@ class RunTest(unittest.TestCase):
         self.assertRegex(self.reference.stderr, rf"(?m)^\S+: {self.cases}/{self.cases} \(100 %\), .*/s, .*, in process$")
         self.assertEqual(self.reference.stdout.splitlines()[-1], f"result: {self.reference.out}")
 
+
+class HalfWay(RunCase):
+    """Something happens while the campaign is flown, by one worker in most tests."""
+    cases = 1500  # three slots do not fly them in the 0.5 s between two transactions
+
+    def test_three_workers_give_the_same_bytes(self):
+        rows = self.reference.csv().splitlines()
+        self.assertEqual(len(rows), self.cases + 1)
+        self.assertEqual([int(row.split(b",")[0]) for row in rows[1:]], list(range(self.cases)))
+        run = self.run_dispersa("workers3", "--workers", 3)
+        wait_for(lambda: run.stored() > 0, "first results")
+        for pid in run.workers():
+            self.assertEqual(parent_and_name(pid), (run.process.pid, "dispersa-worker"))
+        self.assert_same(run.finish())
+        self.assertEqual(len(run.execution()["workers"]), 3)
+
+    def end_worker(self, name, how):
+        """How the worker that was sent this signal half-way ended. It is the only one, so nothing ends without another."""
+        run = self.run_dispersa(name, "--workers", 1)
+        run.wait_half_way(self.cases)
+        (victim,) = run.workers()
+        os.kill(victim, how)
+        self.assert_same(run.finish())
+        ends = {w["pid"]: w["end"] for w in run.execution()["workers"]}
+        self.assertEqual(len(ends), 2, "not replaced, or more than once")
+        return ends[victim]
+
+    def test_a_worker_killed_half_way(self):
+        self.assertEqual(self.end_worker("kill", signal.SIGKILL), "signal 9 (Killed)")
+
+    def test_a_worker_that_crashes_half_way(self):
+        # The case that it flew is blamed, flown again alone, and not quarantined.
+        self.assertEqual(self.end_worker("crash", signal.SIGSEGV), "signal 11 (Segmentation fault)")
+
+    def test_a_worker_that_stops_beating_is_killed_and_replaced(self):
+        self.assertEqual(self.end_worker("stop", signal.SIGSTOP), "signal 9 (Killed)")
+
+    def test_the_whole_run_killed_and_resumed(self):
+        run = self.run_dispersa("killed", "--workers", 2)
+        run.wait_half_way(self.cases)
+        pids = run.execution()["pids"]
+        self.assertEqual(len(pids), 3)
+        run.process.kill()
+        run.finish()
+        wait_for(lambda: not any(map(is_running, pids)), "end of the workers")
+        stored = run.stored()
+        self.assertGreater(stored, 0)
+        self.assertLess(stored, self.cases)
+        resumed = self.run_dispersa("killed", "--workers", 2, "--resume").finish()
+        self.assert_same(resumed)
+        self.assertEqual(resumed.execution()["cases_before"], stored)
+        self.assertEqual(resumed.execution()["cases_flown"], self.cases - stored)
+
+    def test_an_interrupted_run_tells_how_to_go_on(self):
+        for number, workers in ((signal.SIGINT, 2), (signal.SIGTERM, 0)):
+            run = self.run_dispersa(f"interrupted{number}", "--workers", workers)
+            run.wait_half_way(self.cases)
+            run.process.send_signal(number)
+            asked = time.monotonic()
+            run.finish()
+            self.assertLess(time.monotonic() - asked, 10.0)
+            self.assertEqual(run.code, 130, run.stderr)
+            self.assertEqual(run.stdout, "")
+            command = (f"dispersa run {shlex.quote(BRIEF)} --cases {self.cases} --workers {workers} "
+                       f"--out {run.out} --resume")
+            self.assertEqual(run.stderr.splitlines()[-1], f"interrupted; to continue: {command}")
+            self.assertTrue(0 < run.stored() < self.cases)
+        arguments = shlex.split(command)
+        resumed = subprocess.run([BINARIES / arguments[0], *arguments[1:], "--no-histories"], capture_output=True,
+                                 timeout=3 * PATIENCE_S)
+        self.assertEqual(resumed.returncode, self.reference.code)
+        self.assertEqual(run.csv(), self.reference.csv())
+
     def test_a_full_disk_is_incomplete(self):
         disk = self.root / "disk"
         disk.mkdir()
@@ -223,7 +229,7 @@ class RunTest(unittest.TestCase):
 
 
 if ISOLATED not in os.environ:
-    del RunTest.test_a_full_disk_is_incomplete  # it mounts a small disk
+    del HalfWay.test_a_full_disk_is_incomplete  # it mounts a small disk
 
 
 if __name__ == "__main__":
