@@ -41,7 +41,7 @@ void DescribeLooks(Fields& fields, VerdictPlan& plan) {
                             {{"obrien_fleming", Spending::kOBrienFleming}, {"pocock", Spending::kPocock}},
                             plan.spending, "how several looks share the risk: little early, or evenly");
     if (plan.kind != PlanKind::kGroupSequential)
-      fields.Refuse("spending", "one look has nothing to share", "looks: 2 or more");
+      fields.Refuse("spending", "looks is 1: no other analysis shares the risk", "looks: 2 or more");
   });
 }
 

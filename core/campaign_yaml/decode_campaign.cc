@@ -103,7 +103,7 @@ void DescribeListTable(Fields& fields, const InputNode& table, bool is_sound, Ca
   }
 }
 
-// Only stages that there are, are steered: the first one after its boosters have left.
+// The vehicle has the stages that are steered. The first one is steered after its boosters have left.
 template <class T>
 void CheckSteering(const Vehicle& vehicle, const std::array<T, kMaxStages>& steering, const InputNode& node,
                    const std::string& path, ProblemList& problems) {
@@ -112,7 +112,7 @@ void CheckSteering(const Vehicle& vehicle, const std::array<T, kMaxStages>& stee
       AddProblem(problems, node, path,
                  "stage" + std::to_string(stage + 1) + "_incidence_* is given, and the vehicle has " +
                      std::to_string(vehicle.stages.size()) + " stages",
-                 "incidence of stages that there are");
+                 "stage1_incidence_* to the last stage of the vehicle");
   if (!steering[0].empty() && vehicle.boosters.count == 0)
     AddProblem(
         problems, node, path,

@@ -60,7 +60,7 @@ class StepState {
   const StackBending<T>& bending() const { return bending_; }
   const T* command_rad(int bank) const { return banks_[bank].command_rad; }  ///< at the actuators, kDrives
 
-  /// Of an object of zeros. No lane flies: each computes along on numbers that do no harm.
+  /// Of an object of zeros. No lane flies. Each computes with finite numbers that nothing reads.
   void Configure(const LauncherPlant& nominal, double tick_s) {
     earth_ = nominal.environment.earth;
     air_ = &nominal.environment.Air();
@@ -154,7 +154,7 @@ class StepState {
     SetLane(phase_.control_torque_n_m, lane, Zero<double>());
     MarkMoved(lane);
   }
-  /// Lets go of what belongs to the flight. The lane computes on, for nobody.
+  /// Lets go of what belongs to the flight. The lane computes on, and nothing reads its values.
   void EndFlight(int lane) {
     plant_.weather.profile[lane] = nullptr;
     plant_.burn.curve[lane] = nullptr;

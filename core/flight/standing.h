@@ -38,7 +38,7 @@ struct Standing {
   T lost_ticks;  ///< for which the attitude has been lost
   T steps_a_tick;
 
-  /// No lane flies: each computes along on numbers that do no harm.
+  /// No lane flies. Each computes with finite numbers that nothing reads.
   void Reset() {
     live = coasting = unsteered = NoLane<T>();
     time_s = tick = next_tick = lost_ticks = T(0.0);

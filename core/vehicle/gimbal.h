@@ -105,7 +105,7 @@ inline void Describe(Fields& fields, Gimbal& gimbal) {
   });
 }
 
-/// In place of a gimbal. Its drives stay at rest; their numbers do no harm.
+/// In place of a gimbal. Its drives stay at rest. Their numbers are finite, and nothing reads them.
 inline Gimbal FixedNozzle(double station_m) {
   Gimbal gimbal;
   gimbal.fixed = true;

@@ -35,7 +35,7 @@ struct DrainingMassOf {
   T first_per_kg_m = T(0.0), first_per_kg2_m = T(0.0);  ///< first moment m (a + b m)
   /// Second moment m (a + b m + c m²).
   T second_per_kg_m2 = T(0.0), second_per_kg2_m2 = T(0.0), second_per_kg3_m2 = T(0.0);
-  /// Of a mixture that differs from the tanks' loads: what both moments have besides (MixtureOf).
+  /// Added to both moments by a mixture that differs from the tanks' loads (MixtureOf).
   T first_kg_m = T(0.0), second_kg_m2 = T(0.0);
 };
 using DrainingMass = DrainingMassOf<double>;

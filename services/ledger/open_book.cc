@@ -26,7 +26,7 @@ bool HasResults(const fs::path& directory) {
   return fs::is_regular_file(directory / "results.sqlite", error);
 }
 
-// Who flew each case goes with it: what a worker forged is found out and removed here, too.
+// The worker of each case comes along with it. So the results of a forger are removed here, too.
 class Fliers {
  public:
   explicit Fliers(const ResultFolder& folder) {

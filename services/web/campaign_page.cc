@@ -24,15 +24,18 @@ std::string Bounds(const RequirementOutcome& one) {
 
 std::string RequirementTable(const CampaignRow& row) {
   if (row.requirements.empty()) return "";
-  HtmlTable table({{"Requirement"},
-                   {row.has_ended ? "Verdict" : "So far"},
-                   {"Failures", true},
-                   {"Flights that meet it"},
-                   {""}});
+  std::vector<HtmlTable::Column> columns = {
+      {"Requirement"}, {row.has_ended ? "Verdict" : "So far"}, {"Failures", true}};
+  if (row.has_ended) columns.push_back({"Flights that meet it"});
+  columns.push_back({""});
+  HtmlTable table(columns);
   for (const RequirementOutcome& one : row.requirements) {
     const std::string verdict = row.has_ended ? VerdictBadge(HtmlText(one.verdict)) : HtmlText(one.verdict);
-    table.Row({HtmlText(one.words), verdict, fmt::format("{} of {}", one.failures, one.n), Bounds(one),
-               fmt::format("<a href=\"/trend?metric={}\">trend</a>", UrlText(one.metric))});
+    std::vector<std::string> cells = {HtmlText(one.words), verdict,
+                                      fmt::format("{} of {}", one.failures, one.n)};
+    if (row.has_ended) cells.push_back(Bounds(one));
+    cells.push_back(fmt::format("<a href=\"/trend?metric={}\">trend</a>", UrlText(one.metric)));
+    table.Row(cells);
   }
   return "<h2>Requirements</h2>\n" + table.Html();
 }

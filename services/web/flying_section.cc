@@ -16,16 +16,23 @@ namespace {
 
 constexpr std::size_t kMaxWorkers = 50;
 
+/// Of equal values the one bin is as narrow as doubles are.
+bool IsOfOneValue(const LiveHistogram& histogram) {
+  return histogram.counts.size() == 1 && histogram.width < 1e-9 * std::max(1.0, std::fabs(histogram.low));
+}
+
 std::string HistogramFigure(const LiveHistogram& histogram, std::uint64_t cases) {
   const MetricInfo info = DescribeMetric(histogram.metric);
+  if (IsOfOneValue(histogram))
+    return fmt::format("<p>{}: {} in all {} completed flights.</p>\n", HtmlText(info.title),
+                       HtmlText(WithUnit(histogram.low, info.unit)), histogram.n);
   std::vector<double> edges;
   for (std::size_t i = 0; i <= histogram.counts.size(); ++i)
     edges.push_back(histogram.low + static_cast<double>(i) * histogram.width);
   SvgChart bars({.label = info.title + (info.unit.empty() ? "" : ", " + info.unit)}, {.label = "cases"}, 520,
                 250);
   bars.Bars(edges, histogram.counts, "");
-  std::string legend = "limit";
-  for (const double limit : histogram.limits) bars.VerticalLimit(limit, std::exchange(legend, ""));
+  for (const double limit : histogram.limits) bars.VerticalLimit(limit, "limit " + StatedText(limit));
   const std::uint64_t n = histogram.n;
   const std::string without =
       cases > n ? fmt::format(" {} of {} cases are lost or do not define the metric.", cases - n, cases) : "";

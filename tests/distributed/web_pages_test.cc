@@ -166,14 +166,16 @@ TEST(WebCampaign, WhileItFliesShowsHistogramsAndWorkers) {
   row.done = 30;
   row.histograms = {{"pitch_error_peak_deg", 28, 0.0, 0.5, {10, 18}, {0.9}},
                     {"apogee_km", 30, 180.0, 20.0, {10, 20}, {185.0, 215.0}},
-                    {"q_max_pa", 0, 0.0, 0.0, {}, {}}};
+                    {"q_max_pa", 0, 0.0, 0.0, {}, {}},
+                    {"deflection_limit_cycle_deg", 28, 0.0, 1e-300, {28}, {0.2}}};
   std::vector<WorkerRow> workers = {{"0123456789ab", "<b>host", "flying", 3, 17}};
   const auto part = [&] {
     return CampaignPart(CampaignIndex({std::make_shared<CampaignRow>(row)}, workers), row, false);
   };
   std::string shown = part();
   EXPECT_EQ(Count(shown, "<svg class=\"chart\""), 2u);
-  EXPECT_EQ(Count(shown, "class=\"limit\""), 3u);
+  for (const char* limit : {"limit 0.9<", "limit 185<", "limit 215<"}) EXPECT_THAT(shown, HasSubstr(limit));
+  EXPECT_THAT(shown, HasSubstr("Limit cycle of the deflection: 0 ° in all 28 completed flights."));
   EXPECT_THAT(shown,
               HasSubstr("Pitch error, peak: histogram of 28 completed flights. 2 of 30 cases are lost"));
   EXPECT_THAT(shown, HasSubstr("histogram of 30 completed flights.</figcaption>"));
