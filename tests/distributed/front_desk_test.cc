@@ -444,7 +444,7 @@ TEST_F(FrontDeskTest, TheWebPagesCountWhatWasFlown) {
   ASSERT_EQ(index->workers().size(), 1u);
   EXPECT_EQ(index->workers()[0].id, "w");
   EXPECT_EQ(index->workers()[0].slots, 3);
-  EXPECT_EQ(index->workers()[0].flown, 3u);
+  EXPECT_EQ(index->workers()[0].state, "ready");
 }
 
 // Two clients with keys, and an administrator.

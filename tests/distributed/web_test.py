@@ -4,13 +4,15 @@ were flown, for those who come late and after a coordinator's death too.
 Environment as of processes.py. tests/browser/application_test.py looks at the page itself.
 """
 import csv
+import io
 import json
 import math
 import os
 import re
+import subprocess
 import urllib.request
 
-from processes import CAMPAIGN, PATIENCE_S, main, stored, wait_for
+from processes import BINARIES, CAMPAIGN, PATIENCE_S, main, stored, wait_for
 from service_case import ServiceCase
 
 CASES = 60
@@ -86,7 +88,7 @@ class WebTest(ServiceCase):
         results = self.data / identity / "results"
         wait_for(lambda: not json.loads(self.dispersa("status", "--json"))["workers"], "the worker's end")
         wait_for(lambda: stored(results) == self.status(identity)["done"], "what came is stored")
-        wait_for(lambda: f"<td class=\"number\">0 of {stored(results)}</td>" in self.part(identity), "all that was flown")
+        wait_for(lambda: f">0 of {stored(results)}</td>" in self.part(identity), "all that was flown")
         before = self.histograms(identity)
         figures = bars(before)
         done = self.dispersa("status", identity, "--json")
@@ -105,11 +107,11 @@ class WebTest(ServiceCase):
                 self.assertEqual(sum(low <= value < high for value in values), count, (title, low, high))
 
     def rows_of(self, identity):
-        out = self.data / "fetched"
         wait_for(lambda: self.status(identity)["state"] == "cancelled", "the end")
-        self.dispersa("fetch", identity, "--out", out, code=5)
-        with (out / "cases.csv").open(newline="") as file:
-            return list(csv.DictReader(file))
+        rows = subprocess.run([BINARIES / "dispersa", "export", self.fetch(identity), "--format", "csv", "--out", "-"],
+                              capture_output=True, text=True, timeout=PATIENCE_S)
+        self.assertEqual(rows.returncode, 5, rows.stderr)  # it lacks cases
+        return list(csv.DictReader(io.StringIO(rows.stdout)))
 
 
 if __name__ == "__main__":
