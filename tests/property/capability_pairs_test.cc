@@ -1,18 +1,6 @@
 // Every pair of the vehicle's capabilities in one launcher: it flies to its end, in any number of lanes with
 // the same bits, and neither mass nor momentum appears or vanishes. The page of capabilities is written from
 // what this test finds.
-#include <gtest/gtest.h>
-
-#include <algorithm>
-#include <cmath>
-#include <cstdlib>
-#include <fstream>
-#include <functional>
-#include <iterator>
-#include <string>
-#include <string_view>
-#include <vector>
-
 #include "core/campaign/flight_definition.h"
 #include "core/campaign/free_flight.h"
 #include "core/campaign_yaml/load.h"
@@ -30,6 +18,7 @@
 #include "tests/liquid_stage.h"
 #include "tests/slv4_flight.h"
 #include "tests/tabulated_masses.h"
+#include "tests/test.h"
 
 namespace dispersa::capability_pairs_test {
 namespace {

@@ -1,14 +1,7 @@
 // The promises of every control law (core/control/law.h): its state is only in the memory that it is given,
 // lanes do not affect each other, and a stage begins as its configuration says.
-#include <gmock/gmock.h>
-#include <gtest/gtest.h>
-
-#include <cmath>
-#include <cstring>
-#include <random>
-#include <vector>
-
 #include "core/control/axis_step.h"
+#include "tests/test.h"
 #include "tests/unit/sample_vehicle.h"
 
 namespace dispersa::control_laws_test {

@@ -1,12 +1,8 @@
 // A flight is a pure function of its arguments. Flights before it or beside it, and its thread, do not change
 // it.
-#include <gtest/gtest.h>
-
-#include <thread>
-#include <vector>
-
 #include "core/cases/campaign_flights.h"
 #include "tests/slv4_flight.h"
+#include "tests/test.h"
 
 namespace dispersa::flight_determinism_test {
 namespace {

@@ -1,14 +1,6 @@
 // Flights side by side are the flights alone, bit by bit: for any number of lanes, instruction set, order and
 // neighbours, under every input that a case may draw.
-#include <gtest/gtest.h>
 #include <sys/mman.h>
-
-#include <algorithm>
-#include <cmath>
-#include <memory>
-#include <new>
-#include <numeric>
-#include <vector>
 
 #include "core/campaign/flight_definition.h"
 #include "core/campaign_yaml/load.h"
@@ -19,6 +11,7 @@
 #include "tests/liquid_stage.h"
 #include "tests/slv4_flight.h"
 #include "tests/tabulated_masses.h"
+#include "tests/test.h"
 
 namespace dispersa::flight_lanes_test {
 namespace {

@@ -1,19 +1,5 @@
 // Damaged files: a YAML file or a stored database with any content. The answer is the content, or an error
 // that names the damage. It is never a wrong number. tests/fuzz.h: the number of each kind, and their seed.
-#include <gtest/gtest.h>
-
-#include <algorithm>
-#include <cstdint>
-#include <filesystem>
-#include <fstream>
-#include <functional>
-#include <iterator>
-#include <map>
-#include <random>
-#include <string>
-#include <string_view>
-#include <vector>
-
 #include "core/campaign_yaml/load.h"
 #include "core/flight/flight_inputs.h"
 #include "core/flight/metrics.h"
@@ -22,6 +8,7 @@
 #include "tests/every_metric.h"
 #include "tests/fuzz.h"
 #include "tests/nominal_inputs.h"
+#include "tests/test.h"
 
 namespace dispersa::hostile_files_test {
 namespace {
@@ -54,43 +41,15 @@ class HostileFiles : public testing::Test {
 
   /// Two to eight changes of the kind that an editor, a merge or an attacker makes.
   std::string DamagedText(std::string text) {
-    static constexpr std::string_view kTokens[] = {": ",
-                                                   "- ",
-                                                   "{",
-                                                   "}",
-                                                   "[",
-                                                   "]",
-                                                   ",",
-                                                   "&a ",
-                                                   "*a",
-                                                   "<<: *a",
-                                                   "!!binary ",
-                                                   "\n",
-                                                   "\t",
-                                                   "  ",
-                                                   "|\n",
-                                                   ">\n",
-                                                   "\"",
-                                                   "'",
-                                                   "#",
-                                                   "---\n",
-                                                   "...",
-                                                   "?",
-                                                   "1e999",
-                                                   "-1e999",
-                                                   ".nan",
-                                                   "-.inf",
-                                                   "0x7f",
-                                                   "null",
-                                                   "true",
-                                                   "~",
-                                                   "-0",
-                                                   "1e-320",
-                                                   "-1",
-                                                   "99999999999999999999",
-                                                   "\xff",
-                                                   "\xc0\x80",
-                                                   std::string_view("\0", 1)};
+    static const std::vector<std::string> tokens = [] {
+      std::vector<std::string> all = Words(
+          R"({ } [ ] , *a " ' # ... ? 1e999 -1e999 .nan -.inf 0x7f null true ~ -0 1e-320 -1 99999999999999999999)");
+      for (const char* other : {": ", "- ", "&a ", "<<: *a", "!!binary ", "\n", "\t", "  ", "|\n", ">\n",
+                                "---\n", "\xff", "\xc0\x80"})
+        all.emplace_back(other);
+      all.emplace_back(1, '\0');
+      return all;
+    }();
     for (std::size_t changes = 2 + Below(7); changes > 0 && !text.empty(); --changes) {
       const std::size_t at = Below(text.size());
       const std::size_t length = std::min(text.size() - at, 1 + Below(40));
@@ -106,11 +65,11 @@ class HostileFiles : public testing::Test {
           break;
         case 3: {  // a number or word becomes another one
           const std::size_t end = text.find_first_of(" ,]}\n", at);
-          text.replace(at, std::min(end, text.size()) - at, kTokens[Below(std::size(kTokens))]);
+          text.replace(at, std::min(end, text.size()) - at, tokens[Below(tokens.size())]);
           break;
         }
         default:
-          text.insert(at, kTokens[Below(std::size(kTokens))]);
+          text.insert(at, tokens[Below(tokens.size())]);
       }
     }
     return text;

@@ -1,15 +1,8 @@
 // Every field of an autopilot counts. Changing one field changes the autopilot's text and the campaign's
 // flight id, and the text reads back to the field.
-#include <gtest/gtest.h>
-
-#include <functional>
-#include <map>
-#include <ostream>
-#include <string>
-#include <vector>
-
 #include "core/campaign_yaml/load.h"
 #include "core/math/constants.h"
+#include "tests/test.h"
 #include "tests/unit/input_files.h"
 
 namespace dispersa::law_fields_test {

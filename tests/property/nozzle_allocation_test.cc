@@ -1,16 +1,10 @@
 // Commands to drives and back, for random layouts: one to four nozzles anywhere, with none to two hinges
 // each, alone and side by side.
-#include <gtest/gtest.h>
-
-#include <algorithm>
-#include <cmath>
-#include <string>
-#include <vector>
-
 #include "core/flight/nozzle_allocation.h"
 #include "core/math/constants.h"
 #include "core/random/draws.h"
 #include "core/vehicle/vehicle.h"
+#include "tests/test.h"
 
 namespace dispersa::nozzle_allocation_test {
 namespace {

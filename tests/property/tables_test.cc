@@ -1,13 +1,7 @@
 // Table look-up on random grids, against a linear search and the definition of a straight line.
-#include <gtest/gtest.h>
-
-#include <algorithm>
-#include <cmath>
-#include <limits>
-#include <string>
-
 #include "core/math/table.h"
 #include "core/random/draws.h"
+#include "tests/test.h"
 
 namespace dispersa::tables_test {
 namespace {

@@ -1,19 +1,14 @@
 #include "core/analysis/flight_bands.h"
 
-#include <gmock/gmock.h>
-
-#include <cmath>
-#include <numeric>
-
 #include "core/analysis/band_counter.h"
 #include "core/random/draws.h"
+#include "tests/test.h"
 #include "tests/unit/made_up_results.h"
 
 namespace dispersa::analysis_bands_test {
 namespace {
 
 using report_test::kNaN;
-using testing::ElementsAre;
 
 constexpr double kStep_s = 0.2;
 

@@ -1,19 +1,12 @@
 // Which change a comparison names, and the values that it shows with it.
-#include <gmock/gmock.h>
-#include <gtest/gtest.h>
-
-#include <cstdint>
-#include <vector>
-
+#include "tests/test.h"
 #include "tests/unit/comparison_sample.h"
 
 namespace dispersa::analysis_comparison_changes_test {
 namespace {
 
-using comparison_sample::Columns;
-using comparison_sample::CompareColumns;
+using namespace comparison_sample;
 using report_test::PeakBelow;
-using testing::HasSubstr;
 
 constexpr char kRms[] = "pitch_error_rms_deg";
 

@@ -1,22 +1,14 @@
 // Every number of a comparison lies inside its interval, for any sense of its metric and any direction of the
 // change.
-#include <gtest/gtest.h>
-
-#include <algorithm>
-#include <cmath>
-#include <map>
-#include <string>
-#include <vector>
-
 #include "core/random/draws.h"
 #include "core/statistics/intervals.h"
+#include "tests/test.h"
 #include "tests/unit/comparison_sample.h"
 
 namespace dispersa::analysis_comparison_intervals_test {
 namespace {
 
-using comparison_sample::Columns;
-using comparison_sample::CompareColumns;
+using namespace comparison_sample;
 
 constexpr std::size_t kCases = 80;
 

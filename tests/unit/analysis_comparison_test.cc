@@ -1,28 +1,18 @@
 // Pairing of cases, and the statements about two campaigns.
 #include "core/analysis/comparison.h"
 
-#include <gmock/gmock.h>
-#include <gtest/gtest.h>
-
-#include <cmath>
 #include <nlohmann/json.hpp>
 
 #include "core/analysis/load_check.h"
 #include "core/analysis/requirement_summary.h"
+#include "tests/test.h"
 #include "tests/unit/comparison_sample.h"
 
 namespace dispersa::analysis_comparison_test {
 namespace {
 
-using comparison_sample::Columns;
-using comparison_sample::CompareColumns;
+using namespace comparison_sample;
 using report_test::MakeCampaign;
-using testing::AllOf;
-using testing::ElementsAre;
-using testing::HasSubstr;
-using testing::IsEmpty;
-using testing::Not;
-using testing::StartsWith;
 
 constexpr char kMetric[] = "pitch_error_rms_deg";
 

@@ -1,28 +1,29 @@
 // Moments and words of each distribution in a report: moments in closed form, and full texts.
-#include <gtest/gtest.h>
-
-#include <cmath>
-#include <numbers>
-#include <ostream>
-#include <string>
-#include <vector>
-
 #include "core/analysis/dispersion_summary.h"
+#include "tests/test.h"
+#include "tests/unit/distributions.h"
 #include "tests/unit/made_up_results.h"
 
 namespace dispersa::analysis_dispersion_laws_test {
 namespace {
 
+using made_up::Empirical;
+using made_up::LogNormal;
+using made_up::Normal;
+using made_up::Rayleigh;
+using made_up::Triangular;
+using made_up::TruncatedNormal;
+using made_up::TwoPoint;
+using made_up::Uniform;
+using made_up::Values;
 using std::numbers::pi;
 
 struct Law {
   const char* name;
   ScalarDistribution distribution;
-  bool absolute;
   double mean, std;  ///< in closed form
-  const char* words;
-  double tolerance =
-      1e-12;  ///< of a law that is integrated over 20,000 quantiles: what its tails' last one leaves out
+  std::string words;
+  double tolerance = 1e-12;
 };
 void PrintTo(const Law& law, std::ostream* out) { *out << law.name; }
 
@@ -34,94 +35,29 @@ std::vector<Law> Laws() {
   const double kept = 2.0 * Below(1.5) - 1.0;
   // Of |x|, x normal about 1 with a deviation of 2.
   const double folded = 4.0 * Density(0.5) + 1.0 - 2.0 * Below(-0.5);
+  constexpr double kIntegrated = 1e-3;  // over 20,000 quantiles: what its tails' last one leaves out
   return {
-      {"TwoPoint",
-       {.kind = Distribution::kTwoPoint, .nominal = 1.0, .low = 0.9, .high = 1.3, .values = {}},
-       false,
-       1.1,
-       0.2,
-       "0.9 or 1.3"},
-      {"Uniform",
-       {.kind = Distribution::kUniform, .low = 2.0, .high = 5.0, .values = {}},
-       false,
-       3.5,
-       3.0 / std::sqrt(12.0),
-       "uniform, 2 to 5"},
-      {"FoldedNormal",
-       {.kind = Distribution::kNormal, .nominal = 1.0, .sigma = 2.0, .values = {}},
-       true,
-       folded,
-       std::sqrt(5.0 - folded * folded),
+      {"TwoPoint", TwoPoint(1.0, 0.9, 1.3), 1.1, 0.2, "0.9 or 1.3"},
+      {"Uniform", Uniform(2.0, 5.0), 3.5, 3.0 / std::sqrt(12.0), "uniform, 2 to 5"},
+      {"FoldedNormal", Normal(1.0, 2.0), folded, std::sqrt(5.0 - folded * folded),
        "magnitude of normal, mean 1, 3σ 6"},
-      {"LogNormal",
-       {.kind = Distribution::kLogNormal, .nominal = 3.0, .sigma = 0.2, .values = {}},
-       false,
-       3.0 * std::sqrt(e),
-       3.0 * std::sqrt(e * (e - 1.0)),
-       "lognormal, median 3, σ of the logarithm 0.2",
-       1e-3},
-      {"Rayleigh",
-       {.kind = Distribution::kRayleigh, .sigma = 2.0, .values = {}},
-       false,
-       2.0 * std::sqrt(0.5 * pi),
-       2.0 * std::sqrt(2.0 - 0.5 * pi),
-       "Rayleigh, σ 2",
-       1e-3},
-      {"Triangular",
-       {.kind = Distribution::kTriangular, .nominal = 2.0, .low = 1.0, .high = 6.0, .values = {}},
-       false,
-       3.0,
-       std::sqrt((1.0 + 36.0 + 4.0 - 6.0 - 2.0 - 12.0) / 18.0),
-       "triangular, 1 to 6, mode 2",
-       1e-3},
-      {"TruncatedNormal",
-       {.kind = Distribution::kTruncatedNormal,
-        .nominal = 4.0,
-        .sigma = 2.0,
-        .low = 1.0,
-        .high = 7.0,
-        .values = {}},
-       false,
-       4.0,
-       2.0 * std::sqrt(1.0 - 3.0 * Density(1.5) / kept),
-       "normal, mean 4, 3σ 6, truncated to 1 to 7",
-       1e-3},
-      {"TruncatedOnOneSide",
-       {.kind = Distribution::kTruncatedNormal,
-        .nominal = 0.0,
-        .sigma = 1.0,
-        .low = 0.0,
-        .high = 20.0,
-        .values = {}},
-       false,
-       std::sqrt(2.0 / pi),
-       std::sqrt(1.0 - 2.0 / pi),
-       "normal, mean 0, 3σ 3, truncated to 0 to 20",
-       1e-3},
-      {"Empirical",
-       {.kind = Distribution::kEmpirical, .values = {1.0, 3.0}},
-       false,
-       2.0,
-       2.0 / std::sqrt(12.0),
-       "as a sample of 2, 1 to 3",
-       1e-3},
-      {"Values",
-       {.kind = Distribution::kValues, .values = {1.0, 2.0, 6.0}},
-       false,
-       3.0,
-       std::sqrt(14.0 / 3.0),
-       "one of 1 2 6"},
-      {"WeightedValues",
-       {.kind = Distribution::kValues, .values = {-1.0, 3.0}, .weights = {3.0, 1.0}},
-       false,
-       0.0,
-       std::sqrt(3.0),
+      {"LogNormal", LogNormal(3.0, 0.2), 3.0 * std::sqrt(e), 3.0 * std::sqrt(e * (e - 1.0)),
+       "lognormal, median 3, σ of the logarithm 0.2", kIntegrated},
+      {"Rayleigh", Rayleigh(2.0), 2.0 * std::sqrt(0.5 * pi), 2.0 * std::sqrt(2.0 - 0.5 * pi), "Rayleigh, σ 2",
+       kIntegrated},
+      {"Triangular", Triangular(1.0, 2.0, 6.0), 3.0, std::sqrt((1.0 + 36.0 + 4.0 - 6.0 - 2.0 - 12.0) / 18.0),
+       "triangular, 1 to 6, mode 2", kIntegrated},
+      {"TruncatedNormal", TruncatedNormal(4.0, 2.0, 1.0, 7.0), 4.0,
+       2.0 * std::sqrt(1.0 - 3.0 * Density(1.5) / kept), "normal, mean 4, 3σ 6, truncated to 1 to 7",
+       kIntegrated},
+      {"TruncatedOnOneSide", TruncatedNormal(0.0, 1.0, 0.0, 20.0), std::sqrt(2.0 / pi),
+       std::sqrt(1.0 - 2.0 / pi), "normal, mean 0, 3σ 3, truncated to 0 to 20", kIntegrated},
+      {"Empirical", Empirical({1.0, 3.0}), 2.0, 2.0 / std::sqrt(12.0), "as a sample of 2, 1 to 3",
+       kIntegrated},
+      {"Values", Values({1.0, 2.0, 6.0}), 3.0, std::sqrt(14.0 / 3.0), "one of 1 2 6"},
+      {"WeightedValues", Values({-1.0, 3.0}, {3.0, 1.0}), 0.0, std::sqrt(3.0),
        "one of -1 3 with weights 3 1"},
-      {"MagnitudesOfWeightedValues",
-       {.kind = Distribution::kValues, .values = {-1.0, 3.0}, .weights = {3.0, 1.0}},
-       true,
-       1.5,
-       std::sqrt(0.75),
+      {"MagnitudesOfWeightedValues", Values({-1.0, 3.0}, {3.0, 1.0}), 1.5, std::sqrt(0.75),
        "magnitude of one of -1 3 with weights 3 1"},
   };
 }
@@ -131,7 +67,7 @@ DispersionSummary Summarized(const Law& law, const char* input, double unit) {
   Dispersion dispersion;
   dispersion.name = input;
   dispersion.distribution = law.distribution;
-  dispersion.absolute = law.absolute;
+  dispersion.absolute = law.words.starts_with("magnitude");
   dispersion.inputs = {FindInput(input)};
   ScalarDistribution& d = dispersion.distribution;
   // The spread of a logarithm has no unit.

@@ -1,12 +1,7 @@
 // The report shows a dispersion that did not reach the flights, or reached them wrongly.
 #include "core/analysis/dispersion_summary.h"
 
-#include <gtest/gtest.h>
-
-#include <cmath>
-#include <numbers>
-#include <random>
-
+#include "tests/test.h"
 #include "tests/unit/made_up_results.h"
 
 namespace dispersa::analysis_dispersions_test {

@@ -1,15 +1,9 @@
 // Causes that were planted into made-up flights are found, whatever their form; where none was, none is.
 #include "core/analysis/drivers.h"
 
-#include <cmath>
-#include <set>
-#include <string>
-#include <vector>
-
-#include <gmock/gmock.h>
-
 #include "core/math/constants.h"
 #include "core/random/draws.h"
+#include "tests/test.h"
 #include "tests/unit/made_up_results.h"
 
 namespace dispersa::analysis_drivers_test {

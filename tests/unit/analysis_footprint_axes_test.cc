@@ -1,16 +1,10 @@
 // Impact points of known covariance, turned to every azimuth: their ellipses in GeoJSON and KML. Places are
 // computed from the radii of curvature of the ellipsoid, which the product does not use.
-#include <gmock/gmock.h>
-#include <gtest/gtest.h>
-
-#include <array>
-#include <cmath>
 #include <nlohmann/json.hpp>
-#include <string>
-#include <vector>
 
 #include "core/analysis/footprints.h"
 #include "core/math/constants.h"
+#include "tests/test.h"
 #include "tests/unit/made_up_results.h"
 
 namespace dispersa::analysis_footprint_axes_test {

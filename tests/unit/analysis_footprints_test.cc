@@ -1,13 +1,10 @@
 #include "core/analysis/footprints.h"
 
-#include <cmath>
-
-#include <gmock/gmock.h>
-#include <gtest/gtest.h>
 #include <nlohmann/json.hpp>
 
 #include "core/math/constants.h"
 #include "core/random/draws.h"
+#include "tests/test.h"
 #include "tests/unit/made_up_results.h"
 
 namespace dispersa::analysis_footprints_test {

@@ -1,12 +1,8 @@
 #include "core/analysis/injection_summary.h"
 #include "core/pages/report_sections.h"
 
-#include <cmath>
-
-#include <gmock/gmock.h>
-#include <gtest/gtest.h>
-
 #include "core/random/draws.h"
+#include "tests/test.h"
 #include "tests/unit/made_up_results.h"
 
 namespace dispersa::analysis_injection_test {

@@ -1,14 +1,11 @@
 // Flights that show no more than one of them, with the full sentences.
 #include "core/analysis/likeness.h"
 
-#include <gtest/gtest.h>
-
-#include <string>
-
 #include "core/analysis/campaign_summary.h"
 #include "core/campaign_yaml/load.h"
 #include "core/cases/campaign_flights.h"
 #include "core/results/result_folder.h"
+#include "tests/test.h"
 #include "tests/unit/input_files.h"
 
 namespace dispersa::analysis_likeness_test {

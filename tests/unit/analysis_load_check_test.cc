@@ -2,29 +2,17 @@
 // not define the metric, and cases of another engine.
 #include "core/analysis/load_check.h"
 
-#include <gmock/gmock.h>
-#include <gtest/gtest.h>
-
-#include <cstdint>
-#include <limits>
 #include <nlohmann/json.hpp>
-#include <string>
-#include <vector>
 
 #include "core/analysis/campaign_summary.h"
 #include "core/analysis/junit.h"
+#include "tests/test.h"
 #include "tests/unit/made_up_results.h"
 
 namespace dispersa::analysis_load_check_test {
 namespace {
 
-using report_test::kPeak;
-using report_test::MakeCampaign;
-using report_test::MakeCase;
-using report_test::PeakBelow;
-using report_test::TemporaryFolder;
-using testing::HasSubstr;
-using testing::Not;
+using namespace report_test;
 
 /// All flights with a peak of 0.1; of the first `beyond` a dynamic pressure beyond the limit.
 CampaignSummary Flown(Campaign campaign, std::uint64_t beyond, std::uint64_t unmeasured = 0,

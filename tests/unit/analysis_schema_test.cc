@@ -1,10 +1,8 @@
 // summary.json conforms to its published schema, core/analysis/summary.schema.json.
-#include <fstream>
-
-#include <gmock/gmock.h>
 #include <nlohmann/json.hpp>
 
 #include "core/analysis/campaign_summary.h"
+#include "tests/test.h"
 #include "tests/unit/made_up_results.h"
 
 namespace dispersa::analysis_schema_test {

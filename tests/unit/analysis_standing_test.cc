@@ -2,26 +2,15 @@
 // what the standing makes of looks and advice.
 #include "core/analysis/standing.h"
 
-#include <gmock/gmock.h>
-#include <gtest/gtest.h>
-
-#include <cstdint>
-#include <set>
-#include <string>
-#include <vector>
-
 #include "core/analysis/campaign_summary.h"
 #include "core/analysis/stopping_rule.h"
+#include "tests/test.h"
 #include "tests/unit/made_up_results.h"
 
 namespace dispersa::analysis_standing_test {
 namespace {
 
-using report_test::kPeak;
-using report_test::MakeCampaign;
-using report_test::MakeCase;
-using report_test::PeakBelow;
-using report_test::TemporaryFolder;
+using namespace report_test;
 
 constexpr std::uint64_t kSeed = 7;  // of MakeCampaign()
 constexpr char kId[] = "own";

@@ -1,26 +1,14 @@
 // Campaigns with gaps and losses: case indices that differ from rows, several lost flights, several
 // requirements.
-#include <gmock/gmock.h>
-#include <gtest/gtest.h>
-
-#include <cstdint>
-#include <string>
-#include <vector>
-
 #include "core/analysis/campaign_summary.h"
 #include "core/analysis/stopping_rule.h"
+#include "tests/test.h"
 #include "tests/unit/made_up_results.h"
 
 namespace dispersa::analysis_summary_gaps_test {
 namespace {
 
-using report_test::kPeak;
-using report_test::MakeCampaign;
-using report_test::MakeCase;
-using report_test::PeakBelow;
-using report_test::TemporaryFolder;
-using testing::ElementsAre;
-using testing::HasSubstr;
+using namespace report_test;
 
 /// Of twelve cases those that are listed have a result.
 CampaignSummary SummaryOf(const Campaign& campaign, const std::vector<CaseResult>& results) {

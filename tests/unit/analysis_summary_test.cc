@@ -1,29 +1,19 @@
 // The numbers of summary.json against numbers worked out by hand.
 #include "core/analysis/campaign_summary.h"
 
-#include <gmock/gmock.h>
-
-#include <cmath>
-#include <limits>
 #include <nlohmann/json.hpp>
-#include <utility>
 
 #include "core/analysis/junit.h"
 #include "core/analysis/load_check.h"
 #include "core/analysis/stopping_rule.h"
 #include "core/flight/engine_version.h"
+#include "tests/test.h"
 #include "tests/unit/made_up_results.h"
 
 namespace dispersa::analysis_summary_test {
 namespace {
 
-using report_test::kNaN;
-using report_test::kPeak;
-using report_test::MakeCampaign;
-using report_test::MakeCase;
-using report_test::PeakBelow;
-using report_test::TemporaryFolder;
-using testing::ElementsAre;
+using namespace report_test;
 
 /// n completed cases whose peak is 0.1, but for the first `failures`, whose peak is 0.9.
 CaseColumns Columns(std::size_t n, std::size_t failures) {
@@ -38,10 +28,16 @@ CaseColumns Columns(std::size_t n, std::size_t failures) {
   return cases;
 }
 
+/// Of independent cases.
+RequirementSummary Judged(const Requirement& requirement, const CaseColumns& cases,
+                          std::int64_t missing = 0) {
+  return Judge(requirement, SamplingMethod::kMonteCarlo, cases, missing);
+}
+
 TEST(Judge, NeedsTheCasesOfTheExactBinomial) {
   // 99.73 % at 10 % consumer risk: 852 cases without a failure, 1440 with one (0.9973^852 = 0.0999).
   const Requirement requirement = PeakBelow(0.5, 0.9973, 0.10);
-  const RequirementSummary enough = Judge(requirement, SamplingMethod::kMonteCarlo, Columns(852, 0), 0);
+  const RequirementSummary enough = Judged(requirement, Columns(852, 0));
   EXPECT_EQ(enough.verdict, "pass");
   EXPECT_FALSE(enough.cases_needed.has_value());
   EXPECT_NEAR(*enough.success_lower, std::pow(0.10, 1.0 / 852), 1e-12);  // Clopper-Pearson without a failure
@@ -49,24 +45,23 @@ TEST(Judge, NeedsTheCasesOfTheExactBinomial) {
             "0 of 852 flights broke the limit. With 90 % confidence at least 99.7301 % of flights meet it; "
             "99.73 % required.");
 
-  const RequirementSummary one_less = Judge(requirement, SamplingMethod::kMonteCarlo, Columns(851, 0), 0);
+  const RequirementSummary one_less = Judged(requirement, Columns(851, 0));
   EXPECT_EQ(one_less.verdict, "inconclusive");
   EXPECT_EQ(one_less.cases_needed, 852);
 
-  const RequirementSummary one_failure = Judge(requirement, SamplingMethod::kMonteCarlo, Columns(852, 1), 0);
+  const RequirementSummary one_failure = Judged(requirement, Columns(852, 1));
   EXPECT_EQ(one_failure.verdict, "inconclusive");
   EXPECT_EQ(one_failure.failures, 1);
   EXPECT_EQ(one_failure.cases_needed, 1440);
 
   // Ten failures in 200 cases: a design with 99.73 % would show so many with a probability below 1e-9.
-  const RequirementSummary failed = Judge(requirement, SamplingMethod::kMonteCarlo, Columns(200, 10), 0);
+  const RequirementSummary failed = Judged(requirement, Columns(200, 10));
   EXPECT_EQ(failed.verdict, "fail");
 }
 
 TEST(Judge, SaysWhyNothingIsDecided) {
   // 200 cases without a failure: 0.1^(1/200) = 0.98855.
-  const RequirementSummary open =
-      Judge(PeakBelow(0.5, 0.9973, 0.10), SamplingMethod::kMonteCarlo, Columns(200, 0), 0);
+  const RequirementSummary open = Judged(PeakBelow(0.5, 0.9973, 0.10), Columns(200, 0));
   EXPECT_EQ(
       open.sentence,
       "0 of 200 flights broke the limit. Between 98.8 % and 100 % of flights meet it, each bound with 90 % "
@@ -77,9 +72,8 @@ TEST(Judge, SaysWhyNothingIsDecided) {
       "passes with a probability of 61 %. This one, extended, needs 1104 flights in all with no further "
       "failure (any-time rule).");
   // One flight says next to nothing, and so does the advice.
-  EXPECT_THAT(
-      AdviceSentence(Judge(PeakBelow(0.5, 0.9973, 0.10), SamplingMethod::kMonteCarlo, Columns(1, 0), 0)),
-      testing::HasSubstr("passes with a probability of 5.51 %"));
+  EXPECT_THAT(AdviceSentence(Judged(PeakBelow(0.5, 0.9973, 0.10), Columns(1, 0))),
+              testing::HasSubstr("passes with a probability of 5.51 %"));
 }
 
 TEST(Judge, SaysInOneSentenceWhatTheBoundMeans) {
@@ -87,14 +81,12 @@ TEST(Judge, SaysInOneSentenceWhatTheBoundMeans) {
   for (std::size_t i = 0; i < 2000; ++i)
     cases.metrics[MetricColumn(kPeak)][i] = 0.1 + 1e-4 * static_cast<double>(i);  // bound 0.2997
   const auto sentence = [&](double limit) {
-    return BoundSentence(Judge(PeakBelow(limit, 0.9973, 0.10), SamplingMethod::kMonteCarlo, cases, 0), "°");
+    return BoundSentence(Judged(PeakBelow(limit, 0.9973, 0.10), cases), "°");
   };
   EXPECT_EQ(sentence(0.5), "With 90 % confidence 99.73 % of flights stay below 0.3 ° (limit 0.5 °).");
   // Rounded up so that it holds, but never over the limit that it keeps to.
   EXPECT_EQ(sentence(0.3), "With 90 % confidence 99.73 % of flights stay below 0.2997 ° (limit 0.3 °).");
-  EXPECT_EQ(
-      BoundSentence(Judge(PeakBelow(0.5, 0.9973, 0.10), SamplingMethod::kMonteCarlo, Columns(9, 0), 0), "°"),
-      "");
+  EXPECT_EQ(BoundSentence(Judged(PeakBelow(0.5, 0.9973, 0.10), Columns(9, 0)), "°"), "");
 }
 
 TEST(Judge, BoundsTheMetricByTheOrderStatisticThatDecides) {
@@ -103,30 +95,29 @@ TEST(Judge, BoundsTheMetricByTheOrderStatisticThatDecides) {
   for (std::size_t i = 0; i < 2000; ++i)
     cases.metrics[MetricColumn(kPeak)][i] = 0.1 + 1e-4 * static_cast<double>(i);
   const Requirement requirement = PeakBelow(0.5, 0.9973, 0.10);
-  const RequirementSummary summary = Judge(requirement, SamplingMethod::kMonteCarlo, cases, 0);
+  const RequirementSummary summary = Judged(requirement, cases);
   EXPECT_DOUBLE_EQ(*summary.bound, 0.1 + 1e-4 * 1997);
   EXPECT_DOUBLE_EQ(*summary.margin, 0.5 - (0.1 + 1e-4 * 1997));
   EXPECT_EQ(summary.verdict, "pass");
   // The requirement passes exactly when the bound keeps to the limit.
-  EXPECT_EQ(Judge(PeakBelow(*summary.bound, 0.9973, 0.10), SamplingMethod::kMonteCarlo, cases, 0).verdict,
-            "inconclusive");
+  EXPECT_EQ(Judged(PeakBelow(*summary.bound, 0.9973, 0.10), cases).verdict, "inconclusive");
   // Two lost flights are worse than any value; a third leaves no bound.
   cases.outcome[0] = cases.outcome[1] = Outcome::kLostControl;
-  EXPECT_DOUBLE_EQ(*Judge(requirement, SamplingMethod::kMonteCarlo, cases, 0).bound, 0.1 + 1e-4 * 1999);
+  EXPECT_DOUBLE_EQ(*Judged(requirement, cases).bound, 0.1 + 1e-4 * 1999);
   cases.outcome[2] = Outcome::kImpact;
-  EXPECT_FALSE(Judge(requirement, SamplingMethod::kMonteCarlo, cases, 0).bound.has_value());
-  EXPECT_FALSE(Judge(requirement, SamplingMethod::kMonteCarlo, Columns(851, 0), 0).bound.has_value());
+  EXPECT_FALSE(Judged(requirement, cases).bound.has_value());
+  EXPECT_FALSE(Judged(requirement, Columns(851, 0)).bound.has_value());
   // From below, and from both sides.
   const Requirement above = {
       .metric = kPeak, .below = std::nullopt, .above = 0.0, .probability = 0.9973, .consumer_risk = 0.1};
   CaseColumns ascending = Columns(852, 0);
   for (std::size_t i = 0; i < 852; ++i)
     ascending.metrics[MetricColumn(kPeak)][i] = 1.0 + static_cast<double>(i);
-  EXPECT_EQ(Judge(above, SamplingMethod::kMonteCarlo, ascending, 0).bound, 1.0);
+  EXPECT_EQ(Judged(above, ascending).bound, 1.0);
   Requirement within = PeakBelow(0.5, 0.9973, 0.10);
   within.below.reset();
   within.within = {{-10.0, 900.0}};
-  const RequirementSummary inside = Judge(within, SamplingMethod::kMonteCarlo, ascending, 0);
+  const RequirementSummary inside = Judged(within, ascending);
   EXPECT_EQ(inside.bound, 1.0);  // 11 from -10, nearer than 852 to 900
   EXPECT_EQ(inside.margin, 11.0);
   EXPECT_EQ(inside.failures, 0);
@@ -142,8 +133,7 @@ TEST(Judge, AMissingCaseIsWorseThanTheBound) {
     CaseColumns cases = Columns(2000 - missing, 0);
     for (std::size_t i = 0; i < cases.rows(); ++i)
       cases.metrics[MetricColumn(kPeak)][i] = 1e-4 * static_cast<double>(i + missing);
-    const RequirementSummary summary =
-        Judge(requirement, SamplingMethod::kMonteCarlo, cases, static_cast<std::int64_t>(missing));
+    const RequirementSummary summary = Judged(requirement, cases, static_cast<std::int64_t>(missing));
     ASSERT_EQ(summary.bound.has_value(), missing < 3) << missing;
     if (missing == 3) continue;  // as many as a third failure: no value is a bound
     EXPECT_DOUBLE_EQ(*summary.bound, 1e-4 * bounds[missing]);
@@ -156,7 +146,7 @@ TEST(Judge, CountsALostFlightWhateverItMeasured) {
   cases.outcome[3] = Outcome::kLostControl;
   cases.outcome[4] = Outcome::kImpact;
   cases.metrics[MetricColumn(kPeak)][7] = kNaN;
-  const RequirementSummary summary = Judge(PeakBelow(0.5, 0.9, 0.10), SamplingMethod::kMonteCarlo, cases, 0);
+  const RequirementSummary summary = Judged(PeakBelow(0.5, 0.9, 0.10), cases);
   EXPECT_EQ(summary.n, 100);
   EXPECT_EQ(summary.failures, 3);
   EXPECT_EQ(summary.lost_flights, 2);
@@ -165,7 +155,7 @@ TEST(Judge, CountsALostFlightWhateverItMeasured) {
 TEST(Judge, SaysWhatAPlanDecidedWithoutWiderBounds) {
   Requirement requirement = PeakBelow(0.5, 0.9973, 0.10);
   requirement.plan = {PlanKind::kGroupSequential, 5, Spending::kOBrienFleming};
-  const RequirementSummary met = Judge(requirement, SamplingMethod::kMonteCarlo, Columns(5000, 8), 0);
+  const RequirementSummary met = Judged(requirement, Columns(5000, 8));
   // The first 8 cases failed: too few to fail early, few enough to pass at the end.
   EXPECT_EQ(met.sentence,
             "8 of 5000 flights broke the limit. That is few enough by its plan (judged 5 times up to 5000 "
@@ -173,7 +163,7 @@ TEST(Judge, SaysWhatAPlanDecidedWithoutWiderBounds) {
   EXPECT_EQ(met.looks[0].verdict, Verdict::kInconclusive);
   CaseColumns late = Columns(5000, 0);
   for (std::size_t i = 4000; i < 4008; ++i) late.metrics[MetricColumn(kPeak)][i] = 0.9;
-  const RequirementSummary early = Judge(requirement, SamplingMethod::kMonteCarlo, late, 0);
+  const RequirementSummary early = Judged(requirement, late);
   EXPECT_EQ(early.verdict, "pass");
   EXPECT_EQ(early.accepts, 8);
   EXPECT_EQ(early.looks[1].verdict, Verdict::kPass);
@@ -186,30 +176,25 @@ TEST(Judge, SaysWhatAPlanDecidedWithoutWiderBounds) {
 TEST(Judge, TakesRowsOfWhateverNumbers) {
   CaseColumns some = Columns(852, 0);
   for (std::size_t i = 0; i < 852; ++i) some.index[i] = 7 * i + 3;
-  EXPECT_EQ(Judge(PeakBelow(0.5, 0.9973, 0.10), SamplingMethod::kMonteCarlo, some, 0).verdict, "pass");
+  EXPECT_EQ(Judged(PeakBelow(0.5, 0.9973, 0.10), some).verdict, "pass");
 }
 
-TEST(Judge, TheLimitItselfFails) {
-  EXPECT_EQ(Judge(PeakBelow(0.1, 0.9, 0.1), SamplingMethod::kMonteCarlo, Columns(10, 0), 0).failures, 10);
-}
+TEST(Judge, TheLimitItselfFails) { EXPECT_EQ(Judged(PeakBelow(0.1, 0.9, 0.1), Columns(10, 0)).failures, 10); }
 
 TEST(Judge, LooksAboveToo) {
   const Requirement above = {
       .metric = kPeak, .below = std::nullopt, .above = 0.5, .probability = 0.5, .consumer_risk = 0.1};
-  const RequirementSummary summary = Judge(above, SamplingMethod::kMonteCarlo, Columns(10, 4), 0);
+  const RequirementSummary summary = Judged(above, Columns(10, 4));
   EXPECT_FALSE(summary.below);
   EXPECT_EQ(summary.failures, 6);  // those at 0.1
 }
 
 TEST(Judge, MissingCasesCountAgainstEitherVerdict) {
   // 852 successes pass, but not beside 100 cases of which nothing is known.
-  EXPECT_EQ(Judge(PeakBelow(0.5, 0.9973, 0.10), SamplingMethod::kMonteCarlo, Columns(852, 0), 100).verdict,
-            "inconclusive");
+  EXPECT_EQ(Judged(PeakBelow(0.5, 0.9973, 0.10), Columns(852, 0), 100).verdict, "inconclusive");
   // 3 failures of 20 fail 99 %, but not if 2000 more might all have been successes.
-  EXPECT_EQ(Judge(PeakBelow(0.5, 0.99, 0.10), SamplingMethod::kMonteCarlo, Columns(20, 3), 0).verdict,
-            "fail");
-  EXPECT_EQ(Judge(PeakBelow(0.5, 0.99, 0.10), SamplingMethod::kMonteCarlo, Columns(20, 3), 2000).verdict,
-            "inconclusive");
+  EXPECT_EQ(Judged(PeakBelow(0.5, 0.99, 0.10), Columns(20, 3)).verdict, "fail");
+  EXPECT_EQ(Judged(PeakBelow(0.5, 0.99, 0.10), Columns(20, 3), 2000).verdict, "inconclusive");
 }
 
 TEST(Judge, GivesAChosenDesignNoVerdict) {
@@ -352,8 +337,7 @@ TEST(Judge, NoFlightIsTheWorstOfNone) {
   CaseColumns cases = Columns(2, 0);
   cases.outcome[0] = Outcome::kImpact;
   cases.metrics[MetricColumn(kPeak)][1] = kNaN;
-  EXPECT_FALSE(
-      Judge(PeakBelow(0.5, 0.9, 0.1), SamplingMethod::kMonteCarlo, cases, 0).worst_completed.has_value());
+  EXPECT_FALSE(Judged(PeakBelow(0.5, 0.9, 0.1), cases).worst_completed.has_value());
 }
 
 TEST_F(FiveCases, TheVerdict) {
@@ -870,12 +854,12 @@ TEST(Judge, OfALongitudeDoesNotSeeTheCut) {
     SCOPED_TRACE(site_deg);
     const CaseColumns cases = ImpactsAbout(site_deg);
     const auto judge = [&](std::optional<double> below, std::optional<double> above) {
-      return Judge({.metric = "impact_longitude_deg",
-                    .below = below,
-                    .above = above,
-                    .probability = 0.9,
-                    .consumer_risk = 0.1},
-                   SamplingMethod::kMonteCarlo, cases, 0);
+      return Judged({.metric = "impact_longitude_deg",
+                     .below = below,
+                     .above = above,
+                     .probability = 0.9,
+                     .consumer_risk = 0.1},
+                    cases);
     };
     const double east_deg = NearTo(0.0, site_deg + 0.0295, kCutAt180Deg);
     const double west_deg = NearTo(0.0, site_deg - 0.0295, kCutAt180Deg);
@@ -889,7 +873,7 @@ TEST(Judge, OfALongitudeDoesNotSeeTheCut) {
     Requirement range{
         .metric = "impact_longitude_deg", .below = {}, .above = {}, .probability = 0.9, .consumer_risk = 0.1};
     range.within = {{site_deg - 0.0295, site_deg + 0.0295}};
-    EXPECT_EQ(Judge(range, SamplingMethod::kMonteCarlo, cases, 0).failures, 2);
+    EXPECT_EQ(Judged(range, cases).failures, 2);
   }
 }
 

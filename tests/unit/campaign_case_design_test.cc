@@ -1,35 +1,22 @@
 // The inputs of a case, by every sampling method.
 #include "core/campaign/case_design.h"
 
-#include <gtest/gtest.h>
-
-#include <algorithm>
-#include <cmath>
-#include <set>
-#include <vector>
-
 #include "core/random/draws.h"
 #include "core/random/normal.h"
+#include "tests/test.h"
+#include "tests/unit/distributions.h"
 
 namespace dispersa::campaign_case_design_test {
 namespace {
 
+using made_up::Normal;
+using made_up::TwoPoint;
+using made_up::Uniform;
+using made_up::Values;
+
 Dispersion Of(const std::string& name, ScalarDistribution distribution, const std::string& input) {
   return {name, std::move(distribution), {FindInput(input)}, false};
 }
-ScalarDistribution Normal(double mean, double sigma) {
-  return {.kind = Distribution::kNormal, .nominal = mean, .sigma = sigma, .values = {}};
-}
-ScalarDistribution Uniform(double low, double high) {
-  return {.kind = Distribution::kUniform, .low = low, .high = high, .values = {}};
-}
-ScalarDistribution TwoPoint(double nominal, double low, double high) {
-  return {.kind = Distribution::kTwoPoint, .nominal = nominal, .low = low, .high = high, .values = {}};
-}
-ScalarDistribution Values(std::vector<double> values) {
-  return {.kind = Distribution::kValues, .values = std::move(values)};
-}
-
 Campaign With(SamplingMethod method, std::vector<Dispersion> dispersions, std::uint64_t cases = 64) {
   Campaign campaign;
   campaign.sampling = {method, cases, 42};

@@ -1,15 +1,11 @@
 // Inputs that follow from drawn ones: what they are, and every refusal in full.
 #include "core/campaign/derived_input.h"
 
-#include <gtest/gtest.h>
-
-#include <algorithm>
-#include <cmath>
-
 #include "core/campaign/case_design.h"
 #include "core/campaign_yaml/load.h"
 #include "core/cases/campaign_flights.h"
 #include "core/search/dispersion_space.h"
+#include "tests/test.h"
 #include "tests/unit/input_files.h"
 
 namespace dispersa::campaign_derived_input_test {

@@ -1,9 +1,6 @@
 // The table of dispersions against the columns of a flight's inputs.
 #include "core/campaign/dispersion_table.h"
-
-#include <gtest/gtest.h>
-
-#include <set>
+#include "tests/test.h"
 
 namespace dispersa::campaign_dispersion_table_test {
 namespace {

@@ -1,15 +1,10 @@
 // Dispersions that no vehicle and no day has, with the full text.
 #include "core/campaign/plausible_dispersions.h"
 
-#include <gmock/gmock.h>
-#include <gtest/gtest.h>
-
-#include <string>
-#include <vector>
-
 #include "core/environment/atmosphere.h"
 #include "core/flight/flight_inputs.h"
 #include "core/math/constants.h"
+#include "tests/test.h"
 
 namespace dispersa::campaign_plausible_dispersions_test {
 namespace {

@@ -1,13 +1,7 @@
 // An autopilot that is written to a file and read back is the same.
-#include <gtest/gtest.h>
-
-#include <filesystem>
-#include <fstream>
-#include <map>
-#include <thread>
-
 #include "core/campaign_yaml/load.h"
 #include "core/control/law_here.h"
+#include "tests/test.h"
 
 namespace dispersa::campaign_yaml_autopilot_test {
 namespace {

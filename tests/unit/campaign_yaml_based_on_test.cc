@@ -1,15 +1,10 @@
 // Files that say what differs from another one.
-#include <gmock/gmock.h>
-#include <gtest/gtest.h>
-
 #include "core/campaign_yaml/load.h"
+#include "tests/test.h"
 #include "tests/unit/input_files.h"
 
 namespace dispersa::campaign_yaml_based_on_test {
 namespace {
-
-using testing::HasSubstr;
-using testing::Not;
 
 constexpr char kHead[] = "schema: dispersa/campaign/1\nbased_on: campaign.yaml\n";
 

@@ -1,17 +1,12 @@
 // The beam of a vehicle file: values read, and vehicles based on others.
-#include <gmock/gmock.h>
-#include <gtest/gtest.h>
-
 #include "core/campaign_yaml/load.h"
 #include "core/math/constants.h"
 #include "core/structure/bending_modes.h"
+#include "tests/test.h"
 #include "tests/unit/input_files.h"
 
 namespace dispersa::campaign_yaml_beam_test {
 namespace {
-
-using testing::HasSubstr;
-using testing::Not;
 
 TEST(CampaignYamlBeam, ReadsSectionsLumpsAndSensors) {
   const InputFiles files;

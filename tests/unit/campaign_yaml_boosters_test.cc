@@ -1,14 +1,11 @@
 // Boosters in a vehicle file: values read.
-#include <gtest/gtest.h>
-
-#include <string>
-
 #include "core/campaign/campaign.h"
 #include "core/campaign/case_design.h"
 #include "core/campaign_yaml/load.h"
 #include "core/flight/flight_inputs.h"
 #include "core/math/constants.h"
 #include "core/vehicle/mass.h"
+#include "tests/test.h"
 #include "tests/unit/input_files.h"
 
 namespace dispersa::campaign_yaml_boosters_test {

@@ -1,21 +1,14 @@
 // The canonical text of a campaign, and what its two ids depend on.
-#include <gmock/gmock.h>
-#include <gtest/gtest.h>
-
-#include <array>
-
 #include "core/campaign_yaml/canonical.h"
 #include "core/campaign_yaml/load.h"
 #include "core/campaign_yaml/parse_yaml.h"
 #include "core/campaign_yaml/sha256.h"
 #include "core/math/constants.h"
+#include "tests/test.h"
 #include "tests/unit/input_files.h"
 
 namespace dispersa::campaign_yaml_canonical_test {
 namespace {
-
-using testing::HasSubstr;
-using testing::Not;
 
 std::string Canonical(const std::string& yaml) {
   std::vector<InputProblem> problems;

@@ -1,13 +1,9 @@
 // Clusters of engines in a vehicle file: rings, shares, names, ids; and the columns that their dispersions
 // feed.
-#include <gtest/gtest.h>
-
-#include <string>
-#include <vector>
-
 #include "core/campaign/campaign.h"
 #include "core/campaign_yaml/load.h"
 #include "core/flight/flight_inputs.h"
+#include "tests/test.h"
 #include "tests/unit/input_files.h"
 
 namespace dispersa::campaign_yaml_clusters_test {

@@ -1,17 +1,11 @@
 // The dispersions of a campaign file as draws of inputs.
-#include <gmock/gmock.h>
-#include <gtest/gtest.h>
-
-#include <cmath>
-
 #include "core/campaign_yaml/load.h"
 #include "core/math/constants.h"
+#include "tests/test.h"
 #include "tests/unit/input_files.h"
 
 namespace dispersa::campaign_yaml_dispersions_test {
 namespace {
-
-using testing::ElementsAre;
 
 // Of the test campaign (two stages) with one dispersion in place of its own.
 std::vector<Dispersion> Decode(const std::string& line) {

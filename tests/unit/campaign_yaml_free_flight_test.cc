@@ -1,9 +1,8 @@
 // Campaigns that end at apogee or impact, and those that nothing controls: what they need.
-#include <gtest/gtest.h>
-
 #include "core/campaign/case_result.h"
 #include "core/campaign/free_flight.h"
 #include "core/campaign_yaml/load.h"
+#include "tests/test.h"
 #include "tests/unit/input_files.h"
 
 namespace dispersa::campaign_yaml_free_flight_test {

@@ -1,14 +1,9 @@
 // Texts from any source: however large, nested or damaged, reading ends soon, with a message.
-#include <gtest/gtest.h>
-
-#include <ctime>
-#include <string>
-#include <vector>
-
 #include "core/campaign_yaml/load.h"
 #include "core/campaign_yaml/parse_yaml.h"
 #include "core/input/input_error.h"
 #include "tests/fuzz.h"
+#include "tests/test.h"
 
 namespace dispersa::campaign_yaml_limits_test {
 namespace {

@@ -1,9 +1,8 @@
 // Liquid stages in vehicle files.
-#include <gtest/gtest.h>
-
 #include "core/campaign/campaign.h"
 #include "core/campaign/case_design.h"
 #include "core/campaign_yaml/load.h"
+#include "tests/test.h"
 #include "tests/unit/input_files.h"
 
 namespace dispersa::campaign_yaml_liquid_test {

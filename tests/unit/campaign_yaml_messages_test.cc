@@ -12,20 +12,12 @@
 //
 // What stands before a file's first case is done in each. A case with a small letter is for others, by
 // `with`.
-#include <gmock/gmock.h>
-#include <gtest/gtest.h>
-
-#include <algorithm>
-#include <filesystem>
-#include <map>
-
 #include "core/campaign_yaml/load.h"
+#include "tests/test.h"
 #include "tests/unit/input_files.h"
 
 namespace dispersa::campaign_yaml_messages_test {
 namespace {
-
-using testing::Not;
 
 using Lines = std::vector<std::string>;
 

@@ -1,11 +1,7 @@
 // A campaign's own metrics as its file gives them, and every refusal of one in full.
-#include <gmock/gmock.h>
-#include <gtest/gtest.h>
-
-#include <string>
-
 #include "core/campaign/case_result.h"
 #include "core/campaign_yaml/load.h"
+#include "tests/test.h"
 #include "tests/unit/input_files.h"
 
 namespace dispersa::campaign_yaml_own_metrics_test {

@@ -1,18 +1,11 @@
 // Implausible vehicles, texts in other encodings and slips of the pen, as a user reads them.
-#include <gmock/gmock.h>
-#include <gtest/gtest.h>
-
-#include <string>
-#include <vector>
-
 #include "core/campaign_yaml/load.h"
 #include "core/input/read_value.h"
+#include "tests/test.h"
 #include "tests/unit/input_files.h"
 
 namespace dispersa::campaign_yaml_plausibility_test {
 namespace {
-
-using testing::HasSubstr;
 
 // The files' vehicle is of round numbers, and light.
 const std::string kLightGrains =

@@ -1,13 +1,8 @@
 // A reference, and every number, that is written and read back is the same.
-#include <gtest/gtest.h>
-
-#include <bit>
-#include <cmath>
-#include <random>
-
 #include "core/campaign_yaml/load.h"
 #include "core/input/number_text.h"
 #include "core/math/constants.h"
+#include "tests/test.h"
 #include "tests/unit/input_files.h"
 
 namespace dispersa::campaign_yaml_reference_test {

@@ -1,11 +1,10 @@
 // Restarts and cut-off at a velocity in vehicle files, with the full text for each mistake.
-#include <gtest/gtest.h>
-
 #include "core/campaign_yaml/load.h"
 #include "core/pages/vehicle_drawing.h"
 #include "core/vehicle/beam_masses.h"
 #include "core/vehicle/mass.h"
 #include "core/vehicle/propulsion.h"
+#include "tests/test.h"
 #include "tests/unit/input_files.h"
 
 namespace dispersa::campaign_yaml_restart_test {

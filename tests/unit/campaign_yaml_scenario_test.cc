@@ -1,8 +1,7 @@
 // Scenario files: values read.
-#include <gtest/gtest.h>
-
 #include "core/campaign_yaml/load.h"
 #include "core/math/constants.h"
+#include "tests/test.h"
 #include "tests/unit/input_files.h"
 
 namespace dispersa::campaign_yaml_scenario_test {

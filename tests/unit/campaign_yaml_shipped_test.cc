@@ -1,9 +1,6 @@
 // Every file that ships is valid, and the campaigns that refer to them load.
-#include <gtest/gtest.h>
-
-#include <filesystem>
-
 #include "core/campaign_yaml/load.h"
+#include "tests/test.h"
 
 namespace dispersa::campaign_yaml_shipped_test {
 namespace {

@@ -1,18 +1,12 @@
 // Dispersions of stages, masses, events and lift-off: the draws they become.
-#include <gmock/gmock.h>
-#include <gtest/gtest.h>
-
-#include <cmath>
-
 #include "core/campaign/case_design.h"
 #include "core/campaign_yaml/load.h"
 #include "core/math/constants.h"
+#include "tests/test.h"
 #include "tests/unit/input_files.h"
 
 namespace dispersa::campaign_yaml_stage_dispersions_test {
 namespace {
-
-using testing::ElementsAre;
 
 // The test campaign (two stages) with one dispersion in place of its own.
 void SetDispersion(const InputFiles& files, const std::string& line) {

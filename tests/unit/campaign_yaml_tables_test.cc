@@ -1,25 +1,16 @@
 // Tables of aerodynamics, weather and masses in files: the forms that they may have, and what follows
 // from them.
-#include <gmock/gmock.h>
-#include <gtest/gtest.h>
-
-#include <array>
-#include <cmath>
-#include <string>
-
 #include "core/campaign_yaml/load.h"
 #include "core/environment/weather_table.h"
 #include "core/input/number_text.h"
 #include "core/math/constants.h"
 #include "core/vehicle/drag.h"
 #include "core/vehicle/mass.h"
+#include "tests/test.h"
 #include "tests/unit/input_files.h"
 
 namespace dispersa::campaign_yaml_tables_test {
 namespace {
-
-using testing::ElementsAre;
-using testing::HasSubstr;
 
 // ---- aerodynamics ----
 

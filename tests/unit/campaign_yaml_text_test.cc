@@ -1,14 +1,10 @@
 // Text of files before any key is read: encodings, tabs, tables and base64.
-#include <gtest/gtest.h>
-
-#include <string>
-#include <vector>
-
 #include "core/campaign_yaml/base64.h"
 #include "core/campaign_yaml/parse_csv.h"
 #include "core/campaign_yaml/parse_rasp.h"
 #include "core/campaign_yaml/text_problems.h"
 #include "core/input/input_error.h"
+#include "tests/test.h"
 
 namespace dispersa::campaign_yaml_text_test {
 namespace {

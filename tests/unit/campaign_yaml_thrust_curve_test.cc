@@ -1,14 +1,9 @@
 // Thrust curves in vehicle files: tables, .eng files, curves of test stands.
-#include <gtest/gtest.h>
-
-#include <algorithm>
-#include <chrono>
-#include <cmath>
-
 #include "core/campaign_yaml/load.h"
 #include "core/input/number_text.h"
 #include "core/math/functions.h"
 #include "core/math/table.h"
+#include "tests/test.h"
 #include "tests/unit/input_files.h"
 
 namespace dispersa::campaign_yaml_thrust_curve_test {

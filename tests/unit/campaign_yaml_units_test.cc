@@ -1,19 +1,11 @@
 // Any quantity in any of its units: read as the same value, written so that it reads back, and limited in
 // that unit.
-#include <gtest/gtest.h>
-
-#include <algorithm>
-#include <cmath>
-#include <map>
-#include <numbers>
-#include <string>
-#include <vector>
-
 #include "core/campaign_yaml/parse_yaml.h"
 #include "core/input/field_reader.h"
 #include "core/input/number_text.h"
 #include "core/input/units.h"
 #include "services/docs/dimensions.h"
+#include "tests/test.h"
 
 namespace dispersa::campaign_yaml_units_test {
 namespace {
@@ -21,58 +13,28 @@ namespace {
 using std::numbers::pi;
 
 /// One of each unit in SI and radians, by the definitions of the units.
-const std::map<std::string_view, double> kInSi = {{"m", 1.0},
-                                                  {"km", 1000.0},
-                                                  {"mm", 0.001},
-                                                  {"um", 0.000001},
-                                                  {"m2", 1.0},
-                                                  {"s", 1.0},
-                                                  {"ms", 0.001},
-                                                  {"kg", 1.0},
-                                                  {"ton", 1000.0},
-                                                  {"kg_s", 1.0},
-                                                  {"kg_m2", 1.0},
-                                                  {"kg_m", 1.0},
-                                                  {"gpa", 1e9},
-                                                  {"mpa", 1e6},
-                                                  {"pa", 1.0},
-                                                  {"kpa", 1e3},
-                                                  {"hpa", 1e2},
-                                                  {"bar", 1e5},
-                                                  {"n_m2", 1.0},
-                                                  {"kn_m2", 1e3},
-                                                  {"mn_m2", 1e6},
-                                                  {"n", 1.0},
-                                                  {"kn", 1e3},
-                                                  {"n_m", 1.0},
-                                                  {"kn_m", 1e3},
-                                                  {"pa_rad", 1.0},
-                                                  {"kpa_rad", 1e3},
-                                                  {"pa_deg", pi / 180},
-                                                  {"w_m2", 1.0},
-                                                  {"kw_m2", 1e3},
-                                                  {"m_s", 1.0},
-                                                  {"km_s", 1e3},
-                                                  {"km_h", 1000.0 / 3600.0},
-                                                  {"g", 1.0},
-                                                  {"deg", pi / 180},
-                                                  {"rad", 1.0},
-                                                  {"deg_s", pi / 180},
-                                                  {"rad_s", 1.0},
-                                                  {"hz", 2 * pi},
-                                                  {"deg_s2", pi / 180},
-                                                  {"rad_s2", 1.0},
-                                                  {"1_s", 1.0},
-                                                  {"1_s2", 1.0},
-                                                  {"per_km", 0.001},
-                                                  {"per_m", 1.0},
-                                                  {"per_m_s", 1.0},
-                                                  {"kg_m3", 1.0},
-                                                  {"percent", 0.01},
-                                                  {"k", 1.0},
-                                                  {"percent_per_k", 0.01},
-                                                  {"per_deg", 180 / pi},
-                                                  {"per_rad", 1.0}};
+const std::map<std::string, double> kInSi = [] {
+  std::map<std::string, double> in_si;
+  const auto add = [&](double value, const char* units) {
+    for (const std::string& unit : Words(units)) in_si[unit] = value;
+  };
+  add(1.0,
+      "m m2 s kg kg_s kg_m2 kg_m pa n_m2 n n_m pa_rad w_m2 m_s g rad rad_s rad_s2 1_s 1_s2 per_m per_m_s "
+      "kg_m3 k per_rad");
+  add(1e3, "km ton kpa kn_m2 kn kn_m kpa_rad kw_m2 km_s");
+  add(1e-3, "mm ms per_km");
+  add(1e-6, "um");
+  add(1e9, "gpa");
+  add(1e6, "mpa mn_m2");
+  add(1e2, "hpa");
+  add(1e5, "bar");
+  add(pi / 180, "pa_deg deg deg_s deg_s2");
+  add(1000.0 / 3600.0, "km_h");
+  add(2 * pi, "hz");
+  add(0.01, "percent percent_per_k");
+  add(180 / pi, "per_deg");
+  return in_si;
+}();
 
 constexpr double kValues[] = {0.0, 1.0, -1.0, 0.1, 7.0, 1.0 / 3.0, 123.456, 6378137.0, 1e-9, -2.5e17};
 
@@ -99,10 +61,10 @@ class Units : public testing::TestWithParam<std::size_t> {
 
 TEST_P(Units, AreReadAsWhatTheyAre) {
   for (const Unit& unit : dimension_) {
-    ASSERT_TRUE(kInSi.contains(unit.suffix)) << unit.suffix;
+    ASSERT_TRUE(kInSi.contains(std::string(unit.suffix))) << unit.suffix;
     for (const double value : kValues) {
       EXPECT_DOUBLE_EQ(Read(Key(unit), FormatNumber(value), dimension_, &problems_),
-                       value * kInSi.at(unit.suffix))
+                       value * kInSi.at(std::string(unit.suffix)))
           << unit.suffix;
       EXPECT_EQ(problems_, "");
     }
@@ -127,7 +89,7 @@ TEST_P(Units, AreWrittenSoThatTheyReadBack) {
 TEST_P(Units, StateTheirLimits) {
   const Range range{-2.0, 5.0, false, true};
   for (const Unit& unit : dimension_) {
-    const double scale = kInSi.at(unit.suffix);
+    const double scale = kInSi.at(std::string(unit.suffix));
     const std::string number = FormatNumber(6.0 / scale);
     EXPECT_EQ(Read(Key(unit), number, dimension_, &problems_, range), 0.0);
     EXPECT_EQ(problems_, "file:1:" + std::to_string(Key(unit).size() + 3) + ": " + Key(unit) + ": " + number +
@@ -181,7 +143,7 @@ INSTANTIATE_TEST_SUITE_P(Each, Units, testing::Range(std::size_t{0}, kDimensions
 // Another spelling is guessed wherever its unit is allowed.
 TEST(UnitSpellings, AreUnderstoodWhereTheyAreMeant) {
   for (const UnitSpelling& spelling : kUnitSpellings) {
-    ASSERT_TRUE(kInSi.contains(spelling.meant)) << spelling.written;
+    ASSERT_TRUE(kInSi.contains(std::string(spelling.meant))) << spelling.written;
     for (const auto& [name, dimension] : kDimensions) {
       const auto has = [&, units = dimension](std::string_view suffix) {
         return std::any_of(units.begin(), units.end(),

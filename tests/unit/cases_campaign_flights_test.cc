@@ -1,12 +1,9 @@
 // The parts of a campaign's flights. A queue of cases gives the same results as each case by itself.
 #include "core/cases/campaign_flights.h"
 
-#include <gtest/gtest.h>
-
-#include <map>
-
 #include "core/campaign_yaml/load.h"
 #include "core/flight/flight_model.h"
+#include "tests/test.h"
 
 namespace dispersa::cases_campaign_flights_test {
 namespace {

@@ -1,13 +1,9 @@
 #include "core/cases/flight_orders.h"
 
-#include <string>
-#include <vector>
-
-#include <gtest/gtest.h>
-
 #include "core/campaign_yaml/load.h"
 #include "core/cases/result_bytes.h"
 #include "core/flight/history.h"
+#include "tests/test.h"
 
 namespace dispersa::cases_flight_orders_test {
 namespace {

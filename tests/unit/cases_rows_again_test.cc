@@ -1,14 +1,5 @@
 // A row of cases.csv is a flight: flown again as a list's table it has the same inputs, to the bit, and the
 // same digest.
-#include <gtest/gtest.h>
-
-#include <cmath>
-#include <cstring>
-#include <filesystem>
-#include <initializer_list>
-#include <string>
-#include <vector>
-
 #include "core/campaign/case_design.h"
 #include "core/campaign/case_result.h"
 #include "core/campaign_yaml/load.h"
@@ -16,6 +7,7 @@
 #include "core/math/constants.h"
 #include "core/random/draws.h"
 #include "core/results/cases_csv.h"
+#include "tests/test.h"
 #include "tests/unit/input_files.h"
 
 namespace dispersa::cases_rows_again_test {

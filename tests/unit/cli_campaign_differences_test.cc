@@ -1,16 +1,10 @@
 #include "services/web/campaign_differences.h"
 
-#include <gmock/gmock.h>
-#include <gtest/gtest.h>
-
 #include "core/input/input_error.h"
+#include "tests/test.h"
 
 namespace dispersa::cli_campaign_differences_test {
 namespace {
-
-using testing::ElementsAre;
-using testing::FieldsAre;
-using testing::IsEmpty;
 
 TEST(Differences, NameEveryValueThatIsNotTheSame) {
   const std::string a =

@@ -1,25 +1,16 @@
 // The program as a user calls it: output, errors and exit codes of the commands that need no workers.
-#include <gmock/gmock.h>
-#include <gtest/gtest.h>
 #include <sys/wait.h>
 
-#include <array>
-#include <cstdio>
-#include <fstream>
 #include <nlohmann/json.hpp>
-#include <sstream>
 
 #include "core/flight/flight_inputs.h"
 #include "core/flight/history_columns.h"
 #include "core/flight/metrics.h"
+#include "tests/test.h"
 #include "tests/unit/input_files.h"
 
 namespace dispersa::cli_program_test {
 namespace {
-
-using testing::HasSubstr;
-using testing::Not;
-using testing::StartsWith;
 
 struct Output {
   int code = -1;

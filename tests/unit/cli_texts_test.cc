@@ -1,13 +1,5 @@
 // Full texts that commands print about vehicles, searches and campaigns.
-#include <gtest/gtest.h>
-
-#include <cerrno>
-#include <cmath>
-#include <new>
 #include <nlohmann/json.hpp>
-#include <string>
-#include <system_error>
-#include <vector>
 
 #include "core/campaign_yaml/load.h"
 #include "core/math/constants.h"
@@ -19,6 +11,7 @@
 #include "services/client/reference_search.h"
 #include "services/log/log.h"
 #include "services/program/failure.h"
+#include "tests/test.h"
 #include "tests/unit/sample_vehicle.h"
 
 namespace dispersa::cli_texts_test {

@@ -3,19 +3,9 @@
 #include <fcntl.h>
 #include <unistd.h>
 
-#include <chrono>
-#include <cstdlib>
-#include <filesystem>
-#include <fstream>
-#include <set>
-#include <sstream>
-#include <string>
-#include <thread>
-
-#include <gtest/gtest.h>
-
 #include "core/campaign_yaml/load.h"
 #include "core/cases/plugin_check.h"
+#include "tests/test.h"
 
 namespace dispersa::containment_foreign_process_test {
 namespace {

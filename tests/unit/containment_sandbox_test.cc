@@ -1,4 +1,5 @@
 #include "core/containment/contained.h"
+#include "tests/test.h"
 
 #include <fcntl.h>
 #include <linux/io_uring.h>
@@ -8,18 +9,6 @@
 #include <sys/socket.h>
 #include <sys/syscall.h>
 #include <unistd.h>
-
-#include <cerrno>
-#include <csignal>
-#include <cstdlib>
-#include <filesystem>
-#include <fstream>
-#include <functional>
-#include <string>
-#include <utility>
-#include <vector>
-
-#include <gtest/gtest.h>
 
 namespace dispersa::containment_sandbox_test {
 namespace {

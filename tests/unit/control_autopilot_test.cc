@@ -1,15 +1,9 @@
 // The three axes together: stages, mixing, saturation, reaction control, and contradictions in a file.
 #include "core/control/autopilot.h"
 
-#include <gtest/gtest.h>
-
-#include <algorithm>
-#include <functional>
-#include <string>
-#include <vector>
-
 #include "core/math/constants.h"
 #include "core/vehicle/mass.h"
+#include "tests/test.h"
 #include "tests/unit/sample_vehicle.h"
 
 namespace dispersa::control_autopilot_test {

@@ -1,17 +1,11 @@
 // One axis of the autopilot, tick by tick: the law, its guards, and the effects that each must not have.
 #include "core/control/axis_controller.h"
 
-#include <gtest/gtest.h>
-
-#include <algorithm>
-#include <bit>
-#include <cmath>
-#include <functional>
-
 #include "core/control/axis_step.h"
 #include "core/control/lyapunov.h"
 #include "core/math/constants.h"
 #include "core/random/draws.h"
+#include "tests/test.h"
 #include "tests/unit/sample_vehicle.h"
 
 namespace dispersa::control_axis_test {

@@ -1,14 +1,9 @@
 // Second-order sections after a control law.
 #include "core/control/filter.h"
 
-#include <gtest/gtest.h>
-
-#include <algorithm>
-#include <cmath>
-#include <complex>
-
 #include "core/control/axis_controller.h"
 #include "core/math/constants.h"
+#include "tests/test.h"
 #include "tests/unit/sample_vehicle.h"
 
 namespace dispersa::control_filter_test {

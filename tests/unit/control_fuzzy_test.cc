@@ -1,14 +1,9 @@
 // The rule base of equations (20) to (22) and the Lyapunov equation behind (32).
 #include "core/control/axis_step.h"
 
-#include <gtest/gtest.h>
-
-#include <array>
-#include <cmath>
-#include <numeric>
-
 #include "core/control/lyapunov.h"
 #include "core/random/draws.h"
+#include "tests/test.h"
 
 namespace dispersa::control_fuzzy_test {
 namespace {

@@ -1,11 +1,6 @@
 // A law that writes outside its memory is detected, or its process ends.
 #include "core/control/law_memory.h"
-
-#include <gtest/gtest.h>
-
-#include <algorithm>
-#include <csignal>
-#include <cstdint>
+#include "tests/test.h"
 
 namespace dispersa::control_law_memory_test {
 namespace {

@@ -1,13 +1,8 @@
 // Gains and filters by stage and time.
-#include <gmock/gmock.h>
-#include <gtest/gtest.h>
-
-#include <cmath>
-#include <complex>
-
 #include "core/control/autopilot_step.h"
 #include "core/margins/linear_axis.h"
 #include "core/math/constants.h"
+#include "tests/test.h"
 #include "tests/unit/sample_vehicle.h"
 
 namespace dispersa::control_schedule_test {
@@ -186,9 +181,9 @@ TEST(Problems, NameAScheduleThatCannotBeFollowed) {
   std::vector<std::string> texts;
   for (const StructProblem& p : Problems(autopilot, 2))
     texts.push_back(p.path + ": " + p.message + ": " + p.allowed);
-  EXPECT_THAT(texts, testing::ElementsAre(
-                         "yaw.schedule[0].at_s: is not after ignition: times since ignition that rise, "
-                         "the first above 0, where the stage's own gains hold"));
+  EXPECT_THAT(texts,
+              ElementsAre("yaw.schedule[0].at_s: is not after ignition: times since ignition that rise, "
+                          "the first above 0, where the stage's own gains hold"));
 }
 
 }  // namespace

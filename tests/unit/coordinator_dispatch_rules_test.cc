@@ -1,13 +1,5 @@
 // The dispatcher with several campaigns and several workers: whose cases go to whom, and what one worker or
 // one campaign does to the others.
-#include <gmock/gmock.h>
-#include <gtest/gtest.h>
-
-#include <map>
-#include <memory>
-#include <string>
-#include <vector>
-
 #include "core/flight/engine_version.h"
 #include "core/flight/flight_inputs.h"
 #include "core/flight/metrics.h"
@@ -15,12 +7,10 @@
 #include "services/coordinator/dispatcher.h"
 #include "tests/distributed/memory_store.h"
 #include "tests/nominal_inputs.h"
+#include "tests/test.h"
 
 namespace dispersa::coordinator_dispatch_rules_test {
 namespace {
-
-using testing::ElementsAre;
-using testing::IsEmpty;
 
 CaseResult ResultOf(std::uint64_t case_index) {
   CaseResult result;

@@ -1,15 +1,6 @@
 // The ledger with made-up time and workers that die, hang, return false results and repeat themselves.
 #include "services/ledger/ledger.h"
 
-#include <algorithm>
-#include <deque>
-#include <map>
-#include <random>
-#include <set>
-
-#include <gmock/gmock.h>
-#include <gtest/gtest.h>
-
 #include "core/flight/engine_version.h"
 #include "core/flight/flight_inputs.h"
 #include "core/flight/metrics.h"
@@ -20,13 +11,10 @@
 #include "tests/distributed/memory_store.h"
 #include "tests/distributed/temporary_folder.h"
 #include "tests/nominal_inputs.h"
+#include "tests/test.h"
 
 namespace dispersa::coordinator_ledger_test {
 namespace {
-
-using ::testing::ElementsAre;
-using ::testing::IsEmpty;
-using ::testing::SizeIs;
 
 const WorkerHello kHello{.engine_version = "1", .slots = 1, .credits = 2};
 

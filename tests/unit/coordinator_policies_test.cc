@@ -1,24 +1,15 @@
 // What a coordinator of many campaigns decides by rules of each owner, each campaign and each limit: who is
 // deleted, who may launch, who flies next, how long it takes. Every rule is tested with members that differ.
-#include <gmock/gmock.h>
-#include <gtest/gtest.h>
-
-#include <deque>
-#include <string>
-#include <vector>
-
 #include "services/coordinator/catalogue.h"
 #include "services/coordinator/outcomes.h"
 #include "services/coordinator/pace.h"
 #include "services/coordinator/queue.h"
 #include "services/coordinator/quota.h"
 #include "services/coordinator/retention.h"
+#include "tests/test.h"
 
 namespace dispersa::coordinator_policies_test {
 namespace {
-
-using testing::ElementsAre;
-using testing::IsEmpty;
 
 constexpr std::int64_t kDay = 86400;
 

@@ -1,26 +1,17 @@
 // The service of many campaigns on a data folder that is made up: what becomes of campaigns that have ended,
 // what their owners may still launch, what clients, browsers and monitors are told. What flies here is made
 // up, too.
-#include <gmock/gmock.h>
-#include <gtest/gtest.h>
-
-#include <fstream>
-#include <functional>
 #include <nlohmann/json.hpp>
-#include <vector>
 
 #include "services/coordinator/packed_files.h"
 #include "services/coordinator/prometheus_text.h"
 #include "services/coordinator/web_rows.h"
 #include "tests/distributed/made_up_service.h"
+#include "tests/test.h"
 
 namespace dispersa::coordinator_service_rules_test {
 namespace {
 
-using testing::ElementsAre;
-using testing::HasSubstr;
-using testing::IsEmpty;
-using testing::Not;
 using Json = nlohmann::ordered_json;
 
 constexpr std::uint64_t kMb = 1'000'000;

@@ -1,9 +1,6 @@
 // The flow on a flexible body, and the loads in its sections. Compared with rigid motions that modes can
 // represent, virtual work, and the balance of masses on a line.
-#include <gtest/gtest.h>
-
-#include <cmath>
-
+#include "tests/test.h"
 #include "tests/unit/made_up_bending.h"
 
 namespace dispersa::dynamics_bending_flow_test {

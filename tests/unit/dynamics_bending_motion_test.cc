@@ -1,9 +1,6 @@
 // The effect of bending on places of the body, the effect of forces there on the modes, and the modes'
 // oscillation.
-#include <gtest/gtest.h>
-
-#include <cmath>
-
+#include "tests/test.h"
 #include "tests/unit/made_up_bending.h"
 
 namespace dispersa::dynamics_bending_motion_test {

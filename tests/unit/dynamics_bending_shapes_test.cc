@@ -1,9 +1,5 @@
 // Look-up of modes in flight: at any propellant, in both planes, with the flight's factors.
-#include <gtest/gtest.h>
-
-#include <cmath>
-#include <functional>
-
+#include "tests/test.h"
 #include "tests/unit/made_up_bending.h"
 
 namespace dispersa::dynamics_bending_shapes_test {

@@ -1,14 +1,11 @@
 // Points of application of forces: for any vehicle, a moment is a lever times a force. Each case is compared
 // with the same case with one thing moved.
-#include <gtest/gtest.h>
-
-#include <cmath>
-
 #include "core/dynamics/launcher.h"
 #include "core/flight/flight_model.h"
 #include "core/math/constants.h"
 #include "core/math/rotation.h"
 #include "core/vehicle/nozzle_layout.h"
+#include "tests/test.h"
 #include "tests/unit/flexible_sample.h"
 
 namespace dispersa::dynamics_forces_test {

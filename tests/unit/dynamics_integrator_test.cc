@@ -1,11 +1,6 @@
 // The integrators against exact solutions and against a Runge-Kutta step written out here.
 #include "core/dynamics/integrator.h"
-
-#include <gtest/gtest.h>
-
-#include <array>
-#include <cmath>
-#include <limits>
+#include "tests/test.h"
 
 namespace dispersa::dynamics_integrator_test {
 namespace {

@@ -1,11 +1,7 @@
 #include "core/environment/atmosphere.h"
 
-#include <cmath>
-#include <vector>
-
-#include <gtest/gtest.h>
-
 #include "core/environment/density_factor.h"
+#include "tests/test.h"
 
 namespace dispersa::environment_atmosphere_test {
 namespace {

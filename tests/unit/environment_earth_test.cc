@@ -1,12 +1,8 @@
 #include "core/environment/earth.h"
 
-#include <cmath>
-#include <random>
-
-#include <gtest/gtest.h>
-
 #include "core/math/constants.h"
 #include "tests/gravitational_potential.h"
+#include "tests/test.h"
 
 namespace dispersa::environment_earth_test {
 namespace {

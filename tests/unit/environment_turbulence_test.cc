@@ -1,20 +1,13 @@
 // Turbulence: figure 7 as published, numbers of the low-altitude model, and spectra of realisations.
 #include "core/environment/turbulence.h"
 
-#include <gtest/gtest.h>
-
-#include <algorithm>
-#include <cmath>
-#include <complex>
-#include <fstream>
-#include <sstream>
-
 #include "core/dynamics/air_data.h"
 #include "core/environment/surroundings.h"
 #include "core/environment/weather_profile.h"
 #include "core/environment/wind.h"
 #include "core/math/constants.h"
 #include "core/random/draws.h"
+#include "tests/test.h"
 
 namespace dispersa::environment_turbulence_test {
 namespace {

@@ -1,9 +1,5 @@
 #include "core/environment/wind_statistics.h"
-
-#include <cmath>
-#include <random>
-
-#include <gtest/gtest.h>
+#include "tests/test.h"
 
 namespace dispersa::environment_wind_statistics_test {
 namespace {

@@ -1,10 +1,7 @@
 #include "core/environment/wind.h"
 
-#include <cmath>
-
-#include <gtest/gtest.h>
-
 #include "core/math/constants.h"
+#include "tests/test.h"
 
 namespace dispersa::environment_wind_test {
 namespace {

@@ -1,13 +1,7 @@
 // Expressions of campaign files: values against closed forms, the rules about undefined values, and the full
 // text of every error.
-#include <gmock/gmock.h>
-
-#include <cmath>
-#include <limits>
-#include <string>
-#include <vector>
-
 #include "core/expressions/flight_expression.h"
+#include "tests/test.h"
 
 namespace dispersa::expressions_flight_expression_test {
 namespace {

@@ -1,11 +1,8 @@
 // The pitch program: exact on cubics, consistent between angles and angular velocity, held outside.
 #include "core/flight/attitude_program.h"
 
-#include <gtest/gtest.h>
-
-#include <cmath>
-
 #include "core/math/constants.h"
+#include "tests/test.h"
 
 namespace dispersa::flight_attitude_program_test {
 namespace {

@@ -1,17 +1,12 @@
 // Dispersed boosters: thrust, flow and burn times, the vehicle's mass at every tick, and the momentum gained,
 // by conservation. The sample vehicle with two boosters flies in almost no air.
-#include <gtest/gtest.h>
-
-#include <algorithm>
-#include <cmath>
-#include <vector>
-
 #include "core/dynamics/integrator.h"
 #include "core/dynamics/jettison.h"
 #include "core/flight/flight.h"
 #include "core/flight/tick_sample.h"
 #include "core/math/constants.h"
 #include "core/vehicle/mass.h"
+#include "tests/test.h"
 #include "tests/unit/sample_vehicle.h"
 
 namespace dispersa::flight_booster_dispersions_test {

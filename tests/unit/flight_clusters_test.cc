@@ -1,18 +1,12 @@
 // Stages with clusters of engines: forces of up to 33 nozzles by hand, nine as one, roll, an engine that is
 // too weak, one that is stuck, groups, verniers, and the state of them in the judges' flights.
-#include <gtest/gtest.h>
-
-#include <algorithm>
-#include <array>
-#include <cmath>
-#include <vector>
-
 #include "core/flight/flight.h"
 #include "core/flight/metrics.h"
 #include "core/margins/flight_margins.h"
 #include "core/math/constants.h"
 #include "core/random/draws.h"
 #include "tests/flown_ticks.h"
+#include "tests/test.h"
 #include "tests/unit/sample_vehicle.h"
 
 namespace dispersa::flight_clusters_test {

@@ -1,16 +1,11 @@
 // Coasts before stages other than the last: timed ignition and reaction control, in six degrees of freedom
 // and in the optimiser's point mass.
-#include <gtest/gtest.h>
-
-#include <algorithm>
-#include <cmath>
-#include <vector>
-
 #include "core/flight/flight.h"
 #include "core/flight/tick_sample.h"
 #include "core/math/constants.h"
 #include "core/trajectory/ascent.h"
 #include "core/trajectory/optimize.h"
+#include "tests/test.h"
 #include "tests/unit/sample_vehicle.h"
 
 namespace dispersa::flight_coasts_test {

@@ -1,15 +1,8 @@
 // The effect of each input on the plant and on the flight. The sample vehicle flies above the air.
-#include <gtest/gtest.h>
-
-#include <algorithm>
-#include <array>
-#include <cmath>
-#include <functional>
-#include <vector>
-
 #include "core/flight/flight.h"
 #include "core/math/constants.h"
 #include "tests/flown_ticks.h"
+#include "tests/test.h"
 #include "tests/unit/sample_vehicle.h"
 
 namespace dispersa::flight_dispersions_test {

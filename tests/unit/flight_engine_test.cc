@@ -1,14 +1,9 @@
 // The engine at the joints of a flight: between thruster cycles, at ignition and burnout, and at its end.
-#include <gtest/gtest.h>
-
-#include <algorithm>
-#include <cmath>
-#include <vector>
-
 #include "core/flight/flight.h"
 #include "core/flight/lane_engine.h"
 #include "core/flight/tick_sample.h"
 #include "core/math/constants.h"
+#include "tests/test.h"
 #include "tests/unit/sample_vehicle.h"
 
 namespace dispersa::flight_engine_test {

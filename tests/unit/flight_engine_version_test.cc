@@ -1,6 +1,5 @@
 #include "core/flight/engine_version.h"
-
-#include <gmock/gmock.h>
+#include "tests/test.h"
 
 namespace dispersa::flight_engine_version_test {
 namespace {

@@ -1,11 +1,8 @@
 // A flexible vehicle with dispersed masses: its modes and section loads are those of the dispersed masses.
-#include <gtest/gtest.h>
-
-#include <cmath>
-
 #include "core/flight/flight_model.h"
 #include "core/modes/beam_table.h"
 #include "core/vehicle/mass.h"
+#include "tests/test.h"
 #include "tests/unit/flexible_sample.h"
 
 namespace dispersa::flight_flexible_dispersions_test {

@@ -1,12 +1,8 @@
 // Whole flights under closed-loop guidance.
-#include <gtest/gtest.h>
-
-#include <cmath>
-#include <vector>
-
 #include "core/flight/tick_sample.h"
 #include "core/guidance/corrector.h"
 #include "tests/slv4_flight.h"
+#include "tests/test.h"
 
 namespace dispersa::flight_guidance_test {
 namespace {

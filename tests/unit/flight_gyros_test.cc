@@ -1,12 +1,9 @@
 // Rate gyros: start, rounding and sampling of one, and blending of several, stage by stage.
-#include <gtest/gtest.h>
-
-#include <cmath>
-
 #include "core/flight/lane_sensors.h"
 #include "core/flight/tick_sample.h"
 #include "core/math/functions.h"
 #include "tests/slv4_flight.h"
+#include "tests/test.h"
 
 namespace dispersa::flight_gyros_test {
 namespace {

@@ -2,13 +2,6 @@
 // reaches a flight.
 #include "core/flight/input_rules.h"
 
-#include <gmock/gmock.h>
-#include <gtest/gtest.h>
-
-#include <algorithm>
-#include <string>
-#include <vector>
-
 #include "core/campaign/plausible_dispersions.h"
 #include "core/campaign_yaml/load.h"
 #include "core/cases/campaign_flights.h"
@@ -16,12 +9,11 @@
 #include "core/flight/flight_inputs.h"
 #include "core/input/number_text.h"
 #include "core/math/constants.h"
+#include "tests/test.h"
 #include "tests/unit/input_files.h"
 
 namespace dispersa::flight_input_rules_test {
 namespace {
-
-using testing::HasSubstr;
 
 constexpr char kBase[] =
     "schema: dispersa/campaign/1\nname: rules\n"

@@ -1,13 +1,9 @@
 // The limit cycle's measure on made-up histories with and without one.
 #include "core/flight/limit_cycle.h"
 
-#include <gtest/gtest.h>
-
-#include <cmath>
-#include <functional>
-
 #include "core/math/constants.h"
 #include "core/random/draws.h"
+#include "tests/test.h"
 
 namespace dispersa::flight_limit_cycle_test {
 namespace {

@@ -1,9 +1,5 @@
 // The effect of dispersed masses on a vehicle and its flight, against closed forms. The sample vehicle flies
 // in almost no air.
-#include <gtest/gtest.h>
-
-#include <cmath>
-
 #include <Eigen/LU>
 
 #include "core/dynamics/integrator.h"
@@ -15,6 +11,7 @@
 #include "core/math/rotation.h"
 #include "core/modes/mode_table.h"
 #include "core/vehicle/mass.h"
+#include "tests/test.h"
 #include "tests/unit/sample_vehicle.h"
 
 namespace dispersa::flight_mass_dispersions_test {

@@ -1,13 +1,10 @@
 // Dispersed masses and delays change a vehicle and its timeline only in their own stage.
-#include <gtest/gtest.h>
-
-#include <cmath>
-
 #include "core/dynamics/launcher.h"
 #include "core/flight/dispersed_vehicle.h"
 #include "core/flight/sequence.h"
 #include "core/vehicle/mass.h"
 #include "tests/slv4_flight.h"
+#include "tests/test.h"
 
 namespace dispersa::flight_masses_and_times_test {
 namespace {

@@ -1,18 +1,11 @@
 // Flights with a list of nozzles: forces by hand, a list equal to the cross, roll by the reaction control
 // under thrust, stuck and misaligned nozzles.
-#include <gtest/gtest.h>
-
-#include <algorithm>
-#include <array>
-#include <cmath>
-#include <functional>
-#include <vector>
-
 #include "core/flight/flight.h"
 #include "core/flight/metrics.h"
 #include "core/margins/flight_margins.h"
 #include "core/math/constants.h"
 #include "tests/flown_ticks.h"
+#include "tests/test.h"
 #include "tests/unit/sample_vehicle.h"
 
 namespace dispersa::flight_nozzles_test {

@@ -1,12 +1,8 @@
 // The ends of flights, and conditions that must not change them. The sample vehicle flies above the air.
-#include <gtest/gtest.h>
-
-#include <cmath>
-#include <limits>
-
 #include "core/dynamics/fall.h"
 #include "core/flight/flight.h"
 #include "core/math/constants.h"
+#include "tests/test.h"
 #include "tests/unit/sample_vehicle.h"
 
 namespace dispersa::flight_outcome_test {

@@ -1,14 +1,10 @@
 // Own metrics compute only the parts of a history row that they read: with the history's bits.
 #include "core/flight/own_metrics.h"
 
-#include <gtest/gtest.h>
-
-#include <cmath>
-#include <cstring>
-
 #include "core/flight/flight_model.h"
 #include "core/flight/history.h"
 #include "tests/slv4_flight.h"
+#include "tests/test.h"
 
 namespace dispersa::flight_own_metrics_test {
 namespace {

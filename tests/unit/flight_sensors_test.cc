@@ -1,12 +1,9 @@
 // Sensors in flight: the gyro's section, the requirements on gyros, and the inertial unit's drift.
-#include <gtest/gtest.h>
-
-#include <cmath>
-
 #include "core/flight/sensor_model.h"
 #include "core/flight/tick_sample.h"
 #include "core/math/rotation.h"
 #include "tests/slv4_flight.h"
+#include "tests/test.h"
 
 namespace dispersa::flight_sensors_test {
 namespace {

@@ -1,15 +1,10 @@
 // Delays, lift-off errors and errors by components: their effect on a flight in almost no air.
-#include <gtest/gtest.h>
-
-#include <algorithm>
-#include <cmath>
-#include <vector>
-
 #include "core/flight/flight.h"
 #include "core/flight/sequence.h"
 #include "core/math/constants.h"
 #include "core/math/rotation.h"
 #include "tests/flown_ticks.h"
+#include "tests/test.h"
 #include "tests/unit/sample_vehicle.h"
 
 namespace dispersa::flight_sequence_dispersions_test {

@@ -1,8 +1,7 @@
 // Times of ignition, burnout and separation of stages.
 #include "core/flight/sequence.h"
 
-#include <gtest/gtest.h>
-
+#include "tests/test.h"
 #include "tests/unit/sample_vehicle.h"
 
 namespace dispersa::flight_sequence_test {

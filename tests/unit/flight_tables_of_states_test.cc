@@ -1,11 +1,8 @@
 // The tables that a stack flies with: of its planes, with the motor out, and after bodies have left; as the
 // file has them and as a case draws them. Every number is another one.
-#include <gtest/gtest.h>
-
-#include <vector>
-
 #include "core/flight/flight_model.h"
 #include "core/vehicle/aero_table.h"
+#include "tests/test.h"
 #include "tests/unit/sample_vehicle.h"
 
 namespace dispersa::flight_tables_of_states_test {

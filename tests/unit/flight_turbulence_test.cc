@@ -1,12 +1,8 @@
 // Turbulence in flight: the field of a case, and the independence of its three components.
-#include <gtest/gtest.h>
-
-#include <array>
-#include <cmath>
-
 #include "core/environment/turbulence.h"
 #include "core/flight/flight_model.h"
 #include "tests/slv4_flight.h"
+#include "tests/test.h"
 
 namespace dispersa::flight_turbulence_test {
 namespace {

@@ -1,10 +1,7 @@
 // The commanded attitude: it keeps its limits and reaches the desired attitude.
-#include <gtest/gtest.h>
-
-#include <cmath>
-
 #include "core/guidance/attitude_command.h"
 #include "core/math/constants.h"
+#include "tests/test.h"
 
 namespace dispersa::guidance_attitude_command_test {
 namespace {

@@ -1,11 +1,8 @@
 // Decisions of closed-loop guidance, one at a time: when it steers, its measurement of the thrust, the last
 // ignition, and its statement that it reaches the target.
-#include <gtest/gtest.h>
-
-#include <cmath>
-
 #include "core/guidance/closed_loop.h"
 #include "tests/guidance_mission.h"
+#include "tests/test.h"
 
 namespace dispersa::guidance_closed_loop_test {
 namespace {

@@ -1,14 +1,11 @@
 // The corrector at random states, and at states without a solution.
-#include <gtest/gtest.h>
-
-#include <cmath>
-
 #include "core/guidance/bounded_step.h"
 #include "core/guidance/corrector.h"
 #include "core/guidance/motor_estimate.h"
 #include "core/math/constants.h"
 #include "core/random/draws.h"
 #include "tests/guidance_mission.h"
+#include "tests/test.h"
 
 namespace dispersa::guidance_corrector_test {
 namespace {

@@ -1,11 +1,7 @@
 // An engine that guidance cuts off: its levels, the estimate of its thrust, and when its burn ends.
-#include <gtest/gtest.h>
-
-#include <cmath>
-#include <limits>
-
 #include "core/guidance/closed_loop.h"
 #include "tests/guidance_mission.h"
+#include "tests/test.h"
 
 namespace dispersa::guidance_engine_test {
 namespace {

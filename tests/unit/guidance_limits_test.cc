@@ -1,10 +1,9 @@
 // The limits of guidance commands, from a vehicle's nozzles, thrusters and deadband, unless the campaign
 // gives them.
-#include <gtest/gtest.h>
-
-#include "core/control/autopilot_config.h"
 #include "core/guidance/guidance_limits.h"
+#include "core/control/autopilot_config.h"
 #include "core/vehicle/mass.h"
+#include "tests/test.h"
 #include "tests/unit/sample_vehicle.h"
 
 namespace dispersa::guidance_limits_test {

@@ -1,13 +1,10 @@
 // The guidance's prediction against closed forms and its own order.
-#include <gtest/gtest.h>
-
-#include <cmath>
-
 #include "core/guidance/attitude_command.h"
 #include "core/guidance/predictor.h"
 #include "core/math/constants.h"
 #include "core/math/functions.h"
 #include "tests/guidance_mission.h"
+#include "tests/test.h"
 
 namespace dispersa::guidance_predictor_test {
 namespace {

@@ -1,16 +1,13 @@
 // Spent stages and lost flights of the shipped vehicle, from separation or loss to the ground.
 #include "core/impact/impact_points.h"
 
-#include <cmath>
-
-#include <gtest/gtest.h>
-
 #include "core/campaign_yaml/load.h"
 #include "core/flight/flight.h"
 #include "core/flight/tick_sample.h"
 #include "core/math/constants.h"
 #include "core/vehicle/mass.h"
 #include "tests/liquid_stage.h"
+#include "tests/test.h"
 
 namespace dispersa::impact_points_test {
 namespace {

@@ -1,16 +1,11 @@
 // A spent stage by hand: its mass, and its position and velocity at separation, from a made-up history.
-#include <gtest/gtest.h>
-
-#include <cmath>
-#include <functional>
-#include <string>
-
 #include "core/campaign_yaml/load.h"
 #include "core/flight/flight_model.h"
 #include "core/impact/impact_points.h"
 #include "core/math/constants.h"
 #include "core/vehicle/mass.h"
 #include "tests/liquid_stage.h"
+#include "tests/test.h"
 
 namespace dispersa::impact_spent_stage_test {
 namespace {

@@ -1,9 +1,6 @@
 // The words for a disk that is full for this process.
 #include "core/input/disk_full.h"
-
-#include <gtest/gtest.h>
-
-#include <cerrno>
+#include "tests/test.h"
 
 namespace dispersa::input_disk_full_test {
 namespace {

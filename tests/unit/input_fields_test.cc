@@ -1,11 +1,7 @@
 // The values that a description reads from a map, and the messages about maps that do not fit it.
-#include <gtest/gtest.h>
-
-#include <string>
-#include <vector>
-
 #include "core/campaign_yaml/parse_yaml.h"
 #include "core/input/field_reader.h"
+#include "tests/test.h"
 
 namespace dispersa::input_fields_test {
 namespace {

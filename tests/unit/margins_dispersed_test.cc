@@ -1,16 +1,9 @@
 // The least margins over a campaign's cases, against those of each case by itself.
 #include "core/margins/dispersed_margins.h"
 
-#include <gtest/gtest.h>
-
-#include <algorithm>
-#include <cmath>
-#include <map>
-#include <utility>
-#include <vector>
-
 #include "core/campaign_yaml/load.h"
 #include "core/math/constants.h"
+#include "tests/test.h"
 
 namespace dispersa::margins_dispersed_test {
 namespace {

@@ -1,14 +1,10 @@
 // Linearised and measured margins of a flight, and the inputs that disturb its loop.
 #include "core/margins/flight_margins.h"
 
-#include <gtest/gtest.h>
-
-#include <algorithm>
-#include <cmath>
-
 #include "core/flight/flight.h"
 #include "core/margins/linear_axis.h"
 #include "core/math/constants.h"
+#include "tests/test.h"
 #include "tests/unit/sample_vehicle.h"
 
 namespace dispersa::margins_flight_test {

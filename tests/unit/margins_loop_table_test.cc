@@ -1,11 +1,8 @@
 // Margins from tabulated responses against the exact ones.
 #include "core/margins/loop_table.h"
 
-#include <gtest/gtest.h>
-
-#include <algorithm>
-
 #include "core/math/constants.h"
+#include "tests/test.h"
 
 namespace dispersa::margins_loop_table_test {
 namespace {

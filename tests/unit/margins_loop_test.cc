@@ -1,13 +1,10 @@
 // Margins of sampled loops whose critical gain is known in closed form, and of the autopilot's own code.
 #include "core/margins/loop_margins.h"
 
-#include <gtest/gtest.h>
-
-#include <cmath>
-
 #include "core/control/axis_controller.h"
 #include "core/math/constants.h"
 #include "core/math/matrices.h"
+#include "tests/test.h"
 #include "tests/unit/sample_vehicle.h"
 
 namespace dispersa::margins_loop_test {

@@ -1,16 +1,9 @@
 // The gates for margins, and the least margins over several plants, laws and instants, each from its loops.
-#include <gmock/gmock.h>
-#include <gtest/gtest.h>
-
-#include <algorithm>
-#include <cmath>
-#include <limits>
-#include <vector>
-
 #include "core/flight/flight.h"
 #include "core/margins/flight_margins.h"
 #include "core/margins/linear_axis.h"
 #include "core/math/constants.h"
+#include "tests/test.h"
 #include "tests/unit/flexible_sample.h"
 
 namespace dispersa::margins_rules_test {

@@ -1,11 +1,8 @@
 // Rules of the program itself: they run in this build, and say where and by what they are broken.
 #include "core/math/assertion.h"
 
-#include <gtest/gtest.h>
-
-#include <string>
-
 #include "core/statistics/intervals.h"
+#include "tests/test.h"
 
 namespace dispersa::math_assertion_test {
 namespace {

@@ -1,16 +1,10 @@
 // Samples on a circle, unwrapped about their centre.
 #include "core/math/circle.h"
 
-#include <cmath>
-#include <limits>
-#include <optional>
-#include <vector>
-
-#include <gtest/gtest.h>
-
 #include "core/statistics/limits.h"
 #include "core/statistics/normal.h"
 #include "core/statistics/summary.h"
+#include "tests/test.h"
 
 namespace dispersa::math_circle_test {
 namespace {

@@ -2,16 +2,10 @@
 // argument.
 #include "core/math/lanes.h"
 
-#include <gtest/gtest.h>
-
-#include <cmath>
-#include <cstdint>
-#include <limits>
-#include <vector>
-
 #include "core/math/lane_vector.h"
 #include "core/math/rotation.h"
 #include "core/random/draws.h"
+#include "tests/test.h"
 
 namespace dispersa::math_lanes_test {
 namespace {

@@ -1,10 +1,5 @@
 #include "core/math/matrices.h"
-
-#include <gtest/gtest.h>
-
-#include <algorithm>
-#include <cmath>
-#include <complex>
+#include "tests/test.h"
 
 namespace dispersa::math_matrices_test {
 namespace {

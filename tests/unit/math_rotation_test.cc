@@ -1,14 +1,9 @@
 // Quaternions, matrices, rotation vectors and Euler angles: conversion of each to the others, also at
 // singularities.
-#include <gtest/gtest.h>
-
-#include <algorithm>
-#include <array>
-#include <cmath>
-
 #include "core/math/constants.h"
 #include "core/math/rotation.h"
 #include "core/random/draws.h"
+#include "tests/test.h"
 
 namespace dispersa::math_rotation_test {
 namespace {

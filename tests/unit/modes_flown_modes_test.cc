@@ -1,13 +1,9 @@
 // Modes of several sources in one table.
 #include "core/modes/flown_modes.h"
 
-#include <gtest/gtest.h>
-
-#include <memory>
-#include <vector>
-
 #include "core/modes/beam_source.h"
 #include "tests/slv4_flight.h"
+#include "tests/test.h"
 
 namespace dispersa::modes_flown_modes_test {
 namespace {

@@ -1,15 +1,11 @@
 // The distribution of the normal force along a body: against Munk's integrals, closed forms of a bent body,
 // and finer and finer pieces.
-#include <gtest/gtest.h>
-
-#include <cmath>
-#include <vector>
-
 #include "core/campaign_yaml/load.h"
 #include "core/math/constants.h"
 #include "core/modes/beam_table.h"
 #include "core/modes/lift_distribution.h"
 #include "core/vehicle/mould_line.h"
+#include "tests/test.h"
 
 namespace dispersa::modes_lift_distribution_test {
 namespace {

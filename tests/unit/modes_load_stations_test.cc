@@ -1,17 +1,13 @@
 // The chosen cross-sections see the largest bending moment of loads that they were not chosen by.
 #include "core/modes/load_stations.h"
 
-#include <gtest/gtest.h>
-
-#include <algorithm>
-#include <cmath>
-
 #include "core/campaign_yaml/load.h"
 #include "core/math/constants.h"
 #include "core/modes/lift_distribution.h"
 #include "core/modes/load_table.h"
 #include "core/structure/free_body.h"
 #include "core/vehicle/mass.h"
+#include "tests/test.h"
 
 namespace dispersa::modes_load_stations_test {
 namespace {

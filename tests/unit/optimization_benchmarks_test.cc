@@ -1,11 +1,7 @@
 // Constrained problems from the literature: the genetic algorithm finds their published optimum.
-#include <gtest/gtest.h>
-
-#include <cmath>
-#include <vector>
-
 #include "core/optimization/genetic_algorithm.h"
 #include "core/optimization/levenberg_marquardt.h"
+#include "tests/test.h"
 
 namespace dispersa::optimization_benchmarks_test {
 namespace {

@@ -1,10 +1,6 @@
 // Deb's rules, the tie-breaker, and values that are not finite.
-#include <gtest/gtest.h>
-
-#include <limits>
-#include <vector>
-
 #include "core/optimization/feasibility_rules.h"
+#include "tests/test.h"
 
 namespace dispersa::optimization_feasibility_rules_test {
 namespace {

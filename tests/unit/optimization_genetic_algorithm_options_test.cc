@@ -1,13 +1,6 @@
 // Each option, and each part of a problem, that is out of range is named, with its value and what is allowed.
-#include <gtest/gtest.h>
-
-#include <cmath>
-#include <functional>
-#include <stdexcept>
-#include <string>
-#include <vector>
-
 #include "core/optimization/genetic_algorithm.h"
+#include "tests/test.h"
 
 namespace dispersa::optimization_genetic_algorithm_options_test {
 namespace {

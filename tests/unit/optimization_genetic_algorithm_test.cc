@@ -1,15 +1,6 @@
 // The genetic algorithm as a whole: known optima, reproducibility, threads, tie-breaker, ends and failures.
-#include <gmock/gmock.h>
-
-#include <algorithm>
-#include <atomic>
-#include <cmath>
-#include <span>
-#include <stdexcept>
-#include <thread>
-#include <vector>
-
 #include "core/optimization/genetic_algorithm.h"
+#include "tests/test.h"
 
 namespace dispersa::optimization_genetic_algorithm_test {
 namespace {

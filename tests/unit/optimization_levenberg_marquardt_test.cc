@@ -1,16 +1,6 @@
 // Least squares: known solutions, each status at the end, bounds, sides of differencing, scales and errors.
-#include <gtest/gtest.h>
-
-#include <algorithm>
-#include <cmath>
-#include <functional>
-#include <numeric>
-#include <span>
-#include <stdexcept>
-#include <string>
-#include <vector>
-
 #include "core/optimization/levenberg_marquardt.h"
+#include "tests/test.h"
 
 namespace dispersa::optimization_levenberg_marquardt_test {
 namespace {

@@ -1,10 +1,6 @@
 // Crossover and mutation: bounds, symmetry, and the distributions of their sources.
-#include <gtest/gtest.h>
-
-#include <cmath>
-#include <vector>
-
 #include "core/optimization/variation.h"
+#include "tests/test.h"
 
 namespace dispersa::optimization_variation_test {
 namespace {

@@ -1,11 +1,9 @@
 // The data of the page's script: bounded in size, and equal to cases.csv.
 #include "core/pages/case_data.h"
 
-#include <algorithm>
-
-#include <gmock/gmock.h>
 #include <nlohmann/json.hpp>
 
+#include "tests/test.h"
 #include "tests/unit/made_up_results.h"
 
 namespace dispersa::pages_case_data_test {

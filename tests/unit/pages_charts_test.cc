@@ -1,16 +1,10 @@
 // The charts of a report: what they draw, and over which range.
 #include <fmt/format.h>
-#include <gmock/gmock.h>
-#include <gtest/gtest.h>
-
-#include <cmath>
-#include <sstream>
-#include <string>
-#include <vector>
 
 #include "core/pages/distribution_charts.h"
 #include "core/pages/flight_charts.h"
 #include "core/pages/vehicle_drawing.h"
+#include "tests/test.h"
 #include "tests/unit/made_up_results.h"
 #include "tests/unit/sample_vehicle.h"
 
@@ -18,8 +12,6 @@ namespace dispersa::pages_charts_test {
 namespace {
 
 using report_test::kPeak;
-using testing::HasSubstr;
-using testing::Not;
 
 std::size_t CountOf(const std::string& text, const std::string& what) {
   std::size_t count = 0;

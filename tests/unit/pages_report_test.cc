@@ -1,29 +1,18 @@
 // report.html: every number that it shows is summary.json's, and it needs nothing but itself.
 #include "core/pages/report_page.h"
 
-#include <gmock/gmock.h>
-
-#include <algorithm>
-#include <cmath>
-#include <regex>
-
 #include "core/pages/glossary.h"
 #include "core/pages/html_parts.h"
 #include "core/pages/report_sections.h"
 #include "core/results/metric_catalogue.h"
 #include "core/results/text.h"
+#include "tests/test.h"
 #include "tests/unit/made_up_results.h"
 
 namespace dispersa::pages_report_test {
 namespace {
 
-using report_test::kNaN;
-using report_test::MakeCampaign;
-using report_test::MakeCase;
-using report_test::TemporaryFolder;
-using testing::ContainsRegex;
-using testing::HasSubstr;
-using testing::Not;
+using namespace report_test;
 
 /// A flight of four stages with a coast before the last; every column is a wave.
 History MakeHistory() {

@@ -1,9 +1,6 @@
 // A whole report from flights of the engine: the same bytes for any worker and any order.
 #include "core/pages/reports.h"
 
-#include <gmock/gmock.h>
-
-#include <map>
 #include <nlohmann/json.hpp>
 
 #include "core/campaign_yaml/load.h"
@@ -12,14 +9,13 @@
 #include "core/pages/histories.h"
 #include "core/results/database.h"
 #include "core/results/gzip.h"
+#include "tests/test.h"
 #include "tests/unit/made_up_results.h"
 
 namespace dispersa::pages_reports_test {
 namespace {
 
-using report_test::ReadText;
-using report_test::TemporaryFolder;
-using testing::HasSubstr;
+using namespace report_test;
 
 constexpr std::uint64_t kCases = 4;
 

@@ -1,24 +1,13 @@
 #include "core/pages/svg_chart.h"
 
-#include <gmock/gmock.h>
-
-#include <algorithm>
-#include <cmath>
-#include <regex>
-#include <string>
-#include <utility>
-#include <vector>
-
 #include "core/pages/chart_scale.h"
+#include "tests/test.h"
 #include "tests/unit/made_up_results.h"
 
 namespace dispersa::pages_svg_chart_test {
 namespace {
 
 using report_test::kNaN;
-using testing::ElementsAre;
-using testing::HasSubstr;
-using testing::Not;
 
 std::vector<std::string> Labels(const ChartScale& scale) {
   std::vector<std::string> labels;

@@ -1,15 +1,11 @@
 // The optimiser's page.
 #include "core/pages/trajectory_page.h"
 
-#include <gmock/gmock.h>
-
 #include "core/math/constants.h"
+#include "tests/test.h"
 
 namespace dispersa::pages_trajectory_page_test {
 namespace {
-
-using testing::HasSubstr;
-using testing::Not;
 
 OptimizationResult Result(double t1_s) {
   OptimizationResult result;

@@ -1,19 +1,10 @@
 // The text of a cell of a heat map.
 #include "core/paper/heat_map.h"
-
-#include <string>
-#include <tuple>
-
-#include <gmock/gmock.h>
-#include <gtest/gtest.h>
-
-#include <string>
+#include "tests/test.h"
 
 namespace dispersa::paper_heat_map_test {
 namespace {
 
-using testing::HasSubstr;
-using testing::Not;
 using Region = HeatMapCell::Region;
 
 HeatMap Sample() {

@@ -1,12 +1,9 @@
 // Campaigns flown in process: the same cases as a campaign's, for any number of threads.
 #include "core/paper/study_flights.h"
 
-#include <gtest/gtest.h>
-
-#include <cmath>
-
 #include "core/campaign_yaml/load.h"
 #include "core/cases/campaign_flights.h"
+#include "tests/test.h"
 
 namespace dispersa::paper_study_flights_test {
 namespace {

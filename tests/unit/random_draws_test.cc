@@ -1,18 +1,10 @@
 #include "core/random/draws.h"
-
-#include <algorithm>
-#include <cmath>
-#include <limits>
-#include <string>
-#include <vector>
+#include "tests/test.h"
 
 #include <Random123/philox.h>
-#include <gmock/gmock.h>
 
 namespace dispersa::random_draws_test {
 namespace {
-
-using ::testing::ElementsAre;
 
 constexpr std::uint64_t kSeed = 20260101;
 

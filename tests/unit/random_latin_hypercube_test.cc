@@ -1,16 +1,7 @@
 #include "core/random/latin_hypercube.h"
 
-#include <array>
-#include <cmath>
-#include <map>
-#include <numeric>
-#include <set>
-#include <utility>
-#include <vector>
-
-#include <gtest/gtest.h>
-
 #include "core/random/draws.h"
+#include "tests/test.h"
 
 namespace dispersa::random_latin_hypercube_test {
 namespace {

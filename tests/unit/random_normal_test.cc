@@ -1,10 +1,6 @@
 #include "core/random/normal.h"
+#include "tests/test.h"
 
-#include <algorithm>
-#include <cmath>
-#include <limits>
-
-#include <gtest/gtest.h>
 #include <boost/math/distributions/normal.hpp>
 
 namespace dispersa::random_normal_test {

@@ -1,14 +1,7 @@
 #include "core/random/sobol.h"
 
-#include <cmath>
-#include <set>
-#include <string>
-#include <utility>
-#include <vector>
-
-#include <gtest/gtest.h>
-
 #include "core/random/draws.h"
+#include "tests/test.h"
 #include "tests/unit/read_csv.h"
 
 namespace dispersa::random_sobol_test {

@@ -1,10 +1,7 @@
 // Columns of results: which numbers count as values.
 #include "core/results/case_columns.h"
 
-#include <gtest/gtest.h>
-
-#include <cmath>
-
+#include "tests/test.h"
 #include "tests/unit/made_up_results.h"
 
 namespace dispersa::results_case_columns_test {

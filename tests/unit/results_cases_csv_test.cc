@@ -1,27 +1,14 @@
 // cases.csv is the same bytes in whatever order and however often results arrive.
 #include "core/results/cases_csv.h"
 
-#include <gmock/gmock.h>
-
-#include <cmath>
-#include <limits>
-#include <numeric>
-
 #include "core/results/text.h"
+#include "tests/test.h"
 #include "tests/unit/made_up_results.h"
 
 namespace dispersa::results_cases_csv_test {
 namespace {
 
-using report_test::kNaN;
-using report_test::MakeCase;
-using report_test::MakeLimitedCampaign;
-using report_test::ReadText;
-using report_test::TemporaryFolder;
-using testing::EndsWith;
-using testing::HasSubstr;
-using testing::Not;
-using testing::StartsWith;
+using namespace report_test;
 
 // Of the law that has every metric, and of flights of all kinds.
 std::vector<std::size_t> AllMetrics(ControlLaw law = ControlLaw::kAdaptiveFuzzy) {

@@ -1,15 +1,9 @@
 // Files of numbers as text: what is read, and what is none.
 #include "core/results/number_csv.h"
-
-#include <gmock/gmock.h>
-#include <gtest/gtest.h>
-
-#include <cmath>
+#include "tests/test.h"
 
 namespace dispersa::results_number_csv_test {
 namespace {
-
-using ::testing::ElementsAre;
 
 TEST(NumberCsv, HasAValueForEachColumn) {
   const auto table = ReadNumberCsv("time_s,mach\n0,-1.5\n1e-3,2\n");

@@ -6,12 +6,6 @@
 #include <sys/wait.h>
 #include <unistd.h>
 
-#include <gmock/gmock.h>
-
-#include <cmath>
-#include <filesystem>
-#include <fstream>
-#include <limits>
 #include <nlohmann/json.hpp>
 
 #include "core/flight/engine_version.h"
@@ -20,18 +14,13 @@
 #include "core/results/nominal_json.h"
 #include "core/results/output_file.h"
 #include "tests/small_disk.h"
+#include "tests/test.h"
 #include "tests/unit/made_up_results.h"
 
 namespace dispersa::results_result_folder_test {
 namespace {
 
-using report_test::kNaN;
-using report_test::MakeCase;
-using report_test::MakeLimitedCampaign;
-using report_test::ReadText;
-using report_test::TemporaryFolder;
-using testing::ElementsAre;
-using testing::Pair;
+using namespace report_test;
 
 template <typename Error, typename Action>
 std::string MessageOf(Action action) {

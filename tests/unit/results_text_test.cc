@@ -1,11 +1,8 @@
 #include "core/results/text.h"
 
-#include <gtest/gtest.h>
-
-#include <cmath>
-
 #include "core/results/metric_catalogue.h"
 #include "core/results/requirement_text.h"
+#include "tests/test.h"
 #include "tests/unit/made_up_results.h"
 
 namespace dispersa::results_text_test {

@@ -2,14 +2,8 @@
 // normal coordinate.
 #include "core/search/dispersion_space.h"
 
-#include <gtest/gtest.h>
-
-#include <cmath>
-#include <functional>
-#include <string>
-#include <vector>
-
 #include "core/math/constants.h"
+#include "tests/test.h"
 
 namespace dispersa::search_dispersion_space_test {
 namespace {

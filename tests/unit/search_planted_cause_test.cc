@@ -1,13 +1,9 @@
 // The search on flights: one of the dispersions of `full` is made to matter, and the search finds it.
-#include <algorithm>
-#include <cmath>
-
-#include <gtest/gtest.h>
-
 #include "core/campaign_yaml/load.h"
 #include "core/cases/campaign_flights.h"
 #include "core/flight/flight.h"
 #include "core/search/smallest_failure.h"
+#include "tests/test.h"
 
 namespace dispersa::search_planted_cause_test {
 namespace {

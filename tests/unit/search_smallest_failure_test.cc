@@ -1,14 +1,9 @@
 // The bounded search: on limits whose nearest point is known, and on flights with a planted cause.
 #include "core/search/smallest_failure.h"
 
-#include <cmath>
-#include <functional>
-
-#include <gmock/gmock.h>
-#include <gtest/gtest.h>
-
 #include "core/campaign_yaml/load.h"
 #include "core/math/constants.h"
+#include "tests/test.h"
 
 namespace dispersa::search_smallest_failure_test {
 namespace {

@@ -1,9 +1,7 @@
 // Evidence that holds at any time: against quadrature, and as a martingale.
 #include "core/statistics/anytime.h"
+#include "tests/test.h"
 
-#include <cmath>
-
-#include <gtest/gtest.h>
 #include <boost/math/quadrature/tanh_sinh.hpp>
 
 namespace dispersa::statistics_anytime_test {

@@ -1,20 +1,9 @@
 // What several campaigns of one design show together: each rule by hand, and error rates by simulation.
 #include "core/statistics/attempts.h"
 
-#include <gtest/gtest.h>
-
-#include <algorithm>
-#include <cmath>
-#include <cstdint>
-#include <cstdio>
-#include <cstdlib>
-#include <functional>
-#include <random>
-#include <utility>
-#include <vector>
-
 #include "core/statistics/anytime.h"
 #include "core/statistics/order_statistics.h"
+#include "tests/test.h"
 
 namespace dispersa::statistics_attempts_test {
 namespace {

@@ -1,11 +1,4 @@
 // Every interval contains its own estimate, for any sample, percentile and confidence.
-#include <gtest/gtest.h>
-
-#include <algorithm>
-#include <cmath>
-#include <string>
-#include <vector>
-
 #include "core/random/draws.h"
 #include "core/statistics/anytime.h"
 #include "core/statistics/intervals.h"
@@ -16,6 +9,7 @@
 #include "core/statistics/sensitivity.h"
 #include "core/statistics/summary.h"
 #include "core/statistics/two_samples.h"
+#include "tests/test.h"
 
 namespace dispersa::statistics_estimates_test {
 namespace {

@@ -1,16 +1,11 @@
 // Boundaries of several looks against the enumeration of every sequence of cases.
 #include "core/statistics/group_sequential.h"
 
-#include <cmath>
-
-#include <gmock/gmock.h>
-
 #include "core/statistics/order_statistics.h"
+#include "tests/test.h"
 
 namespace dispersa::statistics_group_sequential_test {
 namespace {
-
-using testing::ElementsAre;
 
 /// Probability, over all 2^n sequences of n cases, that some look decides.
 template <typename Decides>

@@ -1,14 +1,8 @@
 #include "core/statistics/intervals.h"
 
-#include <algorithm>
-#include <cmath>
-#include <string>
-#include <vector>
-
-#include <gtest/gtest.h>
-
 #include "core/random/draws.h"
 #include "core/statistics/order_statistics.h"
+#include "tests/test.h"
 #include "tests/unit/read_csv.h"
 
 namespace dispersa::statistics_intervals_test {

@@ -1,9 +1,6 @@
 #include "core/statistics/order_statistics.h"
 
-#include <cmath>
-
-#include <gtest/gtest.h>
-
+#include "tests/test.h"
 #include "tests/unit/read_csv.h"
 
 namespace dispersa::statistics_order_statistics_test {

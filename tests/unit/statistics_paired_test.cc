@@ -1,11 +1,7 @@
 #include "core/statistics/paired.h"
 
-#include <cmath>
-#include <limits>
-
-#include <gtest/gtest.h>
-
 #include "core/random/draws.h"
+#include "tests/test.h"
 
 namespace dispersa::statistics_paired_test {
 namespace {

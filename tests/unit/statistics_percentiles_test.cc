@@ -1,14 +1,8 @@
 // Percentiles that a number of values supports, and those that it does not.
 #include "core/statistics/percentiles.h"
 
-#include <algorithm>
-#include <cmath>
-#include <string>
-#include <vector>
-
-#include <gtest/gtest.h>
-
 #include "core/statistics/summary.h"
+#include "tests/test.h"
 
 namespace dispersa::statistics_percentiles_test {
 namespace {

@@ -1,21 +1,14 @@
 // Verdicts by plan: what one look decides, what more looks may, and what nobody planned may not.
 #include "core/statistics/planned_verdict.h"
 
-#include <cmath>
-#include <limits>
-#include <numeric>
-
-#include <gmock/gmock.h>
-
 #include "core/random/draws.h"
 #include "core/statistics/anytime.h"
 #include "core/statistics/limits.h"
 #include "core/statistics/order_statistics.h"
+#include "tests/test.h"
 
 namespace dispersa::statistics_planned_verdict_test {
 namespace {
-
-using testing::ElementsAre;
 
 constexpr VerdictPlan kFiveLooks = {PlanKind::kGroupSequential, 5, Spending::kOBrienFleming};
 constexpr VerdictPlan kAnytime = {PlanKind::kAnytime, 1, Spending::kOBrienFleming};

@@ -1,11 +1,7 @@
 #include "core/statistics/point_scatter.h"
 
-#include <cmath>
-#include <numbers>
-
-#include <gtest/gtest.h>
-
 #include "core/random/draws.h"
+#include "tests/test.h"
 
 namespace dispersa::statistics_point_scatter_test {
 namespace {

@@ -1,10 +1,6 @@
 // Bounds from replicates of a design, in cases with a closed form.
 #include "core/statistics/replicates.h"
-
-#include <gtest/gtest.h>
-
-#include <cmath>
-#include <numbers>
+#include "tests/test.h"
 
 namespace dispersa::statistics_replicates_test {
 namespace {

@@ -1,20 +1,13 @@
 // Sensitivity of functions with indices in closed form, and dependences that correlation misses.
 #include "core/statistics/sensitivity.h"
 
-#include <cmath>
-#include <numbers>
-#include <string>
-
-#include <gmock/gmock.h>
-
 #include "core/random/draws.h"
+#include "tests/test.h"
 
 namespace dispersa::statistics_sensitivity_test {
 namespace {
 
 using std::numbers::pi;
-using testing::DoubleEq;
-using testing::ElementsAre;
 
 /// Uniform columns on (low, high), n cases each.
 std::vector<std::vector<double>> Uniform(std::size_t columns, std::size_t n, double low, double high) {

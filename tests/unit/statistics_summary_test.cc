@@ -1,15 +1,7 @@
 #include "core/statistics/summary.h"
 
-#include <algorithm>
-#include <bit>
-#include <cmath>
-#include <cstdint>
-#include <limits>
-#include <numeric>
-
-#include <gtest/gtest.h>
-
 #include "core/random/draws.h"
+#include "tests/test.h"
 
 namespace dispersa::statistics_summary_test {
 namespace {

@@ -1,12 +1,7 @@
 #include "core/statistics/two_samples.h"
 
-#include <algorithm>
-#include <cmath>
-#include <limits>
-
-#include <gtest/gtest.h>
-
 #include "core/random/draws.h"
+#include "tests/test.h"
 
 namespace dispersa::statistics_two_samples_test {
 namespace {

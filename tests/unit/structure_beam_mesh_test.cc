@@ -1,14 +1,11 @@
 // A stack's mesh is as fine as its modes need.
 #include "core/structure/beam_mesh.h"
 
-#include <gtest/gtest.h>
-
-#include <cmath>
-
 #include "core/campaign_yaml/load.h"
 #include "core/structure/bending_modes.h"
 #include "core/structure/free_free_modes.h"
 #include "core/structure/near_modes.h"
+#include "tests/test.h"
 
 namespace dispersa::structure_beam_mesh_test {
 namespace {

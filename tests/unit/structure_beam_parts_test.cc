@@ -1,13 +1,10 @@
 // Equivalent parts of the beam: a lumped body and a rod, two sections and one, jettisoned masses and the mass
 // model.
-#include <gtest/gtest.h>
-
-#include <cmath>
-
 #include "core/modes/beam_table.h"
 #include "core/structure/bending_modes.h"
 #include "core/structure/mass_points.h"
 #include "core/vehicle/mass.h"
+#include "tests/test.h"
 #include "tests/unit/flexible_sample.h"
 
 namespace dispersa::structure_beam_parts_test {

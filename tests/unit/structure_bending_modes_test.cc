@@ -1,9 +1,6 @@
 // The beam of a vehicle has the masses of the rigid vehicle. Its modes keep their numbers and signs over the
 // burn.
-#include <gtest/gtest.h>
-
 #include <Eigen/Eigenvalues>
-#include <cmath>
 
 #include "core/campaign_yaml/load.h"
 #include "core/math/constants.h"
@@ -14,6 +11,7 @@
 #include "core/structure/mode_tracking.h"
 #include "core/vehicle/mass.h"
 #include "tests/liquid_stage.h"
+#include "tests/test.h"
 #include "tests/unit/flexible_sample.h"
 
 namespace dispersa::structure_bending_modes_test {

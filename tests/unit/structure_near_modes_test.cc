@@ -2,12 +2,6 @@
 // modes sought near the nominal ones against the whole solution.
 #include "core/structure/mass_points.h"
 
-#include <gtest/gtest.h>
-
-#include <algorithm>
-#include <array>
-#include <cmath>
-
 #include "core/campaign_yaml/load.h"
 #include "core/flight/dispersed_vehicle.h"
 #include "core/modes/beam_table.h"
@@ -17,6 +11,7 @@
 #include "core/vehicle/mass.h"
 #include "tests/liquid_stage.h"
 #include "tests/tabulated_masses.h"
+#include "tests/test.h"
 #include "tests/unit/flexible_sample.h"
 
 namespace dispersa::structure_near_modes_test {

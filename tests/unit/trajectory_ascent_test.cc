@@ -1,13 +1,7 @@
 // Ascents side by side have the same bits as one alone, with any neighbours and in any order.
-#include <gtest/gtest.h>
-
-#include <algorithm>
-#include <stdexcept>
-#include <string>
-#include <vector>
-
 #include "core/campaign_yaml/load.h"
 #include "core/trajectory/ascent.h"
+#include "tests/test.h"
 
 namespace dispersa::trajectory_ascent_test {
 namespace {

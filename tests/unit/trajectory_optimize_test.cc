@@ -1,21 +1,13 @@
 // The optimiser as its users see it: the target met to the metre, the same bytes for any number of threads, a
 // plain statement if a target is out of reach.
-#include <gmock/gmock.h>
-#include <gtest/gtest.h>
-
-#include <cmath>
-#include <numbers>
-#include <string>
-
 #include "core/campaign_yaml/load.h"
 #include "core/trajectory/optimize.h"
 #include "core/trajectory/refine.h"
 #include "core/trajectory/selection.h"
+#include "tests/test.h"
 
 namespace dispersa::trajectory_optimize_test {
 namespace {
-
-using ::testing::HasSubstr;
 
 constexpr double kRadPerDeg = std::numbers::pi / 180.0;
 

@@ -1,13 +1,9 @@
 // A recorded ascent against its flight program: steering of an upper stage over time, and density of the
 // attitude knots.
-#include <gtest/gtest.h>
-
-#include <algorithm>
-#include <cmath>
-
 #include "core/campaign_yaml/load.h"
 #include "core/math/constants.h"
 #include "core/trajectory/ascent.h"
+#include "tests/test.h"
 
 namespace dispersa::trajectory_program_test {
 namespace {

@@ -2,15 +2,10 @@
 // attitude program has a knot at every kink.
 #include "core/trajectory/refine.h"
 
-#include <gtest/gtest.h>
-
-#include <algorithm>
-#include <cmath>
-#include <vector>
-
 #include "core/campaign_yaml/load.h"
 #include "core/math/constants.h"
 #include "core/trajectory/aim.h"
+#include "tests/test.h"
 
 namespace dispersa::trajectory_refine_test {
 namespace {

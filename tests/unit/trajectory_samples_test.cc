@@ -1,11 +1,8 @@
 // The quantities of each sample of a recorded ascent, from its position and velocity.
-#include <gtest/gtest.h>
-
-#include <cmath>
-
 #include "core/campaign_yaml/load.h"
 #include "core/math/constants.h"
 #include "core/trajectory/ascent.h"
+#include "tests/test.h"
 
 namespace dispersa::trajectory_samples_test {
 namespace {

@@ -1,20 +1,14 @@
 // The statement about a target out of reach. The shipped program meets the shipped target. With its azimuth
 // held, its speed is the only one at that altitude and angle, for any speed asked.
 #include <fmt/format.h>
-#include <gmock/gmock.h>
-#include <gtest/gtest.h>
-
-#include <cmath>
 
 #include "core/campaign_yaml/load.h"
 #include "core/math/constants.h"
 #include "core/trajectory/shortfall.h"
+#include "tests/test.h"
 
 namespace dispersa::trajectory_shortfall_test {
 namespace {
-
-using ::testing::HasSubstr;
-using ::testing::Not;
 
 const AscentModel& Model() {
   static const AscentModel model =

@@ -2,11 +2,6 @@
 // on its arguments alone.
 #include "core/tuning/tune.h"
 
-#include <gmock/gmock.h>
-#include <gtest/gtest.h>
-
-#include <cmath>
-
 #include "core/campaign_yaml/load.h"
 #include "core/cases/campaign_flights.h"
 #include "core/flight/flight_model.h"
@@ -15,6 +10,7 @@
 #include "core/tuning/regulator.h"
 #include "core/tuning/stage_design.h"
 #include "core/tuning/tuned_plant.h"
+#include "tests/test.h"
 #include "tests/unit/flexible_sample.h"
 
 namespace dispersa::tuning_tune_test {

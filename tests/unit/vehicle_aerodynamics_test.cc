@@ -1,20 +1,13 @@
 // The component build-up of aerodynamics: closed forms, independent theories, and the shape of its tables.
 #include "core/vehicle/aerodynamics_build_up.h"
 
-#include <gmock/gmock.h>
-#include <gtest/gtest.h>
-
-#include <algorithm>
-#include <cmath>
-#include <string>
-#include <vector>
-
 #include "core/math/constants.h"
 #include "core/math/table.h"
 #include "core/vehicle/drag.h"
 #include "core/vehicle/mould_line.h"
 #include "core/vehicle/normal_force.h"
 #include "core/vehicle/shock_expansion.h"
+#include "tests/test.h"
 
 namespace dispersa::vehicle_aerodynamics_test {
 namespace {

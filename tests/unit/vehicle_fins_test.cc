@@ -1,13 +1,10 @@
 // Fins against the limits of their theories, and against numbers computed by hand.
 #include "core/vehicle/fins.h"
 
-#include <gtest/gtest.h>
-
-#include <cmath>
-
 #include "core/math/constants.h"
 #include "core/vehicle/aerodynamics_build_up.h"
 #include "core/vehicle/vehicle.h"
+#include "tests/test.h"
 
 namespace dispersa::vehicle_fins_test {
 namespace {

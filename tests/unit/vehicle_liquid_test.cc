@@ -1,11 +1,5 @@
 // Liquid stages: masses of draining tanks against slices of the liquid, burns with throttle, cut-off and
 // depletion against closed forms, and mistakes.
-#include <gtest/gtest.h>
-
-#include <algorithm>
-#include <cmath>
-#include <functional>
-
 #include "core/math/constants.h"
 #include "core/math/functions.h"
 #include "core/modes/load_table.h"
@@ -15,6 +9,7 @@
 #include "core/vehicle/propulsion.h"
 #include "core/vehicle/vehicle_figures.h"
 #include "tests/liquid_stage.h"
+#include "tests/test.h"
 #include "tests/unit/sample_vehicle.h"
 
 namespace dispersa::vehicle_liquid_test {

@@ -1,11 +1,8 @@
 // Mass properties against sums by hand and against their own numerical derivatives.
 #include "core/vehicle/mass.h"
 
-#include <gtest/gtest.h>
-
-#include <cmath>
-
 #include "core/math/constants.h"
+#include "tests/test.h"
 #include "tests/unit/sample_vehicle.h"
 
 namespace dispersa::vehicle_mass_test {

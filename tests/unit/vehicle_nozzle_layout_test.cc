@@ -1,16 +1,10 @@
 // Lists of nozzles: the effect of commands, against geometry by hand and closed forms of the pseudo-inverse.
 #include "core/vehicle/nozzle_layout.h"
 
-#include <gtest/gtest.h>
-
-#include <algorithm>
-#include <cmath>
-#include <string>
-#include <vector>
-
 #include "core/math/constants.h"
 #include "core/math/linear.h"
 #include "core/vehicle/vehicle.h"
+#include "tests/test.h"
 
 namespace dispersa::vehicle_nozzle_layout_test {
 namespace {

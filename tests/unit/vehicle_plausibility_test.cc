@@ -2,20 +2,11 @@
 // text.
 #include "core/vehicle/plausibility.h"
 
-#include <gtest/gtest.h>
-
-#include <fstream>
-#include <functional>
-#include <map>
-#include <set>
-#include <sstream>
-#include <string>
-#include <vector>
-
 #include "core/campaign_yaml/load.h"
 #include "core/math/constants.h"
 #include "core/vehicle/mass.h"
 #include "core/vehicle/vehicle_figures.h"
+#include "tests/test.h"
 #include "tests/unit/sample_vehicle.h"
 
 namespace dispersa::vehicle_plausibility_test {

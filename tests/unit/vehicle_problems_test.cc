@@ -1,11 +1,7 @@
 // Contradictions within a vehicle that a file cannot have; for the others see
 // tests/data/messages/vehicle.txt.
-#include <gtest/gtest.h>
-
-#include <string>
-#include <vector>
-
 #include "core/vehicle/vehicle.h"
+#include "tests/test.h"
 #include "tests/unit/sample_vehicle.h"
 
 namespace dispersa::vehicle_problems_test {

@@ -1,8 +1,7 @@
 // Thrust and propellant of a burn: the trapezoid's area, its ends, and the flight's factors.
 #include "core/vehicle/propulsion.h"
 
-#include <gtest/gtest.h>
-
+#include "tests/test.h"
 #include "tests/unit/sample_vehicle.h"
 
 namespace dispersa::vehicle_propulsion_test {

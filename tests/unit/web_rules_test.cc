@@ -1,23 +1,13 @@
 // Rules of the web application: where a login goes on, which label names a version, what is found, in which
 // order.
-#include <gmock/gmock.h>
-#include <gtest/gtest.h>
-
-#include <cstdio>
-#include <memory>
-#include <string>
-#include <vector>
-
 #include "services/web/pages.h"
 #include "services/web/web_parts.h"
 #include "services/web/web_server.h"
 #include "tests/distributed/http_client.h"
+#include "tests/test.h"
 
 namespace dispersa::web_rules_test {
 namespace {
-
-using testing::HasSubstr;
-using testing::Not;
 
 TEST(LocalPath, IsAPathOfThisServer) {
   for (const char* path : {"/", "/trend?metric=q_max_pa&q=branch%3Dmain", "/campaign/0a?part=1#end", "/a//b",
