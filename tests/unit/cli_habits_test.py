@@ -138,7 +138,7 @@ class Values(unittest.TestCase):
             self.assertIn("--frequency-band: Value", dispersa("margins", SMOKE, "--frequency-band", text).stderr)
 
     def test_one_of_those_that_are_listed(self):
-        formats = "allowed: one of csv, geojson, hdf5, jsonl, junit, kml"
+        formats = "allowed: one of csv, geojson, hdf5, jsonl, junit, kml, markdown"
         self.refused(f"--format: there is no 'xml' (did you mean 'kml'?), {formats}", "export", "results", "--format", "xml")
         self.refused(f"--format: there is no '0', {formats}", "export", "results", "--format", "0")
         self.refused(f"--format: there is no '', {formats}", "export", "results", "--format", "")

@@ -46,7 +46,7 @@ class Words(unittest.TestCase):
         self.assertEqual(words("export", "results", "--format", "j"), ["jsonl", "junit"])
         self.assertEqual(words("export", "--format=j"), ["--format=jsonl", "--format=junit"])
         self.assertEqual(words("export", "--format", "=", "j"), ["jsonl", "junit"])  # bash's words
-        self.assertEqual(words("export", "--format", "="), ["csv", "geojson", "hdf5", "jsonl", "junit", "kml"])
+        self.assertEqual(words("export", "--format", "="), ["csv", "geojson", "hdf5", "jsonl", "junit", "kml", "markdown"])
         self.assertEqual(words("keys", "issue", "authority", "--role", "w"), ["worker"])
         self.assertEqual(words("completion", ""), ["bash", "fish", "zsh"])
         self.assertEqual(words("init", "first", "--from", ""), ["slv4", "vega", "electron", "scout"])
