@@ -9,7 +9,6 @@
 #include <utility>
 
 #include "core/containment/foreign_process.h"
-#include "core/pages/reports.h"
 #include "services/coordinator/attendance.h"
 #include "services/coordinator/catalogue.h"
 #include "services/coordinator/coordinator.h"
@@ -21,7 +20,6 @@
 #include "services/coordinator/service.h"
 #include "services/coordinator/watchdog.h"
 #include "services/coordinator/web_rows.h"
-#include "services/ledger/campaign_attempt.h"
 #include "services/log/log.h"
 #include "services/program/exit_code.h"
 #include "services/program/failure.h"
@@ -33,7 +31,6 @@ namespace dispersa {
 namespace {
 
 constexpr std::chrono::milliseconds kRound(50);
-constexpr double kProgress_s = 5.0;
 constexpr double kPrometheus_s = 1.0;
 constexpr double kWeb_s = 1.0;
 constexpr double kWebPause_s = 0.2;
