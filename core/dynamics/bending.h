@@ -28,11 +28,15 @@ struct ModeNow {
   T inverse_mass_1_kg;
 };
 
-/// A column of one mode between two levels of propellant: `low` at the upper one, `rise` from there to the
+/// The columns of one mode between two levels of propellant: `low` at the upper one, `rise` from there to the
 /// next.
 template <class T>
 struct ModeRows {
   T low[ModeTable::kRowSize], rise[ModeTable::kRowSize];
+  /// Of the columns of all load stations the largest absolute value, by inertia and by each cause of lift.
+  struct Largest {
+    T low, rise;
+  } of_inertia, of_lift[kLiftCauses];
 };
 
 /// A number of plane y and of plane z.
@@ -92,6 +96,18 @@ struct ModalForce {
   T drive_m_s2[kPlanes][kModes];
 };
 
+/// Of the columns of all load stations, from `first` on. Between the levels no column is larger than the same
+/// mean of the largest ones.
+template <class T>
+DISPERSA_INLINE typename ModeRows<T>::Largest LargestColumn(const ModeRows<T>& rows, int first) {
+  T low(0.0), high(0.0);
+  for (int i = first; i < first + kLoadStations; ++i) {
+    low = Max(low, Abs(rows.low[i]));
+    high = Max(high, Abs(rows.low[i] + rows.rise[i]));
+  }
+  return {low, high - low};
+}
+
 /// Reads the levels about each lane's propellant. A flight needs it once for each level.
 template <class T>
 DISPERSA_OUT_OF_LINE void ReadLevels(StackBending<T>& b, T propellant_kg) {
@@ -136,6 +152,9 @@ DISPERSA_OUT_OF_LINE void ReadLevels(StackBending<T>& b, T propellant_kg) {
       LoadRow(low, ModeTable::kRowSize / 4, rows.low);
       LoadRow(high, ModeTable::kRowSize / 4, rows.rise);
       for (int i = 0; i < ModeTable::kRowSize; ++i) rows.rise[i] = rows.rise[i] - rows.low[i];
+      rows.of_inertia = LargestColumn(rows, ModeTable::kMomentAt);
+      for (int cause = 0; cause < kLiftCauses; ++cause)
+        rows.of_lift[cause] = LargestColumn(rows, ModeTable::LiftColumn(cause, kSectionEffects));
     }
   }
 }
@@ -339,37 +358,64 @@ DISPERSA_INLINE void BendFlow(const StackBending<T>& b, const BendingState<T>& s
   flow.moment_n_m.z = flow.moment_n_m.z - Fma(-cg_station_m, force_n[0], first_n_m[0]);
 }
 
-/// Adds bending's part to the sections' moments: `drive` is Q / m, `side` as in BendFlow. A function of its
-/// own: rigid vehicles do not need it.
+/// What bending adds to the sections' moments. `drive` is Q / m, `side` as in BendFlow.
 template <class T>
-DISPERSA_OUT_OF_LINE SectionMoments<T> MomentsByBending(const StackBending<T>& b, const BendingState<T>& s,
-                                                        const ModalForce<T>& drive, const Sections<T>& body,
-                                                        const NormalForce<T>& air, const SideForce<T>* side) {
-  SectionMoments<T> o;
-  for (int i = 0; i < body.stations; ++i) o.y_n_m[i] = o.z_n_m[i] = T(0.0);
-  const LiftPlanes<T> planes = LiftPlanesOf(b, body, air, side);
-  const T by_rate_n = air.slope_n / Max(air.airspeed_m_s, T(1e-30));
-  const T side_slope_n = side ? side->slope_n : air.slope_n;
-  const T side_by_rate_n = side ? side_slope_n / Max(air.airspeed_m_s, T(1e-30)) : by_rate_n;
-  for (int mode = 0; mode < b.modes; ++mode) {
-    const auto acceleration = [&](int plane) __attribute__((always_inline)) {
-      const ModeNow<T>& m = b.At(plane, mode);
-      return drive.drive_m_s2[plane][mode] -
-             Fma(m.damping_1_s, s.rate_m_s[plane][mode], m.stiffness_1_s2 * s.q_m[plane][mode]);
-    };
-    const OfPlanes<T> moved{acceleration(0), acceleration(1)};
-    const OfPlanes<T> slope_n{side_slope_n * s.q_m[0][mode], air.slope_n * s.q_m[1][mode]};
-    const OfPlanes<T> rate_n{side_by_rate_n * s.rate_m_s[0][mode], by_rate_n * s.rate_m_s[1][mode]};
-    for (int i = 0; i < body.stations; ++i) {
-      T &y_n_m = o.y_n_m[i], &z_n_m = o.z_n_m[i];
-      AddLift(b, mode, kSectionEffects + i, planes, slope_n, rate_n, y_n_m, z_n_m);
-      const OfPlanes<T> inertia = b.ColumnsAt(mode, ModeTable::kMomentAt + i);
-      y_n_m = Fma(moved.y, inertia.y, y_n_m);
-      z_n_m = Fma(moved.z, inertia.z, z_n_m);
+class BendingLoads {
+ public:
+  DISPERSA_INLINE BendingLoads(const StackBending<T>& b, const BendingState<T>& s, const ModalForce<T>& drive,
+                               const Sections<T>& body, const NormalForce<T>& air, const SideForce<T>* side)
+      : bending_(b), planes_(LiftPlanesOf(b, body, air, side)) {
+    const T side_slope_n = side ? side->slope_n : air.slope_n;
+    const T airspeed_m_s = Max(air.airspeed_m_s, T(1e-30));
+    const T by_rate_n = air.slope_n / airspeed_m_s,
+            side_by_rate_n = side ? side_slope_n / airspeed_m_s : by_rate_n;
+    for (int mode = 0; mode < b.modes; ++mode) {
+      const auto acceleration = [&](int plane) __attribute__((always_inline)) {
+        const ModeNow<T>& m = b.At(plane, mode);
+        return drive.drive_m_s2[plane][mode] -
+               Fma(m.damping_1_s, s.rate_m_s[plane][mode], m.stiffness_1_s2 * s.q_m[plane][mode]);
+      };
+      moved_[mode] = {acceleration(0), acceleration(1)};
+      slope_n_[mode] = {side_slope_n * s.q_m[0][mode], air.slope_n * s.q_m[1][mode]};
+      rate_n_[mode] = {side_by_rate_n * s.rate_m_s[0][mode], by_rate_n * s.rate_m_s[1][mode]};
     }
   }
-  return o;
-}
+  /// Adds to the moments of a load station.
+  DISPERSA_INLINE void AddAt(int station, T& y_n_m, T& z_n_m) const {
+    for (int mode = 0; mode < bending_.modes; ++mode) {
+      AddLift(bending_, mode, kSectionEffects + station, planes_, slope_n_[mode], rate_n_[mode], y_n_m,
+              z_n_m);
+      const OfPlanes<T> inertia = bending_.ColumnsAt(mode, ModeTable::kMomentAt + station);
+      y_n_m = Fma(moved_[mode].y, inertia.y, y_n_m);
+      z_n_m = Fma(moved_[mode].z, inertia.z, z_n_m);
+    }
+  }
+  /// It adds no more than this at any station.
+  DISPERSA_INLINE T Most() const {
+    T y_n_m(0.0), z_n_m(0.0);
+    for (int mode = 0; mode < bending_.modes; ++mode) {
+      y_n_m = y_n_m + MostOf(0, mode, moved_[mode].y, slope_n_[mode].y, rate_n_[mode].y, planes_.aft_m.y);
+      z_n_m = z_n_m + MostOf(1, mode, moved_[mode].z, slope_n_[mode].z, rate_n_[mode].z, planes_.aft_m.z);
+    }
+    return Sqrt(Fma(y_n_m, y_n_m, z_n_m * z_n_m));
+  }
+
+ private:
+  DISPERSA_INLINE T MostOf(int plane, int mode, T moved, T slope_n, T rate_n, T aft_m) const {
+    const ModeRows<T>& rows = bending_.rows[bending_.planes == 1 ? 0 : plane][mode];
+    const auto now = [this](const typename ModeRows<T>::Largest& of) __attribute__((always_inline)) {
+      return Fma(bending_.within, of.rise, of.low);
+    };
+    const T aft = Abs(aft_m);
+    const T by_slope = Fma(aft, now(rows.of_lift[kSlopeShift]), now(rows.of_lift[kSlopeSlender]));
+    const T by_rate = Fma(aft, now(rows.of_lift[kRateShift]), now(rows.of_lift[kRateSlender]));
+    return Fma(Abs(moved), now(rows.of_inertia), Fma(Abs(slope_n), by_slope, Abs(rate_n) * by_rate));
+  }
+
+  const StackBending<T>& bending_;
+  LiftPlanes<T> planes_;
+  OfPlanes<T> moved_[kModes], slope_n_[kModes], rate_n_[kModes];
+};
 
 /// Ends the sum of generalised forces: compression by the force along the axis, over the masses.
 template <class T>

@@ -134,22 +134,26 @@ DISPERSA_INLINE Push<T> PushOf(const ApartBoosters<T>& a, const MotionAbout<T>& 
   return {acting.force_n - force, acting.moment_n_m - moment};
 }
 
-/// Adds the push to the moments of the sections at and behind the attachment, of lanes that carry boosters. A
-/// section carries what accelerates the masses ahead of it, minus the forces there.
+/// What the push adds to the moments of the sections at and behind the attachment, of lanes that carry
+/// boosters. A section carries what accelerates the masses ahead of it, minus the forces there.
 template <class T>
-DISPERSA_INLINE void AddPush(const ApartBoosters<T>& a, const Sections<T>& body, const MotionAbout<T>& moved,
-                             const Push<T>& push, SectionMoments<T>& o) {
-  const T none(0.0);
-  const Vector<T>& f = push.force_n;
-  for (int i = 0; i < body.stations; ++i) {
-    const auto carries = a.attached & (body.station_m.data()[i] >= a.attachment_station_m);
-    const T ahead_m = body.station_m.data()[i] - moved.cg_station_m;
+struct PushLoads {
+  const ApartBoosters<T>& boosters;
+  const Sections<T>& body;
+  const MotionAbout<T>& moved;
+  Push<T> push;
+
+  DISPERSA_INLINE void AddAt(int station, T& y_n_m, T& z_n_m) const {
+    const T none(0.0), station_m = body.station_m.data()[station];
+    const Vector<T>& f = push.force_n;
+    const auto carries = boosters.attached & (station_m >= boosters.attachment_station_m);
+    const T ahead_m = station_m - moved.cg_station_m;
     const T about_z = push.moment_n_m.z + Fma(ahead_m, f.y, -(moved.cg_y_m * f.x));
     const T about_y = push.moment_n_m.y + Fma(-ahead_m, f.z, moved.cg_z_m * f.x);
-    o.y_n_m[i] = o.y_n_m[i] - Select(carries, about_z, none);
-    o.z_n_m[i] = o.z_n_m[i] + Select(carries, about_y, none);
+    y_n_m = y_n_m - Select(carries, about_z, none);
+    z_n_m = z_n_m + Select(carries, about_y, none);
   }
-}
+};
 
 }  // namespace DISPERSA_ISA
 }  // namespace dispersa::lanes

@@ -240,9 +240,7 @@ class StepState {
     const SideForce<T>* const side = plant_.aero.has_yaw_plane ? &now.instant.side : nullptr;
     if (has_plain_sections_) return LargestOf(plant_.sections, air, side, moved, seen_n_m);
     if (plant_.apart && Any(apart_.attached)) return LargestBesideBoosters(air, side, moved, seen_n_m);
-    if (bending_.modes == 0) return LargestOf(plant_.sections, air, side, moved, seen_n_m);
-    return LargestOf(plant_.sections, air, side, moved, seen_n_m,
-                     MomentsByBending(bending_, bending_state_, now.modal, plant_.sections, air, side));
+    return LargestOfBent(air, side, moved, seen_n_m, NoFurtherLoads{});
   }
 
   /// Of one lane at its time, evaluated anew.
@@ -436,7 +434,7 @@ class StepState {
   DISPERSA_INLINE Vector<T> CgVelocityAt(const TimedMasses<T>& masses, const Turn<T>& q) const {
     return plant_.flow_coriolis ? CgVelocityOf(masses, q) : Zero<T>();
   }
-  // Where some lane carries boosters: a lane without them is looked at as it would be alone.
+  // Where some lane carries boosters: without them a lane has the loads that it would have alone.
   DISPERSA_OUT_OF_LINE LargestMoment<T> LargestBesideBoosters(const NormalForce<T>& air,
                                                               const SideForce<T>* side, BodyMotion<T> moved,
                                                               T seen_n_m) const {
@@ -447,26 +445,25 @@ class StepState {
                                now.masses.inverse_mass_1_kg * now.instant.force_n,
                                motion_.w,
                                now.rates.dw};
-    SectionMoments<T> further{};
-    LargestMoment<T> alone{};
     const FlowBeside<T> flow =
         FlowOf(apart_, about, now.instant.mach, now.instant.incidence_rad, now.instant.qbar_pa, air, side);
-    const SideForce<T>* const of_yaw = side ? &flow.stage_side : nullptr;
-    if (bending_.modes > 0)
-      further = MomentsByBending(bending_, bending_state_, now.modal, plant_.sections, flow.stage, of_yaw);
-    else
-      alone = LargestOf(plant_.sections, air, side, moved, seen_n_m);
     const Push<T> push = PushOf(apart_, about,
                                 {now.instant.boosters_n + flow.boosters.force_n,
                                  now.instant.boosters_n_m + flow.boosters.moment_n_m});
-    AddPush(apart_, plant_.sections, about, push, further);
     const Vector<T> beside = BesideCg(about);
     moved.lateral_y_m_s2 = Select(apart_.attached, beside.y, moved.lateral_y_m_s2);
     moved.lateral_z_m_s2 = Select(apart_.attached, beside.z, moved.lateral_z_m_s2);
-    const LargestMoment<T> with = LargestOf(plant_.sections, flow.stage, of_yaw, moved, seen_n_m, further);
-    if (bending_.modes > 0) return with;
-    return {Select(apart_.attached, with.moment_n_m, alone.moment_n_m),
-            Select(apart_.attached, with.station_m, alone.station_m)};
+    return LargestOfBent(flow.stage, side ? &flow.stage_side : nullptr, moved, seen_n_m,
+                         PushLoads<T>{apart_, plant_.sections, about, push});
+  }
+  template <class Beside>
+  DISPERSA_INLINE LargestMoment<T> LargestOfBent(const NormalForce<T>& air, const SideForce<T>* side,
+                                                 const BodyMotion<T>& moved, T seen_n_m,
+                                                 const Beside& beside) const {
+    const Sections<T>& body = plant_.sections;
+    if (bending_.modes == 0) return LargestOf(body, air, side, moved, seen_n_m, NoFurtherLoads{}, beside);
+    const BendingLoads<T> bending(bending_, bending_state_, start_->modal, body, air, side);
+    return LargestOf(body, air, side, moved, seen_n_m, bending, beside);
   }
   static void SetTransition(const Actuators<T>& drives, Transition<T>& over, int lane, double time_s) {
     SetLane(over, lane,

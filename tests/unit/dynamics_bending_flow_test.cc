@@ -41,6 +41,16 @@ Sections<double> BodySections() {
   return body;
 }
 
+// About z and about -y, at each load station.
+struct SectionMoments {
+  double y_n_m[kLoadStations], z_n_m[kLoadStations];
+};
+SectionMoments MomentsOf(const Sections<double>& body, const lanes::BendingLoads<double>& bending) {
+  SectionMoments o{};
+  for (int i = 0; i < body.stations; ++i) bending.AddAt(i, o.y_n_m[i], o.z_n_m[i]);
+  return o;
+}
+
 // Modes that are no bending: the body moved aside, and turned about its centre of gravity.
 std::vector<std::vector<MadeUpMode>> RigidMotions() {
   const MadeUpMode aside{{1.0, 0.0, 0.0, 0.0}}, turned{{-kCg_m, 1.0, 0.0, 0.0}};
@@ -202,8 +212,7 @@ TEST(BendingSections, CarryTheMassesAheadLessTheirAir) {
   for (const bool in_air : {false, true}) {
     NormalForce<double> air{};
     if (in_air) air = LinearAir({0.02, -0.01}).normal;
-    const lanes::SectionMoments<double> moments =
-        lanes::MomentsByBending(bending, s, driven, body, air, kRound);
+    const SectionMoments moments = MomentsOf(body, {bending, s, driven, body, air, kRound});
     for (std::size_t plane = 0; plane < kPlanes; ++plane) {
       const auto forces = ForcesByBending(TwoPlanes()[plane], s, static_cast<int>(plane));
       double acceleration[2];
@@ -228,6 +237,42 @@ TEST(BendingSections, CarryTheMassesAheadLessTheirAir) {
                     1e-7)  // of 1e5 N m
             << "plane " << plane << ", station " << station << (in_air ? ", in air" : ", in vacuum");
       }
+    }
+  }
+}
+
+double LargestOf(const SectionMoments& moments) {
+  double largest = 0.0;
+  for (int i = 0; i < kLoadStations; ++i)
+    largest = std::max(largest, std::hypot(moments.y_n_m[i], moments.z_n_m[i]));
+  return largest;
+}
+// What bending adds is nowhere above its bound, and comes near it where no parts cancel.
+TEST(BendingSections, HaveNoMoreThanTheirBound) {
+  const ModeTable table = MadeUpTable(TwoPlanes());
+  const Sections<double> body = BodySections();
+  for (const double propellant_kg : {0.0, 300.0}) {
+    const StackBending<double> bending = BendingOf(table, propellant_kg);
+    double nearest = 0.0;
+    for (int swung = 0; swung < 64; ++swung) {
+      BendingState<double> s{};
+      ModalForce<double> driven{};
+      const auto sign = [swung](int bit) { return swung & (1 << bit) ? -1.0 : 1.0; };
+      s.q_m[0][0] = 0.01 * sign(0), s.q_m[0][1] = 0.003 * sign(1), s.q_m[1][0] = 0.005 * sign(2);
+      s.rate_m_s[0][0] = 0.3 * sign(3), s.rate_m_s[1][1] = 0.4 * sign(4);
+      driven.drive_m_s2[0][1] = 4.0 * sign(5);
+      const lanes::BendingLoads<double> loads(bending, s, driven, body, LinearAir({0.02, -0.01}).normal,
+                                              kRound);
+      const double largest = LargestOf(MomentsOf(body, loads));
+      EXPECT_LE(largest, loads.Most()) << swung;
+      nearest = std::max(nearest, largest / loads.Most());
+    }
+    EXPECT_GT(nearest, 0.5);
+    for (const int plane : {0, 1}) {
+      ModalForce<double> driven{};
+      driven.drive_m_s2[plane][1] = -4.0;
+      const lanes::BendingLoads<double> loads(bending, {}, driven, body, NormalForce<double>{}, kRound);
+      EXPECT_NEAR(loads.Most() / LargestOf(MomentsOf(body, loads)), 1.0, 1e-9) << plane;
     }
   }
 }
@@ -266,11 +311,10 @@ TEST(BendingFlow, OfTwoPlanesIsThatOfEach) {
       EXPECT_EQ(drive.drive_m_s2[1][mode], drive_z.drive_m_s2[1][mode]);
     }
     const auto moments = [&](const NormalForce<double>& air, const lanes::SideForce<double>* of_yaw) {
-      return lanes::MomentsByBending(bending, s, ModalForce<double>{}, body, air, of_yaw);
+      return MomentsOf(body, {bending, s, ModalForce<double>{}, body, air, of_yaw});
     };
-    const lanes::SectionMoments<double> of_both = moments(both.normal, &side),
-                                        of_y = moments(along_y.normal, kRound),
-                                        of_z = moments(along_z.normal, kRound);
+    const SectionMoments of_both = moments(both.normal, &side), of_y = moments(along_y.normal, kRound),
+                         of_z = moments(along_z.normal, kRound);
     for (int station = 0; station < body.stations; ++station) {
       EXPECT_EQ(of_both.y_n_m[station], of_y.y_n_m[station]);
       EXPECT_EQ(of_both.z_n_m[station], of_z.z_n_m[station]);
@@ -285,7 +329,7 @@ struct Everything {
   FlowForce<double> flow;
   ModalForce<double> drive;
   BendingState<double> later;
-  lanes::SectionMoments<double> sections;
+  SectionMoments sections;
 };
 Everything Of(const StackBending<double>& b, const BendingState<double>& s, Incidence at,
               lanes::Vector<double> force, lanes::Vector<double> couple) {
@@ -299,7 +343,7 @@ Everything Of(const StackBending<double>& b, const BendingState<double>& s, Inci
   lanes::BendFlow(b, s, body, kCg_m, kRound, o.flow, o.drive);
   DriveAtPivot(b, s, force, couple, o.drive);
   lanes::FinishDrive(b, s, 2e5, o.drive);
-  o.sections = lanes::MomentsByBending(b, s, o.drive, body, LinearAir(at).normal, kRound);
+  o.sections = MomentsOf(body, {b, s, o.drive, body, LinearAir(at).normal, kRound});
   o.later = lanes::Swung(b, lanes::SwingOver(b, 0.02), s, o.drive, {}, {});
   return o;
 }

@@ -153,6 +153,31 @@ TEST(SectionMoments, AreLookedForBeyondTheScoutsWhereTheyMayBeTheLargest) {
   for (int lane = 0; lane < 4; ++lane) EXPECT_DOUBLE_EQ(lanes::Lane(largest, lane), found[lane]) << lane;
 }
 
+// Bending adds 1 N m to a scout and 5 N m beyond: it is no part of what the scouts see.
+struct FarBending {
+  void AddAt(int station, double& y_n_m, double& z_n_m) const {
+    if (station == 2) y_n_m += 1.0;
+    if (station == kScoutStations + 1) z_n_m += 5.0;
+  }
+  double Most() const { return 5.0; }
+};
+TEST(SectionMoments, OfBendingAreLookedForWhereItsBoundMayBeTheLargest) {
+  LoadTable table;
+  table.stations = kScoutStations + 2;
+  table.scouts_see = 1.0 / lanes::kScoutMargin;
+  table.slender_arm_m.fill(1.0);
+  lanes::Sections<double> body{};
+  lanes::SetSections(body, 0, &table);
+  const lanes::NormalForce<double> air{1.0, 0.0, 0.0, 1.0, 0.0, 500.0};
+  const lanes::SideForce<double>* const round = nullptr;
+  const auto found = [&](double seen_n_m) {
+    return lanes::LargestOf(body, air, round, lanes::BodyMotion<double>{}, seen_n_m, FarBending{}).moment_n_m;
+  };
+  for (const double seen_n_m : {0.0, 1.5, 4.0, 5.999})
+    EXPECT_DOUBLE_EQ(found(seen_n_m), std::hypot(1.0, 5.0));
+  for (const double seen_n_m : {6.001, 100.0}) EXPECT_DOUBLE_EQ(found(seen_n_m), 1.0);
+}
+
 TEST(SectionMoments, HoldTheBalanceOfWhatLiesBehindTheSection) {
   ExpectBalance(LoadVehicle(DISPERSA_CAMPAIGNS "/vehicles/slv4.yaml"), {1.0, 0.37, 0.0});
 }
