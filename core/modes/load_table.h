@@ -11,7 +11,7 @@ namespace dispersa {
 /// The most cross-sections that are looked at (load_stations.h).
 inline constexpr int kLoadStations = 40;
 /// The first ones, which tell whether the others need a look.
-inline constexpr int kScoutStations = 8;
+inline constexpr int kScoutStations = 4;
 
 template <class T>
 struct LoadNumbers {
