@@ -1,7 +1,8 @@
 """Puts the faults of faults.yaml into a copy of the sources and sees the test of each die of it.
 
-usage: faults.py BUILD WORK_FOLDER [PATTERN]   every fault, or those in whose name or file the regular expression is found
-       faults.py --check                       whether each fault still fits its file and names a test that exists
+usage: faults.py BUILD WORK_FOLDER [PATTERN]           every fault, or those in whose name or file the regular expression is found
+       faults.py BUILD WORK_FOLDER --draw COUNT SEED   so many, drawn from all
+       faults.py --check                               whether each fault still fits its file and names a test that exists
 BUILD is a configured build folder, whose compiler and options the copy takes. One build has all faults that can be
 switched on at run time (switch.py); the others, and those whose test reads the sources, are put in one at a time. Exit
 code 0: every test died of its fault and passed without it.
@@ -9,6 +10,7 @@ code 0: every test died of its fault and passed without it.
 import concurrent.futures
 import os
 import pathlib
+import random
 import re
 import shutil
 import signal
@@ -244,8 +246,12 @@ def judged(fault, before, after):
     return is_caught
 
 
-def main(build, work, pattern=""):
-    faults = [fault for fault in all_faults() if re.search(pattern, fault["fault"] + " " + fault["file"])]
+def main(build, work, pattern="", *drawn):
+    if pattern == "--draw":
+        count, seed = map(int, drawn)
+        faults = random.Random(seed).sample(all_faults(), count)
+    else:
+        faults = [fault for fault in all_faults() if re.search(pattern, fault["fault"] + " " + fault["file"])]
     switched = Switched(build, work, faults)
     copy = switched.copy
     switched.make(sorted({program for fault in faults for program in program_of(fault).split()}))
