@@ -69,6 +69,7 @@ MotorBurn BuildBoosterBurn(const Boosters& boosters, double thrust_factor, doubl
   all.full_flow_kg_s *= boosters.count;
   all.propellant_mass_kg *= boosters.count;
   all.left_kg *= boosters.count;
+  all.residual_kg *= boosters.count;
   all.exit_area_m2 *= boosters.count;
   return all;
 }
@@ -91,14 +92,18 @@ MotorBurn BuildBurn(const Stage& stage, double thrust_factor, double flow_factor
     burn.duration_s = curve->end_s / flow_factor;
     burn.curve = std::move(curve);
   }
-  if (stage.is_liquid()) SetPropellant(motor, burn.propellant_mass_kg, burn);
+  if (stage.is_liquid()) {
+    burn.residual_kg = motor.residual_mass_kg;
+    SetPropellant(motor, burn.propellant_mass_kg, burn);
+  }
   return burn;
 }
 
 namespace {
 
 void SetThrottled(const Motor& engine, double propellant_kg, const CutOffCommand& command, MotorBurn& burn) {
-  const ThrottledBurn throttled = Throttled(engine, propellant_kg, burn.full_flow_kg_s, command);
+  const ThrottledBurn throttled =
+      Throttled(engine.throttle, {propellant_kg, burn.residual_kg, burn.full_flow_kg_s}, command);
   burn.propellant_mass_kg = propellant_kg;
   burn.duration_s = throttled.curve.end_s;
   burn.left_kg = throttled.left_kg;

@@ -29,6 +29,7 @@ struct BurnNumbers {
 };
 struct MotorBurn : BurnNumbers<double> {
   std::shared_ptr<const BurnCurve> curve;  ///< replaces the ramps
+  double residual_kg = 0.0;                ///< of a liquid engine: never flows, by the flight's mixture
 
   /// Fraction of full thrust and flow, 0 outside [0, duration_s].
   double Fraction(double since_ignition_s) const;

@@ -51,13 +51,13 @@ void Cut(const CutOffCommand& command, std::vector<Piece>& pieces) {
 
 }  // namespace
 
-ThrottledBurn Throttled(const Motor& engine, double propellant_kg, double full_flow_kg_s,
-                        const CutOffCommand& command) {
-  const double usable_s = std::max(propellant_kg - engine.residual_mass_kg, 0.0) / full_flow_kg_s;
+ThrottledBurn Throttled(const Throttle& throttle, const Supply& supply, const CutOffCommand& command) {
+  const auto& [propellant_kg, residual_kg, full_flow_kg_s] = supply;
+  const double usable_s = std::max(propellant_kg - residual_kg, 0.0) / full_flow_kg_s;
   ThrottledBurn burn;
   double burnt_s = 0.0;  // at full flow
   bool ended = false;
-  std::vector<Piece> pieces = PiecesOf(engine.throttle);
+  std::vector<Piece> pieces = PiecesOf(throttle);
   Cut(command, pieces);
   for (std::size_t i = 0; i < pieces.size() && !ended; ++i) {
     const Piece& piece = pieces[i];
@@ -69,8 +69,8 @@ ThrottledBurn Throttled(const Motor& engine, double propellant_kg, double full_f
     const double length_s = end_s - piece.begin_s;
     const double burnt_then_s = burnt_s + BurntBy(piece, length_s);
     if (ended) {
-      burn.left_kg = depletes ? std::min(engine.residual_mass_kg, propellant_kg)
-                              : propellant_kg - full_flow_kg_s * burnt_then_s;
+      burn.left_kg =
+          depletes ? std::min(residual_kg, propellant_kg) : propellant_kg - full_flow_kg_s * burnt_then_s;
       burn.curve.end_s = end_s;
     }
     const double level = ended ? piece.level + piece.slope_1_s * length_s : piece.level;

@@ -17,9 +17,13 @@ struct CutOffCommand {
   double at_s = HUGE_VAL;
   double tail_off_s = 0.0;
 };
-/// Burn of `propellant_kg`, of which the engine's residual never flows. While the throttle's level is linear,
+struct Supply {
+  double propellant_kg;
+  double residual_kg;  ///< of it, that never flows
+  double full_flow_kg_s;
+};
+/// Burns the supply. While the throttle's level is linear,
 /// the flow is linear too. The time of depletion then solves a quadratic equation.
-ThrottledBurn Throttled(const Motor& engine, double propellant_kg, double full_flow_kg_s,
-                        const CutOffCommand& command);
+ThrottledBurn Throttled(const Throttle& throttle, const Supply& supply, const CutOffCommand& command);
 
 }  // namespace dispersa

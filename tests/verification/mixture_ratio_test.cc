@@ -115,8 +115,8 @@ TEST(MixtureRatio, MassIsWhatHasNotFlown) {
       << "5 % of the smaller tank's flow stays";
 }
 
-// Burns of the same tanks: the mixture goes on, and the second one ends with the first tank.
-TEST(MixtureRatio, GoesOnInABurnAgain) {
+// Two burns of the same tanks, the first one for 15 s.
+FlightDefinition WithRestart() {
   FlightDefinition definition = Liquid();
   std::vector<Stage>& stages = definition.vehicle.stages;
   Stage again = stages[0];
@@ -133,6 +133,12 @@ TEST(MixtureRatio, GoesOnInABurnAgain) {
   stages.insert(stages.begin() + 1, again);
   std::vector<AeroTable>& tables = definition.vehicle.aerodynamics;
   tables.insert(tables.begin(), tables.front());
+  return definition;
+}
+
+// The mixture goes on, and the second burn ends with the first tank.
+TEST(MixtureRatio, GoesOnInABurnAgain) {
+  const FlightDefinition definition = WithRestart();
   const double ratio = 0.95;
   const LauncherPlant plant = BuildNominalPlant(WithDispersedMasses(definition.vehicle, Drawn(1.0, ratio)));
   const MotorBurn& burn = plant.stacks[1].burn;
@@ -144,6 +150,22 @@ TEST(MixtureRatio, GoesOnInABurnAgain) {
   EXPECT_NEAR(at.mass_kg, all.mass_kg, 1e-9 * all.mass_kg);
   EXPECT_NEAR(at.cg_station_m, all.cg.x(), 1e-10 * all.cg.x());
   EXPECT_NEAR(at.transverse_inertia_kg_m2, all.inertia(1, 1), 1e-9 * all.inertia(1, 1));
+}
+
+// It does so too where the flight computer ends the first burn, at once or with a tail-off.
+TEST(MixtureRatio, GoesOnAfterACommandedCutOff) {
+  for (const double tail_off_s : {0.0, 0.5})
+    for (const double ratio : {0.95, 1.05}) {
+      FlightDefinition definition = WithRestart();
+      for (std::size_t i : {0u, 1u}) definition.vehicle.stages[i].motor.tail_off_s = tail_off_s;
+      definition.vehicle.stages[0].motor.cut_off = CutOff::kAtVelocity;
+      LauncherPlant plant = BuildNominalPlant(WithDispersedMasses(definition.vehicle, Drawn(1.0, ratio)));
+      CommandCutOffOf(definition.vehicle, 0, 15.0, plant);
+      const MotorBurn &first = plant.stacks[0].burn, &second = plant.stacks[1].burn;
+      EXPECT_NEAR(first.left_kg, kLoad_kg - (15.0 + 0.5 * tail_off_s) * kFlow_kg_s, 1e-8);
+      EXPECT_NEAR(second.propellant_mass_kg, first.left_kg, 1e-8);
+      EXPECT_NEAR(second.left_kg, kLoad_kg - kLiquids.Usable(1.0, ratio), 1e-8);
+    }
 }
 
 TEST(MixtureRatio, IsRefusedWhereItIsNone) {
