@@ -1,13 +1,9 @@
 // Boosters, as tests compute them by hand.
 #pragma once
 
-#include <gtest/gtest.h>
-
-#include <algorithm>
-#include <vector>
-
 #include "core/dynamics/jettison.h"
 #include "core/math/linear.h"
+#include "tests/test.h"
 
 namespace dispersa {
 

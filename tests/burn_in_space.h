@@ -1,14 +1,9 @@
 // A burn of the first stack alone in empty space, with the engine's own step.
 #pragma once
 
-#include <gtest/gtest.h>
-
-#include <algorithm>
-#include <memory>
-#include <vector>
-
 #include "core/flight/flight_model.h"
 #include "core/flight/simpson_step.h"
+#include "tests/test.h"
 
 namespace dispersa {
 

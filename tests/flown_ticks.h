@@ -1,12 +1,9 @@
 // The ticks of a flight, for tests that look into it.
 #pragma once
 
-#include <gtest/gtest.h>
-
-#include <vector>
-
 #include "core/flight/flight.h"
 #include "core/flight/tick_sample.h"
+#include "tests/test.h"
 
 namespace dispersa {
 

@@ -1,9 +1,7 @@
 // Convergence of the shipped fixed-step scheme, of order 4, to an exact solution.
 #pragma once
 
-#include <gtest/gtest.h>
-
-#include <cstdio>
+#include "tests/test.h"
 
 namespace dispersa {
 

@@ -1,12 +1,7 @@
 // Shared by the tests that damage their input: the number of damaged inputs, and the random source.
 #pragma once
 
-#include <gtest/gtest.h>
-
-#include <cstdint>
-#include <cstdio>
-#include <cstdlib>
-#include <random>
+#include "tests/test.h"
 
 namespace dispersa::fuzz {
 

@@ -2,14 +2,8 @@
 // SLV-4 on the reference with a reserve of 60 m/s, with the specific impulse of one stage changed at a time.
 #pragma once
 
-#include <gtest/gtest.h>
-
-#include <cmath>
-#include <cstdio>
-#include <string>
-#include <vector>
-
 #include "tests/slv4_flight.h"
+#include "tests/test.h"
 
 namespace dispersa {
 

@@ -47,6 +47,8 @@ struct CatalogueEntry {
   std::string engine;                   ///< of its report
   std::int64_t attempts = 0;            ///< at its design, this one too, by its report; 0: no report
   std::vector<RequirementOutcome> requirements;  ///< of its report, the first kMaxOutcomes
+
+  bool operator==(const CatalogueEntry&) const = default;
 };
 
 /// Labels of a campaign. Older ones are dropped.

@@ -19,6 +19,8 @@ struct RequirementOutcome {
   std::int64_t failures = 0;
   std::optional<double> success_lower, success_upper;  ///< of the probability to meet it
   std::string verdict;                                 ///< that stands
+
+  bool operator==(const RequirementOutcome&) const = default;
 };
 
 /// Of the completed flights of a campaign that flies.

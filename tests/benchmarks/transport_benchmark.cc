@@ -81,20 +81,13 @@ void Answer(WorkerLink& link, const std::string& worker, const std::atomic<bool>
 /// Keys of a coordinator and a worker, in a folder that goes with it.
 class Keys {
  public:
-  Keys() {
-    std::string pattern = (std::filesystem::temp_directory_path() / "dispersa-keys-XXXXXX").string();
-    if (mkdtemp(pattern.data()) == nullptr) throw std::runtime_error("no temporary folder");
-    folder_ = pattern;
-    MakeAuthority(folder_, ValidFor(1));
+  Keys() { MakeAuthority(folder_.path(), ValidFor(1)); }
+  KeyFolder Of(Role role) {
+    return OpenKeyFolder(IssueKeys(folder_.path(), role, "one", ValidFor(1)), {role});
   }
-  ~Keys() { std::filesystem::remove_all(folder_); }
-  Keys(const Keys&) = delete;
-  Keys& operator=(const Keys&) = delete;
-
-  KeyFolder Of(Role role) { return OpenKeyFolder(IssueKeys(folder_, role, "one", ValidFor(1)), {role}); }
 
  private:
-  std::filesystem::path folder_;
+  TemporaryFolder folder_;
 };
 
 /// One assignment of state.range(0) cases, until its last result is back; with keys if state.range(1).

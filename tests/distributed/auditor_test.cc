@@ -1,19 +1,12 @@
 // Results that are flown again on a thread of their own: what it finds, and a fault of the program there.
 #include "services/ledger/auditor.h"
 
-#include <gmock/gmock.h>
-#include <gtest/gtest.h>
-
-#include <chrono>
-#include <thread>
-
 #include "core/campaign_yaml/load.h"
 #include "core/results/fingerprint.h"
+#include "tests/test.h"
 
 namespace dispersa::auditor_test {
 namespace {
-
-using ::testing::SizeIs;
 
 constexpr std::chrono::seconds kPatience(60);
 

@@ -1,26 +1,16 @@
 // A campaign's book over a real result folder: its end, its counts, and the stored results.
 #include "services/ledger/campaign_book.h"
 
-#include <gmock/gmock.h>
-#include <gtest/gtest.h>
-
-#include <cmath>
-#include <memory>
-#include <optional>
-#include <string>
-
 #include "core/flight/engine_version.h"
 #include "core/flight/flight_inputs.h"
 #include "core/flight/metrics.h"
 #include "memory_store.h"
-#include "temporary_folder.h"
 #include "tests/nominal_inputs.h"
+#include "tests/temporary_folder.h"
+#include "tests/test.h"
 
 namespace dispersa::campaign_book_test {
 namespace {
-
-using ::testing::ElementsAre;
-using ::testing::Pair;
 
 constexpr char kPeak[] = "pitch_error_peak_deg";
 
@@ -72,22 +62,6 @@ class BookTest : public testing::Test {
   std::optional<CampaignBook> book_;
 };
 
-/// On a disk that is full, or broken, as long as somebody says so.
-struct FullStore : MemoryStore {
-  void Store(std::span<const CaseResult> results, std::span<const ExecutionRecord> records) override {
-    Try();
-    MemoryStore::Store(results, records);
-  }
-  std::vector<std::uint64_t> Disown(const std::string& worker) override {
-    Try();
-    return MemoryStore::Disown(worker);
-  }
-  void Try() const {
-    if (problem) throw ResultError(*problem, "the disk is what it is");
-  }
-  std::optional<ResultError::Kind> problem;
-};
-
 class FullDiskTest : public BookTest {
  protected:
   FullDiskTest() {
@@ -113,20 +87,6 @@ TEST_F(FullDiskTest, KeepsWhatItHasAndStoresItWhenThereIsSpace) {
   EXPECT_EQ(book_->pause(), "");
   EXPECT_EQ(book_->unstored(), 0u);
   EXPECT_EQ(store_->rows.size(), 3u);
-}
-
-TEST_F(FullDiskTest, AnExpelledWorkersResultsAreRemovedWhenItCanBe) {
-  store_->problem.reset();
-  Return("liar", 0, 1);
-  Return("w", 1, 4);
-  EXPECT_TRUE(book_->FlushIfDue(10.0));
-  store_->problem = ResultError::Kind::kDiskFull;
-  book_->Disown("liar");
-  EXPECT_FALSE(book_->Complete()) << "all cases have results, one of them a liar's";
-  store_->problem.reset();
-  EXPECT_TRUE(book_->FlushIfDue(15.0));
-  EXPECT_EQ(book_->ledger().Progress().done, 3u);
-  EXPECT_FALSE(store_->rows.contains(0));
 }
 
 TEST_F(FullDiskTest, AFaultOfTheProgramKeepsWhatWasAccepted) {

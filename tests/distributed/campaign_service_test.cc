@@ -1,12 +1,6 @@
 // The service of many campaigns without a network: who flies first, who waits, what a restart and a second
 // launch do.
-#include <gmock/gmock.h>
-#include <gtest/gtest.h>
-
-#include <fstream>
 #include <nlohmann/json.hpp>
-#include <set>
-#include <vector>
 
 #include "core/campaign/case_design.h"
 #include "core/flight/flight_inputs.h"
@@ -16,11 +10,10 @@
 #include "services/ledger/open_book.h"
 #include "services/program/exit_code.h"
 #include "tests/small_disk.h"
+#include "tests/test.h"
 
 namespace dispersa::campaign_service_test {
 namespace {
-
-using ::testing::ElementsAre;
 
 class CampaignServiceTest : public ServiceTest {
  protected:
@@ -234,31 +227,6 @@ TEST_F(CampaignServiceTest, ACampaignInItsReportIsNotCancelledAndAFailedOneIs) {
   EXPECT_EQ(service_->View(id).problem, problem) << "why it failed is still known";
 }
 
-TEST_F(CampaignServiceTest, TimeLeftIsWhatIsMissingByTheRateOfTheLastSeconds) {
-  StartService();
-  const Campaign campaign = Smoke(100);
-  const std::string id = Launch(campaign);
-  ASSERT_TRUE(Reaches(id, CampaignState::kFlying));
-  workforce_.Join("w");
-  // Two cases a second; measured once a second.
-  for (std::uint64_t i = 0; i < 10; ++i) {
-    workforce_.time_s += 1.0;
-    service_->Step();
-    Return(campaign, 2 * i);
-    Return(campaign, 2 * i + 1);
-  }
-  workforce_.time_s += 1.0;
-  service_->Step();
-  const CampaignView view = service_->View(id);
-  EXPECT_EQ(view.rate_per_s, 2.0);
-  EXPECT_EQ(view.eta_s, 40.0) << "80 of 100 at 2 a second";
-  const CampaignProgress& told = workforce_.published.back();
-  EXPECT_EQ(told.campaign_id, id);
-  EXPECT_EQ(told.state, "flying");
-  EXPECT_EQ(told.total, 100u);
-  EXPECT_EQ(told.done, 20u);
-}
-
 TEST_F(CampaignServiceTest, ARepairedCampaignFliesAWorkersCasesAgain) {
   StartService();
   const Campaign campaign = Smoke(4);
@@ -365,41 +333,6 @@ TEST(RetentionTest, IsReadAsAUserWritesIt) {
   EXPECT_EQ(retention.days, 90.0);
   for (const char* text : {"", "90", "d", "-1d", "0d", "nand", "1e3d", "90 d", "90days", "5gb", "2000000d"})
     EXPECT_FALSE(ReadRetention(text, &retention)) << text;
-}
-
-TEST_F(CampaignServiceTest, OldCampaignsAndThoseBeyondTheSizeAreDeletedTheOldestFirst) {
-  std::int64_t now = 1'000'000;
-  const auto start = [&](const Retention& retention) {
-    service_.reset();
-    ServiceOptions options{folder_ / "data"};
-    options.retention = retention;
-    options.unix_time_s = [&] { return now; };
-    service_ = std::make_unique<Service>(options, workforce_);
-  };
-  start({});
-  std::vector<std::string> ids;
-  for (std::uint64_t seed = 1; seed <= 3; ++seed) {
-    ids.push_back(Launch(Smoke(2, seed)));
-    service_->Cancel(ids.back());
-    now += 86400;
-  }
-  const std::string flying = Launch(Smoke(2, 9));
-  const auto left = [&] {
-    EXPECT_TRUE(Reaches(flying, CampaignState::kFlying));
-    workforce_.time_s += 61.0;
-    service_->Step();
-    std::vector<bool> are_there;
-    for (const std::string& id : ids) are_there.push_back(service_->catalogue().entries().contains(id));
-    EXPECT_TRUE(service_->catalogue().entries().contains(flying));
-    return are_there;
-  };
-  EXPECT_THAT(left(), ElementsAre(true, true, true));
-  start({.days = 2.5});
-  EXPECT_THAT(left(), ElementsAre(false, true, true));
-  start({.bytes = 100'000'000});
-  EXPECT_THAT(left(), ElementsAre(false, true, true));
-  start({.bytes = 1});
-  EXPECT_THAT(left(), ElementsAre(false, false, false)) << "and never what flies";
 }
 
 TEST_F(CampaignServiceTest, AnEngineFaultOfTwoWorkersFailsThatCampaignAlone) {

@@ -1,33 +1,22 @@
 // The memory of a coordinator of many campaigns: what a restart finds, in which order it goes on.
 #include "services/coordinator/catalogue.h"
 
-#include <gmock/gmock.h>
-#include <gtest/gtest.h>
-#include <stdlib.h>
-
-#include <cmath>
-#include <fstream>
 #include <nlohmann/json.hpp>
 
 #include "core/flight/metrics.h"
 #include "core/input/input_error.h"
 #include "services/coordinator/epoch.h"
 #include "services/ledger/running_tally.h"
+#include "tests/temporary_folder.h"
+#include "tests/test.h"
 
 namespace dispersa::catalogue_test {
 namespace {
 
 namespace fs = std::filesystem;
-using ::testing::ElementsAre;
 
 class CatalogueTest : public testing::Test {
  protected:
-  CatalogueTest() {
-    std::string pattern = (fs::temp_directory_path() / "dispersa-catalogue-XXXXXX").string();
-    root_ = mkdtemp(pattern.data());
-  }
-  ~CatalogueTest() override { fs::remove_all(root_); }
-
   static CatalogueEntry Entry(const std::string& id, int priority = 0) {
     CatalogueEntry entry;
     entry.id = id;
@@ -38,7 +27,8 @@ class CatalogueTest : public testing::Test {
     return entry;
   }
 
-  fs::path root_;
+  const TemporaryFolder folder_;
+  const fs::path root_ = folder_.path();
 };
 
 // As an early release wrote it: without a version, seed, end, distrusted workers and owner.
@@ -72,9 +62,7 @@ TEST_F(CatalogueTest, AStateOfTheFirstVersionIsReadAndBecomesOneOfToday) {
   EXPECT_EQ(entry.owner, "");
   EXPECT_EQ(entry.bytes, fs::file_size(file)) << "counted, because nobody has written it down";
   catalogue.Write(entry);
-  std::string text;
-  std::getline(std::ifstream(file), text, '\0');
-  EXPECT_THAT(text, testing::HasSubstr("\"version\": 3"));
+  EXPECT_THAT(TextOfFile(file), HasSubstr("\"version\": 3"));
 }
 
 TEST_F(CatalogueTest, EachStartHasALargerNumberAlsoWhenTheClockIsSetBack) {
@@ -119,15 +107,19 @@ TEST_F(CatalogueTest, WhatWasBeingDeletedIsGoneWhenItIsOpenedAgain) {
 }
 
 TEST_F(CatalogueTest, RemembersEverythingOverARestart) {
+  CatalogueEntry entry = Entry("a1", -3);
   {
     Catalogue catalogue(root_ / "data");
-    CatalogueEntry entry = catalogue.Add(Entry("a1", -3), "text of a1");
+    entry = catalogue.Add(entry, "text of a1");
     entry.state = CampaignState::kFailed;
     entry.done = 5;
     entry.quarantined = 1;
     entry.conflicts = 2;
     entry.code = 1;
     entry.problem = "it \"broke\"\n\xff";
+    entry.seed = 8;
+    entry.ended_unix_s = 56;
+    entry.distrusted = {"node1"};
     entry.owner = "ann";
     entry.launched_unix_s = 12;
     entry.bytes = 34;
@@ -140,33 +132,8 @@ TEST_F(CatalogueTest, RemembersEverythingOverARestart) {
     catalogue.Write(entry);
   }
   Catalogue catalogue(root_ / "data");
-  const CatalogueEntry& entry = catalogue.At("a1");
-  EXPECT_EQ(entry.flight_id, "fa1");
-  EXPECT_EQ(entry.name, "name of a1");
-  EXPECT_EQ(entry.priority, -3);
-  EXPECT_EQ(entry.cases, 7u);
-  EXPECT_EQ(entry.done, 5u);
-  EXPECT_EQ(entry.quarantined, 1u);
-  EXPECT_EQ(entry.conflicts, 2u);
-  EXPECT_EQ(entry.state, CampaignState::kFailed);
-  EXPECT_EQ(entry.owner, "ann");
-  EXPECT_EQ(entry.launched_unix_s, 12);
-  EXPECT_EQ(entry.bytes, 34u);
-  EXPECT_EQ(entry.verdict, "pass");
-  EXPECT_THAT(entry.labels, ElementsAre("commit=1a2b", "a=b"));
-  EXPECT_EQ(entry.design_id, "d1");
-  EXPECT_EQ(entry.engine, "0.1.0+e");
-  EXPECT_EQ(entry.attempts, 3);
-  ASSERT_EQ(entry.requirements.size(), 1u);
-  const RequirementOutcome& one = entry.requirements[0];
-  EXPECT_EQ(one.metric + "|" + one.words + "|" + one.verdict, "q_max_pa|q_max_pa below 5|fail");
-  EXPECT_EQ(one.probability, 0.5);
-  EXPECT_EQ(one.n, 20);
-  EXPECT_EQ(one.failures, 3);
-  EXPECT_EQ(one.success_lower, 0.25);
-  EXPECT_EQ(one.success_upper, std::nullopt);
-  EXPECT_EQ(entry.code, 1);
-  EXPECT_EQ(entry.problem, "it \"broke\"\n\xef\xbf\xbd");
+  entry.problem = "it \"broke\"\n\xef\xbf\xbd";
+  EXPECT_TRUE(catalogue.At("a1") == entry) << catalogue.StateTextOf("a1");
   EXPECT_EQ(catalogue.TextOf("a1"), "text of a1");
 }
 
@@ -190,19 +157,6 @@ TEST_F(CatalogueTest, WhatWasUnderWayWaitsAgainAndWhatEndedHasEnded) {
   for (const auto& [before, after] : before_and_after) {
     EXPECT_EQ(catalogue.At(CampaignStateName(before)).state, after) << CampaignStateName(before);
   }
-}
-
-TEST_F(CatalogueTest, TheQueueGoesByPriorityThenByAgeAlsoAfterARestart) {
-  {
-    Catalogue catalogue(root_);
-    for (const auto& [id, priority] : std::vector<std::pair<std::string, int>>{
-             {"z", 0}, {"low", -2147483647 - 1}, {"y", 0}, {"high", 2147483647}, {"x", 5}})
-      catalogue.Add(Entry(id, priority), "");
-    EXPECT_THAT(catalogue.InOrder(), ElementsAre("high", "x", "z", "y", "low"));
-  }
-  Catalogue catalogue(root_);
-  catalogue.Add(Entry("a"), "");
-  EXPECT_THAT(catalogue.InOrder(), ElementsAre("high", "x", "z", "y", "a", "low"));
 }
 
 TEST_F(CatalogueTest, FindsACampaignByTheBeginningOfItsIdIfThatIsOne) {

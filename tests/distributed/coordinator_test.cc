@@ -2,19 +2,6 @@
 // sockets, but make up their results.
 #include "services/coordinator/coordinator.h"
 
-#include <gmock/gmock.h>
-#include <gtest/gtest.h>
-#include <stdlib.h>
-
-#include <chrono>
-#include <cmath>
-#include <deque>
-#include <filesystem>
-#include <functional>
-#include <limits>
-#include <memory>
-#include <set>
-
 #include "core/flight/engine_version.h"
 #include "core/flight/flight_inputs.h"
 #include "core/results/fingerprint.h"
@@ -22,14 +9,14 @@
 #include "services/transport/private_domain.h"
 #include "services/transport/worker_link.h"
 #include "tests/nominal_inputs.h"
+#include "tests/temporary_folder.h"
+#include "tests/test.h"
 
 namespace dispersa::coordinator_test {
 namespace {
 
 using std::chrono::milliseconds;
 using std::chrono::seconds;
-using ::testing::ElementsAre;
-using ::testing::IsEmpty;
 
 // Ample for what takes milliseconds on an idle machine.
 constexpr seconds kPatience(30);
@@ -50,9 +37,8 @@ CaseResult ResultOf(std::uint64_t case_index) {
 
 class MadeUpWorker {
  public:
-  MadeUpWorker(const NetworkOptions& network, const std::string& uuid,
-               const std::string& engine_version = EngineVersion())
-      : status_{uuid, "host", 1, engine_version, 1, 2, WorkerState::kReady, 0, 0, {}, {}},
+  MadeUpWorker(const NetworkOptions& network, const std::string& uuid)
+      : status_{uuid, "host", 1, EngineVersion(), 1, 2, WorkerState::kReady, 0, 0, {}, {}},
         link_(network, {{"127.0.0.1", CoordinatorPort(network.domain)}}, uuid) {}
 
   /// Collects new messages, with assignments as single cases. Sends a status message.
@@ -66,9 +52,7 @@ class MadeUpWorker {
         flight_id_ = order.flight_id;
         for (const std::uint64_t k : order.cases) cases.push_back({k, order.attempt});
       }
-      acknowledged.insert(orders->acknowledged.begin(), orders->acknowledged.end());
       dismissed = dismissed || orders->leave;
-      if (!orders->refusal.empty()) refused = orders->refusal;
     }
     const auto now = std::chrono::steady_clock::now();
     if (now < said_ + milliseconds(200)) return;
@@ -77,8 +61,7 @@ class MadeUpWorker {
     link_.Send(status_);
   }
   void Start(const StartedCase& which) { Send({}, {which}); }
-  void Finish(const StartedCase& which) { Finish(which, ResultOf(which.case_index)); }
-  void Finish(const StartedCase& which, const CaseResult& result) { Send({{which.attempt, result}}, {}); }
+  void Finish(const StartedCase& which) { Send({{which.attempt, ResultOf(which.case_index)}}, {}); }
   /// Flies all it has.
   void FlyAll() {
     for (; !cases.empty(); cases.pop_front()) {
@@ -86,11 +69,6 @@ class MadeUpWorker {
       Finish(cases.front());
     }
   }
-  void RefuseCampaign(const std::string& reason) {
-    link_.Send(CampaignRefusal{status_.worker, status_.coordinator_epoch, flight_id_, reason});
-  }
-  /// As if it answered another start of the coordinator.
-  void SetEpoch(std::uint64_t epoch) { status_.coordinator_epoch = epoch; }
   void Say(WorkerState state) {
     status_.state = state;
     link_.Send(status_);
@@ -98,32 +76,24 @@ class MadeUpWorker {
   bool ready() const { return !flight_id_.empty(); }
 
   std::deque<StartedCase> cases;
-  std::set<std::uint64_t> acknowledged;
-  std::uint64_t reports = 0;
-  std::string refused;
   bool dismissed = false;
 
  private:
   void Send(std::vector<FlownCase> flown, std::vector<StartedCase> started) {
-    link_.Send(Report{status_.worker, status_.coordinator_epoch, ++reports, flight_id_, std::move(flown),
+    link_.Send(Report{status_.worker, status_.coordinator_epoch, ++reports_, flight_id_, std::move(flown),
                       std::move(started)});
   }
 
   WorkerStatus status_;
   std::string flight_id_;
   std::set<std::uint64_t> known_;
+  std::uint64_t reports_ = 0;
   std::chrono::steady_clock::time_point said_;
   WorkerLink link_;
 };
 
 class CoordinatorTest : public testing::Test {
  protected:
-  CoordinatorTest() {
-    std::string pattern = (std::filesystem::temp_directory_path() / "dispersa-coordinator-XXXXXX").string();
-    directory_ = mkdtemp(pattern.data());
-  }
-  ~CoordinatorTest() override { std::filesystem::remove_all(directory_); }
-
   void Open(std::uint64_t cases) {
     campaign_.name = "made up";
     campaign_.sampling.cases = cases;
@@ -148,7 +118,7 @@ class CoordinatorTest : public testing::Test {
   LedgerProgress Progress() const { return book_->ledger().Progress(); }
 
   PrivateDomain domain_;
-  std::filesystem::path directory_;
+  TemporaryFolder directory_;
   Campaign campaign_;
   std::unique_ptr<CampaignBook> book_;
   std::unique_ptr<Coordinator> coordinator_;
@@ -178,76 +148,6 @@ TEST_F(CoordinatorTest, FliesACampaignAndDismissesItsWorkers) {
   }
 }
 
-TEST_F(CoordinatorTest, RefusesAWorkerOfAnotherEngineVersionWithAReason) {
-  Open(5);
-  MadeUpWorker stranger(Network(), "stranger", "0.0.9+other");
-  ASSERT_TRUE(Until([&] { return !stranger.refused.empty(); }, {&stranger}));
-  EXPECT_EQ(stranger.refused,
-            "engine version 0.0.9+other of the worker differs from the coordinator's " + EngineVersion());
-  EXPECT_EQ(coordinator_->refusal(), stranger.refused);
-  EXPECT_EQ(coordinator_->joined(), 0u);
-  // It gets nothing, others do.
-  MadeUpWorker good(Network(), "good");
-  ASSERT_TRUE(Until(
-      [&] {
-        good.FlyAll();
-        return book_->ledger().Complete();
-      },
-      {&good, &stranger}));
-  EXPECT_THAT(stranger.cases, IsEmpty());
-}
-
-TEST_F(CoordinatorTest, AWorkerThatRefusesTheCampaignGivesItsCasesBack) {
-  Open(5);
-  MadeUpWorker stranger(Network(), "stranger");
-  ASSERT_TRUE(Until([&] { return stranger.ready() && !stranger.cases.empty(); }, {&stranger}));
-  stranger.RefuseCampaign("flight id differs");
-  ASSERT_TRUE(Until([&] { return coordinator_->refusal().has_value(); }, {&stranger}));
-  EXPECT_EQ(coordinator_->refusal(), "flight id differs");
-  EXPECT_EQ(Progress().waiting, 5u);
-  stranger.cases.clear();
-  MadeUpWorker good(Network(), "good");
-  EXPECT_TRUE(Until(
-      [&] {
-        good.FlyAll();
-        return book_->ledger().Complete();
-      },
-      {&good, &stranger}));
-}
-
-TEST_F(CoordinatorTest, ACaseThatEndsThreeWorkersIsQuarantinedAndRemembered) {
-  Open(6);
-  int deaths = 0;
-  while (deaths < 4 && !book_->ledger().Complete()) {
-    auto worker = std::make_unique<MadeUpWorker>(Network(), "w" + std::to_string(deaths));
-    bool doomed = false;
-    ASSERT_TRUE(Until(
-        [&] {
-          for (; worker->ready() && !worker->cases.empty() && !doomed; worker->cases.pop_front()) {
-            worker->Start(worker->cases.front());
-            doomed = worker->cases.front().case_index == 3;
-            if (!doomed) worker->Finish(worker->cases.front());
-          }
-          return doomed;
-        },
-        {worker.get()}));
-    // Its last words come before its end.
-    for (int i = 0; i < 20; ++i) coordinator_->Step(milliseconds(5));
-    worker.reset();
-    ++deaths;
-    ASSERT_TRUE(Until([&] { return coordinator_->joined() == 0; }, {}));
-  }
-  EXPECT_EQ(deaths, 3);
-  EXPECT_TRUE(book_->ledger().Complete());
-  EXPECT_EQ(Progress().done, 5u);
-  book_->Flush();
-  const auto quarantined = book_->folder().QuarantinedCases();
-  ASSERT_EQ(quarantined.size(), 1u);
-  EXPECT_EQ(quarantined[0].case_index, 3u);
-  EXPECT_EQ(quarantined[0].reason, "every attempt to fly it ended or hung its worker");
-  EXPECT_FALSE(book_->folder().Contains(3));
-}
-
 TEST_F(CoordinatorTest, ASupervisedWorkersExitStatusDecidesWhoIsToBlame) {
   Open(2);
   coordinator_->Supervise("a");
@@ -266,45 +166,6 @@ TEST_F(CoordinatorTest, ASupervisedWorkersExitStatusDecidesWhoIsToBlame) {
   MadeUpWorker b(Network(), "b");
   ASSERT_TRUE(Until([&] { return b.cases.size() == 2; }, {&b}));
   EXPECT_EQ(b.cases[0].case_index, 0u);
-}
-
-TEST_F(CoordinatorTest, DuplicatesAreHarmlessAndAnotherResultOfACaseThatItHasReturnedIsRefused) {
-  Open(3);
-  MadeUpWorker a(Network(), "a");
-  ASSERT_TRUE(Until([&] { return a.ready() && !a.cases.empty(); }, {&a}));
-  const StartedCase first = a.cases.front();
-  a.Finish(first);
-  a.Finish(first);
-  ASSERT_TRUE(Until([&] { return Progress().duplicates == 1; }, {&a}));
-  EXPECT_EQ(Progress().conflicts, 0u);
-  CaseResult other = ResultOf(first.case_index);
-  other.metrics[0] = std::nextafter(other.metrics[0], 1e9);
-  const std::uint64_t before = Complaints();
-  a.Finish(first, other);
-  ASSERT_TRUE(Until([&] { return Complaints() > before; }, {&a}));
-  EXPECT_EQ(Progress().conflicts, 0u) << "it was not given the case again";
-  book_->Flush();
-  EXPECT_EQ(book_->folder().Load(first.case_index).metrics[0], ResultOf(first.case_index).metrics[0]);
-}
-
-TEST_F(CoordinatorTest, ResultsForAnEarlierCoordinatorAreWelcomeButItsStartsMeanNothing) {
-  Open(2);
-  MadeUpWorker old(Network(), "old");
-  ASSERT_TRUE(Until([&] { return old.ready() && !old.cases.empty(); }, {&old}));
-  old.SetEpoch(1);
-  old.Start({1, 1});
-  old.Finish({0, 1});
-  EXPECT_TRUE(Until([&] { return Progress().done == 1; }, {&old}));
-}
-
-TEST_F(CoordinatorTest, AReportIsAcknowledgedWhenItsResultsAreStored) {
-  Open(3);
-  MadeUpWorker a(Network(), "a");
-  ASSERT_TRUE(Until([&] { return !a.cases.empty(); }, {&a}));
-  a.Finish(a.cases.front());
-  const std::uint64_t number = a.reports;
-  ASSERT_TRUE(Until([&] { return a.acknowledged.contains(number); }, {&a}));
-  EXPECT_EQ(book_->folder().PresentCases().size(), 1u);
 }
 
 TEST_F(CoordinatorTest, NobodySpeaksForAnotherWorker) {

@@ -1,27 +1,15 @@
 // The coordinator's rules with made-up time and messages: trust in workers, repeated assignments, and blames.
 #include "services/coordinator/dispatcher.h"
 
-#include <gmock/gmock.h>
-#include <gtest/gtest.h>
-
-#include <map>
-#include <memory>
-#include <set>
-#include <string>
-#include <vector>
-
 #include "core/flight/engine_version.h"
 #include "core/flight/flight_inputs.h"
 #include "core/results/fingerprint.h"
 #include "memory_store.h"
 #include "services/log/log.h"
+#include "tests/test.h"
 
 namespace dispersa::dispatcher_test {
 namespace {
-
-using ::testing::ElementsAre;
-using ::testing::IsEmpty;
-using ::testing::Not;
 
 const std::string kFlight(64, 'f');
 
@@ -412,6 +400,11 @@ TEST_F(ForgerTest, ACaseThatItWasNotGivenIsNotItsToReturn) {
   EXPECT_EQ(dispatcher_.refused_messages(), 3000u - given.size());
   Return("forger", ResultOf(*given.begin()));
   EXPECT_EQ(Progress().done, 1u);
+  CaseResult other = ResultOf(*given.begin());
+  other.metrics[0] = 1.0;
+  Return("honest", other);
+  EXPECT_EQ(dispatcher_.refused_messages(), 3001u - given.size());
+  EXPECT_EQ(Progress().conflicts, 0u);
   // For another epoch it is no better.
   Return("forger", ResultOf(2999), 0.1, kEpoch + 1);
   EXPECT_EQ(Progress().done, 1u);
@@ -824,25 +817,6 @@ TEST_F(DispatcherTest, ADrainingWorkerKeepsWhatItFliesAndGetsNoMore) {
   dispatcher_.On("s", drains, 0.5);
   EXPECT_EQ(Progress().assigned, 1u);
   EXPECT_THAT(Tick(0.6).assignments, IsEmpty());
-}
-
-TEST_F(DispatcherTest, CampaignsOfAHigherPriorityFirstAndEqualOnesShare) {
-  CampaignBook low(MadeUp(std::string(64, '1'), 50), std::make_unique<MemoryStore>(),
-                   {.attempt_base = 1000, .first_assignments = 20, .side_by_side = 1});
-  CampaignBook one(MadeUp(std::string(64, '2'), 50), std::make_unique<MemoryStore>(),
-                   {.attempt_base = 2000, .first_assignments = 20, .side_by_side = 1});
-  CampaignBook two(MadeUp(std::string(64, '3'), 50), std::make_unique<MemoryStore>(),
-                   {.attempt_base = 3000, .first_assignments = 20, .side_by_side = 1});
-  dispatcher_.BeginCampaign(low, 0);
-  dispatcher_.BeginCampaign(one, 5);
-  dispatcher_.BeginCampaign(two, 5);
-  WorkerStatus status = Status();
-  status.credits = 20;
-  dispatcher_.On("s", status, 0.0);
-  Tick(0.0);
-  EXPECT_EQ(low.ledger().Progress().assigned, 0u);
-  EXPECT_EQ(one.ledger().Progress().assigned, 10u);
-  EXPECT_EQ(two.ledger().Progress().assigned, 10u);
 }
 
 TEST_F(DispatcherTest, GivesOutATextInParts) {

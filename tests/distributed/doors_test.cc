@@ -1,11 +1,7 @@
 // Which of a coordinator's participants serves a peer, and when it may join.
 #include "services/transport/doors.h"
 
-#include <gtest/gtest.h>
-
-#include <algorithm>
-#include <map>
-#include <string>
+#include "tests/test.h"
 
 namespace dispersa::doors_test {
 namespace {

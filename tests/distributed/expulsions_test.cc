@@ -1,16 +1,12 @@
 // Who is expelled for whose lies, and who comes back.
 #include "services/coordinator/expulsions.h"
 
-#include <gmock/gmock.h>
-#include <gtest/gtest.h>
-
 #include <nlohmann/json.hpp>
+
+#include "tests/test.h"
 
 namespace dispersa::expulsions_test {
 namespace {
-
-using testing::ElementsAre;
-using testing::IsEmpty;
 
 std::vector<std::string> NamesOf(const ExpulsionMap& expelled) {
   std::vector<std::string> names;

@@ -1,17 +1,10 @@
 // A worker's rules with made-up time and messages.
 #include "services/worker/flight_desk.h"
 
-#include <gmock/gmock.h>
-#include <gtest/gtest.h>
-
-#include <map>
+#include "tests/test.h"
 
 namespace dispersa::flight_desk_test {
 namespace {
-
-using ::testing::ElementsAre;
-using ::testing::IsEmpty;
-using ::testing::SizeIs;
 
 const std::string kFlight(64, 'f');
 

@@ -1,25 +1,19 @@
 // The front desk without a network: its answers to clients and its refusals.
 #include "services/coordinator/front_desk.h"
 
-#include <gmock/gmock.h>
-#include <gtest/gtest.h>
-
-#include <algorithm>
-#include <fstream>
 #include <nlohmann/json.hpp>
-#include <numeric>
 
 #include "core/results/result_folder.h"
 #include "made_up_service.h"
 #include "services/coordinator/web_rows.h"
 #include "services/program/exit_code.h"
+#include "tests/test.h"
 
 namespace dispersa::front_desk_test {
 namespace {
 
 namespace fs = std::filesystem;
 using Json = nlohmann::ordered_json;
-using ::testing::ElementsAre;
 
 class FrontDeskTest : public ServiceTest {
  protected:
@@ -149,19 +143,6 @@ TEST_F(FrontDeskTest, ADeletedCampaignIsDeletedWhoeverAsksAgain) {
 TEST_F(FrontDeskTest, APriorityIsOfARange) {
   EXPECT_EQ(Refusal("launch", {{"id", "a"}, {"flight_id", "b"}, {"priority", 2000000000}}),
             "2: priority 2000000000, allowed: from -1000 to 1000");
-}
-
-TEST_F(FrontDeskTest, OneClientTakesHalfOfThePlacesForTexts) {
-  for (int i = 0; i < 4; ++i) Upload(std::to_string(i), 10, 0, "12345");
-  const Json fifth = {{"id", "fifth"}, {"size", 10}, {"offset", 0}};
-  EXPECT_EQ(Refusal("upload", fifth, "12345"), "5: this client sends 4 texts at a time already");
-  EXPECT_EQ(desk_->Answer({"other", 5, "upload", fifth.dump(), "12345"}).code, kExitDone);
-  const auto with_keys = [&](const char* client, const char* id) {
-    return desk_->Answer({client, 5, "upload", Json{{"id", id}, {"size", 10}, {"offset", 0}}.dump(), ""})
-        .code;
-  };
-  EXPECT_EQ(with_keys("ann_1", "a"), kExitDone);
-  EXPECT_EQ(with_keys("ann_2", "b"), kExitDone);
 }
 
 // One campaign of thousands of requirements: all others are listed, and so is it.
@@ -386,40 +367,6 @@ TEST_F(FrontDeskTest, OfACampaignThatHasEndedTheFilesOfItsFolderAlone) {
   EXPECT_EQ(part(large.size()), 0u);
 }
 
-// As a coordinator that was started again finds them.
-TEST_F(FrontDeskTest, AListThatIsTooLongHasAllThatLive) {
-  service_.reset();
-  const auto write = [this](const std::string& id, int order, const std::string& state) {
-    const Json entry = {{"id", id},       {"flight_id", id}, {"name", id}, {"priority", 0},
-                        {"order", order}, {"cases", 2},      {"done", 0},  {"quarantined", 0},
-                        {"conflicts", 0}, {"state", state},  {"code", 5},  {"problem", ""}};
-    fs::create_directories(folder_ / "data" / id);
-    std::ofstream(folder_ / "data" / id / "state.json") << entry.dump();
-  };
-  int order = 0;
-  for (const char* id : {"first", "second"}) write(id, ++order, "waiting");
-  for (int i = 0; i < 505; ++i) write("ended" + std::to_string(i), ++order, "cancelled");
-  for (const char* id : {"third", "fourth"}) write(id, ++order, "waiting");
-  StartService();
-  const Json list = AskFor("list", Json::object());
-  EXPECT_EQ(list.at("campaigns").size(), 500u);
-  EXPECT_EQ(list.at("unlisted"), 9);
-  std::vector<std::string> live;
-  for (const Json& campaign : list.at("campaigns")) {
-    if (campaign.at("state") == "waiting") live.push_back(campaign.at("id"));
-  }
-  EXPECT_THAT(live, ElementsAre("first", "second", "third", "fourth"));
-}
-
-TEST_F(FrontDeskTest, TheStatusNamesTheWorkers) {
-  workforce_.Join("w1", 3);
-  const Json status = AskFor("status", Json::object());
-  EXPECT_EQ(status.at("schema"), "dispersa/status/1");
-  EXPECT_TRUE(status.at("web").is_null());
-  EXPECT_EQ(status.at("workers"),
-            Json::parse(R"([{"id": "w1", "host": "host", "slots": 3, "state": "ready", "flown": 0}])"));
-}
-
 TEST_F(FrontDeskTest, TheWebPagesCountWhatWasFlown) {
   const Campaign campaign = Smoke(5);
   const std::string id = Launch(campaign);
@@ -629,23 +576,6 @@ TEST_F(OwnersTest, AQuotaIsOfOneOwnerAndOfWhatHasNotEnded) {
   EXPECT_EQ(StateOf(first.id), CampaignState::kCancelled);
 }
 
-TEST_F(OwnersTest, ADiskQuotaCountsCampaignsThatHaveEnded) {
-  Start({"disk=0.001MB"});
-  const Campaign first = Smoke(2), second = Smoke(2, 2);
-  EXPECT_EQ(LaunchAs(ann_, first), "waiting") << "nothing is there";
-  As(ann_, "cancel", {{"id", first.id}});
-  ASSERT_TRUE(Until([&] { return service_->IsAtRest(first.id); }));
-  EXPECT_GT(service_->catalogue().entries().at(first.id).bytes, 1000u) << "its text";
-  EXPECT_THAT(
-      LaunchAs(ann_, second),
-      testing::MatchesRegex("2: 'ann' would have another campaign beside .* GB on the coordinator's disk, "
-                            "allowed: less than 1e-06 GB; delete campaigns that have ended "
-                            ".dispersa-coordinator --quota disk."));
-  EXPECT_EQ(LaunchAs(bob_, second), "waiting");
-  As(ann_, "delete", {{"id", first.id}});
-  EXPECT_EQ(LaunchAs(ann_, Smoke(2, 3)), "waiting");
-}
-
 TEST_F(OwnersTest, OneOwnerDoesNotTakeAllPlaces) {
   Start({"places=1"});
   const Campaign first = Smoke(200, 1), second = Smoke(200, 2), third = Smoke(200, 3);
@@ -678,23 +608,6 @@ TEST_F(OwnersTest, AnOwnerMayHaveAQuotaOfItsOwn) {
   EXPECT_THAT(LaunchAs(carol, Smoke(1, 7)), testing::HasSubstr("2 campaigns")) << "that of all";
 }
 
-TEST(QuotaTest, IsReadAsAUserWritesIt) {
-  Quotas quotas;
-  EXPECT_EQ(quotas.Add("ann:cases=none,places=2"), "");
-  EXPECT_EQ(quotas.Add("cases=1000000,campaigns=20,places=4,disk=0.5TB"), "");
-  EXPECT_EQ(quotas.Of("bob").cases, 1000000u);
-  EXPECT_EQ(quotas.Of("bob").campaigns, 20u);
-  EXPECT_EQ(quotas.Of("bob").places, 4u);
-  EXPECT_EQ(quotas.Of("bob").disk, 500000000000u);
-  EXPECT_EQ(quotas.Of("ann").cases, Quota::kNoLimit);
-  EXPECT_EQ(quotas.Of("ann").places, 2u);
-  EXPECT_EQ(quotas.Of("ann").campaigns, 20u) << "those of all, whatever was given first";
-  EXPECT_EQ(quotas.Add("places=5"), "");
-  EXPECT_EQ(quotas.Of("bob").places, 5u);
-  EXPECT_EQ(quotas.Of("bob").cases, 1000000u);
-  EXPECT_EQ(quotas.Of("ann").places, 2u);
-}
-
 TEST(QuotaTest, SaysWhatIsWrong) {
   const auto problem = [](const std::string& text) { return Quotas().Add(text); };
   EXPECT_EQ(
@@ -710,7 +623,7 @@ TEST(QuotaTest, SaysWhatIsWrong) {
     EXPECT_NE(problem(text), "") << text;
 }
 
-TEST_F(OwnersTest, LabelsAreShortTextsTheLastOnesOfMany) {
+TEST_F(OwnersTest, LabelsAreShortTexts) {
   const Campaign campaign = Smoke(2);
   for (const std::string label :
        {"commit", "=1", "commit=", "com mit=1", "commit=1\n",
@@ -718,12 +631,6 @@ TEST_F(OwnersTest, LabelsAreShortTextsTheLastOnesOfMany) {
         "1234567890123456789012345678901"})
     EXPECT_THAT(LaunchAs(ann_, campaign, {{"labels", {label}}}), testing::HasSubstr("is no label, allowed: "))
         << label;
-  for (int i = 0; i < 40; ++i) LaunchAs(ann_, campaign, {{"labels", {"commit=" + std::to_string(i)}}});
-  LaunchAs(ann_, campaign, {{"labels", {"commit=20"}}});
-  const std::vector<std::string>& labels = service_->catalogue().entries().at(campaign.id).labels;
-  EXPECT_EQ(labels.size(), kMaxLabels);
-  EXPECT_EQ(labels.front(), "commit=8");
-  EXPECT_EQ(labels.back(), "commit=20") << "given again";
 }
 
 }  // namespace

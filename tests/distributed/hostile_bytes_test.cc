@@ -1,17 +1,11 @@
 // Bytes from strangers: malformed ones, which could harm a decoder or the middleware, are told from
 // well-formed ones.
-#include <gtest/gtest.h>
-
-#include <cstdint>
-#include <cstring>
-#include <random>
-#include <vector>
-
 #include "services/transport/convert.h"
 #include "services/transport/endpoints.h"
 #include "services/transport/sieve.h"
 #include "services/transport/wire_shape.h"
 #include "tests/fuzz.h"
+#include "tests/test.h"
 
 namespace dispersa::hostile_bytes_test {
 namespace {

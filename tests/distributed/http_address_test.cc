@@ -1,7 +1,7 @@
 // Where the HTTP servers of a coordinator listen.
 #include "services/http/http_address.h"
 
-#include <gtest/gtest.h>
+#include "tests/test.h"
 
 namespace dispersa::http_address_test {
 namespace {

@@ -2,12 +2,10 @@
 #pragma once
 
 #include <arpa/inet.h>
-#include <gtest/gtest.h>
 #include <sys/socket.h>
 #include <unistd.h>
 
-#include <cstdint>
-#include <string>
+#include "tests/test.h"
 
 namespace dispersa {
 

@@ -1,24 +1,13 @@
 // The skeleton of all HTTP servers over real sockets: what it refuses, and what it holds on to.
 #include "services/http/http_server.h"
 
-#include <gmock/gmock.h>
-#include <gtest/gtest.h>
-
-#include <atomic>
-#include <chrono>
-#include <thread>
-#include <vector>
-
 #include "http_client.h"
+#include "tests/test.h"
 
 namespace dispersa::http_server_test {
 namespace {
 
 using std::chrono::milliseconds;
-using testing::EndsWith;
-using testing::HasSubstr;
-using testing::Not;
-using testing::StartsWith;
 using Clock = std::chrono::steady_clock;
 
 HttpOptions SomeOptions() {

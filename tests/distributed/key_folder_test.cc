@@ -1,15 +1,7 @@
 // Authorities, the keys that they issue, and what a process takes for keys: without a network.
 #include "services/transport/key_folder.h"
 
-#include <gmock/gmock.h>
-#include <gtest/gtest.h>
 #include <sys/stat.h>
-
-#include <chrono>
-#include <ctime>
-#include <functional>
-#include <string>
-#include <vector>
 
 #include "core/containment/contained.h"
 #include "core/input/input_error.h"
@@ -18,16 +10,13 @@
 #include "services/transport/authority.h"
 #include "services/transport/openssl.h"
 #include "services/transport/revocations.h"
-#include "temporary_folder.h"
+#include "tests/temporary_folder.h"
+#include "tests/test.h"
 
 namespace dispersa::key_folder_test {
 namespace {
 
 namespace fs = std::filesystem;
-using ::testing::ContainsRegex;
-using ::testing::EndsWith;
-using ::testing::HasSubstr;
-using ::testing::Not;
 
 constexpr std::time_t kDay_s = 86400;
 

@@ -1,18 +1,8 @@
 // Keys over real sockets: a signed participant is heard under its own name, and unprotected messages are not
 // believed.
 #include <arpa/inet.h>
-#include <gmock/gmock.h>
-#include <gtest/gtest.h>
 #include <sys/socket.h>
 #include <unistd.h>
-
-#include <chrono>
-#include <cstdlib>
-#include <filesystem>
-#include <memory>
-#include <optional>
-#include <string>
-#include <vector>
 
 #include "services/transport/admission.h"
 #include "services/transport/authority.h"
@@ -22,6 +12,8 @@
 #include "services/transport/private_domain.h"
 #include "services/transport/topics.h"
 #include "services/transport/worker_link.h"
+#include "tests/temporary_folder.h"
+#include "tests/test.h"
 
 namespace dispersa::keys_test {
 namespace {
@@ -37,16 +29,13 @@ constexpr seconds kPatience(30);
 class Keys : public testing::Test {
  protected:
   Keys() {
-    std::string pattern = (std::filesystem::temp_directory_path() / "dispersa-keys-XXXXXX").string();
-    authority_ = mkdtemp(pattern.data());
-    MakeAuthority(authority_, ValidFor(2));
+    MakeAuthority(authority_.path(), ValidFor(2));
     coordinator_ = std::make_unique<CoordinatorLink>(NetworkOf(Role::kCoordinator));
   }
-  ~Keys() override { std::filesystem::remove_all(authority_); }
 
   NetworkOptions NetworkOf(Role role) {
     NetworkOptions network{domain_.domain(), "127.0.0.1"};
-    network.keys = OpenKeyFolder(IssueKeys(authority_, role, "one", ValidFor(1)), {role});
+    network.keys = OpenKeyFolder(IssueKeys(authority_.path(), role, "one", ValidFor(1)), {role});
     return network;
   }
   Peer Coordinator() const { return {"127.0.0.1", CoordinatorPort(domain_.domain())}; }
@@ -68,7 +57,7 @@ class Keys : public testing::Test {
   }
 
   PrivateDomain domain_;
-  std::filesystem::path authority_;
+  TemporaryFolder authority_;
   std::unique_ptr<CoordinatorLink> coordinator_;
   std::string sender_;
   std::vector<WorkerStatus> heard_;

@@ -1,22 +1,16 @@
 // The rules of a run on this machine, with made-up time and the smallest processes.
-#include <gmock/gmock.h>
-#include <gtest/gtest.h>
-
-#include <chrono>
 #include <nlohmann/json.hpp>
-#include <thread>
 
 #include "services/client/execution_file.h"
 #include "services/client/local_workers.h"
 #include "services/program/exit_code.h"
-#include "temporary_folder.h"
+#include "tests/temporary_folder.h"
+#include "tests/test.h"
 
 namespace dispersa::local_rules_test {
 namespace {
 
 using Json = nlohmann::ordered_json;
-using ::testing::IsEmpty;
-using ::testing::SizeIs;
 
 /// A worker process that ends at once, with a code.
 class EndingWorkers : public testing::Test {

@@ -1,18 +1,11 @@
 // Lines of a daemon that come by thousands.
 #include "services/log/log_limits.h"
 
-#include <gmock/gmock.h>
-#include <gtest/gtest.h>
-
-#include <string>
-
 #include "services/transport/complaints.h"
+#include "tests/test.h"
 
 namespace dispersa::log_limits_test {
 namespace {
-
-using testing::ElementsAre;
-using testing::IsEmpty;
 
 TEST(LogLimits, OfOneKindSixtyLinesAMinuteAndThenTheirCount) {
   LogLimits limits;

@@ -1,19 +1,12 @@
 // A service of many campaigns in a folder of its own, without a network.
 #pragma once
 
-#include <gtest/gtest.h>
-
-#include <chrono>
-#include <functional>
-#include <memory>
-#include <string>
-#include <thread>
-
 #include "core/campaign_yaml/load.h"
 #include "made_up_workforce.h"
 #include "services/coordinator/front_desk.h"
 #include "services/coordinator/service.h"
-#include "temporary_folder.h"
+#include "tests/temporary_folder.h"
+#include "tests/test.h"
 
 namespace dispersa {
 

@@ -11,6 +11,7 @@
 #include <vector>
 
 #include "core/results/fingerprint.h"
+#include "core/results/result_error.h"
 #include "core/results/result_store.h"
 
 namespace dispersa {
@@ -62,6 +63,22 @@ class MemoryStore : public ResultStore {
   std::set<std::uint64_t> audited;
   std::size_t stored = 0;
   std::int64_t planned_cases = 0;
+};
+
+/// On a disk that is full, or broken, as long as somebody says so.
+struct FullStore : MemoryStore {
+  void Store(std::span<const CaseResult> results, std::span<const ExecutionRecord> records) override {
+    Try();
+    MemoryStore::Store(results, records);
+  }
+  std::vector<std::uint64_t> Disown(const std::string& worker) override {
+    Try();
+    return MemoryStore::Disown(worker);
+  }
+  void Try() const {
+    if (problem) throw ResultError(*problem, "the disk is what it is");
+  }
+  std::optional<ResultError::Kind> problem;
 };
 
 }  // namespace dispersa

@@ -1,20 +1,14 @@
 // The port of the metrics: what a scraper gets, and what others get.
 #include "services/coordinator/prometheus_port.h"
 
-#include <gmock/gmock.h>
-#include <gtest/gtest.h>
 #include <unistd.h>
-
-#include <string>
 
 #include "http_client.h"
 #include "services/transport/network.h"
+#include "tests/test.h"
 
 namespace dispersa::prometheus_port_test {
 namespace {
-
-using testing::HasSubstr;
-using testing::StartsWith;
 
 std::string Get(std::uint16_t port, const std::string& path) {
   return AskHttp(port, "GET " + path + " HTTP/1.1\r\nHost: 127.0.0.1\r\nConnection: close\r\n\r\n");

@@ -2,16 +2,13 @@
 #include "services/coordinator/prometheus_text.h"
 
 #include <fmt/format.h>
-#include <gmock/gmock.h>
-#include <gtest/gtest.h>
 
 #include "made_up_service.h"
 #include "services/transport/complaints.h"
+#include "tests/test.h"
 
 namespace dispersa::prometheus_text_test {
 namespace {
-
-using testing::Not;
 
 class PrometheusTextTest : public ServiceTest {
  protected:
@@ -57,33 +54,6 @@ TEST_F(PrometheusTextTest, AnEmptyServiceIsAllZeros) {
   EXPECT_EQ(Value("dispersa_request_seconds_count"), "3");
   EXPECT_EQ(Value("dispersa_round_seconds_max"), "0.5");
   EXPECT_GT(std::stod(Value("dispersa_disk_free_bytes")), 1e6);
-}
-
-TEST_F(PrometheusTextTest, ACampaignHasItsFiguresUntilItHasEnded) {
-  StartService(1);
-  const Campaign campaign = Smoke(100);
-  const std::string id = Launch(campaign);
-  ASSERT_TRUE(Reaches(id, CampaignState::kFlying));
-  workforce_.Join("w");
-  workforce_.time_s += 2.0;
-  service_->Step();  // the rate is measured from here
-  for (const std::uint64_t i : {0, 1, 2, 3})
-    workforce_.Return("w", campaign.flight_id, MadeUpWorkforce::ResultOf(i));
-  workforce_.time_s += 2.0;
-  service_->Step();
-  const std::string labels = "campaign=\"" + id.substr(0, 12) + "\",name=\"smoke\",owner=\"\"";
-  EXPECT_EQ(Value("dispersa_campaign_cases{" + labels + ",state=\"done\"}"), "4");
-  EXPECT_EQ(Value("dispersa_campaign_cases{" + labels + ",state=\"waiting\"}"), "96");
-  EXPECT_EQ(Value("dispersa_campaign_results_per_second{" + labels + "}"), "2");
-  EXPECT_EQ(Value("dispersa_results_per_second"), "2");
-  workforce_.time_s += 11.0;
-  service_->Step();
-  const std::string bytes = Value("dispersa_campaign_disk_bytes{" + labels + "}");
-  EXPECT_GT(std::stod(bytes), 10000.0);
-  EXPECT_EQ(Value("dispersa_disk_bytes"), bytes);
-  service_->Cancel(id);
-  EXPECT_THAT(PrometheusText(*service_, workforce_, times_), Not(testing::HasSubstr("campaign=")));
-  EXPECT_GT(std::stod(Value("dispersa_disk_bytes")), 10000.0) << "it is still there";
 }
 
 TEST_F(PrometheusTextTest, ANameEndsNoLabel) {

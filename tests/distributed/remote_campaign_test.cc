@@ -2,25 +2,18 @@
 // and against made-up coordinators.
 #include "services/client/remote_campaign.h"
 
-#include <gmock/gmock.h>
-#include <gtest/gtest.h>
-
-#include <deque>
-#include <map>
-#include <vector>
-
 #include "core/results/database.h"
 #include "core/results/gzip.h"
 #include "made_up_service.h"
 #include "services/coordinator/epoch.h"
 #include "services/coordinator/packed_files.h"
+#include "tests/test.h"
 
 namespace dispersa::remote_campaign_test {
 namespace {
 
 namespace fs = std::filesystem;
 using Json = nlohmann::ordered_json;
-using ::testing::ElementsAre;
 
 /// "code: words" of what ends a call.
 template <typename Run>

@@ -1,13 +1,4 @@
 // Rules whose breach no campaign that goes well would show.
-#include <gtest/gtest.h>
-
-#include <csignal>
-#include <cstdlib>
-#include <filesystem>
-#include <memory>
-#include <string>
-#include <vector>
-
 #include "core/flight/flight_inputs.h"
 #include "core/flight/metrics.h"
 #include "services/client/local_workers.h"
@@ -16,6 +7,8 @@
 #include "services/ledger/prepare_run.h"
 #include "tests/distributed/forgetful_store.h"
 #include "tests/nominal_inputs.h"
+#include "tests/temporary_folder.h"
+#include "tests/test.h"
 
 namespace dispersa::rules_test {
 namespace {
@@ -77,8 +70,7 @@ TEST(Rules, AWorkerThatIsEndedFromOutsideBlamesNothing) {
 }
 
 TEST(Rules, ResumingWithFewerCasesDropsNoRow) {
-  std::string pattern = (std::filesystem::temp_directory_path() / "dispersa-rules-XXXXXX").string();
-  const std::filesystem::path root = mkdtemp(pattern.data());
+  const TemporaryFolder root;
   RunRequest request;
   request.campaign = DISPERSA_CAMPAIGNS "/smoke.yaml";
   request.out = (root / "out").string();
@@ -99,7 +91,6 @@ TEST(Rules, ResumingWithFewerCasesDropsNoRow) {
     EXPECT_EQ(prepared.folder.PresentCases(), std::vector<std::uint64_t>{7});
     EXPECT_THROW(PrepareRun(request), InputError) << "two at once";
   }
-  std::filesystem::remove_all(root);
 }
 
 TEST(RestartRule, WhoHeardSomebodyAndHasWorkDoesNotHearNobodyForLong) {

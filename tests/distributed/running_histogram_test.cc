@@ -1,19 +1,10 @@
 // Histograms of results that are still arriving: the order does not matter, and memory is bounded.
 #include "services/ledger/running_histogram.h"
 
-#include <gmock/gmock.h>
-#include <gtest/gtest.h>
-
-#include <algorithm>
-#include <cmath>
-#include <numeric>
-#include <random>
+#include "tests/test.h"
 
 namespace dispersa::running_histogram_test {
 namespace {
-
-using ::testing::ElementsAre;
-using ::testing::IsEmpty;
 
 HistogramBins BinsOf(const std::vector<double>& values, std::size_t most = RunningHistogram::kMaxBins) {
   RunningHistogram histogram;

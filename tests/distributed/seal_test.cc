@@ -3,24 +3,11 @@
 #include "services/transport/seal.h"
 
 #include <fcntl.h>
-#include <gmock/gmock.h>
-#include <gtest/gtest.h>
 #include <signal.h>
 #include <sys/wait.h>
 #include <unistd.h>
 
-#include <chrono>
-#include <cstring>
-#include <fstream>
-#include <iterator>
-#include <map>
-#include <memory>
 #include <nlohmann/json.hpp>
-#include <optional>
-#include <sstream>
-#include <string>
-#include <thread>
-#include <vector>
 
 #include "services/client/local_workers.h"
 #include "services/transport/coordinator_link.h"
@@ -29,7 +16,8 @@
 #include "services/transport/run_pass.h"
 #include "services/transport/topics.h"
 #include "services/transport/worker_link.h"
-#include "temporary_folder.h"
+#include "tests/temporary_folder.h"
+#include "tests/test.h"
 
 namespace dispersa::seal_test {
 namespace {

@@ -13,14 +13,12 @@ import subprocess
 import tempfile
 import threading
 import time
-import unittest
 
-from processes import BINARIES, CAMPAIGN, ISOLATED, PATIENCE_S, Run, content, end, main, wait_for
+from processes import BINARIES, CAMPAIGN, ISOLATED, PATIENCE_S, Run, content, main, wait_for
+from service_case import ServiceCase
 
 PROBE = BINARIES.parent / "tests" / "security_probe"
 CASES = 60
-DOMAIN = "34"
-LOOPBACK = ["--domain", DOMAIN, "--address", "127.0.0.1"]
 ROLES = ("coordinator", "worker", "client", "observer")
 EVERYTHING = "<topics><topic>*</topic></topics><partitions><partition>*</partition></partitions>"
 
@@ -45,10 +43,13 @@ class Stranger:
         return json.loads(next(line for line in self.log.read_text().splitlines() if line.startswith("{")))
 
 
-class SecurityTest(unittest.TestCase):
+class SecurityTest(ServiceCase):
+    DOMAIN = "34"
+    CASES = CASES
+
     @classmethod
     def setUpClass(cls):
-        cls.root = pathlib.Path(tempfile.mkdtemp(prefix="dispersa-security-"))
+        super().setUpClass()
         cls.authority, cls.foreign = cls.root / "ours", cls.root / "foreign"
         for authority in (cls.authority, cls.foreign):
             keys("init", authority)
@@ -60,37 +61,21 @@ class SecurityTest(unittest.TestCase):
                         "-subj", "/O=stranger", "-out", cls.own_signer, "-keyout", cls.root / "own_signer.key"],
                        check=True, capture_output=True)
         cls.own_signer.write_text(cls.own_signer.read_text() + (cls.root / "own_signer.key").read_text())
-        cls.reference = Run(cls.root / "reference", "--workers", 0, "--cases", CASES).finish()
         if ISOLATED in os.environ:
             # As on most machines there is another interface, which a program on all of them prefers to loopback.
             for command in ("link add eth0 type veth peer name eth1", "addr add 192.0.2.9/24 dev eth0", "link set eth0 up",
                             "link set eth1 up"):
                 subprocess.run(["ip", *command.split()], check=True)
 
-    @classmethod
-    def tearDownClass(cls):
-        shutil.rmtree(cls.root)
-
     def setUp(self):
-        self.data = pathlib.Path(tempfile.mkdtemp(dir=self.root, prefix="data-"))
-        self.log = self.data.parent / f"{self.data.name}.log"
+        super().setUp()
         self.log.touch()
-        self.processes = []
-
-    def tearDown(self):
-        end(self.processes)
 
     def folder(self, role, name="one", authority=None):
         return (authority or self.authority) / "issued" / f"{role}-{name}"
 
     def copy(self, role, name="one"):
         return pathlib.Path(shutil.copytree(self.folder(role, name), tempfile.mkdtemp(dir=self.root) + "/keys"))
-
-    def start(self, program, *arguments):
-        with self.log.open("a") as log:
-            self.processes.append(subprocess.Popen([BINARIES / program, *map(str, arguments), *LOOPBACK],
-                                                   stdout=log, stderr=log))
-        return self.processes[-1]
 
     def start_coordinator(self):
         return self.start("dispersa-coordinator", "--data", self.data, "--keys", self.folder("coordinator"))
@@ -100,10 +85,7 @@ class SecurityTest(unittest.TestCase):
                           *arguments)
 
     def client(self, *arguments, code=0, role="client"):
-        done = subprocess.run([BINARIES / "dispersa", *map(str, arguments), *LOOPBACK, "--keys", self.folder(role)],
-                              capture_output=True, text=True, timeout=3 * PATIENCE_S)
-        self.assertEqual(done.returncode, code, f"{done.stdout}{done.stderr}\n{self.log.read_text()[-3000:]}")
-        return done.stdout
+        return self.dispersa(*arguments, "--keys", self.folder(role), code=code)
 
     def test_a_worker_does_not_follow_a_coordinator_with_revoked_keys(self):
         keys("issue", self.authority, "--role", "coordinator", "--name", "stolen")
@@ -184,7 +166,7 @@ class SecurityTest(unittest.TestCase):
         names = {w["id"].partition("_")[0] for w in json.loads(self.client("status", "--json"))["workers"]}
         self.assertEqual(names, {"one", "two"})
         for role in ("coordinator", "client"):
-            self.assertEqual(subprocess.run([BINARIES / "dispersa-coordinator", "--health", *LOOPBACK, "--keys",
+            self.assertEqual(subprocess.run([BINARIES / "dispersa-coordinator", "--health", *self.NETWORK, "--keys",
                                              self.folder(role)], timeout=PATIENCE_S).returncode, 0)
         self.assertNotIn("refused", self.log.read_text())
 
@@ -206,7 +188,7 @@ class SecurityTest(unittest.TestCase):
         self.assertGreater(seen["matched"], 0, seen)
 
     def publish(self, topic, name, *arguments):
-        return ["publish", f"dispersa/{topic}", f"w{name}" if name else "", DOMAIN, "--named", name or "nobody", *arguments]
+        return ["publish", f"dispersa/{topic}", f"w{name}" if name else "", self.DOMAIN, "--named", name or "nobody", *arguments]
 
     def test_who_has_no_keys_of_this_authority_is_refused(self):
         self.start_coordinator()
@@ -243,7 +225,7 @@ class SecurityTest(unittest.TestCase):
         self.assert_refused("Error checking create remote writer .*wtwo_a partition not found in rule",
                             *self.publish("WorkerStatusV2", "two_a", "--keys", self.that_lies_to_itself("worker")))
         # In its own partition with another's name.
-        self.assert_let_in("publish", "dispersa/WorkerStatusV2", "wone_b", DOMAIN, "--named", "two_b", "--keys",
+        self.assert_let_in("publish", "dispersa/WorkerStatusV2", "wone_b", self.DOMAIN, "--named", "two_b", "--keys",
                            self.folder("worker"),
                            logged="WorkerStatusV2 from [0-9a-f]{24} is refused: it names a worker or client that its keys are not for")
         self.assertNotIn("joined", self.log.read_text())
@@ -270,7 +252,7 @@ class SecurityTest(unittest.TestCase):
 
     def as_client(self, name, *arguments, code=0):
         """Standard output, or what it says of its refusal."""
-        done = subprocess.run([BINARIES / "dispersa", *map(str, arguments), *LOOPBACK, "--keys",
+        done = subprocess.run([BINARIES / "dispersa", *map(str, arguments), *self.NETWORK, "--keys",
                                self.folder("client", name)], capture_output=True, text=True, timeout=3 * PATIENCE_S)
         self.assertEqual(done.returncode, code, f"{done.stdout}{done.stderr}\n{self.log.read_text()[-3000:]}")
         return done.stderr if code else done.stdout
@@ -325,7 +307,7 @@ class SecurityTest(unittest.TestCase):
         self.assertEqual(coordinator.leave()["matched"], 1)
 
     def test_an_observer_hears_results_and_nothing_else_and_says_nothing(self):
-        hear = ["subscribe", "dispersa/ResultV2", "", DOMAIN, "--keys"]
+        hear = ["subscribe", "dispersa/ResultV2", "", self.DOMAIN, "--keys"]
         # Another observer, in the coordinator's place, is who could be told made-up results.
         listening = self.stranger(*hear, self.folder("observer"), "--as-coordinator")
         lying = self.stranger(*self.publish("ResultV2", "", "--keys", self.that_lies_to_itself("observer")))
@@ -335,13 +317,13 @@ class SecurityTest(unittest.TestCase):
 
         self.start_coordinator()
         results = self.stranger(*hear, self.folder("observer"))
-        progress = self.stranger("subscribe", "dispersa/ProgressV1", "", DOMAIN, "--keys", self.folder("observer"))
+        progress = self.stranger("subscribe", "dispersa/ProgressV1", "", self.DOMAIN, "--keys", self.folder("observer"))
         self.start_worker()
         self.start_worker("two", "--uuid", "x")
         self.wait_logged("worker two_x joined")
-        reports = self.stranger("subscribe", "dispersa/OrdersV1", "wtwo_x", DOMAIN, "--keys", self.that_lies_to_itself("observer"))
+        reports = self.stranger("subscribe", "dispersa/OrdersV1", "wtwo_x", self.DOMAIN, "--keys", self.that_lies_to_itself("observer"))
         self.wait_logged("Error checking create remote reader .*dispersa/OrdersV1 topic not found in allow rule")
-        orders = self.stranger("subscribe", "dispersa/OrdersV1", "wtwo_x", DOMAIN, "--keys", self.that_lies_to_itself("worker"))
+        orders = self.stranger("subscribe", "dispersa/OrdersV1", "wtwo_x", self.DOMAIN, "--keys", self.that_lies_to_itself("worker"))
         self.wait_logged("Error checking create remote reader .*wtwo_x partition not found in rule")
         for observer in (results, progress):
             wait_for(lambda: "matched\n" in observer.log.read_text(), "an observer who hears")
@@ -386,7 +368,7 @@ class SecurityTest(unittest.TestCase):
              "governance.p7s: the signature does not fit: damaged, or of another authority"),
         ):
             with self.subTest(problem=problem):
-                self.assertRegex(self.start_error("dispersa-worker", "--peer", "127.0.0.1", "--domain", DOMAIN, "--keys", folder),
+                self.assertRegex(self.start_error("dispersa-worker", "--peer", "127.0.0.1", "--domain", self.DOMAIN, "--keys", folder),
                                  f"{problem}\n$")
         for program, arguments in (("dispersa-coordinator", ["--data", self.data]), ("dispersa", ["list"])):
             self.assertIn("keys of the worker 'one'; here those of a", self.start_error(program, *arguments, "--keys", self.folder("worker")))
@@ -429,19 +411,19 @@ class SecurityTest(unittest.TestCase):
             with self.subTest(program=program, arguments=arguments):
                 self.assertIn("a network beyond this machine needs keys, allowed: --keys DIR with a folder that "
                               "`dispersa keys issue` made, --address 127.0.0.1 for this machine alone, or --insecure on a "
-                              "network that you trust\n", self.start_error(program, *arguments, "--domain", DOMAIN))
+                              "network that you trust\n", self.start_error(program, *arguments, "--domain", self.DOMAIN))
         self.assertIn("--keys and --insecure exclude each other",
                       self.start_error("dispersa", "list", "--insecure", "--keys", self.folder("client")))
 
     def run_without_address(self, program, *arguments):
         with self.log.open("a") as log:
-            self.processes.append(subprocess.Popen([BINARIES / program, *map(str, arguments), "--domain", DOMAIN],
+            self.processes.append(subprocess.Popen([BINARIES / program, *map(str, arguments), "--domain", self.DOMAIN],
                                                    stdout=log, stderr=log))
         return self.processes[-1]
 
     def assert_worker_is_listed(self, *arguments):
         def listed():
-            done = subprocess.run([BINARIES / "dispersa", "status", "--domain", DOMAIN, *map(str, arguments)],
+            done = subprocess.run([BINARIES / "dispersa", "status", "--domain", self.DOMAIN, *map(str, arguments)],
                                   capture_output=True, text=True, timeout=PATIENCE_S)
             return "worker " in done.stdout
         wait_for(listed, "a worker")
@@ -463,7 +445,7 @@ class SecurityTest(unittest.TestCase):
         self.run_without_address("dispersa-worker", "--peer", "127.0.0.1", "--keys", self.folder("worker"))
         self.assert_worker_is_listed("--keys", self.folder("client"))
         # Who forgot his keys is told so.
-        forgot = subprocess.run([BINARIES / "dispersa", "list", "--insecure", "--domain", DOMAIN], capture_output=True, text=True, timeout=PATIENCE_S)
+        forgot = subprocess.run([BINARIES / "dispersa", "list", "--insecure", "--domain", self.DOMAIN], capture_output=True, text=True, timeout=PATIENCE_S)
         self.assertEqual(forgot.returncode, 5)
         self.assertIn("is refused: it has keys, and we have none to show (--keys)", forgot.stderr)
 

@@ -6,12 +6,10 @@ Environment as of processes.py.
 import json
 import signal
 import socket
-import sqlite3
 import subprocess
-import time
 
 from restart_test import write_tiny_campaign
-from processes import BINARIES, CAMPAIGN, HALF_WAY_CASES, PATIENCE_S, Run, main, stored, wait_for
+from processes import BINARIES, CAMPAIGN, PATIENCE_S, Run, main, stored, wait_for
 from service_case import ServiceCase
 
 CASES = 60
@@ -47,23 +45,6 @@ class ServiceTest(ServiceCase):
         self.assertEqual(self.status(identity)["state"], "done")
         self.assertEqual(subprocess.run([BINARIES / "dispersa-coordinator", "--health", *self.NETWORK]).returncode, 0)
 
-    def test_the_queue_survives_kills_and_restarts(self):
-        coordinator = self.start_coordinator()
-        worker = self.start_worker()
-        first = self.dispersa("launch", CAMPAIGN, "--cases", CASES).strip()
-        second = self.dispersa("launch", self.tiny, "--cases", 300, "--priority", 5).strip()
-        for how in (signal.SIGKILL, signal.SIGTERM, signal.SIGKILL):
-            time.sleep(1.0)
-            coordinator.send_signal(how)
-            self.assertEqual(coordinator.wait(timeout=PATIENCE_S), 0 if how == signal.SIGTERM else -how)
-            coordinator = self.start_coordinator()
-        worker.kill()
-        self.start_worker("--slots", 2)
-        self.dispersa("watch", second, code=self.tiny_reference.code)
-        self.dispersa("watch", first, code=self.reference.code)
-        self.assert_same_folder(first, self.reference)
-        self.assert_same_folder(second, self.tiny_reference)
-
     def test_more_cases_of_the_same_flights_take_over_what_is_flown(self):
         self.start_coordinator()
         worker = self.start_worker()
@@ -96,31 +77,6 @@ class ServiceTest(ServiceCase):
         self.dispersa("watch", identity, code=self.tiny_reference.code)
         self.assertEqual(subprocess.run([BINARIES / "dispersa-coordinator", "--health", *self.NETWORK]).returncode, 0)
 
-    def test_another_coordinator_takes_over_on_a_backup(self):
-        cases = HALF_WAY_CASES
-        reference = Run(self.root / "long", "--workers", 0, "--cases", cases).finish()
-        coordinator = self.start_coordinator()
-        worker = self.start_worker()
-        identity = self.dispersa("launch", CAMPAIGN, "--cases", cases).strip()
-        wait_for(lambda: stored(self.data / identity / "results") > 0, "first results")
-        worker.send_signal(signal.SIGSTOP)  # the backup is of a campaign that has not ended, however long it takes
-        backup = self.data.parent / "backup"
-        self.assertEqual(self.dispersa("backup", backup), f"backup of 1 campaign: {backup}\n")
-        coordinator.kill()
-        coordinator.wait()
-        lost = self.data
-        flown_before = stored(backup / identity / "results")
-        self.assertTrue(0 < flown_before < cases, flown_before)
-        self.data = backup
-        self.start_coordinator()
-        worker.send_signal(signal.SIGCONT)
-        self.dispersa("watch", identity, code=reference.code)
-        self.assert_same_folder(identity, reference)
-        self.assertGreater(int((backup / "epoch").read_text()), int((lost / "epoch").read_text()))
-        with sqlite3.connect(f"file:{backup / identity / 'results'}/results.sqlite?mode=ro", uri=True) as database:
-            self.assertEqual(database.execute("SELECT count(DISTINCT worker) FROM execution").fetchone(), (1,),
-                             "the worker stays and follows")
-
     def test_cancel_keeps_what_was_flown_and_launch_goes_on(self):
         self.start_coordinator()
         identity = self.dispersa("launch", CAMPAIGN, "--cases", CASES).strip()
@@ -150,17 +106,6 @@ class ServiceTest(ServiceCase):
         identity = self.dispersa("launch", self.tiny, "--cases", 300).strip()
         self.dispersa("watch", identity, code=self.tiny_reference.code)
         self.assertEqual(worker.wait(timeout=PATIENCE_S), 0, "idle")
-
-    def test_two_coordinators_do_not_share_a_folder(self):
-        self.start_coordinator()
-        wait_for(lambda: subprocess.run([BINARIES / "dispersa-coordinator", "--health", *self.NETWORK],
-                                        stderr=subprocess.DEVNULL).returncode == 0, "health")
-        second = subprocess.run([BINARIES / "dispersa-coordinator", "--data", self.data, "--domain", "35", "--address", "127.0.0.1"],
-                                capture_output=True, text=True, timeout=PATIENCE_S)
-        self.assertEqual(second.returncode, 2)
-        self.assertEqual(second.stderr.splitlines()[-1],
-                         f"{self.data}: another dispersa process is writing this folder, allowed: another folder, or to "
-                         "wait for that process to end")
 
     def test_daemons_that_cannot_go_on_say_so_as_an_object(self):
         self.start_coordinator()

@@ -1,14 +1,7 @@
 // The limits of the sieve: the largest datagram that passes, and the smallest that does not.
 #include "services/transport/sieve.h"
 
-#include <gtest/gtest.h>
-
-#include <cstdint>
-#include <cstring>
-#include <iterator>
-#include <optional>
-#include <string>
-#include <vector>
+#include "tests/test.h"
 
 namespace dispersa::sieve_test {
 namespace {

@@ -2,17 +2,7 @@
 // and delayed. Connections fail in one or both directions. Workers and coordinators die at any step. Workers
 // return false results if all cases are audited. Still every campaign ends with the right results.
 // DISPERSA_SIMULATED_WORLDS: number of worlds (default 2000; tests/run --long: 1,000,000).
-#include <gtest/gtest.h>
-
-#include <algorithm>
-#include <cstdlib>
-#include <map>
-#include <memory>
-#include <random>
-#include <set>
-#include <string>
 #include <variant>
-#include <vector>
 
 #include "core/analysis/stopping_rule.h"
 #include "core/flight/engine_version.h"
@@ -23,6 +13,7 @@
 #include "services/log/log.h"
 #include "services/worker/flight_desk.h"
 #include "tests/nominal_inputs.h"
+#include "tests/test.h"
 
 namespace dispersa::simulation_test {
 namespace {

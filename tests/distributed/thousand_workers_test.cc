@@ -2,21 +2,8 @@
 // a coordinator's thread whose work takes as long as it was measured to take. How much one coordinator bears,
 // how busy it is, and how long results wait, without a thousand machines. The same numbers in each run.
 // DISPERSA_PRINT_CAPACITY=1 prints the table of the capacity page.
-#include <gtest/gtest.h>
-
-#include <algorithm>
-#include <cstdio>
-#include <cstdlib>
-#include <ctime>
-#include <functional>
-#include <memory>
-#include <optional>
 #include <queue>
-#include <span>
-#include <string>
-#include <utility>
 #include <variant>
-#include <vector>
 
 #include "core/flight/engine_version.h"
 #include "core/flight/flight_inputs.h"
@@ -26,6 +13,7 @@
 #include "services/worker/flight_desk.h"
 #include "tests/distributed/forgetful_store.h"
 #include "tests/nominal_inputs.h"
+#include "tests/test.h"
 
 namespace dispersa::thousand_workers_test {
 namespace {

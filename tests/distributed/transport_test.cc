@@ -1,22 +1,9 @@
 // Messages over real sockets: every field arrives, doubles to the last bit, and a departure is noticed.
-#include <gmock/gmock.h>
-#include <gtest/gtest.h>
 #include <netinet/in.h>
 #include <sys/socket.h>
 #include <unistd.h>
 
-#include <bit>
-#include <chrono>
-#include <filesystem>
-#include <functional>
-#include <limits>
 #include <list>
-#include <map>
-#include <memory>
-#include <optional>
-#include <set>
-#include <string>
-#include <thread>
 
 #include "core/flight/flight_inputs.h"
 #include "core/flight/metrics.h"
@@ -25,13 +12,13 @@
 #include "services/transport/doors.h"
 #include "services/transport/private_domain.h"
 #include "services/transport/worker_link.h"
+#include "tests/test.h"
 
 namespace dispersa::transport_test {
 namespace {
 
 using std::chrono::milliseconds;
 using std::chrono::seconds;
-using ::testing::ElementsAre;
 
 // Ample for what takes milliseconds on an idle machine.
 constexpr seconds kPatience(20);

@@ -1,19 +1,12 @@
 // The secret that the programs of one user share on a machine, and the files that are accepted for it.
 #include "services/transport/user_secret.h"
 
-#include <gtest/gtest.h>
 #include <sys/stat.h>
 #include <unistd.h>
 
-#include <algorithm>
-#include <functional>
-#include <iterator>
-#include <set>
-#include <thread>
-#include <vector>
-
 #include "home_folder.h"
 #include "services/transport/admission.h"
+#include "tests/test.h"
 
 namespace dispersa::user_secret_test {
 namespace {

@@ -1,14 +1,11 @@
 // Each rule for a message: the last message that passes, the first that does not, and the text in the log.
 #include "services/transport/validity.h"
 
-#include <gtest/gtest.h>
-
-#include <limits>
-
 #include "core/flight/flight_inputs.h"
 #include "core/flight/metrics.h"
 #include "core/flight/own_metrics.h"
 #include "services/transport/convert.h"
+#include "tests/test.h"
 
 namespace dispersa::validity_test {
 namespace {

@@ -2,16 +2,10 @@
 // is taken for HTML.
 #include "services/web/pages.h"
 
-#include <gmock/gmock.h>
-#include <gtest/gtest.h>
-
-#include <chrono>
+#include "tests/test.h"
 
 namespace dispersa::web_pages_test {
 namespace {
-
-using testing::HasSubstr;
-using testing::Not;
 
 CampaignRow Row(std::uint64_t order, const std::string& name = "table3") {
   CampaignRow row;

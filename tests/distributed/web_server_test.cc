@@ -1,24 +1,15 @@
 // Who may read the web application, over real sockets on loopback.
 #include "services/web/web_server.h"
 
-#include <gmock/gmock.h>
-#include <gtest/gtest.h>
 #include <sys/stat.h>
-
-#include <chrono>
-#include <fstream>
-#include <thread>
 
 #include "core/input/input_error.h"
 #include "http_client.h"
-#include "temporary_folder.h"
+#include "tests/temporary_folder.h"
+#include "tests/test.h"
 
 namespace dispersa::web_server_test {
 namespace {
-
-using testing::HasSubstr;
-using testing::Not;
-using testing::StartsWith;
 
 constexpr char kToken[] = "0123456789abcdef";
 

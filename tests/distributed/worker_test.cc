@@ -1,20 +1,11 @@
 // A real worker against a made-up coordinator: the worker's answers, and the names in them.
 #include "services/worker/worker.h"
 
-#include <gtest/gtest.h>
-
-#include <atomic>
-#include <chrono>
-#include <functional>
-#include <map>
-#include <numeric>
-#include <optional>
-#include <thread>
-
 #include "core/campaign_yaml/load.h"
 #include "core/flight/engine_version.h"
 #include "services/transport/coordinator_link.h"
 #include "services/transport/private_domain.h"
+#include "tests/test.h"
 
 namespace dispersa::worker_test {
 namespace {

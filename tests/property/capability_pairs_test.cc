@@ -18,6 +18,7 @@
 #include "tests/liquid_stage.h"
 #include "tests/slv4_flight.h"
 #include "tests/tabulated_masses.h"
+#include "tests/temporary_folder.h"
 #include "tests/test.h"
 
 namespace dispersa::capability_pairs_test {
@@ -606,8 +607,7 @@ PairTables Tables() {
 }
 
 void ExpectFile(const char* path, const std::string& wanted) {
-  std::ifstream file(path);
-  const std::string text{std::istreambuf_iterator<char>(file), {}};
+  const std::string text = TextOfFile(path);
   if (std::getenv("DISPERSA_REWRITE_TABLES") != nullptr) std::ofstream(path) << wanted;
   EXPECT_EQ(text, wanted) << "DISPERSA_REWRITE_TABLES=1 build/release/tests/property_tests "
                              "--gtest_filter=CapabilityPage.*";

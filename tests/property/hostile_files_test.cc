@@ -8,6 +8,7 @@
 #include "tests/every_metric.h"
 #include "tests/fuzz.h"
 #include "tests/nominal_inputs.h"
+#include "tests/temporary_folder.h"
 #include "tests/test.h"
 
 namespace dispersa::hostile_files_test {
@@ -17,11 +18,6 @@ namespace fs = std::filesystem;
 
 using fuzz::Inputs;
 
-std::string Read(const fs::path& file) {
-  std::ifstream stream(file, std::ios::binary);
-  return {std::istreambuf_iterator<char>(stream), {}};
-}
-
 void Write(const fs::path& file, std::string_view text) {
   std::ofstream(file, std::ios::binary | std::ios::trunc)
       .write(text.data(), static_cast<std::streamsize>(text.size()));
@@ -29,14 +25,6 @@ void Write(const fs::path& file, std::string_view text) {
 
 class HostileFiles : public testing::Test {
  protected:
-  HostileFiles() {
-    // In memory: very many files are written.
-    const fs::path parent = fs::exists("/dev/shm") ? fs::path("/dev/shm") : fs::temp_directory_path();
-    std::string pattern = (parent / "dispersa-hostile-XXXXXX").string();
-    root_ = mkdtemp(pattern.data());
-  }
-  ~HostileFiles() override { fs::remove_all(root_); }
-
   std::size_t Below(std::size_t n) { return chance_() % n; }
 
   /// Two to eight changes of the kind that an editor, a merge or an attacker makes.
@@ -78,7 +66,7 @@ class HostileFiles : public testing::Test {
   /// Loads damaged copies of a file; each is what it is or an InputError.
   void Fuzz(const std::string& original, std::uint64_t inputs,
             const std::function<void(const std::string& path)>& load) {
-    const std::string text = Read(original);
+    const std::string text = TextOfFile(original);
     const std::string path =
         (fs::path(original).parent_path() == fs::path(DISPERSA_CAMPAIGNS) ? root_ / "campaign.yaml"
                                                                           : root_ / "file.yaml")
@@ -99,7 +87,8 @@ class HostileFiles : public testing::Test {
     RecordProperty(fs::path(original).filename().string(), static_cast<int>(taken));
   }
 
-  fs::path root_;
+  /// In memory: very many files are written.
+  const TemporaryFolder root_{fs::exists("/dev/shm") ? fs::path("/dev/shm") : fs::temp_directory_path()};
   std::mt19937_64 chance_ = fuzz::Chance();
 };
 
@@ -165,7 +154,7 @@ TEST_F(HostileFiles, NoWrongNumberComesOutOfADamagedDatabase) {
     folder.Store({}, {{{0, "w", "h", "", 1.0}}});
   }
   const fs::path database = root_ / "out/results.sqlite";
-  const std::string good = Read(database);
+  const std::string good = TextOfFile(database);
   std::uint64_t rows = 0, refused = 0;
   for (std::uint64_t i = 0; i < Inputs() / 2; ++i) {
     std::string bytes = good;

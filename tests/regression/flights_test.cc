@@ -1,15 +1,11 @@
 // Today's results of a few flights of every kind, to the bit: digest, metrics, and drawn inputs.
-#include <gtest/gtest.h>
-
-#include <algorithm>
-#include <cmath>
-
 #include "core/campaign_yaml/load.h"
 #include "core/cases/campaign_flights.h"
 #include "core/flight/flight_inputs.h"
 #include "core/flight/metrics.h"
 #include "core/input/number_text.h"
 #include "tests/regression/golden.h"
+#include "tests/test.h"
 
 namespace dispersa::flights_test {
 namespace {

@@ -5,15 +5,7 @@
 // with # are comments.
 #pragma once
 
-#include <cstdlib>
-#include <filesystem>
-#include <fstream>
-#include <map>
-#include <sstream>
-#include <string>
-#include <vector>
-
-#include <gtest/gtest.h>
+#include "tests/test.h"
 
 namespace dispersa {
 

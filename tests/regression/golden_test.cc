@@ -1,9 +1,5 @@
 #include "tests/regression/golden.h"
-
-#include <cstdlib>
-#include <optional>
-
-#include <gmock/gmock.h>
+#include "tests/test.h"
 
 namespace dispersa::golden_test {
 namespace {

@@ -1,18 +1,5 @@
 // Every verdict, interval and bound, 20,000 times on made-up campaigns: the simulated rate of errors against
 // the stated one. Prints the table of tests/data/stats/error_rates.txt, and compares that table with it.
-#include <algorithm>
-#include <cmath>
-#include <cstdio>
-#include <fstream>
-#include <functional>
-#include <iterator>
-#include <map>
-#include <random>
-#include <string>
-#include <utility>
-#include <vector>
-
-#include <gtest/gtest.h>
 #include <boost/math/distributions/binomial.hpp>
 #include <boost/math/distributions/normal.hpp>
 
@@ -28,6 +15,8 @@
 #include "core/statistics/replicates.h"
 #include "core/statistics/sensitivity.h"
 #include "core/statistics/two_samples.h"
+#include "tests/temporary_folder.h"
+#include "tests/test.h"
 
 namespace dispersa::coverage_test {
 namespace {
@@ -106,10 +95,7 @@ class Row {
         "| " + what_ + " | " + Text("%.4f", rate_) + " | " + known + " | " + Text("%.4g", stated) + " |";
     std::printf("%s\n", line.c_str());
     std::fflush(stdout);
-    static const std::string table = [] {
-      std::ifstream file(DISPERSA_TEST_DATA "/stats/error_rates.txt");
-      return std::string(std::istreambuf_iterator<char>(file), {});
-    }();
+    static const std::string table = TextOfFile(DISPERSA_TEST_DATA "/stats/error_rates.txt");
     EXPECT_TRUE(table.find(line) != std::string::npos)
         << "tests/data/stats/error_rates.txt says otherwise than\n"
         << line;

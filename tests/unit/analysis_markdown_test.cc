@@ -1,16 +1,11 @@
 // A summary as Markdown: every text of a campaign stays text, and each requirement has its own line.
 #include "core/analysis/markdown.h"
 
-#include <gmock/gmock.h>
-#include <gtest/gtest.h>
-
 #include "core/results/metric_catalogue.h"
+#include "tests/test.h"
 
 namespace dispersa::analysis_markdown_test {
 namespace {
-
-using testing::HasSubstr;
-using testing::Not;
 
 CampaignSummary MadeUp() {
   CampaignSummary summary;

@@ -59,7 +59,7 @@ Json Schema() {
 }
 
 Json SummaryOf(std::uint64_t cases, std::uint64_t flown) {
-  report_test::TemporaryFolder temporary;
+  TemporaryFolder temporary;
   Campaign campaign = report_test::MakeCampaign(cases);
   campaign.requirements = {{.metric = "pitch_error_peak_deg",
                             .below = 12.5,
@@ -93,8 +93,7 @@ TEST(SummarySchema, HoldsForCompleteIncompleteAndEmptyCampaigns) {
 }
 
 TEST(SummarySchema, IsDocumentedKeyByKey) {
-  std::ifstream file(DISPERSA_TEST_DATA "/../../core/analysis/README.md");
-  const std::string text{std::istreambuf_iterator<char>(file), {}};
+  const std::string text = TextOfFile(DISPERSA_TEST_DATA "/../../core/analysis/README.md");
   const Json schema = Schema();
   for (const auto& [key, rule] : schema["properties"].items())
     EXPECT_THAT(text, testing::HasSubstr("`" + key + "`"));

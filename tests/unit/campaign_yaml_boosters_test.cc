@@ -35,7 +35,7 @@ TEST(BoostersFile, AreRead) {
 // Electron with two boosters, and a first stage that is cut off and burns again without them.
 TEST(BoostersFile, AreGoneWhenTheFirstStageBurnsAgain) {
   const InputFiles files;
-  files.Write("electron.yaml", ReadWholeFile(DISPERSA_CAMPAIGNS "/gallery/electron/vehicle.yaml"));
+  files.Write("electron.yaml", TextOfFile(DISPERSA_CAMPAIGNS "/gallery/electron/vehicle.yaml"));
   constexpr double kBoosters_kg = 2.0 * (100.0 + 800.0), kElectron_kg = 12744.0, kBurn_s = 100.0;
   files.Edit("electron.yaml", "liftoff_mass_kg: 12744 ", "liftoff_mass_kg: 14544 ");
   files.Edit(

@@ -192,7 +192,7 @@ TEST(CampaignYamlCanonical, OverridesComeBeforeHashing) {
 
 TEST(CampaignYamlCanonical, AnInlinedFileIsTheSameCampaign) {
   const InputFiles files;
-  std::string autopilot = ReadWholeFile(files.Path("autopilot.yaml"));
+  std::string autopilot = TextOfFile(files.Path("autopilot.yaml"));
   for (std::size_t at = 0; (at = autopilot.find('\n', at)) != std::string::npos; at += 3)
     autopilot.insert(at + 1, "  ");
   files.Edit("campaign.yaml", "autopilot: autopilot.yaml", "autopilot:\n  " + autopilot);

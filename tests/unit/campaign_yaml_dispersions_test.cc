@@ -10,7 +10,7 @@ namespace {
 // Of the test campaign (two stages) with one dispersion in place of its own.
 std::vector<Dispersion> Decode(const std::string& line) {
   const InputFiles files;
-  std::string text = ReadWholeFile(files.Path("campaign.yaml"));
+  std::string text = TextOfFile(files.Path("campaign.yaml"));
   const std::size_t begin = text.find("dispersions:\n");
   text.replace(begin, text.find("requirements:") - begin, "dispersions:\n  " + line + "\n");
   files.Write("campaign.yaml", text);

@@ -133,7 +133,7 @@ INSTANTIATE_TEST_SUITE_P(Each, InputMessages, testing::ValuesIn(AllCases()),
 
 TEST(LoadingCampaigns, CampaignToOptimizeCannotBeFlownYet) {
   const InputFiles files;
-  const std::string reference = ReadWholeFile(files.Path("reference.yaml"));
+  const std::string reference = TextOfFile(files.Path("reference.yaml"));
   const std::size_t begin = reference.find("  target:");
   const std::string problem = reference.substr(begin, reference.find("flight_program:") - begin);
   files.Edit("campaign.yaml", "reference: reference.yaml\n", "optimize:\n" + problem);
@@ -154,7 +154,7 @@ TEST(LoadingCampaigns, CampaignToOptimizeCannotBeFlownYet) {
 TEST(LoadingCampaigns, TextWithoutFilesNamesNone) {
   const InputFiles files;
   try {
-    ParseCampaign(ReadWholeFile(files.Path("campaign.yaml")), "assignment");
+    ParseCampaign(TextOfFile(files.Path("campaign.yaml")), "assignment");
     FAIL() << "loaded";
   } catch (const InputError& error) {
     EXPECT_STREQ(

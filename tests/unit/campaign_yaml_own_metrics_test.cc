@@ -9,7 +9,7 @@ namespace {
 
 TEST(CampaignYamlOwnMetrics, AreListedBehindTheVehicles) {
   const InputFiles files;
-  files.Write("campaign.yaml", ReadWholeFile(files.Path("campaign.yaml")) +
+  files.Write("campaign.yaml", TextOfFile(files.Path("campaign.yaml")) +
                                    "metrics:\n  - {name: q_kpa, expression: ' max( qbar_pa )  / 1000 ', "
                                    "description: as a check}\n");
   const Campaign campaign = LoadCampaign(files.Path("campaign.yaml"));

@@ -142,7 +142,7 @@ TEST(CampaignYamlReference, KeepsWhatATargetAndCoastsHaveBesides) {
 }
 
 TEST(CampaignYamlReference, AzimuthBoundsThatFallGoThroughNorth) {
-  std::string text = ReadWholeFile(DISPERSA_TEST_DATA "/yaml/reference.yaml");
+  std::string text = TextOfFile(DISPERSA_TEST_DATA "/yaml/reference.yaml");
   const std::string from = "launch_azimuth_deg: [90, 170]";
   text.replace(text.find(from), from.size(), "launch_azimuth_deg: [350, 10]");
   const Reference read = LoadReference({"reference.yaml", text});
@@ -166,7 +166,7 @@ TEST(CampaignYamlReference, AnEllipseIsEnteredAtItsPerigee) {
 }
 
 Reference WithTarget(const std::string& target) {
-  std::string text = ReadWholeFile(DISPERSA_TEST_DATA "/yaml/reference.yaml");
+  std::string text = TextOfFile(DISPERSA_TEST_DATA "/yaml/reference.yaml");
   const std::string from = "target: {altitude_km: 500, velocity_m_s: 7612.6, flight_path_angle_deg: 0}";
   text.replace(text.find(from), from.size(), "target: {" + target + "}");
   const std::string weights = "flight_path_angle_per_deg: 10}";

@@ -15,14 +15,12 @@ constexpr char kGallery[] = DISPERSA_CAMPAIGNS "/gallery/vega/";
 // Vega, whose upper stage burns twice.
 class Vega {
  public:
-  Vega() { files_.Write("vehicle.yaml", ReadWholeFile(std::string(kGallery) + "vehicle.yaml")); }
+  Vega() { files_.Write("vehicle.yaml", TextOfFile(std::string(kGallery) + "vehicle.yaml")); }
   void Edit(const std::string& from, const std::string& to) const { files_.Edit("vehicle.yaml", from, to); }
   Vehicle Load() const { return LoadVehicle(files_.Path("vehicle.yaml")); }
   std::string Problems() const { return files_.Texts(CheckFile(files_.Path("vehicle.yaml")).errors); }
   // The same with a beam, in a file that is based on it.
-  void Bend() const {
-    files_.Write("bending.yaml", ReadWholeFile(DISPERSA_TEST_DATA "/vega_that_bends.yaml"));
-  }
+  void Bend() const { files_.Write("bending.yaml", TextOfFile(DISPERSA_TEST_DATA "/vega_that_bends.yaml")); }
   void EditBeam(const std::string& from, const std::string& to) const {
     files_.Edit("bending.yaml", from, to);
   }
@@ -175,7 +173,7 @@ std::string GuidanceProblems(const std::string& launcher, const char* edited, co
                              const std::string& to) {
   const InputFiles files;
   for (const char* name : {"vehicle.yaml", "reference.yaml", "autopilot.yaml", "campaign.yaml"})
-    files.Write(name, ReadWholeFile(DISPERSA_CAMPAIGNS "/gallery/" + launcher + "/" + name));
+    files.Write(name, TextOfFile(DISPERSA_CAMPAIGNS "/gallery/" + launcher + "/" + name));
   files.Edit(edited, from, to);
   return files.Texts(CheckFile(files.Path("campaign.yaml")).errors);
 }
@@ -221,7 +219,7 @@ TEST(GuidedPlace, IsOutOfReachOfASingleBurn) {
   for (const bool is_anywhere : {false, true}) {
     const InputFiles files;
     for (const char* name : {"vehicle.yaml", "reference.yaml", "autopilot.yaml", "campaign.yaml"})
-      files.Write(name, ReadWholeFile(DISPERSA_CAMPAIGNS "/gallery/electron/" + std::string(name)));
+      files.Write(name, TextOfFile(DISPERSA_CAMPAIGNS "/gallery/electron/" + std::string(name)));
     files.Edit("reference.yaml", "apogee_altitude_km: 600}",
                std::string("apogee_altitude_km: 600, argument_of_perigee_deg: 180") +
                    (is_anywhere ? ", entered_at: anywhere}" : "}"));

@@ -84,7 +84,7 @@ TEST(CampaignYamlScenario, IsReadCompletely) {
 
 TEST(CampaignYamlScenario, BodyWithoutInertia) {
   const InputFiles files;
-  const std::string text = ReadWholeFile(files.Path("scenario.yaml"));
+  const std::string text = TextOfFile(files.Path("scenario.yaml"));
   const std::size_t begin = text.find("stages:");
   const std::size_t end = text.find("duration_s:");
   const std::string head = text.substr(0, begin);

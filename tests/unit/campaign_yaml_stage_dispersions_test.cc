@@ -10,7 +10,7 @@ namespace {
 
 // The test campaign (two stages) with one dispersion in place of its own.
 void SetDispersion(const InputFiles& files, const std::string& line) {
-  std::string text = ReadWholeFile(files.Path("campaign.yaml"));
+  std::string text = TextOfFile(files.Path("campaign.yaml"));
   const std::size_t begin = text.find("dispersions:\n");
   text.replace(begin, text.find("requirements:") - begin, "dispersions:\n  " + line + "\n");
   files.Write("campaign.yaml", text);

@@ -32,7 +32,7 @@ Output Dispersa(const std::string& arguments) {
   }
   const int status = pclose(pipe);
   if (WIFEXITED(status)) output.code = WEXITSTATUS(status);
-  output.error = ReadWholeFile(error_file);
+  output.error = TextOfFile(error_file);
   return output;
 }
 
@@ -87,7 +87,7 @@ TEST(CliProgram, ModesShowsHowAVehicleBends) {
   EXPECT_THAT(text.text, HasSubstr("stage 1 and above, plane y, z\n"));
   EXPECT_THAT(text.text, HasSubstr("nozzle pivot"));
   EXPECT_EQ(Lines(text.text).back(), "page: " + files.Path("plots/modes.html"));
-  EXPECT_THAT(ReadWholeFile(files.Path("plots/modes.html")), HasSubstr("Stack of first and all above"));
+  EXPECT_THAT(TextOfFile(files.Path("plots/modes.html")), HasSubstr("Stack of first and all above"));
 
   const Output output = Dispersa("modes " + files.Path("flexible.yaml") + " --json --shapes");
   EXPECT_EQ(output.code, 0) << output.error;
@@ -110,7 +110,7 @@ TEST(CliProgram, ModesShowsHowAVehicleBends) {
 // Stack 1 has its boosters first, at levels over their burn and one behind the separation; then it has none.
 TEST(CliProgram, ModesTellsAStackWithItsBoostersAndWithout) {
   const InputFiles files;
-  std::string flexible = ReadWholeFile(DISPERSA_CAMPAIGNS "/vehicles/slv4_flexible.yaml");
+  std::string flexible = TextOfFile(DISPERSA_CAMPAIGNS "/vehicles/slv4_flexible.yaml");
   const std::string base = "based_on: slv4.yaml";
   ASSERT_NE(flexible.find(base), std::string::npos);
   flexible.replace(flexible.find(base), base.size(), "based_on: " DISPERSA_CAMPAIGNS "/vehicles/slv4.yaml");
@@ -149,7 +149,7 @@ TEST(CliProgram, ModesTellsAStackWithItsBoostersAndWithout) {
 
 TEST(CliProgram, ModesShowsEachPlaneOfAStackThatIsStifferInOne) {
   const InputFiles files;
-  std::string vehicle = ReadWholeFile(DISPERSA_CAMPAIGNS "/vehicles/slv4_flexible.yaml");
+  std::string vehicle = TextOfFile(DISPERSA_CAMPAIGNS "/vehicles/slv4_flexible.yaml");
   for (const auto& [from, to] : {std::pair{"based_on: ", "based_on: " DISPERSA_CAMPAIGNS "/vehicles/"},
                                  {"poisson_ratio: 0.3}", "poisson_ratio: 0.3, z_to_y_stiffness: 2}"}})
     vehicle.replace(vehicle.find(from), std::string(from).size(), to);
@@ -276,7 +276,7 @@ TEST(CliProgram, ValidateDrawsAVehicleToScale) {
   const Output output = Dispersa("validate --picture " + picture + " " + kVehicle);
   EXPECT_EQ(output.code, 0) << output.error;
   EXPECT_EQ(Lines(output.text).back(), "picture: " + picture);
-  const std::string svg = ReadWholeFile(picture);
+  const std::string svg = TextOfFile(picture);
   EXPECT_THAT(svg, StartsWith("<svg xmlns=\"http://www.w3.org/2000/svg\" viewBox=\"0 0 1200 "));
   // 27 m are 1080 px: stage 1's grain from 16.5 m, 9.56 m long, 1.26 m thick.
   EXPECT_THAT(
@@ -324,7 +324,7 @@ TEST(CliProgram, OutputsAreTriedBeforeAnythingIsComputed) {
 
 TEST(CliProgram, ASearchThatMissesItsTargetWritesWhatItFound) {
   const InputFiles files;
-  std::string campaign = ReadWholeFile(DISPERSA_CAMPAIGNS "/slv4_500km.yaml");
+  std::string campaign = TextOfFile(DISPERSA_CAMPAIGNS "/slv4_500km.yaml");
   const auto replace = [&](const std::string& from, const std::string& to) {
     const std::size_t at = campaign.find(from);
     ASSERT_NE(at, std::string::npos) << from;
@@ -342,10 +342,10 @@ TEST(CliProgram, ASearchThatMissesItsTargetWritesWhatItFound) {
   const auto json = nlohmann::json::parse(output.text);
   EXPECT_EQ(json["reached"], false);
   EXPECT_EQ(json["reference"], files.Path("far_reference.yaml"));
-  EXPECT_THAT(ReadWholeFile(files.Path("far_reference.yaml")), HasSubstr("\ntarget_missed: "));
-  EXPECT_THAT(ReadWholeFile(files.Path("far_reference.html")), HasSubstr("The target is missed: "));
+  EXPECT_THAT(TextOfFile(files.Path("far_reference.yaml")), HasSubstr("\ntarget_missed: "));
+  EXPECT_THAT(TextOfFile(files.Path("far_reference.html")), HasSubstr("The target is missed: "));
   EXPECT_EQ(Dispersa("validate " + files.Path("far_reference.yaml")).code, 0);
-  std::string flown = ReadWholeFile(kSmoke);
+  std::string flown = TextOfFile(kSmoke);
   flown.replace(flown.find("references/"), std::string("references/slv4_500km.yaml").size(),
                 files.Path("far_reference.yaml"));
   flown.replace(flown.find("vehicles/"), 0, DISPERSA_CAMPAIGNS "/");
@@ -423,7 +423,7 @@ TEST(CliProgram, ReportTakesItsEnvelopeFromAsManyFlightsAsItIsTold) {
   ASSERT_EQ(Dispersa("run --workers 0 --no-histories --quiet --cases 9 --out " + out + " " + kSmoke).code, 4);
   const auto flights = [&](const std::string& envelope) {
     EXPECT_EQ(Dispersa("report --quiet --envelope " + envelope + " " + out).code, 4);
-    return nlohmann::json::parse(ReadWholeFile(out + "/summary.json"))["envelope"]["flights"].get<int>();
+    return nlohmann::json::parse(TextOfFile(out + "/summary.json"))["envelope"]["flights"].get<int>();
   };
   EXPECT_EQ(flights("4"), 4);
   EXPECT_EQ(flights("all"), 9);
@@ -449,7 +449,7 @@ TEST(CliProgram, FlyWritesTheHistoryInTheOrderOfTheContract) {
   const InputFiles folder;
   const std::string file = folder.Path("history.csv");
   ASSERT_EQ(Dispersa("fly " + kSmoke + " --history " + file).code, 0);
-  const std::vector<std::string> lines = Lines(ReadWholeFile(file));
+  const std::vector<std::string> lines = Lines(TextOfFile(file));
   ASSERT_GT(lines.size(), 25000u);  // every tick of a flight of ten minutes: 100 a second, 20 while it coasts
   EXPECT_THAT(lines[0],
               StartsWith("time_s,eci_x_m,eci_y_m,eci_z_m,eci_vx_m_s,eci_vy_m_s,eci_vz_m_s,ned_v_n_m_s,"
@@ -471,7 +471,7 @@ TEST(CliProgram, FlyScenario) {
   EXPECT_THAT(output.text,
               StartsWith("{\n  \"schema\": \"dispersa/fly/1\",\n  \"scenario\": \"nesc_case09\",\n"
                          "  \"outcome\": \"completed\",\n  \"end_time_s\": 30.0,\n"));
-  const std::vector<std::string> rows = Lines(ReadWholeFile(folder.Path("history.csv")));
+  const std::vector<std::string> rows = Lines(TextOfFile(folder.Path("history.csv")));
   ASSERT_EQ(rows.size(), 32u);  // a header, and every second from 0 to 30
   EXPECT_EQ(Cells(rows[0]), KinematicColumnNames());
   EXPECT_EQ(Cells(rows[1])[0], "0");
@@ -533,7 +533,7 @@ TEST(CliProgram, TuneWritesAnAutopilotThatSaysWhereItComesFrom) {
   ASSERT_EQ(tuned.code, 0) << tuned.error;
   EXPECT_THAT(tuned.text, HasSubstr("generation  feasible  best rms deg"));
   EXPECT_THAT(tuned.text, HasSubstr("\nautopilot: " + file + "\n"));
-  const std::string text = ReadWholeFile(file);
+  const std::string text = TextOfFile(file);
   EXPECT_THAT(text, HasSubstr("# Tuned by\n#   dispersa tune " + kSmoke + " --autopilot "));
   EXPECT_THAT(text, HasSubstr(" --out " + file + budget + "\n"));
   EXPECT_THAT(text, HasSubstr("\nname: adaptive_fuzzy\n"));
@@ -562,7 +562,7 @@ TEST(CliProgram, MarginsAndTuneNameWhatTheySkip) {
   const Output tuned = Dispersa("--quiet " + tune);
   EXPECT_EQ(tuned.code, 0) << tuned.error << tuned.text;
   EXPECT_THAT(tuned.text, HasSubstr("No margins are required below 20 % of full thrust:\n"));
-  EXPECT_THAT(ReadWholeFile(file), HasSubstr(" instants with less than 20 % of full thrust.\n"));
+  EXPECT_THAT(TextOfFile(file), HasSubstr(" instants with less than 20 % of full thrust.\n"));
   const auto skipped = nlohmann::json::parse(Dispersa("--quiet --json " + tune).text)["skipped"];
   ASSERT_EQ(skipped.size(), 5u);
   EXPECT_EQ(skipped[0]["stage"], 1);
@@ -572,7 +572,7 @@ TEST(CliProgram, MarginsAndTuneNameWhatTheySkip) {
 // Pitch's nozzles answer after a third of a second.
 TEST(CliProgram, TuneNamesTheGateThatItMisses) {
   const InputFiles folder;
-  std::string vehicle = ReadWholeFile(DISPERSA_TEST_DATA "/thrust_curves/vehicle.yaml");
+  std::string vehicle = TextOfFile(DISPERSA_TEST_DATA "/thrust_curves/vehicle.yaml");
   for (std::size_t at = 0; (at = vehicle.find("delay_ticks: 1", at)) != std::string::npos; ++at)
     vehicle.replace(at, 14, "delay_ticks: 33");
   const auto point_to = [&](std::string& text, const std::string& from, const std::string& to) {
@@ -582,7 +582,7 @@ TEST(CliProgram, TuneNamesTheGateThatItMisses) {
   point_to(vehicle, "../../../campaigns", DISPERSA_CAMPAIGNS);
   point_to(vehicle, "table: ", "table: " DISPERSA_TEST_DATA "/thrust_curves/");
   folder.Write("vehicle.yaml", vehicle);
-  std::string campaign = ReadWholeFile(DISPERSA_TEST_DATA "/thrust_curves/campaign.yaml");
+  std::string campaign = TextOfFile(DISPERSA_TEST_DATA "/thrust_curves/campaign.yaml");
   point_to(campaign, "../../../campaigns", DISPERSA_CAMPAIGNS);
   folder.Write("campaign.yaml", campaign);
   const std::string file = folder.Path("tuned.yaml");
@@ -594,7 +594,7 @@ TEST(CliProgram, TuneNamesTheGateThatItMisses) {
   const auto json = nlohmann::json::parse(tuned.text);
   const std::string missed = json["stages"][0]["missed"];
   EXPECT_THAT(missed, testing::MatchesRegex("(gain|phase|delay) margin .* are needed: .*% of full thrust"));
-  EXPECT_THAT(ReadWholeFile(file), HasSubstr("\n# Stage 1 misses by most: " + missed + "\n"));
+  EXPECT_THAT(TextOfFile(file), HasSubstr("\n# Stage 1 misses by most: " + missed + "\n"));
 }
 
 TEST(CliProgram, TuneRefusesTheSeedOfTheVerdict) {
@@ -605,7 +605,7 @@ TEST(CliProgram, TuneRefusesTheSeedOfTheVerdict) {
   EXPECT_EQ(output.error,
             "seed: the tuning would fly the cases of campaign 'smoke', allowed: any but the campaign's own, "
             "20260101\n");
-  EXPECT_EQ(ReadWholeFile(file), "");
+  EXPECT_EQ(TextOfFile(file), "");
 }
 
 }  // namespace

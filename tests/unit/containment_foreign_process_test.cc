@@ -5,6 +5,7 @@
 
 #include "core/campaign_yaml/load.h"
 #include "core/cases/plugin_check.h"
+#include "tests/temporary_folder.h"
 #include "tests/test.h"
 
 namespace dispersa::containment_foreign_process_test {
@@ -12,15 +13,9 @@ namespace {
 
 namespace fs = std::filesystem;
 
-std::string TextOf(const fs::path& file) {
-  std::ostringstream text;
-  text << std::ifstream(file).rdbuf();
-  return std::move(text).str();
-}
-
 // A PD whose flight takes a minute (tests/plugins/law.c).
 Campaign SlowCampaign() {
-  std::string text = TextOf(DISPERSA_CAMPAIGNS "/autopilots/pd.yaml");
+  std::string text = TextOfFile(DISPERSA_CAMPAIGNS "/autopilots/pd.yaml");
   for (std::size_t at = 0; (at = text.find("law: pd", at)) != std::string::npos;)
     text.replace(at, 7, "law: plugin");
   text.insert(text.find("tick_s:"), "plugin: {library: " DISPERSA_SLOW_LAW "}\n");
@@ -46,7 +41,7 @@ TEST(ForeignProcess, HasNothingOfItsParent) {
                PluginError);
   EXPECT_TRUE(process.is_usable());
   const fs::path foreign = "/proc/" + std::to_string(process.pid());
-  EXPECT_EQ(TextOf(foreign / "environ").find("TEST_SECRET"), std::string::npos);
+  EXPECT_EQ(TextOfFile(foreign / "environ").find("TEST_SECRET"), std::string::npos);
   EXPECT_EQ(fs::read_symlink(foreign / "cwd"), "/");
   std::set<std::string> files;
   for (const auto& each : fs::directory_iterator(foreign / "fd")) files.insert(each.path().filename());

@@ -3,7 +3,6 @@
 #include "core/flight/engine_version.h"
 #include "core/flight/flight_inputs.h"
 #include "core/flight/metrics.h"
-#include "core/results/result_error.h"
 #include "services/coordinator/dispatcher.h"
 #include "tests/distributed/memory_store.h"
 #include "tests/nominal_inputs.h"
@@ -19,22 +18,6 @@ CaseResult ResultOf(std::uint64_t case_index) {
   result.metrics.resize(MetricCount(kUsualStages));
   return result;
 }
-
-/// On a disk that is full as long as somebody says so.
-struct FullStore : MemoryStore {
-  void Store(std::span<const CaseResult> results, std::span<const ExecutionRecord> records) override {
-    Try();
-    MemoryStore::Store(results, records);
-  }
-  std::vector<std::uint64_t> Disown(const std::string& worker) override {
-    Try();
-    return MemoryStore::Disown(worker);
-  }
-  void Try() const {
-    if (is_full) throw ResultError(ResultError::Kind::kDiskFull, "no space");
-  }
-  bool is_full = false;
-};
 
 class DispatchRules : public testing::Test {
  protected:
@@ -133,7 +116,7 @@ TEST_F(DispatchRules, ACampaignThatWaitsForTheDiskHoldsNobodyUp) {
   Begin('b', 10);
   Join("w");
   ASSERT_THAT(Tick(), ElementsAre("a0@w"));
-  flying_.at('a').store->is_full = true;
+  flying_.at('a').store->problem = ResultError::Kind::kDiskFull;
   Return("w", 'a', 0);
   now_s_ = 1.0;
   EXPECT_THAT(Tick(), ElementsAre("b0@w"));
@@ -183,11 +166,11 @@ TEST_F(DispatchRules, OfTwoThatAreExpelledNeithersResultsStay) {
   Return("node1_x", 'a', 0);
   Return("node2_y", 'a', 1);
   Return("node3_z", 'a', 2);
-  flying_.at('a').store->is_full = true;
+  flying_.at('a').store->problem = ResultError::Kind::kDiskFull;
   dispatcher_.Expel({{"node1", {"a reason"}}, {"node3", {"another"}}});
   EXPECT_EQ(Progress('a').done, 3u);
   EXPECT_FALSE(flying_.at('a').book->Complete());
-  flying_.at('a').store->is_full = false;
+  flying_.at('a').store->problem.reset();
   EXPECT_TRUE(flying_.at('a').book->TryFlush());
   EXPECT_EQ(Progress('a').done, 1u);
   EXPECT_EQ(flying_.at('a').store->WorkerOf(1), "node2_y");

@@ -9,8 +9,8 @@
 #include "services/ledger/campaign_attempt.h"
 #include "services/ledger/running_tally.h"
 #include "tests/distributed/memory_store.h"
-#include "tests/distributed/temporary_folder.h"
 #include "tests/nominal_inputs.h"
+#include "tests/temporary_folder.h"
 #include "tests/test.h"
 
 namespace dispersa::coordinator_ledger_test {

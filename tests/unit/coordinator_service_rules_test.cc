@@ -117,8 +117,9 @@ TEST_F(QuotaRules, CampaignsAreThoseThatHaveNotEnded) {
 
 TEST_F(QuotaRules, TheDiskIsThatOfAllWhetherTheyHaveEndedOrNot) {
   EXPECT_EQ(LaunchUnder("disk=11MB"), "launched") << "2 + 3 + 5";
-  EXPECT_THAT(LaunchUnder("disk=10MB"),
-              HasSubstr("another campaign beside 0.01 GB on the coordinator's disk"));
+  EXPECT_EQ(LaunchUnder("disk=10MB"),
+            "'ann' would have another campaign beside 0.01 GB on the coordinator's disk, allowed: less than "
+            "0.01 GB; delete campaigns that have ended (dispersa-coordinator --quota disk)");
 }
 
 // Its own cases count once, whether it is new or continues.
@@ -218,6 +219,11 @@ TEST_F(ServiceRules, OldCampaignsGoUntilTheOthersFitOnceAMinute) {
   workforce_.time_s += 2.0;
   service_->Step();
   EXPECT_EQ(Left(), "a");
+  for (const auto& [days, left] : {std::pair(0.02, "a"), std::pair(0.01, "")}) {
+    Start({}, {.days = days});
+    service_->Step();
+    EXPECT_EQ(Left(), left) << "it ended 1097 s ago";
+  }
 }
 
 TEST_F(ServiceRules, TheLineOfADeletedCampaignSaysWhatWasFlownAndHowItStood) {
@@ -405,6 +411,13 @@ TEST_F(FlyingRules, EachRequirementAndEachCampaignHasItsOwnNumbers) {
   EXPECT_THAT(figures, HasSubstr("\ndispersa_results_per_second 11\n"));
   EXPECT_EQ(service_->View(one.id).eta_s, 6.0 / 4.0);
   EXPECT_EQ(index->Find(other.id)->eta_s, 13.0 / 7.0);
+  const std::string labels = "{campaign=\"" + other.id.substr(0, 12) + "\",name=\"smoke\",owner=\"\"}";
+  EXPECT_THAT(figures, HasSubstr("dispersa_campaign_results_per_second" + labels + " 7\n"));
+  for (const CampaignProgress& told : {*(workforce_.published.end() - 2), workforce_.published.back()}) {
+    EXPECT_EQ(told.state, "flying");
+    EXPECT_EQ(told.total, told.campaign_id == one.id ? 10u : 20u);
+    EXPECT_EQ(told.done, told.campaign_id == one.id ? 4u : 7u);
+  }
 }
 
 TEST_F(FlyingRules, AnExpelledWorkersResultsGiveNoRateBelowZero) {
@@ -576,10 +589,12 @@ TEST_F(DeskRules, EachWorkerHasItsOwnState) {
                                         {},
                                         {}},
                            workforce_.time_s);
-  const Json workers = Ask("status", Json::object()).at("workers");
+  const Json status = Ask("status", Json::object()), workers = status.at("workers");
+  EXPECT_EQ(status.at("schema"), "dispersa/status/1");
+  EXPECT_TRUE(status.at("web").is_null());
   ASSERT_EQ(workers.size(), 2u);
-  EXPECT_EQ(workers[0].at("state"), "ready");
-  EXPECT_EQ(workers[0].at("slots"), 3);
+  EXPECT_EQ(workers[0],
+            Json::parse(R"({"id": "a", "host": "host", "slots": 3, "state": "ready", "flown": 0})"));
   EXPECT_EQ(workers[1].at("state"), "draining");
   EXPECT_EQ(workers[1].at("slots"), 5);
   EXPECT_EQ(workers[1].at("flown"), 7);

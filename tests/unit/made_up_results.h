@@ -1,20 +1,6 @@
 // Made-up results for the tests of results, analysis and pages: no flight is flown.
 #pragma once
 
-#include <algorithm>
-#include <atomic>
-#include <cmath>
-#include <cstdint>
-#include <filesystem>
-#include <fstream>
-#include <limits>
-#include <optional>
-#include <sstream>
-#include <string>
-#include <vector>
-
-#include <unistd.h>
-
 #include "core/campaign/campaign.h"
 #include "core/campaign/case_result.h"
 #include "core/flight/flight_inputs.h"
@@ -22,37 +8,12 @@
 #include "core/flight/metrics.h"
 #include "tests/every_metric.h"
 #include "tests/nominal_inputs.h"
+#include "tests/temporary_folder.h"
+#include "tests/test.h"
 
 namespace dispersa::report_test {
 
 inline constexpr double kNaN = std::numeric_limits<double>::quiet_NaN();
-
-/// A folder of one test, removed with it.
-class TemporaryFolder {
- public:
-  TemporaryFolder() {
-    static std::atomic<int> count = 0;
-    path_ = std::filesystem::temp_directory_path() /
-            ("dispersa_report_" + std::to_string(getpid()) + "_" + std::to_string(count++));
-    std::filesystem::create_directories(path_);
-  }
-  ~TemporaryFolder() { std::filesystem::remove_all(path_); }
-  TemporaryFolder(const TemporaryFolder&) = delete;
-  TemporaryFolder& operator=(const TemporaryFolder&) = delete;
-
-  /// Of something that does not exist yet.
-  std::filesystem::path operator/(const char* name) const { return path_ / name; }
-
- private:
-  std::filesystem::path path_;
-};
-
-inline std::string ReadText(const std::filesystem::path& file) {
-  std::ifstream stream(file, std::ios::binary);
-  std::ostringstream text;
-  text << stream.rdbuf();
-  return text.str();
-}
 
 inline Campaign MakeCampaign(std::uint64_t cases) {
   Campaign campaign;

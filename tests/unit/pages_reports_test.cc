@@ -55,7 +55,8 @@ std::map<std::string, std::string> Files(const std::filesystem::path& folder) {
   std::map<std::string, std::string> files;
   for (const auto& entry : std::filesystem::recursive_directory_iterator(folder)) {
     const std::string name = std::filesystem::relative(entry.path(), folder).string();
-    if (entry.is_regular_file() && !name.starts_with("results.sqlite")) files[name] = ReadText(entry.path());
+    if (entry.is_regular_file() && !name.starts_with("results.sqlite"))
+      files[name] = TextOfFile(entry.path());
   }
   return files;
 }

@@ -51,7 +51,7 @@ TEST(CasesCsv, HasTheMetricsOfItsLawAlone) {
   ResultFolder folder = ResultFolder::Create(temporary / "out", campaign);
   folder.Append({{MakeCase(0)}});
   WriteCasesCsv(folder, StoredColumns(folder), temporary / "out" / "cases.csv");
-  const std::string csv = ReadText(temporary / "out" / "cases.csv");
+  const std::string csv = TextOfFile(temporary / "out" / "cases.csv");
   EXPECT_THAT(csv, Not(HasSubstr("lyapunov")));
   EXPECT_THAT(csv, Not(HasSubstr("rules_fired")));
   EXPECT_THAT(csv, Not(HasSubstr("adaptation")));
@@ -62,7 +62,7 @@ TEST(CasesCsv, HasTheMetricsOfItsLawAlone) {
   ResultFolder plain = ResultFolder::Create(temporary / "plain", campaign);
   plain.Append({{MakeCase(0)}});
   WriteCasesCsv(plain, StoredColumns(plain), temporary / "plain" / "cases.csv");
-  EXPECT_THAT(ReadText(temporary / "plain" / "cases.csv"), Not(HasSubstr("node_error")));
+  EXPECT_THAT(TextOfFile(temporary / "plain" / "cases.csv"), Not(HasSubstr("node_error")));
   EXPECT_TRUE(
       std::isnan(ResultFolder::Open(temporary / "plain").Load(0).metrics[MetricColumn("node_error_deg")]));
   // What a folder stores it reads again: of other laws' metrics nothing.
@@ -99,8 +99,8 @@ TEST(CasesCsv, DoesNotDependOnTheOrderOfArrival) {
   shuffled.Append(batch);
   WriteCasesCsv(ascending, StoredColumns(ascending), temporary / "ascending" / "cases.csv");
   WriteCasesCsv(shuffled, StoredColumns(shuffled), temporary / "shuffled" / "cases.csv");
-  const std::string csv = ReadText(temporary / "ascending" / "cases.csv");
-  EXPECT_EQ(csv, ReadText(temporary / "shuffled" / "cases.csv"));
+  const std::string csv = TextOfFile(temporary / "ascending" / "cases.csv");
+  EXPECT_EQ(csv, TextOfFile(temporary / "shuffled" / "cases.csv"));
   std::string expected = Header();
   for (std::uint64_t k = 0; k < 50; ++k) expected += CasesCsvLine(MakeCase(k), AllColumns());
   EXPECT_EQ(csv, expected);
@@ -120,7 +120,7 @@ TEST(CasesCsv, LeavesOutWhatIsTheSameInAllCases) {
   first.metrics[1] = second.metrics[1] = kNaN;
   folder.Append({{first, second}});
   WriteCasesCsv(folder, VaryingColumns(folder), temporary / "out" / "varying.csv");
-  const std::string csv = ReadText(temporary / "out" / "varying.csv");
+  const std::string csv = TextOfFile(temporary / "out" / "varying.csv");
   EXPECT_EQ(csv.substr(0, csv.find('\n')),
             "case_index,outcome,end_time_s,end_stage,reason,input_drag_factor"
             ",metric_" +
@@ -152,7 +152,7 @@ TEST(CasesCsv, ShowsNegativeZeroAsZeroAndUndefinedAsEmpty) {
   WriteCasesCsv(folder, StoredColumns(folder), temporary / "out" / "cases.csv");
   CaseResult normalised = result;
   normalised.metrics[0] = 0.0;
-  EXPECT_EQ(ReadText(temporary / "out" / "cases.csv"), Header() + CasesCsvLine(normalised, AllColumns()));
+  EXPECT_EQ(TextOfFile(temporary / "out" / "cases.csv"), Header() + CasesCsvLine(normalised, AllColumns()));
 }
 
 }  // namespace

@@ -41,7 +41,7 @@ std::string Query(const std::filesystem::path& folder, const std::string& sql) {
 TEST(ResultFolder, HoldsTheCampaignAndWhereItComesFrom) {
   TemporaryFolder temporary;
   const ResultFolder folder = ResultFolder::Create(temporary / "a" / "b", MakeLimitedCampaign(3));
-  EXPECT_EQ(ReadText(temporary / "a" / "b" / "campaign.yaml"), "name: made_up\n");
+  EXPECT_EQ(TextOfFile(temporary / "a" / "b" / "campaign.yaml"), "name: made_up\n");
   EXPECT_EQ(folder.Provenance("campaign_id"), std::string(64, '1'));
   EXPECT_EQ(folder.Provenance("flight_id"), std::string(64, '2'));
   EXPECT_EQ(folder.Provenance("engine"), EngineVersion());
@@ -302,7 +302,7 @@ TEST(ResultFolder, ResumesAndExtendsTheSameFlights) {
   EXPECT_THAT(folder.PresentCases(), ElementsAre(0, 1));
   EXPECT_EQ(folder.Provenance("campaign_id"), std::string(64, '3'));
   EXPECT_EQ(folder.Provenance("cases"), "5");
-  EXPECT_EQ(ReadText(temporary / "out" / "campaign.yaml"), longer.canonical_yaml);
+  EXPECT_EQ(TextOfFile(temporary / "out" / "campaign.yaml"), longer.canonical_yaml);
 }
 
 TEST(ResultFolder, RefusesToMixFlights) {
@@ -481,8 +481,8 @@ TEST(OutputFile, DoesNotFollowALinkInItsPlace) {
   std::ofstream(temporary / "precious") << "kept";
   std::filesystem::create_symlink(temporary / "precious", temporary / "cases.csv.tmp");
   WriteFile(temporary / "cases.csv", "new");
-  EXPECT_EQ(ReadText(temporary / "precious"), "kept");
-  EXPECT_EQ(ReadText(temporary / "cases.csv"), "new");
+  EXPECT_EQ(TextOfFile(temporary / "precious"), "kept");
+  EXPECT_EQ(TextOfFile(temporary / "cases.csv"), "new");
   EXPECT_FALSE(std::filesystem::exists(temporary / "cases.csv.tmp"));
 }
 
@@ -514,10 +514,10 @@ TEST(OutputFile, ReplacesAsAWholeOrNotAtAll) {
     OutputFile abandoned(temporary / "file");
     abandoned.Write("new");
   }
-  EXPECT_EQ(ReadText(temporary / "file"), "old");
+  EXPECT_EQ(TextOfFile(temporary / "file"), "old");
   EXPECT_FALSE(std::filesystem::exists(temporary / "file.tmp"));
   WriteFile(temporary / "file", "new");
-  EXPECT_EQ(ReadText(temporary / "file"), "new");
+  EXPECT_EQ(TextOfFile(temporary / "file"), "new");
   EXPECT_FALSE(std::filesystem::exists(temporary / "file.tmp"));
 }
 
@@ -532,7 +532,7 @@ TEST(OutputFile, ReportsAFullDisk) {
     } catch (const ResultError& error) {
       said = error.kind() == ResultError::Kind::kDiskFull ? error.what() : "not the full disk";
     }
-    return ReadText(folder / "file") == "old" ? said : said + ", and the old file is gone";
+    return TextOfFile(folder / "file") == "old" ? said : said + ", and the old file is gone";
   });
   EXPECT_EQ(message, (folder / "file").string() + ": no space left on the disk");
 }
@@ -547,10 +547,10 @@ TEST(OutputFile, KeepsLinksAndPermissions) {
   WriteFile(temporary / "link", "new");
   WriteFile(temporary / "dangling", "made");
   EXPECT_TRUE(std::filesystem::is_symlink(temporary / "link"));
-  EXPECT_EQ(ReadText(temporary / "file"), "new");
+  EXPECT_EQ(TextOfFile(temporary / "file"), "new");
   EXPECT_EQ(std::filesystem::status(temporary / "file").permissions(), std::filesystem::perms(0600));
   EXPECT_TRUE(std::filesystem::is_symlink(temporary / "dangling"));
-  EXPECT_EQ(ReadText(temporary / "not yet"), "made");
+  EXPECT_EQ(TextOfFile(temporary / "not yet"), "made");
   AppendLine(temporary / "lines", "first");
   for (const char* made : {"not yet", "lines"})
     EXPECT_EQ(std::filesystem::status(temporary / made).permissions(), std::filesystem::perms(0644)) << made;

@@ -2,15 +2,10 @@
 // tests/public_launcher.h. The geometry is partly inferred, so two estimates of two similar bodies are
 // compared, in shape and size. The bands are 35 %. Handbook methods claim 10 to 20 % each, and the geometry
 // takes the rest (0.3 m of fairing nose change CA by 20 %).
-#include <gtest/gtest.h>
-
-#include <cmath>
-#include <string>
-#include <vector>
-
 #include "core/math/constants.h"
 #include "core/math/table.h"
 #include "tests/public_launcher.h"
+#include "tests/test.h"
 
 namespace dispersa::aero_public_tables_test {
 namespace {

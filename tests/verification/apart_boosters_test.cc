@@ -1,12 +1,6 @@
 // Boosters that are bodies of their own: masses, forces and moments by hand, the equation of rotation with
 // all of it, sets that are not symmetric, burns that differ, nozzles that turn, and momentum at separation.
-#include <gtest/gtest.h>
-
-#include <algorithm>
-#include <array>
-#include <cmath>
-#include <vector>
-
+#include "tests/apart_boosters.h"
 #include "core/flight/flight.h"
 #include "core/flight/flight_sums.h"
 #include "core/flight/nozzle_allocation.h"
@@ -15,9 +9,9 @@
 #include "core/math/constants.h"
 #include "core/trajectory/ascent.h"
 #include "core/vehicle/mass.h"
-#include "tests/apart_boosters.h"
 #include "tests/flown_ticks.h"
 #include "tests/slv4_flight.h"
+#include "tests/test.h"
 #include "tests/unit/sample_vehicle.h"
 
 namespace dispersa::apart_boosters_test {

@@ -1,11 +1,8 @@
 // The gates that every shipped autopilot must pass, computed and measured: gain 6 dB both ways, phase 30°,
 // delay 20 ms (flight/margins.h). `dispersa margins` shows these margins.
-#include <gtest/gtest.h>
-
-#include <set>
-
 #include "core/margins/flight_margins.h"
 #include "tests/slv4_flight.h"
+#include "tests/test.h"
 
 namespace dispersa::autopilot_gates_test {
 namespace {

@@ -1,14 +1,6 @@
 // Bending in flight against solutions that share nothing with it: statics of the finite elements, free
 // ringing, CVODE, the rigid limit, the nozzle's reaction by hand.
-#include <gtest/gtest.h>
-
 #include <Eigen/Dense>
-#include <algorithm>
-#include <array>
-#include <cmath>
-#include <memory>
-#include <optional>
-#include <vector>
 
 #include "core/campaign_yaml/load.h"
 #include "core/dynamics/aero_grid.h"
@@ -23,6 +15,7 @@
 #include "core/structure/mass_points.h"
 #include "tests/bending_in_space.h"
 #include "tests/slv4_flight.h"
+#include "tests/test.h"
 
 namespace dispersa::bending_flight_test {
 namespace {

@@ -1,13 +1,7 @@
 // A whole guided flight of a body with different bending in its two planes: the engine's steps against CVODE.
 // The body flies through wind and air, with a rate gyro in each of two stages.
-#include <gtest/gtest.h>
-
-#include <algorithm>
-#include <cmath>
-#include <utility>
-#include <vector>
-
 #include "tests/flexible_guided.h"
+#include "tests/test.h"
 
 namespace dispersa::bending_guided_flight_test {
 namespace {

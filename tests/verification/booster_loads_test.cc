@@ -1,13 +1,5 @@
 // Loads of the first stage's sections beside boosters: the balance of what lies behind each section, by hand,
 // with two unlike boosters, and the loads of the vehicle without boosters when they have left.
-#include <gtest/gtest.h>
-
-#include <algorithm>
-#include <array>
-#include <cmath>
-#include <memory>
-#include <vector>
-
 #include "core/dynamics/aero_grid.h"
 #include "core/dynamics/jettison.h"
 #include "core/flight/flight.h"
@@ -17,6 +9,7 @@
 #include "core/vehicle/mass.h"
 #include "tests/liquid_stage.h"
 #include "tests/slv4_flight.h"
+#include "tests/test.h"
 
 namespace dispersa::booster_loads_test {
 namespace {

@@ -1,13 +1,5 @@
 // Boosters whose masses are drawn, each its own: shells, loads and mixtures by hand in mass, centre and
 // tensor, every kilogram of a flight, momentum at separation, and the moment of a pair that is not alike.
-#include <gtest/gtest.h>
-
-#include <algorithm>
-#include <array>
-#include <cmath>
-#include <string>
-#include <vector>
-
 #include "core/flight/dispersed_vehicle.h"
 #include "core/flight/flight.h"
 #include "core/flight/step_limits.h"
@@ -15,6 +7,7 @@
 #include "core/vehicle/mass.h"
 #include "tests/apart_boosters.h"
 #include "tests/flown_ticks.h"
+#include "tests/test.h"
 #include "tests/two_liquids.h"
 #include "tests/unit/sample_vehicle.h"
 

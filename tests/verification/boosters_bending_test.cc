@@ -1,15 +1,6 @@
 // A first stage that bends and has boosters: its modes against finite elements with bodies on links, its
 // forces by hand, momentum at the separation, and flights against CVODE.
-#include <gtest/gtest.h>
-
 #include <Eigen/Dense>
-#include <algorithm>
-#include <array>
-#include <cmath>
-#include <functional>
-#include <memory>
-#include <string>
-#include <vector>
 
 #include "core/campaign_yaml/load.h"
 #include "core/dynamics/jettison.h"
@@ -27,6 +18,7 @@
 #include "tests/flown_ticks.h"
 #include "tests/liquid_stage.h"
 #include "tests/slv4_flight.h"
+#include "tests/test.h"
 
 namespace dispersa::boosters_bending_test {
 namespace {

@@ -1,10 +1,6 @@
 // Boosters beside the first stage: mass properties by hand, angular momentum and the rocket equation in
 // space, and a flight of three and of six degrees of freedom.
-#include <gtest/gtest.h>
-
 #include <boost/math/quadrature/gauss_kronrod.hpp>
-#include <cmath>
-#include <vector>
 
 #include "core/dynamics/integrator.h"
 #include "core/dynamics/jettison.h"
@@ -14,6 +10,7 @@
 #include "core/trajectory/ascent.h"
 #include "core/vehicle/vehicle_figures.h"
 #include "tests/slv4_flight.h"
+#include "tests/test.h"
 
 namespace dispersa::boosters_flight_test {
 namespace {

@@ -6,16 +6,13 @@
 // higher order are still visible. A wrong equation leaves an error that does not fall. `rounding` bounds the
 // contribution of double arithmetic. The error at the longer step must be well above it, or the test would
 // show nothing.
-#include <cmath>
-#include <functional>
-
-#include <gtest/gtest.h>
 #include <boost/math/special_functions/jacobi_elliptic.hpp>
 
 #include "core/flight/fly_scenario.h"
 #include "core/math/constants.h"
 #include "tests/fourth_order.h"
 #include "tests/gravitational_potential.h"
+#include "tests/test.h"
 
 namespace dispersa::closed_forms_test {
 namespace {

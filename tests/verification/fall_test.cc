@@ -2,12 +2,8 @@
 // with halved steps.
 #include "core/dynamics/fall.h"
 
-#include <array>
-#include <cmath>
-
-#include <gtest/gtest.h>
-
 #include "core/math/constants.h"
+#include "tests/test.h"
 
 namespace dispersa::fall_test {
 namespace {

@@ -3,14 +3,9 @@
 // restarted at every tick and event. The Runge-Kutta method converges with its order. The engine's steps
 // agree from the first: halving them changes less than CVODE's own tolerance. simpson_step_test.cc shows
 // their order in a case that resolves it.
-#include <gtest/gtest.h>
-
-#include <algorithm>
-#include <cmath>
-#include <limits>
-
 #include "tests/flown_history.h"
 #include "tests/slv4_flight.h"
+#include "tests/test.h"
 
 namespace dispersa::flight_convergence_test {
 namespace {

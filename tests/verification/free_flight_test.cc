@@ -1,16 +1,12 @@
 // Flights that nothing controls: against closed forms of spin, oscillation, rail and ballistic flight, and
 // against CVODE.
-#include <gtest/gtest.h>
-
-#include <cmath>
-#include <vector>
-
 #include "core/dynamics/fall.h"
 #include "core/flight/flight.h"
 #include "core/flight/tick_sample.h"
 #include "core/math/constants.h"
 #include "core/math/functions.h"
 #include "core/vehicle/fins.h"
+#include "tests/test.h"
 #include "tests/unit/sample_vehicle.h"
 
 namespace dispersa::free_flight_test {

@@ -6,18 +6,6 @@
 //   n'' + 2 zeta w n' + w² n =   -phi Tc d
 // measured: t + sigma n, z - phi_ins n, and their rates
 // d = servo * e^(-0.02 s) * filter * -(Kp t   + Kd t' + Kz z + Kzd z'), all as measured
-#include <gtest/gtest.h>
-
-#include <algorithm>
-#include <cmath>
-#include <complex>
-#include <functional>
-#include <iterator>
-#include <limits>
-#include <memory>
-#include <string>
-#include <vector>
-
 #include <Eigen/Dense>
 
 #include "core/campaign_yaml/load.h"
@@ -26,6 +14,7 @@
 #include "core/margins/linear_axis.h"
 #include "core/margins/loop_margins.h"
 #include "core/math/constants.h"
+#include "tests/test.h"
 
 namespace dispersa::greensite_margins_test {
 namespace {

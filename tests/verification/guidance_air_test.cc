@@ -1,15 +1,10 @@
 // Guidance keeps out of the air, of which its predictions know nothing.
-#include <gtest/gtest.h>
-
-#include <algorithm>
-#include <cmath>
-#include <string>
-
 #include "core/campaign/flight_definition.h"
 #include "core/flight/tick_sample.h"
 #include "core/vehicle/vehicle.h"
 #include "tests/gallery_launcher.h"
 #include "tests/slv4_flight.h"
+#include "tests/test.h"
 
 namespace dispersa::guidance_air_test {
 namespace {

@@ -1,15 +1,11 @@
 // Guidance of a stage that lifted off: Ariane 5's core, which burns on above the air for minutes after its
 // boosters have left, and first stages without boosters in their last seconds.
-#include <gtest/gtest.h>
-
-#include <cmath>
-#include <string>
-
 #include "core/campaign/flight_definition.h"
 #include "core/flight/tick_sample.h"
 #include "core/guidance/air.h"
 #include "tests/gallery_launcher.h"
 #include "tests/slv4_flight.h"
+#include "tests/test.h"
 
 namespace dispersa::guidance_boosters_test {
 namespace {

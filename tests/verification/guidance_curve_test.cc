@@ -1,15 +1,10 @@
 // Guidance of a last motor with a thrust curve, whose burn rate nobody knows before its ignition.
-#include <gtest/gtest.h>
-
-#include <array>
-#include <cmath>
-#include <cstdio>
-
 #include "core/campaign/flight_definition.h"
 #include "core/guidance/motor_estimate.h"
 #include "core/vehicle/propulsion.h"
 #include "tests/gallery_launcher.h"
 #include "tests/slv4_flight.h"
+#include "tests/test.h"
 
 namespace dispersa::guidance_curve_test {
 namespace {

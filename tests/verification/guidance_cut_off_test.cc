@@ -1,12 +1,5 @@
 // Guidance that decides when engines are cut off, on launchers of the gallery: Electron and Ariane 5, whose
 // last stage burns once, Vega and Falcon 9, whose last stage burns twice.
-#include <gtest/gtest.h>
-
-#include <cmath>
-#include <memory>
-#include <string>
-#include <vector>
-
 #include "core/campaign/flight_definition.h"
 #include "core/flight/tick_sample.h"
 #include "core/guidance/corrector.h"
@@ -14,6 +7,7 @@
 #include "tests/guidance_mission.h"
 #include "tests/liquid_stage.h"
 #include "tests/slv4_flight.h"
+#include "tests/test.h"
 
 namespace dispersa::guidance_cut_off_test {
 namespace {

@@ -1,10 +1,5 @@
 // Guidance to orbits whose node and place of injection the target names. Misses are compared with conics that
 // are written here. Flights end in the orbit that a state's two-body elements give.
-#include <gtest/gtest.h>
-
-#include <cmath>
-#include <string>
-
 #include "core/campaign/flight_definition.h"
 #include "core/campaign_yaml/load.h"
 #include "core/cases/campaign_flights.h"
@@ -15,6 +10,7 @@
 #include "core/trajectory/optimize.h"
 #include "tests/gallery_launcher.h"
 #include "tests/slv4_flight.h"
+#include "tests/test.h"
 
 namespace dispersa::guidance_orbit_target_test {
 namespace {

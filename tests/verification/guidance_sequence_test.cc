@@ -1,10 +1,5 @@
 // Guidance over more than two burns, and bodies that leave at an altitude or a heat flux: its prediction
 // against the engine's flight, and where its flights end.
-#include <gtest/gtest.h>
-
-#include <cmath>
-#include <string>
-
 #include "core/campaign/flight_definition.h"
 #include "core/environment/atmosphere.h"
 #include "core/environment/earth.h"
@@ -13,6 +8,7 @@
 #include "tests/gallery_launcher.h"
 #include "tests/guidance_mission.h"
 #include "tests/slv4_flight.h"
+#include "tests/test.h"
 
 namespace dispersa::guidance_sequence_test {
 namespace {

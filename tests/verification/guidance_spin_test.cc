@@ -1,14 +1,10 @@
 // Guidance of a last stage that nothing steers: it is pointed before its ignition, and keeps its attitude by
 // its spin.
-#include <gtest/gtest.h>
-
-#include <cmath>
-#include <cstdio>
-
 #include "core/flight/tick_sample.h"
 #include "core/guidance/predictor.h"
 #include "core/math/rotation.h"
 #include "tests/slv4_flight.h"
+#include "tests/test.h"
 
 namespace dispersa::guidance_spin_test {
 namespace {

@@ -1,15 +1,11 @@
 // Engines with a timer, cut_off: {at: time}: guidance computes the duration of the last two burns.
-#include <gtest/gtest.h>
-
-#include <cmath>
-#include <string>
-
 #include "core/campaign/flight_definition.h"
 #include "core/campaign_yaml/load.h"
 #include "core/cases/campaign_flights.h"
 #include "core/flight/tick_sample.h"
 #include "tests/gallery_launcher.h"
 #include "tests/slv4_flight.h"
+#include "tests/test.h"
 
 namespace dispersa::guidance_timer_test {
 namespace {

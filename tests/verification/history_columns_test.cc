@@ -1,15 +1,10 @@
 // Columns of a history against what flew, computed from other columns and by hand: two stages, the first with
 // two nozzles that differ and boosters that differ, the second with a cross of four that differ.
-#include <gtest/gtest.h>
-
-#include <cmath>
-#include <functional>
-#include <string>
-
 #include "core/environment/earth.h"
 #include "core/flight/history.h"
 #include "core/math/constants.h"
 #include "tests/flown_history.h"
+#include "tests/test.h"
 #include "tests/unit/sample_vehicle.h"
 
 namespace dispersa::history_columns_test {

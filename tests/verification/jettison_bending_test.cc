@@ -1,12 +1,5 @@
 // A stack that bends and jettisons a body, or burns again: its modes, what is left of its motion, and flights
 // against CVODE.
-#include <gtest/gtest.h>
-
-#include <algorithm>
-#include <cmath>
-#include <memory>
-#include <vector>
-
 #include "core/campaign_yaml/load.h"
 #include "core/dynamics/jettison.h"
 #include "core/flight/flight.h"
@@ -16,6 +9,7 @@
 #include "core/vehicle/mass.h"
 #include "tests/flown_ticks.h"
 #include "tests/slv4_flight.h"
+#include "tests/test.h"
 
 namespace dispersa::jettison_bending_test {
 namespace {

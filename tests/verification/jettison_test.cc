@@ -1,16 +1,12 @@
 // Jettison: mass properties, the jump of the state, its time in three and six degrees of freedom, and its
 // velocity gain by the rocket equation.
-#include <gtest/gtest.h>
-
-#include <cmath>
-#include <vector>
-
 #include "core/dynamics/jettison.h"
 #include "core/flight/flight.h"
 #include "core/margins/linear_axis.h"
 #include "core/math/constants.h"
 #include "core/trajectory/ascent.h"
 #include "tests/slv4_flight.h"
+#include "tests/test.h"
 
 namespace dispersa::jettison_test {
 namespace {

@@ -1,10 +1,4 @@
 // The look-up and propagation of flights, against their definitions.
-#include <gtest/gtest.h>
-
-#include <algorithm>
-#include <cmath>
-#include <vector>
-
 #include "core/dynamics/actuators.h"
 #include "core/dynamics/air_data.h"
 #include "core/dynamics/integrator.h"
@@ -13,6 +7,7 @@
 #include "core/math/constants.h"
 #include "core/random/draws.h"
 #include "tests/slv4_flight.h"
+#include "tests/test.h"
 
 namespace dispersa::lane_models_test {
 namespace {

@@ -1,14 +1,6 @@
 // Boosters with liquid engines: draining tanks beside the axis by hand, the equation of rotation with what
 // their flows carry off, the rocket equation with two flows, tanks that are cut off with different rests,
 // and flights of three and of six degrees of freedom against CVODE.
-#include <gtest/gtest.h>
-
-#include <algorithm>
-#include <array>
-#include <cmath>
-#include <string>
-#include <vector>
-
 #include "core/dynamics/integrator.h"
 #include "core/dynamics/jettison.h"
 #include "core/flight/flight.h"
@@ -20,6 +12,7 @@
 #include "tests/apart_boosters.h"
 #include "tests/flown_ticks.h"
 #include "tests/slv4_flight.h"
+#include "tests/test.h"
 #include "tests/unit/sample_vehicle.h"
 
 namespace dispersa::liquid_boosters_test {

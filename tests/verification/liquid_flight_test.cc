@@ -1,15 +1,10 @@
 // Flights of liquid stages: a throttled burn in space gains the velocity of the rocket equation, for any
 // throttle. Whole flights differ from those of solid motors as physics predicts.
-#include <gtest/gtest.h>
-
-#include <algorithm>
-#include <cmath>
-#include <vector>
-
 #include "core/trajectory/ascent.h"
 #include "tests/burn_in_space.h"
 #include "tests/liquid_stage.h"
 #include "tests/slv4_flight.h"
+#include "tests/test.h"
 
 namespace dispersa::liquid_flight_test {
 namespace {

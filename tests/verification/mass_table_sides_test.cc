@@ -1,11 +1,5 @@
 // Mass tables of stages whose centre of gravity is off the axis: mass, centre and tensor against bodies by
 // hand, the equation of rotation, the nozzles' trim, separation, and drawn dry masses.
-#include <gtest/gtest.h>
-
-#include <array>
-#include <cmath>
-#include <vector>
-
 #include "core/dynamics/jettison.h"
 #include "core/flight/flight.h"
 #include "core/flight/flight_model.h"
@@ -14,6 +8,7 @@
 #include "tests/apart_boosters.h"
 #include "tests/flown_ticks.h"
 #include "tests/tabulated_masses.h"
+#include "tests/test.h"
 #include "tests/unit/sample_vehicle.h"
 
 namespace dispersa::mass_table_sides_test {

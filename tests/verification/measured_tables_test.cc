@@ -1,13 +1,6 @@
 // Tables that teams bring: a measured atmosphere, aerodynamics in other forms and configurations, and mass
 // properties. A table sampled from the model that it replaces flies as the model does, but for an error that
 // falls with the square of the table's step.
-#include <gtest/gtest.h>
-
-#include <algorithm>
-#include <cmath>
-#include <fstream>
-#include <functional>
-
 #include "core/dynamics/air_data.h"
 #include "core/environment/surroundings.h"
 #include "core/input/number_text.h"
@@ -15,6 +8,7 @@
 #include "tests/flown_history.h"
 #include "tests/slv4_flight.h"
 #include "tests/tabulated_masses.h"
+#include "tests/test.h"
 #include "tests/unit/input_files.h"
 
 namespace dispersa::measured_tables_test {
@@ -184,7 +178,7 @@ FlightDefinition InForm(const Form& form) {
   FlightDefinition definition = Slv4();
   const std::vector<AeroTable> tables = BuildAerodynamics(definition.vehicle);
   const InputFiles files;
-  std::string text = ReadWholeFile(DISPERSA_CAMPAIGNS "/vehicles/slv4.yaml") + "\naerodynamics:\n  tables:\n";
+  std::string text = TextOfFile(DISPERSA_CAMPAIGNS "/vehicles/slv4.yaml") + "\naerodynamics:\n  tables:\n";
   for (std::size_t i = 0; i < tables.size(); ++i) {
     const std::string name = "aero" + std::to_string(i) + ".csv";
     files.Write(name, CsvOf(tables[i], form));

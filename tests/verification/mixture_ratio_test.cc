@@ -1,12 +1,5 @@
 // Liquid stages whose engines draw another mixture than their tanks hold: masses by hand, the end of the burn
 // with the first tank, every kilogram of a flight, and a burn again.
-#include <gtest/gtest.h>
-
-#include <algorithm>
-#include <array>
-#include <cmath>
-#include <vector>
-
 #include "core/flight/dispersed_vehicle.h"
 #include "core/flight/flight.h"
 #include "core/flight/flight_sums.h"
@@ -16,6 +9,7 @@
 #include "core/vehicle/mass.h"
 #include "tests/apart_boosters.h"
 #include "tests/flown_ticks.h"
+#include "tests/test.h"
 #include "tests/two_liquids.h"
 #include "tests/unit/sample_vehicle.h"
 

@@ -19,24 +19,13 @@
 // The table tests/data/nesc/differences.txt is made here. A cell is our largest difference from the median of
 // the simulators / the largest range among them, over the 30 s and the components of a vector:
 //   DISPERSA_REWRITE_GOLDENS=1 build/release/tests/verification_nesc_check_cases_test
-#include <algorithm>
-#include <cmath>
-#include <cstdio>
-#include <cstdlib>
-#include <fstream>
-#include <map>
-#include <sstream>
-#include <stdexcept>
-#include <string>
-#include <vector>
-
-#include <gtest/gtest.h>
-
 #include "core/campaign_yaml/load.h"
 #include "core/environment/atmosphere.h"
 #include "core/flight/fly_scenario.h"
 #include "core/flight/history_columns.h"
 #include "core/math/constants.h"
+#include "tests/temporary_folder.h"
+#include "tests/test.h"
 
 namespace dispersa::nesc_check_cases_test {
 namespace {
@@ -308,11 +297,6 @@ std::string VerificationTable() {
   return table;
 }
 
-std::string ReadText(const std::string& path) {
-  std::ifstream file(path, std::ios::binary);
-  return {std::istreambuf_iterator<char>(file), {}};
-}
-
 TEST(NescCheckCases, TableOfDifferences) {
   const std::string path = DISPERSA_TEST_DATA "/nesc/differences.txt";
   const std::string table = VerificationTable();
@@ -321,7 +305,7 @@ TEST(NescCheckCases, TableOfDifferences) {
     std::ofstream(path, std::ios::binary) << table;
     FAIL() << "rewrote " << path << "; look at the difference before it is committed";
   }
-  EXPECT_EQ(ReadText(path), table);
+  EXPECT_EQ(TextOfFile(path), table);
 }
 
 }  // namespace

@@ -1,19 +1,9 @@
 // Verifies atmosphere, gravitation, geodesy and rotation against NASA's 6DOF check cases
 // (NASA/TM-2015-218675): the environment that each simulator reports along its flight.
-#include <cmath>
-#include <fstream>
-#include <map>
-#include <sstream>
-#include <stdexcept>
-#include <string>
-#include <tuple>
-#include <vector>
-
-#include <gtest/gtest.h>
-
 #include "core/environment/atmosphere.h"
 #include "core/environment/earth.h"
 #include "core/math/constants.h"
+#include "tests/test.h"
 
 namespace dispersa::nesc_environment_test {
 namespace {

@@ -1,11 +1,5 @@
 // Engines that burn again or are cut off at a velocity, and steered upper stages: masses and speeds follow by
 // conservation, the point mass and the flight of six degrees of freedom do the same at the same times.
-#include <gtest/gtest.h>
-
-#include <algorithm>
-#include <cmath>
-#include <vector>
-
 #include "core/campaign_yaml/load.h"
 #include "core/flight/flight.h"
 #include "core/flight/tick_sample.h"
@@ -13,6 +7,7 @@
 #include "core/trajectory/ascent.h"
 #include "tests/liquid_stage.h"
 #include "tests/slv4_flight.h"
+#include "tests/test.h"
 
 namespace dispersa::restart_flight_test {
 namespace {

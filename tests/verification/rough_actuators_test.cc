@@ -1,14 +1,9 @@
 // Actuators with a dead zone, friction and a resolution: against closed forms, an independent integration and
 // describing functions.
-#include <gtest/gtest.h>
-
-#include <cmath>
-#include <complex>
-#include <vector>
-
 #include "core/dynamics/launcher_lanes.h"
 #include "core/flight/limit_cycle.h"
 #include "core/math/constants.h"
+#include "tests/test.h"
 
 namespace dispersa::rough_actuators_test {
 namespace {

@@ -1,11 +1,7 @@
 // Whole flights in turbulence and with real actuators, against CVODE with the same air and the same
 // equations.
-#include <gtest/gtest.h>
-
-#include <algorithm>
-#include <cmath>
-
 #include "tests/slv4_flight.h"
+#include "tests/test.h"
 
 namespace dispersa::rough_flight_test {
 namespace {

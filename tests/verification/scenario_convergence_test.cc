@@ -2,15 +2,9 @@
 // side. The body tumbles and is statically stable, with drag, normal force and rate damping, in the
 // troposphere over the rotating ellipsoid with J2, in wind. Differences between successive halvings fall by
 // 2^4.
-#include <algorithm>
-#include <cmath>
-#include <functional>
-#include <vector>
-
-#include <gtest/gtest.h>
-
 #include "core/flight/fly_scenario.h"
 #include "core/math/constants.h"
+#include "tests/test.h"
 
 namespace dispersa::scenario_convergence_test {
 namespace {

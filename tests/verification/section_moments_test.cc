@@ -1,11 +1,5 @@
 // Bending moments along the body, against the equilibrium of the part behind each section and against the
 // curvature of an oscillating beam.
-#include <gtest/gtest.h>
-
-#include <algorithm>
-#include <cmath>
-#include <vector>
-
 #include "core/dynamics/body_sections.h"
 #include "core/flight/flight_model.h"
 #include "core/math/constants.h"
@@ -14,6 +8,7 @@
 #include "core/vehicle/mass.h"
 #include "tests/liquid_stage.h"
 #include "tests/slv4_flight.h"
+#include "tests/test.h"
 
 namespace dispersa::section_moments_test {
 namespace {

@@ -1,19 +1,10 @@
 // The order of the engine's step, on powered flight without kinks, without controller and with a constant
 // command.
-#include <gtest/gtest.h>
-
-#include <algorithm>
-#include <cmath>
-#include <functional>
-#include <limits>
-#include <memory>
-#include <utility>
-#include <vector>
-
+#include "core/flight/simpson_step.h"
 #include "core/dynamics/aero_grid.h"
 #include "core/dynamics/integrator.h"
-#include "core/flight/simpson_step.h"
 #include "tests/slv4_flight.h"
+#include "tests/test.h"
 
 namespace dispersa::simpson_step_test {
 namespace {

@@ -1,16 +1,10 @@
 // The limits of the engine's step: whole closed-loop flights with faster and faster actuators against CVODE,
 // which chooses its own steps; and the behaviour beyond the limits.
-#include <gtest/gtest.h>
-
-#include <algorithm>
-#include <cmath>
-#include <string>
-#include <utility>
-
-#include "core/campaign_yaml/load.h"
 #include "core/flight/step_limits.h"
+#include "core/campaign_yaml/load.h"
 #include "core/flight/tick_sample.h"
 #include "tests/slv4_flight.h"
+#include "tests/test.h"
 
 namespace dispersa::step_limits_test {
 namespace {

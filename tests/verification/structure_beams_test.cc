@@ -1,18 +1,15 @@
 // Free beams against exact solutions: uniform, stepped, conical, with shear, with lumped bodies;
 // orthogonality, rigid modes, order of convergence. Characteristic equations are derived and solved here,
 // independently of the elements.
-#include <gtest/gtest.h>
-
 #include <Eigen/Eigenvalues>
 #include <Eigen/LU>
 #include <boost/math/special_functions/bessel.hpp>
-#include <cmath>
-#include <functional>
 
 #include "core/math/constants.h"
 #include "core/structure/beam_elements.h"
 #include "core/structure/beam_mesh.h"
 #include "core/structure/free_free_modes.h"
+#include "tests/test.h"
 
 namespace dispersa::structure_beams_test {
 namespace {

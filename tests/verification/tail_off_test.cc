@@ -1,16 +1,12 @@
 // Tail-offs of engines that are cut off: the orbit is that of a burn that ends at once, and a decay of
 // another duration than the flight computer knows changes the speed by its impulse.
-#include <gtest/gtest.h>
-
-#include <cmath>
-#include <string>
-
 #include "core/campaign/flight_definition.h"
 #include "core/flight/history.h"
 #include "core/math/constants.h"
 #include "tests/gallery_launcher.h"
 #include "tests/liquid_stage.h"
 #include "tests/slv4_flight.h"
+#include "tests/test.h"
 
 namespace dispersa::tail_off_test {
 namespace {

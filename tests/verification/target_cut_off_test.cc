@@ -1,10 +1,5 @@
 // cut_off: {at: target}, and ellipses that are entered anywhere: energies and elements are those of the
 // two-body problem, and an engine is cut off in the target's orbit whatever the flight was.
-#include <gtest/gtest.h>
-
-#include <cmath>
-#include <string>
-
 #include "core/campaign/flight_definition.h"
 #include "core/campaign_yaml/load.h"
 #include "core/cases/campaign_flights.h"
@@ -16,6 +11,7 @@
 #include "core/vehicle/cut_off.h"
 #include "tests/gallery_launcher.h"
 #include "tests/slv4_flight.h"
+#include "tests/test.h"
 
 namespace dispersa::target_cut_off_test {
 namespace {

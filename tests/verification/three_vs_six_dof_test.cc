@@ -2,20 +2,12 @@
 // flight if the 6DOF's attitude is imposed. Environment, propulsion, mass and sequence are the same. The
 // attitude comes from two sources. One is the steering law evaluated on the flight's own state, written here
 // independently of the 3DOF. The other is the shipped reference, a table over time, as flights follow it.
-#include <gtest/gtest.h>
-
-#include <algorithm>
-#include <array>
-#include <cmath>
-#include <functional>
-#include <string>
-#include <vector>
-
 #include "core/dynamics/integrator.h"
 #include "core/flight/sequence.h"
 #include "core/trajectory/ascent.h"
 #include "tests/liquid_stage.h"
 #include "tests/slv4_flight.h"
+#include "tests/test.h"
 
 namespace dispersa::three_vs_six_dof_test {
 namespace {

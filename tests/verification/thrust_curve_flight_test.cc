@@ -1,15 +1,10 @@
 // Flights of motors with thrust curves. Every corner ends a step, so that the engine's steps keep their order
 // with corners between ticks. CVODE, restarted at each corner, shows this. A burn in space gains the velocity
 // of the rocket equation, for any curve and burn rate.
-#include <gtest/gtest.h>
-
-#include <algorithm>
-#include <cmath>
-#include <vector>
-
 #include "tests/burn_in_space.h"
 #include "tests/flown_history.h"
 #include "tests/slv4_flight.h"
+#include "tests/test.h"
 
 namespace dispersa::thrust_curve_flight_test {
 namespace {

@@ -1,11 +1,5 @@
 // Aerodynamic tables of bodies with two planes of symmetry: against the tables themselves, closed forms,
 // CVODE, and bodies that are turned about their axis by a right angle.
-#include <gtest/gtest.h>
-
-#include <algorithm>
-#include <cmath>
-#include <vector>
-
 #include "core/dynamics/aero_grid.h"
 #include "core/dynamics/aerodynamics.h"
 #include "core/flight/flight.h"
@@ -17,6 +11,7 @@
 #include "core/vehicle/aerodynamics_build_up.h"
 #include "tests/flown_history.h"
 #include "tests/slv4_flight.h"
+#include "tests/test.h"
 #include "tests/unit/input_files.h"
 #include "tests/unit/sample_vehicle.h"
 
@@ -150,7 +145,7 @@ TEST(TwoPlaneFlight, OfABodyOfRevolutionIsThatOfItsTableOverTheIncidence) {
   FlightDefinition definition = Slv4Definition(DISPERSA_CAMPAIGNS), plain = definition;
   const std::vector<AeroTable> tables = BuildAerodynamics(definition.vehicle);
   const InputFiles files;
-  std::string text = ReadWholeFile(DISPERSA_CAMPAIGNS "/vehicles/slv4.yaml") + "\naerodynamics:\n  tables:\n";
+  std::string text = TextOfFile(DISPERSA_CAMPAIGNS "/vehicles/slv4.yaml") + "\naerodynamics:\n  tables:\n";
   for (std::size_t i = 0; i < tables.size(); ++i) {
     const std::string name = "aero" + std::to_string(i) + ".csv";
     files.Write(name, CsvOf(tables[i]));

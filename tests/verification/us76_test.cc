@@ -1,9 +1,6 @@
 // Verifies the atmosphere against the US Standard Atmosphere, 1976, as computed or printed by others.
-#include <cmath>
-
-#include <gtest/gtest.h>
-
 #include "core/environment/atmosphere.h"
+#include "tests/test.h"
 #include "tests/unit/read_csv.h"
 
 namespace dispersa::us76_test {

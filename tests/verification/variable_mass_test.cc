@@ -6,11 +6,7 @@
 // the axis
 //   d(I w)/dt = -m_dot l² w,   hence   I w = I0 w0 exp(-int m_dot l² / I dt):
 // the angular momentum of what stays, exact for a body that is rigid but for a steady flow along its axis.
-#include <gtest/gtest.h>
-
 #include <boost/math/quadrature/gauss_kronrod.hpp>
-#include <cmath>
-#include <functional>
 
 #include "core/dynamics/integrator.h"
 #include "core/dynamics/launcher.h"
@@ -19,6 +15,7 @@
 #include "tests/fourth_order.h"
 #include "tests/liquid_stage.h"
 #include "tests/slv4_flight.h"
+#include "tests/test.h"
 
 namespace dispersa::variable_mass_test {
 namespace {

@@ -1,4 +1,4 @@
-// A folder for one test, removed when the test ends.
+// A folder for one test, removed when the test ends; the text of a file.
 #pragma once
 
 #include <stdlib.h>
@@ -13,8 +13,8 @@ namespace dispersa {
 
 class TemporaryFolder {
  public:
-  TemporaryFolder() {
-    std::string pattern = (std::filesystem::temp_directory_path() / "dispersa-test-XXXXXX").string();
+  explicit TemporaryFolder(const std::filesystem::path& parent = std::filesystem::temp_directory_path()) {
+    std::string pattern = (parent / "dispersa-test-XXXXXX").string();
     if (mkdtemp(pattern.data()) == nullptr) throw std::runtime_error("no temporary folder");
     path_ = pattern;
   }
