@@ -63,19 +63,6 @@ bool IsDefined(const std::vector<double>& values) {
   return std::any_of(values.begin(), values.end(), [](double value) { return std::isfinite(value); });
 }
 
-struct BandView {
-  const char* column;
-  const char* label;
-  double factor = 1.0;  ///< from the unit of the column to the unit of the label
-  bool deviation =
-      false;  ///< difference from the nominal flight, beside which the spread would be too small to see
-  std::optional<double> from_s = {}, to_s = {};
-  bool nominal = true;
-  bool in_air = false;         ///< only where dynamic pressure is at least kThinAir_pa
-  const char* peak = nullptr;  ///< the metric of its largest magnitude, whose limits are drawn
-  int width = 520;
-};
-
 const Band& BandOf(const FlightBands& bands, std::string_view column) {
   const auto band = std::find_if(bands.bands.begin(), bands.bands.end(),
                                  [&](const Band& candidate) { return candidate.column == column; });
@@ -102,8 +89,19 @@ std::vector<double> AtSteps(const History& nominal, const char* column, const Fl
   return values;
 }
 
+/// The last time at which dynamic pressure is above kThinAir_pa, and a little more.
+double AtmosphereEnd(const std::vector<double>& time_s, const std::vector<double>& qbar_pa) {
+  double end_s = 0.0;
+  for (std::size_t i = 0; i < time_s.size(); ++i) {
+    if (qbar_pa[i] >= kThinAir_pa) end_s = time_s[i];
+  }
+  return 10.0 * std::ceil(0.1 * (end_s + 5.0));
+}
+
+}  // namespace
+
 std::string BandFigure(const BandView& view, const FlightHistories& histories, const CampaignSummary& summary,
-                       const Burns& burns, const std::string& caption) {
+                       const std::string& caption) {
   const FlightBands& bands = histories.bands;
   const Band& band = BandOf(bands, view.column);
   const std::vector<double>& qbar_pa = BandOf(bands, "qbar_pa").p50;
@@ -111,7 +109,7 @@ std::string BandFigure(const BandView& view, const FlightHistories& histories, c
   if (!IsDefined(view.in_air ? InAir(band.p50, qbar_pa) : band.p50)) return "";
   SvgChart chart({.label = kTimeAxis, .low = view.from_s, .high = view.to_s}, {.label = view.label},
                  view.width, 280);
-  burns.AddTo(&chart);
+  Burns(histories.nominal_history).AddTo(&chart);
   const std::vector<double> nominal =
       view.deviation ? AtSteps(histories.nominal_history, view.column, bands) : std::vector<double>();
   const auto shown = [&](std::vector<double> values) {
@@ -127,6 +125,9 @@ std::string BandFigure(const BandView& view, const FlightHistories& histories, c
     if (view.in_air) flown = InAir(std::move(flown), Column(histories.nominal_history, "qbar_pa"));
     chart.Line(Column(histories.nominal_history, "time_s"), flown, "line-1", "nominal");
   }
+  if (view.program)
+    chart.Line(Column(histories.nominal_history, "time_s"),
+               Column(histories.nominal_history, "pitch_program_deg"), "program", "program");
   for (const RequirementSummary& requirement : summary.requirements) {
     if (view.peak == nullptr || requirement.metric != view.peak) continue;
     chart.HorizontalLimit(requirement.limit, "limit of the peak");
@@ -134,17 +135,6 @@ std::string BandFigure(const BandView& view, const FlightHistories& histories, c
   }
   return Figure(chart.Svg(caption), HtmlText(caption), view.width > 600 ? "wide" : "");
 }
-
-/// The last time at which dynamic pressure is above kThinAir_pa, and a little more.
-double AtmosphereEnd(const std::vector<double>& time_s, const std::vector<double>& qbar_pa) {
-  double end_s = 0.0;
-  for (std::size_t i = 0; i < time_s.size(); ++i) {
-    if (qbar_pa[i] >= kThinAir_pa) end_s = time_s[i];
-  }
-  return 10.0 * std::ceil(0.1 * (end_s + 5.0));
-}
-
-}  // namespace
 
 std::string NominalFigures(const History& nominal) {
   const Burns burns(nominal);
@@ -212,7 +202,7 @@ std::string EnvelopeFigures(const FlightHistories& histories, const CampaignSumm
   const double pitch_over_end_s = 5.0 * std::ceil(0.2 * (kick_end_s + 5.0));
   std::string figures = "<div class=\"figures\">\n";
   const auto add = [&](const BandView& view, const std::string& caption) {
-    figures += BandFigure(view, histories, summary, burns, caption);
+    figures += BandFigure(view, histories, summary, caption);
   };
   add({.column = "pitch_error_deg", .label = "pitch error, °", .peak = "pitch_error_peak_deg", .width = 1060},
       "Pitch error over the whole flight. The requirement binds powered flight; in the coast the reaction "

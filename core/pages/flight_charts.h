@@ -1,6 +1,7 @@
 // Charts over time: the nominal flight, and the spread of the dispersed flights about it.
 #pragma once
 
+#include <optional>
 #include <string>
 
 #include "core/analysis/campaign_summary.h"
@@ -10,6 +11,24 @@ namespace dispersa {
 
 /// Figures of the nominal flight, with its stages marked.
 std::string NominalFigures(const History& nominal);
+
+/// The bands of one quantity as a figure.
+struct BandView {
+  const char* column;  ///< of the history
+  const char* label;
+  double factor = 1.0;  ///< from the unit of the column to the unit of the label
+  bool deviation =
+      false;  ///< difference from the nominal flight, beside which the spread would be too small to see
+  std::optional<double> from_s = {}, to_s = {};
+  bool nominal = true;
+  bool program = false;        ///< with the pitch program
+  bool in_air = false;         ///< only where the air is dense enough for incidence to have an effect
+  const char* peak = nullptr;  ///< the metric of its largest magnitude, whose limits are drawn
+  int width = 520;
+};
+/// Empty if no flight defines the quantity. The bands must hold it, and "qbar_pa".
+std::string BandFigure(const BandView& view, const FlightHistories& histories, const CampaignSummary& summary,
+                       const std::string& caption);
 
 /// Figures of the percentile bands about the nominal flight. The pitch-over has an enlarged figure, to
 /// somewhat later than `kick_end_s`.

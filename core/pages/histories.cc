@@ -131,7 +131,10 @@ History Thinned(const History& ticks, double tick_s, double step_s) {
   const std::size_t rows = ticks.rows(), columns = HistoryColumns().size();
   const long in_step = std::max(1L, std::lround(step_s / tick_s));
   std::vector<bool> kept(rows);
-  const auto time_s = [&](std::size_t row) { return ticks.at(row, 0); };
+  const auto value = [&](std::size_t row, std::size_t column) {
+    return ticks.values[row * columns + column];
+  };
+  const auto time_s = [&](std::size_t row) { return value(row, 0); };
   for (std::size_t row = 0; row < rows; ++row) {
     const long tick = std::lround(time_s(row) / tick_s);
     const bool is_tick = std::fabs(time_s(row) - static_cast<double>(tick) * tick_s) < kSame_s;
@@ -143,10 +146,9 @@ History Thinned(const History& ticks, double tick_s, double step_s) {
   for (std::size_t column = 1; column < columns; ++column) {
     std::optional<std::size_t> least, largest;
     for (std::size_t row = 0; row < rows; ++row) {
-      const double value = ticks.at(row, static_cast<int>(column));
-      if (!std::isfinite(value)) continue;
-      if (!least || value < ticks.at(*least, static_cast<int>(column))) least = row;
-      if (!largest || value > ticks.at(*largest, static_cast<int>(column))) largest = row;
+      if (!std::isfinite(value(row, column))) continue;
+      if (!least || value(row, column) < value(*least, column)) least = row;
+      if (!largest || value(row, column) > value(*largest, column)) largest = row;
     }
     if (least) kept[*least] = kept[*largest] = true;
   }

@@ -37,6 +37,17 @@ std::string WithUnit(double value, const std::string& unit) {
   return ReadableText(value) + (unit.empty() ? "" : " " + unit);
 }
 
+HtmlTable::HtmlTable(std::string_view titles) {
+  for (bool more = true; more;) {
+    const std::size_t end = titles.find('|');
+    const std::string_view title = titles.substr(0, end);
+    more = end != std::string_view::npos;
+    if (more) titles.remove_prefix(end + 1);
+    const bool is_number = title.starts_with('#');
+    columns_.push_back({std::string(title.substr(is_number)), is_number, columns_.empty()});
+  }
+}
+
 void HtmlTable::Row(const std::vector<std::string>& cells, std::string_view row_class) {
   rows_ += row_class.empty() ? std::string("<tr>") : fmt::format("<tr class=\"{}\">", row_class);
   for (std::size_t i = 0; i < cells.size(); ++i) {

@@ -18,6 +18,9 @@ class HtmlTable {
   };
 
   explicit HtmlTable(std::vector<Column> columns) : columns_(std::move(columns)) {}
+  /// "Stage|#thrust, kN|Motor": titles of columns, the first of which names its rows; # is before that of
+  /// numbers.
+  explicit HtmlTable(std::string_view titles);
 
   void Row(const std::vector<std::string>& cells, std::string_view row_class = "");
   /// One cell over the whole width.

@@ -263,11 +263,10 @@ std::string StatisticsSection(const CampaignSummary& summary) {
   return html + table.Html("statistics");
 }
 
-std::string DispersionsSection(const CampaignSummary& summary) {
-  std::string html = "<h2 id=\"dispersions\">Dispersions, declared and drawn</h2>\n";
+std::string DispersionsTable(const CampaignSummary& summary) {
   if (summary.dispersions.empty())
-    return html + "<p>The campaign disperses nothing: every case is the nominal flight.</p>\n";
-  html +=
+    return "<p>The campaign disperses nothing: every case is the nominal flight.</p>\n";
+  const std::string html =
       "<p>What was drawn is read back from the inputs as each flight applied them. “Agrees” means that mean "
       "and "
       "standard deviation lie within five standard errors of the declared ones. A direction from anywhere "
@@ -297,6 +296,10 @@ std::string DispersionsSection(const CampaignSummary& summary) {
                                    : "<span class=\"badge fail\">differs</span>"});
   }
   return html + table.Html();
+}
+
+std::string DispersionsSection(const CampaignSummary& summary) {
+  return "<h2 id=\"dispersions\">Dispersions, declared and drawn</h2>\n" + DispersionsTable(summary);
 }
 
 std::string NotModelledSection(const Campaign& campaign) {

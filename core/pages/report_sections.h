@@ -19,6 +19,8 @@ std::string CausesSection(const CampaignSummary& summary);
 std::string StatisticsSection(const CampaignSummary& summary);
 /// A table of standard deviations and correlations, and one of the containments.
 std::string InjectionSection(const InjectionSummary& injection);
+/// Each input as declared and as drawn; the section has it under its heading.
+std::string DispersionsTable(const CampaignSummary& summary);
 std::string DispersionsSection(const CampaignSummary& summary);
 std::string NotModelledSection(const Campaign& campaign);
 /// The evidence of the campaign for each credibility factor of NASA-STD-7009, and the gaps.

@@ -2,170 +2,136 @@
 
 #include <fmt/format.h>
 
+#include <algorithm>
+
 #include "core/flight/engine_version.h"
-#include "core/pages/histories.h"
+#include "core/pages/embedded.h"
+#include "core/pages/heat_map.h"
 #include "core/pages/html_parts.h"
-#include "core/pages/trajectory_figures.h"
-#include "core/paper/heat_map.h"
-#include "core/paper/paper_sections.h"
-#include "core/results/file_system.h"
-#include "core/results/output_file.h"
+#include "core/paper/paper_parts.h"
+#include "core/results/sampling_text.h"
 #include "core/results/text.h"
 
 namespace dispersa {
 namespace {
 
 constexpr char kStyle[] = R"css(
-dl.findings { display: grid; grid-template-columns: max-content 1fr; gap: 4px 14px; margin: 10px 0 18px; padding: 10px 14px;
-  background: var(--panel); border-left: 3px solid var(--blue); border-radius: 4px; font-size: 14px; }
-dl.findings dt { font-weight: 650; color: var(--soft); } dl.findings dd { margin: 0; max-width: 92ch; }
-.source { font-size: 12.5px; } .warning { border-left: 4px solid var(--open); }
+table.claims td, table.claims th { padding: 7px 8px; } table.claims tbody th { width: 9%; font-weight: 650; }
+table.claims td:nth-child(2) { width: 18%; } table.claims td:nth-child(3) { width: 27%; } table.claims td:nth-child(4) { width: 29%; }
 svg .line-4 { stroke: var(--limit); stroke-width: 1.3; } svg .line-5 { stroke: var(--soft); stroke-width: 1.3; }
-svg .line-0.thin { stroke-width: 0.8; opacity: 0.75; } details summary { cursor: pointer; }
-q { font-style: italic; }
-@media print { details > * { display: block; } dl.findings { break-inside: avoid; } }
+@media screen and (max-width: 960px) { table.claims, table.claims tbody, table.claims tr { display: block; }
+  table.claims td, table.claims tbody th { display: block; width: auto !important; border: 0; padding: 2px 0; }
+  table.claims thead { display: none; } table.claims tr { padding: 8px 0; border-bottom: 1px solid var(--rule); }
+  table.claims td::before { color: var(--soft); } table.claims td:nth-child(2)::before { content: "The paper: "; }
+  table.claims td:nth-child(3)::before { content: "Found: "; } table.claims td:nth-child(4):not(:empty)::before { content: "Difference: "; }
+  table.claims td:nth-child(6)::before { content: "Shown by: "; } }
+@media print { details > * { display: block; } header { break-after: auto; } }
 )css";
 
-constexpr char kNavigation[] =
-    "<nav><a href=\"#table1\">Table 1</a><a href=\"#table2\">Table 2</a><a href=\"#fig2\">Fig. 2</a><a "
-    "href=\"#fig3\">Fig. "
-    "3</a><a href=\"#table3\">Table 3</a><a href=\"#fig5\">Fig. 5</a><a href=\"#fig6\">Figs. 6, 7</a><a "
-    "href=\"#fig8\">Figs. 8, 9</a><a href=\"#fig10\">Fig. 10</a><a href=\"#baselines\">Baselines</a><a "
-    "href=\"#margins\">Margins</a><a "
-    "href=\"#lyapunov\">V</a><a href=\"#completions\">Completions</a><a "
-    "href=\"#campaigns\">Campaigns</a></nav>\n";
-
-constexpr char kLimits[] =
-    "<div class=\"headline warning\"><p><b>The vehicle is rigid.</b> No bending, no slosh, no inertia of the "
-    "nozzles: a launcher "
-    "of 27 m has bending modes that a real autopilot must filter, and tracking, limit cycles and margins on "
-    "this page are those "
-    "of the rigid body only. Guidance is open loop: the pitch profile is tracked, the orbit is not "
-    "corrected.</p></div>\n";
-
-std::string Tile(const std::string& value, const std::string& label) {
-  return fmt::format("<div class=\"tile\"><b>{}</b><span>{}</span></div>", value, label);
+std::string VerdictHtml(PaperVerdict verdict) {
+  switch (verdict) {
+    case PaperVerdict::kReproduced:
+      return "<span class=\"badge pass\">✓ reproduced</span>";
+    case PaperVerdict::kInPart:
+      return "<span class=\"badge inconclusive\">◇ in part</span>";
+    case PaperVerdict::kNotReproduced:
+      return "<span class=\"badge fail\">✗ not reproduced</span>";
+    case PaperVerdict::kNoClaim:
+      break;
+  }
+  return "<span class=\"badge nothing-judged\">⊘ no claim</span>";
 }
 
 std::string Header(const PaperStudy& study) {
-  const CaseColumns& cases = study.at("table3").flights.cases;
-  const MetricDigest rms = Digested(cases, "pitch_error_rms_deg");
-  const MetricDigest peak = Digested(cases, "pitch_error_peak_deg");
-  std::size_t flights = 1;
-  for (const auto& [name, flown] : study.campaigns) flights += flown.flights.cases.rows();
-  std::string html =
-      "<header>\n<h1>Adaptive fuzzy attitude control of a launch vehicle: the paper reproduced</h1>\n<p "
-      "class=\"soft\">U. "
-      "Ansari, S. Alam, S. M. un Nabi Jafri, “Trajectory optimization and Adaptive Fuzzy based Launch "
-      "Vehicle Attitude "
-      "Control”. Every table and figure from data; Figs. 1 and 4 are drawings without data.</p>\n";
-  html += "<div class=\"tiles\">" + Tile(fmt::format("{}", flights), "flights on this page") +
-          Tile(fmt::format("{} / {}", rms.lost, rms.n), "lost with Table 3") +
-          Tile(Degrees(rms.p50), "median RMS pitch error, Table 3") +
-          Tile(Degrees(peak.max), "largest peak pitch error, Table 3") +
-          Tile(fmt::format("{:.2g} m", std::fabs(study.optimization.errors.altitude_m)),
-               "miss of the target height") +
-          "</div>\n</header>\n";
-  return html + PaperHeadline(study) + kLimits;
+  const CaseColumns& cases = study.at("table3").cases;
+  std::size_t flights = 0;
+  for (const auto& [name, flown] : study.campaigns) flights += flown.cases.rows();
+  return "<header>\n<h1>Adaptive fuzzy attitude control of a launch vehicle: the paper reproduced</h1>\n"
+         "<p class=\"soft\">U. Ansari, S. Alam, S. M. un Nabi Jafri, “Trajectory optimization and Adaptive "
+         "Fuzzy based Launch Vehicle Attitude Control”. Every table and figure from data. Figs. 1 and 4 are "
+         "drawings without data.</p>\n<div class=\"tiles\">" +
+         Tile(fmt::format("{}", flights), "flights in the reports below") +
+         Tile(fmt::format("{} / {}", LostCount(cases), cases.rows()), "lost with Table 3") +
+         Tile(Degrees(Digested(cases, kRms).p50), "median RMS pitch error, Table 3") +
+         Tile(Degrees(Digested(cases, kPeak).max), "largest peak pitch error, Table 3") +
+         Tile(fmt::format("{:.2g} m", std::fabs(study.optimization.errors.altitude_m)),
+              "miss of the target height") +
+         "</div>\n</header>\n<p class=\"advice\"><b>The vehicle is rigid.</b> It has no bending, no slosh "
+         "and "
+         "no inertia of the nozzles. A launcher of 27 m has bending modes that a real autopilot must filter. "
+         "Tracking, limit cycles and margins are those of the rigid body only. Guidance is open loop: the "
+         "pitch profile is tracked, the orbit is not corrected.</p>\n";
+}
+
+std::string ClaimsTable(const std::vector<PaperPart>& parts) {
+  HtmlTable table(
+      {{"Part", false, true}, {"The paper"}, {"Found"}, {"Difference"}, {"Verdict"}, {"Shown by"}});
+  for (const PaperPart& part : parts) {
+    const std::string name = part.title.substr(0, part.title.find(':'));
+    const std::string below = "<a href=\"#" + part.id + "\">";
+    table.Row({part.shown.empty() ? name : below + name + "</a>", part.claim, part.found, part.difference,
+               VerdictHtml(part.verdict), part.shown_by.empty() ? below + "below</a>" : part.shown_by});
+  }
+  return "<h2 id=\"claims\">What the paper claims, and what was found</h2>\n" + table.Html("claims") +
+         "<p class=\"soft\">Reproduced: the flights show the claim. In part: they show a part of it. No "
+         "claim: "
+         "the paper states nothing that flights could show.</p>\n";
 }
 
 std::string CampaignSection(const PaperStudy& study) {
-  HtmlTable table(
-      {{"Campaign"}, {"Shows"}, {"flights here", true}, {"in the file", true}, {"Command"}, {"Id"}});
+  HtmlTable table("Report|Shows|Sampling|#flights here|#in the file|All of them");
   for (const PaperCampaign& campaign : PaperCampaigns()) {
-    const auto found = study.campaigns.find(campaign.name);
-    const bool flown = found != study.campaigns.end();
-    table.Row({"<code>" + campaign.name + "</code>", campaign.figure,
-               flown ? fmt::format("{}", found->second.flights.cases.rows()) : "1",
-               flown ? fmt::format("{}", found->second.campaign.sampling.cases) : "1",
-               "<code class=\"copy\">dispersa run campaigns/" + campaign.name + ".yaml</code>",
-               flown ? "<code>" + found->second.campaign.id.substr(0, 8) + "</code>" : ""});
+    const PaperFlights& flown = study.at(campaign.name);
+    table.Row({ReportLink(campaign.name), campaign.shows,
+               fmt::format("{}, seed {}", SamplingMethodTitle(flown.campaign.sampling.method),
+                           flown.campaign.sampling.seed),
+               fmt::format("{}", flown.cases.rows()), fmt::format("{}", flown.file_cases),
+               "<code class=\"copy\">dispersa run campaigns/" + campaign.name + ".yaml</code>"});
   }
-  return "<h2 id=\"campaigns\">Each figure by its own campaign</h2>\n<p>The page flies the first cases of "
-         "these files; a case "
-         "has the same bits here, in <code>dispersa run</code> on any number of workers, and in "
-         "<code>dispersa replay</code>. "
-         "Figs. 2 and 3 and Table 2: <code>dispersa optimize campaigns/slv4_500km.yaml</code>. Two result "
-         "folders on the same "
-         "cases: <code>dispersa compare DIR_A DIR_B</code>. The data of the figures are in "
-         "<code>data/</code> beside this "
-         "page.</p>\n" +
-         table.Html() + "<p class=\"soft\">Engine <code>" + EngineVersion() + "</code>.</p>\n";
-}
-
-/// Cases with their inputs and metrics, as cases.csv has them.
-std::string CasesData(const Campaign& campaign, const CaseColumns& cases) {
-  std::string csv = "case_index,outcome";
-  const std::vector<int> inputs = DispersedInputs(campaign);
-  for (const int i : inputs) csv += ",input_" + InputColumns()[static_cast<std::size_t>(i)].name;
-  const std::vector<std::size_t> metrics = MeasuredMetrics(campaign);
-  for (const std::size_t i : metrics) csv += ",metric_" + MetricNames()[i];
-  csv += "\n";
-  for (std::size_t row = 0; row < cases.rows(); ++row) {
-    csv += fmt::format("{},{}", cases.index[row], OutcomeName(cases.outcome[row]));
-    for (const int i : inputs) csv += "," + ShortestText(cases.inputs[static_cast<std::size_t>(i)][row]);
-    for (const std::size_t i : metrics) csv += "," + ShortestText(cases.metrics[i][row]);
-    csv += "\n";
-  }
-  return csv;
-}
-
-/// The flights' time histories of one column side by side: time_s, case_0, case_1, ...
-std::string HistoriesData(const StudyFlights& flights, PaperColumn column) {
-  std::string csv = "time_s";
-  std::size_t steps = 0;
-  for (std::size_t i = 0; i < flights.histories.size(); ++i) {
-    csv += fmt::format(",case_{}", i);
-    steps = std::max(steps, flights.histories[i][column].size());
-  }
-  csv += "\n";
-  for (std::size_t step = 0; step < steps; ++step) {
-    csv += ShortestText(static_cast<double>(step) / 10.0);
-    for (const SampledFlight& flight : flights.histories)
-      csv += "," + (step < flight[column].size() ? ShortestText(flight[column][step]) : std::string());
-    csv += "\n";
-  }
-  return csv;
+  return "<h2 id=\"campaigns\">The campaigns</h2>\n<p>Each has a result folder beside this page, with the "
+         "first cases of its file. A case has the same bits here, in <code>dispersa run</code> on any number "
+         "of workers, and in <code>dispersa replay DIR --case N --history FILE</code>, which writes its time "
+         "history. <code>cases.csv</code> has the inputs and metrics of every case, "
+         "<code>histories/</code> the bands and the worst cases.</p>\n" +
+         table.Html() + "<p class=\"soft\">Engine " + Code(std::string(EngineVersion())) + ".</p>\n";
 }
 
 }  // namespace
 
-std::string PaperPage(const PaperStudy& study) {
-  std::string page =
-      PageHead("The paper reproduced", "The paper reproduced · engine " + std::string(EngineVersion()),
-               std::string(HeatMapStyle()) + kStyle);
-  page += Header(study);
-  page += kNavigation;
-  page += PaperVehicleSection(study);
-  page += PaperTrajectorySection(study);
-  page += PaperDispersionSection(study);
-  page += PaperPnSection(study);
-  page += PaperPitchSection(study);
-  page += PaperRobustnessSection(study);
-  page += PaperComparisonSection(study);
-  page += PaperMarginSection(study);
-  page += PaperLyapunovSection(study);
-  page += PaperCompletionSection(study);
-  page += CampaignSection(study);
-  return page + "</body>\n</html>\n";
+std::string Degrees(double value) {
+  if (!std::isfinite(value)) return "–";
+  const double magnitude = std::fabs(value);
+  return fmt::format("{:.{}f}°", value, magnitude < 0.1 ? 4 : magnitude < 10.0 ? 3 : 1);
 }
 
-void WritePaper(const PaperStudy& study, const std::filesystem::path& directory) {
-  const std::filesystem::path data = directory / "data";
-  std::error_code error;
-  std::filesystem::create_directories(data, error);
-  if (error) FailFile(data.string(), "cannot be made", error.value());
-  WriteFile(data / "figs2_3_trajectory.csv", AscentCsv(study.optimization.history));
-  WriteFile(data / "figs6_9_nominal.csv", HistoryCsv(study.nominal_history, study.nominal_autopilot));
-  for (const auto& [name, flown] : study.campaigns) {
-    WriteFile(data / (name + "_cases.csv"), CasesData(flown.campaign, flown.flights.cases));
-    for (const auto& [column, title] :
-         {std::pair{kPitchLaunch, "pitch"}, std::pair{kPitchError, "pitch_error"},
-          std::pair{kDeflection, "deflection"}}) {
-      WriteFile(data / fmt::format("{}_{}_deg.csv", name, title), HistoriesData(flown.flights, column));
-    }
-  }
-  WriteFile(directory / "paper.html", PaperPage(study));
+MetricDigest Digested(const CaseColumns& cases, const std::string& metric) {
+  const std::vector<double> sorted = SortedFinite(CompletedValues(cases, metric));
+  return {Quantile(sorted, 0.5), Quantile(sorted, 1.0)};
+}
+
+void DigestRow(HtmlTable& table, Cells before, const CaseColumns& cases, const Cells& after) {
+  const MetricDigest rms = Digested(cases, kRms), peak = Digested(cases, kPeak);
+  for (const std::string& cell :
+       {fmt::format("{}", cases.rows()), fmt::format("{}", LostCount(cases)), Degrees(rms.p50),
+        Degrees(rms.max), Degrees(peak.p50), Degrees(peak.max), Degrees(Digested(cases, kCycle).max)})
+    before.push_back(cell);
+  before.insert(before.end(), after.begin(), after.end());
+  table.Row(before);
+}
+
+std::string PaperPage(const PaperStudy& study) {
+  std::vector<PaperPart> parts = TrajectoryParts(study);
+  parts.push_back(PnPart(study));
+  for (const auto& more : {FlownParts(study), LawParts(study)})
+    parts.insert(parts.end(), more.begin(), more.end());
+  std::string page =
+      PageHead("The paper reproduced", "The paper reproduced · engine " + std::string(EngineVersion()),
+               std::string(HeatMapStyle()) + kStyle) +
+      "<main>\n" + Header(study) + ClaimsTable(parts);
+  for (const PaperPart& part : parts)
+    if (!part.shown.empty()) page += "<h2 id=\"" + part.id + "\">" + part.title + "</h2>\n" + part.shown;
+  page += CampaignSection(study);
+  return page + "</main>\n<script>" + std::string(ChartScript()) + "</script>\n</body>\n</html>\n";
 }
 
 }  // namespace dispersa

@@ -1,17 +1,14 @@
-// The paper's tables and figures on one page, readable offline, and the data of each figure beside it.
+// The paper's tables and figures on one page: an index of what it claims and of the reports that show it.
 #pragma once
 
-#include <filesystem>
 #include <string>
 
 #include "core/paper/paper_study.h"
 
 namespace dispersa {
 
-/// The page. It holds no date, time of computation, path or name of a machine.
+/// The page, which lies beside the result folders of the study. It holds no date, time of computation, path
+/// or name of a machine.
 std::string PaperPage(const PaperStudy& study);
-
-/// Writes paper.html and data/*.csv into a folder. Throws ResultError.
-void WritePaper(const PaperStudy& study, const std::filesystem::path& directory);
 
 }  // namespace dispersa

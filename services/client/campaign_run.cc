@@ -304,7 +304,8 @@ RunResult FlyAndReport(const RunOptions& options, PreparedRun prepared, Executio
     LogWarning("case {} is quarantined: {}", blamed.case_index, fmt::join(blamed.reasons, "; "));
   }
   execution.Write();  // the report shows when and how long
-  CampaignSummary summary = MakeReports(book.folder(), book.campaign(), workers, options.reflown, observer);
+  const int threads = workers == 0 ? ThreadsOrAll(options.threads) : workers;
+  CampaignSummary summary = MakeReports(book.folder(), book.campaign(), threads, options.reflown, observer);
   execution.ended_utc = UtcNow();
   execution.Write();
   WriteStanding(book.folder(), summary);

@@ -16,12 +16,6 @@
 namespace dispersa {
 namespace {
 
-CaseColumns AllColumns(const ResultFolder& folder) {
-  std::vector<int> inputs(InputCount(folder.stages()));
-  std::iota(inputs.begin(), inputs.end(), 0);
-  return ReadColumns(folder, inputs);
-}
-
 /// A name that neither campaign has is no fault of one of them.
 void CheckKnown(const Campaign& a, const Campaign& b, const std::vector<std::string>& metrics) {
   for (const std::string& metric : metrics) {
@@ -59,6 +53,12 @@ std::vector<CampaignChange> ChangesOf(const Campaign& a, const Campaign& b) {
 }
 
 }  // namespace
+
+CaseColumns AllColumns(const ResultFolder& folder) {
+  std::vector<int> inputs(InputCount(folder.stages()));
+  std::iota(inputs.begin(), inputs.end(), 0);
+  return ReadColumns(folder, inputs);
+}
 
 FolderComparison CompareFolders(const std::string& name_a, const std::string& name_b,
                                 const std::vector<std::string>& metrics, double practical_share) {

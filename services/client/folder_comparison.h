@@ -15,6 +15,9 @@ struct FolderComparison {
   CaseColumns a, b;  ///< with all inputs
 };
 
+/// Every case with all its inputs.
+CaseColumns AllColumns(const ResultFolder& folder);
+
 /// `metrics`: names without prefix; empty: every metric that a flight of both defines. Errors of
 /// OpenStored(), and InputError for a name that is no metric.
 FolderComparison CompareFolders(const std::string& a, const std::string& b,
