@@ -1,7 +1,5 @@
 """Conventions that people and scripts expect of any command: errors as objects, colours, standard input and output,
 help, versions.
-
-DISPERSA_BINARIES and DISPERSA_CAMPAIGNS name the folders of the programs and of the campaigns.
 """
 import csv
 import json
@@ -16,20 +14,7 @@ import tempfile
 import termios
 import unittest
 
-BINARIES = pathlib.Path(os.environ["DISPERSA_BINARIES"])
-CAMPAIGNS = pathlib.Path(os.environ["DISPERSA_CAMPAIGNS"])
-SMOKE = CAMPAIGNS / "smoke.yaml"
-TIMEOUT_S = 300
-
-
-def run(program, *arguments, **options):
-    options.setdefault("stdin", subprocess.DEVNULL) if "input" not in options else None
-    return subprocess.run([BINARIES / program, *map(str, arguments)], capture_output=True, text=True, timeout=TIMEOUT_S,
-                          **options)
-
-
-def dispersa(*arguments, **options):
-    return run("dispersa", *arguments, **options)
+from programs import BINARIES, CAMPAIGNS, SMOKE, TIMEOUT_S, dispersa, run, smoke_text
 
 
 class Errors(unittest.TestCase):
@@ -46,9 +31,7 @@ class Errors(unittest.TestCase):
     def test_a_wrong_file_with_its_place(self):
         with tempfile.TemporaryDirectory() as folder:
             file = pathlib.Path(folder) / "wrong.yaml"
-            file.write_text(re.sub(r"cases: \d+", "cases: many", SMOKE.read_text()).replace(
-                "vehicles/", f"{CAMPAIGNS}/vehicles/").replace("references/", f"{CAMPAIGNS}/references/").replace(
-                    "autopilots/", f"{CAMPAIGNS}/autopilots/"))
+            file.write_text(re.sub(r"cases: \d+", "cases: many", smoke_text()))
             line = next(i for i, text in enumerate(file.read_text().splitlines(), 1) if "cases: many" in text)
             for command in ("plan", "fly", "margins"):
                 errors, text = self.error("--json", command, file)

@@ -1,20 +1,15 @@
 """Completion in bash, zsh and fish, each used as its user does, with the scripts that the program prints.
-
-DISPERSA_BINARIES names the folder of the programs.
 """
 import os
-import pathlib
 import re
 import select
 import pty
 import shutil
 import subprocess
-import tempfile
 import time
 import unittest
 
-BINARIES = pathlib.Path(os.environ["DISPERSA_BINARIES"])
-TIMEOUT_S = 300
+from programs import BINARIES, TIMEOUT_S, folder_of
 
 
 def output(*command, **options):
@@ -85,8 +80,7 @@ class Words(unittest.TestCase):
 
 class Shells(unittest.TestCase):
     def setUp(self):
-        self.folder = pathlib.Path(tempfile.mkdtemp(prefix="dispersa-completion-"))
-        self.addCleanup(shutil.rmtree, self.folder)
+        self.folder = folder_of(self)
         (self.folder / "two words.yaml").touch()
         (self.folder / "table.yaml").touch()
         (self.folder / "tables").mkdir()

@@ -1,20 +1,13 @@
 """No green without proof: exit codes, badges and the ledger of attempts, as a user meets them.
-
-DISPERSA_BINARIES and DISPERSA_CAMPAIGNS name the folders of the programs and of the campaigns.
 """
 import json
-import os
-import pathlib
 import re
 import shutil
-import subprocess
-import tempfile
 import unittest
 import xml.etree.ElementTree
 
-BINARIES = pathlib.Path(os.environ["DISPERSA_BINARIES"])
-CAMPAIGNS = pathlib.Path(os.environ["DISPERSA_CAMPAIGNS"])
-TIMEOUT_S = 300
+from programs import CAMPAIGNS, dispersa, folder_of, smoke_text
+
 REQUIREMENT = re.compile(r"requirements:\n.*", re.S)
 RUN = re.compile(rb"<!-- run:begin -->.*?<!-- run:end -->", re.S)
 MET = "{metric: pitch_error_peak_deg, below: 1, probability: 0.8, consumer_risk: 0.10}"
@@ -23,16 +16,13 @@ BROKEN = "{metric: pitch_error_peak_deg, below: 1.0e-9, probability: 0.8, consum
 
 class EvidenceTest(unittest.TestCase):
     def setUp(self):
-        self.root = pathlib.Path(tempfile.mkdtemp(prefix="dispersa-evidence-"))
-        self.addCleanup(shutil.rmtree, self.root)
+        self.root = folder_of(self)
         self.count = 0
 
     def campaign(self, *requirements, sampling=None, more=""):
         """The smoke campaign with other requirements."""
-        text = (CAMPAIGNS / "smoke.yaml").read_text().replace(": vehicles/", f": {CAMPAIGNS}/vehicles/")
-        text = text.replace(": references/", f": {CAMPAIGNS}/references/").replace(": autopilots/", f": {CAMPAIGNS}/autopilots/")
         stated = "requirements:\n" + "".join(f"  - {one}\n" for one in requirements) if requirements else ""
-        text = REQUIREMENT.sub(stated + more, text)
+        text = REQUIREMENT.sub(stated + more, smoke_text())
         if sampling:
             text = re.sub(r"sampling: .*", f"sampling: {sampling}", text)
         self.count += 1
@@ -40,11 +30,8 @@ class EvidenceTest(unittest.TestCase):
         file.write_text(text)
         return file
 
-    def dispersa(self, *arguments):
-        return subprocess.run([BINARIES / "dispersa", *map(str, arguments)], capture_output=True, text=True, timeout=TIMEOUT_S)
-
     def fly(self, campaign, name, *arguments):
-        done = self.dispersa("run", campaign, "--workers", "0", "--no-histories", "--quiet", "--out", self.root / "results" / name,
+        done = dispersa("run", campaign, "--workers", "0", "--no-histories", "--quiet", "--out", self.root / "results" / name,
                              *arguments)
         self.assertNotIn(done.returncode, (1, 2), done.stderr)
         return done.returncode
@@ -54,7 +41,7 @@ class EvidenceTest(unittest.TestCase):
 
     def junit(self, name):
         file = self.root / "junit.xml"
-        self.dispersa("export", self.root / "results" / name, "--format", "junit", "--out", file)
+        dispersa("export", self.root / "results" / name, "--format", "junit", "--out", file)
         suite = xml.etree.ElementTree.parse(file).getroot().find("testsuite")
         return suite, [int(suite.get(key)) for key in ("failures", "errors", "skipped")]
 
@@ -72,13 +59,13 @@ class EvidenceTest(unittest.TestCase):
         self.assertEqual(counts[1], 2)  # the new one and the one that is gone
         self.assertIn("Its last verdict: fail", xml.etree.ElementTree.tostring(suite, encoding="unicode"))
         # A report made again is no way out, nor is leaving it out.
-        self.assertEqual(self.dispersa("report", self.root / "results/out", "--no-histories", "--quiet").returncode, 7)
+        self.assertEqual(dispersa("report", self.root / "results/out", "--no-histories", "--quiet").returncode, 7)
         self.assertEqual(self.fly(self.campaign(), "out", "--resume"), 7)
         # Edited in the folder itself.
         self.assertEqual(self.fly(self.campaign(BROKEN), "edited"), 3)
         stored = self.root / "results/edited/campaign.yaml"
         stored.write_text(re.sub(r"below: 0?1?\.?0*1?e-0?9|below: 1e-09|below: 1\.0e-9", "below: 1", stored.read_text()))
-        self.assertEqual(self.dispersa("report", self.root / "results/edited", "--no-histories", "--quiet").returncode, 7)
+        self.assertEqual(dispersa("report", self.root / "results/edited", "--no-histories", "--quiet").returncode, 7)
         # In a folder of its own: the same cases were flown under the first.
         self.assertEqual(self.fly(self.campaign(MET), "elsewhere"), 7)
         # With flights that nobody saw it is evidence.
@@ -98,7 +85,7 @@ class EvidenceTest(unittest.TestCase):
         self.assertIn("vehicle slv4 (slv4.yaml)", self.page("out"))
         suite, _ = self.junit("out")
         self.assertTrue(suite.find("testcase").get("name").startswith("REQ-2: yaw_error_peak_deg below 5"))
-        self.assertEqual(self.dispersa("report", self.root / "results/out", "--no-histories", "--quiet").returncode, 0)
+        self.assertEqual(dispersa("report", self.root / "results/out", "--no-histories", "--quiet").returncode, 0)
 
     def test_nothing_required(self):
         vehicle = self.root / "unlimited.yaml"
@@ -109,7 +96,7 @@ class EvidenceTest(unittest.TestCase):
         self.assertEqual(self.execution("out")["standing_verdict"], "nothing_judged")
         self.assertIn('<span class="badge nothing-judged">⊘ nothing judged</span>', self.page("out"))
         self.assertEqual(self.fly(nothing, "out", "--resume", "--gate"), 7)
-        self.assertEqual(self.dispersa("report", self.root / "results/out", "--no-histories", "--quiet", "--gate").returncode, 7)
+        self.assertEqual(dispersa("report", self.root / "results/out", "--no-histories", "--quiet", "--gate").returncode, 7)
         self.assertEqual(self.junit("out")[1], [0, 0, 1])
 
     def test_a_study(self):

@@ -1,6 +1,4 @@
 """Exports and the gate as a user calls them, on a small campaign.
-
-DISPERSA_BINARIES and DISPERSA_CAMPAIGNS name the folders of the programs and of the campaigns.
 """
 import csv
 import gzip
@@ -11,32 +9,21 @@ import re
 import shutil
 import sqlite3
 import subprocess
-import tempfile
 import time
 import unittest
 import xml.etree.ElementTree
 
-BINARIES = pathlib.Path(os.environ["DISPERSA_BINARIES"])
-CAMPAIGNS = pathlib.Path(os.environ["DISPERSA_CAMPAIGNS"])
+from programs import BINARIES, CAMPAIGNS, SMOKE, TIMEOUT_S, dispersa, folder_of, run, smoke_text
+
 DEBIAN_PYTHON = "/usr/bin/python3"  # python3-h5py belongs to it
-TIMEOUT_S = 300
-
-
-def run(*command, **options):
-    return subprocess.run([str(word) for word in command], capture_output=True, text=True, timeout=TIMEOUT_S, **options)
-
-
-def dispersa(*arguments):
-    return run(BINARIES / "dispersa", *arguments)
 
 
 class ExportTest(unittest.TestCase):
     @classmethod
     def setUpClass(cls):
-        cls.folder = pathlib.Path(tempfile.mkdtemp(prefix="dispersa-export-"))
-        cls.addClassCleanup(shutil.rmtree, cls.folder)
+        cls.folder = folder_of(cls)
         cls.results = cls.folder / "results"
-        done = dispersa("run", CAMPAIGNS / "smoke.yaml", "--workers", "0", "--no-histories", "--quiet", "--out", cls.results)
+        done = dispersa("run", SMOKE, "--workers", "0", "--no-histories", "--quiet", "--out", cls.results)
         assert done.returncode == 0, done.stderr
         with open(cls.results / "cases.csv", newline="") as stream:
             cls.rows = list(csv.DictReader(stream))
@@ -113,7 +100,7 @@ class Compared(ExportTest):
     def test_the_tail_of_each_metric_is_that_on_its_worse_side(self):
         sides = [self.folder / seed for seed in ("5", "6")]
         for side in sides:
-            dispersa("run", CAMPAIGNS / "smoke.yaml", "--cases", "120", "--seed", side.name, "--workers", "0", "--no-histories", "--quiet",
+            dispersa("run", SMOKE, "--cases", "120", "--seed", side.name, "--workers", "0", "--no-histories", "--quiet",
                      "--out", side)
         shown = {line.partition(" ")[0]: line[99:110].strip() for line in reversed(dispersa("compare", *sides).stdout.splitlines())}
         metrics = json.loads(dispersa("compare", *sides, "--json").stdout)["metrics"]
@@ -131,7 +118,7 @@ class Incomplete(ExportTest):
     def setUpClass(cls):
         super().setUpClass()
         cls.killed = cls.folder / "killed"
-        flight = subprocess.Popen([BINARIES / "dispersa", "run", CAMPAIGNS / "smoke.yaml", "--cases", str(cls.CASES), "--workers", "0",
+        flight = subprocess.Popen([BINARIES / "dispersa", "run", SMOKE, "--cases", str(cls.CASES), "--workers", "0",
                                    "--no-histories", "--quiet", "--out", cls.killed], stdout=subprocess.DEVNULL)
         deadline = time.monotonic() + TIMEOUT_S
         while cls.stored() == 0 and flight.poll() is None and time.monotonic() < deadline:
@@ -202,15 +189,14 @@ class Incomplete(ExportTest):
         self.assertFalse((self.folder / "none.csv").exists())
 
     def test_one_case_of_it_is_flown_again(self):
-        done = dispersa("replay", self.killed, "--case", "0")
+        with sqlite3.connect(f"file:{self.killed}/results.sqlite?mode=ro", uri=True) as database:
+            first, = database.execute("SELECT min(case_index) FROM cases").fetchone()
+        done = dispersa("replay", self.killed, "--case", first)
         self.assertEqual((done.returncode, done.stderr), (0, ""))
 
     def test_a_campaign_that_stopped_because_it_was_decided_lacks_nothing(self):
         campaign = self.folder / "decided.yaml"
-        text = (CAMPAIGNS / "smoke.yaml").read_text()
-        for folder in ("vehicles", "references", "autopilots"):
-            text = text.replace(f": {folder}/", f": {CAMPAIGNS}/{folder}/")
-        campaign.write_text(text + "verdicts: {looks: 3, stop: when_decided}\n")
+        campaign.write_text(smoke_text() + "verdicts: {looks: 3, stop: when_decided}\n")
         out = self.folder / "apart" / "decided"
         done = dispersa("run", campaign, "--cases", "300", "--workers", "0", "--no-histories", "--quiet", "--out", out, "--json")
         self.assertEqual(done.returncode, 0, done.stderr)
@@ -230,14 +216,14 @@ class Ending(ExportTest):
         browser, seen = self.folder / "browser", self.folder / "seen"
         browser.write_text(f'#!/bin/sh\nprintf %s "$1" > {seen}.part && mv {seen}.part {seen}\n')
         browser.chmod(0o755)
-        command = [BINARIES / "dispersa", "report", self.results, "--no-histories", "--quiet", "--open"]
-        done = run(*command, env={**os.environ, "BROWSER": str(browser)})
+        command = ("report", self.results, "--no-histories", "--quiet", "--open")
+        done = dispersa(*command, env={"BROWSER": str(browser)})
         self.assertEqual((done.returncode, done.stderr), (0, ""))
         deadline = time.monotonic() + 30.0
         while not seen.exists() and time.monotonic() < deadline:
             time.sleep(0.02)
         self.assertEqual(seen.read_text(), f"{self.results}/report.html")
-        done = run(*command, env={**os.environ, "BROWSER": "no-such-browser"})
+        done = dispersa(*command, env={"BROWSER": "no-such-browser"})
         self.assertEqual(done.returncode, 0)
         self.assertIn(f"no-such-browser: No such file or directory; open {self.results}/report.html yourself",
                       done.stderr)
@@ -259,8 +245,8 @@ class Markdown(ExportTest):
 
     def test_the_gate_leaves_what_a_pipeline_attaches(self):
         artifacts = self.folder / "artifacts"
-        environment = {**os.environ, "DISPERSA": str(BINARIES / "dispersa")}
-        done = run(CAMPAIGNS / "gate", CAMPAIGNS / "smoke.yaml", artifacts, "--workers", "0", env=environment)
+        environment = {"DISPERSA": str(BINARIES / "dispersa")}
+        done = run(CAMPAIGNS / "gate", SMOKE, artifacts, "--workers", "0", env=environment)
         self.assertEqual(done.returncode, 0, done.stderr)
         suite = xml.etree.ElementTree.parse(artifacts / "requirements.xml").getroot().find("testsuite")
         # The vehicle's own limits, which nobody required, are no test that passed.
@@ -321,7 +307,7 @@ with h5py.File(sys.argv[1]) as file:
 
     @unittest.skipUnless(shutil.which("octave-cli"), "octave is not installed (tests/long-packages.txt)")
     def test_octave_opens_it(self):
-        done = run("octave-cli", "--norc", "--eval",
+        done = run(shutil.which("octave-cli"), "--norc", "--eval",
                    f"d = load('-hdf5', '{self.file}'); printf('%.17g\\n', d.metrics.q_max_pa); printf('%d\\n', d.cases.case_index);")
         self.assertEqual(done.returncode, 0, done.stderr)
         numbers = [float(word) for word in done.stdout.split()]
@@ -341,10 +327,9 @@ with h5py.File(sys.argv[1]) as file:
 class Hdf5Histories(unittest.TestCase):
     @classmethod
     def setUpClass(cls):
-        cls.folder = pathlib.Path(tempfile.mkdtemp(prefix="dispersa-export-"))
-        cls.addClassCleanup(shutil.rmtree, cls.folder)
+        cls.folder = folder_of(cls)
         cls.results = cls.folder / "results"
-        done = dispersa("run", CAMPAIGNS / "smoke.yaml", "--workers", "0", "--quiet", "--out", cls.results)
+        done = dispersa("run", SMOKE, "--workers", "0", "--quiet", "--out", cls.results)
         assert done.returncode == 0, done.stderr
 
     def export(self):

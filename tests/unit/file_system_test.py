@@ -1,21 +1,17 @@
 """Folders on disks and file systems that give less than results need, through the programs as they are started.
 
-file_system_shim.c, compiled here, takes a part of the file system away. DISPERSA_BINARIES and DISPERSA_CAMPAIGNS name the
-folders of the programs and of the campaigns.
+file_system_shim.c, compiled here, takes a part of the file system away.
 """
 import errno
-import os
 import pathlib
 import resource
 import shutil
 import subprocess
-import tempfile
 import unittest
 
-BINARIES = pathlib.Path(os.environ["DISPERSA_BINARIES"])
-CAMPAIGNS = pathlib.Path(os.environ["DISPERSA_CAMPAIGNS"])
+from programs import SMOKE, TIMEOUT_S, folder_of, run
+
 SHIM = pathlib.Path(__file__).with_name("file_system_shim.c")
-TIMEOUT_S = 120
 FULL = "no space left on the disk"
 LIMIT = FULL + ": a file has reached its limit (`ulimit -f`, or the file system's)"
 
@@ -23,23 +19,21 @@ LIMIT = FULL + ": a file has reached its limit (`ulimit -f`, or the file system'
 class FileSystemTest(unittest.TestCase):
     @classmethod
     def setUpClass(cls):
-        cls.root = pathlib.Path(tempfile.mkdtemp(prefix="dispersa-files-")).resolve()
-        cls.addClassCleanup(shutil.rmtree, cls.root)
+        cls.root = folder_of(cls).resolve()
         cls.whole = cls.root / "whole"
         cls.flown = cls.dispersa(*cls.flight(cls.whole))
         assert cls.flown.returncode == 0, cls.flown.stderr
 
     @staticmethod
     def flight(out, *more):
-        return ("run", CAMPAIGNS / "smoke.yaml", "--cases", "60", "--workers", "0", "--no-histories", "--quiet", "--out", out, *more)
+        return ("run", SMOKE, "--cases", "60", "--workers", "0", "--no-histories", "--quiet", "--out", out, *more)
 
     @classmethod
     def dispersa(cls, *words, environment=None, limit=None, program="dispersa", stdout=subprocess.PIPE):
         def limited():
             if limit is not None:
                 resource.setrlimit(resource.RLIMIT_FSIZE, (limit, limit))
-        return subprocess.run([BINARIES / program, *map(str, words)], stdout=stdout, stderr=subprocess.PIPE, text=True,
-                              timeout=TIMEOUT_S, env={**os.environ, **(environment or {})}, preexec_fn=limited)
+        return run(program, *words, env=environment, stdout=stdout, preexec_fn=limited)
 
     def assert_same(self, out):
         self.assertEqual((out / "cases.csv").read_bytes(), (self.whole / "cases.csv").read_bytes())

@@ -1,31 +1,20 @@
 """`dispersa init` for a new user: each starting point is complete, commented and valid, and it flies."""
 import json
-import os
-import pathlib
 import shutil
-import subprocess
-import tempfile
 import unittest
 
-BINARIES = pathlib.Path(os.environ["DISPERSA_BINARIES"])
-TIMEOUT_S = 300
+from programs import dispersa, folder_of
+
 FILES = ["README.md", "autopilot.yaml", "campaign.yaml", "reference.yaml", "schemas", "trajectory.yaml", "vehicle.yaml"]
-
-
-def dispersa(*arguments, **options):
-    return subprocess.run([BINARIES / "dispersa", *map(str, arguments)], capture_output=True, text=True, timeout=TIMEOUT_S,
-                          **options)
 
 
 class InitTest(unittest.TestCase):
     def setUp(self):
-        self.folder = pathlib.Path(tempfile.mkdtemp(prefix="dispersa-init-"))
-        self.addCleanup(shutil.rmtree, self.folder)
+        self.folder = folder_of(self)
 
     @classmethod
     def setUpClass(cls):
-        cls.made = pathlib.Path(tempfile.mkdtemp(prefix="dispersa-made-"))
-        cls.addClassCleanup(shutil.rmtree, cls.made)
+        cls.made = folder_of(cls)
         for name in ("slv4", "vega"):
             done = dispersa("init", cls.made / name, "--from", name)
             assert done.returncode == 0, done.stderr

@@ -1,32 +1,20 @@
 """Metrics of a campaign's own, through the program: the same bits from every engine, filled in later, refused in place.
-
-DISPERSA_BINARIES and DISPERSA_CAMPAIGNS name the folders of the programs and of the campaigns.
 """
 import csv
 import json
-import os
-import pathlib
 import re
 import shutil
 import sqlite3
-import subprocess
-import tempfile
 import unittest
 
-BINARIES = pathlib.Path(os.environ["DISPERSA_BINARIES"])
-CAMPAIGNS = pathlib.Path(os.environ["DISPERSA_CAMPAIGNS"])
-TIMEOUT_S = 300
+from programs import CAMPAIGNS, dispersa, folder_of, smoke_text
+
 CASES = "5"
 OWN = {"q_burn1_max_kpa": "max(qbar_pa while burn1) / 1000",
        "deflection_burn2_rms_deg": "rms(deflection_pitch_deg while burn2)",
        "high_q_time_s": "time(qbar_pa > 30000 and burn)",
        "mass_burnout1_kg": "last(mass_kg while burn1)",
        "lyapunov_never": "max(lyapunov_v while stage > 9)"}
-
-
-def dispersa(*arguments, **environment):
-    return subprocess.run([str(word) for word in (BINARIES / "dispersa", *arguments)], capture_output=True, text=True,
-                          timeout=TIMEOUT_S, env={**os.environ, **environment})
 
 
 def with_own(text, metrics, required=""):
@@ -37,12 +25,8 @@ def with_own(text, metrics, required=""):
 class OwnMetrics(unittest.TestCase):
     @classmethod
     def setUpClass(cls):
-        cls.folder = pathlib.Path(tempfile.mkdtemp(prefix="dispersa-own-"))
-        cls.addClassCleanup(shutil.rmtree, cls.folder)
-        text = (CAMPAIGNS / "smoke.yaml").read_text()
-        for kind in ("vehicles", "references", "autopilots"):
-            text = text.replace(f": {kind}/", f": {CAMPAIGNS}/{kind}/")
-        cls.text = text
+        cls.folder = folder_of(cls)
+        cls.text = smoke_text()
         cls.plain = cls.write("plain", {})
         cls.own = cls.write("own", OWN)
         cls.without = cls.flown(cls.plain, "without")
@@ -58,7 +42,7 @@ class OwnMetrics(unittest.TestCase):
     def flown(cls, campaign, name, *options, code=4, workers=0, **environment):
         out = cls.folder / name / "out"  # a root of its own: campaigns beside one another are attempts at one design
         done = dispersa("run", campaign, "--cases", CASES, "--workers", workers, "--no-histories", "--quiet", "--out", out,
-                        *options, **environment)
+                        *options, env=environment)
         assert done.returncode == code, done.stderr
         return out
 
@@ -103,7 +87,7 @@ class OwnMetrics(unittest.TestCase):
                     path.write_text(text)
                     out = self.folder / "beside" / f"{campaign.parent.name}-{campaign.stem}-{name}" / "out"
                     done = dispersa("run", path, "--cases", "3", "--workers", "0", "--no-histories", "--quiet", "--out", out,
-                                    DISPERSA_LANES=lanes, DISPERSA_ISA="v3")
+                                    env={"DISPERSA_LANES": lanes, "DISPERSA_ISA": "v3"})
                     self.assertIn(done.returncode, (0, 3, 4), done.stderr)
                     rows[name] = self.rows(out)
                 self.assertEqual(rows["one"], rows["eight"])
