@@ -1,15 +1,13 @@
 """Checks that each test source keeps its names to itself.
 
-Eight test sources are compiled as one (tests/CMakeLists.txt), where helpers and tests of the same name would clash. So
+Twelve test sources are compiled as one (tests/CMakeLists.txt), where helpers and tests of the same name would clash. So
 `margins_flight_test.cc` puts all that it declares into a namespace of its own:
 
     namespace dispersa::margins_flight_test {
-    namespace {
     ...
-    }  // namespace
     }  // namespace dispersa::margins_flight_test
 
-and takes back each macro that it defines. A name in a nameless namespace inside still is warned about when unused.
+and takes back each macro that it defines. The compiler does not warn of a helper there that nobody uses: this does.
 
 usage: test_namespaces.py REPOSITORY
 """
@@ -17,6 +15,9 @@ import pathlib
 import re
 import sys
 
+# A function or a value of the namespace itself.
+HELPER = re.compile(r"^(?!TEST|TYPED_|INSTANTIATE|MATCHER|namespace|using|struct|class|enum|template|extern|[\s/#}])"
+                    r"[^\n({=]*?\b(?!operator|PrintTo\b)(\w+)(?:\[\w*\])*(?=\(| =|\{)", re.M)
 OUTSIDE = re.compile(r"\s*(//.*|#\s*include\b.*)?")  # what may stand outside the namespace
 
 
@@ -27,14 +28,15 @@ def violations(name, text):
     if lines.count(opening) != 1 or lines.count(closing) != 1:
         return [(1, f"is not in one `namespace dispersa::{name}`, opened and closed on lines of their own")]
     begin, end = lines.index(opening), lines.index(closing)
-    if lines[begin + 1] != "namespace {" or lines[end - 1] != "}  // namespace":
-        return [(begin + 1, f"dispersa::{name} holds something beside its nameless namespace")]
     found = [(number, "stands outside the source's namespace") for number, line in enumerate(lines, 1)
              if not begin < number <= end + 1 and not OUTSIDE.fullmatch(line)]
     for number, line in enumerate(lines, 1):
         macro = re.match(r"\s*#\s*define\s+(\w+)", line)
         if macro and not re.search(rf"^\s*#\s*undef\s+{macro.group(1)}$", text, re.M):
             found.append((number, f"defines {macro.group(1)}, and no #undef takes it back"))
+    for helper in HELPER.finditer(text):
+        if len(re.findall(rf"\b{helper[1]}\b", text)) == 1:
+            found.append((text.count("\n", 0, helper.start()) + 1, f"declares {helper[1]}, which nobody uses"))
     return found
 
 

@@ -9,10 +9,8 @@ SOURCE = """// What it tests.
 #include <gtest/gtest.h>
 
 namespace dispersa::{name} {{
-namespace {{
 
 {body}
-}}  // namespace
 }}  // namespace dispersa::{name}
 """
 
@@ -46,21 +44,24 @@ class TestNamespacesTest(unittest.TestCase):
         self.assertEqual(self.check({"unit/a_test.cc": source("b_test")}), [
             "tests/unit/a_test.cc:1: is not in one `namespace dispersa::a_test`, opened and closed on lines of their own"])
 
-    def test_finds_what_stands_beside_the_nameless_namespace(self):
-        text = source("a_test").replace("namespace {\n", "int here;\nnamespace {\n")
-        self.assertEqual(self.check({"unit/a_test.cc": text}),
-                         ["tests/unit/a_test.cc:4: dispersa::a_test holds something beside its nameless namespace"])
+    def test_finds_a_helper_that_nobody_uses(self):
+        helpers = "constexpr double kUsed = 1.0, kOther = 2.0;\nstd::vector<int> Made(int n) { return {n}; }\n"
+        test = "TEST(Sum, IsRight) { EXPECT_EQ(kUsed, kOther); }\n"
+        self.assertEqual(self.check({"unit/a_test.cc": source("a_test", helpers + test)}),
+                         ["tests/unit/a_test.cc:7: declares Made, which nobody uses"])
+        self.assertEqual(self.check({"unit/a_test.cc": source("a_test", helpers + test.replace("kUsed", "Made(1)[0]"))}),
+                         ["tests/unit/a_test.cc:6: declares kUsed, which nobody uses"])
 
     def test_finds_what_stands_outside(self):
         self.assertEqual(self.check({"unit/a_test.cc": source("a_test") + "int after;\n"}),
-                         ["tests/unit/a_test.cc:11: stands outside the source's namespace"])
+                         ["tests/unit/a_test.cc:9: stands outside the source's namespace"])
         text = source("a_test").replace("\nnamespace dispersa", "\nusing namespace std;\nnamespace dispersa")
         self.assertEqual(self.check({"unit/a_test.cc": text}),
                          ["tests/unit/a_test.cc:4: stands outside the source's namespace"])
 
     def test_finds_a_macro_that_stays(self):
         self.assertEqual(self.check({"unit/a_test.cc": source("a_test", "#define LONG 1\n")}),
-                         ["tests/unit/a_test.cc:7: defines LONG, and no #undef takes it back"])
+                         ["tests/unit/a_test.cc:6: defines LONG, and no #undef takes it back"])
 
     def test_finds_a_test_that_another_source_of_the_folder_has(self):
         self.assertEqual(self.check({"unit/a_test.cc": source("a_test"), "unit/b_test.cc": source("b_test")}),

@@ -11,18 +11,16 @@ import os
 import pathlib
 import re
 import shutil
-import subprocess
 import tempfile
 import unittest
 
 import jsonschema
 import yaml
 
-BINARIES = pathlib.Path(os.environ["DISPERSA_BINARIES"])
-CAMPAIGNS = pathlib.Path(os.environ["DISPERSA_CAMPAIGNS"])
+from programs import CAMPAIGNS, dispersa, folder_of
+
 DATA = CAMPAIGNS.parent / "tests" / "data" / "yaml"
 KINDS = ["campaign", "vehicle", "reference", "autopilot", "scenario"]
-TIMEOUT_S = 300
 EVERY = int(os.environ.get("DISPERSA_SCHEMA_EVERY", "5"))  # 1: all changes, a minute of work
 
 WHOLE = 20  # every so many changes are judged by the file that stands alone too
@@ -132,10 +130,8 @@ class SchemaTest(unittest.TestCase):
 
     @classmethod
     def setUpClass(cls):
-        cls.folder = pathlib.Path(tempfile.mkdtemp(prefix="dispersa-schema-"))
-        cls.addClassCleanup(shutil.rmtree, cls.folder)
-        done = subprocess.run([BINARIES / "dispersa", "--quiet", "schema", "--all", cls.folder / "schemas"],
-                              capture_output=True, text=True, timeout=TIMEOUT_S)
+        cls.folder = folder_of(cls)
+        done = dispersa("--quiet", "schema", "--all", cls.folder / "schemas")
         assert done.returncode == 0, done.stderr
         cls.validators, cls.whole = {}, {}  # of the split set, whose files refer to one another, and of each alone
         for kind in KINDS:
@@ -147,7 +143,7 @@ class SchemaTest(unittest.TestCase):
 
     @staticmethod
     def printed(kind):
-        done = subprocess.run([BINARIES / "dispersa", "schema", kind], capture_output=True, text=True, timeout=TIMEOUT_S)
+        done = dispersa("schema", kind)
         assert done.returncode == 0, done.stderr
         return done.stdout
 
@@ -177,14 +173,13 @@ class SchemaTest(unittest.TestCase):
         self.assertLess(len(text), 140_000)
 
     def test_an_unknown_kind_is_refused(self):
-        done = subprocess.run([BINARIES / "dispersa", "schema", "vehicel"], capture_output=True, text=True, timeout=TIMEOUT_S)
+        done = dispersa("schema", "vehicel")
         self.assertEqual(2, done.returncode)
         self.assertEqual("kind: there is no 'vehicel' (did you mean 'vehicle'?), allowed: one of campaign, vehicle, "
                          "reference, autopilot, scenario", done.stderr.splitlines()[0])
 
     def test_a_folder_that_cannot_be_made_is_refused(self):
-        done = subprocess.run([BINARIES / "dispersa", "schema", "--all", "/dev/null/schemas"], capture_output=True, text=True,
-                              timeout=TIMEOUT_S)
+        done = dispersa("schema", "--all", "/dev/null/schemas")
         self.assertEqual((2, "--all: /dev/null/schemas cannot be written: /dev/null: Not a directory, allowed: an existing or "
                              "new folder that can be written\n"), (done.returncode, done.stderr))
 
@@ -193,8 +188,7 @@ class SchemaTest(unittest.TestCase):
             with tempfile.TemporaryDirectory() as folder:
                 files = [f"{folder}/{name}.json" for name in names]
                 words = ["--all", folder] if option == "--all" else ["vehicle", "--out", files[0]]
-                done = subprocess.run([BINARIES / "dispersa", "schema", "--json", *words], capture_output=True, text=True,
-                                      timeout=TIMEOUT_S)
+                done = dispersa("schema", "--json", *words)
                 self.assertEqual({"schema": "dispersa/schema/1", "files": files}, json.loads(done.stdout))
 
     def test_units_and_defaults_are_hinted(self):
@@ -283,8 +277,7 @@ class SchemaTest(unittest.TestCase):
         files = [file for _, file, _ in judged]
         errors = {file: [] for file in files}
         for start in range(0, len(files), 500):
-            done = subprocess.run([BINARIES / "dispersa", "--json", "validate", *files[start:start + 500]],
-                                  capture_output=True, text=True, timeout=TIMEOUT_S)
+            done = dispersa("--json", "validate", *files[start:start + 500])
             self.assertIn(done.returncode, (0, 2), done.stderr)
             for error in json.loads(done.stdout)["errors"]:
                 # An error in a file that is named belongs to another schema.
