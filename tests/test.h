@@ -57,9 +57,25 @@ using testing::FieldsAre;
 using testing::HasSubstr;
 using testing::IsEmpty;
 using testing::Not;
+using testing::Optional;
 using testing::Pair;
+using testing::Property;
 using testing::SizeIs;
 using testing::StartsWith;
+using testing::StrEq;
+using testing::Throws;
+using testing::ThrowsMessage;
+
+/// What an action throws.
+template <typename Error = std::exception, typename Action>
+std::string ErrorOf(const Action& action) {
+  try {
+    action();
+  } catch (const Error& error) {
+    return error.what();
+  }
+  return "none";
+}
 
 /// Those that blanks keep apart.
 inline std::vector<std::string> Words(const std::string& text) {

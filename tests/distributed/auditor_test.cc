@@ -6,7 +6,6 @@
 #include "tests/test.h"
 
 namespace dispersa::auditor_test {
-namespace {
 
 constexpr std::chrono::seconds kPatience(60);
 
@@ -30,7 +29,7 @@ TEST(Auditor, AFaultOfTheProgramEndsTheAuditOfThatCampaignAlone) {
   const auto faults = Await([&] { return auditor.TakeFaults(); });
   ASSERT_THAT(faults, SizeIs(1));
   EXPECT_EQ(faults[0].flight_id, flawed.result_id());
-  EXPECT_THAT(faults[0].what, testing::StartsWith("engine fault: core/flight/sensor_model.cc:"));
+  EXPECT_THAT(faults[0].what, StartsWith("engine fault: core/flight/sensor_model.cc:"));
 
   auditor.Fly(sound, {{"w", 1, {}}});
   const auto verdicts = Await([&] { return auditor.Take(); });
@@ -40,5 +39,4 @@ TEST(Auditor, AFaultOfTheProgramEndsTheAuditOfThatCampaignAlone) {
   EXPECT_THAT(auditor.TakeFaults(), SizeIs(0));
 }
 
-}  // namespace
 }  // namespace dispersa::auditor_test

@@ -10,20 +10,14 @@
 #include "tests/test.h"
 
 namespace dispersa::campaign_book_test {
-namespace {
 
 constexpr char kPeak[] = "pitch_error_peak_deg";
 
 class BookTest : public testing::Test {
  protected:
   BookTest() {
-    Requirement requirement;
-    requirement.metric = kPeak;
-    requirement.below = 0.5;
-    requirement.probability = 0.97;
-    requirement.consumer_risk = 0.1;
-    requirement.plan = {PlanKind::kGroupSequential, 4, Spending::kPocock};
-    campaign_.requirements = {requirement};
+    campaign_.requirements = {{kPeak, 0.5, {}, 0.97, 0.1}};
+    campaign_.requirements[0].plan = {PlanKind::kGroupSequential, 4, Spending::kPocock};
     campaign_.name = "made up";
     campaign_.canonical_yaml = "made up";
     campaign_.id = std::string(64, 'a');
@@ -232,5 +226,4 @@ TEST_F(StoringTest, ManyResultsDoNotWaitForTheirTime) {
   EXPECT_TRUE(book_->FlushIfDue(1.9));
 }
 
-}  // namespace
 }  // namespace dispersa::campaign_book_test

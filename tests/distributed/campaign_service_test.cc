@@ -13,7 +13,6 @@
 #include "tests/test.h"
 
 namespace dispersa::campaign_service_test {
-namespace {
 
 class CampaignServiceTest : public ServiceTest {
  protected:
@@ -42,9 +41,9 @@ class CampaignServiceTest : public ServiceTest {
     workforce_.time_s += 10.0;
     workforce_.Tick();
   }
-  std::string RefusalOfCancel(const std::string& id) {
+  static std::string RefusalOf(const auto& action) {
     try {
-      service_->Cancel(id);
+      action();
       return "none";
     } catch (const Refused& refused) {
       return std::to_string(refused.code) + ": " + refused.what();
@@ -217,11 +216,12 @@ TEST_F(CampaignServiceTest, ACampaignInItsReportIsNotCancelledAndAFailedOneIs) {
   workforce_.Join("w");
   Return(campaign, 0);
   ASSERT_TRUE(Reaches(id, CampaignState::kReporting));
-  EXPECT_EQ(RefusalOfCancel(id), "2: campaign " + id.substr(0, 8) + " is reporting and cannot be cancelled");
+  EXPECT_EQ(RefusalOf([&] { service_->Cancel(id); }),
+            "2: campaign " + id.substr(0, 8) + " is reporting and cannot be cancelled");
   ASSERT_TRUE(Reaches(id, CampaignState::kFailed)) << "a result that its flight does not give";
   const std::string problem = service_->View(id).problem;
   EXPECT_NE(problem, "");
-  EXPECT_EQ(RefusalOfCancel(id), "none");
+  EXPECT_EQ(RefusalOf([&] { service_->Cancel(id); }), "none");
   EXPECT_EQ(StateOf(id), CampaignState::kCancelled);
   EXPECT_EQ(service_->catalogue().entries().at(id).code, kExitIncomplete);
   EXPECT_EQ(service_->View(id).problem, problem) << "why it failed is still known";
@@ -261,15 +261,15 @@ TEST_F(CampaignServiceTest, WhoWasExpelledStaysSoWhenTheCoordinatorIsStartedAgai
   {
     MadeUpWorkforce later;
     Service again({folder_ / "data"}, later);
-    EXPECT_THAT(later.expelled(), ElementsAre(testing::Pair("node1", Expulsion{"case 4 gives other bits"})));
-    EXPECT_THAT(again.Readmit("node2"), testing::IsEmpty());
+    EXPECT_THAT(later.expelled(), ElementsAre(Pair("node1", Expulsion{"case 4 gives other bits"})));
+    EXPECT_THAT(again.Readmit("node2"), IsEmpty());
     EXPECT_THAT(again.Readmit("node1"), ElementsAre("node1"));
     EXPECT_EQ(TextOfFile(file), "{}\n") << "at once";
   }
   std::ofstream(file) << "{\"node3\": \"of an earlier version\"}";
   MadeUpWorkforce last;
   Service third({folder_ / "data"}, last);
-  EXPECT_THAT(last.expelled(), ElementsAre(testing::Pair("node3", Expulsion{"of an earlier version"})));
+  EXPECT_THAT(last.expelled(), ElementsAre(Pair("node3", Expulsion{"of an earlier version"})));
 }
 
 TEST_F(CampaignServiceTest, ADamagedListOfTheExpelledReadmitsNobody) {
@@ -279,9 +279,9 @@ TEST_F(CampaignServiceTest, ADamagedListOfTheExpelledReadmitsNobody) {
   for (const char* damaged : {"", "{\"node1\": {\"reason\": \"a li", "{\"node1\": 3}", "[]"}) {
     std::ofstream(file) << damaged;
     EXPECT_THAT([&] { Service again({folder_ / "data"}, workforce_); },
-                testing::ThrowsMessage<InputError>(testing::AllOf(
-                    testing::HasSubstr("expelled.json: is damaged: "),
-                    testing::HasSubstr("allowed: the file of a backup; or none, which readmits everybody"))))
+                testing::ThrowsMessage<InputError>(
+                    AllOf(HasSubstr("expelled.json: is damaged: "),
+                          HasSubstr("allowed: the file of a backup; or none, which readmits everybody"))))
         << damaged;
     EXPECT_EQ(TextOfFile(file), damaged);
   }
@@ -292,18 +292,11 @@ TEST_F(CampaignServiceTest, ACampaignThatHasEndedIsDeletedAndALineIsKept) {
   const Campaign campaign = Smoke(4, 7);
   const std::string id = Launch(campaign);
   ASSERT_TRUE(Reaches(id, CampaignState::kFlying));
-  const auto refusal = [&] {
-    try {
-      service_->Delete(id);
-      return std::string("none");
-    } catch (const Refused& refused) {
-      return std::to_string(refused.code) + ": " + refused.what();
-    }
-  };
-  EXPECT_EQ(refusal(),
-            "2: campaign " + id.substr(0, 8) +
-                " is flying and cannot be deleted, allowed: a campaign that has ended; `dispersa cancel` "
-                "ends it");
+  const auto refusal = [&] { return RefusalOf([&] { service_->Delete(id); }); };
+  EXPECT_EQ(
+      refusal(),
+      "2: campaign " + id.substr(0, 8) +
+          " is flying and cannot be deleted, allowed: a campaign that has ended; `dispersa cancel` ends it");
   Return(campaign, 1);
   service_->Cancel(id);
   EXPECT_EQ(refusal(), "none");
@@ -409,7 +402,7 @@ TEST_F(ServiceTroubleTest, ACampaignOfFourBillionCasesIsOpenedAndCancelled) {
   const std::string id = Launch(Smoke(4294967295));
   ASSERT_TRUE(Reaches(id, CampaignState::kFlying));
   EXPECT_EQ(service_->View(id).progress.waiting, 4294967295u);
-  EXPECT_EQ(RefusalOfCancel(id), "none");
+  EXPECT_EQ(RefusalOf([&] { service_->Cancel(id); }), "none");
   EXPECT_TRUE(AnotherFlies());
 }
 
@@ -421,7 +414,7 @@ TEST_F(ServiceTroubleTest, ATextThatCannotBeReadFailsItsCampaignAlone) {
   EXPECT_EQ(Failure(id), "failed 1: " + text + ": cannot be read");
   EXPECT_EQ(StoredState(id), "failed: " + text + ": cannot be read");
   EXPECT_TRUE(AnotherFlies());
-  EXPECT_EQ(RefusalOfCancel(id), "none");
+  EXPECT_EQ(RefusalOf([&] { service_->Cancel(id); }), "none");
   StartService();
   EXPECT_EQ(StateOf(id), CampaignState::kCancelled) << "also after a restart";
 }
@@ -653,5 +646,4 @@ TEST_F(OpeningTest, AttemptsOfTwoOpeningsDiffer) {
   }
 }
 
-}  // namespace
 }  // namespace dispersa::campaign_service_test

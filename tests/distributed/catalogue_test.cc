@@ -11,7 +11,6 @@
 #include "tests/test.h"
 
 namespace dispersa::catalogue_test {
-namespace {
 
 namespace fs = std::filesystem;
 
@@ -154,9 +153,8 @@ TEST_F(CatalogueTest, WhatWasUnderWayWaitsAgainAndWhatEndedHasEnded) {
     }
   }
   Catalogue catalogue(root_);
-  for (const auto& [before, after] : before_and_after) {
+  for (const auto& [before, after] : before_and_after)
     EXPECT_EQ(catalogue.At(CampaignStateName(before)).state, after) << CampaignStateName(before);
-  }
 }
 
 TEST_F(CatalogueTest, FindsACampaignByTheBeginningOfItsIdIfThatIsOne) {
@@ -188,12 +186,7 @@ TEST_F(CatalogueTest, BelongsToOneProcess) {
 
 TEST(RunningTally, CountsWhatBreaksARequirementInAnyOrder) {
   Campaign campaign;
-  Requirement requirement;
-  requirement.metric = "pitch_error_peak_deg";
-  requirement.below = 0.5;
-  requirement.probability = 0.9;
-  requirement.consumer_risk = 0.1;
-  campaign.requirements = {requirement};
+  campaign.requirements = {{"pitch_error_peak_deg", 0.5, {}, 0.9, 0.1}};
   RunningTally tally(campaign);
   CaseResult result;
   result.metrics.assign(MetricCount(kUsualStages), 0.1);
@@ -224,5 +217,4 @@ TEST(RunningTally, CountsWhatBreaksARequirementInAnyOrder) {
   EXPECT_EQ(RunningTally(campaign).Standings().at(0).so_far, "study");
 }
 
-}  // namespace
 }  // namespace dispersa::catalogue_test

@@ -13,7 +13,6 @@
 #include "tests/test.h"
 
 namespace dispersa::coordinator_test {
-namespace {
 
 using std::chrono::milliseconds;
 using std::chrono::seconds;
@@ -210,5 +209,4 @@ TEST(FingerprintTest, ChangesWithEveryField) {
   }
 }
 
-}  // namespace
 }  // namespace dispersa::coordinator_test

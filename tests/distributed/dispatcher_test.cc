@@ -9,7 +9,6 @@
 #include "tests/test.h"
 
 namespace dispersa::dispatcher_test {
-namespace {
 
 const std::string kFlight(64, 'f');
 
@@ -45,9 +44,8 @@ class DispatcherTest : public testing::Test {
   }
   /// The message to the worker now.
   Orders Tick(double now_s, const std::string& worker = "w") {
-    for (const Orders& orders : dispatcher_.Tick(now_s)) {
+    for (const Orders& orders : dispatcher_.Tick(now_s))
       if (orders.worker == worker) return orders;
-    }
     return {};
   }
   LedgerProgress Progress() const { return book_->ledger().Progress(); }
@@ -347,7 +345,7 @@ TEST_F(DispatcherTest, AReportIsASignOfLife) {
 TEST_F(DispatcherTest, AssignmentsOfAClosedCampaignAreNotRepeated) {
   Open(1);
   dispatcher_.On("s", Status(), 0.0);
-  ASSERT_THAT(Tick(0.0).assignments, testing::SizeIs(1));
+  ASSERT_THAT(Tick(0.0).assignments, SizeIs(1));
   dispatcher_.On("s", Status(), 2.0);  // it got lost: to be said again
   dispatcher_.EndCampaign(kFlight);
   EXPECT_THAT(Tick(2.0).assignments, IsEmpty());
@@ -413,7 +411,7 @@ TEST_F(ForgerTest, ACaseThatItWasNotGivenIsNotItsToReturn) {
 TEST_F(ForgerTest, WhatWasTakenFromAWorkerIsStillItsToReturn) {
   Open(2);
   Come("w");
-  ASSERT_THAT(Given("w"), testing::SizeIs(2));
+  ASSERT_THAT(Given("w"), SizeIs(2));
   Tick(5.0);  // it fell silent
   EXPECT_EQ(Progress().waiting, 2u);
   Come("w", 5.1);
@@ -432,11 +430,11 @@ TEST_F(ForgerTest, MetricsThatTheCampaignHasNotExpelTheProcess) {
   forged.metrics.push_back(1.0);
   Return("node1_aa", forged);
   EXPECT_EQ(Progress().done, 0u);
-  EXPECT_THAT(dispatcher_.expelled(),
-              ElementsAre(testing::Pair(
-                  "node1_aa", Expulsion{"case " + std::to_string(forged.case_index) +
-                                            " of campaign : its metrics are not those of the campaign",
-                                        "host"})));
+  EXPECT_THAT(
+      dispatcher_.expelled(),
+      ElementsAre(Pair("node1_aa", Expulsion{"case " + std::to_string(forged.case_index) +
+                                                 " of campaign : its metrics are not those of the campaign",
+                                             "host"})));
 }
 
 TEST_F(ForgerTest, InputsThatTheCampaignDoesNotDrawExpelTheProcessAndAllThatItReturned) {
@@ -457,13 +455,13 @@ TEST_F(ForgerTest, InputsThatTheCampaignDoesNotDrawExpelTheProcessAndAllThatItRe
   EXPECT_EQ(Progress().done, 2u) << "of node2 and of node1's honest process";
   EXPECT_EQ(dispatcher_.joined(), 2u);
   EXPECT_THAT(dispatcher_.expelled(),
-              ElementsAre(testing::Pair(
+              ElementsAre(Pair(
                   "node1_bb", Expulsion{"case " + std::to_string(forged.case_index) +
                                             " of campaign : its inputs are not those that the campaign draws",
                                         "host"})));
   Come("node1_bb", 0.5);
   EXPECT_EQ(dispatcher_.joined(), 2u);
-  EXPECT_THAT(Tick(0.5, "node1_bb").refusal, testing::HasSubstr("its inputs are not those"));
+  EXPECT_THAT(Tick(0.5, "node1_bb").refusal, HasSubstr("its inputs are not those"));
   Come("node1_dd", 0.6);
   EXPECT_EQ(dispatcher_.joined(), 3u) << "another process of the same keys";
 }
@@ -508,7 +506,7 @@ TEST_F(ForgerTest, AProcessThenItsHostThenItsKeysAreExpelled) {
   come("node1_g", "rack1");
   EXPECT_EQ(dispatcher_.joined(), 3u);
   EXPECT_THAT(Tick(0.0, "node1_g").refusal,
-              testing::StartsWith("2 of its processes there returned false results, the last one: case "));
+              StartsWith("2 of its processes there returned false results, the last one: case "));
   lie("node1_d");
   EXPECT_THAT(names(), ElementsAre("node1", "node1@rack1", "node1_a", "node1_b", "node1_d"));
   EXPECT_EQ(Progress().done, 1u) << "of other keys";
@@ -578,7 +576,7 @@ TEST_F(DispatcherTest, ARefusalForAnEarlierCoordinatorMeansNothing) {
   dispatcher_.On("s", Status(), 0.0);
   dispatcher_.On("s", CampaignRefusal{"w", kEpoch - 1, kFlight, "no"}, 0.1);
   EXPECT_EQ(dispatcher_.RefusalByAll(kFlight), std::nullopt);
-  EXPECT_THAT(Tick(0.2).assignments, testing::SizeIs(2));
+  EXPECT_THAT(Tick(0.2).assignments, SizeIs(2));
 }
 
 const std::string kFault = "engine fault: core/a.cc:1: x does not hold";
@@ -586,7 +584,7 @@ const std::string kFault = "engine fault: core/a.cc:1: x does not hold";
 TEST_F(DispatcherTest, AfterAnEngineFaultOfOneWorkerAnotherGetsItsCases) {
   Open(2);
   dispatcher_.On("s", Status(), 0.0);
-  EXPECT_THAT(Tick(0.0).assignments, testing::SizeIs(2));
+  EXPECT_THAT(Tick(0.0).assignments, SizeIs(2));
   for (const double now_s : {0.1, 0.2})  // it says so at each case that it is given
     dispatcher_.On("s", CampaignRefusal{"w", kEpoch, kFlight, kFault, true}, now_s);
   EXPECT_EQ(book_->breakdown(), "");
@@ -596,7 +594,7 @@ TEST_F(DispatcherTest, AfterAnEngineFaultOfOneWorkerAnotherGetsItsCases) {
   dispatcher_.On("s", Status(), 0.3);
   EXPECT_THAT(Tick(0.3).assignments, IsEmpty()) << "it is leaving";
   dispatcher_.On("other", Status("other"), 0.4);
-  EXPECT_THAT(Tick(0.4, "other").assignments, testing::SizeIs(2));
+  EXPECT_THAT(Tick(0.4, "other").assignments, SizeIs(2));
 }
 
 TEST_F(DispatcherTest, AnEngineFaultOfASecondWorkerEndsTheCampaign) {
@@ -637,14 +635,13 @@ TEST_F(DispatcherTest, AnEngineFaultBlamesNoCaseOfAnyCampaign) {
     dispatcher_.On("s", Report{"w", kEpoch, 0, order.flight_id, {}, {{0, order.attempt}}}, 0.1);
     started.push_back({0, order.attempt});
   }
-  ASSERT_THAT(started, testing::SizeIs(2));
+  ASSERT_THAT(started, SizeIs(2));
   dispatcher_.On("s", CampaignRefusal{"w", kEpoch, kFlight, kFault, true}, 0.2);
   dispatcher_.WorkerEnded("w", WorkerEnd::kCrashed, "exit code 1", 0.3);
   dispatcher_.Tick(1.0);
   EXPECT_EQ(dispatcher_.joined(), 0u);
   dispatcher_.On("n", Status("n"), 1.1);
-  EXPECT_THAT(Tick(1.1, "n").assignments, testing::SizeIs(2))
-      << "suspects would fly alone, one after the other";
+  EXPECT_THAT(Tick(1.1, "n").assignments, SizeIs(2)) << "suspects would fly alone, one after the other";
   EXPECT_EQ(other.breakdown(), "");
   dispatcher_.EndCampaign(other_flight);
 }
@@ -658,8 +655,8 @@ TEST_F(DispatcherTest, ARuleThatBreaksInOneBookEndsItsCampaignAlone) {
   for (const FlyOrder& order : Tick(5.0).assignments)
     dispatcher_.On("s", Report{"w", kEpoch, 0, order.flight_id, {}, {{0, order.attempt}}}, 5.0);
   Fly(1, 0, 4.0);  // before it was begun
-  EXPECT_THAT(book_->breakdown(), testing::StartsWith("engine fault: services/ledger/ledger.cc:"));
-  EXPECT_THAT(book_->breakdown(), testing::EndsWith("duration_s >= 0.0 does not hold, duration_s: -1"));
+  EXPECT_THAT(book_->breakdown(), StartsWith("engine fault: services/ledger/ledger.cc:"));
+  EXPECT_THAT(book_->breakdown(), EndsWith("duration_s >= 0.0 does not hold, duration_s: -1"));
   EXPECT_EQ(other.breakdown(), "");
   dispatcher_.On("s", Report{"w", kEpoch, 2, other_flight, {{1001, ResultOf(0)}}, {}}, 6.0);
   EXPECT_TRUE(other.Complete());
@@ -744,7 +741,7 @@ TEST_F(DispatcherTest, ASuspectFliesBesideNoCaseOfAnotherCampaign) {
   dispatcher_.On("s", Report{"doomed", kEpoch, 1, kFlight, {}, {{0, attempt}}}, 0.1);
   Tick(5.0);  // it fell silent
   dispatcher_.On("s", Status(), 5.0);
-  ASSERT_THAT(Tick(5.0).assignments, testing::SizeIs(1)) << "the suspect";
+  ASSERT_THAT(Tick(5.0).assignments, SizeIs(1)) << "the suspect";
   CampaignBook other(MadeUp(std::string(64, '1'), 5), std::make_unique<MemoryStore>(),
                      {.attempt_base = 1000});
   dispatcher_.BeginCampaign(other, 9);
@@ -778,7 +775,7 @@ TEST_F(DispatcherTest, DismissedWorkersAreToldAtOnceAndGetNoMoreCases) {
   dispatcher_.Dismiss();
   dispatcher_.On("t", Status("v"), 0.1);
   const std::vector<Orders> told = dispatcher_.Tick(0.1);
-  ASSERT_THAT(told, testing::SizeIs(2));
+  ASSERT_THAT(told, SizeIs(2));
   for (const Orders& orders : told) {
     EXPECT_TRUE(orders.leave) << orders.worker;
     EXPECT_THAT(orders.assignments, IsEmpty()) << orders.worker;
@@ -891,7 +888,7 @@ TEST_F(AuditTest, ALiarIsExpelledAndAllThatItReturnedIsFlownAgain) {
   for (const Orders& orders : audited_->Tick(1.0)) {
     if (orders.worker != "liar") continue;
     is_told = true;
-    EXPECT_THAT(orders.refusal, testing::HasSubstr("case 4"));
+    EXPECT_THAT(orders.refusal, HasSubstr("case 4"));
     EXPECT_THAT(orders.assignments, IsEmpty());
   }
   EXPECT_TRUE(is_told);
@@ -1001,8 +998,7 @@ TEST_F(PluginTest, AnotherResultRefusesTheCampaignAndNamesTheFirstColumnThatDiff
   Return("a", first);
   Return("b", second);
   EXPECT_EQ(book_->refusal(),
-            "the control law law is not deterministic: of case 1, flown by worker a and again by b, "
-            "metric_" +
+            "the control law law is not deterministic: of case 1, flown by worker a and again by b, metric_" +
                 MetricNames()[1] + " is '0.25' once and '0.5' again");
 }
 
@@ -1053,10 +1049,9 @@ TEST_F(PluginTest, WhatWasFlownBeforeIsWhatEveryWorkerMustReturn) {
   Return("a", ResultOf(1));
   EXPECT_EQ(book_->refusal(), std::nullopt);
   Return("a", ResultOf(0));
-  EXPECT_EQ(
-      book_->refusal(),
-      "the control law law is not deterministic: of case 0, flown here before the campaign and again by a, "
-      "end_stage is '2' once and '0' again");
+  EXPECT_EQ(book_->refusal(),
+            "the control law law is not deterministic: of case 0, flown here before the campaign and again "
+            "by a, end_stage is '2' once and '0' again");
 }
 
 TEST_F(PluginTest, WhatIsStoredMustBeWhatWasFlownBefore) {
@@ -1070,7 +1065,7 @@ TEST_F(PluginTest, WhatIsStoredMustBeWhatWasFlownBefore) {
   flown.end_stage = 2;
   book_->Expect({flown});
   EXPECT_THAT(book_->refusal().value_or(""),
-              testing::HasSubstr("of case 0, flown here before the campaign and again by a"));
+              HasSubstr("of case 0, flown here before the campaign and again by a"));
 }
 
 TEST_F(PluginTest, ACampaignIsRefusedByAllWhenNobodyIsLeft) {
@@ -1091,8 +1086,7 @@ TEST_F(PluginTest, AContradictionOfAnyCaseRefusesTheCampaign) {
   other.reason = "lost";
   Return("a", other);
   EXPECT_THAT(book_->refusal().value_or(""),
-              testing::HasSubstr("of case 8, flown by worker a and again by a, reason is "
-                                 "'' once and 'lost' again"));
+              HasSubstr("of case 8, flown by worker a and again by a, reason is '' once and 'lost' again"));
 }
 
 TEST_F(PluginTest, OnlyACaseThatAPluginCouldSpoilIsQuarantined) {
@@ -1133,5 +1127,4 @@ TEST_F(PluginTest, CampaignsWithoutPluginAreFlownOnce) {
   EXPECT_THAT(Given("b"), IsEmpty());
 }
 
-}  // namespace
 }  // namespace dispersa::dispatcher_test

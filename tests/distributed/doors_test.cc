@@ -4,7 +4,6 @@
 #include "tests/test.h"
 
 namespace dispersa::doors_test {
-namespace {
 
 Greeting From(std::size_t number, const std::string& name = kWorkerParticipant) {
   Greeting greeting{.name = name};
@@ -92,5 +91,4 @@ TEST_F(DoorsTest, FarewellsAndOtherCoordinatorsTakeNoPlace) {
   EXPECT_TRUE(doors_.DoorOf(farewell, 0.0).door) << "its door has to know that it leaves";
 }
 
-}  // namespace
 }  // namespace dispersa::doors_test

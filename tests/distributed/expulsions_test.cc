@@ -6,7 +6,6 @@
 #include "tests/test.h"
 
 namespace dispersa::expulsions_test {
-namespace {
 
 std::vector<std::string> NamesOf(const ExpulsionMap& expelled) {
   std::vector<std::string> names;
@@ -75,5 +74,4 @@ TEST(Expulsions, FilesAreReadAsTheyAreWritten) {
   EXPECT_THROW(ReadExpulsions("{\"a\": 1}"), nlohmann::json::exception);
 }
 
-}  // namespace
 }  // namespace dispersa::expulsions_test

@@ -1,4 +1,4 @@
-"""Workers in which a rule of the program breaks: what they hold is flown by others, and a second one ends the campaign.
+"""Workers in which a rule of the program breaks: what they hold is flown by others, and a second one ends a run.
 
 Environment as of processes.py; DISPERSA_FAULTY_WORKER: dispersa-worker with such a fault in one campaign.
 """
@@ -7,7 +7,7 @@ import os
 import shutil
 import subprocess
 
-from processes import BINARIES, PATIENCE_S, Run, main, smoke_text, wait_for
+from processes import BINARIES, PATIENCE_S, Run, main, smoke_text
 from service_case import ServiceCase
 
 FAULT = "tests/tools/faulty_worker.cc:"
@@ -24,24 +24,14 @@ class FaultTest(ServiceCase):
         file.write_text(smoke_text(name))
         return file
 
-    def launch_both(self):
+    def test_the_cases_of_the_first_one_are_flown_by_others(self):
         self.start_coordinator()
-        return [self.dispersa("launch", self.campaign(name), "--cases", CASES, "--seed", seed).strip()
-                for seed, name in enumerate(("flawed", "sound"), 1)]
-
-    def fly_faulty(self):
-        """A worker with the fault, until it has ended."""
+        flawed, sound = [self.dispersa("launch", self.campaign(name), "--cases", CASES, "--seed", seed).strip()
+                         for seed, name in enumerate(("flawed", "sound"), 1)]
         worker = self.start(FAULTY, env={**os.environ, "DISPERSA_FAULTY_CAMPAIGN": "flawed"})
         self.assertEqual(worker.wait(timeout=PATIENCE_S), 1)
-
-    def log_text(self):
-        return self.log.read_text()
-
-    def test_the_cases_of_the_first_one_are_flown_by_others(self):
-        flawed, sound = self.launch_both()
-        self.fly_faulty()
-        self.assertIn(FAULT, self.log_text())
-        self.assertIn("leaves with a fault of its own in the campaign flawed: engine fault: ", self.log_text())
+        self.assertIn(FAULT, self.log.read_text())
+        self.assertIn("leaves with a fault of its own in the campaign flawed: engine fault: ", self.log.read_text())
         self.assertEqual(self.status(flawed)["state"], "flying")
         self.start_worker()
         for identity, name, seed in ((flawed, "flawed", 1), (sound, "sound", 2)):
@@ -50,20 +40,6 @@ class FaultTest(ServiceCase):
             self.dispersa("watch", identity, code=reference.code)
             self.assertEqual(self.status(identity)["quarantined"], 0)
             self.assert_same_folder(identity, reference)
-
-    def test_a_second_one_ends_that_campaign_alone(self):
-        flawed, sound = self.launch_both()
-        self.fly_faulty()
-        self.assertEqual(self.status(flawed)["state"], "flying")
-        self.fly_faulty()
-        wait_for(lambda: self.status(flawed)["state"] == "failed", "the end of the campaign")
-        self.assertEqual(self.status(flawed)["quarantined"], 0)
-        self.assertRegex(json.dumps(self.status(flawed)), "engine fault: .*faulty_worker.cc:.*does not hold")
-        self.dispersa("watch", flawed, code=1)
-        self.assertIn(self.status(sound)["state"], ("flying", "reporting", "done"))
-        self.start_worker()
-        self.dispersa("watch", sound)
-        self.assertEqual(self.status(sound)["done"], CASES)
 
     def test_a_run_replaces_the_first_one_and_ends_with_the_second(self):
         programs = self.data / "bin"

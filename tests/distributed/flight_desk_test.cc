@@ -4,7 +4,6 @@
 #include "tests/test.h"
 
 namespace dispersa::flight_desk_test {
-namespace {
 
 const std::string kFlight(64, 'f');
 
@@ -169,9 +168,8 @@ TEST_F(FlightDeskTest, AFaultOfTheProgramIsSaidAsSuch) {
 
 TEST_F(FlightDeskTest, WithoutAWordTheConnectionIsMadeAnewEverMoreSeldom) {
   std::vector<double> anew;
-  for (double now_s = 0.0; now_s < 100.0; now_s += 0.5) {
+  for (double now_s = 0.0; now_s < 100.0; now_s += 0.5)
     if (desk_.Tick(now_s).new_connection) anew.push_back(now_s);
-  }
   EXPECT_THAT(anew, ElementsAre(5.5, 16.0, 36.5, 67.0, 97.5));
   desk_.On(Say({}), 100.0);
   EXPECT_FALSE(desk_.Tick(104.9).new_connection);
@@ -382,5 +380,4 @@ TEST_F(FlightDeskTest, SoManyReportsAreRepeatedAtOnce) {
   EXPECT_THAT(desk_.Tick(now_s + 2.2).reports, SizeIs(6));
 }
 
-}  // namespace
 }  // namespace dispersa::flight_desk_test

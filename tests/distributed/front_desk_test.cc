@@ -10,7 +10,6 @@
 #include "tests/test.h"
 
 namespace dispersa::front_desk_test {
-namespace {
 
 namespace fs = std::filesystem;
 using Json = nlohmann::ordered_json;
@@ -239,7 +238,7 @@ TEST_F(FrontDeskTest, ASnapshotHasTheStateOfTheMomentBeforeItsDatabase) {
   AskFor("cancel", {{"id", id}});
   const Json monday = snapshot("monday");
   EXPECT_EQ(Json::parse(monday.at("state_json").get<std::string>()).at("state"), "flying");
-  EXPECT_THAT(monday.at("files"), testing::SizeIs(2));
+  EXPECT_THAT(monday.at("files"), SizeIs(2));
   const Json read = {{"id", id}, {"snapshot", "monday"}, {"path", "results.sqlite"}, {"offset", 0}};
   const std::string before = Ask("read", read).data;
   AskFor("files", {{"id", id}});  // somebody fetches it
@@ -387,7 +386,7 @@ TEST_F(FrontDeskTest, TheWebPagesCountWhatWasFlown) {
   EXPECT_EQ(histogram.metric, "pitch_error_peak_deg");
   EXPECT_EQ(histogram.n, 3u);
   EXPECT_EQ(std::accumulate(histogram.counts.begin(), histogram.counts.end(), 0.0), 3.0);
-  EXPECT_THAT(histogram.limits, testing::ElementsAre(1.0));
+  EXPECT_THAT(histogram.limits, ElementsAre(1.0));
   ASSERT_EQ(index->workers().size(), 1u);
   EXPECT_EQ(index->workers()[0].id, "w");
   EXPECT_EQ(index->workers()[0].slots, 3);
@@ -467,8 +466,7 @@ TEST_F(OwnersTest, AdministratorsReadmitAndEverybodySeesWhoIsExpelled) {
   EXPECT_EQ(Json::parse(As(eve_, "expelled", Json::object())).at("expelled"), expelled);
   EXPECT_EQ(As(ann_, "readmit", {{"name", "node1"}}),
             "2: the keys of 'ann' may run, and `dispersa readmit` needs the right to administer, allowed: "
-            "keys that "
-            "`dispersa keys issue --may administer` made");
+            "keys that `dispersa keys issue --may administer` made");
   EXPECT_EQ(As(root_, "readmit", {{"name", "node2"}}),
             "2: nobody with the name 'node2' is expelled, allowed: names that `dispersa readmit` without a "
             "name prints");
@@ -507,16 +505,15 @@ TEST_F(OwnersTest, KeysThatMayReadLookAndTakeAndNothingElse) {
   LaunchAs(ann_, campaign);
   const std::string lacks =
       "2: the keys of 'eve' may read, and `dispersa launch` needs the right to run, allowed: keys that "
-      "`dispersa "
-      "keys issue --may run` made";
+      "`dispersa keys issue --may run` made";
   EXPECT_EQ(LaunchAs(eve_, Smoke(3)), lacks);
   EXPECT_EQ(LaunchAs(eve_, campaign), lacks);
   EXPECT_EQ(As(eve_, "upload", {{"id", "x"}, {"size", 1}, {"offset", 0}}, "x"), lacks);
   for (const char* method : {"list", "status"})
-    EXPECT_THAT(As(eve_, method, {{"id", campaign.id}}), testing::HasSubstr(campaign.id)) << method;
+    EXPECT_THAT(As(eve_, method, {{"id", campaign.id}}), HasSubstr(campaign.id)) << method;
   As(ann_, "cancel", {{"id", campaign.id}});
   ASSERT_TRUE(Until([&] { return service_->IsAtRest(campaign.id); }));
-  EXPECT_THAT(As(eve_, "files", {{"id", campaign.id}}), testing::HasSubstr("\"id\""));
+  EXPECT_THAT(As(eve_, "files", {{"id", campaign.id}}), HasSubstr("\"id\""));
   const std::string no_backup =
       "2: the keys of 'bob' may run, and `dispersa backup` needs the right to administer, allowed: keys that "
       "`dispersa keys issue --may administer` made";
@@ -524,7 +521,7 @@ TEST_F(OwnersTest, KeysThatMayReadLookAndTakeAndNothingElse) {
   EXPECT_EQ(As(bob_, "files", {{"id", ""}}), no_backup);
   EXPECT_EQ(As(bob_, "read", {{"id", campaign.id}, {"path", "a"}, {"offset", 0}, {"snapshot", "s"}}),
             no_backup);
-  EXPECT_THAT(As(root_, "ids", Json::object()), testing::HasSubstr(campaign.id));
+  EXPECT_THAT(As(root_, "ids", Json::object()), HasSubstr(campaign.id));
 }
 
 // An owner whose keys were replaced by ones that read.
@@ -559,10 +556,9 @@ TEST_F(OwnersTest, AQuotaIsOfOneOwnerAndOfWhatHasNotEnded) {
   Start({"cases=10,campaigns=2"});
   const Campaign first = Smoke(4), second = Smoke(6, 2), third = Smoke(1, 3);
   EXPECT_EQ(LaunchAs(ann_, first), "waiting");
-  EXPECT_EQ(
-      LaunchAs(ann_, Smoke(7, 2)),
-      "2: 'ann' would have 11 cases in campaigns that have not ended, allowed: at most 10; wait, or launch "
-      "fewer (dispersa-coordinator --quota cases)");
+  EXPECT_EQ(LaunchAs(ann_, Smoke(7, 2)),
+            "2: 'ann' would have 11 cases in campaigns that have not ended, allowed: at most 10; wait, or "
+            "launch fewer (dispersa-coordinator --quota cases)");
   EXPECT_EQ(LaunchAs(ann_, second), "waiting");
   const std::string too_many =
       "2: 'ann' would have 3 campaigns that have not ended, allowed: at most 2; wait, or cancel one "
@@ -593,27 +589,25 @@ TEST_F(OwnersTest, OneOwnerDoesNotTakeAllPlaces) {
 TEST_F(OwnersTest, AnOwnerMayHaveAQuotaOfItsOwn) {
   Start({"bob:cases=20,campaigns=none", "cases=10,campaigns=1", "carol:cases=3"});
   const std::string carol = ClientPrefix("carol", Right::kRun) + "1";
-  EXPECT_THAT(LaunchAs(ann_, Smoke(11)), testing::HasSubstr("allowed: at most 10;"));
+  EXPECT_THAT(LaunchAs(ann_, Smoke(11)), HasSubstr("allowed: at most 10;"));
   EXPECT_EQ(LaunchAs(ann_, Smoke(10)), "waiting");
-  EXPECT_THAT(LaunchAs(bob_, Smoke(21)), testing::HasSubstr("allowed: at most 20;"));
+  EXPECT_THAT(LaunchAs(bob_, Smoke(21)), HasSubstr("allowed: at most 20;"));
   EXPECT_EQ(LaunchAs(bob_, Smoke(17, 2)), "waiting");
   EXPECT_EQ(LaunchAs(bob_, Smoke(2, 3)), "waiting") << "two campaigns";
   EXPECT_EQ(LaunchAs(bob_, Smoke(1, 4)), "waiting");
-  EXPECT_EQ(
-      LaunchAs(bob_, Smoke(1, 5)),
-      "2: 'bob' would have 21 cases in campaigns that have not ended, allowed: at most 20; wait, or launch "
-      "fewer (dispersa-coordinator --quota cases)");
-  EXPECT_THAT(LaunchAs(carol, Smoke(4, 6)), testing::HasSubstr("allowed: at most 3;"));
+  EXPECT_EQ(LaunchAs(bob_, Smoke(1, 5)),
+            "2: 'bob' would have 21 cases in campaigns that have not ended, allowed: at most 20; wait, or "
+            "launch fewer (dispersa-coordinator --quota cases)");
+  EXPECT_THAT(LaunchAs(carol, Smoke(4, 6)), HasSubstr("allowed: at most 3;"));
   EXPECT_EQ(LaunchAs(carol, Smoke(3, 6)), "waiting");
-  EXPECT_THAT(LaunchAs(carol, Smoke(1, 7)), testing::HasSubstr("2 campaigns")) << "that of all";
+  EXPECT_THAT(LaunchAs(carol, Smoke(1, 7)), HasSubstr("2 campaigns")) << "that of all";
 }
 
 TEST(QuotaTest, SaysWhatIsWrong) {
   const auto problem = [](const std::string& text) { return Quotas().Add(text); };
-  EXPECT_EQ(
-      problem("case=1"),
-      "'case=1' is no limit, allowed: cases=N, campaigns=N, places=N and disk=SIZE, with commas between "
-      "them, for all owners, or after OWNER: for one of them");
+  EXPECT_EQ(problem("case=1"),
+            "'case=1' is no limit, allowed: cases=N, campaigns=N, places=N and disk=SIZE, with commas "
+            "between them, for all owners, or after OWNER: for one of them");
   EXPECT_EQ(problem("cases=0"),
             "'0' is no value of cases, allowed: a whole number from 1; none only after OWNER:");
   EXPECT_EQ(problem("ann:disk=5"), "'5' is no value of disk, allowed: a size as 200GB, or none");
@@ -625,13 +619,12 @@ TEST(QuotaTest, SaysWhatIsWrong) {
 
 TEST_F(OwnersTest, LabelsAreShortTexts) {
   const Campaign campaign = Smoke(2);
-  for (const std::string label :
-       {"commit", "=1", "commit=", "com mit=1", "commit=1\n",
-        "commit=1234567890123456789012345678901234567890123456789012345678901234567890"
-        "1234567890123456789012345678901"})
-    EXPECT_THAT(LaunchAs(ann_, campaign, {{"labels", {label}}}), testing::HasSubstr("is no label, allowed: "))
+  for (const std::string label : {"commit", "=1", "commit=", "com mit=1", "commit=1\n",
+                                  "commit="
+                                  "12345678901234567890123456789012345678901234567890123456789012345678901234"
+                                  "567890123456789012345678901"})
+    EXPECT_THAT(LaunchAs(ann_, campaign, {{"labels", {label}}}), HasSubstr("is no label, allowed: "))
         << label;
 }
 
-}  // namespace
 }  // namespace dispersa::front_desk_test

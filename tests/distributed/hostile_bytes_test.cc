@@ -8,7 +8,6 @@
 #include "tests/test.h"
 
 namespace dispersa::hostile_bytes_test {
-namespace {
 
 using Bytes = std::vector<std::uint8_t>;
 
@@ -275,5 +274,4 @@ TEST(Printable, KeepsALogClean) {
   EXPECT_EQ(Printable(std::string(300, 'a')), std::string(200, 'a') + "...");
 }
 
-}  // namespace
 }  // namespace dispersa::hostile_bytes_test

@@ -4,7 +4,6 @@
 #include "tests/test.h"
 
 namespace dispersa::http_address_test {
-namespace {
 
 TEST(HttpAddress, IsAPortOrAnAddressAndAPort) {
   HttpAddress address;
@@ -21,5 +20,4 @@ TEST(HttpAddress, IsAPortOrAnAddressAndAPort) {
     EXPECT_FALSE(ReadHttpAddress(text, &address)) << text;
 }
 
-}  // namespace
 }  // namespace dispersa::http_address_test

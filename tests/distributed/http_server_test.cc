@@ -5,7 +5,6 @@
 #include "tests/test.h"
 
 namespace dispersa::http_server_test {
-namespace {
 
 using std::chrono::milliseconds;
 using Clock = std::chrono::steady_clock;
@@ -170,5 +169,4 @@ TEST(HttpServer, ItsOwnUserIsOfItsOwn) {
   EXPECT_THAT(AskHttp(server.port(), Head("GET /")), StartsWith("HTTP/1.1 200 "));
 }
 
-}  // namespace
 }  // namespace dispersa::http_server_test

@@ -14,20 +14,10 @@
 #include "tests/test.h"
 
 namespace dispersa::key_folder_test {
-namespace {
 
 namespace fs = std::filesystem;
 
 constexpr std::time_t kDay_s = 86400;
-
-std::string ErrorOf(const std::function<void()>& call) {
-  try {
-    call();
-    return "none";
-  } catch (const std::exception& error) {
-    return error.what();
-  }
-}
 
 class KeyFolderTest : public testing::Test {
  protected:
@@ -293,9 +283,9 @@ TEST_F(KeyFolderTest, ADamagedOrForeignFileIsNamed) {
   EXPECT_EQ(with(kPermissionsFile, edited), problem(kPermissionsFile, unsigned_text));
   EXPECT_EQ(OpenError(keys), "none");
   fs::remove(keys / kGovernanceFile);
-  EXPECT_EQ(OpenError(keys), problem(kGovernanceFile,
-                                     "file not found, allowed: a folder with all files that "
-                                     "`dispersa keys issue` made"));
+  EXPECT_EQ(OpenError(keys),
+            problem(kGovernanceFile,
+                    "file not found, allowed: a folder with all files that `dispersa keys issue` made"));
   EXPECT_EQ(OpenError(folder_ / "none"),
             (folder_ / "none").string() + ": no folder: give a folder that `dispersa keys issue` made");
   EXPECT_EQ(OpenError(authority()),
@@ -449,5 +439,4 @@ TEST_F(KeyFolderTest, KeysAreNamedAndExcludeTheirAbsence) {
               HasSubstr("keys of the worker 'node1'; here those of a client are needed"));
 }
 
-}  // namespace
 }  // namespace dispersa::key_folder_test

@@ -16,7 +16,6 @@
 #include "tests/test.h"
 
 namespace dispersa::keys_test {
-namespace {
 
 using std::chrono::milliseconds;
 using std::chrono::seconds;
@@ -139,5 +138,4 @@ TEST_F(Keys, AMessageInPlainIsNotBelieved) {
   for (const WorkerStatus& status : heard_) EXPECT_LT(status.flown, 1'000'000u) << "a forged one";
 }
 
-}  // namespace
 }  // namespace dispersa::keys_test

@@ -8,7 +8,6 @@
 #include "tests/test.h"
 
 namespace dispersa::local_rules_test {
-namespace {
 
 using Json = nlohmann::ordered_json;
 
@@ -86,5 +85,4 @@ TEST(ExitCodes, TheWorstOfTwoIsSaid) {
   }
 }
 
-}  // namespace
 }  // namespace dispersa::local_rules_test

@@ -5,7 +5,6 @@
 #include "tests/test.h"
 
 namespace dispersa::log_limits_test {
-namespace {
 
 TEST(LogLimits, OfOneKindSixtyLinesAMinuteAndThenTheirCount) {
   LogLimits limits;
@@ -45,5 +44,4 @@ TEST(LogLimits, ALineWithoutAKindIsAlwaysWritten) {
   EXPECT_THAT(limits.TakeCounts(100.0), IsEmpty());
 }
 
-}  // namespace
 }  // namespace dispersa::log_limits_test

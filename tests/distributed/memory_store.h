@@ -49,9 +49,8 @@ class MemoryStore : public ResultStore {
   void ForEachUnaudited(const std::function<void(const Claim&)>&) const override {}
   std::vector<std::uint64_t> Disown(const std::string& worker) override {
     std::vector<std::uint64_t> cases;
-    for (const auto& [case_index, who] : worker_of) {
+    for (const auto& [case_index, who] : worker_of)
       if (IsMeantBy(worker, who, host_of.at(case_index))) cases.push_back(case_index);
-    }
     for (const std::uint64_t case_index : cases) rows.erase(case_index), worker_of.erase(case_index);
     stored -= cases.size();
     return cases;

@@ -8,7 +8,6 @@
 #include "tests/test.h"
 
 namespace dispersa::prometheus_port_test {
-namespace {
 
 std::string Get(std::uint16_t port, const std::string& path) {
   return AskHttp(port, "GET " + path + " HTTP/1.1\r\nHost: 127.0.0.1\r\nConnection: close\r\n\r\n");
@@ -23,7 +22,7 @@ TEST(PrometheusPort, AnswersWithTheLatestText) {
     const std::string answer = Get(number, path);
     EXPECT_THAT(answer, StartsWith("HTTP/1.1 200"));
     EXPECT_THAT(answer, HasSubstr("Content-Type: text/plain; version=0.0.4; charset=utf-8\r\n"));
-    EXPECT_THAT(answer, testing::EndsWith("\r\n\r\ndispersa_workers 2\n"));
+    EXPECT_THAT(answer, EndsWith("\r\n\r\ndispersa_workers 2\n"));
   }
 }
 
@@ -34,16 +33,7 @@ TEST(PrometheusPort, AnswersNothingElse) {
   EXPECT_THAT(Get(number, "/else"), StartsWith("HTTP/1.1 404"));
   EXPECT_THAT(AskHttp(number, "POST /metrics HTTP/1.1\r\nHost: 127.0.0.1\r\nContent-Length: 0\r\n\r\n"),
               StartsWith("HTTP/1.1 404"));
-  EXPECT_THAT(AskHttp(number, "nonsense\r\n\r\n"), testing::Not(HasSubstr("dispersa_workers")));
-}
-
-TEST(PrometheusPort, ACallerThatSaysNothingKeepsNobodyOut) {
-  const std::uint16_t number = FreePort();
-  PrometheusPort port({"127.0.0.1", number});
-  port.Set("dispersa_workers 1\n");
-  const int silent[] = {Connected(number), Connected(number), Connected(number)};
-  EXPECT_THAT(Get(number, "/metrics"), StartsWith("HTTP/1.1 200"));
-  for (const int connection : silent) close(connection);
+  EXPECT_THAT(AskHttp(number, "nonsense\r\n\r\n"), Not(HasSubstr("dispersa_workers")));
 }
 
 TEST(PrometheusPort, ListensOnTheChosenAddressAlone) {
@@ -70,5 +60,4 @@ TEST(PrometheusPort, APortThatIsTakenIsSaid) {
                                            " of 127.0.0.1: Address already in use"));
 }
 
-}  // namespace
 }  // namespace dispersa::prometheus_port_test

@@ -8,7 +8,6 @@
 #include "tests/test.h"
 
 namespace dispersa::prometheus_text_test {
-namespace {
 
 class PrometheusTextTest : public ServiceTest {
  protected:
@@ -49,7 +48,7 @@ TEST_F(PrometheusTextTest, AnEmptyServiceIsAllZeros) {
         metric("dispersa_expelled", "gauge", "Processes, hosts and keys that may not fly here any more.", 0),
         metric("dispersa_refused_total", "counter", "Datagrams and messages that were refused.",
                Complaints())})
-    EXPECT_THAT(text, testing::HasSubstr(part));
+    EXPECT_THAT(text, HasSubstr(part));
   EXPECT_EQ(Value("dispersa_request_seconds_sum"), "0.75");
   EXPECT_EQ(Value("dispersa_request_seconds_count"), "3");
   EXPECT_EQ(Value("dispersa_round_seconds_max"), "0.5");
@@ -64,7 +63,7 @@ TEST_F(PrometheusTextTest, ANameEndsNoLabel) {
   entry.owner = "ann";
   service_->Launch(entry, "no campaign");
   EXPECT_THAT(PrometheusText(*service_, workforce_, times_),
-              testing::HasSubstr(R"(name="a\"b\\c\\x0ad",owner="ann",state="waiting"} 0)"));
+              HasSubstr(R"(name="a\"b\\c\\x0ad",owner="ann",state="waiting"} 0)"));
 }
 
 TEST_F(PrometheusTextTest, ACaseIsCountedOnce) {
@@ -107,5 +106,4 @@ TEST_F(PrometheusTextTest, AConflictStaysOverARestart) {
   EXPECT_EQ(Value("dispersa_conflicts"), "1");
 }
 
-}  // namespace
 }  // namespace dispersa::prometheus_text_test

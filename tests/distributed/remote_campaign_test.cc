@@ -10,7 +10,6 @@
 #include "tests/test.h"
 
 namespace dispersa::remote_campaign_test {
-namespace {
 
 namespace fs = std::filesystem;
 using Json = nlohmann::ordered_json;
@@ -258,9 +257,8 @@ TEST_F(RemoteCampaign, IsLaunchedFollowedAndFetched) {
       FetchCampaign(session_, campaign.id.substr(0, 9), (folder_ / "fetched").string());
   EXPECT_EQ(fetched.id, campaign.id);
   EXPECT_EQ(fetched.directory, folder_ / "fetched");
-  for (const char* file : {"campaign.yaml", "results.sqlite", "histories/large.csv"}) {
+  for (const char* file : {"campaign.yaml", "results.sqlite", "histories/large.csv"})
     EXPECT_TRUE(TextOfFile(fetched.directory / file) == TextOfFile(results / file)) << file;
-  }
 }
 
 // The page is compressed there. A client that fetches it gets it uncompressed; histories are compressed
@@ -380,7 +378,7 @@ TEST_F(RemoteCampaign, ABackupIsADataFolderFromWhichAnotherCoordinatorGoesOn) {
 
   MadeUpWorkforce others;
   Service there(ServiceOptions{backup}, others);
-  EXPECT_THAT(others.expelled(), ElementsAre(testing::Pair("node1", Expulsion{"case 4 gives other bits"})));
+  EXPECT_THAT(others.expelled(), ElementsAre(Pair("node1", Expulsion{"case 4 gives other bits"})));
   const auto& entries = there.catalogue().entries();
   ASSERT_EQ(entries.size(), 2u);
   EXPECT_EQ(entries.at(ended.id).state, CampaignState::kCancelled);
@@ -443,5 +441,4 @@ TEST_F(RemoteCampaign, ThatLacksCasesOfItsStateIsNotHandedOut) {
             "5: " + database.string() + ": it has 0 of the 2 cases that the campaign's state promises");
 }
 
-}  // namespace
 }  // namespace dispersa::remote_campaign_test

@@ -11,7 +11,6 @@
 #include "tests/test.h"
 
 namespace dispersa::rules_test {
-namespace {
 
 TEST(Rules, AConflictFailsTheCampaignWhateverItsVerdict) {
   Campaign campaign;
@@ -58,12 +57,10 @@ TEST(Rules, OfTwoExitCodesTheWorseIsReported) {
 // Statuses as waitpid gives them.
 TEST(Rules, AWorkerThatIsEndedFromOutsideBlamesNothing) {
   std::string how;
-  for (const int signal : {SIGKILL, SIGTERM, SIGINT, SIGHUP}) {
+  for (const int signal : {SIGKILL, SIGTERM, SIGINT, SIGHUP})
     EXPECT_EQ(ClassifyExit(signal, &how), WorkerEnd::kKilled);
-  }
-  for (const int signal : {SIGSEGV, SIGABRT, SIGFPE, SIGILL, SIGBUS}) {
+  for (const int signal : {SIGSEGV, SIGABRT, SIGFPE, SIGILL, SIGBUS})
     EXPECT_EQ(ClassifyExit(signal, &how), WorkerEnd::kCrashed);
-  }
   EXPECT_EQ(ClassifyExit(7 << 8, &how), WorkerEnd::kCrashed);
   EXPECT_EQ(how, "exit code 7");
   EXPECT_EQ(ClassifyExit(0, &how), WorkerEnd::kLeft);
@@ -117,5 +114,4 @@ TEST(RestartRule, ACoordinatorThatDoesNotHearItselfStartsAgain) {
   EXPECT_TRUE(RestartRule().Check(61.0, false, false, 0)) << "it never heard itself";
 }
 
-}  // namespace
 }  // namespace dispersa::rules_test

@@ -4,7 +4,6 @@
 #include "tests/test.h"
 
 namespace dispersa::running_histogram_test {
-namespace {
 
 HistogramBins BinsOf(const std::vector<double>& values, std::size_t most = RunningHistogram::kMaxBins) {
   RunningHistogram histogram;
@@ -66,5 +65,4 @@ TEST(RunningHistogram, TheSameValuesGiveTheSameBinsInAnyOrder) {
   }
 }
 
-}  // namespace
 }  // namespace dispersa::running_histogram_test

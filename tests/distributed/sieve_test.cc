@@ -4,7 +4,6 @@
 #include "tests/test.h"
 
 namespace dispersa::sieve_test {
-namespace {
 
 using Bytes = std::vector<std::uint8_t>;
 
@@ -211,5 +210,4 @@ TEST(SieveLimits, AnEncryptedSubmessageHasAnEnd) {
   EXPECT_EQ(encrypted(19), "an encrypted submessage without its end");
 }
 
-}  // namespace
 }  // namespace dispersa::sieve_test

@@ -16,7 +16,6 @@
 #include "tests/test.h"
 
 namespace dispersa::simulation_test {
-namespace {
 
 constexpr double kStep_s = 0.1;
 constexpr std::size_t kTextPart = 5;  // bytes: a text takes several
@@ -69,9 +68,8 @@ class DiskStore : public ResultStore {
   }
   std::vector<std::uint64_t> Disown(const std::string& worker) override {
     std::vector<std::uint64_t> cases;
-    for (const auto& [case_index, who] : disk_.worker_of) {
+    for (const auto& [case_index, who] : disk_.worker_of)
       if (IsMeantBy(worker, who, "")) cases.push_back(case_index);
-    }
     for (const std::uint64_t case_index : cases)
       disk_.rows.erase(case_index), disk_.worker_of.erase(case_index);
     return cases;
@@ -106,13 +104,8 @@ Campaign CampaignNumber(int number, std::uint64_t cases) {
 /// it.
 Campaign CampaignThatStops(int number) {
   Campaign campaign = CampaignNumber(number, 24);
-  Requirement requirement;
-  requirement.metric = MetricNames()[0];
-  requirement.above = 0.5;
-  requirement.probability = 0.5;
-  requirement.consumer_risk = 0.3;
-  requirement.plan = {PlanKind::kGroupSequential, 6, Spending::kPocock};
-  campaign.requirements = {requirement};
+  campaign.requirements = {{MetricNames()[0], {}, 0.5, 0.5, 0.3}};
+  campaign.requirements[0].plan = {PlanKind::kGroupSequential, 6, Spending::kPocock};
   campaign.verdicts.stop_when_decided = true;
   return campaign;
 }
@@ -169,9 +162,8 @@ class World {
         ASSERT_GE(settled, cases_[c]);
       else
         ASSERT_EQ(settled, cases_[c]);
-      for (const auto& [case_index, result] : disks_[c].rows) {
+      for (const auto& [case_index, result] : disks_[c].rows)
         ASSERT_EQ(Fingerprint(result), Fingerprint(ResultOf(case_index)));
-      }
     }
     ASSERT_EQ(conflicts_, 0u);
   }
@@ -426,5 +418,4 @@ TEST(Simulation, EveryWorldComesToItsEndSoonAfterItsTroubles) {
   SetLogLevel(LogLevel::kInfo);
 }
 
-}  // namespace
 }  // namespace dispersa::simulation_test

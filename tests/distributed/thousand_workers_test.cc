@@ -16,7 +16,6 @@
 #include "tests/test.h"
 
 namespace dispersa::thousand_workers_test {
-namespace {
 
 /// Processor time of the coordinator's process, on one of two virtual cores at 2.8 GHz. All of it counts as
 /// the work of one thread, which is more than the truth: the middleware's threads have a share of it.
@@ -333,8 +332,7 @@ TEST(ThousandWorkers, AreNotLostWhateverAFlightTakes) {
                 1e6 * kWithoutKeys.worker_and_round_s);
     std::printf(
         "| workers | a flight | results/s | workers fly | coordinator busy | wait of a result: median | 99 "
-        "%% "
-        "| lost |\n");
+        "%% | lost |\n");
   }
   for (const int workers : prints ? std::vector<int>{100, 300, 1000} : std::vector<int>{100}) {
     for (const double flight_s : {0.02, 0.05, 0.1, 0.3, 1.0, 3.0}) {
@@ -349,5 +347,4 @@ TEST(ThousandWorkers, AreNotLostWhateverAFlightTakes) {
   }
 }
 
-}  // namespace
 }  // namespace dispersa::thousand_workers_test

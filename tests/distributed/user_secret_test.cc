@@ -9,23 +9,13 @@
 #include "tests/test.h"
 
 namespace dispersa::user_secret_test {
-namespace {
 
 namespace fs = std::filesystem;
-
-std::string ErrorOf(const std::function<void()>& call) {
-  try {
-    call();
-    return "none";
-  } catch (const NetworkError& error) {
-    return error.what();
-  }
-}
 
 class UserSecretTest : public testing::Test {
  protected:
   std::string Refusal() const {
-    return ErrorOf([this] { OpenUserSecret(file()); });
+    return ErrorOf<NetworkError>([this] { OpenUserSecret(file()); });
   }
   std::string Expected(const std::string& problem) const { return Expected(problem, file()); }
   static std::string Expected(const std::string& problem, const fs::path& file) {
@@ -110,5 +100,4 @@ TEST_F(UserSecretTest, IsWantedOnTheLoopbackInterfaceAloneAndNotWithInsecure) {
             Expected("others may use it (permissions 644)"));
 }
 
-}  // namespace
 }  // namespace dispersa::user_secret_test

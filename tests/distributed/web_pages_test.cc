@@ -5,7 +5,6 @@
 #include "tests/test.h"
 
 namespace dispersa::web_pages_test {
-namespace {
 
 CampaignRow Row(std::uint64_t order, const std::string& name = "table3") {
   CampaignRow row;
@@ -236,5 +235,4 @@ TEST(WebTrend, FollowsOneRequirementOverVersionsOldestFirst) {
   EXPECT_THAT(TrendPage(index, "alpha", ""), HasSubstr("No campaign that has ended requires it"));
 }
 
-}  // namespace
 }  // namespace dispersa::web_pages_test

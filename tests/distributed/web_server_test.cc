@@ -9,7 +9,6 @@
 #include "tests/test.h"
 
 namespace dispersa::web_server_test {
-namespace {
 
 constexpr char kToken[] = "0123456789abcdef";
 
@@ -187,5 +186,4 @@ TEST(WebOptionsTest, ATokenIsLongAndNobodyElses) {
   EXPECT_THAT(error(), HasSubstr("the token is too short"));
 }
 
-}  // namespace
 }  // namespace dispersa::web_server_test

@@ -8,7 +8,6 @@
 #include "tests/test.h"
 
 namespace dispersa::worker_test {
-namespace {
 
 using std::chrono::milliseconds;
 using std::chrono::seconds;
@@ -173,5 +172,4 @@ TEST_F(WorkerTest, LeavesWhenItIsIdleForLong) {
   EXPECT_EQ(exit_, static_cast<int>(WorkerExit::kIdle));
 }
 
-}  // namespace
 }  // namespace dispersa::worker_test
