@@ -39,8 +39,10 @@ std::string WorthOfAdaptation(const PaperStudy& study) {
   const MetricComparison* pid = RmsOf(study.comparisons.at("controllers_pid"));
   return fmt::format(
       "<b>What the adaptive fuzzy law gains over PD is integral action.</b> On {} cases of Table 3 that no "
-      "tuning used, PD’s median RMS pitch error is {:.1f} times the adaptive law’s. A plain PID, tuned by the "
-      "same procedure and budget under the same margins, has {:.2f} of it, the smaller one in {} of {} cases, "
+      "tuning used, PD’s median RMS pitch error is {:.1f} times the adaptive law’s. A plain PID, tuned by "
+      "the "
+      "same procedure and budget under the same margins, has {:.2f} of it, the smaller one in {} of {} "
+      "cases, "
       "and {:.2f} times its median peak. With an augmentation that adapts its gain it has {:.2f} and {:.2f}.",
       law.rows(), times("controllers_pd", kRms), times("controllers_pid", kRms), pid ? pid->b_better : 0,
       pid ? pid->n_b : 0, times("controllers_pid", kPeak), times("controllers_pid_aac", kRms),
@@ -48,8 +50,7 @@ std::string WorthOfAdaptation(const PaperStudy& study) {
 }
 
 PaperPart BaselinePart(const PaperStudy& study) {
-  HtmlTable table("Autopilot|" + kDigestTitles +
-                               "|#RMS over the adaptive law’s|#smaller in|Report|Compared");
+  HtmlTable table("Autopilot|" + kDigestTitles + "|#RMS over the adaptive law’s|#smaller in|Report|Compared");
   const PaperFlights& law = study.at(kPaperLaw);
   DigestRow(table, {HtmlText(law.campaign.autopilot.name)}, law.cases, {"", "", ReportLink(kPaperLaw), ""});
   bool is_best = true;
@@ -60,19 +61,22 @@ PaperPart BaselinePart(const PaperStudy& study) {
               {rms ? RatioText(*rms) : "", rms ? fmt::format("{} of {}", rms->b_better, rms->n_b) : "",
                ReportLink(name), PaperLink(name + "/compare.html", "with the adaptive law")});
   }
-  return {"baselines", "Other controllers: the same cases",
-          "Better results are achieved with adaptive fuzzy control. No other controller is flown.",
-          WorthOfAdaptation(study),
-          "All are tuned by <code>dispersa tune</code> with one budget, on cases that no campaign of this page "
-          "flies. The frozen rules’ consequents lie on a plane over triangular sets. Within their ranges they "
-          "are proportional-derivative control, and only the tuning tells the two apart. The grades of the "
-          "adaptive rules sum to 1, so the mean of the consequents departs by γ/25 ∫ e<sup>T</sup>P<sub>n</sub> "
-          "dt. That is a PID’s integral of the error and a little more of its proportional gain. So the row of "
-          "<code>pid</code> is the one to judge adaptation by.",
-          is_best ? PaperVerdict::kReproduced : PaperVerdict::kNotReproduced, ReportLink(kPaperLaw),
-          "<p>Ratios are the median over the pairs of cases, with 95 % limits. <code>compare.json</code> beside "
-          "each comparison has those of every metric.</p>\n" +
-              table.Html()};
+  return {
+      "baselines",
+      "Other controllers: the same cases",
+      "Better results are achieved with adaptive fuzzy control. No other controller is flown.",
+      WorthOfAdaptation(study),
+      "All are tuned by <code>dispersa tune</code> with one budget, on cases that no campaign of this page "
+      "flies. The frozen rules’ consequents lie on a plane over triangular sets. Within their ranges they "
+      "are proportional-derivative control, and only the tuning tells the two apart. The grades of the "
+      "adaptive rules sum to 1, so the mean of the consequents departs by γ/25 ∫ e<sup>T</sup>P<sub>n</sub> "
+      "dt. That is a PID’s integral of the error and a little more of its proportional gain. So the row of "
+      "<code>pid</code> is the one to judge adaptation by.",
+      is_best ? PaperVerdict::kReproduced : PaperVerdict::kNotReproduced,
+      ReportLink(kPaperLaw),
+      "<p>Ratios are the median over the pairs of cases, with 95 % limits. <code>compare.json</code> beside "
+      "each comparison has those of every metric.</p>\n" +
+          table.Html()};
 }
 
 PaperPart MarginPart(const PaperStudy& study) {
@@ -88,23 +92,27 @@ PaperPart MarginPart(const PaperStudy& study) {
     gain_db = std::min({gain_db, m.gain_up_db, m.gain_down_db});
     delay_s = std::min(delay_s, m.delay_s);
   }
-  return {"margins", "Margins: of gain, phase and delay",
-          "Stability follows from the Lyapunov function. Margins are not given.",
-          fmt::format("Measured in flight: at least {:.1f} dB of gain either way and {:.0f} ms of delay. {} phase "
-                      "passes the gates of {:g} dB and {:g} ms. Linearised, {} of {} sets pass those of {:g} dB, "
-                      "{:g}° and {:g} ms: all axes, every few seconds of powered flight, with gains frozen, "
-                      "adapting, and with what was learnt by then.",
-                      gain_db, 1e3 * delay_s, all_measured ? "Every" : "Not every", kGainMarginGate_db,
-                      1e3 * kDelayMarginGate_s, passed, sets, kGainMarginGate_db, kPhaseMarginGate_deg,
-                      1e3 * kDelayMarginGate_s),
-          "Classical margins do not describe a loop that adapts, hence the measured ones. Gain or delay of one "
-          "stage’s loop is changed until the flight is lost or a limit cycle begins. A steady misalignment "
-          "keeps the adaptation at work.",
-          PaperVerdict::kNoClaim, PaperLink("margins.txt", "each instant and stage")};
+  return {
+      "margins",
+      "Margins: of gain, phase and delay",
+      "Stability follows from the Lyapunov function. Margins are not given.",
+      fmt::format(
+          "Measured in flight: at least {:.1f} dB of gain either way and {:.0f} ms of delay. {} phase "
+          "passes the gates of {:g} dB and {:g} ms. Linearised, {} of {} sets pass those of {:g} dB, "
+          "{:g}° and {:g} ms: all axes, every few seconds of powered flight, with gains frozen, "
+          "adapting, and with what was learnt by then.",
+          gain_db, 1e3 * delay_s, all_measured ? "Every" : "Not every", kGainMarginGate_db,
+          1e3 * kDelayMarginGate_s, passed, sets, kGainMarginGate_db, kPhaseMarginGate_deg,
+          1e3 * kDelayMarginGate_s),
+      "Classical margins do not describe a loop that adapts, hence the measured ones. Gain or delay of one "
+      "stage’s loop is changed until the flight is lost or a limit cycle begins. A steady misalignment "
+      "keeps the adaptation at work.",
+      PaperVerdict::kNoClaim,
+      PaperLink("margins.txt", "each instant and stage")};
 }
 
-/// How often V falls, by its level: the error, at rest, that has the same V. In degrees stages compare. Bins are
-/// quarters of a decade, from the residual set on, in which V may rise.
+/// How often V falls, by its level: the error, at rest, that has the same V. In degrees stages compare. Bins
+/// are quarters of a decade, from the residual set on, in which V may rise.
 constexpr double kResidual_deg = 0.05;
 constexpr int kLeastBin = -16, kMostBin = 7;
 struct Ticks {
@@ -118,7 +126,8 @@ std::map<int, Ticks> CountFalling(const AxisConfig& pitch, const std::vector<Sam
   for (const SampledFlight& flight : flights) {
     for (std::size_t i = 0; i < flight[kV].size(); ++i) {
       if (!std::isfinite(flight[kV][i])) continue;
-      const double level = std::sqrt(2.0 * flight[kV][i] / p11[static_cast<std::size_t>(flight[kStage][i]) - 1]);
+      const double level =
+          std::sqrt(2.0 * flight[kV][i] / p11[static_cast<std::size_t>(flight[kStage][i]) - 1]);
       const double quarters = 4.0 * std::log10(std::max(1e-9, level * kDegPerRad / kResidual_deg));
       Ticks& ticks = bins[std::clamp(static_cast<int>(std::floor(quarters)), kLeastBin, kMostBin)];
       ticks.all += 1.0;
@@ -129,8 +138,8 @@ std::map<int, Ticks> CountFalling(const AxisConfig& pitch, const std::vector<Sam
 }
 
 PaperPart LyapunovPart(const PaperStudy& study) {
-  const std::map<int, Ticks> bins = CountFalling(study.at("table3").campaign.autopilot.pitch,
-                                                 study.histories.at("table3").flights);
+  const std::map<int, Ticks> bins =
+      CountFalling(study.at("table3").campaign.autopilot.pitch, study.histories.at("table3").flights);
   const auto level_deg = [](double bin) { return kResidual_deg * std::pow(10.0, 0.25 * bin); };
   const auto from = [&](int least) {
     Ticks sum;
@@ -159,21 +168,23 @@ PaperPart LyapunovPart(const PaperStudy& study) {
                percent(from(bin).all, all), percent(from(bin).falling, from(bin).all)});
   const std::string caption =
       "How often V = ½ eᵀPe falls, by its level; levels with fewer than 100 samples are left out.";
-  return {"lyapunov", "The Lyapunov function: how often V falls",
-          "dV/dt &lt; 0: the system is asymptotically stable, since the approximation error is very small "
-          "(34).",
-          fmt::format("Outside the residual set V falls {} of the time. There V is above that of {:g}° of error; "
-                      "{} of powered flight is spent there. Over all levels V falls {} of the time.",
-                      percent(from(0).falling, from(0).all), kResidual_deg, percent(from(0).all, all),
-                      percent(from(kLeastBin).falling, all)),
-          "With disturbances, an actuator and a projection, (34) can hold only outside a residual set: what can "
-          "be claimed is uniform ultimate boundedness. V here is the part of (29) that can be measured. The "
-          "part of the parameter error is unknown in flight, so a rise of this V refutes nothing by itself. At "
-          "small levels V follows the disturbances. It rises while the wind or a transient grows, and falls "
-          "when the law has learnt it.",
-          from(kLeastBin).falling < all ? PaperVerdict::kNotReproduced : PaperVerdict::kReproduced,
-          ReportLink("table3"),
-          Figures(Figure(chart.Svg(caption), HtmlText(caption)) + "<div>" + table.Html("narrow") + "</div>")};
+  return {
+      "lyapunov",
+      "The Lyapunov function: how often V falls",
+      "dV/dt &lt; 0: the system is asymptotically stable, since the approximation error is very small "
+      "(34).",
+      fmt::format("Outside the residual set V falls {} of the time. There V is above that of {:g}° of error; "
+                  "{} of powered flight is spent there. Over all levels V falls {} of the time.",
+                  percent(from(0).falling, from(0).all), kResidual_deg, percent(from(0).all, all),
+                  percent(from(kLeastBin).falling, all)),
+      "With disturbances, an actuator and a projection, (34) can hold only outside a residual set: what can "
+      "be claimed is uniform ultimate boundedness. V here is the part of (29) that can be measured. The "
+      "part of the parameter error is unknown in flight, so a rise of this V refutes nothing by itself. At "
+      "small levels V follows the disturbances. It rises while the wind or a transient grows, and falls "
+      "when the law has learnt it.",
+      from(kLeastBin).falling < all ? PaperVerdict::kNotReproduced : PaperVerdict::kReproduced,
+      ReportLink("table3"),
+      Figures(Figure(chart.Svg(caption), HtmlText(caption)) + "<div>" + table.Html("narrow") + "</div>")};
 }
 
 /// The cases in which the input has each value other than 1.
@@ -199,9 +210,8 @@ std::map<double, CaseColumns> Settings(const PaperFlights& swept, const std::str
 
 PaperPart CompletionPart(const PaperStudy& study) {
   const PaperFlights& table3 = study.at("table3");
-  HtmlTable table(
-      "Completion|#times|" + kDigestTitles +
-      "|requirements of table3 that fail|least computed margins|least measured|gates");
+  HtmlTable table("Completion|#times|" + kDigestTitles +
+                  "|requirements of table3 that fail|least computed margins|least measured|gates");
   const auto row = [&](const std::string& title, const CaseColumns& flown, const CompletionMargins& margins) {
     const auto& [input, factor, computed, measured, passed] = margins;
     std::string failed;
@@ -229,17 +239,22 @@ PaperPart CompletionPart(const PaperStudy& study) {
       changed += row(titles[f], flown, *margins) != as_shipped;
     }
   }
-  return {"completions", "Completions: how much depends on what we added",
-          "Aerodynamics from DATCOM. Inertia, centres and actuators are not given.",
-          fmt::format("{} of {} settings change which requirements of table3 fail; {} miss a gate of the margins.",
-                      changed, settings, failing_gates),
-          "A setting that changes a verdict marks where a reader with the real vehicle’s data should look "
-          "first. With few flights a setting fails only a requirement that it misses clearly.",
-          PaperVerdict::kNoClaim, ReportLink("completions"),
-          "<p>Each completion is moved by 30 % with the autopilot unchanged and Table 3’s disturbances on; CG and "
-          "CP by 30 % of their distance from the nose. The margins are those of the changed vehicle along its "
-          "own undisturbed flight, all axes and stages, with gains frozen and adapting.</p>\n" +
-              table.Html()};
+  return {
+      "completions",
+      "Completions: how much depends on what we added",
+      "Aerodynamics from DATCOM. Inertia, centres and actuators are not given.",
+      fmt::format(
+          "{} of {} settings change which requirements of table3 fail; {} miss a gate of the margins.",
+          changed, settings, failing_gates),
+      "A setting that changes a verdict marks where a reader with the real vehicle’s data should look "
+      "first. With few flights a setting fails only a requirement that it misses clearly.",
+      PaperVerdict::kNoClaim,
+      ReportLink("completions"),
+      "<p>Each completion is moved by 30 % with the autopilot unchanged and Table 3’s disturbances on; CG "
+      "and "
+      "CP by 30 % of their distance from the nose. The margins are those of the changed vehicle along its "
+      "own undisturbed flight, all axes and stages, with gains frozen and adapting.</p>\n" +
+          table.Html()};
 }
 
 }  // namespace

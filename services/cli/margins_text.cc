@@ -13,7 +13,8 @@ std::string Formatted(double value, const char* format) {
   return std::isfinite(value) ? fmt::format(fmt::runtime(format), value) : "none";
 }
 
-void AddLoop(std::string& text, const std::string& place, const char* kind, const ComputedMargins& at, const LoopMargins& m) {
+void AddLoop(std::string& text, const std::string& place, const char* kind, const ComputedMargins& at,
+             const LoopMargins& m) {
   const bool passed = &m == (at.learnt ? &*at.learnt : nullptr) ? LearntPasses(at) : PassesGates(m);
   const std::string bending =
       std::isfinite(m.bending_peak_db)
@@ -22,12 +23,12 @@ void AddLoop(std::string& text, const std::string& place, const char* kind, cons
                 m.bending_phase_6db_deg < 180.0 ? fmt::format("{:.1f}", m.bending_phase_6db_deg) : "-")
           : "";
   text += fmt::format("{:<24} {:>8.2f} {:<5}  {:<8} {:>8} {:>8} {:>8.1f} {:>8} {} {}\n", place, at.time_s,
-             kAxisNames[at.axis], kind, Formatted(m.gain_up_db, "{:.1f}"),
-             m.gain_down_db == 0.0 ? "0.0" : "-" + Formatted(m.gain_down_db, "{:.1f}"), m.phase_deg,
-             Formatted(1e3 * m.delay_s, "{:.0f}"), bending,
-             !m.stable ? "FAIL: unstable"
-             : passed  ? ""
-                       : "FAIL");
+                      kAxisNames[at.axis], kind, Formatted(m.gain_up_db, "{:.1f}"),
+                      m.gain_down_db == 0.0 ? "0.0" : "-" + Formatted(m.gain_down_db, "{:.1f}"), m.phase_deg,
+                      Formatted(1e3 * m.delay_s, "{:.0f}"), bending,
+                      !m.stable ? "FAIL: unstable"
+                      : passed  ? ""
+                                : "FAIL");
 }
 
 // How near a margin set is to its nearest gate, as a fraction of it.
@@ -52,13 +53,13 @@ void AddDispersed(std::string& text, const CampaignMargins& dispersed) {
   };
   for (const LeastLoopMargins& loop : dispersed.loops) {
     text += fmt::format("{:<8}{:<6} {:>23} {:>23} {:>23} {:>23}\n", fmt::format("stage {}", loop.stage + 1),
-               kAxisNames[loop.axis], cell(loop.gain_up_db, 1.0, 1), cell(loop.gain_down_db, 1.0, 1),
-               cell(loop.phase_deg, 1.0, 1), cell(loop.delay_s, 1e3, 0));
+                        kAxisNames[loop.axis], cell(loop.gain_up_db, 1.0, 1), cell(loop.gain_down_db, 1.0, 1),
+                        cell(loop.phase_deg, 1.0, 1), cell(loop.delay_s, 1e3, 0));
   }
-  text += fmt::format("{} of {} cases miss a gate{}; {} flights ended early.\n", dispersed.missed.size(),
-             dispersed.cases,
-             dispersed.missed.empty() ? "" : fmt::format(", the first is case {}", dispersed.missed.front()),
-             dispersed.ended_early);
+  text += fmt::format(
+      "{} of {} cases miss a gate{}; {} flights ended early.\n", dispersed.missed.size(), dispersed.cases,
+      dispersed.missed.empty() ? "" : fmt::format(", the first is case {}", dispersed.missed.front()),
+      dispersed.ended_early);
 }
 
 void AddSkipped(std::string& text, const std::vector<SkippedInstant>& skipped) {
@@ -66,8 +67,8 @@ void AddSkipped(std::string& text, const std::vector<SkippedInstant>& skipped) {
   text += fmt::format("Skipped, with less than {:g} % of full thrust:\n", 100.0 * kLeastThrustFraction);
   for (const SkippedInstant& at : skipped)
     text += fmt::format("{:<24} {:>8.2f} stage {}, {:.1f} % of full thrust\n",
-               at.place.empty() ? "(between)" : at.place, at.time_s, at.stage + 1,
-               100.0 * at.thrust_fraction);
+                        at.place.empty() ? "(between)" : at.place, at.time_s, at.stage + 1,
+                        100.0 * at.thrust_fraction);
 }
 
 std::string FrequenciesText(const MarginModel& of) {
@@ -93,10 +94,11 @@ void AddBySet(std::string& text, const MarginsResult& result) {
         least[i].margins = Least(least[i].margins, m.by_set[i].margins);
     }
     for (const auto& [frequencies, m] : least) {
-      text += fmt::format("{:<8} {:<24} {:>8} {:>8.1f} {:>8} {}\n", fmt::format("stage {}", stage.stage + 1),
-                 frequencies, Formatted(std::min(m.gain_up_db, m.gain_down_db), "{:.2f}"), m.phase_deg,
-                 m.bending_phase_6db_deg < 180.0 ? fmt::format("{:.1f}", m.bending_phase_6db_deg) : "-",
-                 PassesGates(m) ? "" : "FAIL");
+      text +=
+          fmt::format("{:<8} {:<24} {:>8} {:>8.1f} {:>8} {}\n", fmt::format("stage {}", stage.stage + 1),
+                      frequencies, Formatted(std::min(m.gain_up_db, m.gain_down_db), "{:.2f}"), m.phase_deg,
+                      m.bending_phase_6db_deg < 180.0 ? fmt::format("{:.1f}", m.bending_phase_6db_deg) : "-",
+                      PassesGates(m) ? "" : "FAIL");
     }
   }
 }
@@ -125,8 +127,8 @@ std::string MarginsText(const MarginsResult& result) {
           : "",
       kGainMarginGate_db, kPhaseMarginGate_deg, 1e3 * kDelayMarginGate_s, kDispersedGainGate_db,
       kDispersedPhaseGate_deg);
-  text += fmt::format("{:<24} {:>8} {:<5}  {:<8} {:>8} {:>8} {:>8} {:>8}{}\n", "", "time s", "axis", "", "gain dB",
-             "gain dB", "phase", "delay ms", result.bends ? "  bend dB    phase" : "");
+  text += fmt::format("{:<24} {:>8} {:<5}  {:<8} {:>8} {:>8} {:>8} {:>8}{}\n", "", "time s", "axis", "",
+                      "gain dB", "gain dB", "phase", "delay ms", result.bends ? "  bend dB    phase" : "");
   for (const ComputedMargins& m : result.computed) {
     // Between the named instants only what fails.
     const bool named = !m.place.empty();
@@ -161,13 +163,15 @@ std::string MarginsText(const MarginsResult& result) {
       "gain dB", "delay ms");
   for (const MeasuredMargins& m : result.measured) {
     const auto capped = [](double value, double ceiling) { return value >= ceiling ? ">" : ""; };
-    text += fmt::format("{:<10} {:>8} {:>8} {:>9}  {}\n", fmt::format("stage {}", m.stage + 1),
-               fmt::format("{}{:.1f}", capped(m.gain_up_db, kMeasuredGainCeiling_db), m.gain_up_db),
-               fmt::format("{}-{:.1f}", capped(m.gain_down_db, kMeasuredGainCeiling_db), m.gain_down_db),
-               fmt::format("{}{:.0f}", capped(m.delay_s, kMeasuredDelayCeiling_s), 1e3 * m.delay_s),
-               PassesGates(m) ? "" : "FAIL");
+    text +=
+        fmt::format("{:<10} {:>8} {:>8} {:>9}  {}\n", fmt::format("stage {}", m.stage + 1),
+                    fmt::format("{}{:.1f}", capped(m.gain_up_db, kMeasuredGainCeiling_db), m.gain_up_db),
+                    fmt::format("{}-{:.1f}", capped(m.gain_down_db, kMeasuredGainCeiling_db), m.gain_down_db),
+                    fmt::format("{}{:.0f}", capped(m.delay_s, kMeasuredDelayCeiling_s), 1e3 * m.delay_s),
+                    PassesGates(m) ? "" : "FAIL");
     if (m.gain_up_db == 0.0 && m.gain_down_db == 0.0 && m.delay_s == 0.0)
-      text += fmt::format("{:<10} counts as lost without any change: with a thrust misalignment of 0.25 deg\n", "");
+      text += fmt::format(
+          "{:<10} counts as lost without any change: with a thrust misalignment of 0.25 deg\n", "");
   }
   if (result.dispersed) AddDispersed(text, *result.dispersed);
   text += fmt::format("\n{}\n", result.passed ? "PASS: every gate is met" : "FAIL: a gate is not met");

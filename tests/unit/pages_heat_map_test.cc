@@ -13,7 +13,7 @@ TEST(HeatMap, CellsSayTheirRegionWithoutColour) {
       "up ↑ across →", {{0.1, 2, 0.01}, {1, 2, 1.0, Region::kLimitCycle, true}, {10, 2, 0.5, Region::kLost}});
   EXPECT_THAT(table,
               HasSubstr("<th scope=\"row\" class=\"n\">2</th><td class=\"n\"><b class=\"heat-0\">0.01</b>"
-                        "</td><td class=\"n\"><b class=\"heat-5 cycle framed\">1 ~</b></td><td "
+                        "</td><td class=\"n\"><b class=\"heat-5 cycle framed\">1~</b></td><td "
                         "class=\"n\"><b class=\"lost\">×</b></td></tr>"));
   EXPECT_THAT(table, HasSubstr("up ↑ across →</th><th scope=\"col\" class=\"n\">0.1</th><th scope=\"col\" "
                                "class=\"n\">1</th><th scope=\"col\" class=\"n\">10</th>"));
