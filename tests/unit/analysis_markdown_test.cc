@@ -5,7 +5,6 @@
 #include "tests/test.h"
 
 namespace dispersa::analysis_markdown_test {
-namespace {
 
 CampaignSummary MadeUp() {
   CampaignSummary summary;
@@ -54,8 +53,8 @@ CampaignSummary MadeUp() {
 
 TEST(Markdown, HasALineForEachRequirement) {
   const std::string text = MarkdownReport(MadeUp());
-  EXPECT_THAT(text, testing::StartsWith("# made\\_up: fail\n\ntwo \\| stages, reference orbit, autopilot pd; "
-                                        "40 of 40 cases flown (Monte Carlo, seed 7), 39 completed.\n"));
+  EXPECT_THAT(text, StartsWith("# made\\_up: fail\n\ntwo \\| stages, reference orbit, autopilot pd; 40 of 40 "
+                               "cases flown (Monte Carlo, seed 7), 39 completed.\n"));
   EXPECT_THAT(text, HasSubstr("| pitch\\_error\\_peak\\_deg below 0.5 for 90 % of flights at 10 % risk | "
                               "**not evidence** (post hoc) | 0 of 40 | 100 % | 0.4 | 0.1 |\n"));
   EXPECT_THAT(text, HasSubstr("| pitch\\_error\\_peak\\_deg below 0.5 for 90 % of flights at 10 % risk | "
@@ -69,11 +68,10 @@ TEST(Markdown, HasTheWorstCasesAndTheirStatistics) {
   EXPECT_THAT(
       text,
       HasSubstr("| pitch\\_error\\_peak\\_deg | 3 | – | lost\\_control | `dispersa replay . --case 3` |\n"
-                "| pitch\\_error\\_peak\\_deg | 11 | 0.875 | completed | `dispersa replay . --case "
-                "11` |\n"));
+                "| pitch\\_error\\_peak\\_deg | 11 | 0.875 | completed | `dispersa replay . --case 11` |\n"));
   EXPECT_THAT(text, HasSubstr("| pitch\\_error\\_peak\\_deg | ° | 39 | 0.25 | 0.5 | 0.75 | 0.875 |\n"));
   EXPECT_THAT(text, Not(HasSubstr("q\\_max\\_pa")));
-  EXPECT_THAT(text, testing::EndsWith("\nCampaign `1a`, flights `2b`, engine `3c`.\n"));
+  EXPECT_THAT(text, EndsWith("\nCampaign `1a`, flights `2b`, engine `3c`.\n"));
 }
 
 TEST(Markdown, PromisesNoReplayOfALawThatIsNotInTheFile) {
@@ -95,5 +93,4 @@ TEST(Markdown, SaysThatNothingIsRequired) {
   EXPECT_THAT(text, Not(HasSubstr("Statistics")));
 }
 
-}  // namespace
 }  // namespace dispersa::analysis_markdown_test

@@ -6,7 +6,6 @@
 #include "tests/unit/made_up_results.h"
 
 namespace dispersa::analysis_schema_test {
-namespace {
 
 using Json = nlohmann::json;
 
@@ -36,9 +35,8 @@ void Check(const Json& value, const Json& schema, const std::string& path,
         Check(value[i], rule, path + "[" + std::to_string(i) + "]", problems);
     }
     if (keyword == "required" && value.is_object()) {
-      for (const Json& key : rule) {
+      for (const Json& key : rule)
         if (!value.contains(key.get<std::string>())) problems.push_back(path + ": lacks " + key.dump());
-      }
     }
   }
   if (!value.is_object()) return;
@@ -61,17 +59,8 @@ Json Schema() {
 Json SummaryOf(std::uint64_t cases, std::uint64_t flown) {
   TemporaryFolder temporary;
   Campaign campaign = report_test::MakeCampaign(cases);
-  campaign.requirements = {{.metric = "pitch_error_peak_deg",
-                            .below = 12.5,
-                            .above = std::nullopt,
-                            .probability = 0.9,
-                            .consumer_risk = 0.1}};
-  Dispersion drag;
-  drag.name = "drag_coefficient";
-  drag.distribution.kind = Distribution::kNormal;
-  drag.distribution.sigma = 0.02;
-  drag.inputs = {FindInput("drag_factor")};
-  campaign.dispersions = {drag};
+  campaign.requirements = {report_test::PeakBelow(12.5, 0.9, 0.1)};
+  campaign.dispersions = {made_up::Of("drag_coefficient", made_up::Normal(0.0, 0.02), "drag_factor")};
   ResultFolder folder = ResultFolder::Create(temporary / "out", campaign);
   std::vector<CaseResult> results;
   for (std::uint64_t k = 0; k < flown; ++k) results.push_back(report_test::MakeCase(k));
@@ -88,17 +77,16 @@ TEST(SummarySchema, HoldsForCompleteIncompleteAndEmptyCampaigns) {
     std::vector<std::string> problems;
     Check(SummaryOf(static_cast<std::uint64_t>(cases), static_cast<std::uint64_t>(flown)), Schema(), "$",
           problems);
-    EXPECT_THAT(problems, testing::IsEmpty());
+    EXPECT_THAT(problems, IsEmpty());
   }
 }
 
 TEST(SummarySchema, IsDocumentedKeyByKey) {
   const std::string text = TextOfFile(DISPERSA_TEST_DATA "/../../core/analysis/README.md");
   const Json schema = Schema();
-  for (const auto& [key, rule] : schema["properties"].items())
-    EXPECT_THAT(text, testing::HasSubstr("`" + key + "`"));
+  for (const auto& [key, rule] : schema["properties"].items()) EXPECT_THAT(text, HasSubstr("`" + key + "`"));
   for (const auto& [key, rule] : schema["properties"]["requirements"]["items"]["properties"].items())
-    EXPECT_THAT(text, testing::HasSubstr("`" + key + "`"));
+    EXPECT_THAT(text, HasSubstr("`" + key + "`"));
 }
 
 TEST(SummarySchema, SeesWhatIsWrong) {
@@ -112,5 +100,4 @@ TEST(SummarySchema, SeesWhatIsWrong) {
   EXPECT_EQ(problems.size(), 4u);
 }
 
-}  // namespace
 }  // namespace dispersa::analysis_schema_test

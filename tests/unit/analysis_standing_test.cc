@@ -8,7 +8,6 @@
 #include "tests/unit/made_up_results.h"
 
 namespace dispersa::analysis_standing_test {
-namespace {
 
 using namespace report_test;
 
@@ -263,5 +262,4 @@ TEST(StoppingRule, RemembersVerdictsThatWereRead) {
   EXPECT_EQ(StopsAt(18, {75}), 200u);
 }
 
-}  // namespace
 }  // namespace dispersa::analysis_standing_test

@@ -6,7 +6,6 @@
 #include "tests/unit/made_up_results.h"
 
 namespace dispersa::analysis_summary_gaps_test {
-namespace {
 
 using namespace report_test;
 
@@ -33,12 +32,9 @@ TEST(SummaryWithGaps, NamesCasesByIndexAndNotByRow) {
   EXPECT_EQ(summary.verdict, CampaignVerdict::kIncomplete);
   ASSERT_EQ(summary.limits.size(), 1u);
   EXPECT_EQ(summary.limits[0].largest_case, 5u);
-  EXPECT_THAT(
-      Warnings(summary),
-      ElementsAre(
-          "Incomplete: 3 of 12 cases have a result.",
-          "Structural limits of the vehicle were exceeded in 1 of 3 flights: q_max_pa above 100 Pa in 1, up "
-          "to 120 Pa in case 5."));
+  EXPECT_THAT(Warnings(summary), ElementsAre("Incomplete: 3 of 12 cases have a result.",
+                                             "Structural limits of the vehicle were exceeded in 1 of 3 "
+                                             "flights: q_max_pa above 100 Pa in 1, up to 120 Pa in case 5."));
   ASSERT_EQ(summary.worst_cases[1].metric, kPeak);
   ASSERT_EQ(summary.worst_cases[1].cases.size(), 3u);
   EXPECT_EQ(summary.worst_cases[1].cases[0].case_index, 2u);
@@ -70,9 +66,8 @@ TEST(JointRisk, IsTheSumOfTheRisksAndOfHolmTheLargest) {
   EXPECT_DOUBLE_EQ(summary.any_risk, 0.35);
   EXPECT_EQ(JointRiskSentence(summary),
             "A design that misses any requirement passes them all with a probability of at most 20 %. That "
-            "any one of the 3 "
-            "verdicts to pass, taken by itself, is wrong: at most 35 % (the sum of their risks; joint: holm "
-            "keeps it down).");
+            "any one of the 3 verdicts to pass, taken by itself, is wrong: at most 35 % (the sum of their "
+            "risks; joint: holm keeps it down).");
   campaign.verdicts.holm = true;
   summary = SummaryOf(campaign, results);
   EXPECT_EQ(summary.any_risk, 0.2);
@@ -110,5 +105,4 @@ TEST(StoppingRule, TakesALostFlightForAFailure) {
   EXPECT_EQ(StopsAt(2, Outcome::kImpact, 0.1), StopsAt(2, Outcome::kCompleted, 0.9));
 }
 
-}  // namespace
 }  // namespace dispersa::analysis_summary_gaps_test

@@ -1,17 +1,15 @@
 // The numbers of summary.json against numbers worked out by hand.
 #include "core/analysis/campaign_summary.h"
 
-#include <nlohmann/json.hpp>
-
 #include "core/analysis/junit.h"
 #include "core/analysis/load_check.h"
 #include "core/analysis/stopping_rule.h"
 #include "core/flight/engine_version.h"
+#include "tests/json_holds.h"
 #include "tests/test.h"
 #include "tests/unit/made_up_results.h"
 
 namespace dispersa::analysis_summary_test {
-namespace {
 
 using namespace report_test;
 
@@ -26,6 +24,15 @@ CaseColumns Columns(std::size_t n, std::size_t failures) {
     cases.metrics[MetricColumn(kPeak)].push_back(i < failures ? 0.9 : 0.1);
   }
   return cases;
+}
+
+Requirement Peak(std::optional<double> above, std::optional<std::array<double, 2>> within,
+                 double probability) {
+  Requirement requirement = PeakBelow(0.0, probability, 0.1);
+  requirement.below.reset();
+  requirement.above = above;
+  requirement.within = within;
+  return requirement;
 }
 
 /// Of independent cases.
@@ -62,18 +69,16 @@ TEST(Judge, NeedsTheCasesOfTheExactBinomial) {
 TEST(Judge, SaysWhyNothingIsDecided) {
   // 200 cases without a failure: 0.1^(1/200) = 0.98855.
   const RequirementSummary open = Judged(PeakBelow(0.5, 0.9973, 0.10), Columns(200, 0));
-  EXPECT_EQ(
-      open.sentence,
-      "0 of 200 flights broke the limit. Between 98.8 % and 100 % of flights meet it, each bound with 90 % "
-      "confidence; 99.73 % required.");
-  EXPECT_EQ(
-      AdviceSentence(open),
-      " A new campaign can pass with 852 flights or more. By what was seen here, one of 6816 flights "
-      "passes with a probability of 61 %. This one, extended, needs 1104 flights in all with no further "
-      "failure (any-time rule).");
+  EXPECT_EQ(open.sentence,
+            "0 of 200 flights broke the limit. Between 98.8 % and 100 % of flights meet it, each bound with "
+            "90 % confidence; 99.73 % required.");
+  EXPECT_EQ(AdviceSentence(open),
+            " A new campaign can pass with 852 flights or more. By what was seen here, one of 6816 flights "
+            "passes with a probability of 61 %. This one, extended, needs 1104 flights in all with no "
+            "further failure (any-time rule).");
   // One flight says next to nothing, and so does the advice.
   EXPECT_THAT(AdviceSentence(Judged(PeakBelow(0.5, 0.9973, 0.10), Columns(1, 0))),
-              testing::HasSubstr("passes with a probability of 5.51 %"));
+              HasSubstr("passes with a probability of 5.51 %"));
 }
 
 TEST(Judge, SaysInOneSentenceWhatTheBoundMeans) {
@@ -108,16 +113,11 @@ TEST(Judge, BoundsTheMetricByTheOrderStatisticThatDecides) {
   EXPECT_FALSE(Judged(requirement, cases).bound.has_value());
   EXPECT_FALSE(Judged(requirement, Columns(851, 0)).bound.has_value());
   // From below, and from both sides.
-  const Requirement above = {
-      .metric = kPeak, .below = std::nullopt, .above = 0.0, .probability = 0.9973, .consumer_risk = 0.1};
   CaseColumns ascending = Columns(852, 0);
   for (std::size_t i = 0; i < 852; ++i)
     ascending.metrics[MetricColumn(kPeak)][i] = 1.0 + static_cast<double>(i);
-  EXPECT_EQ(Judged(above, ascending).bound, 1.0);
-  Requirement within = PeakBelow(0.5, 0.9973, 0.10);
-  within.below.reset();
-  within.within = {{-10.0, 900.0}};
-  const RequirementSummary inside = Judged(within, ascending);
+  EXPECT_EQ(Judged(Peak(0.0, {}, 0.9973), ascending).bound, 1.0);
+  const RequirementSummary inside = Judged(Peak({}, {{-10.0, 900.0}}, 0.9973), ascending);
   EXPECT_EQ(inside.bound, 1.0);  // 11 from -10, nearer than 852 to 900
   EXPECT_EQ(inside.margin, 11.0);
   EXPECT_EQ(inside.failures, 0);
@@ -182,9 +182,7 @@ TEST(Judge, TakesRowsOfWhateverNumbers) {
 TEST(Judge, TheLimitItselfFails) { EXPECT_EQ(Judged(PeakBelow(0.1, 0.9, 0.1), Columns(10, 0)).failures, 10); }
 
 TEST(Judge, LooksAboveToo) {
-  const Requirement above = {
-      .metric = kPeak, .below = std::nullopt, .above = 0.5, .probability = 0.5, .consumer_risk = 0.1};
-  const RequirementSummary summary = Judged(above, Columns(10, 4));
+  const RequirementSummary summary = Judged(Peak(0.5, {}, 0.5), Columns(10, 4));
   EXPECT_FALSE(summary.below);
   EXPECT_EQ(summary.failures, 6);  // those at 0.1
 }
@@ -210,10 +208,9 @@ TEST(Judge, GivesAChosenDesignNoVerdict) {
       EXPECT_TRUE(study.looks.empty());
     }
   }
-  EXPECT_EQ(
-      Judge(PeakBelow(0.5, 0.95, 0.10), SamplingMethod::kCorners, Columns(16, 1), 0).sentence,
-      "Design study: 15 of 16 points meet the limit. The points are chosen, not drawn independently: this "
-      "says nothing about the probability in flight.");
+  EXPECT_EQ(Judge(PeakBelow(0.5, 0.95, 0.10), SamplingMethod::kCorners, Columns(16, 1), 0).sentence,
+            "Design study: 15 of 16 points meet the limit. The points are chosen, not drawn independently: "
+            "this says nothing about the probability in flight.");
 }
 
 TEST(Judge, ReplicatesOfADesignGiveBounds) {
@@ -255,6 +252,13 @@ class FiveCases : public testing::Test {
   ResultFolder folder_;
 };
 
+/// Case indices of a metric's worst cases.
+std::vector<std::uint64_t> WorstIn(const CampaignSummary& summary, std::size_t metric) {
+  std::vector<std::uint64_t> order;
+  for (const WorstCase& worst : summary.worst_cases[metric].cases) order.push_back(worst.case_index);
+  return order;
+}
+
 TEST_F(FiveCases, StatisticsAreThoseWorkedOutByHand) {
   const CampaignSummary summary = BuildSummary(folder_, campaign_);
   EXPECT_EQ(summary.flown, 5u);
@@ -269,44 +273,30 @@ TEST_F(FiveCases, StatisticsAreThoseWorkedOutByHand) {
   EXPECT_EQ(peak.p50, 2.5);
   EXPECT_EQ(peak.max, 4.0);
   EXPECT_THAT(Warnings(summary),
-              ElementsAre("1 of 5 flights were lost: statistics and percentiles cover the 4 "
-                          "that were completed, and every lost flight fails every requirement."));
+              ElementsAre("1 of 5 flights were lost: statistics and percentiles cover the 4 that were "
+                          "completed, and every lost flight fails every requirement."));
 }
 
 TEST_F(FiveCases, WorstCasesBeginWithALostOne) {
   const CampaignSummary summary = BuildSummary(folder_, campaign_);
   ASSERT_EQ(summary.worst_cases.size(), 8u) << "those of every report, in the order of their columns";
   EXPECT_EQ(summary.worst_cases[1].metric, kPeak);
-  std::vector<std::uint64_t> order;
-  for (const WorstCase& worst : summary.worst_cases[1].cases) order.push_back(worst.case_index);
-  EXPECT_THAT(order, ElementsAre(2, 1, 4, 0, 3));
+  EXPECT_THAT(WorstIn(summary, 1), ElementsAre(2, 1, 4, 0, 3));
   EXPECT_EQ(summary.worst_cases[1].cases[1].value, 4.0);
   ASSERT_EQ(summary.lost_flights.size(), 1u);
   EXPECT_EQ(summary.lost_flights[0].end_stage, 2);
 }
 
 TEST_F(FiveCases, RanksByTheSideOfTheRequirement) {
-  campaign_.requirements = {
-      {.metric = kPeak, .below = std::nullopt, .above = 0.1, .probability = 0.5, .consumer_risk = 0.1}};
-  const CampaignSummary summary = BuildSummary(folder_, campaign_);
-  std::vector<std::uint64_t> order;
-  for (const WorstCase& worst : summary.worst_cases[0].cases) order.push_back(worst.case_index);
-  EXPECT_THAT(order, ElementsAre(2, 3, 0, 4, 1));
+  campaign_.requirements = {Peak(0.1, {}, 0.5)};
+  EXPECT_THAT(WorstIn(BuildSummary(folder_, campaign_), 0), ElementsAre(2, 3, 0, 4, 1));
 }
 
 // Peaks 2 4 lost 1 3 of cases 0 to 4. Within 1.8 and 10 case 3 is outside, and 0 comes nearest of the others.
 TEST_F(FiveCases, OfTwoLimitsTheWorstIsFarthestOutsideOrNearestToOne) {
-  Requirement within = PeakBelow(10.0, 0.5, 0.1);
-  within.below.reset();
-  within.within = {{1.8, 10.0}};
-  campaign_.requirements = {within};
+  campaign_.requirements = {Peak({}, {{1.8, 10.0}}, 0.5)};
   CampaignSummary summary = BuildSummary(folder_, campaign_);
-  const auto order = [&] {
-    std::vector<std::uint64_t> cases;
-    for (const WorstCase& worst : summary.worst_cases[0].cases) cases.push_back(worst.case_index);
-    return cases;
-  };
-  EXPECT_THAT(order(), ElementsAre(2, 3, 0, 4, 1));
+  EXPECT_THAT(WorstIn(summary, 0), ElementsAre(2, 3, 0, 4, 1));
   EXPECT_EQ(summary.requirements[0].worst_completed->case_index, 3u);
   EXPECT_EQ(summary.requirements[0].worst_completed->value, 1.0);
   const auto json = nlohmann::json::parse(SummaryJson(summary))["requirements"][0]["worst_completed"];
@@ -314,22 +304,20 @@ TEST_F(FiveCases, OfTwoLimitsTheWorstIsFarthestOutsideOrNearestToOne) {
 
   campaign_.requirements[0].within = {{0.0, 4.5}};  // all inside: 4 comes nearest, then 1 and 3, 2 is best
   summary = BuildSummary(folder_, campaign_);
-  EXPECT_THAT(order(), ElementsAre(2, 1, 3, 4, 0));
+  EXPECT_THAT(WorstIn(summary, 0), ElementsAre(2, 1, 3, 4, 0));
   EXPECT_EQ(summary.requirements[0].worst_completed->case_index, 1u);
 
   // The same limits as two requirements: each has its own worst, and the list holds what both mean.
-  campaign_.requirements = {PeakBelow(4.5, 0.5, 0.1), PeakBelow(4.5, 0.5, 0.1)};
-  campaign_.requirements[1].below.reset();
-  campaign_.requirements[1].above = 0.0;
+  campaign_.requirements = {PeakBelow(4.5, 0.5, 0.1), Peak(0.0, {}, 0.5)};
   summary = BuildSummary(folder_, campaign_);
-  EXPECT_THAT(order(), ElementsAre(2, 1, 3, 4, 0));
+  EXPECT_THAT(WorstIn(summary, 0), ElementsAre(2, 1, 3, 4, 0));
   EXPECT_EQ(summary.requirements[0].worst_completed->case_index, 1u);
   EXPECT_EQ(summary.requirements[1].worst_completed->case_index, 3u);
 
   // Of values whose margins to a limit far away are equal numbers, the larger one is worse all the same.
   campaign_.requirements = {PeakBelow(1e30, 0.5, 0.1)};
   summary = BuildSummary(folder_, campaign_);
-  EXPECT_THAT(order(), ElementsAre(2, 1, 4, 0, 3));
+  EXPECT_THAT(WorstIn(summary, 0), ElementsAre(2, 1, 4, 0, 3));
   EXPECT_EQ(summary.requirements[0].worst_completed->case_index, 1u);
 }
 
@@ -362,8 +350,8 @@ TEST_F(FiveCases, TheVerdict) {
   EXPECT_EQ(summary.verdict, CampaignVerdict::kIncomplete);
   EXPECT_EQ(summary.requirements[0].verdict, "fail");
   EXPECT_EQ(Warnings(summary)[1],
-            "Not met whatever the missing cases bring: pitch_error_peak_deg below 0.1 for "
-            "99 % of flights at 10 % risk.");
+            "Not met whatever the missing cases bring: pitch_error_peak_deg below 0.1 for 99 % of flights at "
+            "10 % risk.");
 }
 
 TEST_F(FiveCases, JsonHoldsTheContract) {
@@ -372,47 +360,30 @@ TEST_F(FiveCases, JsonHoldsTheContract) {
   folder_.Quarantine({5, "killed 3 workers"});
   const std::string text = SummaryJson(BuildSummary(folder_, campaign_));
   const nlohmann::json json = nlohmann::json::parse(text);
-  EXPECT_EQ(json["schema"], "dispersa/summary/1");
-  EXPECT_EQ(json["campaign"]["name"], "made_up");
+  EXPECT_TRUE(Holds(json, R"({
+      "schema": "dispersa/summary/1", "verdict": "incomplete", "joint": {"method": "each"},
+      "campaign": {"name": "made_up", "seed": 7, "cases": 6, "design": "monte_carlo"},
+      "metrics": {"pitch_error_peak_deg": {"group": "Attitude", "label": "Pitch error, peak", "unit": "°",
+                                           "n": 4, "p50": 2.5, "min": 1.0},
+                  "bending_moment_max_n_m": {"unit": "N m", "group": "Loads"}},
+      "quarantined": [{"case_index": 5, "reason": "killed 3 workers"}]})"));
   EXPECT_EQ(json["campaign"]["id"], std::string(64, '1'));
   EXPECT_EQ(json["campaign"]["flight_id"], std::string(64, '2'));
-  EXPECT_EQ(json["campaign"]["seed"], 7);
-  EXPECT_EQ(json["campaign"]["cases"], 6);
   EXPECT_EQ(json["engine"], EngineVersion());
-  EXPECT_EQ(json["verdict"], "incomplete");
   EXPECT_EQ(json["outcomes"],
             nlohmann::json::parse(R"({"completed": 4, "lost_control": 1, "structural_limit": 0, "impact": 0,
-                                                        "numerical_failure": 0, "timeout": 0})"));
+                                      "numerical_failure": 0, "timeout": 0})"));
   FlightKind kind = AnyUnder(campaign_.autopilot.pitch.law);
   kind.has_limits = false;
   EXPECT_EQ(json["metrics"].size(), MetricsUnder(kUsualStages, kind).size());
-  EXPECT_EQ(json["metrics"][kPeak]["group"], "Attitude");
-  EXPECT_EQ(json["metrics"][kPeak]["label"], "Pitch error, peak");
-  EXPECT_EQ(json["metrics"][kPeak]["unit"], "°");
-  EXPECT_EQ(json["metrics"]["bending_moment_max_n_m"]["unit"], "N m");
-  EXPECT_EQ(json["metrics"]["bending_moment_max_n_m"]["group"], "Loads");
-  EXPECT_EQ(json["metrics"][kPeak]["n"], 4);
-  EXPECT_EQ(json["metrics"][kPeak]["p50"], 2.5);
-  EXPECT_EQ(json["metrics"][kPeak]["min"], 1.0);
-  EXPECT_EQ(json["campaign"]["design"], "monte_carlo");
-  EXPECT_EQ(json["joint"]["method"], "each");
   const nlohmann::json& requirement = json["requirements"][0];
-  EXPECT_EQ(requirement["metric"], kPeak);
-  EXPECT_EQ(requirement["limit"], 4.5);
-  EXPECT_EQ(requirement["probability"], 0.9);
-  EXPECT_EQ(requirement["consumer_risk"], 0.1);
-  EXPECT_EQ(requirement["n"], 5);
-  EXPECT_EQ(requirement["failures"], 1);
-  EXPECT_EQ(requirement["verdict"], "inconclusive");
+  // Planned as if the campaign were the first in the folder, which was made without requirements.
+  EXPECT_TRUE(Holds(requirement, R"({
+      "metric": "pitch_error_peak_deg", "limit": 4.5, "probability": 0.9, "consumer_risk": 0.1, "n": 5,
+      "failures": 1, "verdict": "inconclusive", "plan": {"kind": "fixed", "cases": 6}, "post_hoc": true})"));
   EXPECT_TRUE(requirement["cases_needed"].is_number_integer());
-  EXPECT_EQ(requirement["plan"]["kind"], "fixed");
-  EXPECT_EQ(requirement["plan"]["cases"], 6);  // as if the campaign were the first in the folder
   EXPECT_NEAR(requirement["attained_risk"], 0.98415, 1e-6);  // one failure, one case missing, of 6 at 10 %
-  EXPECT_EQ(requirement["post_hoc"], true);                  // the folder was made without requirements
-  EXPECT_EQ(json["quarantined"],
-            nlohmann::json::parse(R"([{"case_index": 5, "reason": "killed 3 workers"}])"));
-  EXPECT_EQ(json["worst_cases"][0]["case_index"], 2);
-  EXPECT_EQ(json["worst_cases"][0]["replay"], "dispersa replay . --case 2");
+  EXPECT_TRUE(Holds(json["worst_cases"][0], R"({"case_index": 2, "replay": "dispersa replay . --case 2"})"));
   EXPECT_EQ(json["nominal"], nullptr);
   EXPECT_EQ(text.back(), '\n');
 }
@@ -460,11 +431,10 @@ TEST_F(Misuse, ExtendingUntilItPassesDoesNotPassAndShows) {
   EXPECT_EQ(summary_.standing.verdict, StandingVerdict::kNotEvidence);
   EXPECT_EQ(summary_.standing.requirements[0].verdict, "not_evidence");
   EXPECT_EQ(StandingBadge(summary_.standing), "not evidence");
-  EXPECT_THAT(StandingNotes(summary_.standing, summary_), testing::IsEmpty());
-  EXPECT_THAT(
-      JudgedSentence(summary_.requirements[0], summary_.standing.requirements[0]),
-      testing::StartsWith("Earlier campaigns of this design have used up the risk of 10 %. All 129 flights "
-                          "together show 1 failure; under the any-time rule "));
+  EXPECT_THAT(StandingNotes(summary_.standing, summary_), IsEmpty());
+  EXPECT_THAT(JudgedSentence(summary_.requirements[0], summary_.standing.requirements[0]),
+              StartsWith("Earlier campaigns of this design have used up the risk of 10 %. All 129 flights "
+                         "together show 1 failure; under the any-time rule "));
   // Reading it again is no further look.
   const std::string before = SummaryJson(summary_);
   Fly(129, 1);
@@ -485,17 +455,15 @@ TEST_F(Misuse, ALimitThatWasChangedAfterTheFirstCaseShows) {
   EXPECT_EQ(StandingBadge(summary_.standing), "post hoc");
   EXPECT_THAT(
       StandingNotes(summary_.standing, summary_),
-      ElementsAre(
-          "Post hoc: pitch_error_peak_deg below 0.5 for 90 % of flights at 10 % risk was not required "
-          "before the first case was flown.",
-          "Post hoc: pitch_error_peak_deg below 0.05 for 90 % of flights at 10 % risk was required, and was "
-          "changed or left out after the first case was flown. Its last verdict: fail."));
-  EXPECT_THAT(JUnitXml(summary_), testing::HasSubstr("errors=\"2\""));
-  EXPECT_THAT(JUnitXml(summary_),
-              testing::HasSubstr(
-                  "name=\"pitch_error_peak_deg below 0.05 for 90 % of flights at 10 % risk\">\n      "
-                  "<error message=\"Changed or left out after its flights were flown. Its last verdict: "
-                  "fail.\"/>"));
+      ElementsAre("Post hoc: pitch_error_peak_deg below 0.5 for 90 % of flights at 10 % risk was not "
+                  "required before the first case was flown.",
+                  "Post hoc: pitch_error_peak_deg below 0.05 for 90 % of flights at 10 % risk was required, "
+                  "and was changed or left out after the first case was flown. Its last verdict: fail."));
+  EXPECT_THAT(JUnitXml(summary_), HasSubstr("errors=\"2\""));
+  EXPECT_THAT(
+      JUnitXml(summary_),
+      HasSubstr("name=\"pitch_error_peak_deg below 0.05 for 90 % of flights at 10 % risk\">\n      <error "
+                "message=\"Changed or left out after its flights were flown. Its last verdict: fail.\"/>"));
   campaign_.requirements.clear();
   Fly(40, 0);
   EXPECT_EQ(summary_.standing.verdict, StandingVerdict::kNotEvidence) << "dropped";
@@ -534,9 +502,7 @@ TEST_F(Misuse, WordsAndOrderOfRequirementsAreNoChange) {
   Fly(40, 0);
   EXPECT_EQ(summary_.standing.verdict, StandingVerdict::kPass);
   const auto json = nlohmann::json::parse(SummaryJson(summary_))["requirements"][0];
-  EXPECT_EQ(json["id"], "REQ-7");
-  EXPECT_EQ(json["rationale"], "fairing");
-  EXPECT_EQ(json["source"], "spec 4.2");
+  EXPECT_TRUE(Holds(json, R"({"id": "REQ-7", "rationale": "fairing", "source": "spec 4.2"})"));
   EXPECT_NEAR(json["attained_risk"], std::pow(0.9, 40), 1e-12);
 }
 
@@ -559,7 +525,7 @@ TEST_F(Misuse, EveryCaseOfAStudyIsMetOrFails) {
   campaign_.requirements[0].every_case = true;
   Fly(40, 0);
   EXPECT_EQ(summary_.standing.verdict, StandingVerdict::kPass);
-  EXPECT_THAT(JUnitXml(summary_), testing::HasSubstr("failures=\"0\" errors=\"0\" skipped=\"0\""));
+  EXPECT_THAT(JUnitXml(summary_), HasSubstr("failures=\"0\" errors=\"0\" skipped=\"0\""));
   const auto json = nlohmann::json::parse(SummaryJson(summary_))["requirements"][0];
   EXPECT_EQ(json["probability"], nullptr);
   EXPECT_EQ(json["every_case"], true);
@@ -586,7 +552,7 @@ TEST_F(Misuse, AttemptsInTheFoldersLedgerCount) {
   EXPECT_EQ(summary_.standing.requirements[0].pool_failures, 9);
   EXPECT_EQ(StandingNotes(summary_.standing, summary_).back(),
             "Attempt 2 at this design. Earlier ones here: seed 8, 40 flights: fail.");
-  EXPECT_THAT(JUnitXml(summary_), testing::HasSubstr("errors=\"1\""));
+  EXPECT_THAT(JUnitXml(summary_), HasSubstr("errors=\"1\""));
   // Another design is another matter.
   earlier.design_id = "other";
   ledger.Write(earlier);
@@ -601,8 +567,8 @@ TEST_F(Misuse, AttemptsInTheFoldersLedgerCount) {
   Fly(40, 0);
   EXPECT_EQ(summary_.standing.verdict, StandingVerdict::kPass);
   const std::string junit = JUnitXml(summary_);
-  EXPECT_THAT(junit, testing::HasSubstr("the actuator was measured again"));
-  EXPECT_THAT(junit, testing::HasSubstr("seed 8, 40 flights: fail"));
+  EXPECT_THAT(junit, HasSubstr("the actuator was measured again"));
+  EXPECT_THAT(junit, HasSubstr("seed 8, 40 flights: fail"));
 }
 
 TEST_F(Misuse, CasesThatWereFlownUnderAnotherLimitElsewhereShowNothing) {
@@ -625,13 +591,8 @@ TEST_F(Misuse, CasesThatWereFlownUnderAnotherLimitElsewhereShowNothing) {
 TEST_F(Misuse, HalfADesignIsIncomplete) {
   campaign_.requirements = {PeakBelow(0.5, 0.9, 0.10)};
   campaign_.sampling.method = SamplingMethod::kCorners;
-  for (const char* input : {"drag_factor", "lift_factor", "cg_factor", "cp_factor", "density_factor"}) {
-    Dispersion corner;
-    corner.name = input;
-    corner.distribution.kind = Distribution::kTwoPoint;
-    corner.inputs = {FindInput(input)};
-    campaign_.dispersions.push_back(corner);
-  }
+  for (const char* input : {"drag_factor", "lift_factor", "cg_factor", "cp_factor", "density_factor"})
+    campaign_.dispersions.push_back(made_up::Of(input, made_up::TwoPoint(0.0, 0.0, 0.0), input));
   Fly(16, 0);
   EXPECT_EQ(summary_.verdict, CampaignVerdict::kIncomplete);
   EXPECT_EQ(Warnings(summary_)[0], "Incomplete design: 16 of its 32 points are in the campaign.");
@@ -693,11 +654,7 @@ TEST(SummaryJson, WritesUndefinedAsNull) {
   EXPECT_EQ(json["verdict"], "incomplete");
 }
 
-const Requirement kExceeded = {.metric = "structural_limit_exceeded",
-                               .below = 1.0,
-                               .above = std::nullopt,
-                               .probability = 0.9973,
-                               .consumer_risk = 0.10};
+const Requirement kExceeded = {"structural_limit_exceeded", 1.0, {}, 0.9973, 0.10};
 
 // A vehicle with limits, and a campaign whose one requirement every case meets.
 struct LimitedCampaign {
@@ -738,12 +695,12 @@ TEST(StructuralLimits, ThatAreKeptByTooFewFlightsHoldNothingUp) {
   EXPECT_EQ(summary.limits[0].limit, 100e3);
   EXPECT_EQ(*summary.limits[0].largest, 80e3 + 19.0);
   EXPECT_EQ(summary.limits[0].largest_case, 19u);
-  EXPECT_THAT(Warnings(summary), testing::IsEmpty());
+  EXPECT_THAT(Warnings(summary), IsEmpty());
   // Stated by the campaign, a requirement takes the check's place and needs its cases.
   LimitedCampaign stated(20);
   stated.campaign.requirements.push_back(kExceeded);
   EXPECT_EQ(stated.Summary().verdict, CampaignVerdict::kInconclusive);
-  EXPECT_THAT(stated.Summary().load_checks, testing::IsEmpty());
+  EXPECT_THAT(stated.Summary().load_checks, IsEmpty());
 }
 
 TEST(StructuralLimits, CountFromTheFirstFlightBeyondThem) {
@@ -756,13 +713,11 @@ TEST(StructuralLimits, CountFromTheFirstFlightBeyondThem) {
   EXPECT_EQ(summary.beyond_limits, 1u);
   EXPECT_EQ(summary.limits[0].exceeded, 0u);
   EXPECT_EQ(summary.limits[1].exceeded, 1u);
-  EXPECT_THAT(
-      Warnings(summary),
-      ElementsAre(
-          "Structural limits of the vehicle were exceeded in 1 of 100 flights: axial_load_max_g above 9 g "
-          "in 1, up to 9.5 g in case 7."));
+  EXPECT_THAT(Warnings(summary),
+              ElementsAre("Structural limits of the vehicle were exceeded in 1 of 100 flights: "
+                          "axial_load_max_g above 9 g in 1, up to 9.5 g in case 7."));
   const auto json = nlohmann::json::parse(SummaryJson(summary));
-  EXPECT_EQ(json["limits"]["exceeded"], 1);
+  EXPECT_TRUE(Holds(json, R"({"limits": {"exceeded": 1}})"));
   EXPECT_EQ(json["limits"]["loads"][1]["largest_case"], 7);
   EXPECT_EQ(json["load_checks"][0]["failures"], 1);
 }
@@ -812,10 +767,9 @@ TEST(StructuralLimits, AreNotKeptByLoadsThatWereNotMeasured) {
   const CampaignSummary summary = open.Summary();
   EXPECT_EQ(summary.load_checks[0].failures, 3);
   EXPECT_EQ(summary.load_checks[0].not_measured, 1);
-  EXPECT_EQ(
-      LoadCheckSentence(summary.load_checks[0]),
-      "Load check: 2 of 20 flights went beyond a limit of the vehicle, and in 1 completed its load is not "
-      "measured. No flight may.");
+  EXPECT_EQ(LoadCheckSentence(summary.load_checks[0]),
+            "Load check: 2 of 20 flights went beyond a limit of the vehicle, and in 1 completed its load is "
+            "not measured. No flight may.");
 }
 
 TEST(StructuralLimits, DoNotKeepACampaignFromStopping) {
@@ -836,12 +790,8 @@ TEST(StructuralLimits, DoNotKeepACampaignFromStopping) {
 
 /// Impacts from 0.03 degrees west to 0.03 degrees east of a longitude.
 CaseColumns ImpactsAbout(double site_deg) {
-  CaseColumns cases;
-  cases.inputs.resize(InputCount(kUsualStages));
-  cases.metrics.resize(MetricCount(kUsualStages));
+  CaseColumns cases = Columns(61, 0);
   for (std::size_t i = 0; i < 61; ++i) {
-    cases.index.push_back(i);
-    cases.outcome.push_back(Outcome::kCompleted);
     cases.metrics[MetricColumn("impact_longitude_deg")].push_back(
         NearTo(0.0, site_deg + 0.001 * (static_cast<double>(i) - 30.0), kCutAt180Deg));
   }
@@ -854,12 +804,7 @@ TEST(Judge, OfALongitudeDoesNotSeeTheCut) {
     SCOPED_TRACE(site_deg);
     const CaseColumns cases = ImpactsAbout(site_deg);
     const auto judge = [&](std::optional<double> below, std::optional<double> above) {
-      return Judged({.metric = "impact_longitude_deg",
-                     .below = below,
-                     .above = above,
-                     .probability = 0.9,
-                     .consumer_risk = 0.1},
-                    cases);
+      return Judged({"impact_longitude_deg", below, above, 0.9, 0.1}, cases);
     };
     const double east_deg = NearTo(0.0, site_deg + 0.0295, kCutAt180Deg);
     const double west_deg = NearTo(0.0, site_deg - 0.0295, kCutAt180Deg);
@@ -870,9 +815,8 @@ TEST(Judge, OfALongitudeDoesNotSeeTheCut) {
       EXPECT_LT(*one.margin, 0.06);
       EXPECT_NEAR(one.worst_completed->value, one.limit, 0.001);
     }
-    Requirement range{
-        .metric = "impact_longitude_deg", .below = {}, .above = {}, .probability = 0.9, .consumer_risk = 0.1};
-    range.within = {{site_deg - 0.0295, site_deg + 0.0295}};
+    const Requirement range{
+        "impact_longitude_deg", {}, {}, 0.9, 0.1, {{site_deg - 0.0295, site_deg + 0.0295}}};
     EXPECT_EQ(Judged(range, cases).failures, 2);
   }
 }
@@ -903,5 +847,4 @@ TEST(Judge, SaysABoundWithTheDigitsOfItsMargin) {
   }
 }
 
-}  // namespace
 }  // namespace dispersa::analysis_summary_test

@@ -7,16 +7,9 @@
 #include "tests/unit/distributions.h"
 
 namespace dispersa::campaign_case_design_test {
-namespace {
 
-using made_up::Normal;
-using made_up::TwoPoint;
-using made_up::Uniform;
-using made_up::Values;
+using namespace made_up;
 
-Dispersion Of(const std::string& name, ScalarDistribution distribution, const std::string& input) {
-  return {name, std::move(distribution), {FindInput(input)}, false};
-}
 Campaign With(SamplingMethod method, std::vector<Dispersion> dispersions, std::uint64_t cases = 64) {
   Campaign campaign;
   campaign.sampling = {method, cases, 42};
@@ -204,26 +197,16 @@ void ExpectLaw(const ScalarDistribution& distribution, const std::vector<std::pa
 TEST(CaseDesign, DrawsFollowTheirLaws) {
   const auto phi = [](double z) { return 0.5 * std::erfc(-z / std::sqrt(2.0)); };
   const double from = phi(-1.0), to = phi(0.5);
-  ExpectLaw({.kind = Distribution::kTruncatedNormal,
-             .nominal = 3.0,
-             .sigma = 2.0,
-             .low = 1.0,
-             .high = 4.0,
-             .values = {}},
-            {{0.999, 0.0},
-             {2.0, (phi(-0.5) - from) / (to - from)},
-             {3.5, (phi(0.25) - from) / (to - from)},
-             {4.0, 1.0}});
-  ExpectLaw({.kind = Distribution::kTriangular, .nominal = 1.0, .low = 0.0, .high = 4.0, .values = {}},
-            {{0.5, 0.0625}, {1.0, 0.25}, {2.0, 1.0 - 4.0 / 12.0}});
-  ExpectLaw({.kind = Distribution::kLogNormal, .nominal = 2.0, .sigma = 0.5, .values = {}},
+  ExpectLaw(TruncatedNormal(3.0, 2.0, 1.0, 4.0), {{0.999, 0.0},
+                                                  {2.0, (phi(-0.5) - from) / (to - from)},
+                                                  {3.5, (phi(0.25) - from) / (to - from)},
+                                                  {4.0, 1.0}});
+  ExpectLaw(Triangular(0.0, 1.0, 4.0), {{0.5, 0.0625}, {1.0, 0.25}, {2.0, 1.0 - 4.0 / 12.0}});
+  ExpectLaw(LogNormal(2.0, 0.5),
             {{2.0, 0.5}, {2.0 * std::exp(0.5), phi(1.0)}, {2.0 * std::exp(-0.25), phi(-0.5)}});
-  ExpectLaw({.kind = Distribution::kRayleigh, .sigma = 3.0, .values = {}},
-            {{3.0, 1.0 - std::exp(-0.5)}, {6.0, 1.0 - std::exp(-2.0)}});
-  ExpectLaw({.kind = Distribution::kValues, .values = {1.0, 2.0, 3.0}, .weights = {1.0, 5.0, 2.0}},
-            {{1.0, 0.125}, {2.0, 0.75}, {3.0, 1.0}});
-  ExpectLaw({.kind = Distribution::kEmpirical, .values = {0.0, 1.0, 11.0}},
-            {{0.5, 0.25}, {1.0, 0.5}, {6.0, 0.75}});
+  ExpectLaw(Rayleigh(3.0), {{3.0, 1.0 - std::exp(-0.5)}, {6.0, 1.0 - std::exp(-2.0)}});
+  ExpectLaw(Values({1.0, 2.0, 3.0}, {1.0, 5.0, 2.0}), {{1.0, 0.125}, {2.0, 0.75}, {3.0, 1.0}});
+  ExpectLaw(Empirical({0.0, 1.0, 11.0}), {{0.5, 0.25}, {1.0, 0.5}, {6.0, 0.75}});
 }
 
 TEST(CaseDesign, CorrelatedNormalsAreAndOthersStay) {
@@ -301,5 +284,4 @@ TEST(CaseDesign, ReplicatesAreDesignsOfTheirOwn) {
   }
 }
 
-}  // namespace
 }  // namespace dispersa::campaign_case_design_test

@@ -9,7 +9,6 @@
 #include "tests/unit/input_files.h"
 
 namespace dispersa::campaign_derived_input_test {
-namespace {
 
 constexpr char kDrawn[] =
     "schema: dispersa/campaign/1\nname: derived\n"
@@ -23,8 +22,7 @@ constexpr char kDrawn[] =
     "dispersions:\n"
     "  thrust: {distribution: normal, three_sigma_percent: 2, conserve: total_impulse, per: stage}\n"
     "  gust: {speed_m_s: 9, altitude: {distribution: uniform, low_km: 4, high_km: 14}, length_m: 600, "
-    "azimuth: "
-    "uniform}\n";
+    "azimuth: uniform}\n";
 
 Campaign With(const std::string& items, const std::string& method = "monte_carlo") {
   std::string text = kDrawn;
@@ -95,5 +93,4 @@ TEST(DerivedInput, WithoutAValueIsAFlightThatFails) {
   EXPECT_GT(flown, 0);
 }
 
-}  // namespace
 }  // namespace dispersa::campaign_derived_input_test

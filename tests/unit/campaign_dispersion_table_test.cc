@@ -3,7 +3,6 @@
 #include "tests/test.h"
 
 namespace dispersa::campaign_dispersion_table_test {
-namespace {
 
 std::string KeyOfColumn(const std::string& name) {
   const int column = FindInput(name);
@@ -53,5 +52,4 @@ TEST(DispersionTable, APatternStandsForEveryName) {
                                 "navigation_position_error_down_m"}));
 }
 
-}  // namespace
 }  // namespace dispersa::campaign_dispersion_table_test

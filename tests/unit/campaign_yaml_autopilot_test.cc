@@ -4,7 +4,6 @@
 #include "tests/test.h"
 
 namespace dispersa::campaign_yaml_autopilot_test {
-namespace {
 
 constexpr char kEverything[] = R"(schema: dispersa/autopilot/1
 name: all_laws
@@ -69,7 +68,7 @@ TEST(WriteAutopilot, LeavesOutGuardsThatAreOff) {
   bare.q = autopilot.pitch.adaptation.q;
   autopilot.pitch.adaptation = bare;
   const std::string text = WriteAutopilot(autopilot);
-  EXPECT_NE(text.find("    gamma: [1, 2]\n    q: [[1, 0.1], [0.1, 0.02]]\nyaw:"), std::string::npos) << text;
+  EXPECT_THAT(text, HasSubstr("    gamma: [1, 2]\n    q: [[1, 0.1], [0.1, 0.02]]\nyaw:")) << text;
 }
 
 TEST(WriteAutopilot, ShippedAutopilotsKeepEveryKey) {
@@ -126,18 +125,11 @@ TEST(ReadAutopilot, NamesALawInPythonButDoesNotHoldIt) {
   std::string roll = kPidRoll;
   roll.replace(roll.find("pid"), 3, "plugin");
   const std::string text = WithRoll(roll) + "plugin: {python: {name: mine, sha256: " + sha256 + "}}\n";
-  const auto problem = [&text] {
-    try {
-      LoadAutopilot({"flown.yaml", text});
-    } catch (const InputError& error) {
-      return std::string(error.what());
-    }
-    return std::string();
-  };
+  const auto problem = [&text] { return ErrorOf<InputError>([&] { LoadAutopilot({"flown.yaml", text}); }); };
   const std::string absent =
       "flown.yaml:44:18: plugin.python: flown with a Python law, 'mine', which is not in the file: without "
-      "it the "
-      "campaign cannot be flown, allowed: dispersa.run(..., workers=0, law=...) in Python, with that law";
+      "it the campaign cannot be flown, allowed: dispersa.run(..., workers=0, law=...) in Python, with that "
+      "law";
   EXPECT_EQ(problem(), absent);
   {
     LawHere law({});
@@ -154,5 +146,4 @@ TEST(ReadAutopilot, NamesALawInPythonButDoesNotHoldIt) {
   EXPECT_EQ(problem(), absent);
 }
 
-}  // namespace
 }  // namespace dispersa::campaign_yaml_autopilot_test

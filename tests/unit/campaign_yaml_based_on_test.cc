@@ -4,7 +4,6 @@
 #include "tests/unit/input_files.h"
 
 namespace dispersa::campaign_yaml_based_on_test {
-namespace {
 
 constexpr char kHead[] = "schema: dispersa/campaign/1\nbased_on: campaign.yaml\n";
 
@@ -75,5 +74,4 @@ TEST(BasedOn, NeedsAFile) {
   EXPECT_THROW(LoadCampaign(files.Path("derived.yaml")), InputError);
 }
 
-}  // namespace
 }  // namespace dispersa::campaign_yaml_based_on_test

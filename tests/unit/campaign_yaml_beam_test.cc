@@ -6,7 +6,6 @@
 #include "tests/unit/input_files.h"
 
 namespace dispersa::campaign_yaml_beam_test {
-namespace {
 
 TEST(CampaignYamlBeam, ReadsSectionsLumpsAndSensors) {
   const InputFiles files;
@@ -78,5 +77,4 @@ TEST(CampaignYamlBeam, TakesATableOfModes) {
   EXPECT_GT(empty.mac, 0.99);
 }
 
-}  // namespace
 }  // namespace dispersa::campaign_yaml_beam_test

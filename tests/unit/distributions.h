@@ -5,6 +5,7 @@
 #include <vector>
 
 #include "core/campaign/campaign.h"
+#include "core/flight/flight_inputs.h"
 
 namespace dispersa::made_up {
 
@@ -39,6 +40,11 @@ inline ScalarDistribution Values(std::vector<double> values, std::vector<double>
 }
 inline ScalarDistribution Empirical(std::vector<double> values) {
   return {.kind = Distribution::kEmpirical, .values = std::move(values)};
+}
+
+inline Dispersion Of(const std::string& name, ScalarDistribution distribution, const std::string& input,
+                     bool absolute = false) {
+  return {name, std::move(distribution), {FindInput(input)}, absolute};
 }
 
 }  // namespace dispersa::made_up

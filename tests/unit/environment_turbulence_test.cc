@@ -10,7 +10,6 @@
 #include "tests/test.h"
 
 namespace dispersa::environment_turbulence_test {
-namespace {
 
 constexpr double kFoot_m = 0.3048;
 
@@ -235,5 +234,4 @@ TEST(Turbulence, ItsModelsMeetOverAHighGround) {
   }
 }
 
-}  // namespace
 }  // namespace dispersa::environment_turbulence_test

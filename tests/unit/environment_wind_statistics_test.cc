@@ -2,7 +2,6 @@
 #include "tests/test.h"
 
 namespace dispersa::environment_wind_statistics_test {
-namespace {
 
 WindStatistics Example() {
   return {.altitude_m = {0.0, 1000.0, 4000.0},
@@ -88,5 +87,4 @@ TEST(WindWeights, HasTheGivenMoments) {
   EXPECT_NEAR(levels, std::exp(-1.5), 0.036);
 }
 
-}  // namespace
 }  // namespace dispersa::environment_wind_statistics_test

@@ -4,7 +4,6 @@
 #include "tests/test.h"
 
 namespace dispersa::environment_wind_test {
-namespace {
 
 // Rounding of a product of a speed below 100 m/s with a sine.
 constexpr double kRounding = 1e-13;
@@ -76,5 +75,4 @@ TEST(Wind, SumsItsParts) {
   ExpectWind(Evaluate(wind, 12000.0), 10.0 + 2.0 + 0.5, 60.0 - 1.0 - 8.0 + 0.25);
 }
 
-}  // namespace
 }  // namespace dispersa::environment_wind_test

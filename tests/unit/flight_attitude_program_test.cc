@@ -5,7 +5,6 @@
 #include "tests/test.h"
 
 namespace dispersa::flight_attitude_program_test {
-namespace {
 
 // Three cubics of time.
 double Pitch(double t) { return 1.5 - 0.02 * t + 3e-4 * t * t - 4e-6 * t * t * t; }
@@ -77,5 +76,4 @@ TEST(AttitudeProgram, PitchAloneTurnsAboutBodyY) {
   EXPECT_LT((up - Vector3(0.0, 0.0, -1.0)).norm(), 1e-15);
 }
 
-}  // namespace
 }  // namespace dispersa::flight_attitude_program_test

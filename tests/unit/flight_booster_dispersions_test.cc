@@ -1,6 +1,5 @@
-// Dispersed boosters: thrust, flow and burn times, the vehicle's mass at every tick, and the momentum gained,
-// by conservation. The sample vehicle with two boosters flies in almost no air.
-#include "core/dynamics/integrator.h"
+// Dispersed boosters: thrust, flow and burn times, and the vehicle's mass at every tick. The sample vehicle
+// with two boosters flies in almost no air.
 #include "core/dynamics/jettison.h"
 #include "core/flight/flight.h"
 #include "core/flight/tick_sample.h"
@@ -10,7 +9,6 @@
 #include "tests/unit/sample_vehicle.h"
 
 namespace dispersa::flight_booster_dispersions_test {
-namespace {
 
 constexpr double kBoostTime_s = 20.0, kBoostPropellant_kg = 500.0, kBoostDry_kg = 100.0,
                  kBoostThrust_n = 60e3;
@@ -103,43 +101,6 @@ TEST(BoosterDispersions, MassIsWhatHasNotFlownNorLeft) {
   }
 }
 
-struct Flown {
-  const LauncherModel* equations;
-  LauncherPhase phase;
-  static void Rhs(double t, const double* y, double* dydt, void* context) {
-    const auto* self = static_cast<const Flown*>(context);
-    self->equations->Derivative(self->phase, t, y, dydt);
-  }
-};
-
-// Without gravitation and air: the speed is that of the rocket equation, of both exhausts by their flows.
-TEST(BoosterDispersions, MomentumIsThatOfWhatFlowsOut) {
-  const FlightModel model(Boosted());
-  for (const FlightInputs& in : Dispersed()) {
-    LauncherPlant plant = model.PlantFor(in);
-    plant.environment.earth = SphericalEarth(6371000.0, false);
-    plant.environment.earth.mu_m3_s2 = 0.0;
-    const LauncherModel equations(plant);
-    Flown flight{&equations, {}};
-    flight.phase.burning = true;
-    flight.phase.boosters_burning = kAllBoosters;
-    RigidBodyState s;
-    s.p_EoC_I = {1e9, 0.0, 0.0};
-    std::array<double, kLauncherSize> y{};
-    WriteState(s, y.data());
-    const double boost_s = kBoostTime_s / in.stages[0].mass_flow_factor;
-    Integrator integrator(Scheme::kRungeKutta4, kRigidLauncherSize, &Flown::Rhs, &flight, nullptr);
-    ASSERT_TRUE(integrator.Advance(0.0, boost_s, 1000, y.data()));
-    const Core core(in);
-    const double full_kg = core.dry_kg + core.propellant_kg + core.above_kg + kBoostersWhole_kg;
-    const double flow_kg_s = in.stages[0].mass_flow_factor * (kCoreFlow_kg_s + kBoostFlow_kg_s);
-    const double exhaust_m_s = ThrustFactor(in) * (200e3 + 2.0 * kBoostThrust_n) / flow_kg_s;
-    // Of the classical Runge-Kutta method in steps of 20 ms.
-    EXPECT_NEAR(ReadState(y.data()).v_IC_I.norm(),
-                exhaust_m_s * std::log(full_kg / (full_kg - flow_kg_s * boost_s)), 1e-7);
-  }
-}
-
 // Boosters' masses have no dispersions: a dispersed stage leaves them, and the stacks above, as they are.
 TEST(BoosterDispersions, MassesOfTheBoostersStay) {
   const FlightModel model(Boosted());
@@ -154,5 +115,4 @@ TEST(BoosterDispersions, MassesOfTheBoostersStay) {
   EXPECT_NEAR(MassesOn(plant, 1, kBoostersGone, 1000.0, 0.0).mass_kg, core.above_kg, 1e-8);
 }
 
-}  // namespace
 }  // namespace dispersa::flight_booster_dispersions_test

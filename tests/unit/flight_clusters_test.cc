@@ -10,7 +10,6 @@
 #include "tests/unit/sample_vehicle.h"
 
 namespace dispersa::flight_clusters_test {
-namespace {
 
 constexpr double kDeg = kRadPerDeg;
 constexpr double kSpace_m = 2e6;  // above the atmosphere's end
@@ -307,5 +306,4 @@ TEST(Clusters, VerniersSteerBesideFixedEngines) {
   EXPECT_GT(turned, 0.9 * kDeg);  // 50 times the misalignment
 }
 
-}  // namespace
 }  // namespace dispersa::flight_clusters_test

@@ -9,7 +9,6 @@
 #include "tests/unit/sample_vehicle.h"
 
 namespace dispersa::flight_coasts_test {
-namespace {
 
 // The sample with a small third stage: burns of 40, 20 and 10 s.
 FlightDefinition ThreeStages() {
@@ -119,5 +118,4 @@ TEST(Coasts, ThePointMassCoastsBeforeTheSameStages) {
   EXPECT_DOUBLE_EQ(FlyAscent(model, program, options).last_ignition_s, 97.0);
 }
 
-}  // namespace
 }  // namespace dispersa::flight_coasts_test

@@ -6,7 +6,6 @@
 #include "tests/test.h"
 
 namespace dispersa::flight_digest_test {
-namespace {
 
 Digest Of(const std::vector<double>& values) {
   Digester digester;
@@ -164,5 +163,4 @@ TEST(InputValues, AreInTheUnitsOfTheirNamesWithoutMinusZero) {
   EXPECT_EQ(FindInput("no_such_input"), -1);
 }
 
-}  // namespace
 }  // namespace dispersa::flight_digest_test

@@ -6,7 +6,6 @@
 #include "tests/unit/sample_vehicle.h"
 
 namespace dispersa::flight_dispersions_test {
-namespace {
 
 using Layout = std::array<double, kLauncherSize>;
 
@@ -357,5 +356,4 @@ TEST(Dispersions, GyroNoiseIsARandomWalkOfEveryTickInTheCoastToo) {
   EXPECT_NEAR(squares / (3 * kCases) / (walk * walk), 1.0, 4.0 * std::sqrt(2.0 / (3 * kCases)));
 }
 
-}  // namespace
 }  // namespace dispersa::flight_dispersions_test

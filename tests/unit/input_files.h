@@ -7,6 +7,18 @@
 
 namespace dispersa {
 
+/// A file's text with the first of each `from`, which must be there, replaced.
+inline std::string Edited(const std::string& path,
+                          const std::vector<std::pair<std::string, std::string>>& edits) {
+  std::string text = TextOfFile(path);
+  for (const auto& [from, to] : edits) {
+    const std::size_t at = text.find(from);
+    if (at == std::string::npos) throw std::runtime_error("no '" + from + "' in " + path);
+    text.replace(at, from.size(), to);
+  }
+  return text;
+}
+
 class InputFiles {
  public:
   InputFiles() {
@@ -20,10 +32,7 @@ class InputFiles {
 
   /// Replaces the first occurrence, which must exist.
   void Edit(const std::string& file, const std::string& from, const std::string& to) const {
-    std::string text = TextOfFile(Path(file));
-    const std::size_t at = text.find(from);
-    ASSERT_NE(at, std::string::npos) << "no '" << from << "' in " << file;
-    Write(file, text.replace(at, from.size(), to));
+    Write(file, Edited(Path(file), {{from, to}}));
   }
 
   /// The problems as a user reads them, one a line, without the folder.
@@ -33,6 +42,16 @@ class InputFiles {
     for (const InputProblem& problem : problems) texts += problem.Text() + "\n";
     for (std::size_t at = 0; (at = texts.find(prefix)) != std::string::npos;) texts.erase(at, prefix.size());
     return texts;
+  }
+
+  /// Those that an action throws.
+  std::string ErrorsOf(const std::function<void()>& action) const {
+    try {
+      action();
+    } catch (const InputError& error) {
+      return Texts(error.problems());
+    }
+    return "";
   }
 
  private:

@@ -6,10 +6,12 @@
 #include "core/flight/flight_inputs.h"
 #include "core/flight/history.h"
 #include "core/flight/metrics.h"
+#include "core/results/result_error.h"
 #include "tests/every_metric.h"
 #include "tests/nominal_inputs.h"
 #include "tests/temporary_folder.h"
 #include "tests/test.h"
+#include "tests/unit/distributions.h"
 
 namespace dispersa::report_test {
 
@@ -23,11 +25,7 @@ inline Campaign MakeCampaign(std::uint64_t cases) {
   campaign.reference.name = "reference";
   campaign.autopilot.name = "autopilot";
   MeasureEverything(campaign);
-  ScalarDistribution drag;
-  drag.kind = Distribution::kNormal;
-  drag.nominal = 1.0;
-  drag.sigma = 0.1;
-  campaign.dispersions.push_back({"drag_coefficient", drag, {FindInput("drag_factor")}});
+  campaign.dispersions = {made_up::Of("drag_coefficient", made_up::Normal(1.0, 0.1), "drag_factor")};
   campaign.canonical_yaml = "name: made_up\n";
   campaign.id = std::string(64, '1');
   campaign.flight_id = std::string(64, '2');
@@ -51,22 +49,23 @@ inline CaseResult MakeCase(std::uint64_t index, const RowInputs& rows = RowInput
   result.end_stage = 4;
   const auto k = static_cast<double>(index);
   ApplyEverywhere(rows, 0.1 + k / 7.0, result);
-  for (std::size_t i = 0; i < MetricCount(kUsualStages); ++i) {
+  for (std::size_t i = 0; i < MetricCount(kUsualStages); ++i)
     result.metrics.push_back(1.0 + static_cast<double>(i) + k / 3.0);
-  }
   result.metrics[MetricColumn("step_limit_fraction")] = 0.5;  // nobody is to be warned
   result.digest = {index + 1, 0xabcdef};
   return result;
 }
 
+/// Of an action that throws such a ResultError.
+inline auto Fails(ResultError::Kind kind, const std::string& text) {
+  return Throws<ResultError>(
+      AllOf(Property(&ResultError::kind, kind), Property(&ResultError::what, StrEq(text))));
+}
+
 inline constexpr char kPeak[] = "pitch_error_peak_deg";
 
 inline Requirement PeakBelow(double limit, double probability, double consumer_risk) {
-  return {.metric = kPeak,
-          .below = limit,
-          .above = std::nullopt,
-          .probability = probability,
-          .consumer_risk = consumer_risk};
+  return {kPeak, limit, {}, probability, consumer_risk};
 }
 
 }  // namespace dispersa::report_test

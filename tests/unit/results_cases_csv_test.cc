@@ -6,7 +6,6 @@
 #include "tests/unit/made_up_results.h"
 
 namespace dispersa::results_cases_csv_test {
-namespace {
 
 using namespace report_test;
 
@@ -122,9 +121,8 @@ TEST(CasesCsv, LeavesOutWhatIsTheSameInAllCases) {
   WriteCasesCsv(folder, VaryingColumns(folder), temporary / "out" / "varying.csv");
   const std::string csv = TextOfFile(temporary / "out" / "varying.csv");
   EXPECT_EQ(csv.substr(0, csv.find('\n')),
-            "case_index,outcome,end_time_s,end_stage,reason,input_drag_factor"
-            ",metric_" +
-                MetricNames()[0] + ",digest");
+            "case_index,outcome,end_time_s,end_stage,reason,input_drag_factor,metric_" + MetricNames()[0] +
+                ",digest");
   EXPECT_THAT(csv, HasSubstr(",0.1,2," + first.digest.Hex() + "\n"));
   EXPECT_THAT(csv, HasSubstr(",0.24285714285714285,," + second.digest.Hex() + "\n"));
 }
@@ -155,5 +153,4 @@ TEST(CasesCsv, ShowsNegativeZeroAsZeroAndUndefinedAsEmpty) {
   EXPECT_EQ(TextOfFile(temporary / "out" / "cases.csv"), Header() + CasesCsvLine(normalised, AllColumns()));
 }
 
-}  // namespace
 }  // namespace dispersa::results_cases_csv_test

@@ -3,7 +3,6 @@
 #include "tests/test.h"
 
 namespace dispersa::results_number_csv_test {
-namespace {
 
 TEST(NumberCsv, HasAValueForEachColumn) {
   const auto table = ReadNumberCsv("time_s,mach\n0,-1.5\n1e-3,2\n");
@@ -33,5 +32,4 @@ TEST(NumberCsv, AnythingElseIsNone) {
     EXPECT_FALSE(ReadNumberCsv(text)) << text;
 }
 
-}  // namespace
 }  // namespace dispersa::results_number_csv_test

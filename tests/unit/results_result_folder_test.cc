@@ -18,19 +18,8 @@
 #include "tests/unit/made_up_results.h"
 
 namespace dispersa::results_result_folder_test {
-namespace {
 
 using namespace report_test;
-
-template <typename Error, typename Action>
-std::string MessageOf(Action action) {
-  try {
-    action();
-  } catch (const Error& error) {
-    return error.what();
-  }
-  return "nothing was thrown";
-}
 
 std::string Query(const std::filesystem::path& folder, const std::string& sql) {
   Database database(folder / "results.sqlite", Database::Mode::kExisting);
@@ -38,8 +27,11 @@ std::string Query(const std::filesystem::path& folder, const std::string& sql) {
   return statement.Step() ? statement.Text(0) : "no row";
 }
 
-TEST(ResultFolder, HoldsTheCampaignAndWhereItComesFrom) {
-  TemporaryFolder temporary;
+struct ResultFolders : testing::Test {
+  const TemporaryFolder temporary;
+};
+
+TEST_F(ResultFolders, HoldsTheCampaignAndWhereItComesFrom) {
   const ResultFolder folder = ResultFolder::Create(temporary / "a" / "b", MakeLimitedCampaign(3));
   EXPECT_EQ(TextOfFile(temporary / "a" / "b" / "campaign.yaml"), "name: made_up\n");
   EXPECT_EQ(folder.Provenance("campaign_id"), std::string(64, '1'));
@@ -49,8 +41,7 @@ TEST(ResultFolder, HoldsTheCampaignAndWhereItComesFrom) {
   EXPECT_EQ(folder.Provenance("sampling"), "monte_carlo");
 }
 
-TEST(ResultFolder, ReturnsAResultToTheLastBit) {
-  TemporaryFolder temporary;
+TEST_F(ResultFolders, ReturnsAResultToTheLastBit) {
   ResultFolder folder = ResultFolder::Create(temporary / "out", MakeLimitedCampaign(3));
   CaseResult stored = MakeCase(2);
   stored.outcome = Outcome::kLostControl;
@@ -58,19 +49,12 @@ TEST(ResultFolder, ReturnsAResultToTheLastBit) {
   stored.metrics[0] = 0.1 + 0.2;
   stored.metrics[1] = std::numeric_limits<double>::denorm_min();
   EXPECT_EQ(folder.Append({{stored}}), 1u);
-  const CaseResult loaded = ResultFolder::Open(temporary / "out").Load(2);
-  EXPECT_EQ(loaded.case_index, 2u);
-  EXPECT_EQ(loaded.outcome, Outcome::kLostControl);
-  EXPECT_EQ(loaded.end_time_s, 569.25);
-  EXPECT_EQ(loaded.end_stage, 4);
-  EXPECT_EQ(loaded.reason, stored.reason);
-  EXPECT_EQ(loaded.inputs, stored.inputs);
-  EXPECT_EQ(loaded.metrics, stored.metrics);
-  EXPECT_EQ(loaded.digest, stored.digest);
+  EXPECT_THAT(ResultFolder::Open(temporary / "out").Load(2),
+              FieldsAre(2, Outcome::kLostControl, 569.25, 4, stored.reason, stored.inputs,
+                        stored.inputs_digest, stored.metrics, stored.digest));
 }
 
-TEST(ResultFolder, StoresUndefinedAsNullAndNoNegativeZero) {
-  TemporaryFolder temporary;
+TEST_F(ResultFolders, StoresUndefinedAsNullAndNoNegativeZero) {
   ResultFolder folder = ResultFolder::Create(temporary / "out", MakeLimitedCampaign(1));
   CaseResult result = MakeCase(0);
   result.metrics[0] = kNaN;
@@ -89,29 +73,25 @@ TEST(ResultFolder, StoresUndefinedAsNullAndNoNegativeZero) {
   EXPECT_EQ(Query(temporary / "out", "SELECT typeof(metric_" + MetricNames()[2] + ") FROM cases"), "real");
 }
 
-TEST(ResultFolder, AcceptsARepeatedResultOnce) {
-  TemporaryFolder temporary;
+TEST_F(ResultFolders, AcceptsARepeatedResultOnce) {
   ResultFolder folder = ResultFolder::Create(temporary / "out", MakeLimitedCampaign(3));
   EXPECT_EQ(folder.Append({{MakeCase(1), MakeCase(0)}}), 2u);
   EXPECT_EQ(folder.Append({{MakeCase(1), MakeCase(2), MakeCase(2)}}), 1u);
   EXPECT_THAT(folder.PresentCases(), ElementsAre(0, 1, 2));
 }
 
-TEST(ResultFolder, RefusesADifferentResultOfACaseWithItsWholeBatch) {
-  TemporaryFolder temporary;
+TEST_F(ResultFolders, RefusesADifferentResultOfACaseWithItsWholeBatch) {
   ResultFolder folder = ResultFolder::Create(temporary / "out", MakeLimitedCampaign(3));
   folder.Append({{MakeCase(1)}});
   CaseResult other = MakeCase(1);
   other.digest.low = 5;
-  try {
-    folder.Append({{MakeCase(0), other}});
-    FAIL() << "accepted";
-  } catch (const ResultError& error) {
-    EXPECT_EQ(error.kind(), ResultError::Kind::kConflict);
-    EXPECT_STREQ(error.what(),
-                 "case 1 was flown twice with different digests: 00000000000000020000000000abcdef is stored, "
-                 "00000000000000020000000000000005 arrived");
-  }
+  EXPECT_THAT(
+      [&] {
+        folder.Append({{MakeCase(0), other}});
+      },
+      Fails(ResultError::Kind::kConflict,
+            "case 1 was flown twice with different digests: 00000000000000020000000000abcdef is "
+            "stored, 00000000000000020000000000000005 arrived"));
   EXPECT_THAT(folder.PresentCases(), ElementsAre(1));
   EXPECT_EQ(folder.Load(1).digest.low, 0xabcdefu);
 }
@@ -128,8 +108,7 @@ CaseResult Measured(std::uint64_t index, const std::vector<double>& own) {
   return result;
 }
 
-TEST(ResultFolder, CasesWaitForMetricsThatTheyLack) {
-  TemporaryFolder temporary;
+TEST_F(ResultFolders, CasesWaitForMetricsThatTheyLack) {
   ResultFolder::Create(temporary / "out", WithOwn({})).Append({{MakeCase(0), MakeCase(1), MakeCase(2)}});
   {
     ResultFolder folder = ResultFolder::Resume(temporary / "out", WithOwn({"a_m", "b_s"}));
@@ -155,8 +134,7 @@ TEST(ResultFolder, CasesWaitForMetricsThatTheyLack) {
   for (const std::uint64_t index : {0, 1, 2}) EXPECT_EQ(folder.Load(index).metrics, MakeCase(index).metrics);
 }
 
-TEST(ResultFolder, AMetricWithAnotherExpressionIsAnother) {
-  TemporaryFolder temporary;
+TEST_F(ResultFolders, AMetricWithAnotherExpressionIsAnother) {
   Campaign campaign = WithOwn({"a_m"});
   ResultFolder::Create(temporary / "out", campaign).Append({{Measured(0, {1.0})}});
   campaign.own_metrics[0].expression = "min(a_m)";
@@ -164,7 +142,7 @@ TEST(ResultFolder, AMetricWithAnotherExpressionIsAnother) {
   EXPECT_EQ(folder.UnmeasuredCount(), 1u);
   CaseResult other = Measured(0, {2.0});
   other.digest.low = 5;
-  EXPECT_EQ(MessageOf<ResultError>([&] { folder.Append({{other}}); }),
+  EXPECT_EQ(ErrorOf<ResultError>([&] { folder.Append({{other}}); }),
             "case 0 was flown twice with different digests: 00000000000000010000000000abcdef is stored, "
             "00000000000000010000000000000005 arrived");
   EXPECT_EQ(folder.Append({{Measured(0, {2.0})}}), 1u);
@@ -172,8 +150,7 @@ TEST(ResultFolder, AMetricWithAnotherExpressionIsAnother) {
   EXPECT_EQ(folder.Load(0).metrics.back(), 2.0);
 }
 
-TEST(ResultFolder, AMetricNamedAfterAStageMakesNoVehicleOfManyStages) {
-  TemporaryFolder temporary;
+TEST_F(ResultFolders, AMetricNamedAfterAStageMakesNoVehicleOfManyStages) {
   const Campaign campaign = WithOwn({"q_stage6_pa"});
   ResultFolder::Create(temporary / "out", campaign).Append({{Measured(0, {1.0})}});
   const ResultFolder folder = ResultFolder::Open(temporary / "out");
@@ -181,8 +158,7 @@ TEST(ResultFolder, AMetricNamedAfterAStageMakesNoVehicleOfManyStages) {
   EXPECT_EQ(folder.Load(0).metrics.back(), 1.0);
 }
 
-TEST(ResultFolder, ListsInOrderWhatIsThere) {
-  TemporaryFolder temporary;
+TEST_F(ResultFolders, ListsInOrderWhatIsThere) {
   ResultFolder folder = ResultFolder::Create(temporary / "out", MakeLimitedCampaign(100));
   folder.Append({{MakeCase(41), MakeCase(3)}});
   folder.Append({{MakeCase(17)}});
@@ -192,12 +168,11 @@ TEST(ResultFolder, ListsInOrderWhatIsThere) {
   EXPECT_THAT(visited, ElementsAre(3, 17, 41));
   EXPECT_TRUE(folder.Contains(17));
   EXPECT_FALSE(folder.Contains(18));
-  EXPECT_EQ(MessageOf<InputError>([&] { folder.Load(18); }),
+  EXPECT_EQ(ErrorOf<InputError>([&] { folder.Load(18); }),
             (temporary / "out").string() + ": has no result of case 18");
 }
 
-TEST(ResultFolder, KeepsQuarantineUntilThereIsAResult) {
-  TemporaryFolder temporary;
+TEST_F(ResultFolders, KeepsQuarantineUntilThereIsAResult) {
   ResultFolder folder = ResultFolder::Create(temporary / "out", MakeLimitedCampaign(10));
   folder.Quarantine({5, "killed 3 workers"});
   folder.Quarantine({4, "hung 1 worker"});
@@ -209,8 +184,7 @@ TEST(ResultFolder, KeepsQuarantineUntilThereIsAResult) {
   EXPECT_EQ(folder.QuarantinedCases()[0].case_index, 5u);
 }
 
-TEST(ResultFolder, KeepsTelemetryApart) {
-  TemporaryFolder temporary;
+TEST_F(ResultFolders, KeepsTelemetryApart) {
   ResultFolder folder = ResultFolder::Create(temporary / "out", MakeLimitedCampaign(10));
   folder.Store({}, {{{.case_index = 3,
                       .worker = "w1",
@@ -223,8 +197,7 @@ TEST(ResultFolder, KeepsTelemetryApart) {
   EXPECT_TRUE(folder.PresentCases().empty());
 }
 
-TEST(ResultFolder, KnowsWhoReturnedWhatAndForgetsAllOfOneWorker) {
-  TemporaryFolder temporary;
+TEST_F(ResultFolders, KnowsWhoReturnedWhatAndForgetsAllOfOneWorker) {
   ResultFolder folder = ResultFolder::Create(temporary / "out", MakeLimitedCampaign(10));
   folder.Store({{MakeCase(1), MakeCase(2), MakeCase(3)}},
                {{{1, "liar", "h", "", kNaN}, {2, "honest", "h", "", kNaN}, {3, "liar", "h", "", kNaN}}});
@@ -257,43 +230,39 @@ TEST(ResultFolder, KnowsWhoReturnedWhatAndForgetsAllOfOneWorker) {
   EXPECT_THAT(unaudited(), ElementsAre("next3"));
 }
 
-TEST(ResultFolder, RefusesAFolderThatIsNotEmpty) {
-  TemporaryFolder temporary;
+TEST_F(ResultFolders, RefusesAFolderThatIsNotEmpty) {
   std::filesystem::create_directories(temporary / "out" / "something");
-  EXPECT_EQ(MessageOf<InputError>([&] { ResultFolder::Create(temporary / "out", MakeLimitedCampaign(1)); }),
+  EXPECT_EQ(ErrorOf<InputError>([&] { ResultFolder::Create(temporary / "out", MakeLimitedCampaign(1)); }),
             (temporary / "out").string() +
-                ": the folder is not empty, allowed: a new or an empty folder, or --resume "
-                "to continue a campaign of the same flight id");
+                ": the folder is not empty, allowed: a new or an empty folder, or --resume to continue a "
+                "campaign of the same flight id");
 }
 
-TEST(ResultFolder, RefusesAFolderThatCannotBeMade) {
-  TemporaryFolder temporary;
+TEST_F(ResultFolders, RefusesAFolderThatCannotBeMade) {
   std::ofstream(temporary / "file") << "not a folder";
-  EXPECT_EQ(MessageOf<InputError>(
-                [&] { ResultFolder::Create(temporary / "file" / "out", MakeLimitedCampaign(1)); }),
-            (temporary / "file" / "out").string() +
-                ": cannot be made: Not a directory, allowed: a folder that can be written");
+  EXPECT_EQ(
+      ErrorOf<InputError>([&] { ResultFolder::Create(temporary / "file" / "out", MakeLimitedCampaign(1)); }),
+      (temporary / "file" / "out").string() +
+          ": cannot be made: Not a directory, allowed: a folder that can be written");
 }
 
-TEST(ResultFolder, RefusesToOpenWhatIsNone) {
-  TemporaryFolder temporary;
+TEST_F(ResultFolders, RefusesToOpenWhatIsNone) {
   std::filesystem::create_directories(temporary / "empty");
-  EXPECT_EQ(MessageOf<InputError>([&] { ResultFolder::Open(temporary / "empty"); }),
+  EXPECT_EQ(ErrorOf<InputError>([&] { ResultFolder::Open(temporary / "empty"); }),
             (temporary / "empty").string() + ": not a result folder: it has no results.sqlite");
   std::filesystem::create_directories(temporary / "garbage");
   std::ofstream(temporary / "garbage" / "results.sqlite") << std::string(4096, 'x');
   EXPECT_EQ(
-      MessageOf<InputError>([&] { ResultFolder::Open(temporary / "garbage"); }),
+      ErrorOf<InputError>([&] { ResultFolder::Open(temporary / "garbage"); }),
       (temporary / "garbage").string() + ": not a result folder: its results.sqlite is no SQLite database");
   std::filesystem::create_directories(temporary / "other");
   Database((temporary / "other") / "results.sqlite", Database::Mode::kCreate).Execute("CREATE TABLE t (x)");
-  EXPECT_EQ(MessageOf<InputError>([&] { ResultFolder::Open(temporary / "other"); }),
+  EXPECT_EQ(ErrorOf<InputError>([&] { ResultFolder::Open(temporary / "other"); }),
             (temporary / "other").string() + ": not a result folder: " +
                 (temporary / "other" / "results.sqlite").string() + ": no such table: provenance");
 }
 
-TEST(ResultFolder, ResumesAndExtendsTheSameFlights) {
-  TemporaryFolder temporary;
+TEST_F(ResultFolders, ResumesAndExtendsTheSameFlights) {
   { ResultFolder::Create(temporary / "out", MakeLimitedCampaign(2)).Append({{MakeCase(0), MakeCase(1)}}); }
   Campaign longer = MakeLimitedCampaign(5);
   longer.id = std::string(64, '3');
@@ -305,57 +274,52 @@ TEST(ResultFolder, ResumesAndExtendsTheSameFlights) {
   EXPECT_EQ(TextOfFile(temporary / "out" / "campaign.yaml"), longer.canonical_yaml);
 }
 
-TEST(ResultFolder, RefusesToMixFlights) {
-  TemporaryFolder temporary;
+TEST_F(ResultFolders, RefusesToMixFlights) {
   { ResultFolder::Create(temporary / "out", MakeLimitedCampaign(2)).Append({{MakeCase(1)}}); }
   const std::string folder = (temporary / "out").string();
 
   Campaign other = MakeLimitedCampaign(2);
   other.flight_id = std::string(64, '9');
-  EXPECT_EQ(MessageOf<InputError>([&] { ResultFolder::Resume(folder, other); }),
+  EXPECT_EQ(ErrorOf<InputError>([&] { ResultFolder::Resume(folder, other); }),
             folder + ": holds results of flight id " + std::string(64, '2') + ", the campaign's is " +
                 std::string(64, '9'));
-  EXPECT_EQ(MessageOf<InputError>([&] { ResultFolder::Resume(folder, MakeLimitedCampaign(1)); }),
+  EXPECT_EQ(ErrorOf<InputError>([&] { ResultFolder::Resume(folder, MakeLimitedCampaign(1)); }),
             folder + ": already holds case 1, the campaign has only 1 cases");
   Database(folder + "/results.sqlite", Database::Mode::kExisting)
       .Execute("UPDATE provenance SET value = '0.0.0+older' WHERE key = 'engine'");
-  EXPECT_EQ(MessageOf<InputError>([&] { ResultFolder::Resume(folder, MakeLimitedCampaign(2)); }),
+  EXPECT_EQ(ErrorOf<InputError>([&] { ResultFolder::Resume(folder, MakeLimitedCampaign(2)); }),
             folder + ": holds results of engine 0.0.0+older, this one is " + EngineVersion());
 }
 
-TEST(ResultFolder, RefusesColumnsOfAnotherEngine) {
-  TemporaryFolder temporary;
+TEST_F(ResultFolders, RefusesColumnsOfAnotherEngine) {
   { ResultFolder::Create(temporary / "out", MakeLimitedCampaign(2)); }
   Database((temporary / "out") / "results.sqlite", Database::Mode::kExisting)
       .Execute("ALTER TABLE cases DROP COLUMN metric_" + MetricNames()[0]);
-  EXPECT_EQ(MessageOf<InputError>([&] { ResultFolder::Open(temporary / "out"); }),
+  EXPECT_EQ(ErrorOf<InputError>([&] { ResultFolder::Open(temporary / "out"); }),
             (temporary / "out").string() + ": flown by engine " + EngineVersion() +
                 "; its inputs and metrics are not those of this engine, " + EngineVersion());
 }
 
-TEST(ResultFolder, IsWrittenByOneProcessAtATime) {
-  TemporaryFolder temporary;
-  const std::string busy =
-      (temporary / "out").string() +
-      ": another dispersa process is writing this folder, allowed: another folder, or to "
-      "wait for that process to end";
+TEST_F(ResultFolders, IsWrittenByOneProcessAtATime) {
+  const std::string busy = (temporary / "out").string() +
+                           ": another dispersa process is writing this folder, allowed: another folder, or "
+                           "to wait for that process to end";
   {
     const ResultFolder folder = ResultFolder::Create(temporary / "out", MakeLimitedCampaign(2));
-    EXPECT_EQ(MessageOf<InputError>([&] { ResultFolder::Resume(temporary / "out", MakeLimitedCampaign(2)); }),
+    EXPECT_EQ(ErrorOf<InputError>([&] { ResultFolder::Resume(temporary / "out", MakeLimitedCampaign(2)); }),
               busy);
     ResultFolder reader = ResultFolder::Open(temporary / "out");
-    EXPECT_EQ(MessageOf<InputError>([&] { reader.Lock(); }), busy);
+    EXPECT_EQ(ErrorOf<InputError>([&] { reader.Lock(); }), busy);
   }
   const ResultFolder folder = ResultFolder::Resume(temporary / "out", MakeLimitedCampaign(2));
-  EXPECT_EQ(MessageOf<InputError>([&] { FolderLock again(temporary / "out"); }), busy);
+  EXPECT_EQ(ErrorOf<InputError>([&] { FolderLock again(temporary / "out"); }), busy);
 }
 
 std::string NamesOfInputs(const std::filesystem::path& folder, const std::string& sql) {
   return Query(folder, "SELECT group_concat(" + sql);
 }
 
-TEST(ResultFolder, RowsHoldTheInputsThatTheCampaignSetsAndATableTheOthersOnce) {
-  TemporaryFolder temporary;
+TEST_F(ResultFolders, RowsHoldTheInputsThatTheCampaignSetsAndATableTheOthersOnce) {
   Campaign campaign = MakeLimitedCampaign(3);
   campaign.vehicle.stages.resize(2);
   campaign.derived.push_back({"cg_factor", "drag_factor", FindInput("cg_factor"), {}});
@@ -386,62 +350,59 @@ TEST(ResultFolder, RowsHoldTheInputsThatTheCampaignSetsAndATableTheOthersOnce) {
 }
 
 // Nothing in the row would show it.
-TEST(ResultFolder, RefusesAFlightThatAppliedOtherConstants) {
-  TemporaryFolder temporary;
+TEST_F(ResultFolders, RefusesAFlightThatAppliedOtherConstants) {
   ResultFolder folder = ResultFolder::Create(temporary / "out", MakeLimitedCampaign(3));
   CaseResult result = MakeCase(1);
   std::vector<double> all = folder.inputs().AllOf(result.inputs);
   all[static_cast<std::size_t>(FindInput("cg_factor"))] = 1.01;
   SetInputs(folder.inputs(), all, result);
-  EXPECT_EQ(MessageOf<ResultError>([&] {
+  EXPECT_EQ(ErrorOf<ResultError>([&] {
               folder.Append({{MakeCase(0), result}});
             }),
             "case 1: its flight applied other constants than its campaign's");
   EXPECT_THAT(folder.PresentCases(), ElementsAre()) << "all or none";
 }
 
-TEST(ResultFolder, AFolderOfALaterVersionIsLeftAlone) {
-  TemporaryFolder temporary;
+TEST_F(ResultFolders, AFolderOfALaterVersionIsLeftAlone) {
   ResultFolder::Create(temporary / "out", MakeLimitedCampaign(3));
   Database(temporary / "out" / "results.sqlite", Database::Mode::kExisting)
       .Execute("PRAGMA user_version = 4");
   const std::string error =
       (temporary / "out").string() +
       ": written by a newer dispersa: its results.sqlite has version 4, this one reads 3";
-  EXPECT_EQ(MessageOf<InputError>([&] { ResultFolder::Open(temporary / "out"); }), error);
-  EXPECT_EQ(MessageOf<InputError>([&] { ResultFolder::Resume(temporary / "out", MakeLimitedCampaign(3)); }),
+  EXPECT_EQ(ErrorOf<InputError>([&] { ResultFolder::Open(temporary / "out"); }), error);
+  EXPECT_EQ(ErrorOf<InputError>([&] { ResultFolder::Resume(temporary / "out", MakeLimitedCampaign(3)); }),
             error);
 }
 
-TEST(ResultFolder, TellsADamagedRowAndRemovesItToBeFlownAgain) {
+TEST_F(ResultFolders, TellsADamagedRowAndRemovesItToBeFlownAgain) {
   const std::string metric = "metric_" + MetricNames()[0];
   for (const std::string& damage :
        {metric + " = " + metric + " + 1e-9", std::string("outcome = 'impact'"), std::string("reason = 'x'"),
         std::string("end_stage = end_stage + 1"), std::string("end_time_s = NULL"),
         std::string("digest = '0' || substr(digest, 2, 30) || 'e'"), std::string("row_digest = ''"),
         std::string("input_drag_factor = 1.5")}) {
-    TemporaryFolder temporary;
+    TemporaryFolder own;
     {
-      ResultFolder folder = ResultFolder::Create(temporary / "out", MakeLimitedCampaign(3));
+      ResultFolder folder = ResultFolder::Create(own / "out", MakeLimitedCampaign(3));
       folder.Append({{MakeCase(0), MakeCase(1), MakeCase(2)}});
     }
-    Database((temporary / "out") / "results.sqlite", Database::Mode::kExisting)
+    Database((own / "out") / "results.sqlite", Database::Mode::kExisting)
         .Execute("UPDATE cases SET " + damage + " WHERE case_index = 1");
     {
-      const ResultFolder folder = ResultFolder::Open(temporary / "out");
-      const std::string error = (temporary / "out").string() +
-                                "/results.sqlite: the row of case 1 is damaged; --resume flies it again";
-      EXPECT_EQ(MessageOf<ResultError>([&] { folder.Load(1); }), error) << damage;
-      EXPECT_EQ(MessageOf<ResultError>([&] { folder.ForEach([](const CaseResult&) {}); }), error) << damage;
+      const ResultFolder folder = ResultFolder::Open(own / "out");
+      const std::string error =
+          (own / "out").string() + "/results.sqlite: the row of case 1 is damaged; --resume flies it again";
+      EXPECT_EQ(ErrorOf<ResultError>([&] { folder.Load(1); }), error) << damage;
+      EXPECT_EQ(ErrorOf<ResultError>([&] { folder.ForEach([](const CaseResult&) {}); }), error) << damage;
     }
-    const ResultFolder folder = ResultFolder::Resume(temporary / "out", MakeLimitedCampaign(3));
+    const ResultFolder folder = ResultFolder::Resume(own / "out", MakeLimitedCampaign(3));
     EXPECT_THAT(folder.damaged(), ElementsAre(1)) << damage;
     EXPECT_THAT(folder.PresentCases(), ElementsAre(0, 2)) << damage;
   }
 }
 
-TEST(ResultFolder, KeepsTheFingerprintOfEachRow) {
-  TemporaryFolder temporary;
+TEST_F(ResultFolders, KeepsTheFingerprintOfEachRow) {
   ResultFolder folder = ResultFolder::Create(temporary / "out", MakeLimitedCampaign(3));
   folder.Append({{MakeCase(2), MakeCase(1)}});
   EXPECT_THAT(folder.Fingerprints(),
@@ -449,8 +410,7 @@ TEST(ResultFolder, KeepsTheFingerprintOfEachRow) {
 }
 
 // Somebody else's, or an archive's.
-TEST(ResultFolder, IsReadByWhoMayNotWriteIt) {
-  TemporaryFolder temporary;
+TEST_F(ResultFolders, IsReadByWhoMayNotWriteIt) {
   const std::filesystem::path out = temporary / "100%# out?";
   ResultFolder::Create(out, MakeLimitedCampaign(3)).Append({{MakeCase(1)}});
   using std::filesystem::perms;
@@ -476,8 +436,9 @@ TEST(ResultFolder, IsReadByWhoMayNotWriteIt) {
   EXPECT_EQ(status, 0);
 }
 
-TEST(OutputFile, DoesNotFollowALinkInItsPlace) {
-  TemporaryFolder temporary;
+using OutputFiles = ResultFolders;
+
+TEST_F(OutputFiles, DoesNotFollowALinkInItsPlace) {
   std::ofstream(temporary / "precious") << "kept";
   std::filesystem::create_symlink(temporary / "precious", temporary / "cases.csv.tmp");
   WriteFile(temporary / "cases.csv", "new");
@@ -491,24 +452,16 @@ TEST(Database, TellsAFullDiskFromOtherErrors) {
   Database database(temporary / "small.sqlite", Database::Mode::kCreate);
   database.Execute("CREATE TABLE t (x TEXT)");
   database.Execute("PRAGMA max_page_count = 4");  // SQLite's own full disk
-  try {
+  const auto fill = [&] {
     for (int i = 0; i < 100; ++i) database.Execute("INSERT INTO t VALUES ('" + std::string(1000, 'x') + "')");
-    FAIL() << "never full";
-  } catch (const ResultError& error) {
-    EXPECT_EQ(error.kind(), ResultError::Kind::kDiskFull);
-    EXPECT_EQ(error.what(), (temporary / "small.sqlite").string() + ": no space left on the disk");
-  }
-  try {
-    database.Execute("SELECT y FROM t");
-    FAIL() << "no such column";
-  } catch (const ResultError& error) {
-    EXPECT_EQ(error.kind(), ResultError::Kind::kFile);
-    EXPECT_EQ(error.what(), (temporary / "small.sqlite").string() + ": no such column: y");
-  }
+  };
+  const std::string file = (temporary / "small.sqlite").string();
+  EXPECT_THAT(fill, Fails(ResultError::Kind::kDiskFull, file + ": no space left on the disk"));
+  EXPECT_THAT([&] { database.Execute("SELECT y FROM t"); },
+              Fails(ResultError::Kind::kFile, file + ": no such column: y"));
 }
 
-TEST(OutputFile, ReplacesAsAWholeOrNotAtAll) {
-  TemporaryFolder temporary;
+TEST_F(OutputFiles, ReplacesAsAWholeOrNotAtAll) {
   WriteFile(temporary / "file", "old");
   {
     OutputFile abandoned(temporary / "file");
@@ -521,8 +474,7 @@ TEST(OutputFile, ReplacesAsAWholeOrNotAtAll) {
   EXPECT_FALSE(std::filesystem::exists(temporary / "file.tmp"));
 }
 
-TEST(OutputFile, ReportsAFullDisk) {
-  TemporaryFolder temporary;
+TEST_F(OutputFiles, ReportsAFullDisk) {
   const std::filesystem::path folder = (temporary / "file").parent_path();
   const std::string message = OnASmallDisk(folder, "64k", [&folder]() -> std::string {
     WriteFile(folder / "file", "old");
@@ -537,8 +489,7 @@ TEST(OutputFile, ReportsAFullDisk) {
   EXPECT_EQ(message, (folder / "file").string() + ": no space left on the disk");
 }
 
-TEST(OutputFile, KeepsLinksAndPermissions) {
-  TemporaryFolder temporary;
+TEST_F(OutputFiles, KeepsLinksAndPermissions) {
   const mode_t mask = umask(022);
   std::ofstream(temporary / "file") << "old";
   std::filesystem::permissions(temporary / "file", std::filesystem::perms(0600));
@@ -557,8 +508,7 @@ TEST(OutputFile, KeepsLinksAndPermissions) {
   umask(mask);
 }
 
-TEST(OutputFile, WritesToAPipeThatIsThere) {
-  TemporaryFolder temporary;
+TEST_F(OutputFiles, WritesToAPipeThatIsThere) {
   const std::filesystem::path pipe = temporary / "pipe";
   ASSERT_EQ(mkfifo(pipe.c_str(), 0600), 0);
   const int reader = open(pipe.c_str(), O_RDONLY | O_NONBLOCK);
@@ -570,11 +520,9 @@ TEST(OutputFile, WritesToAPipeThatIsThere) {
   EXPECT_TRUE(std::filesystem::is_fifo(pipe));
 }
 
-TEST(OutputFile, SaysWhyAFileCannotBeWritten) {
-  TemporaryFolder temporary;
-  EXPECT_EQ(MessageOf<ResultError>([&] { WriteFile(temporary / "no" / "file", "x"); }),
+TEST_F(OutputFiles, SaysWhyAFileCannotBeWritten) {
+  EXPECT_EQ(ErrorOf<ResultError>([&] { WriteFile(temporary / "no" / "file", "x"); }),
             (temporary / "no" / "file").string() + ": cannot be written: No such file or directory");
 }
 
-}  // namespace
 }  // namespace dispersa::results_result_folder_test

@@ -6,7 +6,6 @@
 #include "tests/unit/made_up_results.h"
 
 namespace dispersa::results_text_test {
-namespace {
 
 TEST(ReadableText, HasFiveDigitsAndNoNoise) {
   EXPECT_EQ(ReadableText(7612.6), "7612.6");
@@ -110,11 +109,7 @@ TEST(PValueText, IsNeverZero) {
 
 // What was required once is known by its line alone.
 TEST(RequirementLine, CanBeReadBack) {
-  Requirement one;
-  one.metric = "pitch_error_peak_deg";
-  one.below = 0.1;
-  one.probability = 0.9973;
-  one.consumer_risk = 0.1;
+  const Requirement one{"pitch_error_peak_deg", 0.1, {}, 0.9973, 0.1};
   EXPECT_EQ(LineWords(RequirementLine(one)),
             "pitch_error_peak_deg below 0.1 for 99.73 % of flights at 10 % risk");
   Requirement range = one;
@@ -191,5 +186,4 @@ TEST(FixedText, NeverShowsANegativeZero) {
   EXPECT_EQ(FixedText(std::nan(""), 3), "–");
 }
 
-}  // namespace
 }  // namespace dispersa::results_text_test

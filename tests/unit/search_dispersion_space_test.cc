@@ -4,21 +4,13 @@
 
 #include "core/math/constants.h"
 #include "tests/test.h"
+#include "tests/unit/distributions.h"
 
 namespace dispersa::search_dispersion_space_test {
-namespace {
 
 double Below(double z) { return 0.5 * std::erfc(-z / std::sqrt(2.0)); }
 
-Dispersion Of(const std::string& name, const ScalarDistribution& distribution, const char* input,
-              bool absolute = false) {
-  Dispersion dispersion;
-  dispersion.name = name;
-  dispersion.distribution = distribution;
-  dispersion.inputs = {FindInput(input)};
-  dispersion.absolute = absolute;
-  return dispersion;
-}
+using namespace made_up;
 
 /// The wind's altitude, fed by this law, where the coordinate is z.
 double ValueAt(const ScalarDistribution& distribution, double z, bool absolute = false) {
@@ -37,29 +29,15 @@ struct Law {
 TEST(DispersionSpace, AValueIsAsFarOutAsItsCoordinate) {
   const double from = Below(-1.0), to = Below(0.5);
   const std::vector<Law> laws = {
-      {"normal",
-       {.kind = Distribution::kNormal, .nominal = 3.0, .sigma = 2.0, .values = {}},
-       [](double x) { return Below((x - 3.0) / 2.0); }},
-      {"lognormal",
-       {.kind = Distribution::kLogNormal, .nominal = 2.0, .sigma = 0.5, .values = {}},
-       [](double x) { return Below(std::log(x / 2.0) / 0.5); }},
-      {"uniform",
-       {.kind = Distribution::kUniform, .low = 2.0, .high = 5.0, .values = {}},
-       [](double x) { return (x - 2.0) / 3.0; }},
-      {"triangular",
-       {.kind = Distribution::kTriangular, .nominal = 1.0, .low = 0.0, .high = 4.0, .values = {}},
+      {"normal", Normal(3.0, 2.0), [](double x) { return Below((x - 3.0) / 2.0); }},
+      {"lognormal", LogNormal(2.0, 0.5), [](double x) { return Below(std::log(x / 2.0) / 0.5); }},
+      {"uniform", Uniform(2.0, 5.0), [](double x) { return (x - 2.0) / 3.0; }},
+      {"triangular", Triangular(0.0, 1.0, 4.0),
        [](double x) { return x < 1.0 ? x * x / 4.0 : 1.0 - (4.0 - x) * (4.0 - x) / 12.0; }},
-      {"truncated",
-       {.kind = Distribution::kTruncatedNormal,
-        .nominal = 3.0,
-        .sigma = 2.0,
-        .low = 1.0,
-        .high = 4.0,
-        .values = {}},
+      {"truncated", TruncatedNormal(3.0, 2.0, 1.0, 4.0),
        [=](double x) { return (Below((x - 3.0) / 2.0) - from) / (to - from); }},
-      {"empirical", {.kind = Distribution::kEmpirical, .values = {0.0, 1.0, 11.0}}, [](double x) {
-         return x < 1.0 ? 0.5 * x : 0.5 + (x - 1.0) / 20.0;
-       }}};
+      {"empirical", Empirical({0.0, 1.0, 11.0}),
+       [](double x) { return x < 1.0 ? 0.5 * x : 0.5 + (x - 1.0) / 20.0; }}};
   for (const Law& law : laws)
     for (const double z : {-3.0, -1.0, -0.2, 0.0, 0.7, 2.5})
       EXPECT_NEAR(law.below(ValueAt(law.distribution, z)), Below(z), 1e-9) << law.name << " at " << z;
@@ -67,7 +45,7 @@ TEST(DispersionSpace, AValueIsAsFarOutAsItsCoordinate) {
 
 // A Rayleigh's value has one tail: it is exceeded as rarely as |z| is, whichever side z is on.
 TEST(DispersionSpace, ARayleighIsExceededAsRarelyAsTheSizeOfItsCoordinate) {
-  const ScalarDistribution rayleigh = {.kind = Distribution::kRayleigh, .sigma = 3.0, .values = {}};
+  const ScalarDistribution rayleigh = Rayleigh(3.0);
   for (const double z : {0.5, 1.0, 3.0, 6.0}) {
     const double value = ValueAt(rayleigh, z);
     EXPECT_NEAR(std::exp(-value * value / 18.0) / (2.0 * Below(-z)), 1.0, 1e-6) << z;
@@ -77,17 +55,14 @@ TEST(DispersionSpace, ARayleighIsExceededAsRarelyAsTheSizeOfItsCoordinate) {
 
 TEST(DispersionSpace, WhatIsNotDrawnByAQuantileIsHeld) {
   for (const double z : {-2.0, 0.0, 2.0}) {
-    EXPECT_EQ(
-        ValueAt({.kind = Distribution::kTwoPoint, .nominal = 5.0, .low = 4.0, .high = 9.0, .values = {}}, z),
-        5.0);
-    EXPECT_EQ(ValueAt({.kind = Distribution::kValues, .values = {1.0, 2.0, 4.0}}, z), 2.0);
+    EXPECT_EQ(ValueAt(TwoPoint(5.0, 4.0, 9.0), z), 5.0);
+    EXPECT_EQ(ValueAt(Values({1.0, 2.0, 4.0}), z), 2.0);
     EXPECT_EQ(ValueAt({.kind = Distribution::kConstant, .nominal = 7.0, .values = {7.0}}, z), 7.0);
   }
 }
 
 TEST(DispersionSpace, AMagnitudeHasNoSign) {
-  const ScalarDistribution normal = {
-      .kind = Distribution::kNormal, .nominal = 0.0, .sigma = 2.0, .values = {}};
+  const ScalarDistribution normal = Normal(0.0, 2.0);
   EXPECT_EQ(ValueAt(normal, -1.5, true), 3.0);
   Campaign campaign;
   campaign.dispersions = {Of("w", normal, "wind_altitude_m", true)};
@@ -96,11 +71,9 @@ TEST(DispersionSpace, AMagnitudeHasNoSign) {
 
 TEST(DispersionSpace, OnlyAFullTurnIsADirection) {
   Campaign campaign;
-  campaign.dispersions = {
-      Of("turn", {.kind = Distribution::kUniform, .low = -kPi, .high = kPi, .values = {}},
-         "wind_azimuth_deg"),
-      Of("half", {.kind = Distribution::kUniform, .low = 0.0, .high = kPi, .values = {}}, "wind_azimuth_deg"),
-      Of("two", {.kind = Distribution::kTwoPoint, .low = 0.0, .high = 1.0, .values = {}}, "drag_factor")};
+  campaign.dispersions = {Of("turn", Uniform(-kPi, kPi), "wind_azimuth_deg"),
+                          Of("half", Uniform(0.0, kPi), "wind_azimuth_deg"),
+                          Of("two", TwoPoint(0.0, 0.0, 1.0), "drag_factor")};
   const DispersionSpace space(campaign);
   const auto& coordinates = space.coordinates();
   EXPECT_EQ(coordinates[0].kind, CoordinateKind::kDirection);
@@ -111,8 +84,7 @@ TEST(DispersionSpace, OnlyAFullTurnIsADirection) {
 // Correlated normals: the second stands 0.6 with the first and 0.8 alone.
 TEST(DispersionSpace, CorrelatedCoordinatesAreMixedByTheirWeights) {
   Campaign campaign;
-  const ScalarDistribution normal = {
-      .kind = Distribution::kNormal, .nominal = 10.0, .sigma = 2.0, .values = {}};
+  const ScalarDistribution normal = Normal(10.0, 2.0);
   campaign.dispersions = {Of("a", normal, "wind_altitude_m"), Of("b", normal, "wind_width_m")};
   campaign.dispersions[1].mix = {{0, 0.6}, {1, 0.8}};
   const FlightInputs inputs = DispersionSpace(campaign).Inputs({{1.0, -3.0}})[0];
@@ -120,5 +92,4 @@ TEST(DispersionSpace, CorrelatedCoordinatesAreMixedByTheirWeights) {
   EXPECT_DOUBLE_EQ(inputs.air.wind_width_m, 10.0 + 2.0 * (0.6 - 2.4));
 }
 
-}  // namespace
 }  // namespace dispersa::search_dispersion_space_test

@@ -6,7 +6,6 @@
 #include "tests/test.h"
 
 namespace dispersa::search_planted_cause_test {
-namespace {
 
 constexpr char kMetric[] = "pitch_error_peak_stage2_deg";
 constexpr double kLimit_deg = 1.0;
@@ -55,5 +54,4 @@ TEST(SmallestFailure, FindsAPlantedCauseInFlight) {
   EXPECT_GT(margins_at({alone})[0], 0.0);
 }
 
-}  // namespace
 }  // namespace dispersa::search_planted_cause_test

@@ -6,7 +6,6 @@
 #include "tests/test.h"
 
 namespace dispersa::search_smallest_failure_test {
-namespace {
 
 using Point = std::vector<double>;
 
@@ -158,5 +157,4 @@ TEST(DispersionSpace, AppliesWhatTheLawsMean) {
   }
 }
 
-}  // namespace
 }  // namespace dispersa::search_smallest_failure_test

@@ -5,7 +5,6 @@
 #include <boost/math/quadrature/tanh_sinh.hpp>
 
 namespace dispersa::statistics_anytime_test {
-namespace {
 
 double Ratio(double p, double limit, int n, int failures) {
   return std::pow(p / limit, failures) * std::pow((1.0 - p) / (1.0 - limit), n - failures);
@@ -67,5 +66,4 @@ TEST(Anytime, TheConfidenceSequenceEndsWhereTheTestsTurn) {
   EXPECT_EQ(AnytimeSuccess(2000, 0, 0, 0.10).upper, 1.0);
 }
 
-}  // namespace
 }  // namespace dispersa::statistics_anytime_test

@@ -6,7 +6,6 @@
 #include "tests/test.h"
 
 namespace dispersa::statistics_attempts_test {
-namespace {
 
 constexpr double kShare = 0.95;
 constexpr double kRisk = 0.10;
@@ -260,5 +259,4 @@ TEST(AttemptsMisused, ExtendedUntilItPasses) {
              0.2);
 }
 
-}  // namespace
 }  // namespace dispersa::statistics_attempts_test

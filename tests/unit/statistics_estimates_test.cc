@@ -12,7 +12,6 @@
 #include "tests/test.h"
 
 namespace dispersa::statistics_estimates_test {
-namespace {
 
 /// Allowance for the rounding of a root, or of an inverse of the beta function.
 constexpr double kRounding = 1e-12;
@@ -124,5 +123,4 @@ TEST(Estimates, OfAnIndexLieInsideItsInterval) {
   }
 }
 
-}  // namespace
 }  // namespace dispersa::statistics_estimates_test

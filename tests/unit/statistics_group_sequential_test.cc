@@ -5,7 +5,6 @@
 #include "tests/test.h"
 
 namespace dispersa::statistics_group_sequential_test {
-namespace {
 
 /// Probability, over all 2^n sequences of n cases, that some look decides.
 template <typename Decides>
@@ -125,5 +124,4 @@ TEST(GroupSequential, LooksAreCountedInIntegers) {
   EXPECT_TRUE(LookCounts({PlanKind::kAnytime, 1, Spending::kPocock}, 100).empty());
 }
 
-}  // namespace
 }  // namespace dispersa::statistics_group_sequential_test

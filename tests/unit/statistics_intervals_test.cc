@@ -6,7 +6,6 @@
 #include "tests/unit/read_csv.h"
 
 namespace dispersa::statistics_intervals_test {
-namespace {
 
 // SciPy's figures are printed with 12 digits.
 constexpr double kPrinted = 1e-11;
@@ -123,5 +122,4 @@ TEST(QuantileInterval, CoversTheQuantile) {
   EXPECT_NEAR(covered / double{kReplicates}, exact, 4.0 * std::sqrt(0.9 * 0.1 / kReplicates));
 }
 
-}  // namespace
 }  // namespace dispersa::statistics_intervals_test
