@@ -49,7 +49,6 @@ enum class MetricNeeds {
   kFreeStage,     ///< a stage that nothing controls
   kSectionLoads,  ///< HasSectionLoads()
   kLimits,        ///< of the vehicle's structure
-  kCutOff,        ///< a burn that a command ends
   kRail,
   kApogee,  ///< they end there, or later
   kImpact,
@@ -66,7 +65,6 @@ struct FlightKind {
   bool has_free_stage = false;
   bool has_section_loads = false;
   bool has_limits = false;
-  bool has_cut_off = false;
   bool has_rail = false;
   FlightEnd ends = FlightEnd::kInjection;
   // What the target names.
