@@ -17,13 +17,14 @@ struct CutOffCommand {
   double at_s = HUGE_VAL;
   double tail_off_s = 0.0;
 };
+/// What an engine burns.
 struct Supply {
   double propellant_kg;
-  double residual_kg;  ///< of it, that never flows
+  double residual_kg;  ///< the part of it that never flows
   double full_flow_kg_s;
 };
-/// Burns the supply. While the throttle's level is linear,
-/// the flow is linear too. The time of depletion then solves a quadratic equation.
+/// While the throttle's level is linear, the flow is linear too. The time of depletion then solves a
+/// quadratic equation.
 ThrottledBurn Throttled(const Throttle& throttle, const Supply& supply, const CutOffCommand& command);
 
 }  // namespace dispersa
