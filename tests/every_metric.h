@@ -17,6 +17,7 @@ inline void MeasureEverything(Campaign& campaign) {
   campaign.vehicle.rail = Rail{1.0, 0.0, 0.0, 0.0};
   Stage free;
   free.gimbal = FixedNozzle(1.0);
+  free.motor.cut_off = CutOff::kAtTime;
   campaign.vehicle.stages.push_back(free);
 }
 

@@ -221,6 +221,9 @@ void Batch<T>::BurnOut(int lane, int stage) {
   lanes_.computer.EndStage(lane);
   lanes_.step.BurnOut(lane);
   SetShape(lane);
+  const MotorBurn& burn = record.plant.stacks.data()[stage].burn;
+  record.sums.unburnt_kg[stage] = burn.left_kg - burn.residual_kg;
+  record.sums.burnt_out = stage + 1;
   if (stage + 1 == static_cast<int>(record.plant.stacks.size())) record.Inject(now.altitude_m, y);
 }
 

@@ -52,6 +52,8 @@ struct FlightSums : TickSums<double> {
   bool handed_over = false;
   double handover_angle_rad = 0.0, handover_rate_rad_s = 0.0;
   double expelled_kg = 0.0;
+  double unburnt_kg[kMaxStages] = {};  ///< usable, that each burn left
+  int burnt_out = 0;                   ///< burns that have ended
   bool injected = false;
   double injection_altitude_m = 0.0;
   OrbitElements orbit;

@@ -11,6 +11,7 @@
 #include "core/math/assertion.h"
 #include "core/math/constants.h"
 #include "core/math/functions.h"
+#include "core/vehicle/cut_off.h"
 
 namespace dispersa {
 
@@ -30,6 +31,7 @@ struct Measured {
   const FlightSums& sums;
   const FlightDefinition& definition;
   const ErrorSums& pitch;  // of the metric's phase
+  int stage;               // of its phase; -1: the whole flight's
 
   /// The value, if the flight got there.
   double AtHandover(double value) const { return sums.handed_over ? value : kUndefined; }
@@ -42,6 +44,15 @@ struct Measured {
   double AtApogee(double value) const { return sums.free.has_apogee ? value : kUndefined; }
   double AtImpact(double value) const { return sums.free.has_impact ? value : kUndefined; }
   double OffTheRail(double value) const { return sums.free.left_rail ? value : kUndefined; }
+  /// Of the stage's burn, or of the last burn that a command ends.
+  double PropellantLeft() const {
+    const std::vector<Stage>& stages = definition.vehicle.stages;
+    int burn = stage < 0 ? static_cast<int>(stages.size()) - 1 : stage;
+    while (stage < 0 && burn >= 0 && !EndsByCommand(stages[static_cast<std::size_t>(burn)].motor)) --burn;
+    if (burn < 0 || burn >= sums.burnt_out || !EndsByCommand(stages[static_cast<std::size_t>(burn)].motor))
+      return kUndefined;
+    return std::max(sums.unburnt_kg[burn], 0.0);
+  }
 };
 
 // The end of a metric's name, and how people write the unit.
@@ -57,21 +68,23 @@ constexpr MetricUnit kPure{"", ""}, kDegrees{"_deg", "°"}, kDegreesPerSecond{"_
 
 // Properties that few metrics have, as in Metric.
 struct Traits {
-  bool by_phase = false;  // of powered flight, of each stage's burn and of the coast
+  bool by_stage = false;  // of powered flight, and of each stage's burn
+  bool by_coast = false;  // of the coast too
   bool is_usual = false;
   bool is_digested = true;
   bool LawInfo::*of_law = nullptr;
   MetricNeeds needs = MetricNeeds::kNothing;
   Circle circle = {};
   const char* over = nullptr;  // null: as others of its group or its needs
+  int since = 1;               // as in Metric
 };
 constexpr const char *kLastIgnition = "the last ignition",
                      *kLoaded =
                          "lift-off to the end of the last burn, or to the apogee of flights that go on; "
                          "without coasts";
-constexpr Traits kByPhase{.by_phase = true}, kUsualByPhase{.by_phase = true, .is_usual = true},
-    kUsual{.is_usual = true}, kOfRules{.of_law = &LawInfo::rules},
-    kOfAdaptation{.of_law = &LawInfo::adaptation};
+constexpr Traits kByPhase{.by_stage = true, .by_coast = true},
+    kUsualByPhase{.by_stage = true, .by_coast = true, .is_usual = true}, kUsual{.is_usual = true},
+    kOfRules{.of_law = &LawInfo::rules}, kOfAdaptation{.of_law = &LawInfo::adaptation};
 // Follows from the flight's states, which are digested, or from its inputs.
 constexpr Traits kNotDigested{.is_digested = false};
 // What is not said of flights without a target: the orbit, and how far it is from the target's.
@@ -83,6 +96,14 @@ constexpr Traits kOfNode{.is_digested = false, .needs = MetricNeeds::kNode, .cir
     kOfTrueAnomaly{.is_digested = false, .needs = MetricNeeds::kTrueAnomaly, .circle = kCutAt180Deg};
 constexpr Traits kOfSectionLoads{.needs = MetricNeeds::kSectionLoads},
     kOfLimits{.needs = MetricNeeds::kLimits};
+constexpr const char* kCommandedEnd = "the end of the last burn that a command ends";
+constexpr Traits kOfCutOff{
+    .is_digested = false, .needs = MetricNeeds::kCutOff, .over = kCommandedEnd, .since = 4},
+    kOfEachCutOff{.by_stage = true,
+                  .is_digested = false,
+                  .needs = MetricNeeds::kCutOff,
+                  .over = kCommandedEnd,
+                  .since = 4};
 constexpr Traits kAtHandover{.over = kLastIgnition},
     kAtGuidedIgnition{.is_digested = false, .over = kLastIgnition},
     kOfThrusters{.over = "lift-off to the end of the last burn"};
@@ -389,6 +410,18 @@ constexpr Row kRows[] = {
      "total, to the air and its wind, where the vehicle leaves the rail", kLarger,
      [](const Measured& m) { return m.OffTheRail(m.sums.free.rail_exit_incidence_rad * kDegPerRad); },
      kOfRail},
+
+    {"propellant_left", kKilograms, "m_left", kInjection, "Propellant left",
+     "usable, at the end of a burn that a command ends: without the residual, which grows with the mixture",
+     kSmaller, [](const Measured& m) { return m.PropellantLeft(); }, kOfEachCutOff},
+    {"depleted", kPure, "–", kInjection, "Depleted",
+     "1 if the usable propellant ended the last burn that a command ends before the command did, else 0",
+     kLarger,
+     [](const Measured& m) {
+       const double left_kg = m.PropellantLeft();
+       return std::isnan(left_kg) ? kUndefined : left_kg > 0.0 ? 0.0 : 1.0;
+     },
+     kOfCutOff},
 };
 
 // Sums of all stages together. If several stages share a peak, the first stage has it.
@@ -429,11 +462,12 @@ void ForEach(F f) {
   const auto by_phase = [&](bool rare) {
     for (int phase = 0; phase < kPhases; ++phase)
       for (const Row& row : kRows)
-        if (row.traits.by_phase && IsRare(phase) == rare) f(row, phase);
+        if (row.traits.by_stage && (phase < kPhases - 1 || row.traits.by_coast) && IsRare(phase) == rare)
+          f(row, phase);
   };
   by_phase(false);
   for (const Row& row : kRows)
-    if (!row.traits.by_phase) f(row, 0);
+    if (!row.traits.by_stage) f(row, 0);
   by_phase(true);
 }
 
@@ -458,6 +492,8 @@ bool Meets(const FlightKind& kind, MetricNeeds needs) {
       return kind.has_limits;
     case MetricNeeds::kRail:
       return kind.has_rail;
+    case MetricNeeds::kCutOff:
+      return kind.has_cut_off;
     case MetricNeeds::kApogee:
       return kind.ends != FlightEnd::kInjection;
     case MetricNeeds::kImpact:
@@ -522,7 +558,8 @@ std::vector<Metric> AllMetrics() {
                     .is_part = phase != 0,
                     .of_law = row.traits.of_law,
                     .needs = NeedsOf(row),
-                    .circle = row.traits.circle});
+                    .circle = row.traits.circle,
+                    .since = row.traits.since});
   });
   return list;
 }
@@ -530,7 +567,7 @@ std::vector<Metric> AllMetrics() {
 constexpr std::size_t kRareMetrics =
     (kMaxStages - kUsualStages) *
     static_cast<std::size_t>(std::count_if(std::begin(kRows), std::end(kRows),
-                                           [](const Row& row) { return row.traits.by_phase; }));
+                                           [](const Row& row) { return row.traits.by_stage; }));
 
 }  // namespace
 
@@ -559,6 +596,8 @@ FlightKind KindOf(const Vehicle& vehicle, const AutopilotConfig& autopilot, cons
                                     [](const Stage& stage) { return !stage.is_controlled(); });
   kind.has_section_loads = HasSectionLoads(vehicle);
   kind.has_limits = HasLimits(vehicle.limits);
+  kind.has_cut_off = std::any_of(vehicle.stages.begin(), vehicle.stages.end(),
+                                 [](const Stage& stage) { return EndsByCommand(stage.motor); });
   kind.has_rail = vehicle.rail && vehicle.rail->length_m > 0.0;
   kind.ends = course.ends;
   return kind;
@@ -566,7 +605,7 @@ FlightKind KindOf(const Vehicle& vehicle, const AutopilotConfig& autopilot, cons
 
 FlightKind AnyUnder(ControlLaw law) {
   FlightKind any(law);
-  any.has_free_stage = any.has_section_loads = any.has_limits = any.has_rail = true;
+  any.has_free_stage = any.has_section_loads = any.has_limits = any.has_rail = any.has_cut_off = true;
   any.ends = FlightEnd::kImpact;
   any.has_node = any.has_argument_of_perigee = any.has_true_anomaly = true;
   return any;
@@ -590,6 +629,8 @@ std::string NeedsOf(const Metric& metric) {
       return "limits of the vehicle's structure";
     case MetricNeeds::kRail:
       return "a rail";
+    case MetricNeeds::kCutOff:
+      return "a burn with cut_off";
     case MetricNeeds::kApogee:
       return "flight: {ends: apogee} or {ends: impact}";
     case MetricNeeds::kImpact:
@@ -639,7 +680,7 @@ MeasuredFlight Measure(const FlightSums& sums, const FlightDefinition& definitio
   measured.digested.reserve(MetricNames().size());
   ForEach([&](const Row& row, int phase) {
     const ErrorSums pitch = PitchOf(phase, sums);
-    const double value = row.value({sums, definition, pitch});
+    const double value = row.value({sums, definition, pitch, phase == kPhases - 1 ? -1 : phase - 1});
     const bool has = (row.traits.of_law == nullptr || law.*row.traits.of_law) && Meets(kind, NeedsOf(row));
     measured.metrics.push_back(has ? value : kUndefined);
     if (row.traits.is_digested && !IsRare(phase)) measured.digested.push_back(value);

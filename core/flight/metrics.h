@@ -49,6 +49,7 @@ enum class MetricNeeds {
   kFreeStage,     ///< a stage that nothing controls
   kSectionLoads,  ///< HasSectionLoads()
   kLimits,        ///< of the vehicle's structure
+  kCutOff,        ///< a burn that a command ends
   kRail,
   kApogee,  ///< they end there, or later
   kImpact,
@@ -65,6 +66,7 @@ struct FlightKind {
   bool has_free_stage = false;
   bool has_section_loads = false;
   bool has_limits = false;
+  bool has_cut_off = false;
   bool has_rail = false;
   FlightEnd ends = FlightEnd::kInjection;
   // What the target names.
@@ -93,6 +95,7 @@ struct Metric {
   bool LawInfo::*of_law = nullptr;
   MetricNeeds needs = MetricNeeds::kNothing;
   Circle circle = {};  ///< where it repeats, in its unit
+  int since = 1;       ///< the first version of stored rows (kRowVersion) that knows it
 };
 
 /// In the order of their columns.

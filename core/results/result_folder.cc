@@ -97,8 +97,8 @@ RowInputs StoredInputs(Database& database, const fs::path& directory) {
 }
 
 /// A law's own metrics are there if it was flown. Those that a kind of flight has are there together, or none
-/// of them is. Of all others a folder must have a column.
-Positions StoredMetrics(Database& database, const MetricList& list) {
+/// of them is. Of all others that its version knows a folder must have a column.
+Positions StoredMetrics(Database& database, const MetricList& list, int version) {
   std::set<std::string> columns;
   Statement names = database.Prepare("SELECT name FROM pragma_table_info('cases')");
   while (names.Step()) columns.insert(names.Text(0));
@@ -109,8 +109,8 @@ Positions StoredMetrics(Database& database, const MetricList& list) {
     if (is_there(i)) met.insert(Metrics()[i].needs);
   Positions metrics;
   for (std::size_t i = 0; i < list.size(); ++i) {
-    const bool must =
-        i >= of_vehicle || (Metrics()[i].of_law == nullptr && met.count(Metrics()[i].needs) > 0);
+    const bool must = i >= of_vehicle || (Metrics()[i].since <= version && Metrics()[i].of_law == nullptr &&
+                                          met.count(Metrics()[i].needs) > 0);
     if (must || is_there(i)) metrics.push_back(i);
   }
   return metrics;
@@ -150,10 +150,6 @@ std::vector<OwnMetric> OwnMetricsOf(Database& database) {
   return metrics;
 }
 
-/// Of the tables, as SQLite's user_version. 1 (stored as 0): without `audits`. 2: with it; rows hold all
-/// inputs. 3: rows hold those that the campaign sets, and the table `nominal` the others.
-constexpr int kVersion = 3;
-
 int VersionOf(const Database& database) {
   Statement select(database, "PRAGMA user_version");
   return select.Step() ? std::max(1, static_cast<int>(select.Integer(0))) : 1;
@@ -161,9 +157,9 @@ int VersionOf(const Database& database) {
 
 void RefuseNewer(const Database& database, const fs::path& directory) {
   const int version = VersionOf(database);
-  if (version <= kVersion) return;
+  if (version <= kRowVersion) return;
   throw InputError(fmt::format("{}: written by a newer dispersa: its {} has version {}, this one reads {}",
-                               directory.string(), kDatabaseName, version, kVersion));
+                               directory.string(), kDatabaseName, version, kRowVersion));
 }
 
 void CreateCases(Database& database, const std::string& table, const RowShape& shape) {
@@ -196,7 +192,7 @@ void CreateTables(Database& database, const Campaign& campaign) {
   database.Execute(
       "CREATE TABLE audits (case_index INTEGER NOT NULL, worker TEXT NOT NULL, PRIMARY KEY (case_index, "
       "worker))");
-  database.Execute(fmt::format("PRAGMA user_version = {}", kVersion));
+  database.Execute(fmt::format("PRAGMA user_version = {}", kRowVersion));
 }
 
 void WriteOwnMetrics(Database& database, const Campaign& campaign) {
@@ -249,10 +245,23 @@ std::optional<Digest> ParseDigest(const std::string& hex) {
   return digest;
 }
 
-/// Bytes, or in folders of older releases their digits.
+/// With the metrics that rows of this version know.
+CaseResult AsOf(const RowShape& shape, CaseResult result) {
+  const std::size_t of_vehicle = MetricCount(shape.list.stages());
+  std::size_t i = 0;
+  std::erase_if(result.metrics, [&](double) {
+    const std::size_t metric = i++;
+    return metric < of_vehicle && Metrics()[metric].since > shape.version;
+  });
+  return result;
+}
+
+/// Bytes, or in rows that hold all inputs their digits.
 std::string RowDigestText(const CaseResult& result, const RowShape& shape) {
-  const Digest digest = Fingerprint(result, shape.covers_inputs_digest);
-  if (!shape.covers_inputs_digest) return digest.Hex();
+  const bool holds_all_inputs = shape.version < 3;
+  const Digest digest = shape.version == kRowVersion ? Fingerprint(result)
+                                                     : Fingerprint(AsOf(shape, result), !holds_all_inputs);
+  if (holds_all_inputs) return digest.Hex();
   std::string bytes(sizeof digest.high + sizeof digest.low, '\0');
   std::memcpy(bytes.data(), &digest.high, sizeof digest.high);
   std::memcpy(bytes.data() + sizeof digest.high, &digest.low, sizeof digest.low);
@@ -374,8 +383,8 @@ void ResultFolder::ReadColumnsOfTable() {
   for (const OwnMetric& metric : own_metrics_) names.push_back(metric.name);
   shape_.inputs = StoredInputs(*database_, directory_);
   shape_.list = MetricList(shape_.inputs.column_class(), std::move(names));
-  shape_.metrics = StoredMetrics(*database_, shape_.list);
-  shape_.covers_inputs_digest = HasTable(*database_, kNominal);
+  shape_.version = VersionOf(*database_);
+  shape_.metrics = StoredMetrics(*database_, shape_.list, shape_.version);
   has_unmeasured_ = HasTable(*database_, kUnmeasured);
 }
 

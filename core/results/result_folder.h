@@ -23,13 +23,17 @@ namespace dispersa {
 
 class Database;
 
+/// Of the tables, as SQLite's user_version. 1 (stored as 0): without `audits`. 2: with it; rows hold all
+/// inputs. 3: rows hold those that the campaign sets, and the table `nominal` the others. 4: a row digest
+/// covers the metrics that the version knows (Metric::since), so that later ones damage no row.
+inline constexpr int kRowVersion = 4;
+
 /// What a table of cases holds beside outcomes and digests.
 struct RowShape {
   RowInputs inputs;
   MetricList list;                   ///< names and positions of the metrics in the results
   std::vector<std::size_t> metrics;  ///< positions of the stored ones
-  bool covers_inputs_digest =
-      true;  ///< row_digest does; false: of an older release, whose rows hold all inputs
+  int version = kRowVersion;
 };
 
 /// A verdict that was read.

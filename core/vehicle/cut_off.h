@@ -11,6 +11,9 @@ inline bool EndsAtSpeed(const Motor& motor) {
   return motor.cut_off == CutOff::kAtVelocity || motor.cut_off == CutOff::kAtTarget;
 }
 
+/// Whether a command ends a motor's burn, if its propellant lasts.
+inline bool EndsByCommand(const Motor& motor) { return motor.cut_off != CutOff::kAtDepletion; }
+
 /// Whether only a flight tells when a motor's burn ends, because of a speed or of guidance.
 inline bool EndsInFlight(const Motor& motor) {
   return EndsAtSpeed(motor) || motor.cut_off == CutOff::kByGuidance;

@@ -328,7 +328,8 @@ TEST(MetricsRecorder, EveryMetricOfAMadeUpFlight) {
              "impact_time_s impact_latitude_deg impact_longitude_deg impact_downrange_km "
              "impact_crossrange_km impact_speed_m_s rail_exit_time_s rail_exit_speed_m_s "
              "roll_rate_peak_deg_s static_margin_min node_error_deg argument_of_perigee_error_deg "
-             "true_anomaly_error_deg rail_exit_incidence_deg"))
+             "true_anomaly_error_deg rail_exit_incidence_deg propellant_left_kg propellant_left_stage1_kg "
+             "propellant_left_stage2_kg propellant_left_stage3_kg propellant_left_stage4_kg depleted"))
     expected[name] = std::nan("");
 
   const std::vector<double> values = flight.recorder.Finish();

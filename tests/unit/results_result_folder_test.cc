@@ -366,10 +366,10 @@ TEST_F(ResultFolders, RefusesAFlightThatAppliedOtherConstants) {
 TEST_F(ResultFolders, AFolderOfALaterVersionIsLeftAlone) {
   ResultFolder::Create(temporary / "out", MakeLimitedCampaign(3));
   Database(temporary / "out" / "results.sqlite", Database::Mode::kExisting)
-      .Execute("PRAGMA user_version = 4");
+      .Execute("PRAGMA user_version = 5");
   const std::string error =
       (temporary / "out").string() +
-      ": written by a newer dispersa: its results.sqlite has version 4, this one reads 3";
+      ": written by a newer dispersa: its results.sqlite has version 5, this one reads 4";
   EXPECT_EQ(ErrorOf<InputError>([&] { ResultFolder::Open(temporary / "out"); }), error);
   EXPECT_EQ(ErrorOf<InputError>([&] { ResultFolder::Resume(temporary / "out", MakeLimitedCampaign(3)); }),
             error);

@@ -2,6 +2,8 @@
 // with the first tank, every kilogram of a flight, and a burn again.
 #include "core/flight/dispersed_vehicle.h"
 #include "core/flight/flight.h"
+#include "core/flight/flight_sums.h"
+#include "core/flight/metrics.h"
 #include "core/flight/step_limits.h"
 #include "core/math/constants.h"
 #include "core/vehicle/mass.h"
@@ -160,6 +162,46 @@ TEST(MixtureRatio, GoesOnAfterACommandedCutOff) {
       EXPECT_NEAR(second.propellant_mass_kg, first.left_kg, 1e-8);
       EXPECT_NEAR(second.left_kg, kLoad_kg - kLiquids.Usable(1.0, ratio), 1e-8);
     }
+}
+
+double MetricOf(const FlightResult& result, const char* name) { return result.metrics[MetricColumn(name)]; }
+
+// The residual of the flight's mixture is no propellant that is left; a burn without a command has none.
+TEST(PropellantLeft, IsWhatACommandLeavesUsable) {
+  const double ratio = 1.05, usable_kg = kLiquids.Usable(1.0, ratio);
+  for (const auto& [cut_off_s, left_kg] : {std::pair{15.0, usable_kg - 1500.0}, {100.0, 0.0}}) {
+    FlightDefinition definition = WithRestart();
+    definition.vehicle.stages[0].motor.cut_off_s = cut_off_s;
+    FlightResult result;
+    TicksOf(definition, Drawn(1.0, ratio), &result);
+    EXPECT_NEAR(MetricOf(result, "propellant_left_kg"), left_kg, 1e-6) << cut_off_s << result.reason;
+    EXPECT_NEAR(MetricOf(result, "propellant_left_stage1_kg"), left_kg, 1e-6) << cut_off_s;
+    EXPECT_TRUE(std::isnan(MetricOf(result, "propellant_left_stage2_kg"))) << cut_off_s;
+    EXPECT_EQ(MetricOf(result, "depleted"), left_kg > 0.0 ? 0.0 : 1.0) << cut_off_s;
+    definition.vehicle.stages[1].motor.cut_off = CutOff::kAtTime;
+    definition.vehicle.stages[1].motor.cut_off_s = 8.0;
+    TicksOf(definition, Drawn(1.0, ratio), &result);
+    EXPECT_NEAR(MetricOf(result, "propellant_left_stage1_kg"), left_kg, 1e-6) << cut_off_s;
+    EXPECT_NEAR(MetricOf(result, "propellant_left_stage2_kg"), std::max(left_kg - 800.0, 0.0), 1e-6)
+        << cut_off_s;
+    EXPECT_EQ(MetricOf(result, "propellant_left_kg"), MetricOf(result, "propellant_left_stage2_kg"));
+  }
+}
+TEST(PropellantLeft, IsOfVehiclesWithCutOffsThatGotThere) {
+  FlightDefinition definition = Liquid();
+  const auto has = [&] {
+    return HasMetric(Metrics()[MetricColumn("depleted")],
+                     KindOf(definition.vehicle, definition.autopilot, definition.course));
+  };
+  EXPECT_FALSE(has());
+  definition.vehicle.stages[0].motor.cut_off = CutOff::kAtVelocity;
+  EXPECT_TRUE(has());
+  FlightSums sums;
+  sums.unburnt_kg[0] = 7.0;
+  const auto left_kg = [&] { return Measure(sums, definition).metrics[MetricColumn("propellant_left_kg")]; };
+  EXPECT_TRUE(std::isnan(left_kg()));
+  sums.burnt_out = 1;
+  EXPECT_EQ(left_kg(), 7.0);
 }
 
 TEST(MixtureRatio, IsRefusedWhereItIsNone) {
