@@ -126,7 +126,7 @@ RowShape ShapeOf(const Campaign& campaign) {
   return {RowInputs(campaign), MetricsOf(campaign), MeasuredMetrics(campaign)};
 }
 
-constexpr char kOwnMetrics[] = "own_metrics";
+constexpr char kOwnMetrics[] = "own_metrics", kShareKey[] = "share";
 
 /// "name = expression" a line, as in the provenance.
 std::string OwnMetricLines(const std::vector<OwnMetric>& metrics) {
@@ -195,22 +195,20 @@ void CreateTables(Database& database, const Campaign& campaign) {
   database.Execute(fmt::format("PRAGMA user_version = {}", kRowVersion));
 }
 
-void WriteOwnMetrics(Database& database, const Campaign& campaign) {
+void WriteProvenance(Database& database, const char* key, const std::string& value) {
   Statement insert = database.Prepare("INSERT OR REPLACE INTO provenance VALUES (?, ?)");
-  insert.BindText(1, kOwnMetrics);
-  insert.BindText(2, OwnMetricLines(campaign.own_metrics));
+  insert.BindText(1, key);
+  insert.BindText(2, value);
   insert.Step();
+}
+
+void WriteOwnMetrics(Database& database, const Campaign& campaign) {
+  WriteProvenance(database, kOwnMetrics, OwnMetricLines(campaign.own_metrics));
 }
 
 /// `register_plan`: no case has been flown, so that the requirements and the number of cases are the plan.
 void WriteProvenance(Database& database, const Campaign& campaign, bool register_plan) {
-  Statement insert = database.Prepare("INSERT OR REPLACE INTO provenance VALUES (?, ?)");
-  const auto put = [&insert](const char* key, const std::string& value) {
-    insert.BindText(1, key);
-    insert.BindText(2, value);
-    insert.Step();
-    insert.Reset();
-  };
+  const auto put = [&](const char* key, const std::string& value) { WriteProvenance(database, key, value); };
   put("schema", kSchema);
   put("campaign_id", campaign.id);
   put("flight_id", campaign.flight_id);
@@ -393,7 +391,7 @@ ResultFolder& ResultFolder::operator=(ResultFolder&&) noexcept = default;
 ResultFolder::~ResultFolder() = default;
 
 ResultFolder ResultFolder::Create(const fs::path& directory, const Campaign& campaign,
-                                  std::optional<FolderLock> lock) {
+                                  std::optional<FolderLock> lock, std::optional<CaseShare> share) {
   std::error_code error;
   fs::create_directories(directory, error);
   if (error) FailFolder(directory.string(), error);
@@ -420,6 +418,9 @@ ResultFolder ResultFolder::Create(const fs::path& directory, const Campaign& cam
     CreateTables(fresh, campaign);
     WriteProvenance(fresh, campaign, true);
     WriteOwnMetrics(fresh, campaign);
+    if (share)
+      WriteProvenance(fresh, kShareKey,
+                      fmt::format("{} {} {}", share->cases.first, share->cases.end, share->round_end));
     transaction.Commit();
   }
   fs::rename(temporary, database, error);
@@ -574,6 +575,15 @@ std::vector<LookRecord> ResultFolder::Looks() const {
 }
 
 std::int64_t ResultFolder::PlannedCases() const { return std::stoll(Provenance("planned_cases")); }
+
+std::optional<CaseShare> ResultFolder::ItsShare() const {
+  Statement select = database_->Prepare("SELECT value FROM provenance WHERE key = ?");
+  select.BindText(1, kShareKey);
+  if (!select.Step()) return std::nullopt;
+  CaseShare share;
+  std::istringstream(select.Text(0)) >> share.cases.first >> share.cases.end >> share.round_end;
+  return share;
+}
 
 std::vector<std::int64_t> ResultFolder::PastLooks() const {
   std::vector<std::int64_t> looks;

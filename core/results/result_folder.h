@@ -52,9 +52,9 @@ class ResultFolder : public ResultStore {
  public:
   /// Makes the folder, with its parents, with campaign.yaml and an empty results.sqlite. Throws InputError if
   /// it exists and is not empty, cannot be written, or another process writes it. It is locked while the
-  /// object lives. `lock` is the caller's lock, if it has one already.
+  /// object lives. `lock` is the caller's lock, if it has one already. `share`: none is for all cases.
   static ResultFolder Create(const std::filesystem::path& directory, const Campaign& campaign,
-                             std::optional<FolderLock> lock = {});
+                             std::optional<FolderLock> lock = {}, std::optional<CaseShare> share = {});
   /// Opens a folder to go on with, possibly with more cases, other requirements or another name. If the
   /// campaign has own metrics that were not measured, every case is flown again. InputError if it holds
   /// another flight id or engine, or more cases than the campaign has. Rows that are damaged are removed, so
@@ -86,7 +86,7 @@ class ResultFolder : public ResultStore {
   std::uint64_t UnmeasuredCount() const;
   /// Value of "campaign_id", "flight_id", "engine", "name", "seed", "cases", "sampling". Three values are
   /// kept as they were before the first case: "planned_cases", "requirements_id" and "requirements"
-  /// (RequirementLine() each).
+  /// (RequirementLine() each). ResultError if it is not there.
   std::string Provenance(const std::string& key) const;
 
   /// Records once that verdicts were read from the first n cases. The record is about reading, not about
@@ -97,6 +97,7 @@ class ResultFolder : public ResultStore {
   /// Numbers of cases at which any verdict was read, ascending.
   std::vector<std::int64_t> PastLooks() const override;
   std::int64_t PlannedCases() const override;
+  std::optional<CaseShare> ItsShare() const override;
 
   /// Stores results in one transaction: all or, on an error, none. A case that is there with the same digest
   /// is left alone. Another digest is an error (kConflict), and so are other constants than the campaign's.

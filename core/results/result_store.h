@@ -10,6 +10,7 @@
 #include <utility>
 #include <vector>
 
+#include "core/campaign/case_range.h"
 #include "core/campaign/case_result.h"
 
 namespace dispersa {
@@ -60,6 +61,8 @@ class ResultStore {
   /// All or nothing: a result without a known worker could not be disowned later.
   virtual void Store(std::span<const CaseResult> results, std::span<const ExecutionRecord> records) = 0;
   virtual void Quarantine(const QuarantinedCase& quarantined) = 0;
+  /// The cases that it is for; none: all of the campaign.
+  virtual std::optional<CaseShare> ItsShare() const { return std::nullopt; }
   virtual std::vector<std::pair<std::uint64_t, Digest>> Fingerprints() const = 0;
   /// The stored result of a case that has one.
   virtual CaseResult Load(std::uint64_t case_index) const = 0;

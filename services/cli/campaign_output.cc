@@ -65,6 +65,13 @@ void AddGateOption(CLI::App& command, bool& gate) {
                    "for continuous integration: exit code 7 instead of 0 when nothing is required");
 }
 
+void AddFreshOption(CLI::App& command, std::string& reason) {
+  command
+      .add_option("--fresh", reason,
+                  "reason why earlier attempts at this design shall not count; the report shows it")
+      ->type_name("REASON");
+}
+
 void AddOpenOption(CLI::App& command, bool& open) {
   command.add_flag("--open", open, "show report.html in the browser ($BROWSER, or xdg-open)");
 }

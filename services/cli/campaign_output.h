@@ -2,6 +2,7 @@
 #pragma once
 
 #include <filesystem>
+#include <string>
 
 #include "services/cli/command.h"
 #include "services/client/campaign_reports.h"
@@ -13,6 +14,9 @@ void AddReflownOptions(CLI::App& command, ReflownFlights& flights);
 
 /// --gate.
 void AddGateOption(CLI::App& command, bool& gate);
+
+/// --fresh.
+void AddFreshOption(CLI::App& command, std::string& reason);
 
 /// --open.
 void AddOpenOption(CLI::App& command, bool& open);

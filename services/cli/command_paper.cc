@@ -76,7 +76,8 @@ PaperFlights Fly(const std::string& file, const Campaign& campaign, bool over_ti
   if (result.problem) throw ResultError(ResultError::Kind::kFewer, *result.problem);
   StoredCampaign stored = OpenStored(directory.string());
   CaseColumns columns = AllColumns(stored.folder);
-  return {std::move(stored.campaign), campaign.sampling.cases, std::move(result.summary), std::move(columns)};
+  return {std::move(stored.campaign), campaign.sampling.cases, *std::move(result.summary),
+          std::move(columns)};
 }
 
 ExitCode MakePaper(const PaperCommandOptions& options, const GlobalOptions& global) {

@@ -1,8 +1,10 @@
 // dispersa run: a campaign from the file to the report.
 #include <fmt/format.h>
 
+#include <charconv>
 #include <filesystem>
 #include <memory>
+#include <nlohmann/json.hpp>
 #include <string>
 #include <utility>
 
@@ -22,6 +24,7 @@ namespace {
 struct RunCommand {
   RunRequest request;
   RunOptions run;
+  std::string shard_text;
   bool open = false;
 };
 
@@ -33,9 +36,46 @@ std::string ResumeCommand(const RunCommand& options, const std::filesystem::path
   if (overrides.autopilot) command += " --autopilot " + ShellWord(*overrides.autopilot);
   if (options.run.workers >= 0) command += fmt::format(" --workers {}", options.run.workers);
   if (options.run.threads > 0) command += fmt::format(" --threads {}", options.run.threads);
+  if (const auto& shard = options.request.shard)
+    command += fmt::format(" --shard {}/{}", shard->index, shard->count);
+  if (!options.request.after.empty()) command += " --after " + ShellWord(options.request.after);
   if (!options.request.fresh.empty()) command += " --fresh " + ShellWord(options.request.fresh);
   if (options.run.gate) command += " --gate";
   return command + " --out " + ShellWord(directory.string()) + " --resume";
+}
+
+/// No verdict: it is the merged campaign's.
+void PrintShare(const RunResult& result, const std::filesystem::path& directory, bool json) {
+  if (json) {
+    const nlohmann::ordered_json object = {{"schema", "dispersa/share/1"},
+                                           {"cases", result.cases},
+                                           {"flown", result.flown},
+                                           {"directory", directory.string()}};
+    fmt::print("{}\n", object.dump(2));
+    return;
+  }
+  fmt::print("share: {} of {} cases flown, next: {}\nresult: {}\n", result.flown, result.cases,
+             result.flown < result.cases ? "the same command with --resume"
+                                         : "'dispersa merge' when all shares are flown",
+             directory.string());
+}
+
+/// "2/7".
+CLI::Validator ShardText(std::optional<Shard>& shard) {
+  return CLI::Validator(
+      [&shard](std::string& text) -> std::string {
+        const char* const end = text.data() + text.size();
+        Shard read;
+        const auto index = std::from_chars(text.data(), end, read.index);
+        const bool is_divided = index.ec == std::errc() && index.ptr != end && *index.ptr == '/';
+        const auto count = is_divided ? std::from_chars(index.ptr + 1, end, read.count) : index;
+        if (!is_divided || count.ec != std::errc() || count.ptr != end || read.index >= read.count ||
+            read.count > kMostCases)
+          return fmt::format("'{}', allowed: i/N with 0 <= i < N <= {}", text, kMostCases);
+        shard = read;
+        return "";
+      },
+      "");
 }
 
 ExitCode Fly(const RunCommand& options, PreparedRun prepared, const GlobalOptions& global) {
@@ -45,7 +85,11 @@ ExitCode Fly(const RunCommand& options, PreparedRun prepared, const GlobalOption
   TerminalObserver observer(global.quiet);
   try {
     const RunResult result = RunCampaign(std::move(prepared), run, observer);
-    PrintSummary(result.summary, directory, global.json);
+    if (!result.summary) {
+      PrintShare(result, directory, global.json);
+      return result.code;
+    }
+    PrintSummary(*result.summary, directory, global.json);
     if (options.open) OpenInBrowser(std::filesystem::absolute(directory / "report.html").string());
     return result.code;
   } catch (const Interrupted&) {
@@ -64,6 +108,8 @@ ExitCode Fly(const RunCommand& options, PreparedRun prepared, const GlobalOption
 }
 
 ExitCode Run(const RunCommand& options, const GlobalOptions& global) {
+  if (!options.request.after.empty() && !options.request.shard)
+    throw InputError("--after: only shards are flown in rounds", "--after with --shard");
   CatchStopSignals();
   try {
     return Fly(options, PrepareRun(options.request, StopRequested), global);
@@ -101,13 +147,22 @@ void AddRunCommand(CLI::App& app, Invocation& invocation) {
   command->add_flag("--resume", request.resume, "continue in a result folder of the same flight id");
   AddGateOption(*command, options->run.gate);
   AddOpenOption(*command, options->open);
+  AddFreshOption(*command, request.fresh);
   command
-      ->add_option("--fresh", request.fresh,
-                   "reason why earlier attempts at this design shall not count; the report shows it")
-      ->type_name("REASON");
+      ->add_option("--shard", options->shard_text,
+                   "fly one of N blocks of the cases, counted from 0, and judge nothing; 'merge' makes one "
+                   "folder of all")
+      ->type_name("i/N")
+      ->check(ShardText(request.shard));
+  command
+      ->add_option(
+          "--after", request.after,
+          "of a shard: merged folder of the rounds before, in a campaign that stops when it is decided")
+      ->type_name(kFolderType);
   command->footer(
       "Example: dispersa run campaigns/table3.yaml --cases 200 --out results/trial\n"
-      "         dispersa run campaigns/table3.yaml --cases 500 --out results/trial --resume");
+      "         dispersa run campaigns/table3.yaml --cases 500 --out results/trial --resume\n"
+      "         dispersa run campaigns/table3.yaml --shard 2/7 --out shares/2");
   command->callback([options, &invocation] {
     invocation.command = [options](const GlobalOptions& global) { return Run(*options, global); };
   });

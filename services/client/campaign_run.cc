@@ -258,6 +258,39 @@ class CampaignRun {
   std::chrono::steady_clock::time_point start_ = std::chrono::steady_clock::now();
 };
 
+/// The reports of what was flown, and the exit code.
+RunResult Conclude(const ResultFolder& folder, const Campaign& campaign, const LedgerProgress& progress,
+                   int threads, const RunOptions& options, ExecutionFile& execution, Observer& observer) {
+  ExitCode code = execution.problem ? kExitIncomplete : kExitDone;
+  execution.Write();  // the report shows when and how long
+  RunResult result;
+  result.problem = execution.problem;
+  result.flown = progress.done;
+  result.cases = progress.total;
+  if (folder.ItsShare()) {
+    if (progress.done < progress.total) code = kExitIncomplete;
+  } else {
+    result.summary = MakeReports(folder, campaign, threads, options.reflown, observer);
+    code =
+        WorseOf(code, CampaignExitCode(result.summary->standing.verdict, progress.conflicts, options.gate));
+  }
+  result.code = code;
+  execution.ended_utc = UtcNow();
+  execution.Write();
+  if (!result.summary) return result;
+  WriteStanding(folder, *result.summary);
+  NoteEndedIn(ResultRoot(folder.directory()), folder, campaign, *result.summary);
+  return result;
+}
+
+ExecutionFile BeginIn(const PreparedRun& prepared) {
+  ExecutionFile execution;
+  execution.directory = prepared.folder.directory();
+  execution.started_utc = UtcNow();
+  execution.vehicle_file = prepared.campaign.vehicle_file;
+  return execution;
+}
+
 RunResult FlyAndReport(const RunOptions& options, PreparedRun prepared, ExecutionFile& execution,
                        Observer& observer) {
   const int workers = options.workers >= 0 ? options.workers : UsableCores();
@@ -273,7 +306,6 @@ RunResult FlyAndReport(const RunOptions& options, PreparedRun prepared, Executio
     execution.cases_flown = book.flown_now();
     execution.flying_s = SecondsSince(start);
   };
-  ExitCode code = kExitDone;
   if (!book.refusal() && !book.Complete()) {
     try {
       CampaignRun run(book, execution, observer);
@@ -283,6 +315,7 @@ RunResult FlyAndReport(const RunOptions& options, PreparedRun prepared, Executio
       execution.problem = error.what();
     } catch (const Interrupted&) {
       note_end();
+      if (book.folder().ItsShare()) throw;
       book.KeepTally();
       NoteCancelledIn(ResultRoot(book.folder().directory()), book.folder().directory(), book);
       throw;
@@ -296,32 +329,27 @@ RunResult FlyAndReport(const RunOptions& options, PreparedRun prepared, Executio
     execution.Write();
     throw InputError(*book.refusal());
   }
-  if (execution.problem) {
-    LogError("{}", *execution.problem);
-    code = WorseOf(code, kExitIncomplete);
-  }
+  if (execution.problem) LogError("{}", *execution.problem);
   for (const CaseBlames& blamed : book.ledger().Quarantined()) {
     LogWarning("case {} is quarantined: {}", blamed.case_index, fmt::join(blamed.reasons, "; "));
   }
-  execution.Write();  // the report shows when and how long
   const int threads = workers == 0 ? ThreadsOrAll(options.threads) : workers;
-  CampaignSummary summary = MakeReports(book.folder(), book.campaign(), threads, options.reflown, observer);
-  execution.ended_utc = UtcNow();
-  execution.Write();
-  WriteStanding(book.folder(), summary);
-  NoteEndedIn(ResultRoot(book.folder().directory()), book.folder(), book.campaign(), summary);
-  code = WorseOf(
-      code, CampaignExitCode(summary.standing.verdict, book.ledger().Progress().conflicts, options.gate));
-  return {std::move(summary), code, execution.problem};
+  return Conclude(book.folder(), book.campaign(), book.ledger().Progress(), threads, options, execution,
+                  observer);
 }
 
 }  // namespace
 
+RunResult ReportFlown(const PreparedRun& prepared, const RunOptions& options, Observer& observer) {
+  ExecutionFile execution = BeginIn(prepared);
+  LedgerProgress progress;
+  progress.total = progress.done = execution.cases_before = prepared.folder.CaseCount();
+  return Conclude(prepared.folder, prepared.campaign, progress, ThreadsOrAll(options.threads), options,
+                  execution, observer);
+}
+
 RunResult RunCampaign(PreparedRun prepared, const RunOptions& options, Observer& observer) {
-  ExecutionFile execution;
-  execution.directory = prepared.folder.directory();
-  execution.started_utc = UtcNow();
-  execution.vehicle_file = prepared.campaign.vehicle_file;
+  ExecutionFile execution = BeginIn(prepared);
   try {
     return FlyAndReport(options, std::move(prepared), execution, observer);
   } catch (const Interrupted&) {

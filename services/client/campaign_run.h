@@ -1,6 +1,7 @@
 // Flies a campaign on this machine, from the prepared run to its reports: the work of `dispersa run`.
 #pragma once
 
+#include <cstdint>
 #include <filesystem>
 #include <optional>
 #include <string>
@@ -22,14 +23,19 @@ struct RunOptions {
 };
 
 struct RunResult {
-  CampaignSummary summary;
-  ExitCode code = kExitDone;           ///< of the verdict, or of what prevents one
-  std::optional<std::string> problem;  ///< why cases are missing, if workers failed
+  std::optional<CampaignSummary> summary;  ///< none of a share: its campaign is judged when it is merged
+  ExitCode code = kExitDone;               ///< of the verdict, or of what prevents one
+  std::uint64_t flown = 0, cases = 0;      ///< results of the folder, and cases that it is for
+  std::optional<std::string> problem;      ///< why cases are missing, if workers failed
 };
 
 /// Flies the missing cases and writes the reports and execution.json. Failures of single cases and workers
 /// are logged. Throws InputError when the control law is not deterministic, Interrupted when the observer
 /// stops it, and ResultError. The results flown so far are kept.
 RunResult RunCampaign(PreparedRun prepared, const RunOptions& options, Observer& observer);
+
+/// Writes the reports of cases that were flown elsewhere, and execution.json; flies none. Throws Interrupted
+/// and ResultError.
+RunResult ReportFlown(const PreparedRun& prepared, const RunOptions& options, Observer& observer);
 
 }  // namespace dispersa

@@ -24,12 +24,24 @@ constexpr double kFullPeriod_s = 5.0;      // a full disk is tried again so ofte
 
 /// With what the folder holds already, so that the target is where an interrupted run left it.
 std::optional<StoppingRule> RuleOf(const Campaign& campaign, const ResultStore& store) {
-  if (!campaign.verdicts.stop_when_decided) return std::nullopt;
+  if (!campaign.verdicts.stop_when_decided || store.ItsShare()) return std::nullopt;
   StoppingRule rule(campaign, store.PlannedCases(), store.PastLooks());
   store.ForEach([&](const CaseResult& result) { rule.Add(result); });
   while (rule.Advance({})) {
   }
   return rule;
+}
+
+/// The cases up to the present look, or those of the store's share.
+CaseRange RangeOf(const Campaign& campaign, const ResultStore& store,
+                  const std::optional<StoppingRule>& rule) {
+  if (const auto share = store.ItsShare()) return share->cases;
+  return {0, rule ? rule->target() : campaign.sampling.cases};
+}
+
+LedgerOptions From(std::uint64_t first_case, LedgerOptions options) {
+  options.first_case = first_case;
+  return options;
 }
 
 std::string Title(const Campaign& campaign) { return campaign.name + " (" + campaign.id.substr(0, 8) + ")"; }
@@ -71,14 +83,14 @@ CampaignBook::CampaignBook(const Campaign& campaign, std::unique_ptr<ResultStore
       design_(campaign),
       rows_(campaign),
       rule_(RuleOf(campaign, *store_)),
-      ledger_(EngineVersion(), rule_ ? rule_->target() : campaign.sampling.cases, options) {
-  const std::uint64_t cases = ledger_.Progress().total;
-  DISPERSA_ASSERT(!rule_ || cases > 0);
+      range_(RangeOf(campaign, *store_, rule_)),
+      ledger_(EngineVersion(), range_.end, From(range_.first, options)) {
+  DISPERSA_ASSERT(!rule_ || range_.size() > 0);
   for (const auto& [case_index, fingerprint] : store_->Fingerprints()) {
-    if (case_index < cases) ledger_.MarkDone(case_index, fingerprint);
+    if (range_.Contains(case_index)) ledger_.MarkDone(case_index, fingerprint);
   }
   if (!campaign_.autopilot.plugin) return;
-  for (std::uint64_t i = 0; i < std::min(cases, kFlownTwice); ++i)
+  for (std::uint64_t i = range_.first; i < std::min(range_.first + kFlownTwice, range_.end); ++i)
     ledger_.RequireSecondFlight(i, store_->WorkerOf(i).value_or(""));
 }
 

@@ -143,6 +143,7 @@ class CampaignBook {
   std::uint64_t confirmed_ = 0;
   std::optional<std::string> refusal_;
   std::vector<CaseResult> expected_;
+  CaseRange range_;  ///< at the start
   Ledger ledger_;
   std::vector<CaseResult> results_;
   std::vector<ExecutionRecord> records_;

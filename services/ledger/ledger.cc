@@ -24,13 +24,13 @@ Ledger::Ledger(std::string engine_version, std::uint64_t cases, const LedgerOpti
   DISPERSA_ASSERT(options.blames_to_quarantine > 0 && options.first_assignments > 0,
                   options.blames_to_quarantine, options.first_assignments);
   DISPERSA_ASSERT(options.side_by_side > 0 && options.max_batch > 0, options.side_by_side, options.max_batch);
-  waiting_.AddRange(0, cases);
-  progress_.total = cases;
+  DISPERSA_ASSERT(options.first_case <= cases, options.first_case, cases);
+  waiting_.AddRange(options.first_case, cases);
+  progress_.total = cases - options.first_case;
 }
 
 void Ledger::MarkDone(std::uint64_t case_index, const Digest& fingerprint) {
-  DISPERSA_ASSERT(case_index < cases_.size() && next_attempt_ == options_.attempt_base + 1, case_index,
-                  cases_.size());
+  DISPERSA_ASSERT(Has(case_index) && next_attempt_ == options_.attempt_base + 1, case_index, cases_.size());
   if (!waiting_.Remove(case_index)) return;
   cases_.SetDone(case_index, fingerprint);
   ++progress_.done;
@@ -38,14 +38,14 @@ void Ledger::MarkDone(std::uint64_t case_index, const Digest& fingerprint) {
 }
 
 void Ledger::CheckSums() const {
-  DISPERSA_ASSERT(progress_.total == cases_.size(), progress_.total, cases_.size());
+  DISPERSA_ASSERT(progress_.total == cases_.size() - options_.first_case, progress_.total, cases_.size());
   DISPERSA_ASSERT(
       progress_.done + progress_.quarantined + waiting_.Count() + suspects_.Count() <= progress_.total,
       progress_.done, progress_.quarantined, waiting_.Count(), suspects_.Count(), progress_.total);
 }
 
 void Ledger::RequireSecondFlight(std::uint64_t case_index, const std::string& flown_by) {
-  DISPERSA_ASSERT(case_index < cases_.size(), case_index, cases_.size());
+  DISPERSA_ASSERT(Has(case_index), case_index, cases_.size());
   DISPERSA_ASSERT(flown_by.empty() || cases_.StateOf(case_index) == CaseState::kDone, case_index);
   second_flights_[case_index].first = flown_by;
 }
@@ -54,14 +54,14 @@ void Ledger::Extend(std::uint64_t cases) {
   DISPERSA_ASSERT(cases >= cases_.size(), cases, cases_.size());
   if (cases == cases_.size()) return;
   waiting_.AddRange(cases_.size(), cases);
+  progress_.total += cases - cases_.size();
   cases_.Extend(cases);
-  progress_.total = cases;
   CheckSums();
 }
 
 void Ledger::Reopen(const std::vector<std::uint64_t>& cases) {
   for (const std::uint64_t case_index : cases) {
-    if (case_index >= cases_.size() || cases_.StateOf(case_index) != CaseState::kDone) continue;
+    if (!Has(case_index) || cases_.StateOf(case_index) != CaseState::kDone) continue;
     DISPERSA_ASSERT(progress_.done > 0, case_index);
     --progress_.done;
     if (const auto flight = second_flights_.find(case_index); flight != second_flights_.end())
@@ -90,7 +90,7 @@ bool Ledger::WasGiven(const std::string& worker, std::uint64_t case_index) const
 }
 
 bool Ledger::IsResult(std::uint64_t case_index, const Digest& fingerprint) const {
-  return case_index < cases_.size() && cases_.StateOf(case_index) == CaseState::kDone &&
+  return Has(case_index) && cases_.StateOf(case_index) == CaseState::kDone &&
          cases_.FingerprintOf(case_index) == fingerprint;
 }
 
@@ -158,7 +158,7 @@ void Ledger::Settle(const std::string& worker, std::uint64_t case_index, std::ui
 bool Ledger::Quarantine(const std::string& worker, std::uint64_t case_index, std::uint64_t attempt,
                         const std::string& reason, double now_s) {
   const auto entry = workers_.find(worker);
-  if (case_index >= cases_.size() || entry == workers_.end()) return false;
+  if (!Has(case_index) || entry == workers_.end()) return false;
   const auto held = entry->second.held.find(case_index);
   // The case must be held by this attempt. Otherwise others fly it, or have flown it.
   if (held == entry->second.held.end() || held->second.attempt != attempt) return false;
@@ -188,7 +188,7 @@ void Ledger::TakeOut(std::uint64_t case_index, CaseState state) {
 Acceptance Ledger::Finished(const std::string& worker, std::uint64_t case_index, std::uint64_t attempt,
                             const Digest& fingerprint, double now_s) {
   Settle(worker, case_index, attempt, now_s);
-  if (case_index >= cases_.size()) return Acceptance::kUnknown;
+  if (!Has(case_index)) return Acceptance::kUnknown;
   if (const auto entry = workers_.find(worker); entry != workers_.end()) {
     ++entry->second.returned;
     entry->second.last_returned_s = now_s;

@@ -23,6 +23,7 @@ struct LedgerOptions {
   std::uint64_t attempt_base =
       0;  ///< attempts count from here: ledgers of one coordinator have different ones
   std::uint64_t first_assignments = 4;  ///< that a worker holds at most before it has returned anything
+  std::uint64_t first_case = 0;         ///< cases below are flown elsewhere
   double overdue_s =
       10.0;  ///< time without a result after which a worker loses its cases to workers without cases
   std::uint64_t side_by_side = 8;  ///< cases that a slot may fly at the same time: the widest engine's lanes
@@ -75,10 +76,10 @@ struct LedgerProgress {
   std::uint64_t conflicts = 0;
 };
 
-/// Cases 0 .. cases - 1 of one campaign. Each ends done or quarantined. Rules of blame: only a case that its
-/// worker reported as started is blamed. A blamed case (a suspect) waits until the queue is empty, and then
-/// flies alone, on a worker without other cases. The N-th blame quarantines it. A late result is accepted,
-/// even of a quarantined case.
+/// Cases first_case .. cases - 1 of one campaign. Each ends done or quarantined. Rules of blame: only a case
+/// that its worker reported as started is blamed. A blamed case (a suspect) waits until the queue is empty,
+/// and then flies alone, on a worker without other cases. The N-th blame quarantines it. A late result is
+/// accepted, even of a quarantined case.
 class Ledger {
  public:
   Ledger(std::string engine_version, std::uint64_t cases, const LedgerOptions& options = {});
@@ -145,6 +146,9 @@ class Ledger {
   std::size_t WorkerCount() const { return workers_.size(); }
 
  private:
+  bool Has(std::uint64_t case_index) const {
+    return case_index >= options_.first_case && case_index < cases_.size();
+  }
   /// No case counts twice.
   void CheckSums() const;
   /// The second flight of a case that two workers must fly.

@@ -1,12 +1,17 @@
 #include "services/ledger/prepare_run.h"
 
+#include <fmt/format.h>
+
 #include <algorithm>
 #include <chrono>
 #include <optional>
 #include <utility>
 #include <vector>
 
+#include "core/analysis/campaign_summary.h"
+#include "core/analysis/stopping_rule.h"
 #include "core/cases/plugin_check.h"
+#include "core/results/case_columns.h"
 #include "services/ledger/campaign_attempt.h"
 #include "services/log/log.h"
 
@@ -20,8 +25,9 @@ bool HasContent(const fs::path& directory) {
   return fs::exists(directory, error) && !fs::is_empty(directory, error);
 }
 
-fs::path DefaultFolder(const Campaign& campaign, bool resume) {
-  const std::string stem = campaign.name + "-" + campaign.id.substr(0, 8);
+fs::path DefaultFolder(const Campaign& campaign, bool resume, const std::optional<Shard>& shard) {
+  std::string stem = campaign.name + "-" + campaign.id.substr(0, 8);
+  if (shard) stem += fmt::format("-shard-{}-of-{}", shard->index, shard->count);
   fs::path last = fs::path("results") / stem;
   for (int i = 2;; ++i) {
     const fs::path next = fs::path("results") / (stem + "-" + std::to_string(i));
@@ -62,13 +68,38 @@ std::vector<CaseResult> Check(const Campaign& campaign, const StopCheck& should_
   return CheckPluginIsDeterministic(CampaignFlights(campaign), campaign.sampling.cases, wait);
 }
 
+/// The cases up to the first look, or after a merged folder those up to the next one.
+CaseRange RoundOf(const Campaign& campaign, const std::string& after) {
+  if (after.empty())
+    return {0, StoppingRule(campaign, static_cast<std::int64_t>(campaign.sampling.cases), {}).target()};
+  const ResultFolder folder = ResultFolder::Open(after);
+  if (const std::string id = folder.Provenance("campaign_id"); id != campaign.id)
+    throw InputError(fmt::format("--after {}: holds campaign {}, this one is {}", after, id, campaign.id));
+  const CaseColumns cases = ReadColumns(folder, {});
+  const CaseRange round{cases.rows() + folder.QuarantinedCases().size(), CasesToFly(folder, campaign, cases)};
+  if (folder.ItsShare() || (cases.rows() > 0 && cases.index.back() >= round.first))
+    throw InputError(fmt::format("--after {}: cases are missing in it", after), "a folder that merge wrote");
+  if (round.first < round.end) return round;
+  throw InputError(fmt::format("--after {}: its campaign needs no further cases", after));
+}
+
+std::string RangeText(const std::optional<CaseShare>& share) {
+  if (!share) return "all cases";
+  return fmt::format("the {} cases from {} on", share->cases.size(), share->cases.first);
+}
+
 PreparedRun PrepareUnrecorded(const RunRequest& request, const StopCheck& should_stop) {
   std::vector<InputProblem> warnings;
   Campaign campaign = LoadCampaign(request.campaign, request.overrides, &warnings);
   for (const InputProblem& warning : warnings) LogWarning("{}", warning.Text());
   std::vector<CaseResult> flown = Check(campaign, should_stop);
   const fs::path directory =
-      request.out.empty() ? DefaultFolder(campaign, request.resume) : fs::path(request.out);
+      request.out.empty() ? DefaultFolder(campaign, request.resume, request.shard) : fs::path(request.out);
+  std::optional<CaseShare> share;
+  if (request.shard) {
+    const CaseRange round = RoundOf(campaign, request.after);
+    share = {BlockOf(round, request.shard->index, request.shard->count), round.end};
+  }
 
   // Before looking into it: of several that start at once, one finds the folder as it is.
   std::error_code error;
@@ -76,15 +107,18 @@ PreparedRun PrepareUnrecorded(const RunRequest& request, const StopCheck& should
   std::optional<FolderLock> lock;
   if (!error) lock.emplace(directory);
   if (!request.resume || !HasContent(directory)) {
-    ResultFolder folder = ResultFolder::Create(directory, campaign, std::move(lock));
+    ResultFolder folder = ResultFolder::Create(directory, campaign, std::move(lock), share);
     return {std::move(campaign), std::move(folder), std::move(flown)};
   }
   if (IsStillborn(directory)) {
     const std::vector<fs::path> leftovers(fs::directory_iterator{directory}, fs::directory_iterator{});
     for (const fs::path& leftover : leftovers) fs::remove(leftover);
-    ResultFolder folder = ResultFolder::Create(directory, campaign, std::move(lock));
+    ResultFolder folder = ResultFolder::Create(directory, campaign, std::move(lock), share);
     return {std::move(campaign), std::move(folder), std::move(flown)};
   }
+  if (const auto kept = ResultFolder::Open(directory).ItsShare(); kept != share)
+    throw InputError(
+        fmt::format("{}: is for {}, this run for {}", directory.string(), RangeText(kept), RangeText(share)));
   const std::optional<std::uint64_t> last = ResultFolder::Open(directory).LastCase();
   if (last && *last >= campaign.sampling.cases) {
     CampaignOverrides extended = request.overrides;
@@ -110,7 +144,7 @@ PreparedRun PrepareUnrecorded(const RunRequest& request, const StopCheck& should
 PreparedRun PrepareRun(const RunRequest& request, const StopCheck& should_stop) {
   PreparedRun prepared = PrepareUnrecorded(request, should_stop);
   const fs::path& directory = prepared.folder.directory();
-  BeginAttemptIn(ResultRoot(directory), directory, prepared.campaign, request.fresh);
+  if (!request.shard) BeginAttemptIn(ResultRoot(directory), directory, prepared.campaign, request.fresh);
   return prepared;
 }
 

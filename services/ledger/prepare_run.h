@@ -1,7 +1,9 @@
 // Loads the campaign file of a run and opens its result folder.
 #pragma once
 
+#include <cstdint>
 #include <filesystem>
+#include <optional>
 #include <string>
 #include <vector>
 
@@ -12,12 +14,20 @@
 
 namespace dispersa {
 
+/// One of `count` blocks of the cases, which schedulers fly apart.
+struct Shard {
+  std::uint64_t index = 0;
+  std::uint64_t count = 1;
+};
+
 struct RunRequest {
   InputSource campaign = "";
   CampaignOverrides overrides;
   std::string out;  ///< empty: results/<name>-<first 8 of id>, then -2, -3, ...
   bool resume = false;
   std::string fresh;  ///< reason why earlier attempts at the design do not count; empty: they count
+  std::optional<Shard> shard = {};
+  std::string after = {};  ///< of a shard: merged folder of the rounds before; empty: none
 };
 
 struct PreparedRun {
@@ -32,7 +42,10 @@ std::filesystem::path ResultRoot(const std::filesystem::path& directory);
 /// Without `resume` the folder must be new or empty. With `resume` a folder of the same flight id is
 /// continued, and a new or empty folder is started. Without `out` the last of the default folders is used.
 /// Results are never deleted: a folder with more cases than requested keeps them, and the campaign is
-/// extended to them. Throws InputError and ResultError, and Interrupted while a plug-in is checked.
+/// extended to them. A shard is in no ledger of attempts: its campaign is when its shards are merged. A
+/// campaign that stops when it is decided is flown in rounds: the shards of the cases up to its first look,
+/// and after each merge those up to the next one. Throws InputError and ResultError, and Interrupted while a
+/// plug-in is checked.
 PreparedRun PrepareRun(const RunRequest& request, const StopCheck& should_stop = nullptr);
 
 }  // namespace dispersa

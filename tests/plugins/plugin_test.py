@@ -207,6 +207,14 @@ class PluginTest(unittest.TestCase):
         self.quarantined("CRASHES", r"ended by signal 11 \(SIGSEGV\)")
         self.quarantined("CRASHES", r"ended by signal 11 \(SIGSEGV\)", workers=2)
 
+    def test_a_share_that_lacks_a_case_says_so(self):
+        out, ended = self.campaign_run("share", self.law("CRASHES"), "--shard", "0/1", "--quiet")
+        self.assertEqual(ended.returncode, 5, ended.stderr)
+        self.assertRegex(ended.stdout, rf"^share: \d+ of {CASES} cases flown, next: the same command with --resume\n")
+        merged = self.dispersa("merge", out, "--out", self.folder / "out" / "merged", "--no-histories", "--quiet")
+        self.assertEqual(merged.returncode, 5, merged.stderr)
+        self.assertRegex(merged.stdout, r", \d+ quarantined\n")
+
     def test_the_end_of_the_process_is_contained(self):
         self.quarantined("ENDS", "ended the process with exit code 0")
         self.quarantined("ENDS", "ended the process with exit code 0", workers=2)

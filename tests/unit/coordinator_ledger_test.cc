@@ -1,6 +1,7 @@
 // The ledger with made-up time and workers that die, hang, return false results and repeat themselves.
 #include "services/ledger/ledger.h"
 
+#include "core/campaign/case_range.h"
 #include "core/flight/engine_version.h"
 #include "core/flight/flight_inputs.h"
 #include "core/flight/metrics.h"
@@ -44,6 +45,40 @@ TEST(Ledger, HoldsAsManyCasesAsACampaignMayHave) {
   EXPECT_EQ(ledger.Progress().done, 3u);
   EXPECT_EQ(ledger.Progress().waiting, kCases - 4) << "one is assigned";
   EXPECT_EQ(ledger.FingerprintOf(kCases - 2), ResultOf(kCases - 2));
+}
+
+TEST(Ledger, OfAShareGivesItsCasesAlone) {
+  Ledger ledger("1", 12, {.first_case = 9, .side_by_side = 1});
+  ledger.MarkDone(10, ResultOf(10));
+  ledger.Join("w", kHello, 0.0);
+  EXPECT_EQ(ledger.Progress().total, 3u);
+  EXPECT_THAT(ledger.Assign(0.0), ElementsAre(Assignment{"w", 1, {9}}, Assignment{"w", 2, {11}}));
+  EXPECT_EQ(ledger.Finished("w", 8, 1, ResultOf(8), 1.0), Acceptance::kUnknown) << "another share's";
+  EXPECT_EQ(ledger.Finished("w", 9, 1, ResultOf(9), 1.0), Acceptance::kAccepted);
+  EXPECT_FALSE(ledger.Complete());
+  EXPECT_EQ(ledger.Finished("w", 11, 2, ResultOf(11), 1.0), Acceptance::kAccepted);
+  EXPECT_TRUE(ledger.Complete());
+  EXPECT_FALSE(ledger.IsResult(8, ResultOf(8)));
+  ledger.Extend(14);
+  EXPECT_EQ(ledger.Progress().total, 5u);
+}
+
+TEST(CaseRange, BlocksOfARangeFollowOneAnotherAndDifferByOneAtMost) {
+  for (const std::uint64_t count : {1u, 3u, 7u, 40u}) {
+    const CaseRange all{100, 117};
+    std::uint64_t next = all.first, least = 17, most = 0;
+    for (std::uint64_t i = 0; i < count; ++i) {
+      const CaseRange block = BlockOf(all, i, count);
+      EXPECT_EQ(block.first, next) << i << " of " << count;
+      next = block.end;
+      least = std::min(least, block.size());
+      most = std::max(most, block.size());
+    }
+    EXPECT_EQ(next, all.end) << count;
+    EXPECT_LE(most - least, 1u) << count;
+  }
+  constexpr std::uint64_t kMost = 4294967295;
+  EXPECT_EQ(BlockOf({0, kMost}, kMost - 1, kMost), (CaseRange{kMost - 1, kMost})) << "nothing overflows";
 }
 
 TEST(Ledger, GivesAsManyAssignmentsAsAWorkerGrantsCredits) {
