@@ -426,6 +426,15 @@ DISPERSA_INLINE T AddBoosters(const FlyingPlant<T>& plant, const BurnPhase<T>& p
   return plant.pivot_station_m + share * (plant.apart->nozzle_station_m - plant.pivot_station_m);
 }
 
+/// Through the air, which turns with the Earth and its wind, in I.
+template <class T>
+DISPERSA_INLINE Vector<T> AirVelocity(double earth_rate_rad_s, const Surroundings<T>& around,
+                                      const RigidMotion<T>& s) {
+  const T omega(earth_rate_rad_s);
+  return {Fma(omega, s.p.y, s.v.x) - around.wind_m_s.x, Fma(-omega, s.p.x, s.v.y) - around.wind_m_s.y,
+          s.v.z - around.wind_m_s.z};
+}
+
 /// Sum of all loads. `any_burns`: at least one lane has thrust. `body`: bent or straight. `nozzles`: the
 /// cross's, or ListedNozzles. With jet damping the flow leaves with the velocity of the nozzle about the CG:
 /// -m_dot r x (w x r), r on the axis; for roll r is the nozzle circle's radius. The flow runs aft by s, from
@@ -439,8 +448,7 @@ DISPERSA_INLINE LoadsOf<T> LoadsAt(double earth_rate_rad_s, const FlyingPlant<T>
   LoadsOf<T> o;
   o.R_IB = RotationMatrix(s.q);
   const T omega(earth_rate_rad_s), none(0.0);
-  o.v_air = {Fma(omega, s.p.y, s.v.x) - around.wind_m_s.x, Fma(-omega, s.p.x, s.v.y) - around.wind_m_s.y,
-             s.v.z - around.wind_m_s.z};
+  o.v_air = AirVelocity(earth_rate_rad_s, around, s);
   o.v_AB_B = TransposeTimes(o.R_IB, o.v_air);
   const Vector<T> w_EB_B = Along(s.w, -omega, o.R_IB.row[2]);
   o.flow = ForceOfFlow(plant.aero, o.v_AB_B, w_EB_B, around.density_kg_m3, around.inverse_sound_s_m,

@@ -65,6 +65,12 @@ struct ExpressionStep {
   int position = 0;  ///< position of a value, or the exponent of kPower
 };
 
+/// The steps of an expression. None: no value.
+struct ExpressionSteps {
+  const ExpressionStep* steps = nullptr;
+  int count = 0;
+};
+
 /// Immutable after construction.
 class Expression {
  public:
@@ -76,6 +82,8 @@ class Expression {
 
   /// The result. It is not finite if it is undefined. The same bits on every machine.
   double Evaluate(const double* values) const;
+  /// They live as long as the expression.
+  ExpressionSteps steps() const { return {steps_.data(), static_cast<int>(steps_.size())}; }
   /// Positions of the values that the expression reads, ascending.
   std::vector<int> Positions() const;
 

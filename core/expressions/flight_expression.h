@@ -28,22 +28,23 @@ struct FlightExpression {
 /// Parses the text. Throws ExpressionError.
 FlightExpression ParseFlightExpression(const std::string& text, const LookUp& look_up);
 
-/// Evaluates an expression over one flight, tick by tick. The expression must outlive the meter.
-class FlightMeter {
- public:
-  explicit FlightMeter(const FlightExpression& expression);
+/// A part as flights sum it up. It lives as long as its FlightExpression.
+struct SummedPart {
+  OverFlight::Kind kind;
+  ExpressionSteps value;
+  ExpressionSteps while_true;  ///< none: always
+  double at_s = 0.0;
 
-  void Add(double time_s, double tick_s, const double* values);
-  /// The result. It is not finite if it is undefined.
-  double Value() const;
-
- private:
-  struct Sum {
-    double value = 0.0;  ///< largest, smallest, sum, first, last or time
-    double count = 0.0;  ///< number of ticks
-  };
-  const FlightExpression& expression_;
-  std::vector<Sum> sums_;
+  explicit SummedPart(const OverFlight& part);
 };
+
+/// What a part has seen of a flight.
+struct PartSum {
+  double value = 0.0;  ///< largest, smallest, sum, first, last or time
+  double count = 0.0;  ///< number of ticks
+};
+
+/// The result over a flight, of the sums of its parts. It is not finite if it is undefined.
+double ValueOf(const FlightExpression& expression, const PartSum* sums);
 
 }  // namespace dispersa

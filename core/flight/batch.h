@@ -11,11 +11,15 @@
 // watched flights need. The engine is compiled once for each instruction set and width (fly_lanes.cc).
 #pragma once
 
+#include <new>
+
 #include "core/dynamics/fall.h"
+#include "core/expressions/part_sums.h"
 #include "core/flight/computer_events.h"
 #include "core/flight/flight_computer.h"
 #include "core/flight/flight_queue.h"
 #include "core/flight/flight_sums.h"
+#include "core/flight/history_row.h"
 #include "core/flight/lane_sensors.h"
 #include "core/flight/simpson_step.h"
 #include "core/flight/standing.h"
@@ -35,9 +39,17 @@ struct LaneMemory {
   AttitudeErrors<T> errors;  ///< reference less true
   Sensed<T> sensed;          ///< the same as the sensors show it
   LaneMetrics<T> metrics;
+  PartSumOf<T>* own_sums;  ///< of the parts of the campaign's own metrics
+  int own_parts;
 
   /// Of an object of zeros.
   void Configure(const FlightModel& model) {
+    if (model.own_metrics() != nullptr) {
+      own_parts = static_cast<int>(model.own_metrics()->parts.size());
+      const std::size_t bytes = static_cast<std::size_t>(own_parts) * sizeof *own_sums;
+      own_sums = static_cast<PartSumOf<T>*>(::operator new(bytes, std::align_val_t(alignof(PartSumOf<T>))));
+      __builtin_memset(static_cast<void*>(own_sums), 0, bytes);
+    }
     at.Reset();
     step.Configure(model.nominal_plant(), model.definition().autopilot.tick_s);
     sensors.Configure(model);
@@ -50,6 +62,7 @@ struct LaneMemory {
     sensors.StartFlight(lane, *record, step.motion().q);
     computer.StartFlight(lane);
     metrics.StartFlight(lane, record->inputs);
+    for (int i = 0; i < own_parts; ++i) SetLane(own_sums[i], lane, PartSumOf<double>{0.0, 0.0});
   }
 };
 
@@ -68,6 +81,9 @@ class Batch {
         flies_on_(definition_.course.ends != FlightEnd::kInjection) {
     lanes_.Configure(model);
   }
+  ~Batch() { ::operator delete(lanes_.own_sums, std::align_val_t(alignof(PartSumOf<T>))); }
+  Batch(const Batch&) = delete;
+  Batch& operator=(const Batch&) = delete;
 
   /// Until the queue has no more flights and no lane flies.
   void Run();
@@ -102,7 +118,9 @@ class Batch {
   void Guide();
   void Meter(M powered);
   void MeterFree();
-  void WatchAndDigest();
+  void Watch();
+  void See(M shown, unsigned parts, LauncherSeen<T>& seen) const;
+  void Digest();
   void FlyOn();
   void CheckEnds();
 
@@ -254,6 +272,8 @@ void Batch<T>::End(int lane, Outcome outcome, const char* reason) {
   record->sums.expelled_kg = Lane(lanes_.step.phase().expelled_kg, lane);
   record->sums.rules_fired =
       static_cast<std::uint32_t>(ToBits(Lane(lanes_.computer.memory(kPitch).rules_fired, lane)));
+  for (int i = 0; i < lanes_.own_parts; ++i)
+    record->own_sums.data()[i] = {Lane(lanes_.own_sums[i].value, lane), Lane(lanes_.own_sums[i].count, lane)};
   record->End(outcome, reason, Lane(lanes_.at.time_s, lane), slot.stack, y);
   lanes_.at.EndFlight(lane);
   lanes_.computer.EndCommands(lane);

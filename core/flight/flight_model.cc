@@ -510,6 +510,8 @@ FlightModel::FlightModel(FlightDefinition definition)
     definition_.vehicle.aerodynamics = AerodynamicsOf(definition_.vehicle);
   frame_ = BuildLaunchFrame(nominal_.environment.earth, definition_.vehicle.site,
                             definition_.program.launch_azimuth_rad);
+  if (!definition_.own_metrics.empty())
+    own_metrics_ = std::make_shared<const OwnMetricsPlan>(definition_.own_metrics);
   for (const Stage& stage : definition_.vehicle.stages) {
     has_free_stage_ |= !stage.is_controlled();
     has_fins_ |= !stage.fins.empty();

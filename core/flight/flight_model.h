@@ -99,6 +99,8 @@ class FlightModel {
   bool has_free_stage() const { return has_free_stage_; }
   const ReferenceRows& reference_rows() const { return reference_rows_; }
   const FeedForwardRows& feed_forward_rows() const { return feed_forward_rows_; }
+  /// Null: the campaign has no metrics of its own.
+  const OwnMetricsPlan* own_metrics() const { return own_metrics_.get(); }
   /// The knowledge of closed-loop guidance before lift-off; empty for open-loop flights.
   const std::optional<GuidanceMission>& guidance_mission() const { return guidance_mission_; }
 
@@ -118,6 +120,7 @@ class FlightModel {
   ReferenceRows reference_rows_;
   FeedForwardRows feed_forward_rows_;
   std::optional<GuidanceMission> guidance_mission_;
+  std::shared_ptr<const OwnMetricsPlan> own_metrics_;
 };
 
 /// The vehicle without dispersions: aerodynamics built up where the file gives no tables.

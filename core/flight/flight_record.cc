@@ -179,8 +179,7 @@ FlightRecord::FlightRecord(const FlightModel& model, const FlightOrder& order)
                              plant.environment.turbulence.get())),
       events(EventsOf(model, plant, inputs, model.definition().last_ignition_s, -1.0)),
       lift_off{},
-      every_tick(options.observe != nullptr || !model.definition().own_metrics.empty()),
-      watched(every_tick || options.history != nullptr),
+      watched(options.observe != nullptr || options.history != nullptr),
       history_ticks(options.history ? std::max(1L, std::lround(options.history->step_s /
                                                                model.definition().autopilot.tick_s))
                                     : 0),
@@ -208,8 +207,7 @@ FlightRecord::FlightRecord(const FlightModel& model, const FlightOrder& order)
     law = law_.get();
   }
   if (options.history) options.history->values.clear();
-  if (!model.definition().own_metrics.empty())
-    own_metrics_ = std::make_unique<OwnMetricsMeter>(model.definition().own_metrics, tick_s);
+  if (model.own_metrics()) own_sums.resize(model.own_metrics()->parts.size());
   const bool is_usual = model.definition().vehicle.loss_of_control == LossOfControl{};
   lost_attitude = is_usual ? "attitude error above 15 deg for 0.5 s"
                            : "attitude error above the vehicle's limit, for longer than it allows";
@@ -362,7 +360,9 @@ ReferenceAttitude FlightRecord::ReferenceAt(double time_s) const {
   return guided && guided->steers() ? guided->ReferenceAt(time_s) : model_.definition().program.At(time_s);
 }
 
-TickSample FlightRecord::SampleOf(const LaneView& view, unsigned parts) const {
+double FlightRecord::ProgramPitch(double time_s) const { return ReferenceAt(time_s).angles.pitch; }
+
+TickSample FlightRecord::SampleOf(const LaneView& view) const {
   TickSample s;
   s.time_s = view.time_s;
   s.stack = view.phase.stack;
@@ -378,7 +378,7 @@ TickSample FlightRecord::SampleOf(const LaneView& view, unsigned parts) const {
   std::copy(view.y + kModalState, view.y + kBentLauncherSize, s.bending.begin());
   s.command_rad = view.phase.command_rad;
   s.limit_rad = plant.stacks[static_cast<std::size_t>(s.stack)].gimbal.limit_rad;
-  if (parts & kProgram || !view.has_error) s.reference = ReferenceAt(view.time_s);
+  s.reference = ReferenceAt(view.time_s);
   if (view.has_error) {
     for (int axis = 0; axis < kAxes; ++axis) {
       s.error.angle_rad[axis] = view.error_angle_rad[axis];
@@ -399,30 +399,18 @@ TickSample FlightRecord::SampleOf(const LaneView& view, unsigned parts) const {
   s.jettisoned = view.phase.jettisoned;
   s.boosting = view.phase.boosting();
   s.boosters_burning = view.phase.boosters_burning;
-  if (parts & kInstant) s.instant = equations_->Evaluate(view.phase, view.time_s, view.y);
+  s.instant = equations_->Evaluate(view.phase, view.time_s, view.y);
   return s;
 }
 
-void FlightRecord::AppendRow(const TickSample& s, std::vector<double>& rows, unsigned parts) const {
-  AppendKinematics(plant.environment.earth, s.time_s, s.state, s.instant.air, s.instant.v_AB_B,
-                   s.instant.loads.mass_kg, rows, parts);
-  AppendLauncher(model_, s, rows, parts);
-}
+void FlightRecord::Watch(const LaneView& view) const { options.observe(SampleOf(view)); }
 
-void FlightRecord::Watch(const LaneView& view, bool row) {
-  if (!row && !every_tick) return;
-  const bool is_whole = row || options.observe;
-  const TickSample sample = SampleOf(view, is_whole ? kWholeRow : own_metrics_->parts());
-  if (options.observe) options.observe(sample);
-  if (row) AppendRow(sample, options.history->values, kWholeRow);
-  if (!own_metrics_) return;
-  row_.clear();
-  AppendRow(sample, row_, own_metrics_->parts());
-  own_metrics_->Add(sample.time_s, sample.burning ? sample.stack + 1 : 0, sample.coasting, row_);
+void FlightRecord::AppendRow(const double* row) {
+  options.history->values.insert(options.history->values.end(), row, row + kBodyColumns + kLauncherColumns);
 }
 
 void FlightRecord::WatchEvent(const LaneView& view) {
-  if (options.history) AppendRow(SampleOf(view, kWholeRow), options.history->values, kWholeRow);
+  if (options.history) dispersa::AppendRow(model_, SampleOf(view), options.history->values);
 }
 
 void FlightRecord::HandOver(double time_s, const double* y) {
@@ -525,8 +513,8 @@ FlightResult FlightRecord::Result() {
   if (guided) sums.guidance = guided->outcome();
   MeasuredFlight measured = Measure(sums, model_.definition());
   result_.metrics = std::move(measured.metrics);
-  if (own_metrics_) {
-    const std::vector<double> own = own_metrics_->Values();
+  if (model_.own_metrics()) {
+    const std::vector<double> own = model_.own_metrics()->ValuesOf(own_sums);
     result_.metrics.insert(result_.metrics.end(), own.begin(), own.end());
   }
   digester_.Add(measured.digested.data(), measured.digested.size());

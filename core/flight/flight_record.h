@@ -22,7 +22,6 @@
 
 namespace dispersa {
 
-class OwnMetricsMeter;
 class RailSlide;
 
 /// Events at their own times, in the order in which they happen: a stage's own, and those of its parts
@@ -74,10 +73,9 @@ class FlightRecord {
   const char* refusal = nullptr;  ///< reason why its inputs cannot be flown (null: they can)
   Outcome refused_as = Outcome::kNumericalFailure;
   double believed_attitude[4];  ///< q_IB (w, x, y, z) that the inertial unit is aligned to at lift-off
-  bool every_tick;     ///< has an observer, or metrics of its campaign's own: is watched at each tick
-  bool watched;        ///< is watched at some ticks: a history is enough
-  long history_ticks;  ///< ticks between two rows (0: no history)
-  bool noisy;          ///< its gyros are
+  bool watched;                 ///< has an observer or a history
+  long history_ticks;           ///< ticks between two rows (0: no history)
+  bool noisy;                   ///< its gyros are
 
   // ---- while it flies ----
   GuidedFlight* guided = nullptr;  ///< null: the reference's attitude is flown
@@ -85,14 +83,17 @@ class FlightRecord {
   FlightSums sums;
   RippleMeter ripple;
   LimitCycleMeter limit_cycle;
+  std::vector<PartSum> own_sums;  ///< of the parts of its campaign's own metrics
 
   /// The three gyros' noise of a tick, rad/s.
   void DrawNoise(double* rate_rad_s);
   void AddToDigest(double time_s, const double* y);
   /// The guidance sees the lane. True when events have moved.
   bool Guide(const LaneSight& sight);
-  /// A tick: `row` says whether the history has one here.
-  void Watch(const LaneView& view, bool row);
+  /// A tick, for its observer.
+  void Watch(const LaneView& view) const;
+  /// A tick's row of its history.
+  void AppendRow(const double* row);
   /// An event: a row of the history.
   void WatchEvent(const LaneView& view);
   /// Notes the state at which the reaction control hands over to the autopilot.
@@ -124,6 +125,7 @@ class FlightRecord {
   double SpinTorque(int stage) const;
   /// The vehicle leaves its rail, in this state.
   void LeaveRail(const double* y);
+  double ProgramPitch(double time_s) const;
   /// Whether altitude grows.
   bool Climbs(const double* y) const;
   /// The way from here to the flight's stated end, without thrust, as a point mass. `reason`: of an outcome
@@ -139,9 +141,7 @@ class FlightRecord {
   void SetEquations();
   void StandOnRail();
   ReferenceAttitude ReferenceAt(double time_s) const;
-  /// `parts`: bits of RowPart (history_columns.h).
-  TickSample SampleOf(const LaneView& view, unsigned parts) const;
-  void AppendRow(const TickSample& sample, std::vector<double>& rows, unsigned parts) const;
+  TickSample SampleOf(const LaneView& view) const;
 
   const FlightModel& model_;
   std::unique_ptr<GuidedFlight> guided_;
@@ -150,11 +150,9 @@ class FlightRecord {
   Digester digester_;
   std::unique_ptr<const LauncherModel> equations_;  ///< of a flight that is watched or judged
   std::unique_ptr<JudgedMotion> judged_;
-  double rail_exit_s_ = -1.0;                     ///< negative: no rail
-  std::unique_ptr<RailSlide> rail_;               ///< until it is left
-  std::optional<double> fall_end_s_;              ///< of a flight that ends in a fall
-  std::unique_ptr<OwnMetricsMeter> own_metrics_;  ///< of a campaign that has any
-  std::vector<double> row_;
+  double rail_exit_s_ = -1.0;         ///< negative: no rail
+  std::unique_ptr<RailSlide> rail_;   ///< until it is left
+  std::optional<double> fall_end_s_;  ///< of a flight that ends in a fall
   FlightResult result_;
   std::string refusal_;
 };

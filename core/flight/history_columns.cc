@@ -1,14 +1,13 @@
 #include "core/flight/history_columns.h"
 
+#include <algorithm>
 #include <bit>
-#include <cmath>
 #include <limits>
 #include <map>
 
 #include "core/flight/history.h"
-#include "core/flight/orbit.h"
-#include "core/math/constants.h"
-#include "core/math/functions.h"
+#include "core/flight/history_row.h"
+#include "core/math/lane_eigen.h"
 
 namespace dispersa {
 
@@ -70,28 +69,24 @@ const std::vector<LauncherColumn>& LauncherColumns() {
 
 unsigned PartsOf(int column) {
   static const std::vector<unsigned> parts = [] {
-    const std::map<std::string, unsigned> of = {{"ned_v_n_m_s", kNorthEastDown | kInstant},
-                                                {"ned_v_e_m_s", kNorthEastDown | kInstant},
-                                                {"ned_v_d_m_s", kNorthEastDown | kInstant},
+    const std::map<std::string, unsigned> of = {{"ned_v_n_m_s", kNorthEastDown},
+                                                {"ned_v_e_m_s", kNorthEastDown},
+                                                {"ned_v_d_m_s", kNorthEastDown},
                                                 {"altitude_m", kPlace},
                                                 {"latitude_deg", kPlace},
                                                 {"longitude_deg", kPlace},
-                                                {"yaw_deg", kNorthEastDown | kInstant},
-                                                {"pitch_deg", kNorthEastDown | kInstant},
-                                                {"roll_deg", kNorthEastDown | kInstant},
-                                                {"mach", kInstant},
-                                                {"qbar_pa", kInstant},
-                                                {"alpha_deg", kFlow | kInstant},
-                                                {"beta_deg", kFlow | kInstant},
-                                                {"mass_kg", kInstant},
-                                                {"thrust_n", kInstant},
+                                                {"yaw_deg", kNorthEastDown},
+                                                {"pitch_deg", kNorthEastDown},
+                                                {"roll_deg", kNorthEastDown},
+                                                {"alpha_deg", kFlow},
+                                                {"beta_deg", kFlow},
                                                 {"inertial_velocity_m_s", kOrbit},
                                                 {"flight_path_angle_deg", kOrbit},
                                                 {"pitch_program_deg", kProgram},
                                                 {"pitch_launch_deg", kLaunchAttitude},
-                                                {"axial_load_g", kInstant},
-                                                {"lateral_load_g", kInstant},
-                                                {"incidence_deg", kFlow | kInstant}};
+                                                {"adaptation_projected", kLearnt},
+                                                {"rules_fired", kLearnt},
+                                                {"incidence_deg", kFlow}};
     std::vector<unsigned> list;
     for (const std::string& name : HistoryColumns()) {
       const auto found = of.find(name);
@@ -102,113 +97,70 @@ unsigned PartsOf(int column) {
   return parts[static_cast<std::size_t>(column)];
 }
 
-void AppendKinematics(const Earth& earth, double time_s, const RigidBodyState& s, const AirData& air,
-                      const Vector3& v_AB_B, double mass_kg, std::vector<double>& row, unsigned parts) {
-  Geodetic place{};
-  if (parts & kPlace) place = ToGeodetic(earth, InertialToEarth(earth, time_s, s.p_EoC_I));
-  Vector3 v_EC_N = Vector3::Zero();
-  YawPitchRoll attitude{};
-  if (parts & kNorthEastDown) {
-    // The axes of the place in I: the longitude of `air.place` is measured there.
-    const Matrix3 R_IN = NedAxes(air.place.latitude_rad, air.place.longitude_rad);
-    const double omega = earth.rotation_rate_rad_s;
-    const Vector3 v_EC_I(s.v_IC_I.x() + omega * s.p_EoC_I.y(), s.v_IC_I.y() - omega * s.p_EoC_I.x(),
-                         s.v_IC_I.z());
-    v_EC_N = R_IN.transpose() * v_EC_I;
-    attitude = ToYawPitchRoll(Inverse(QuaternionOf(R_IN)) * s.q_IB);
-  }
-  const double speed = parts & kFlow ? v_AB_B.norm() : 0.0;
-  const double alpha = speed > 0.0 ? Atan2(v_AB_B.z(), v_AB_B.x()) : 0.0;
-  const double beta = speed > 0.0 ? Asin(Clamp(v_AB_B.y() / speed, -1.0, 1.0)) : 0.0;
-  row.insert(row.end(), {time_s,
-                         s.p_EoC_I.x(),
-                         s.p_EoC_I.y(),
-                         s.p_EoC_I.z(),
-                         s.v_IC_I.x(),
-                         s.v_IC_I.y(),
-                         s.v_IC_I.z(),
-                         v_EC_N.x(),
-                         v_EC_N.y(),
-                         v_EC_N.z(),
-                         place.altitude_m,
-                         place.latitude_rad * kDegPerRad,
-                         place.longitude_rad * kDegPerRad,
-                         attitude.yaw * kDegPerRad,
-                         attitude.pitch * kDegPerRad,
-                         attitude.roll * kDegPerRad,
-                         s.w_IB_B.x() * kDegPerRad,
-                         s.w_IB_B.y() * kDegPerRad,
-                         s.w_IB_B.z() * kDegPerRad,
-                         air.mach,
-                         air.qbar_pa,
-                         alpha * kDegPerRad,
-                         beta * kDegPerRad,
-                         mass_kg});
+namespace {
+
+lanes::RigidMotion<double> MotionOf(const RigidBodyState& s) {
+  return {ToLanes(s.p_EoC_I), ToLanes(s.v_IC_I), {s.q_IB.w, s.q_IB.x, s.q_IB.y, s.q_IB.z}, ToLanes(s.w_IB_B)};
 }
 
-void AppendLauncher(const FlightModel& model, const TickSample& s, std::vector<double>& row, unsigned parts) {
-  const LauncherInstant& now = s.instant;
-  OrbitElements orbit{};
-  if (parts & kOrbit)
-    orbit = ElementsOf(model.nominal_plant().environment.earth, s.state.p_EoC_I, s.state.v_IC_I);
-  PitchYawRoll attitude{};
-  if (parts & kLaunchAttitude) attitude = ToPitchYawRoll(Inverse(model.frame().q_IL) * s.state.q_IB);
-  Vector3 specific = Vector3::Zero();
-  if (parts & kInstant) specific = now.loads.force_n / (now.loads.mass_kg * kStandardGravity);
-  const AxisTelemetry& t = s.gimbal.telemetry[kPitch];
-  const auto steered = [&](double value) { return s.unsteered ? kEmpty : value; };
-  const auto powered = [&](double value) { return s.burning ? steered(value) : kEmpty; };
-  const auto told = [&](std::size_t i) { return s.law_telemetry ? powered((*s.law_telemetry)[i]) : kEmpty; };
-  const auto& n = s.nozzle_rad;
+/// The command about an axis that the deflections stand for.
+double FeltAbout(const FlightModel& model, const TickSample& s, Axis axis, double of_cross_rad) {
   const LauncherStack& stack = model.nominal_plant().stacks[static_cast<std::size_t>(s.stack)];
-  const NozzleLayout* const list = stack.gimbal.nozzles.empty() && !model.nominal_plant().boosters_steer()
-                                       ? nullptr
-                                       : &model.nominal_plant().LayoutOf(s.stack, s.boosting);
-  const auto felt = [&](Axis axis, double of_cross_rad) {
-    if (list == nullptr) return of_cross_rad * kDegPerRad;
-    double rad = 0.0;
-    const std::size_t drives = static_cast<std::size_t>(list->banks()) * kDrives;
-    for (std::size_t i = 0; i < drives; ++i) rad += list->felt[axis][i] * n[i];
-    return rad * kDegPerRad;
-  };
-  row.insert(row.end(), {s.stack + 1.0,
-                         now.thrust_n,
-                         orbit.speed_m_s,
-                         orbit.flight_path_angle_rad * kDegPerRad,
-                         steered(s.reference.angles.pitch * kDegPerRad),
-                         attitude.pitch * kDegPerRad,
-                         steered(-s.error.angle_rad.y() * kDegPerRad),
-                         steered(-s.error.angle_rad.z() * kDegPerRad),
-                         steered(-s.error.angle_rad.x() * kDegPerRad),
-                         steered(-s.error.rate_rad_s.y() * kDegPerRad),
-                         steered(felt(kPitch, 0.5 * (n[0] + n[1]))),
-                         steered(felt(kYaw, 0.5 * (n[2] + n[3]))),
-                         steered(felt(kRoll, 0.25 * (n[0] - n[1] + n[2] - n[3]))),
-                         steered(n[0] * kDegPerRad),
-                         steered(n[1] * kDegPerRad),
-                         steered(n[2] * kDegPerRad),
-                         steered(n[3] * kDegPerRad),
-                         powered(s.gimbal.pitch_rad * kDegPerRad),
-                         powered(t.command_rad_s2 * kDegPerRad),
-                         powered(t.adaptation_norm * kDegPerRad),
-                         powered(t.v),
-                         powered(t.v_rate_sign),
-                         powered(t.projected ? 1.0 : 0.0),
-                         powered(t.frozen ? 1.0 : 0.0),
-                         powered(std::popcount(t.rules_fired)),
-                         powered(t.total_gain),
-                         static_cast<double>(s.thrusters[kRoll]),
-                         static_cast<double>(s.thrusters[kPitch]),
-                         static_cast<double>(s.thrusters[kYaw]),
-                         s.expelled_mass_kg,
-                         specific.x(),
-                         Sqrt(specific.y() * specific.y() + specific.z() * specific.z()),
-                         parts & kFlow ? TotalIncidence(now.v_AB_B) * kDegPerRad : 0.0,
-                         told(0),
-                         told(1),
-                         told(2),
-                         told(3)});
-  static_assert(kLawTelemetry == 4);
+  if (stack.gimbal.nozzles.empty() && !model.nominal_plant().boosters_steer()) return of_cross_rad;
+  const NozzleLayout& list = model.nominal_plant().LayoutOf(s.stack, s.boosting);
+  double rad = 0.0;
+  for (std::size_t i = 0; i < static_cast<std::size_t>(list.banks()) * kDrives; ++i)
+    rad += list.felt[axis][i] * s.nozzle_rad[i];
+  return rad;
+}
+
+}  // namespace
+
+void AppendKinematics(const Earth& earth, double time_s, const RigidBodyState& state, const AirData& air,
+                      const Vector3& v_AB_B, double mass_kg, std::vector<double>& rows) {
+  double row[kBodyColumns];
+  lanes::FillBody<double>(earth, {time_s, MotionOf(state), ToLanes(v_AB_B), air.mach, air.qbar_pa, mass_kg},
+                          kWholeRow, row);
+  rows.insert(rows.end(), std::begin(row), std::end(row));
+}
+
+void AppendRow(const FlightModel& model, const TickSample& s, std::vector<double>& rows) {
+  const LauncherInstant& now = s.instant;
+  const auto& n = s.nozzle_rad;
+  const AxisTelemetry& law = s.gimbal.telemetry[kPitch];
+  lanes::LauncherSeen<double> seen;
+  static_cast<lanes::BodySeen<double>&>(seen) = {s.time_s,     MotionOf(s.state), ToLanes(now.v_AB_B),
+                                                 now.air.mach, now.air.qbar_pa,   now.loads.mass_kg};
+  seen.stage = s.stack + 1.0;
+  seen.burning = s.burning;
+  seen.steered = !s.unsteered;
+  seen.thrust_n = now.thrust_n;
+  seen.force_n = ToLanes(now.loads.force_n);
+  seen.R_IL = lanes::MatrixAt(model.frame().R_IL.data());
+  seen.program_pitch_rad = s.reference.angles.pitch;
+  seen.errors = {ToLanes(s.error.angle_rad), ToLanes(s.error.rate_rad_s)};
+  seen.felt_pitch_rad = FeltAbout(model, s, kPitch, 0.5 * (n[0] + n[1]));
+  seen.felt_yaw_rad = FeltAbout(model, s, kYaw, 0.5 * (n[2] + n[3]));
+  seen.felt_roll_rad = FeltAbout(model, s, kRoll, 0.25 * (n[0] - n[1] + n[2] - n[3]));
+  std::copy_n(n.begin(), kNozzles, seen.nozzle_rad);
+  seen.command_pitch_rad = s.gimbal.pitch_rad;
+  seen.control_rad_s2 = law.command_rad_s2;
+  seen.adaptation_norm_rad_s2 = law.adaptation_norm;
+  seen.v = law.v;
+  seen.v_rate_sign = law.v_rate_sign;
+  seen.projected = law.projected ? 1.0 : 0.0;
+  seen.frozen = law.frozen ? 1.0 : 0.0;
+  seen.rules_fired = std::popcount(law.rules_fired);
+  seen.total_gain = law.total_gain;
+  seen.thruster_roll = s.thrusters[kRoll];
+  seen.thruster_pitch = s.thrusters[kPitch];
+  seen.thruster_yaw = s.thrusters[kYaw];
+  seen.expelled_kg = s.expelled_mass_kg;
+  std::fill(std::begin(seen.law_telemetry), std::end(seen.law_telemetry), kEmpty);
+  if (s.law_telemetry) std::copy(s.law_telemetry->begin(), s.law_telemetry->end(), seen.law_telemetry);
+  double row[kBodyColumns + kLauncherColumns];
+  lanes::FillLauncher<double>(model.nominal_plant().environment.earth, seen, kWholeRow, row);
+  rows.insert(rows.end(), std::begin(row), std::end(row));
 }
 
 }  // namespace dispersa

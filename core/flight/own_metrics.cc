@@ -12,9 +12,7 @@
 namespace dispersa {
 namespace {
 
-// Conditions stand behind the columns: any burn, the burn of each stage, the coast.
 int FirstCondition() { return static_cast<int>(HistoryColumns().size()); }
-constexpr int kConditions = 1 + kMaxStages + 1;
 
 NamedValue Find(const std::string& name, int stages, const AutopilotConfig& autopilot) {
   if (name == "burn") return {FirstCondition(), true};
@@ -57,33 +55,27 @@ FlightExpression ParseOwnMetric(const std::string& expression, int stages, const
                                [&](const std::string& name) { return Find(name, stages, autopilot); });
 }
 
-OwnMetricsMeter::OwnMetricsMeter(const std::vector<OwnMetric>& metrics, double tick_s) : tick_s_(tick_s) {
-  meters_.reserve(metrics.size());
+OwnMetricsPlan::OwnMetricsPlan(const std::vector<OwnMetric>& metrics) {
+  for (const OwnMetric& metric : metrics) expressions.push_back(metric.parsed);
   const auto read = [&](const Expression& expression) {
     for (const int position : expression.Positions())
-      if (position < FirstCondition()) parts_ |= PartsOf(position);
+      if (position < FirstCondition()) row_parts |= PartsOf(position);
   };
-  for (const OwnMetric& metric : metrics) {
-    meters_.emplace_back(metric.parsed);
-    for (const OverFlight& part : metric.parsed.parts) {
+  for (const FlightExpression& expression : expressions) {
+    for (const OverFlight& part : expression.parts) {
+      parts.emplace_back(part);
       read(part.value);
       if (part.while_true) read(*part.while_true);
     }
   }
 }
 
-void OwnMetricsMeter::Add(double time_s, int burning_stage, bool coasting, std::vector<double>& row) {
-  row.resize(HistoryColumns().size() + kConditions, 0.0);
-  double* const conditions = row.data() + FirstCondition();
-  if (burning_stage > 0) conditions[0] = conditions[burning_stage] = 1.0;
-  if (coasting) conditions[1 + kMaxStages] = 1.0;
-  for (FlightMeter& meter : meters_) meter.Add(time_s, tick_s_, row.data());
-}
-
-std::vector<double> OwnMetricsMeter::Values() const {
+std::vector<double> OwnMetricsPlan::ValuesOf(const std::vector<PartSum>& sums) const {
   std::vector<double> values;
-  for (const FlightMeter& meter : meters_) {
-    const double value = meter.Value();
+  const PartSum* next = sums.data();
+  for (const FlightExpression& expression : expressions) {
+    const double value = ValueOf(expression, next);
+    next += expression.parts.size();
     values.push_back(std::isfinite(value) ? value : std::numeric_limits<double>::quiet_NaN());
   }
   return values;

@@ -1,4 +1,4 @@
-// A campaign's own metrics: expressions over the columns of histories, evaluated at every tick.
+// A campaign's own metrics: expressions over the columns of histories, summed up over every tick.
 #pragma once
 
 #include <cstddef>
@@ -8,6 +8,7 @@
 
 #include "core/control/autopilot_config.h"
 #include "core/expressions/flight_expression.h"
+#include "core/math/stages.h"
 
 namespace dispersa {
 
@@ -31,24 +32,21 @@ std::optional<std::vector<std::size_t>> FindOwn(const std::vector<OwnMetric>& wa
 /// Parses a metric for a vehicle of `stages` stages under this autopilot. Throws ExpressionError.
 FlightExpression ParseOwnMetric(const std::string& expression, int stages, const AutopilotConfig& autopilot);
 
-/// Evaluates a campaign's own metrics in one flight.
-class OwnMetricsMeter {
- public:
-  /// The metrics must outlive the meter.
-  OwnMetricsMeter(const std::vector<OwnMetric>& metrics, double tick_s);
+/// Conditions stand behind the columns of a row: any burn, the burn of each stage, the coast.
+inline constexpr int kRowConditions = 1 + kMaxStages + 1;
 
-  /// Parts of a row that the expressions read: bits of RowPart (history_columns.h).
-  unsigned parts() const { return parts_; }
-  /// Adds one tick. `row` has the values of HistoryColumns(), with these parts; further values are appended
-  /// to it. `burning_stage` counts from 1; 0: no stage burns.
-  void Add(double time_s, int burning_stage, bool coasting, std::vector<double>& row);
-  /// NaN where a metric is undefined.
-  std::vector<double> Values() const;
+/// What flights sum up for a campaign's own metrics.
+struct OwnMetricsPlan {
+  std::vector<FlightExpression> expressions;
+  std::vector<SummedPart> parts;  ///< of all expressions, one after the other
+  unsigned row_parts = 0;         ///< bits of RowPart (history_columns.h) that they read
 
- private:
-  std::vector<FlightMeter> meters_;
-  double tick_s_;
-  unsigned parts_ = 0;
+  explicit OwnMetricsPlan(const std::vector<OwnMetric>& metrics);
+  OwnMetricsPlan(const OwnMetricsPlan&) = delete;
+  OwnMetricsPlan& operator=(const OwnMetricsPlan&) = delete;
+
+  /// Of a flight with these sums of the parts. NaN where a metric is undefined.
+  std::vector<double> ValuesOf(const std::vector<PartSum>& sums) const;
 };
 
 }  // namespace dispersa

@@ -224,6 +224,10 @@ class StepState {
   /// Environment of the lanes at their present times. Valid after EvaluateStart.
   const Instant<T>& now() const { return start_->instant; }
   const Vector<T>& acceleration_m_s2() const { return start_->rates.dv; }
+  Vector<T> VelocityThroughAir() const {  ///< body axes
+    return TransposeTimes(RotationMatrix(motion_.q),
+                          AirVelocity(earth_.rotation_rate_rad_s, start_->around, motion_));
+  }
   const T& density_kg_m3() const { return start_->around.density_kg_m3; }
   const T& cg_station_m() const { return start_->masses.cg_station_m; }
   /// Of the lanes' lowest stages.

@@ -47,6 +47,7 @@ DISPERSA_INLINE double Cos(double x_rad) { return ::dispersa::Cos(x_rad); }
 DISPERSA_INLINE double Sin(double x_rad) { return ::dispersa::Sin(x_rad); }
 DISPERSA_INLINE double Atan2(double y, double x) { return ::dispersa::Atan2(y, x); }
 DISPERSA_INLINE double Exp(double x) { return ::dispersa::Exp(x); }
+DISPERSA_INLINE double Log(double x) { return ::dispersa::Log(x); }
 
 /// The bits of a double as they are.
 DISPERSA_INLINE double OfBits(std::uint64_t bits) { return __builtin_bit_cast(double, bits); }
@@ -115,6 +116,7 @@ DISPERSA_INLINE Pack<4> Cos(Pack<4> x) { return Sleef_finz_cosd4_u10avx2(x.v); }
 DISPERSA_INLINE Pack<4> Sin(Pack<4> x) { return Sleef_finz_sind4_u10avx2(x.v); }
 DISPERSA_INLINE Pack<4> Atan2(Pack<4> y, Pack<4> x) { return Sleef_finz_atan2d4_u10avx2(y.v, x.v); }
 DISPERSA_INLINE Pack<4> Exp(Pack<4> x) { return Sleef_finz_expd4_u10avx2(x.v); }
+DISPERSA_INLINE Pack<4> Log(Pack<4> x) { return Sleef_finz_logd4_u10avx2(x.v); }
 
 // ---- eight lanes: one register of AVX-512, or two of AVX2 ----------------------------------------------
 
@@ -178,6 +180,7 @@ DISPERSA_INLINE Pack<8> Cos(Pack<8> x) { return Sleef_finz_cosd8_u10avx512f(x.v)
 DISPERSA_INLINE Pack<8> Sin(Pack<8> x) { return Sleef_finz_sind8_u10avx512f(x.v); }
 DISPERSA_INLINE Pack<8> Atan2(Pack<8> y, Pack<8> x) { return Sleef_finz_atan2d8_u10avx512f(y.v, x.v); }
 DISPERSA_INLINE Pack<8> Exp(Pack<8> x) { return Sleef_finz_expd8_u10avx512f(x.v); }
+DISPERSA_INLINE Pack<8> Log(Pack<8> x) { return Sleef_finz_logd8_u10avx512f(x.v); }
 
 #else
 
@@ -231,6 +234,7 @@ DISPERSA_INLINE Pack<8> Cos(Pack<8> x) { return {Cos(x.low), Cos(x.high)}; }
 DISPERSA_INLINE Pack<8> Sin(Pack<8> x) { return {Sin(x.low), Sin(x.high)}; }
 DISPERSA_INLINE Pack<8> Atan2(Pack<8> y, Pack<8> x) { return {Atan2(y.low, x.low), Atan2(y.high, x.high)}; }
 DISPERSA_INLINE Pack<8> Exp(Pack<8> x) { return {Exp(x.low), Exp(x.high)}; }
+DISPERSA_INLINE Pack<8> Log(Pack<8> x) { return {Log(x.low), Log(x.high)}; }
 
 #endif
 

@@ -1,5 +1,6 @@
 #include "core/math/rotation.h"
 
+#include "core/math/constants.h"
 #include "core/math/functions.h"
 
 namespace dispersa {
@@ -83,9 +84,6 @@ Quaternion AboutZ(double angle) {
   return {half.cos, 0.0, 0.0, half.sin};
 }
 
-// Within this distance of 1 the middle angle is so near ±90° that the outer two cannot be told apart.
-constexpr double kSingular = 1e-12;
-
 }  // namespace
 
 Quaternion FromYawPitchRoll(const YawPitchRoll& angles) {
@@ -95,7 +93,7 @@ Quaternion FromYawPitchRoll(const YawPitchRoll& angles) {
 YawPitchRoll ToYawPitchRoll(const Quaternion& q) {
   const Matrix3 R = RotationMatrix(q);
   const double sine = Clamp(-R(2, 0), -1.0, 1.0);
-  if (1.0 - (sine < 0.0 ? -sine : sine) < kSingular)
+  if (1.0 - (sine < 0.0 ? -sine : sine) < kSingularSine)
     return {0.0, Asin(sine), Atan2(sine > 0.0 ? R(0, 1) : -R(0, 1), R(1, 1))};
   return {Atan2(R(1, 0), R(0, 0)), Atan2(sine, Sqrt(R(0, 0) * R(0, 0) + R(1, 0) * R(1, 0))),
           Atan2(R(2, 1), R(2, 2))};
@@ -108,7 +106,7 @@ Quaternion FromPitchYawRoll(const PitchYawRoll& angles) {
 PitchYawRoll ToPitchYawRoll(const Quaternion& q) {
   const Matrix3 R = RotationMatrix(q);
   const double sine = Clamp(R(1, 0), -1.0, 1.0);
-  if (1.0 - (sine < 0.0 ? -sine : sine) < kSingular)
+  if (1.0 - (sine < 0.0 ? -sine : sine) < kSingularSine)
     return {0.0, Asin(sine), Atan2(sine > 0.0 ? R(0, 2) : -R(0, 2), R(2, 2))};
   return {Atan2(-R(2, 0), R(0, 0)), Atan2(sine, Sqrt(R(0, 0) * R(0, 0) + R(2, 0) * R(2, 0))),
           Atan2(-R(1, 2), R(1, 1))};

@@ -41,7 +41,8 @@ ExitCode Merge(const MergeCommand& options, const GlobalOptions& global) {
 void AddMergeCommand(CLI::App& app, Invocation& invocation) {
   auto options = std::make_shared<MergeCommand>();
   CLI::App* command = app.add_subcommand(
-      "merge", "make one result folder of the shares of a campaign, with the reports and exit code of one run");
+      "merge",
+      "make one result folder of the shares of a campaign, with the reports and exit code of one run");
   command->add_option("folders", options->folders, "result folders of 'run --shard', in any order")
       ->required()
       ->type_name(kFolderType);

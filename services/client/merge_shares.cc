@@ -98,9 +98,8 @@ class Unfinished {
 PreparedRun MergedRun(const std::vector<std::string>& folders, const std::string& out,
                       const std::string& fresh) {
   std::vector<Part> parts(folders.begin(), folders.end());
-  std::stable_sort(parts.begin(), parts.end(), [](const Part& a, const Part& b) {
-    return a.share.cases.first < b.share.cases.first;
-  });
+  std::stable_sort(parts.begin(), parts.end(),
+                   [](const Part& a, const Part& b) { return a.share.cases.first < b.share.cases.first; });
   if (std::vector<InputProblem> problems = ProblemsOf(parts); !problems.empty())
     throw InputError(std::move(problems));
   Campaign campaign = ReadFlownCampaign((parts.front().folder.directory() / "campaign.yaml").string());

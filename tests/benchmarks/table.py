@@ -7,7 +7,7 @@ usage: table.py BUILD [OLD_BUILD]
 BUILD is a build folder with the benchmarks (target by_hand) and programs; OLD_BUILD, one of another commit, gives ratios. What is
 compared is measured in turn, so that a change of the machine's load meets both: medians of five turns, ratios with
 their least and greatest. Callgrind counts where valgrind is installed; --instructions counts and does nothing else.
---capabilities counts flights of shipped campaigns with and without guidance, bending and dispersed masses.
+--capabilities counts flights of shipped campaigns with and without guidance, own metrics, bending and dispersed masses.
 """
 import json
 import os
@@ -124,6 +124,18 @@ def instructions(dispersa, campaign_file=TABLE3, few=4, many=12):
     return (count(many) - count(few)) / flights / 1e6
 
 
+# Of campaigns' own metrics, which are looked at in every tick.
+OWN_METRICS = ["{name: high_q_time_s, expression: 'time(qbar_pa > 30000)'}",
+               "{name: altitude_burn1_km, expression: 'last(altitude_m while burn1) / 1000'}",
+               "{name: pitch_mean_deg, expression: 'mean(pitch_deg while burn)'}",
+               "{name: beta_felt_deg, expression: 'max(abs(beta_deg) while qbar_pa > 1000)'}",
+               "{name: impulse_mn_s, expression: 'integral(thrust_n) / 1e6'}",
+               "{name: deflection_yaw_rms_deg, expression: 'rms(deflection_yaw_deg while burn2)'}",
+               "{name: speed_burn2_m_s, expression: 'last(inertial_velocity_m_s while burn2)'}",
+               "{name: axial_min_g, expression: 'min(axial_load_g while burn)'}",
+               "{name: roll_rate_max_deg_s, expression: 'max(abs(p_deg_s))'}",
+               "{name: pitch_at_30_deg, expression: 'at(pitch_deg, 30)'}"]
+
 # Three sigma of a new motor (structure_near_modes_test).
 DISPERSED_MASSES = """  dry_mass: {distribution: normal, three_sigma_percent: 3, per: stage}
   propellant_load: {distribution: normal, three_sigma_percent: 1, per: stage}
@@ -156,6 +168,10 @@ def capabilities(dispersa):
             if "schema: dispersa/campaign/" in text and re.search(r"^guidance:.*closed_loop", text, re.M):
                 compare("guidance", str(found.relative_to(campaigns)),
                         lambda text: re.sub(r"^guidance:.*\n", "", text, flags=re.M))
+        for count in (1, len(OWN_METRICS)):
+            metrics = "".join(f"  - {metric}\n" for metric in OWN_METRICS[:count])
+            compare("own metrics: %d" % count, "table3.yaml", lambda text: text,
+                    lambda text: text.replace("requirements:\n", f"metrics:\n{metrics}requirements:\n", 1))
         # With its own autopilot: the rigid vehicle has no rate gyros.
         compare("bending", "table3_flexible.yaml", lambda text: TABLE3.read_text())
         for name in ("table3.yaml", "table3_flexible.yaml"):

@@ -1,6 +1,8 @@
 // Expressions of campaign files: values against closed forms, the rules about undefined values, and the full
 // text of every error.
 #include "core/expressions/flight_expression.h"
+
+#include "core/expressions/part_sums.h"
 #include "tests/test.h"
 
 namespace dispersa::expressions_flight_expression_test {
@@ -23,9 +25,14 @@ const Rows kRows = {{0.0, 1.0, 2.0, 0.0}, {0.5, -3.0, 0.0, 1.0}, {1.0, 2.0, kNaN
 
 double Value(const std::string& text, const Rows& rows = kRows) {
   const FlightExpression expression = ParseFlightExpression(text, Find);
-  FlightMeter meter(expression);
-  for (const std::vector<double>& row : rows) meter.Add(row[0], 0.5, row.data());
-  return meter.Value();
+  std::vector<PartSum> sums;
+  for (const OverFlight& part : expression.parts) {
+    lanes::PartSumOf<double> sum{0.0, 0.0};
+    for (const std::vector<double>& row : rows)
+      lanes::AddTick<double>(SummedPart(part), true, row[0], 0.5, row.data(), sum);
+    sums.push_back({sum.value, sum.count});
+  }
+  return ValueOf(expression, sums.data());
 }
 
 // What is wrong, and what is allowed.

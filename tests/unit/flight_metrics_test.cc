@@ -10,6 +10,7 @@
 #include "core/flight/metrics.h"
 #include "core/math/constants.h"
 #include "core/math/functions.h"
+#include "core/math/lane_eigen.h"
 #include "core/results/metric_catalogue.h"
 #include "tests/test.h"
 #include "tests/unit/sample_vehicle.h"
@@ -107,7 +108,7 @@ class MetricsRecorder {
             TotalIncidence(now.v_AB_B),
             now.loads.mass_kg,
             now.thrust_n,
-            {f.x(), f.y(), f.z()},
+            ToLanes(f),
             {},
             {},
             {},

@@ -14,6 +14,14 @@ OWN = {"q_burn1_max_kpa": "max(qbar_pa while burn1) / 1000",
        "deflection_burn2_rms_deg": "rms(deflection_pitch_deg while burn2)",
        "high_q_time_s": "time(qbar_pa > 30000 and burn)",
        "mass_burnout1_kg": "last(mass_kg while burn1)",
+       "q_burn2_mean_pa": "mean(qbar_pa while burn2)",
+       "altitude_coast_min_m": "min(altitude_m while coast)",
+       "yaw_burn3_first_deg": "first(yaw_deg while burn3)",
+       "impulse_mn_s": "integral(thrust_n while burn) / 1e6",
+       "pitch_at_30_deg": "at(pitch_deg, 30.004)",
+       "log_q_max": "max(log(qbar_pa + 1) * exp(-abs(mach)) + sin_deg(alpha_deg))",
+       "rules_fired_most": "max(rules_fired)",
+       "program_mean_deg": "mean(pitch_program_deg while burn)",
        "lyapunov_never": "max(lyapunov_v while stage > 9)"}
 
 
