@@ -1,13 +1,15 @@
 #include "core/results/attempt_ledger.h"
 
+#include <fmt/format.h>
+#include <sys/stat.h>
+#include <unistd.h>
+
 #include <algorithm>
-#include <cerrno>
-#include <fstream>
 #include <nlohmann/json.hpp>
+#include <sstream>
 #include <utility>
 
 #include "core/flight/engine_version.h"
-#include "core/results/file_system.h"
 #include "core/results/output_file.h"
 #include "core/results/requirement_text.h"
 #include "core/results/result_error.h"
@@ -84,6 +86,21 @@ AttemptRecord ToRecord(const AttemptJson& json) {
   return record;
 }
 
+/// In a folder where everybody may make files, such as /tmp, a file of another user tells of other flights,
+/// or lies.
+void RefuseNeighbours(const fs::path& file) {
+  struct stat ledger {
+  }, folder{};
+  const fs::path parent = file.has_parent_path() ? file.parent_path() : ".";
+  if (lstat(file.c_str(), &ledger) != 0 || stat(parent.c_str(), &folder) != 0) return;
+  if (ledger.st_uid == geteuid() || (folder.st_mode & S_IWOTH) == 0) return;
+  throw ResultError(
+      ResultError::Kind::kFile,
+      fmt::format("{}: belongs to another user (number {}), and everybody may write its folder, allowed: "
+                  "a result folder in a folder of your own",
+                  file.string(), ledger.st_uid));
+}
+
 template <typename Action>
 std::optional<std::string> ReasonOf(Action action) {
   try {
@@ -113,10 +130,8 @@ AttemptRecord RecordOf(const Campaign& campaign) {
 }
 
 std::vector<AttemptRecord> AttemptLedger::Read() const {
-  std::error_code error;
-  if (!fs::exists(file_, error)) return {};
-  std::ifstream stream(file_);
-  if (!stream) FailFile(file_.string(), "cannot be read", errno);
+  RefuseNeighbours(file_);
+  std::istringstream stream(ReadLines(file_));
   std::vector<AttemptRecord> records;
   for (std::string line; std::getline(stream, line);) {
     try {
@@ -134,7 +149,10 @@ std::vector<AttemptRecord> AttemptLedger::Read() const {
   return records;
 }
 
-void AttemptLedger::Write(const AttemptRecord& record) const { AppendLine(file_, ToJson(record).dump()); }
+void AttemptLedger::Write(const AttemptRecord& record) const {
+  RefuseNeighbours(file_);
+  AppendLine(file_, ToJson(record).dump());
+}
 
 std::optional<std::string> BeginAttempt(const fs::path& root, const fs::path& results,
                                         const Campaign& campaign, const std::string& begun_utc,

@@ -48,7 +48,8 @@ struct AttemptRecord {
 /// The record of a campaign before its first case.
 AttemptRecord RecordOf(const Campaign& campaign);
 
-/// Reads and writes the file. Throws ResultError on an error of the file system.
+/// Reads and writes the file. Throws ResultError on an error of the file system, for a link, pipe or device,
+/// and for a file of another user in a folder that everybody may write.
 class AttemptLedger {
  public:
   explicit AttemptLedger(std::filesystem::path file) : file_(std::move(file)) {}

@@ -1,7 +1,9 @@
 #include "core/results/file_system.h"
 
+#include <fcntl.h>
 #include <fmt/format.h>
 #include <sys/file.h>
+#include <sys/stat.h>
 #include <unistd.h>
 
 #include <cerrno>
@@ -35,6 +37,25 @@ void RefuseFileSystem(const std::string& name, const std::string& lack, int erro
       fmt::format("{}: its file system {}: {}, allowed: a folder on a file system with locks and shared "
                   "memory, such as a disk of this machine",
                   name, lack, std::strerror(error)));
+}
+
+int OpenRegular(const std::filesystem::path& file, int flags) {
+  constexpr char kRule[] = "and no regular file, allowed: a file, or none";
+  const int opened = open(file.c_str(), flags | O_NOFOLLOW | O_NONBLOCK | O_NOCTTY | O_CLOEXEC, 0666);
+  if (opened < 0) {
+    if (errno == ENOENT && (flags & O_CREAT) == 0) return -1;
+    if (errno == ELOOP)
+      throw ResultError(ResultError::Kind::kFile, fmt::format("{}: is a link {}", file.string(), kRule));
+    FailFile(file.string(), (flags & O_CREAT) == 0 ? "cannot be read" : "cannot be written", errno);
+  }
+  struct stat what {};
+  if (fstat(opened, &what) == 0 && S_ISREG(what.st_mode)) return opened;
+  close(opened);
+  throw ResultError(ResultError::Kind::kFile, fmt::format("{}: is a {} {}", file.string(),
+                                                          S_ISFIFO(what.st_mode)  ? "pipe"
+                                                          : S_ISDIR(what.st_mode) ? "folder"
+                                                                                  : "device",
+                                                          kRule));
 }
 
 int SyncFile(int file) { return fsync(file) == 0 || IsNotOffered(errno) ? 0 : errno; }

@@ -18,6 +18,10 @@ bool IsNotOffered(int error);
 /// Throws ResultError (kFileSystem). `lack`: "cannot lock files".
 [[noreturn]] void RefuseFileSystem(const std::string& name, const std::string& lack, int error);
 
+/// Opens a file, never a link, a pipe or a device, and waits for nobody. -1: there is none, and `flags` make
+/// none. Throws ResultError.
+int OpenRegular(const std::filesystem::path& file, int flags);
+
 /// fsync. A file system without it lacks only the protection from a power cut. Otherwise returns the errno.
 int SyncFile(int file);
 /// flock. False if another process holds the lock and `waits` is false. Throws ResultError (kFileSystem).

@@ -122,9 +122,21 @@ void WriteFile(const std::filesystem::path& target, std::string_view bytes) {
   file.Commit();
 }
 
+std::string ReadLines(const fs::path& file) {
+  const Descriptor descriptor(OpenRegular(file, O_RDONLY));
+  std::string text;
+  for (char part[1 << 16]; descriptor >= 0;) {
+    const ssize_t count = read(descriptor, part, sizeof part);
+    if (count < 0 && errno == EINTR) continue;
+    if (count < 0) FailFile(file.string(), "cannot be read", errno);
+    if (count == 0) break;
+    text.append(part, static_cast<std::size_t>(count));
+  }
+  return text;
+}
+
 void AppendLine(const fs::path& file, std::string_view line) {
-  const Descriptor descriptor(open(file.c_str(), O_RDWR | O_CREAT | O_APPEND | O_CLOEXEC, 0666));
-  if (descriptor < 0) FailFile(file.string(), kUnwritable, errno);
+  const Descriptor descriptor(OpenRegular(file, O_RDWR | O_CREAT | O_APPEND));
   LockFile(descriptor, true, file);
   char last = '\n';
   const off_t size = lseek(descriptor, 0, SEEK_END);

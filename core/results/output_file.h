@@ -37,8 +37,12 @@ class OutputFile {
 /// Writes a whole file at once.
 void WriteFile(const std::filesystem::path& target, std::string_view bytes);
 
-/// Adds a line to a file of lines, and makes the file if there is none. The line is on the disk when this
-/// returns. Several processes may append. After a line that a killed process cut off a new line begins.
+/// The text of a file of lines; empty: there is none. Throws ResultError if it is no regular file.
+std::string ReadLines(const std::filesystem::path& file);
+
+/// Adds a line to a file of lines, and makes the file if there is none. No link is followed. The line is on
+/// the disk when this returns. Several processes may append. After a line that a killed process cut off a new
+/// line begins.
 void AppendLine(const std::filesystem::path& file, std::string_view line);
 
 }  // namespace dispersa
