@@ -354,6 +354,7 @@ std::vector<std::string> CampaignNotes(const Standing& standing) {
 
 AttemptRecord AttemptOf(const Campaign& campaign, const CampaignSummary& summary, AttemptRecord begun) {
   AttemptRecord record = RecordOf(campaign);
+  record.engine = summary.engine;
   record.begun_utc = begun.begun_utc;
   record.fresh = begun.fresh;
   record.earlier_designs = begun.earlier_designs;

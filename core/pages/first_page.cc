@@ -6,6 +6,7 @@
 #include <utility>
 #include <vector>
 
+#include "core/flight/engine_version.h"
 #include "core/pages/glossary.h"
 #include "core/pages/html_parts.h"
 #include "core/pages/report_sections.h"
@@ -60,6 +61,12 @@ std::string HeadSentence(const CampaignSummary& summary) {
   return "";
 }
 
+std::string DrawnBy(const std::string& engine) {
+  return engine == EngineVersion()
+             ? ""
+             : ", page by engine " + Code(EngineVersion().substr(0, 12)) + ", which flew nothing";
+}
+
 std::string Facts(const CampaignSummary& summary) {
   const RunInfo& run = summary.standing.run;
   const std::string file = run.vehicle_file.empty() ? "" : " (" + HtmlText(run.vehicle_file) + ")";
@@ -78,7 +85,7 @@ std::string Facts(const CampaignSummary& summary) {
   if (!run.user.empty())
     line += " · by " + HtmlText(run.user) + (run.host.empty() ? "" : " on " + HtmlText(run.host));
   return "<p class=\"soft what\">" + line + " · engine " + Code(summary.engine.substr(0, 12)) +
-         " · campaign id " + Code(summary.id.substr(0, 12)) + "</p>\n";
+         DrawnBy(summary.engine) + " · campaign id " + Code(summary.id.substr(0, 12)) + "</p>\n";
 }
 
 int Rank(const std::string& verdict) {

@@ -10,6 +10,7 @@
 #include <utility>
 
 #include "core/analysis/band_counter.h"
+#include "core/flight/engine_version.h"
 #include "core/math/assertion.h"
 #include "core/pages/kept_histories.h"
 #include "core/results/file_system.h"
@@ -192,18 +193,20 @@ FlightHistories WriteHistories(const ResultFolder& folder, const Campaign& campa
     if (options.progress) options.progress(what, done, total);
   };
   const fs::path directory = folder.directory() / "histories";
-  const CampaignFlights flights(campaign);
   const std::vector<int> columns = BandColumns();
+  if (folder.Provenance("engine") != EngineVersion())
+    return ReadForeignHistories(directory, columns, kBandStep_s).value_or(FlightHistories());
   const HistoryFlights wanted = ChooseFlights(summary, cases, options.history_cases);
   const std::vector<std::uint64_t>& indices = wanted.indices;
   const std::vector<std::uint64_t>& written = wanted.written;
   const std::string key = KeyOfHistories(folder, campaign, wanted, LayoutOfFiles(columns));
-  std::optional<FlightHistories> kept =
-      ReadKeptHistories(directory, key, campaign, wanted, columns, kBandStep_s);
+  std::optional<FlightHistories> kept = ReadKeptHistories(directory, key, wanted, columns, kBandStep_s);
   if (!kept) EmptyDirectory(directory);
   FlightHistories histories = kept ? std::move(*kept) : FlightHistories();
 
+  const CampaignFlights flights(campaign);
   progress("nominal flight", 0, 1);
+  histories.nominal_history = {};
   histories.nominal_history.step_s = kHistoryStep_s;
   histories.nominal = flights.FlyNominal(&histories.nominal_history);
   if (kept) return histories;
@@ -256,8 +259,7 @@ FlightHistories WriteHistories(const ResultFolder& folder, const Campaign& campa
                      [&](std::size_t i, const CaseResult& result, const History& ticks) {
                        CheckReproduced(folder, written[at + i], result.digest);
                        const std::string csv = write(CaseHistoryName(written[at + i]), ticks);
-                       histories.written_flights[at + i] =
-                           SampleFlight(HistoryIn(csv, campaign.autopilot), columns, kBandStep_s);
+                       histories.written_flights[at + i] = SampleFlight(HistoryIn(csv), columns, kBandStep_s);
                        progress("time histories", ++flown, indices.size() + written.size());
                      });
   }

@@ -37,7 +37,9 @@ std::vector<std::size_t> ExtremeRows(const CaseColumns& cases);
 /// Removes histories/, which belongs to an earlier report.
 void RemoveHistories(const ResultFolder& folder);
 
-/// Flies the flights of the report again and writes histories/ anew. Throws the errors of WriteReports().
+/// Flies the flights of the report again and writes histories/ anew. Of a folder that another engine flew it
+/// reads what is stored, and nothing if that is of other flights or damaged. Throws the errors of
+/// WriteReports().
 FlightHistories WriteHistories(const ResultFolder& folder, const Campaign& campaign,
                                const CampaignSummary& summary, const CaseColumns& cases,
                                const ReportOptions& options);

@@ -2,6 +2,8 @@
 
 #include <fmt/format.h>
 
+#include <algorithm>
+#include <charconv>
 #include <fstream>
 #include <map>
 #include <nlohmann/json.hpp>
@@ -20,6 +22,7 @@ namespace dispersa {
 namespace {
 
 namespace fs = std::filesystem;
+using Json = nlohmann::json;
 
 constexpr char kMadeOf[] = "made_of.json";
 
@@ -36,11 +39,11 @@ std::vector<std::string> FilesOf(const HistoryFlights& flights) {
   return files;
 }
 
-/// The rows of a file as HistoryCsv and BandsCsv write it.
-std::vector<std::vector<double>> RowsOf(std::string_view csv) {
+/// A file as HistoryCsv and BandsCsv write it.
+NumberCsv TableOf(std::string_view csv) {
   std::optional<NumberCsv> table = ReadNumberCsv(csv);
   DISPERSA_ASSERT(table.has_value(), csv.size());
-  return std::move(table->rows);
+  return *std::move(table);
 }
 
 std::vector<fs::path> Others(const fs::path& directory, const std::map<std::string, std::string>& files) {
@@ -50,6 +53,46 @@ std::vector<fs::path> Others(const fs::path& directory, const std::map<std::stri
     if (name != kMadeOf && !files.contains(name)) others.push_back(entry.path());
   }
   return others;
+}
+
+Json MadeOf(const fs::path& directory) { return Json::parse(ReadText(directory / kMadeOf), nullptr, false); }
+
+// A file that cannot be read as it was written is no reason to fail.
+Json Member(const Json& object, const std::string& name) {
+  return object.is_object() && object.contains(name) ? object[name] : Json();
+}
+
+std::optional<std::uint64_t> CaseOf(const std::string& name) {
+  std::uint64_t index = 0;
+  constexpr std::string_view kBefore = "case_";
+  if (!name.starts_with(kBefore)) return std::nullopt;
+  std::from_chars(name.data() + kBefore.size(), name.data() + name.size(), index);
+  return CaseHistoryName(index) == name ? std::optional(index) : std::nullopt;
+}
+
+/// The texts of these files, if each is as it was written.
+std::optional<std::map<std::string, std::string>> TextsOf(const fs::path& directory, const Json& fingerprints,
+                                                          const std::vector<std::string>& names) {
+  std::map<std::string, std::string> texts;
+  for (const std::string& name : names) {
+    const std::string bytes = ReadText(directory / name);
+    std::optional<std::string> text = Gunzip(bytes);
+    if (!text || Member(fingerprints, name) != Fingerprint(bytes).Hex()) return std::nullopt;
+    texts[name] = *std::move(text);
+  }
+  return texts;
+}
+
+FlightHistories HistoriesIn(const std::map<std::string, std::string>& texts, const HistoryFlights& flights,
+                            const std::vector<int>& columns, double step_s) {
+  FlightHistories kept;
+  kept.written_cases = flights.written;
+  for (const std::uint64_t index : flights.written)
+    kept.written_flights.push_back(
+        SampleFlight(HistoryIn(texts.at(CaseHistoryName(index))), columns, step_s));
+  kept.nominal_history = HistoryIn(texts.at(kNominalHistoryName));
+  kept.bands = BandsIn(texts.at(kBandsName), columns, step_s, flights);
+  return kept;
 }
 
 }  // namespace
@@ -62,7 +105,7 @@ FlightBands BandsIn(std::string_view csv, const std::vector<int>& columns, doubl
   bands.step_s = step_s;
   for (const int column : columns)
     bands.bands.push_back({.column = HistoryColumns()[static_cast<std::size_t>(column)]});
-  for (const std::vector<double>& row : RowsOf(csv)) {
+  for (const std::vector<double>& row : TableOf(csv).rows) {
     std::size_t at = 0;
     bands.time_s.push_back(row[at++]);
     bands.flying.push_back(static_cast<std::size_t>(row[at++]));
@@ -73,14 +116,17 @@ FlightBands BandsIn(std::string_view csv, const std::vector<int>& columns, doubl
   return bands;
 }
 
-History HistoryIn(std::string_view csv, const AutopilotConfig& autopilot) {
-  const std::vector<int> columns = HistoryColumnsUnder(autopilot);
+// By their names: another engine may have written other columns.
+History HistoryIn(std::string_view csv) {
+  const NumberCsv table = TableOf(csv);
+  std::vector<int> columns;
+  for (const std::string& name : table.columns) columns.push_back(FindHistoryColumn(name));
   History history;
-  for (const std::vector<double>& row : RowsOf(csv)) {
+  for (const std::vector<double>& row : table.rows) {
     const std::size_t begin = history.values.size();
     history.values.resize(begin + HistoryColumns().size(), kUndefined);
     for (std::size_t i = 0; i < columns.size(); ++i)
-      history.values[begin + static_cast<std::size_t>(columns[i])] = row[i];
+      if (columns[i] >= 0) history.values[begin + static_cast<std::size_t>(columns[i])] = row[i];
   }
   return history;
 }
@@ -97,37 +143,53 @@ std::string KeyOfHistories(const ResultFolder& folder, const Campaign& campaign,
 }
 
 void KeepHistories(const fs::path& directory, const std::string& key, const HistoryFlights& flights) {
-  nlohmann::ordered_json made_of = {{"schema", "dispersa/histories/2"}, {"key", key}};
+  nlohmann::ordered_json made_of = {{"schema", "dispersa/histories/2"},
+                                    {"key", key},
+                                    {"sampled", flights.sampled},
+                                    {"extreme", flights.indices.size() - flights.sampled}};
   for (const std::string& name : FilesOf(flights))
     made_of["files"][name] = Fingerprint(ReadText(directory / name)).Hex();
   WriteFile(directory / kMadeOf, made_of.dump(1) + "\n");
 }
 
 std::optional<FlightHistories> ReadKeptHistories(const fs::path& directory, const std::string& key,
-                                                 const Campaign& campaign, const HistoryFlights& flights,
+                                                 const HistoryFlights& flights,
                                                  const std::vector<int>& columns, double step_s) {
-  const auto made_of = nlohmann::json::parse(ReadText(directory / kMadeOf), nullptr, false);
-  // A file that cannot be read as it was written is no reason to fail: the flights are flown again.
-  const auto member = [](const nlohmann::json& object, const std::string& name) {
-    return object.is_object() && object.contains(name) ? object[name] : nlohmann::json();
-  };
-  if (member(made_of, "key") != key) return std::nullopt;
-  const nlohmann::json files = member(made_of, "files");
-  std::map<std::string, std::string> texts;
-  for (const std::string& name : FilesOf(flights)) {
-    const std::string bytes = ReadText(directory / name);
-    std::optional<std::string> text = Gunzip(bytes);
-    if (!text || member(files, name) != Fingerprint(bytes).Hex()) return std::nullopt;
-    texts[name] = *std::move(text);
-  }
+  const Json made_of = MadeOf(directory);
+  if (Member(made_of, "key") != key) return std::nullopt;
+  auto texts = TextsOf(directory, Member(made_of, "files"), FilesOf(flights));
+  if (!texts) return std::nullopt;
   // Files of other reports would be taken for some of this one.
-  for (const fs::path& file : Others(directory, texts)) fs::remove_all(file);
-  FlightHistories kept;
-  kept.written_cases = flights.written;
-  for (const std::uint64_t index : flights.written)
-    kept.written_flights.push_back(
-        SampleFlight(HistoryIn(texts[CaseHistoryName(index)], campaign.autopilot), columns, step_s));
-  kept.bands = BandsIn(texts[kBandsName], columns, step_s, flights);
+  for (const fs::path& file : Others(directory, *texts)) fs::remove_all(file);
+  return HistoriesIn(*texts, flights, columns, step_s);
+}
+
+std::optional<FlightHistories> ReadForeignHistories(const fs::path& directory,
+                                                    const std::vector<int>& columns, double step_s) {
+  const Json made_of = MadeOf(directory), files = Member(made_of, "files");
+  HistoryFlights flights;
+  std::vector<std::string> names;
+  if (files.is_object())
+    for (const auto& [name, fingerprint] : files.items()) {
+      names.push_back(name);
+      if (const auto index = CaseOf(name)) flights.written.push_back(*index);
+    }
+  std::sort(flights.written.begin(), flights.written.end());
+  const auto texts = TextsOf(directory, files, names);
+  if (!texts || !texts->contains(kBandsName) || !texts->contains(kNominalHistoryName)) return std::nullopt;
+  FlightBands none;
+  for (const int column : columns)
+    none.bands.push_back({.column = HistoryColumns()[static_cast<std::size_t>(column)]});
+  const std::string& bands = texts->at(kBandsName);
+  if (!bands.starts_with(BandsCsv(none, 0))) return std::nullopt;  // other columns
+  const auto count = [&](const char* name, std::size_t otherwise) {
+    const Json member = Member(made_of, name);
+    return member.is_number_unsigned() ? member.get<std::size_t>() : otherwise;
+  };
+  FlightHistories kept = HistoriesIn(*texts, flights, columns, step_s);
+  // At lift-off all of them fly.
+  kept.bands.flights = count("sampled", kept.bands.flying.empty() ? 0 : kept.bands.flying.front());
+  kept.bands.extreme_flights = count("extreme", 0);
   return kept;
 }
 

@@ -25,7 +25,7 @@ inline constexpr char kBandsName[] = "bands.csv.gz";
 std::string CaseHistoryName(std::uint64_t case_index);
 
 /// What HistoryCsv() and BandsCsv() have written.
-History HistoryIn(std::string_view csv, const AutopilotConfig& autopilot);
+History HistoryIn(std::string_view csv);
 FlightBands BandsIn(std::string_view csv, const std::vector<int>& columns, double step_s,
                     const HistoryFlights& flights);
 
@@ -38,11 +38,15 @@ std::string KeyOfHistories(const ResultFolder& folder, const Campaign& campaign,
 void KeepHistories(const std::filesystem::path& directory, const std::string& key,
                    const HistoryFlights& flights);
 
-/// Reads the histories in `directory`, without the nominal flight. None if they are of other flights, or if a
-/// file has changed.
+/// Reads the histories in `directory`. The nominal flight has no metrics. None if they are of other flights,
+/// or if a file has changed.
 std::optional<FlightHistories> ReadKeptHistories(const std::filesystem::path& directory,
-                                                 const std::string& key, const Campaign& campaign,
-                                                 const HistoryFlights& flights,
+                                                 const std::string& key, const HistoryFlights& flights,
                                                  const std::vector<int>& columns, double step_s);
+
+/// The histories that another engine has written. Its flights cannot be repeated, so whatever flights they
+/// are of, these are drawn. None if a file has changed, or the bands have other columns.
+std::optional<FlightHistories> ReadForeignHistories(const std::filesystem::path& directory,
+                                                    const std::vector<int>& columns, double step_s);
 
 }  // namespace dispersa

@@ -5,6 +5,7 @@
 #include <algorithm>
 #include <cmath>
 
+#include "core/flight/engine_version.h"
 #include "core/math/constants.h"
 #include "core/pages/glossary.h"
 #include "core/pages/html_parts.h"
@@ -367,6 +368,8 @@ std::string ProvenanceSection(const Campaign& campaign, const CampaignSummary& s
                               "<span class=\"definition\">of what decides a case: vehicle, reference, "
                               "autopilot, tables, dispersions, sampling and seed, engine</span>"});
   table.Row({"Engine", Code(summary.engine)});
+  if (summary.engine != EngineVersion())
+    table.Row({"Report by engine", Code(EngineVersion()) + ", which flew nothing"});
   table.Row({"Sampling", fmt::format("{}, {} cases, seed {}", SamplingMethodTitle(summary.sampling),
                                      summary.cases, summary.seed)});
   table.Row(

@@ -8,6 +8,7 @@
 #include "core/input/input_error.h"
 #include "core/pages/histories.h"
 #include "core/pages/report_page.h"
+#include "core/pages/report_sums.h"
 #include "core/results/case_columns.h"
 #include "core/results/cases_csv.h"
 #include "core/results/nominal_json.h"
@@ -34,12 +35,9 @@ void RefuseFewer(const std::filesystem::path& file, std::uint64_t cases) {
 
 CampaignSummary WriteReports(const ResultFolder& folder, const Campaign& campaign,
                              const ReportOptions& options) {
-  if (options.histories && folder.Provenance("engine") != EngineVersion()) {
-    throw InputError(fmt::format("{}: flown by engine {}, this one is {}: its flights cannot be flown again",
-                                 folder.directory().string(), folder.Provenance("engine"), EngineVersion()),
-                     "the engine that flew it, or --no-histories");
-  }
-  if (const auto& law = campaign.autopilot.plugin; options.histories && law && IsAbsent(*law)) {
+  const std::string engine = folder.Provenance("engine");
+  const bool is_ours = engine == EngineVersion();
+  if (const auto& law = campaign.autopilot.plugin; options.histories && is_ours && law && IsAbsent(*law)) {
     throw InputError(
         fmt::format("{}: flown with a Python law, '{}', which is not here: its cases cannot be flown again",
                     folder.directory().string(), law->name),
@@ -50,23 +48,27 @@ CampaignSummary WriteReports(const ResultFolder& folder, const Campaign& campaig
   const CaseColumns cases =
       ReadColumns(folder, DispersedInputs(campaign), [&csv](const CaseResult& result) { csv.Write(result); });
   RefuseFewer(cases_csv, csv.rows());
+  std::error_code ignored;
+  std::filesystem::remove(folder.directory() / kSumsName, ignored);  // until all of them are written
   csv.Commit();
   WriteFile(folder.directory() / "nominal.json", NominalJson(folder.inputs()));
   CampaignSummary summary = BuildSummary(folder, campaign, cases);
   FlightHistories histories;
   if (options.histories) {
     histories = WriteHistories(folder, campaign, summary, cases, options);
-    summary.nominal = histories.nominal;
-    summary.envelope = {histories.bands.flights, histories.bands.extreme_flights};
+    if (is_ours) summary.nominal = histories.nominal;
+    if (histories.nominal_history.rows() > 0)
+      summary.envelope = {histories.bands.flights, histories.bands.extreme_flights};
   } else {
-    RemoveHistories(folder);
+    if (is_ours) RemoveHistories(folder);  // those of another engine cannot be made again
     // One flight says whether the campaign disperses about a flight at all.
-    summary.nominal = NominalOf(campaign, folder.Provenance("engine"));
+    summary.nominal = NominalOf(campaign, engine);
   }
   WriteFile(folder.directory() / "summary.json", SummaryJson(summary));
   WriteStanding(folder, summary);
   RecordLooks(folder, campaign, summary);
   WriteFile(folder.directory() / "report.html", ReportPage(campaign, summary, cases, histories));
+  WriteSums(folder.directory());
   return summary;
 }
 

@@ -21,10 +21,11 @@ struct ReportOptions {
   std::function<void(const std::string& what, std::uint64_t done, std::uint64_t total)> progress;
 };
 
-/// Writes cases.csv, histories/, summary.json and report.html from the stored results. Each is replaced as a
-/// whole. The same stored results always give the same bytes. The nominal flight, the worst cases and the
-/// cases of ReportOptions are flown again. With histories: InputError if another engine flew the folder,
-/// ResultError (kConflict) if a case does not reproduce its digest.
+/// Writes cases.csv, histories/, summary.json, report.html and SHA256SUMS from the stored results. Each is
+/// replaced as a whole. The same stored results always give the same bytes. The nominal flight, the worst
+/// cases and the cases of ReportOptions are flown again. With histories: ResultError (kConflict) if a case
+/// does not reproduce its digest. Of a folder that another engine flew nothing is flown again, and its stored
+/// histories are drawn.
 CampaignSummary WriteReports(const ResultFolder& folder, const Campaign& campaign,
                              const ReportOptions& options = {});
 

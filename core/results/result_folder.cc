@@ -5,7 +5,6 @@
 #include <algorithm>
 #include <charconv>
 #include <cstring>
-#include <fstream>
 #include <iterator>
 #include <optional>
 #include <set>
@@ -19,6 +18,7 @@
 #include "core/results/database.h"
 #include "core/results/file_system.h"
 #include "core/results/fingerprint.h"
+#include "core/results/folder_state.h"
 #include "core/results/output_file.h"
 #include "core/results/requirement_text.h"
 #include "core/results/sampling_text.h"
@@ -30,7 +30,6 @@ namespace {
 namespace fs = std::filesystem;
 using Kind = ResultError::Kind;
 
-constexpr char kDatabaseName[] = "results.sqlite";
 constexpr char kCampaignName[] = "campaign.yaml";
 constexpr char kSchema[] = "dispersa/results/1";
 /// Rows of cases that were flown before, without all of the campaign's own metrics.
@@ -223,14 +222,6 @@ void WriteProvenance(Database& database, const Campaign& campaign, bool register
   put("planned_cases", std::to_string(campaign.sampling.cases));
   put("requirements_id", campaign.requirements_id);
   put("requirements", lines);
-}
-
-/// By the first bytes of the file format; so a wrong file is told from a damaged one.
-bool IsDatabase(const fs::path& file) {
-  constexpr char kMagic[] = "SQLite format 3";
-  char begin[sizeof kMagic] = {};
-  std::ifstream(file, std::ios::binary).read(begin, sizeof begin);
-  return std::equal(std::begin(kMagic), std::end(kMagic), std::begin(begin));
 }
 
 std::optional<Digest> ParseDigest(const std::string& hex) {
@@ -431,15 +422,7 @@ ResultFolder ResultFolder::Create(const fs::path& directory, const Campaign& cam
 }
 
 ResultFolder ResultFolder::Open(const fs::path& directory) {
-  std::error_code error;
-  if (!fs::is_regular_file(directory / kDatabaseName, error)) {
-    throw InputError(fmt::format("{}: not a result folder: it has no {}", directory.string(), kDatabaseName));
-  }
-  if (!IsDatabase(directory / kDatabaseName)) {
-    throw InputError(fmt::format("{}: not a result folder: its {} is no SQLite database", directory.string(),
-                                 kDatabaseName));
-  }
-  auto database = std::make_unique<Database>(directory / kDatabaseName, Database::Mode::kExisting);
+  auto database = OpenResultDatabase(directory);
   RefuseNewer(*database, directory);
   ResultFolder folder(directory, std::move(database));
   std::string schema;
@@ -479,7 +462,8 @@ ResultFolder ResultFolder::Resume(const fs::path& directory, const Campaign& cam
   }
   WriteFile(directory / kCampaignName, campaign.canonical_yaml);
   Transaction transaction(*folder.database_);
-  folder.RemoveDamaged();
+  folder.damaged_ = folder.DamagedRows();
+  folder.Remove(folder.damaged_);
   folder.MeasureOwn(campaign);
   WriteProvenance(*folder.database_, campaign, !last);
   transaction.Commit();
@@ -523,14 +507,12 @@ void ResultFolder::MeasureOwn(const Campaign& campaign) {
   ReadColumnsOfTable();
 }
 
-void ResultFolder::RemoveDamaged() {
-  {
-    Statement select = database_->Prepare(SelectCases(shape_));
-    while (select.Step()) {
-      if (!ReadRow(select, shape_)) damaged_.push_back(static_cast<std::uint64_t>(select.Integer(0)));
-    }
-  }
-  Remove(damaged_);
+std::vector<std::uint64_t> ResultFolder::DamagedRows() const {
+  std::vector<std::uint64_t> damaged;
+  Statement select = database_->Prepare(SelectCases(shape_));
+  while (select.Step())
+    if (!ReadRow(select, shape_)) damaged.push_back(static_cast<std::uint64_t>(select.Integer(0)));
+  return damaged;
 }
 
 void ResultFolder::Remove(const std::vector<std::uint64_t>& cases) {
@@ -661,8 +643,6 @@ std::uint64_t ResultFolder::CaseCount() const {
   select.Step();
   return static_cast<std::uint64_t>(select.Integer(0));
 }
-
-void ResultFolder::CopyDatabase(const fs::path& file) const { database_->CopyTo(file); }
 
 std::vector<std::uint64_t> ResultFolder::PresentCases() const {
   std::vector<std::uint64_t> present;

@@ -113,9 +113,6 @@ class ResultFolder : public ResultStore {
 
   /// Cases that have a result.
   std::uint64_t CaseCount() const;
-  /// Replaces `file` by a complete copy of the database. Other processes may read and write the database
-  /// meanwhile.
-  void CopyDatabase(const std::filesystem::path& file) const;
   /// Indices that have a result, ascending.
   std::vector<std::uint64_t> PresentCases() const;
   /// The same with the fingerprint that was stored with each.
@@ -127,6 +124,8 @@ class ResultFolder : public ResultStore {
   void AppendAudits(std::span<const Claim> claims) override;
   void ForEachUnaudited(const std::function<void(const Claim&)>& callback) const override;
   std::vector<std::uint64_t> Disown(const std::string& worker) override;
+  /// Rows that are not as they were written.
+  std::uint64_t CountDamaged() const { return DamagedRows().size(); }
   /// Rows that Resume found damaged and removed.
   const std::vector<std::uint64_t>& damaged() const { return damaged_; }
   /// Ascending by index.
@@ -142,7 +141,7 @@ class ResultFolder : public ResultStore {
   ResultFolder(std::filesystem::path directory, std::unique_ptr<Database> database);
   std::size_t Insert(std::span<const CaseResult> results);
   void Insert(std::span<const ExecutionRecord> records);
-  void RemoveDamaged();
+  std::vector<std::uint64_t> DamagedRows() const;
   void MeasureOwn(const Campaign& campaign);
   void ReadColumnsOfTable();
   void Remove(const std::vector<std::uint64_t>& cases);

@@ -8,7 +8,11 @@ namespace dispersa {
 
 using Json = nlohmann::ordered_json;
 
-std::string ShortId(const Json& what) { return what.at("id").get<std::string>().substr(0, 12); }
+std::string ShortId(const Json& what) {
+  const std::string id = what.at("id");
+  const std::size_t engine = id.find('-');
+  return id.substr(0, 12) + (engine == std::string::npos ? "" : id.substr(engine));
+}
 
 std::string StandingText(const Json& standing) {
   return fmt::format("{} of {} fail {} ({} so far)", standing.at("failures").get<std::int64_t>(),
@@ -30,6 +34,8 @@ std::string CampaignStatusText(const Json& campaign) {
   if (!campaign.at("code").is_null()) text += fmt::format("  exit code {}", campaign.at("code").get<int>());
   if (campaign.contains("owner") && !campaign.at("owner").is_null())
     text += "  of " + campaign.at("owner").get<std::string>();
+  if (campaign.contains("engine") && !campaign.at("engine").is_null())
+    text += "  engine " + campaign.at("engine").get<std::string>();
   if (!campaign.at("problem").is_null()) text += "  " + campaign.at("problem").get<std::string>();
   text += "\n";
   for (const Json& standing : campaign.at("requirements")) text += "  " + StandingText(standing) + "\n";

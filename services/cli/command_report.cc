@@ -4,12 +4,14 @@
 #include <memory>
 #include <string>
 
+#include "core/flight/engine_version.h"
 #include "services/cli/campaign_output.h"
 #include "services/cli/command.h"
 #include "services/cli/terminal_observer.h"
 #include "services/client/stored_campaign.h"
 #include "services/client/writable.h"
 #include "services/ledger/campaign_book.h"
+#include "services/log/log.h"
 #include "services/program/threads.h"
 
 namespace dispersa {
@@ -26,9 +28,17 @@ ExitCode ReportAgain(const ReportCommand& options, const GlobalOptions& global) 
   StoredCampaign stored = OpenStored(options.directory);
   RequireWritableFile("the report", stored.folder.directory() / "report.html");
   stored.folder.Lock();
+  const std::string engine = stored.folder.Provenance("engine");
+  const bool is_ours = engine == EngineVersion();
   TerminalObserver observer(global.quiet);
   const CampaignSummary summary =
       MakeReports(stored.folder, stored.campaign, UsableCores(), options.reflown, observer);
+  if (!is_ours) {
+    LogWarning("{}: flown by engine {}, and this one, {}, flew nothing: {}", options.directory, engine,
+               EngineVersion(),
+               summary.envelope ? "the stored histories are drawn"
+                                : "no stored histories fit the report, see --envelope");
+  }
   PrintSummary(summary, stored.folder.directory(), global.json);
   if (options.open)
     OpenInBrowser(std::filesystem::absolute(stored.folder.directory() / "report.html").string());

@@ -8,8 +8,9 @@
 #include <utility>
 #include <vector>
 
+#include "core/results/folder_state.h"
 #include "core/results/output_file.h"
-#include "core/results/result_folder.h"
+#include "services/client/folder_check.h"
 #include "services/client/writable.h"
 #include "services/transport/network.h"
 
@@ -64,12 +65,25 @@ Json AskForFiles(Session& session, const Json& which) {
 void RequireAllCases(const fs::path& directory, const Json& answer) {
   const auto promised = answer.value("done", std::uint64_t{0});
   const bool has_database = fs::exists(directory / "results.sqlite");
-  const std::uint64_t arrived = has_database ? ResultFolder::Open(directory).CaseCount() : 0;
+  const std::uint64_t arrived = has_database ? ReadFolderState(directory).cases : 0;
   if (arrived >= promised) return;
   throw Failure{kExitIncomplete,
                 fmt::format("campaign {} has {} cases and {} of them arrived: nothing was written; "
                             "fetch it again",
                             answer.at("id").get<std::string>().substr(0, 8), promised, arrived)};
+}
+
+/// A report that a disk has cut must not be taken for the campaign's.
+void RequireWhole(const fs::path& directory, const Json& answer) {
+  if (!fs::exists(directory / "results.sqlite")) return;
+  const std::vector<FolderProblem> problems = CheckFiles(directory);
+  if (problems.empty()) return;
+  throw Failure{
+      kExitInternalError,
+      fmt::format("campaign {}: {} {} at the coordinator: nothing was written; stop it, and let `dispersa "
+                  "fsck DATA --repair` mend it",
+                  answer.at("id").get<std::string>().substr(0, 8),
+                  fs::path(problems[0].file).lexically_relative(directory).string(), problems[0].what)};
 }
 
 /// Whether it names a file below the folder that it is relative to, without a detour.
@@ -205,6 +219,7 @@ FetchedCampaign FetchCampaign(Session& session, const std::string& id, const std
   FetchFiles(session, {{"id", answer.at("id")}}, answer, incomplete);
   try {
     RequireAllCases(incomplete, answer);
+    RequireWhole(incomplete, answer);
   } catch (...) {
     fs::remove_all(incomplete);
     throw;

@@ -13,6 +13,7 @@ namespace dispersa {
 StoredCampaign OpenStored(const std::string& directory, bool may_be_empty) {
   ResultFolder folder = ResultFolder::Open(directory);
   Campaign campaign = ReadFlownCampaign((folder.directory() / "campaign.yaml").string());
+  campaign.flight_id = folder.Provenance("flight_id");  // of the engine that flew it
   // The text was changed after the flights.
   if (campaign.own_metrics.size() != folder.own_metrics().size() ||
       !FindOwn(campaign.own_metrics, folder.own_metrics()))

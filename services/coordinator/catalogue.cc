@@ -4,18 +4,19 @@
 
 #include <algorithm>
 #include <array>
-#include <fstream>
 #include <nlohmann/json.hpp>
-#include <sstream>
+#include <stdexcept>
 #include <tuple>
 #include <utility>
 
 #include "core/input/input_error.h"
 #include "core/results/file_system.h"
+#include "core/results/folder_state.h"
 #include "core/results/output_file.h"
 #include "core/results/result_error.h"
-#include "services/coordinator/dump_any_text.h"
+#include "services/coordinator/sealed_json.h"
 #include "services/log/log.h"
+#include "services/web/find_by_id.h"
 
 namespace dispersa {
 namespace {
@@ -23,17 +24,11 @@ namespace {
 namespace fs = std::filesystem;
 using Json = nlohmann::ordered_json;
 
-constexpr std::array kStates = {"waiting", "flying", "reporting", "done", "cancelled", "failed", "refused"};
-
-std::string ReadWhole(const fs::path& file) {
-  std::ifstream stream(file, std::ios::binary);
-  std::ostringstream text;
-  text << stream.rdbuf();
-  if (!stream) throw ResultError(ResultError::Kind::kFile, file.string() + ": cannot be read");
-  return std::move(text).str();
-}
+constexpr std::array kStates = {"waiting", "flying",  "reporting",  "done",   "cancelled",
+                                "failed",  "refused", "unfinished", "damaged"};
 
 constexpr char kDeleted[] = ".deleted-";
+constexpr int kSealedSince = 4;
 
 Json ToJson(const RequirementOutcome& one) {
   const auto bound = [](const std::optional<double>& value) { return value ? Json(*value) : Json(nullptr); };
@@ -62,9 +57,9 @@ RequirementOutcome ToOutcome(const Json& json) {
 }
 
 CatalogueEntry ParseState(const std::string& text) {
-  const Json json = Json::parse(text);
+  const Json json = Unseal(text, kSealedSince);
   if (const int version = json.value("version", 1); version > kStateVersion) {
-    throw std::runtime_error("written by a newer dispersa: version " + std::to_string(version) +
+    throw std::runtime_error("was written by a newer dispersa: version " + std::to_string(version) +
                              ", this one reads " + std::to_string(kStateVersion));
   }
   CatalogueEntry entry;
@@ -93,7 +88,7 @@ CatalogueEntry ParseState(const std::string& text) {
   for (const Json& one : json.value("requirements", Json::array()))
     entry.requirements.push_back(ToOutcome(one));
   const auto state = std::find(kStates.begin(), kStates.end(), json.at("state").get<std::string>());
-  if (state == kStates.end()) throw std::runtime_error("an unknown state");
+  if (state == kStates.end()) throw std::runtime_error("names an unknown state");
   entry.state = static_cast<CampaignState>(state - kStates.begin());
   // What was under way goes on.
   if (entry.state == CampaignState::kFlying || entry.state == CampaignState::kReporting) {
@@ -118,13 +113,66 @@ std::uint64_t BytesIn(const fs::path& folder) {
   return bytes;
 }
 
+/// What is known of a campaign without its state: what its results say. Nothing of it is written.
+CatalogueEntry DamagedEntry(const fs::path& folder, const std::string& damage) {
+  CatalogueEntry entry;
+  entry.id = folder.filename().string();
+  entry.state = CampaignState::kDamaged;
+  entry.code = 1;
+  entry.problem =
+      std::string(kStateFile) + " " + damage +
+      ": stop the coordinator, and let `dispersa fsck DATA --repair` make it anew from the results";
+  entry.ended_unix_s = UnixTimeOf(folder);
+  try {
+    const FolderState state = ReadFolderState(folder / kResultsFolder);
+    entry.name = state.name;
+    entry.flight_id = state.flight_id;
+    entry.engine = state.engine;
+    entry.cases = state.planned;
+    entry.done = state.cases;
+    entry.quarantined = state.quarantined;
+  } catch (const std::exception&) {
+    // Its results are damaged too, or there are none.
+  }
+  return entry;
+}
+
 }  // namespace
+
+std::string CampaignIdOf(const std::string& id) { return id.substr(0, id.find('-')); }
+
+std::optional<CatalogueEntry> ReadEntry(const fs::path& folder) {
+  const fs::path file = folder / kStateFile, results = folder / kResultsFolder;
+  std::error_code error;
+  const bool has_state = fs::exists(fs::symlink_status(file, error));
+  // A launch that was killed before its state was written has left nothing that anybody was told of.
+  if (!has_state && !fs::exists(results / "results.sqlite", error)) return std::nullopt;
+  CatalogueEntry entry;
+  try {
+    if (!has_state) throw std::runtime_error("is missing");
+    entry = ParseState(ReadWholeFile(file));
+    const std::string id = folder.filename().string();
+    if (entry.id != CampaignIdOf(id)) throw std::runtime_error("is that of campaign " + entry.id);
+    entry.id = id;
+    if (HasEnded(entry.state) && entry.ended_unix_s == 0) entry.ended_unix_s = UnixTimeOf(file);
+    return entry;
+  } catch (const ResultError&) {
+    entry.problem = "cannot be read";
+  } catch (const Json::exception&) {
+    entry.problem = "lacks a member";
+  } catch (const std::exception& damage) {
+    entry.problem = damage.what();
+  }
+  entry = DamagedEntry(folder, entry.problem);
+  return entry;
+}
 
 const char* CampaignStateName(CampaignState state) { return kStates[static_cast<std::size_t>(state)]; }
 
 bool HasEnded(CampaignState state) {
   return state == CampaignState::kDone || state == CampaignState::kCancelled ||
-         state == CampaignState::kFailed || state == CampaignState::kRefused;
+         state == CampaignState::kFailed || state == CampaignState::kRefused ||
+         state == CampaignState::kUnfinished || state == CampaignState::kDamaged;
 }
 
 bool ComesBefore(const CatalogueEntry& a, const CatalogueEntry& b) {
@@ -148,7 +196,6 @@ void QueueAgain(CatalogueEntry* entry) {
   entry->attempts = 0;
   entry->problem.clear();
   entry->verdict.clear();
-  entry->engine.clear();
   entry->requirements.clear();
 }
 
@@ -167,29 +214,20 @@ Catalogue::Catalogue(const fs::path& directory) : directory_(directory) {
       fs::remove_all(folder.path(), error);  // of a coordinator that was killed
       continue;
     }
-    // A launch that was killed before its state was written has left nothing that anybody was told of.
-    if (!fs::is_regular_file(folder.path() / "state.json")) continue;
-    try {
-      CatalogueEntry entry = ParseState(ReadWhole(folder.path() / "state.json"));
-      if (entry.id != folder.path().filename().string()) throw std::runtime_error("of another campaign");
-      if (HasEnded(entry.state) && entry.ended_unix_s == 0)
-        entry.ended_unix_s = UnixTimeOf(folder.path() / "state.json");
-      if (entry.bytes == 0) entry.bytes = BytesIn(folder.path());
-      next_order_ = std::max(next_order_, entry.order + 1);
-      if (!HasEnded(entry.state)) open_.insert(entry.id);
-      entries_[entry.id] = std::move(entry);
-    } catch (const std::exception& damage) {
-      LogError("{}: the state is damaged, so the campaign is ignored: {}", folder.path().string(),
-               damage.what());
-    }
+    std::optional<CatalogueEntry> entry = ReadEntry(folder.path());
+    if (!entry) continue;
+    if (entry->state == CampaignState::kDamaged)
+      LogError("campaign {}: {}", entry->id.substr(0, 8), entry->problem);
+    if (entry->bytes == 0) entry->bytes = BytesIn(folder.path());
+    next_order_ = std::max(next_order_, entry->order + 1);
+    if (!HasEnded(entry->state)) open_.insert(entry->id);
+    entries_[entry->id] = *std::move(entry);
   }
 }
 
 const CatalogueEntry* Catalogue::Find(const std::string& prefix) const {
-  const auto first = entries_.lower_bound(prefix);
-  if (prefix.empty() || first == entries_.end() || !first->first.starts_with(prefix)) return nullptr;
-  const auto second = std::next(first);
-  return second != entries_.end() && second->first.starts_with(prefix) ? nullptr : &first->second;
+  const auto found = FindById(entries_, prefix);
+  return found == entries_.end() ? nullptr : &found->second;
 }
 
 std::vector<std::string> Catalogue::InOrder() const {
@@ -208,7 +246,7 @@ CatalogueEntry& Catalogue::Add(CatalogueEntry entry, const std::string& text) {
   std::error_code error;
   fs::create_directories(directory_ / entry.id, error);
   if (error) FailFile((directory_ / entry.id).string(), "cannot be made", error.value());
-  WriteFile(directory_ / entry.id / "campaign.yaml", text);
+  WriteFile(directory_ / entry.id / kTextFile, text);
   Write(entry);
   const std::string id = entry.id;
   return entries_[id] = std::move(entry);
@@ -223,7 +261,7 @@ void Catalogue::Write(const CatalogueEntry& entry) {
   Json requirements = Json::array();
   for (const RequirementOutcome& one : entry.requirements) requirements.push_back(ToJson(one));
   const Json json = {{"version", kStateVersion},
-                     {"id", entry.id},
+                     {"id", CampaignIdOf(entry.id)},
                      {"flight_id", entry.flight_id},
                      {"name", entry.name},
                      {"priority", entry.priority},
@@ -247,7 +285,18 @@ void Catalogue::Write(const CatalogueEntry& entry) {
                      {"engine", entry.engine},
                      {"attempts", entry.attempts},
                      {"requirements", std::move(requirements)}};
-  WriteFile(directory_ / entry.id / "state.json", DumpAnyText(json, 2) + "\n");
+  WriteFile(directory_ / entry.id / kStateFile, Sealed(json));
+}
+
+CatalogueEntry& Catalogue::Rename(const std::string& id, const std::string& to) {
+  std::error_code error;
+  fs::rename(directory_ / id, directory_ / to, error);
+  if (error) FailFile((directory_ / id).string(), "cannot be renamed", error.value());
+  auto node = entries_.extract(id);
+  node.key() = node.mapped().id = to;
+  if (open_.erase(id) > 0) open_.insert(to);
+  ++changes_;
+  return entries_.insert(std::move(node)).position->second;
 }
 
 void Catalogue::Remove(const std::string& id) {
@@ -264,13 +313,13 @@ void Catalogue::Remove(const std::string& id) {
 }
 
 std::string Catalogue::StateTextOf(const std::string& id) const {
-  return ReadWhole(directory_ / id / "state.json");
+  return ReadWholeFile(directory_ / id / kStateFile);
 }
 
 std::uint64_t Catalogue::CountBytes(const std::string& id) const { return BytesIn(directory_ / id); }
 
 std::string Catalogue::TextOf(const std::string& id) const {
-  return ReadWhole(directory_ / id / "campaign.yaml");
+  return ReadWholeFile(directory_ / id / kTextFile);
 }
 
 }  // namespace dispersa

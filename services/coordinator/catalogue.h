@@ -15,14 +15,25 @@
 
 namespace dispersa {
 
-enum class CampaignState { kWaiting, kFlying, kReporting, kDone, kCancelled, kFailed, kRefused };
+enum class CampaignState {
+  kWaiting,
+  kFlying,
+  kReporting,
+  kDone,
+  kCancelled,
+  kFailed,
+  kRefused,
+  kUnfinished,  ///< only the engine that began its flights can go on
+  kDamaged      ///< its state.json cannot be trusted
+};
 
-/// "waiting", "flying", "reporting", "done", "cancelled", "failed", "refused".
+/// "waiting", "flying", "reporting", "done", "cancelled", "failed", "refused", "unfinished", "damaged".
 const char* CampaignStateName(CampaignState state);
 /// Nothing more happens to it by itself.
 bool HasEnded(CampaignState state);
 
 struct CatalogueEntry {
+  /// The campaign's. As an earlier engine flew it: "<id>-<digits of the engine>" (see find_by_id.h).
   std::string id;
   std::string flight_id;
   std::string name;
@@ -44,7 +55,7 @@ struct CatalogueEntry {
   std::string verdict;                  ///< of its report: "pass", "fail", ...
   std::vector<std::string> labels;      ///< "KEY=VALUE", the last given last
   std::string design_id;                ///< of campaigns that judge the same design
-  std::string engine;                   ///< of its report
+  std::string engine;                   ///< that flies or flew it; empty: no case has been flown
   std::int64_t attempts = 0;            ///< at its design, this one too, by its report; 0: no report
   std::vector<RequirementOutcome> requirements;  ///< of its report, the first kMaxOutcomes
 
@@ -67,8 +78,18 @@ void AddLabels(CatalogueEntry* entry, const std::vector<std::string>& labels);
 void QueueAgain(CatalogueEntry* entry);
 
 /// Version of state.json. Version 2 has `seed`, `ended_unix_s` and `distrusted`. Version 3 has all members
-/// from `owner` on. Earlier versions, which lack them, can be read too.
-inline constexpr int kStateVersion = 3;
+/// from `owner` on. Version 4 has a checksum. Earlier versions, which lack them, can be read too.
+inline constexpr int kStateVersion = 4;
+
+inline constexpr char kStateFile[] = "state.json", kTextFile[] = "campaign.yaml",
+                      kResultsFolder[] = "results";
+
+/// The id of the campaign, without the engine that flew it.
+std::string CampaignIdOf(const std::string& id);
+
+/// What the folder of a campaign says; kDamaged if its state is not as it was written. None: nobody was told
+/// of it.
+std::optional<CatalogueEntry> ReadEntry(const std::filesystem::path& folder);
 
 /// Throws InputError if it cannot.
 void MakeDataFolder(const std::filesystem::path& directory);
@@ -77,7 +98,7 @@ void MakeDataFolder(const std::filesystem::path& directory);
 /// InputError.
 class Catalogue {
  public:
-  /// Reads what is there. A folder that cannot be read is left alone and warned of.
+  /// Reads what is there. A campaign whose state is damaged is listed as that, and never written.
   explicit Catalogue(const std::filesystem::path& directory);
 
   const std::map<std::string, CatalogueEntry>& entries() const { return entries_; }
@@ -94,6 +115,8 @@ class Catalogue {
 
   CatalogueEntry& Add(CatalogueEntry entry, const std::string& text);
   void Write(const CatalogueEntry& entry);
+  /// Its folder gets another id, and nothing else changes.
+  CatalogueEntry& Rename(const std::string& id, const std::string& to);
   /// Its folder with all results.
   void Remove(const std::string& id);
 
@@ -101,7 +124,7 @@ class Catalogue {
   std::string StateTextOf(const std::string& id) const;
   /// Bytes of its files now.
   std::uint64_t CountBytes(const std::string& id) const;
-  std::filesystem::path ResultsOf(const std::string& id) const { return directory_ / id / "results"; }
+  std::filesystem::path ResultsOf(const std::string& id) const { return directory_ / id / kResultsFolder; }
 
  private:
   std::filesystem::path directory_;

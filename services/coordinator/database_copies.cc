@@ -4,7 +4,8 @@
 
 #include <chrono>
 
-#include "core/results/result_folder.h"
+#include "core/results/folder_state.h"
+#include "core/results/result_error.h"
 
 namespace dispersa {
 namespace {
@@ -46,11 +47,10 @@ std::string StateOf(const fs::path& results) {
 void MakeCopy(const fs::path& results, std::uint64_t promised) {
   // The last process to close the database merges the log. This completes the work of a coordinator that was
   // killed.
-  ResultFolder::Open(results);
+  const std::uint64_t cases = ReadFolderState(results).cases;
   if (!HasLog(results)) return;
-  const ResultFolder folder = ResultFolder::Open(results);
-  folder.CopyDatabase(CopyOf(results));
-  if (const std::uint64_t cases = folder.CaseCount(); cases < promised) {
+  CopyResults(results, CopyOf(results));
+  if (cases < promised) {
     throw ResultError(ResultError::Kind::kFewer,
                       fmt::format("{}: it has {} of the {} cases that the campaign's state promises",
                                   DatabaseOf(results).string(), cases, promised));
@@ -88,8 +88,7 @@ std::optional<fs::path> DatabaseCopies::Snapshot(const fs::path& results, const 
     Remove(file);
     Copy& copy = copies_[file];
     copy.of = name;
-    copy.making =
-        std::async(std::launch::async, [results, file] { ResultFolder::Open(results).CopyDatabase(file); });
+    copy.making = std::async(std::launch::async, [results, file] { CopyResults(results, file); });
   }
   Copy& copy = copies_.at(file);
   copy.used_s = now_s;

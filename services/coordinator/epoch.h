@@ -12,8 +12,11 @@ inline constexpr char kEpochFile[] = "epoch";
 /// back between them.
 std::uint64_t NextEpoch();
 
+/// The number in this file; 0: it cannot be read, or there is none. InputError if it is damaged.
+std::uint64_t ReadEpoch(const std::filesystem::path& file);
+
 /// The same, but more than that of the last start on this data directory. The number is stored there, so it
-/// also holds for a copy on another host. A failure to store it is logged.
+/// also holds for a copy on another host. A failure to store it is logged. InputError if the file is damaged.
 /// `by_itself`: the watchdog started this coordinator again. Then it is younger than before, and older than
 /// another host that somebody started in its place meanwhile.
 std::uint64_t NextEpoch(const std::filesystem::path& data, bool by_itself = false);

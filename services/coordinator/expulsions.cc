@@ -2,14 +2,19 @@
 
 #include <algorithm>
 #include <nlohmann/json.hpp>
+#include <stdexcept>
+#include <utility>
 
 #include "core/results/result_store.h"
+#include "services/coordinator/sealed_json.h"
 #include "services/transport/permissions.h"
 
 namespace dispersa {
 namespace {
 
 using Json = nlohmann::ordered_json;
+
+constexpr int kExpelledVersion = 2;  // version 1 was the object of names alone
 
 /// A process is the one that has a host.
 bool IsLiarOf(const std::string& keys, const std::pair<const std::string, Expulsion>& each) {
@@ -70,25 +75,32 @@ std::size_t CountExpelled(const ExpulsionMap& expelled) {
                                                 [](const auto& each) { return !each.second.is_forgiven; }));
 }
 
-Json ToJson(const ExpulsionMap& expelled) {
+std::string SealedText(const ExpulsionMap& expelled) {
   Json json = Json::object();
   for (const auto& [name, expulsion] : expelled) {
     Json& entry = json[name] = {{"reason", expulsion.reason}};
     if (!expulsion.host.empty()) entry["host"] = expulsion.host;
     if (expulsion.is_forgiven) entry["forgiven"] = true;
   }
-  return json;
+  return Sealed({{"version", kExpelledVersion}, {"expelled", std::move(json)}});
 }
 
 ExpulsionMap ReadExpulsions(const std::string& text) {
   ExpulsionMap expelled;
-  const Json json = Json::parse(text);
-  for (const auto& [name, entry] : json.get<std::map<std::string, Json>>()) {
-    if (entry.is_string()) {
-      expelled[name].reason = entry;
-    } else {
-      expelled[name] = {entry.at("reason"), entry.value("host", ""), entry.value("forgiven", false)};
+  try {
+    const Json json = Unseal(text, kExpelledVersion);
+    // A worker of version 1 may have the name "version", but no number is a reason.
+    const bool is_first = !json.value("version", Json()).is_number();
+    for (const auto& [name, entry] :
+         (is_first ? json : json.at("expelled")).get<std::map<std::string, Json>>()) {
+      if (entry.is_string()) {
+        expelled[name].reason = entry;
+      } else {
+        expelled[name] = {entry.at("reason"), entry.value("host", ""), entry.value("forgiven", false)};
+      }
     }
+  } catch (const Json::exception&) {
+    throw std::runtime_error("lacks a member");
   }
   return expelled;
 }

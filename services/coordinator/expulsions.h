@@ -3,12 +3,13 @@
 #pragma once
 
 #include <map>
-#include <nlohmann/json_fwd.hpp>
 #include <optional>
 #include <string>
 #include <vector>
 
 namespace dispersa {
+
+inline constexpr char kExpelledFile[] = "expelled.json";
 
 struct Expulsion {
   std::string reason;
@@ -39,8 +40,10 @@ std::vector<std::string> Readmit(ExpulsionMap* expelled, const std::string& name
 /// Those that may not fly now.
 std::size_t CountExpelled(const ExpulsionMap& expelled);
 
-nlohmann::ordered_json ToJson(const ExpulsionMap& expelled);
-/// Reads files of earlier versions too: {"node1": "reason"}. Throws nlohmann::json::exception.
+/// The text of expelled.json.
+std::string SealedText(const ExpulsionMap& expelled);
+/// Reads files of earlier versions too: {"node1": "reason"}. Throws std::runtime_error with words that follow
+/// "it " if the text is damaged.
 ExpulsionMap ReadExpulsions(const std::string& text);
 
 }  // namespace dispersa

@@ -11,6 +11,7 @@
 
 #include "core/analysis/requirement_summary.h"
 #include "core/campaign_yaml/load.h"
+#include "core/flight/engine_version.h"
 #include "core/results/json_number.h"
 #include "services/coordinator/dump_any_text.h"
 #include "services/coordinator/packed_files.h"
@@ -69,6 +70,7 @@ Json ToJson(const CampaignView& view, std::size_t most) {
   }
   return {{"id", entry.id},
           {"name", entry.name},
+          {"engine", TextOrNull(entry.engine)},
           {"state", CampaignStateName(entry.state)},
           {"done", view.progress.done},
           {"total", view.progress.total},
@@ -90,6 +92,11 @@ Json ToJson(const CampaignView& view, std::size_t most) {
 Refused SnapshotIsGone(const CatalogueEntry& entry) {
   return Refused(kExitIncomplete, fmt::format("the snapshot of campaign {} is gone: repeat the backup",
                                               entry.id.substr(0, 8)));
+}
+
+Refused IsDraining() {
+  return Refused(kExitIncomplete,
+                 "the coordinator is drained and takes no campaign, ask again when the next one has started");
 }
 
 void RequireListed(const CatalogueEntry& entry, const std::vector<fs::path>& files, const fs::path& path) {
@@ -126,7 +133,8 @@ void RequireOwner(const Asker& asker, const CatalogueEntry& entry, const char* c
 Right RightFor(const Request& request) {
   if (request.method == "launch" || request.method == "upload") return Right::kRun;
   // A copy of all that the coordinator has.
-  if (request.method == "ids" || request.method == "readmit") return Right::kAdminister;
+  if (request.method == "ids" || request.method == "readmit" || request.method == "drain")
+    return Right::kAdminister;
   if (request.method == "files" || request.method == "read") {
     const Json json = Json::parse(request.arguments);
     if (json.at("id") == "" || json.value("snapshot", "") != "") return Right::kAdminister;
@@ -137,14 +145,14 @@ Right RightFor(const Request& request) {
 void RequireRight(const Asker& asker, const Request& request) {
   const Right least = RightFor(request);
   if (asker.right >= least) return;
-  const std::string what = least != Right::kAdminister   ? "launch"
-                           : request.method == "readmit" ? "readmit"
-                                                         : "backup";
-  throw Refused(
-      kExitBadInput,
-      fmt::format("the keys of '{0}' may {1}, and `dispersa {2}` needs the right to {3}, allowed: keys that "
-                  "`dispersa keys issue --may {3}` made",
-                  Printable(asker.account), Name(asker.right), what, Name(least)));
+  const std::string what = least != Right::kAdminister   ? "dispersa launch"
+                           : request.method == "readmit" ? "dispersa readmit"
+                           : request.method == "drain"   ? "dispersa-coordinator --drain"
+                                                         : "dispersa backup";
+  throw Refused(kExitBadInput,
+                fmt::format("the keys of '{0}' may {1}, and `{2}` needs the right to {3}, allowed: keys that "
+                            "`dispersa keys issue --may {3}` made",
+                            Printable(asker.account), Name(asker.right), what, Name(least)));
 }
 
 constexpr char kLabelRule[] =
@@ -164,8 +172,13 @@ bool IsLabel(const std::string& text) {
 
 }  // namespace
 
-FrontDesk::FrontDesk(Service& service, const Workforce& workforce, std::string everybody, WebPages pages)
-    : service_(service), workforce_(workforce), everybody_(std::move(everybody)), pages_(std::move(pages)) {
+FrontDesk::FrontDesk(Service& service, const Workforce& workforce, std::string everybody, WebPages pages,
+                     std::string own_keys)
+    : service_(service),
+      workforce_(workforce),
+      everybody_(std::move(everybody)),
+      pages_(std::move(pages)),
+      own_keys_(std::move(own_keys)) {
   for (const auto& [id, entry] : service.catalogue().entries())
     RemoveDatabaseCopies(service.catalogue().ResultsOf(id));
 }
@@ -178,7 +191,10 @@ Reply FrontDesk::Answer(const Request& request) {
   copies_.ForgetUnused(workforce_.now_s());
   try {
     const Asker asker = AskerOf(request.client);
-    RequireRight(asker, request);
+    const bool is_own = !own_keys_.empty() && request.client.starts_with(OwnPrefix(own_keys_));
+    if (!is_own || request.method != "drain") RequireRight(asker, request);
+    if (service_.is_draining() && (request.method == "launch" || request.method == "repair"))
+      throw IsDraining();
     if (request.method == "health") {
       reply.text = "{}";
     } else if (request.method == "upload") {
@@ -189,6 +205,8 @@ Reply FrontDesk::Answer(const Request& request) {
       reply.text = Cancel(asker, request.arguments);
     } else if (request.method == "repair") {
       reply.text = Repair(asker, request.arguments);
+    } else if (request.method == "drain") {
+      reply.text = Drain(request.arguments);
     } else if (request.method == "readmit") {
       reply.text = Readmit(request.arguments);
     } else if (request.method == "expelled") {
@@ -283,10 +301,22 @@ std::string FrontDesk::Launch(const Asker& asker, const std::string& arguments) 
     if (!IsLabel(label))
       throw Refused(kExitBadInput, "'" + Printable(label) + "' is no label, allowed: " + kLabelRule);
   }
-  if (service_.catalogue().entries().contains(id)) {
-    uploads_.erase(id);
-    RefuseAnotherEngine(flight_id, service_.catalogue().entries().at(id));
-    return LaunchAgain(asker, service_.catalogue().entries().at(id), priority, labels);
+  const auto& known = service_.catalogue().entries();
+  // One that another engine flew is looked at like a new one: only its text tells its flight id here.
+  if (const auto entry = known.find(id); entry != known.end()) {
+    RequireSound(entry->second);
+    const bool is_ours = entry->second.engine == EngineVersion();
+    if (is_ours) RefuseAnotherEngine(flight_id, entry->second);
+    if (!is_ours && entry->second.flight_id == flight_id && !entry->second.engine.empty()) {
+      throw Refused(kExitBadInput,
+                    fmt::format("campaign {} was flown by engine {}, that of the client, and this "
+                                "coordinator has engine {}: the engines differ",
+                                id.substr(0, 8), entry->second.engine, EngineVersion()));
+    }
+    if (is_ours || entry->second.flight_id == flight_id) {
+      uploads_.erase(id);
+      return LaunchAgain(asker, entry->second, priority, labels);
+    }
   }
   const auto answer = [&](const char* state) { return Json{{"id", id}, {"state", state}}.dump(); };
   const auto found = uploads_.find(id);
@@ -302,6 +332,11 @@ std::string FrontDesk::Launch(const Asker& asker, const std::string& arguments) 
   CatalogueEntry entry = complete.parsed.get();
   if (entry.id != id) throw Refused(kExitBadInput, "the text is not that of campaign " + Printable(id));
   RefuseAnotherEngine(flight_id, entry);
+  if (known.contains(id)) {
+    copies_.Forget(service_.catalogue().ResultsOf(id));
+    service_.MakeRoomForEngine(id, flight_id);
+    if (known.contains(id)) return LaunchAgain(asker, known.at(id), priority, labels);
+  }
   entry.priority = priority.value_or(0);
   entry.owner = asker.account;
   AddLabels(&entry, labels);
@@ -347,6 +382,16 @@ std::string FrontDesk::Repair(const Asker& asker, const std::string& arguments) 
   return Json{{"id", id}}.dump();
 }
 
+// A client that waits for the end must not drain the coordinator that comes after: it names the one that it
+// means.
+std::string FrontDesk::Drain(const std::string& arguments) {
+  if (Json::parse(arguments).value("epoch", service_.epoch()) == service_.epoch()) service_.Drain();
+  std::uint64_t waiting = 0, busy = 0;
+  for (const std::string& id : service_.catalogue().open())
+    ++(service_.catalogue().entries().at(id).state == CampaignState::kWaiting ? waiting : busy);
+  return Json{{"epoch", service_.epoch()}, {"busy", busy}, {"waiting", waiting}}.dump();
+}
+
 std::string FrontDesk::Readmit(const std::string& arguments) {
   const std::string name = Json::parse(arguments).at("name");
   if (!service_.Readmit(name).empty()) {
@@ -375,7 +420,7 @@ std::string FrontDesk::Expelled() const {
 
 std::string FrontDesk::Delete(const Asker& asker, const std::string& arguments) {
   const std::string wanted = Json::parse(arguments).at("id");
-  if (service_.catalogue().Find(wanted) == nullptr && wanted.size() == 64 && deleted_.contains(wanted))
+  if (service_.catalogue().Find(wanted) == nullptr && wanted.size() >= 64 && deleted_.contains(wanted))
     return Json{{"id", wanted}}.dump();
   const CatalogueEntry& entry = Named(wanted);
   const std::string id = entry.id;
@@ -447,6 +492,7 @@ std::string FrontDesk::Files(const std::string& arguments) {
   if (id.empty()) return Journals();
   const CatalogueEntry& entry = Named(id);
   if (!snapshot.empty()) return Snapshot(entry, snapshot);
+  RequireSound(entry);
   if (!service_.IsAtRest(entry.id)) {
     throw Refused(kExitIncomplete,
                   fmt::format("campaign {} is {}: its results can be fetched when it has ended",

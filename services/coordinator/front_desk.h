@@ -33,7 +33,9 @@ struct WebPages {
 class FrontDesk {
  public:
   /// Without keys everybody who is heard is `everybody`, and may do all. With keys it is empty.
-  FrontDesk(Service& service, const Workforce& workforce, std::string everybody, WebPages pages = {});
+  /// `own_keys`: the name of the coordinator's keys, which may drain it.
+  FrontDesk(Service& service, const Workforce& workforce, std::string everybody, WebPages pages = {},
+            std::string own_keys = "");
 
   Reply Answer(const Request& request);
 
@@ -61,6 +63,7 @@ class FrontDesk {
                           const std::vector<std::string>& labels);
   std::string Cancel(const Asker& asker, const std::string& arguments);
   std::string Repair(const Asker& asker, const std::string& arguments);
+  std::string Drain(const std::string& arguments);
   std::string Readmit(const std::string& arguments);
   std::string Expelled() const;
   std::string Delete(const Asker& asker, const std::string& arguments);
@@ -82,6 +85,7 @@ class FrontDesk {
   const Workforce& workforce_;
   std::string everybody_;
   WebPages pages_;
+  std::string own_keys_;
   std::map<std::string, Upload> uploads_;  ///< by id
   DatabaseCopies copies_;
   std::map<std::string, CampaignSnapshot> snapshots_;  ///< by id: of the last backup

@@ -10,6 +10,7 @@
 #include <sstream>
 #include <system_error>
 
+#include "core/pages/report_sums.h"
 #include "core/results/file_system.h"
 #include "core/results/gzip.h"
 #include "core/results/output_file.h"
@@ -54,7 +55,7 @@ void PackReports(const fs::path& results) {
 }
 
 void RemoveReports(const fs::path& results) {
-  for (const char* name : {"cases.csv", "nominal.json", "summary.json", kPage, "histories"}) {
+  for (const char* name : {"cases.csv", "nominal.json", "summary.json", kPage, "histories", kSumsName}) {
     for (const fs::path& file : {results / name, Packed(results / name)}) {
       std::error_code error;
       fs::remove_all(file, error);

@@ -44,7 +44,7 @@ struct CoordinatorOptions {
   std::string metrics, web, web_token;
   bool behind_tls = false;
   std::vector<std::string> keep, quotas;
-  bool health = false;
+  bool health = false, drain = false;
   std::optional<double> audit;
   NetworkOptions network;
   Admission admission;
@@ -100,6 +100,10 @@ void AddFlightOptions(CLI::App& app, CoordinatorOptions& options) {
   app.add_flag(
       "--health", options.health,
       "ask the coordinator of the domain on this machine whether it answers: exit code 0 if it does");
+  app.add_flag(
+      "--drain", options.drain,
+      "let the coordinator of the domain on this machine end what flies and begin nothing else, and wait "
+      "until it has\nended; what waits in its queue stays stored for the next one");
   app.add_option(
          "--audit", options.audit,
          "share of the results, 0 to 1, that the coordinator flies again; a worker whose result "
@@ -140,7 +144,9 @@ std::optional<ExitCode> ReadArguments(int argc, char** argv, CoordinatorOptions&
 }
 
 void CheckTask(const CoordinatorOptions& options) {
-  if (options.health == !options.clients.data.empty()) throw InputError("give one of --data and --health");
+  // With --drain the folder is that of the coordinator that ends.
+  if (options.drain ? options.health : options.health == !options.clients.data.empty())
+    throw InputError("give one of --data, --health and --drain");
 }
 
 WebOptions WebOf(const CoordinatorOptions& options) {
@@ -165,10 +171,11 @@ ClientOptions ClientsOf(const CoordinatorOptions& options) {
 int DoTask(const CoordinatorOptions& options, std::vector<std::string> command) {
   CheckTask(options);
   CatchStopSignals();
-  if (options.health) {
+  if (options.health || options.drain) {
     const std::string host = options.network.address.empty() ? "127.0.0.1" : options.network.address;
-    return AskHealth(Admit(options.network, options.admission, {Role::kCoordinator, Role::kClient}, host),
-                     host);
+    const NetworkOptions network =
+        Admit(options.network, options.admission, {Role::kCoordinator, Role::kClient}, host);
+    return options.health ? AskHealth(network, host) : AskDrain(network, host, options.clients.data);
   }
   const ClientOptions clients = ClientsOf(options);
   const NetworkOptions network = Admit(options.network, options.admission, {Role::kCoordinator});

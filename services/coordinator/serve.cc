@@ -6,9 +6,13 @@
 
 #include <algorithm>
 #include <chrono>
+#include <nlohmann/json.hpp>
+#include <thread>
 #include <utility>
 
 #include "core/containment/foreign_process.h"
+#include "core/input/input_error.h"
+#include "core/results/folder_lock.h"
 #include "services/coordinator/attendance.h"
 #include "services/coordinator/catalogue.h"
 #include "services/coordinator/coordinator.h"
@@ -37,6 +41,9 @@ constexpr double kWebPause_s = 0.2;
 constexpr double kLogCounts_s = 1.0;
 constexpr int kMostReports = 8;  // at once: each takes memory of its campaign
 constexpr std::chrono::seconds kHealthPatience(8);
+constexpr double kFarewell_s = 2.0;  // until the answer to the last request has arrived
+constexpr std::chrono::seconds kDrainPeriod(1);
+constexpr std::chrono::seconds kLockPatience(30);
 
 constexpr double kFade = 0.9;  // each second: a monitor that looks every 15 s still sees a long round
 
@@ -96,16 +103,19 @@ WebPages PagesOf(const ClientOptions& clients) {
 // Workers stay when it ends: another coordinator on the same data takes them over.
 int ServeClients(const ServeOptions& options, const ClientOptions& clients) {
   MakeDataFolder(clients.data);
-  Coordinator coordinator(options.network, options.audit, NextEpoch(clients.data, IsStartedByItself()));
+  const std::uint64_t epoch = NextEpoch(clients.data, IsStartedByItself());
+  Coordinator coordinator(options.network, options.audit, epoch);
   ServiceOptions service_options;
   service_options.data = clients.data;
   service_options.max_cases = clients.max_cases;
   service_options.retention = clients.retention;
   service_options.quotas = clients.quotas;
+  service_options.epoch = epoch;
   service_options.reports_at_once = static_cast<std::size_t>(std::clamp(UsableCores(), 2, kMostReports));
   service_options.report_threads = std::max(1, UsableCores() / 2);
   Service service(service_options, coordinator);
-  FrontDesk front_desk(service, coordinator, EverybodyOn(options.network), PagesOf(clients));
+  FrontDesk front_desk(service, coordinator, EverybodyOn(options.network), PagesOf(clients),
+                       options.network.keys ? options.network.keys->name : "");
   ServingTimes times;
   coordinator.Serve([&](const Request& request) {
     const Stopwatch watch;
@@ -126,10 +136,13 @@ int ServeClients(const ServeOptions& options, const ClientOptions& clients) {
       counts_period(kLogCounts_s);
   Attendance attendance(options.network.domain);
   std::optional<Watchdog> watchdog(std::in_place, options.again, coordinator.StartPulse());
-  while (!StopRequested()) {
+  double drained_s = 0.0;  // since when
+  while (!StopRequested() && (drained_s == 0.0 || coordinator.now_s() - drained_s < kFarewell_s)) {
     const Stopwatch round;
     coordinator.Step(kRound);
     service.Step();
+    if (!service.IsDrained()) drained_s = 0.0;
+    if (service.IsDrained() && drained_s == 0.0) drained_s = coordinator.now_s();
     watchdog->Note(coordinator.ReceivesReports(), service.HasWorkToFly());
     attendance.Check(coordinator.joined() > 0 || !service.HasWork(), coordinator.now_s());
     // Whoever has launched a campaign opens its page at once.
@@ -153,11 +166,60 @@ int ServeClients(const ServeOptions& options, const ClientOptions& clients) {
   return 0;
 }
 
+namespace {
+
+Failure DoesNotAnswer(const NetworkOptions& network) {
+  return {kExitIncomplete, fmt::format("the coordinator of domain {} does not answer", network.domain)};
+}
+
+/// A coordinator has ended when another process can have its folder.
+void AwaitLock(const std::string& data) {
+  const auto latest = std::chrono::steady_clock::now() + kLockPatience;
+  while (std::chrono::steady_clock::now() < latest) {
+    try {
+      const FolderLock lock(data);
+      return;
+    } catch (const InputError&) {
+      std::this_thread::sleep_for(kRound);
+    }
+  }
+  throw Failure{kExitIncomplete, data + ": the coordinator does not answer any more, but has not ended"};
+}
+
+}  // namespace
+
 int AskHealth(const NetworkOptions& network, const std::string& host) {
   ClientLink client(network, {host, CoordinatorPort(network.domain)});
   const auto reply = client.Call("health", "{}", "", kHealthPatience);
   if (reply && reply->code == 0) return 0;
-  throw Failure{kExitIncomplete, fmt::format("the coordinator of domain {} does not answer", network.domain)};
+  throw DoesNotAnswer(network);
+}
+
+int AskDrain(const NetworkOptions& network, const std::string& host, const std::string& data) {
+  ClientLink client(network, {host, CoordinatorPort(network.domain)});
+  std::string said;
+  nlohmann::json epoch;
+  for (;;) {
+    const nlohmann::json arguments =
+        epoch.is_null() ? nlohmann::json::object() : nlohmann::json{{"epoch", epoch}};
+    const auto reply = client.Call("drain", arguments.dump(), "", kHealthPatience);
+    if (!reply && epoch.is_null()) throw DoesNotAnswer(network);
+    if (!reply) break;
+    if (reply->code != 0) throw Failure{static_cast<ExitCode>(reply->code), reply->text};
+    const auto answer = nlohmann::json::parse(reply->text);
+    if (!epoch.is_null() && answer.at("epoch") != epoch) break;  // its successor
+    epoch = answer.at("epoch");
+    const std::string now =
+        fmt::format("{} campaigns fly or get their reports, {} wait for the next coordinator",
+                    answer.at("busy").get<std::uint64_t>(), answer.at("waiting").get<std::uint64_t>());
+    if (now != said) LogInfo("draining: {}", now);
+    said = now;
+    std::this_thread::sleep_for(kDrainPeriod);
+    if (StopRequested()) throw Failure{kExitInterrupted, "interrupted; the coordinator goes on draining"};
+  }
+  if (!data.empty()) AwaitLock(data);
+  LogInfo("drained: the coordinator has ended");
+  return 0;
 }
 
 }  // namespace dispersa

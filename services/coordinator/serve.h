@@ -36,4 +36,8 @@ int ServeClients(const ServeOptions& options, const ClientOptions& clients);
 /// Whether the coordinator of this domain answers on `host`.
 int AskHealth(const NetworkOptions& network, const std::string& host);
 
+/// Lets the coordinator of this domain on `host` end what flies, and waits until it has ended and, with a
+/// name, its data folder is free. Interrupted it goes on.
+int AskDrain(const NetworkOptions& network, const std::string& host, const std::string& data);
+
 }  // namespace dispersa

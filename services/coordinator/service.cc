@@ -11,8 +11,11 @@
 #include <set>
 
 #include "core/campaign_yaml/load.h"
+#include "core/campaign_yaml/sha256.h"
 #include "core/cases/plugin_check.h"
+#include "core/flight/engine_version.h"
 #include "core/pages/reports.h"
+#include "core/results/folder_state.h"
 #include "core/results/output_file.h"
 #include "services/coordinator/dump_any_text.h"
 #include "services/coordinator/epoch.h"
@@ -35,11 +38,16 @@ constexpr std::size_t kRemembered = 16;  // tallies of campaigns that fly no mor
 
 constexpr double kRetention_s = 60.0;  // what is old is looked for so often
 constexpr char kDeletedFile[] = "deleted.jsonl";
-constexpr char kExpelledFile[] = "expelled.json";
+constexpr char kExpelledRule[] = "the file of a backup; or none, which readmits everybody";
 constexpr double kCount_s = 10.0;  // the bytes of what flies are counted so often
 constexpr double kDelay_s = 10.0;  // until a full disk is tried again
 
 struct Stopped {};
+
+/// Of a campaign as this engine flew it, when another one flies it now.
+std::string BesideName(const std::string& id, const std::string& engine) {
+  return CampaignIdOf(id) + "-" + engine.substr(engine.find('+') + 1);
+}
 
 // Reports that are not compressed can be read too.
 void TryToPack(const std::filesystem::path& results) {
@@ -74,10 +82,19 @@ bool IsReady(const std::future<T>& future) {
 
 }  // namespace
 
+bool IsOfAnotherEngine(const CatalogueEntry& entry) {
+  return !entry.engine.empty() && entry.engine != EngineVersion();
+}
+
 bool IsContinuedByLaunch(const CatalogueEntry& entry) {
   return entry.state == CampaignState::kCancelled || entry.state == CampaignState::kFailed ||
          entry.state == CampaignState::kRefused ||
          (entry.state == CampaignState::kDone && entry.quarantined > 0);
+}
+
+void RequireSound(const CatalogueEntry& entry) {
+  if (entry.state != CampaignState::kDamaged) return;
+  throw Refused(kExitInternalError, fmt::format("campaign {}: {}", entry.id.substr(0, 8), entry.problem));
 }
 
 Service::Service(const ServiceOptions& options, Workforce& workforce)
@@ -87,6 +104,45 @@ Service::Service(const ServiceOptions& options, Workforce& workforce)
   LogInfo("{}: {} campaigns, {} of them have not ended", options.data.string(), catalogue_.entries().size(),
           open);
   LoadExpelled();
+  for (const auto& [id, entry] : catalogue_.entries()) SettleEngine(catalogue_.At(id));
+}
+
+// Its stored results decide, and not what its state says. Whatever happens here can be undone by the engine
+// that flew it: it finds the same results.
+void Service::SettleEngine(CatalogueEntry& entry) {
+  if (entry.state == CampaignState::kDamaged) return;
+  const bool is_settled = entry.state == CampaignState::kDone || !IsOfAnotherEngine(entry);
+  if (HasEnded(entry.state) && entry.state != CampaignState::kUnfinished && !entry.engine.empty() &&
+      is_settled)
+    return;
+  const CatalogueEntry before = entry;
+  try {
+    const std::filesystem::path results = catalogue_.ResultsOf(entry.id);
+    const FolderState state =
+        std::filesystem::exists(results / "results.sqlite") ? ReadFolderState(results) : FolderState();
+    entry.engine = state.cases + state.quarantined > 0 ? state.engine : "";
+    if (!entry.engine.empty()) {
+      entry.flight_id = state.flight_id;
+      entry.done = state.cases;
+      entry.quarantined = state.quarantined;
+    }
+  } catch (const std::exception&) {
+    return;  // opening it says what is wrong with its folder
+  }
+  if (entry.state == CampaignState::kUnfinished && !IsOfAnotherEngine(entry)) QueueAgain(&entry);
+  if (!HasEnded(entry.state) && IsOfAnotherEngine(entry)) {
+    if (entry.done + entry.quarantined >= entry.cases) {
+      entry.state = CampaignState::kReporting;
+      to_report_.push_back({entry.id, workforce_.now_s()});
+    } else {
+      return End(
+          entry, CampaignState::kUnfinished, kExitIncomplete,
+          fmt::format("{} of {} cases are stored, flown by engine {}, and this coordinator has engine {}: "
+                      "start that one again to go on, or launch the campaign again to fly all cases anew",
+                      entry.done, entry.cases, entry.engine, EngineVersion()));
+    }
+  }
+  if (!(entry == before)) Save(entry);
 }
 
 Service::~Service() {
@@ -178,7 +234,7 @@ bool Service::StartReport() {
   CatalogueEntry& entry = catalogue_.At(id);
   try {
     auto reported =
-        std::async(std::launch::async, [this, text = catalogue_.TextOf(id), name = entry.name,
+        std::async(std::launch::async, [this, text = SoundTextOf(id), name = entry.name,
                                         results = catalogue_.ResultsOf(id), root = options_.data] {
           ReportOptions options;
           options.threads = options_.report_threads;
@@ -187,7 +243,8 @@ bool Service::StartReport() {
           };
           ResultFolder folder = ResultFolder::Open(results);
           folder.Lock();
-          const Campaign campaign = ParseCampaign(text, name);
+          Campaign campaign = ParseCampaign(text, name);
+          campaign.flight_id = folder.Provenance("flight_id");  // of the engine that flew it
           const CampaignSummary summary = WriteReports(folder, campaign, options);
           NoteEndedIn(root, folder, campaign, summary);
           TryToPack(results);
@@ -250,7 +307,7 @@ bool Service::MakeRoomFor(const CatalogueEntry& entry) {
 }
 
 void Service::StartOpening() {
-  if (opening_) return;
+  if (opening_ || is_draining_) return;
   std::vector<const CatalogueEntry*> open;
   for (const std::string& id : catalogue_.open()) open.push_back(&catalogue_.At(id));
   const CatalogueEntry* entry =
@@ -266,9 +323,9 @@ void Service::StartOpening() {
 }
 
 void Service::BeginToOpen(const CatalogueEntry& entry) {
-  BookRequest opening{
-      catalogue_.TextOf(entry.id), entry.name, catalogue_.ResultsOf(entry.id), options_.data, {}, ++opened_,
-      workforce_.audit()};
+  BookRequest opening{SoundTextOf(entry.id), entry.name, catalogue_.ResultsOf(entry.id),
+                      options_.data,         {},         ++opened_,
+                      workforce_.audit()};
   for (const auto& [id, other] : catalogue_.entries()) {
     if (id != entry.id && other.flight_id == entry.flight_id)
       opening.same_flights.push_back(catalogue_.ResultsOf(id));
@@ -290,7 +347,8 @@ void Service::FinishOpening() {
     Book book = opened.book.get();
     if (entry.state != CampaignState::kWaiting) return;  // cancelled meanwhile
     delayed_.erase(opened.id);
-    entry.flight_id = book->campaign().flight_id;  // another one if the engine is another one by now
+    entry.flight_id = book->campaign().flight_id;
+    entry.engine = EngineVersion();  // no engine before this one has flown a case of it
     workforce_.BeginCampaign(*book, entry.priority);
     LogInfo("campaign {} ({}) flies: {} of {} cases have a result", entry.name, opened.id.substr(0, 8),
             book->ledger().Progress().done, book->ledger().Progress().total);
@@ -301,6 +359,14 @@ void Service::FinishOpening() {
   } catch (...) {
     if (entry.state == CampaignState::kWaiting) Fail(entry, std::current_exception());
   }
+}
+
+// Whoever changed it has another campaign, and its verdict must not stand under this id.
+std::string Service::SoundTextOf(const std::string& id) const {
+  std::string text = catalogue_.TextOf(id);
+  if (Sha256Hex(text) != CampaignIdOf(id))
+    throw ResultError(ResultError::Kind::kFile, "its campaign.yaml is not as it was launched");
+  return text;
 }
 
 // Whatever it is: of this campaign alone. A full disk is waited for.
@@ -384,13 +450,15 @@ void Service::NoteConflicts(CatalogueEntry& entry, Flying& flying) {
 
 // Whoever was expelled stays so when the coordinator is started again, until `dispersa readmit`.
 void Service::LoadExpelled() {
-  std::ifstream stream(options_.data / kExpelledFile);
-  if (!stream) return;
+  const std::filesystem::path file = options_.data / kExpelledFile;
+  std::error_code error;
+  if (!std::filesystem::exists(std::filesystem::symlink_status(file, error))) return;
   try {
-    workforce_.Expel(ReadExpulsions({std::istreambuf_iterator<char>(stream), {}}));
-  } catch (const nlohmann::json::exception& damage) {
-    throw InputError((options_.data / kExpelledFile).string() + ": is damaged: " + damage.what(),
-                     "the file of a backup; or none, which readmits everybody");
+    workforce_.Expel(ReadExpulsions(ReadWholeFile(file)));
+  } catch (const ResultError& unreadable) {
+    throw InputError(unreadable.what(), kExpelledRule);
+  } catch (const std::runtime_error& damage) {
+    throw InputError(file.string() + ": is damaged: it " + damage.what(), kExpelledRule);
   }
   expelled_noted_ = workforce_.expelled();
   std::string names;
@@ -410,7 +478,7 @@ void Service::NoteExpelled() {
 }
 
 void Service::WriteExpelled() {
-  WriteFile(options_.data / kExpelledFile, DumpAnyText(ToJson(workforce_.expelled()), 2) + "\n");
+  WriteFile(options_.data / kExpelledFile, SealedText(workforce_.expelled()));
   expelled_noted_ = workforce_.expelled();
 }
 
@@ -533,6 +601,10 @@ bool Service::IsAtRest(const std::string& id) const {
   return HasEnded(catalogue_.entries().at(id).state) && !(opening_ && opening_->id == id);
 }
 
+bool Service::IsDrained() const {
+  return is_draining_ && !opening_ && flying_.empty() && to_report_.empty() && reporting_.empty();
+}
+
 bool Service::HasWork() const { return !catalogue_.open().empty(); }
 
 void Service::RequireQuota(const CatalogueEntry& entry) const {
@@ -568,7 +640,30 @@ void Service::RequireQuota(const CatalogueEntry& entry) const {
   }
 }
 
+void Service::MakeRoomForEngine(const std::string& id, const std::string& flight_id) {
+  CatalogueEntry& entry = catalogue_.At(id);
+  if (entry.flight_id == flight_id) return;
+  RequireSound(entry);
+  if (entry.engine.empty()) {
+    entry.flight_id = flight_id;  // nothing was flown
+    Save(entry);
+    return;
+  }
+  if (!IsAtRest(id)) {
+    throw Refused(kExitIncomplete,
+                  fmt::format("campaign {} of engine {} is {}, try again when it has ended", id.substr(0, 8),
+                              entry.engine, CampaignStateName(entry.state)));
+  }
+  SaveAgain();
+  std::erase_if(flew_, [&](const auto& each) { return each.first == id; });
+  delayed_.erase(id);
+  catalogue_.Rename(id, BesideName(id, entry.engine));
+  const std::string ours = BesideName(id, EngineVersion());
+  if (catalogue_.entries().contains(ours)) catalogue_.Rename(ours, id);
+}
+
 void Service::Relaunch(const std::string& id, int priority, const std::vector<std::string>& labels) {
+  RequireSound(catalogue_.At(id));
   CatalogueEntry entry = catalogue_.At(id);
   entry.priority = priority;
   AddLabels(&entry, labels);
@@ -585,6 +680,7 @@ void Service::Relaunch(const std::string& id, int priority, const std::vector<st
 void Service::Launch(CatalogueEntry entry, const std::string& text) {
   RequireQuota(entry);
   entry.launched_unix_s = options_.unix_time_s();
+  entry.engine = EngineVersion();
   LogInfo("campaign {} ({}): launched by {}, {} cases", entry.name, entry.id.substr(0, 8), OwnerOf(entry),
           entry.cases);
   catalogue_.Add(std::move(entry), text);
@@ -663,6 +759,13 @@ void Service::DeleteOld() {
 
 void Service::Repair(const std::string& id, const std::string& worker) {
   CatalogueEntry& entry = catalogue_.At(id);
+  RequireSound(entry);
+  if (IsOfAnotherEngine(entry)) {
+    throw Refused(kExitBadInput,
+                  fmt::format("campaign {} was flown by engine {} and cannot be repaired by engine "
+                              "{}, allowed: the engine that flew it",
+                              id.substr(0, 8), entry.engine, EngineVersion()));
+  }
   if (entry.state == CampaignState::kReporting || (opening_ && opening_->id == id)) {
     throw Refused(kExitIncomplete,
                   fmt::format("campaign {} is {} and cannot be repaired now, try again", id.substr(0, 8),
@@ -685,6 +788,7 @@ void Service::Repair(const std::string& id, const std::string& worker) {
 void Service::Cancel(const std::string& id) {
   CatalogueEntry& entry = catalogue_.At(id);
   if (entry.state == CampaignState::kCancelled) return;
+  RequireSound(entry);
   if (entry.state == CampaignState::kDone || entry.state == CampaignState::kReporting) {
     throw Refused(kExitBadInput, fmt::format("campaign {} is {} and cannot be cancelled", id.substr(0, 8),
                                              CampaignStateName(entry.state)));

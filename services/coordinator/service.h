@@ -38,6 +38,7 @@ struct ServiceOptions {
   Retention retention = {};
   std::size_t reports_at_once = 2;  ///< each on a thread of its own
   Quotas quotas = {};
+  std::uint64_t epoch = 0;  ///< of this start
   std::function<std::int64_t()> unix_time_s = [] { return std::int64_t{std::time(nullptr)}; };
 };
 
@@ -46,6 +47,12 @@ struct Refused : std::runtime_error {
   Refused(int exit_code, const std::string& what) : std::runtime_error(what), code(exit_code) {}
   int code;
 };
+
+/// Whether another engine than this has flown cases of it.
+bool IsOfAnotherEngine(const CatalogueEntry& entry);
+
+/// Throws Refused if its state is damaged.
+void RequireSound(const CatalogueEntry& entry);
 
 /// Whether launching it again puts it into the queue again.
 bool IsContinuedByLaunch(const CatalogueEntry& entry);
@@ -100,9 +107,19 @@ class Service {
   /// Whether workers are needed now.
   bool HasWorkToFly() const { return !flying_.empty(); }
 
+  /// From now on no campaign begins to fly: what waits stays stored for the next coordinator. What flies
+  /// ends, with its report.
+  void Drain() { is_draining_ = true; }
+  bool is_draining() const { return is_draining_; }
+  bool IsDrained() const;
+  std::uint64_t epoch() const { return options_.epoch; }
+
   // Changes by clients. They are on the disk before the client is told so. These throw ResultError, and have
   // then changed nothing.
 
+  /// Afterwards `id` names the flight with this id of this engine, or no campaign. A flight of another engine
+  /// stays beside it under a longer id. Throws Refused while that is used.
+  void MakeRoomForEngine(const std::string& id, const std::string& flight_id);
   /// Puts a campaign that is known into the queue again if launching it again continues it, changes its
   /// priority and adds labels. Throws Refused beyond its owner's quota.
   void Relaunch(const std::string& id, int priority, const std::vector<std::string>& labels = {});
@@ -142,6 +159,8 @@ class Service {
     std::future<Reported> reported;
   };
 
+  void SettleEngine(CatalogueEntry& entry);
+  std::string SoundTextOf(const std::string& id) const;
   void CloseBroken();
   void CloseRefused();
   void CloseComplete();
@@ -194,6 +213,7 @@ class Service {
   };
   std::map<std::string, Delayed> delayed_;  ///< by id: the disk was full
   std::set<std::string> unsaved_;           ///< ids whose state is not on the disk
+  bool is_draining_ = false;
   std::uint64_t opened_ = 0;
   ExpulsionMap expelled_noted_;  ///< what the disk has
   double retained_s_ = -1e9;     ///< when what is old was looked for

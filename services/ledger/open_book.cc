@@ -1,6 +1,8 @@
 #include "services/ledger/open_book.h"
 
 #include "core/campaign_yaml/load.h"
+#include "core/flight/engine_version.h"
+#include "core/results/folder_state.h"
 #include "services/ledger/campaign_attempt.h"
 #include "services/ledger/take_over.h"
 #include "services/log/log.h"
@@ -16,6 +18,12 @@ constexpr std::uint64_t kAttempts = std::uint64_t{1} << 40;
 bool HasResults(const fs::path& directory) {
   std::error_code error;
   return fs::is_regular_file(directory / "results.sqlite", error);
+}
+
+/// A folder that another engine made and never flew a case of.
+bool IsEmptyOfAnotherEngine(const fs::path& directory) {
+  const FolderState state = ReadFolderState(directory);
+  return state.engine != EngineVersion() && state.cases == 0 && state.quarantined == 0;
 }
 
 /// What others have flown saves time; what is wrong with their folders is no reason to fail.
@@ -40,7 +48,7 @@ void TryToTakeOver(const fs::path& from, const Campaign& campaign, const std::ve
 
 std::unique_ptr<CampaignBook> OpenBook(const BookRequest& opening) {
   const Campaign campaign = ParseCampaign(opening.text, opening.name);
-  const bool is_new = !HasResults(opening.results);
+  const bool is_new = !HasResults(opening.results) || IsEmptyOfAnotherEngine(opening.results);
   if (is_new) {
     // Of a start that was killed: nothing is in it.
     std::error_code error;

@@ -4,6 +4,8 @@
 #include <cctype>
 #include <sstream>
 
+#include "services/web/find_by_id.h"
+
 namespace dispersa {
 namespace {
 
@@ -28,10 +30,8 @@ CampaignIndex::CampaignIndex(std::vector<Row> rows, std::vector<WorkerRow> worke
 }
 
 const CampaignRow* CampaignIndex::Find(const std::string& prefix) const {
-  const auto first = by_id_.lower_bound(prefix);
-  if (prefix.empty() || first == by_id_.end() || !first->first.starts_with(prefix)) return nullptr;
-  const auto second = std::next(first);
-  return second != by_id_.end() && second->first.starts_with(prefix) ? nullptr : first->second;
+  const auto found = FindById(by_id_, prefix);
+  return found == by_id_.end() ? nullptr : found->second;
 }
 
 std::vector<const CampaignRow*> CampaignIndex::Search(const std::string& text) const {

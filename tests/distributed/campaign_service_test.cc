@@ -7,6 +7,8 @@
 #include "core/results/database.h"
 #include "core/results/result_folder.h"
 #include "made_up_service.h"
+#include "services/coordinator/expulsions.h"
+#include "services/coordinator/sealed_json.h"
 #include "services/ledger/open_book.h"
 #include "services/program/exit_code.h"
 #include "tests/small_disk.h"
@@ -193,14 +195,10 @@ TEST_F(CampaignServiceTest, ADoneCampaignGoesOnIfItHasQuarantinedCases) {
     const std::string id = Launch(Smoke(2, 10 + quarantined));
     service_.reset();
     const std::filesystem::path file = folder_ / "data" / id / "state.json";
-    std::string state = TextOfFile(file);
-    const auto edit = [&state](const std::string& from, const std::string& to) {
-      ASSERT_NE(state.find(from), std::string::npos) << state;
-      state.replace(state.find(from), from.size(), to);
-    };
-    edit("\"waiting\"", "\"done\"");
-    edit("\"quarantined\": 0", "\"quarantined\": " + std::to_string(quarantined));
-    std::ofstream(file) << state;
+    auto state = nlohmann::ordered_json::parse(TextOfFile(file));
+    state["state"] = "done";
+    state["quarantined"] = quarantined;
+    std::ofstream(file) << Sealed(state);
     StartService();
     EXPECT_EQ(StateOf(id), CampaignState::kDone);
     service_->Relaunch(id, 0);
@@ -256,7 +254,7 @@ TEST_F(CampaignServiceTest, WhoWasExpelledStaysSoWhenTheCoordinatorIsStartedAgai
   workforce_.time_s += 2.0;
   service_->Step();
   const std::filesystem::path file = folder_ / "data" / "expelled.json";
-  EXPECT_EQ(TextOfFile(file), "{\n  \"node1\": {\n    \"reason\": \"case 4 gives other bits\"\n  }\n}\n");
+  EXPECT_EQ(ReadExpulsions(TextOfFile(file)), (ExpulsionMap{{"node1", {"case 4 gives other bits"}}}));
   service_.reset();
   {
     MadeUpWorkforce later;
@@ -264,7 +262,7 @@ TEST_F(CampaignServiceTest, WhoWasExpelledStaysSoWhenTheCoordinatorIsStartedAgai
     EXPECT_THAT(later.expelled(), ElementsAre(Pair("node1", Expulsion{"case 4 gives other bits"})));
     EXPECT_THAT(again.Readmit("node2"), IsEmpty());
     EXPECT_THAT(again.Readmit("node1"), ElementsAre("node1"));
-    EXPECT_EQ(TextOfFile(file), "{}\n") << "at once";
+    EXPECT_THAT(ReadExpulsions(TextOfFile(file)), IsEmpty()) << "at once";
   }
   std::ofstream(file) << "{\"node3\": \"of an earlier version\"}";
   MadeUpWorkforce last;
@@ -276,7 +274,12 @@ TEST_F(CampaignServiceTest, ADamagedListOfTheExpelledReadmitsNobody) {
   StartService();
   service_.reset();
   const std::filesystem::path file = folder_ / "data" / "expelled.json";
-  for (const char* damaged : {"", "{\"node1\": {\"reason\": \"a li", "{\"node1\": 3}", "[]"}) {
+  std::string emptied = SealedText({{"node1", {"a lie"}}});
+  const std::string name = "\"node1\": {\n      \"reason\": \"a lie\"\n    }";
+  ASSERT_NE(emptied.find(name), std::string::npos) << emptied;
+  emptied.erase(emptied.find(name), name.size());
+  for (const std::string& damaged : {std::string(), std::string("{\"node1\": {\"reason\": \"a li"),
+                                     std::string("{\"node1\": 3}"), std::string("[]"), emptied}) {
     std::ofstream(file) << damaged;
     EXPECT_THAT([&] { Service again({folder_ / "data"}, workforce_); },
                 testing::ThrowsMessage<InputError>(
@@ -285,6 +288,9 @@ TEST_F(CampaignServiceTest, ADamagedListOfTheExpelledReadmitsNobody) {
         << damaged;
     EXPECT_EQ(TextOfFile(file), damaged);
   }
+  std::filesystem::remove(file);
+  std::filesystem::create_directory(file);  // no file that can be read
+  EXPECT_THROW(Service({folder_ / "data"}, workforce_), InputError);
 }
 
 TEST_F(CampaignServiceTest, ACampaignThatHasEndedIsDeletedAndALineIsKept) {

@@ -6,6 +6,7 @@
 #include "core/flight/metrics.h"
 #include "core/input/input_error.h"
 #include "services/coordinator/epoch.h"
+#include "services/coordinator/sealed_json.h"
 #include "services/ledger/running_tally.h"
 #include "tests/temporary_folder.h"
 #include "tests/test.h"
@@ -61,7 +62,7 @@ TEST_F(CatalogueTest, AStateOfTheFirstVersionIsReadAndBecomesOneOfToday) {
   EXPECT_EQ(entry.owner, "");
   EXPECT_EQ(entry.bytes, fs::file_size(file)) << "counted, because nobody has written it down";
   catalogue.Write(entry);
-  EXPECT_THAT(TextOfFile(file), HasSubstr("\"version\": 3"));
+  EXPECT_THAT(TextOfFile(file), HasSubstr("\"version\": 4"));
 }
 
 TEST_F(CatalogueTest, EachStartHasALargerNumberAlsoWhenTheClockIsSetBack) {
@@ -74,6 +75,13 @@ TEST_F(CatalogueTest, EachStartHasALargerNumberAlsoWhenTheClockIsSetBack) {
   std::ofstream(root_ / kEpochFile) << "9000000000000000\n";  // a clock that was far ahead
   EXPECT_EQ(NextEpoch(root_), 9000000000000001u);
   EXPECT_EQ(NextEpoch(root_), 9000000000000002u);
+  for (const char* damaged : {"-5\n", "5\n", "", "90000000000000000\n", "{\"version\": 2, \"epoch\": 5}"}) {
+    std::ofstream(root_ / kEpochFile) << damaged;
+    EXPECT_THAT(
+        ErrorOf<InputError>([&] { NextEpoch(root_); }),
+        AllOf(HasSubstr("epoch: is damaged: it "), HasSubstr("allowed: the file of a backup; or none")))
+        << damaged;
+  }
   fs::remove(root_ / kEpochFile);
   fs::create_directories(root_ / kEpochFile / "in its way");
   EXPECT_GT(NextEpoch(root_), second) << "it starts all the same";
@@ -83,11 +91,15 @@ TEST_F(CatalogueTest, AStateOfALaterVersionIsLeftAlone) {
   Catalogue(root_ / "data").Add(Entry("a1"), "text");
   EXPECT_EQ(Catalogue(root_ / "data").entries().size(), 1u);
   const fs::path file = root_ / "data" / "a1" / "state.json";
-  nlohmann::json state = nlohmann::json::parse(std::ifstream(file));
+  nlohmann::ordered_json state = nlohmann::ordered_json::parse(std::ifstream(file));
   state["version"] = state["version"].get<int>() + 1;
-  std::ofstream(file) << state;
-  EXPECT_TRUE(Catalogue(root_ / "data").entries().empty());
-  EXPECT_TRUE(fs::exists(file));
+  std::ofstream(file) << Sealed(state);
+  const std::string later = TextOfFile(file);
+  const CatalogueEntry entry = Catalogue(root_ / "data").At("a1");
+  EXPECT_EQ(entry.state, CampaignState::kDamaged);
+  EXPECT_THAT(entry.problem,
+              HasSubstr("state.json was written by a newer dispersa: version 5, this one reads 4"));
+  EXPECT_EQ(TextOfFile(file), later);
 }
 
 TEST_F(CatalogueTest, WhatWasBeingDeletedIsGoneWhenItIsOpenedAgain) {
@@ -165,18 +177,65 @@ TEST_F(CatalogueTest, FindsACampaignByTheBeginningOfItsIdIfThatIsOne) {
   for (const char* prefix : {"", "abc", "c", "abc11"}) EXPECT_EQ(catalogue.Find(prefix), nullptr) << prefix;
 }
 
-TEST_F(CatalogueTest, LeavesAloneWhatIsDamagedAndWhatWasNeverToldToAnybody) {
+// A verdict that somebody changed by hand is no verdict, and a campaign does not vanish.
+TEST_F(CatalogueTest, ADamagedStateIsListedWithItsDamageAndLeftAlone) {
   {
     Catalogue catalogue(root_);
-    for (const char* id : {"good", "damaged", "moved"}) catalogue.Add(Entry(id), "text");
+    for (const char* id : {"a-good", "cut", "edited", "moved", "unsealed"}) {
+      CatalogueEntry entry = Entry(id);
+      entry.verdict = "fail";
+      catalogue.Add(entry, "text");
+    }
   }
-  std::ofstream(root_ / "damaged" / "state.json") << "{\"id\": \"damaged\", \"prio";
+  const auto state = [&](const std::string& id) { return root_ / id / "state.json"; };
+  const std::string text = TextOfFile(state("edited"));
+  std::ofstream(state("cut")) << text.substr(0, text.size() / 2);
+  std::string edited = text;
+  edited.replace(edited.find("\"fail\""), 6, "\"pass\"");
+  std::ofstream(state("edited")) << edited;
+  const std::size_t checksum = text.find(",\n  \"checksum\"");
+  ASSERT_NE(checksum, std::string::npos);
+  std::ofstream(state("unsealed")) << text.substr(0, checksum) << "}";
   fs::rename(root_ / "moved", root_ / "elsewhere");
   fs::create_directories(root_ / "stillborn");
   std::ofstream(root_ / "stillborn" / "campaign.yaml") << "text";
+  fs::create_directories(root_ / "without" / "results");
+  std::ofstream(root_ / "without" / "results" / "results.sqlite") << "no state tells of it";
+  fs::create_directories(root_ / "folder" / "state.json");
   Catalogue catalogue(root_);
-  EXPECT_THAT(catalogue.InOrder(), ElementsAre("good"));
-  EXPECT_TRUE(fs::exists(root_ / "damaged" / "campaign.yaml"));
+  std::string listed;
+  for (const auto& [id, entry] : catalogue.entries())
+    listed += id + " " + CampaignStateName(entry.state) + " " + entry.verdict + " " +
+              entry.problem.substr(0, entry.problem.find(':')) + "\n";
+  EXPECT_EQ(listed,
+            "a-good waiting fail \n"
+            "cut damaged  state.json is not a whole JSON object\n"
+            "edited damaged  state.json does not fit its checksum\n"
+            "elsewhere damaged  state.json is that of campaign moved\n"
+            "folder damaged  state.json cannot be read\n"
+            "unsealed damaged  state.json does not fit its checksum\n"
+            "without damaged  state.json is missing\n");
+  EXPECT_EQ(TextOfFile(state("edited")), edited);
+}
+
+TEST_F(CatalogueTest, FindsTheFlightOfAnEarlierEngineByBothPartsOfItsId) {
+  Catalogue catalogue(root_);
+  for (const char* id : {"abc1", "abc2", "d3"}) catalogue.Add(Entry(id), "");
+  for (const auto& [id, to] : {std::pair("abc1", "abc1-e1"), std::pair("abc2", "abc2-f1")})
+    catalogue.Rename(id, to);
+  for (const char* id : {"abc1"}) catalogue.Add(Entry(id), "");
+  const auto found = [&](const std::string& wanted) {
+    const CatalogueEntry* entry = catalogue.Find(wanted);
+    return entry == nullptr ? "none" : entry->id;
+  };
+  EXPECT_EQ(found("abc1"), "abc1") << "rather the present flight";
+  EXPECT_EQ(found("abc2"), "abc2-f1") << "the only one";
+  EXPECT_EQ(found("abc"), "abc1");
+  EXPECT_EQ(found("abc1-e1"), "abc1-e1");
+  EXPECT_EQ(found("abc-e"), "abc1-e1");
+  EXPECT_EQ(found("abc-f"), "abc2-f1");
+  for (const char* none : {"abc-", "abc-e2", "d3-e", "-e1", "-"}) EXPECT_EQ(found(none), "none") << none;
+  EXPECT_EQ(Catalogue(root_ / "other").Find("abc1"), nullptr);
 }
 
 TEST_F(CatalogueTest, BelongsToOneProcess) {

@@ -68,10 +68,13 @@ TEST(Expulsions, WhoIsReadmittedBeginsAnew) {
 TEST(Expulsions, FilesAreReadAsTheyAreWritten) {
   ExpulsionMap expelled = With(With({}, "node1_a", "h"), "node1_b", "h");
   Readmit(&expelled, "node1_a");
-  EXPECT_EQ(ReadExpulsions(ToJson(expelled).dump()), expelled);
+  EXPECT_EQ(ReadExpulsions(SealedText(expelled)), expelled);
   EXPECT_EQ(ReadExpulsions(R"({"node1": "why"})"), (ExpulsionMap{{"node1", {"why"}}}))
       << "of an earlier version";
-  EXPECT_THROW(ReadExpulsions("{\"a\": 1}"), nlohmann::json::exception);
+  const ExpulsionMap odd = {{"version", {"no number"}}};
+  EXPECT_EQ(ReadExpulsions(R"({"version": "no number"})"), odd) << "a worker's name";
+  EXPECT_EQ(ReadExpulsions(SealedText(odd)), odd);
+  EXPECT_EQ(ErrorOf<std::runtime_error>([] { ReadExpulsions("{\"a\": 1}"); }), "lacks a member");
 }
 
 }  // namespace dispersa::expulsions_test

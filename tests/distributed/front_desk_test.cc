@@ -473,8 +473,33 @@ TEST_F(OwnersTest, AdministratorsReadmitAndEverybodySeesWhoIsExpelled) {
   for (int answer_got_lost = 0; answer_got_lost < 2; ++answer_got_lost)
     EXPECT_EQ(As(root_, "readmit", {{"name", "node1"}}), Json({{"name", "node1"}}).dump());
   EXPECT_EQ(Json::parse(As(eve_, "expelled", Json::object())).at("expelled"), Json::array());
-  EXPECT_EQ(Json::parse(TextOfFile(folder_ / "data" / "expelled.json")),
+  EXPECT_EQ(Json::parse(TextOfFile(folder_ / "data" / "expelled.json")).at("expelled"),
             Json({{"node1_a", {{"reason", "a lie"}, {"host", "rack7"}, {"forgiven", true}}}}));
+}
+
+TEST_F(OwnersTest, OnlyWhoAdministersDrainsAndTheCoordinatorsOwnKeys) {
+  ServiceOptions options{folder_ / "data"};
+  options.epoch = 7;
+  const std::string own = "main_5", answer = Json({{"epoch", 7}, {"busy", 0}, {"waiting", 1}}).dump();
+  for (const auto& [client, names] :
+       {std::pair(root_, Json::object()), std::pair(own, Json({{"epoch", 7}}))}) {
+    service_.reset();
+    service_ = std::make_unique<Service>(options, workforce_);
+    desk_ = std::make_unique<FrontDesk>(*service_, workforce_, "", WebPages(), "main");
+    LaunchAs(ann_, Smoke(2));
+    for (const std::string& other : {ann_, std::string("_run_main_6"), std::string("node_1")})
+      EXPECT_THAT(As(other, "drain", Json::object()),
+                  HasSubstr("may run, and `dispersa-coordinator --drain` needs the right to administer"));
+    EXPECT_EQ(As(client, "drain", {{"epoch", 6}}), answer) << "of the coordinator before this one";
+    EXPECT_FALSE(service_->is_draining());
+    EXPECT_EQ(As(client, "drain", names), answer);
+    EXPECT_TRUE(service_->IsDrained()) << "nothing flies";
+    for (const char* method : {"launch", "repair"})
+      EXPECT_THAT(As(root_, method, Json::object()), HasSubstr("5: the coordinator is drained")) << method;
+    for (int i = 0; i < 20; ++i) service_->Step();
+    EXPECT_EQ(StateOf(Smoke(2).id), CampaignState::kWaiting);
+    EXPECT_THAT(As(own, "backup", Json::object()), Not(HasSubstr("drained")));
+  }
 }
 
 TEST_F(OwnersTest, ACampaignOfAnotherOwnerIsFoundAndNotChanged) {

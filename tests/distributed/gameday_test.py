@@ -315,7 +315,7 @@ class GameDay(unittest.TestCase):
             self.assertEqual((line["state"], line["owner"]), ("done", self.campaigns[line["id"]]["owner"]))
         if MINUTES >= 10:
             self.assertTrue(deleted, "the limit was not reached")
-        self.assertEqual({name.partition("_")[0] for name in json.loads((self.data / "expelled.json").read_text())},
+        self.assertEqual({name.partition("_")[0] for name in json.loads((self.data / "expelled.json").read_text())["expelled"]},
                          {f"forger{i + 1}" for i in range(self.forgers)})
         lines = self.log().splitlines()
         print("\n".join(self.journal))

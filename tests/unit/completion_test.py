@@ -26,7 +26,7 @@ class Words(unittest.TestCase):
 
     def test_commands_and_their_commands(self):
         self.assertTrue({"validate", "run", "keys", "completion"} <= set(words("")))
-        self.assertEqual(words("f"), ["fly", "fetch"])
+        self.assertEqual(words("f"), ["fly", "fetch", "fsck"])
         self.assertEqual(words("keys", ""), ["init", "issue", "revoke"])
         # As parsed: an option's value is no command.
         self.assertEqual(words("--color", "keys", "v"), ["validate"])
@@ -103,7 +103,7 @@ class Shells(unittest.TestCase):
                       "printf '%s\\n' \"${COMPREPLY[@]}\"", cwd=self.folder, env=self.environment).split("\n")[:-1]
 
     def test_bash(self):
-        self.assertEqual(self.bash("dispersa", "f"), ["fly", "fetch"])
+        self.assertEqual(self.bash("dispersa", "f"), ["fly", "fetch", "fsck"])
         self.assertEqual(self.bash("dispersa", "fly", "--int"), ["--integrator"])
         self.assertEqual(self.bash("dispersa", "fly", "--integrator", ""), ["simpson", "erk4", "cvode"])
         self.assertEqual(self.bash("dispersa", "fly", "--integrator", "=", "e"), ["erk4"])
@@ -121,7 +121,7 @@ class Shells(unittest.TestCase):
                           cwd=self.folder, env=self.environment)
             return [answer.split("\t")[0] for answer in text.splitlines()]
 
-        self.assertEqual(sorted(fish("dispersa f")), ["fetch", "fly"])
+        self.assertEqual(sorted(fish("dispersa f")), ["fetch", "fly", "fsck"])
         self.assertEqual(fish("dispersa fly --int"), ["--integrator"])
         self.assertEqual(sorted(fish("dispersa fly --integrator ")), ["cvode", "erk4", "simpson"])
         self.assertEqual(fish("dispersa fly --integrator=e"), ["--integrator=erk4"])

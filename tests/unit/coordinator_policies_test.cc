@@ -176,7 +176,7 @@ TEST(Queue, ACampaignThatGoesOnHasNoEnd) {
   entry.quarantined = 0;
   entry.ended_unix_s = 0;
   entry.attempts = 0;
-  entry.problem = entry.verdict = entry.engine = "";
+  entry.problem = entry.verdict = "";
   entry.requirements = {};
   EXPECT_TRUE(again == entry) << "conflicts stay: whoever repairs it forgets them";
 }

@@ -3,8 +3,10 @@
 // up, too.
 #include <nlohmann/json.hpp>
 
+#include "core/flight/engine_version.h"
 #include "services/coordinator/packed_files.h"
 #include "services/coordinator/prometheus_text.h"
+#include "services/coordinator/sealed_json.h"
 #include "services/coordinator/web_rows.h"
 #include "tests/distributed/made_up_service.h"
 #include "tests/test.h"
@@ -39,7 +41,8 @@ class ServiceRules : public ServiceTest {
   /// Of a state each, "name-0" launched first.
   void PutMany(int count, const std::function<CampaignState(int)>& state) {
     Put({Entry('a', CampaignState::kWaiting)});
-    Json json = Json::parse(TextOfFile(folder_ / "data" / Id('a') / "state.json"));
+    nlohmann::ordered_json json =
+        nlohmann::ordered_json::parse(TextOfFile(folder_ / "data" / Id('a') / "state.json"));
     std::filesystem::remove_all(folder_ / "data" / Id('a'));
     for (int i = 0; i < count; ++i) {
       const std::string id = std::to_string(1000 + i) + std::string(60, 'b');
@@ -48,7 +51,7 @@ class ServiceRules : public ServiceTest {
       json["order"] = 1 + i;
       json["state"] = CampaignStateName(state(i));
       std::filesystem::create_directories(folder_ / "data" / id);
-      std::ofstream(folder_ / "data" / id / "state.json") << json;
+      std::ofstream(folder_ / "data" / id / "state.json") << Sealed(json);
     }
   }
   void Start(const std::vector<std::string>& quotas = {}, const Retention& retention = {}) {
@@ -141,7 +144,7 @@ CatalogueEntry Passed(char letter) {
   entry.quarantined = 3;
   entry.conflicts = 2;
   entry.verdict = "pass";
-  entry.engine = "1";
+  entry.engine = EngineVersion();
   entry.attempts = 4;
   entry.requirements = {{"q_max_pa", "words", 0.9, 97, 1, {}, {}, "pass"}};
   return entry;
@@ -154,7 +157,6 @@ TEST_F(ServiceRules, ARepairedCampaignHasNoVerdictAndTheOthersKeepTheirs) {
   for (int restart = 0; restart < 2; ++restart) {
     EXPECT_EQ(At('a').state, CampaignState::kWaiting);
     EXPECT_EQ(At('a').verdict, "");
-    EXPECT_EQ(At('a').engine, "");
     EXPECT_THAT(At('a').requirements, IsEmpty());
     EXPECT_EQ(At('a').conflicts, 0u);
     EXPECT_THAT(At('a').distrusted, ElementsAre("node1"));

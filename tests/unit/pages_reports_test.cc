@@ -229,19 +229,49 @@ TEST(Reports, RefuseAResultThatDoesNotComeOutAgain) {
   }
 }
 
-TEST(Reports, NeedTheEngineThatFlew) {
+// Nothing of another engine can be flown again: what it stored is drawn, whatever the option asks for.
+TEST(Reports, OfAnotherEngineDrawItsHistoriesAndFlyNothing) {
   TemporaryFolder temporary;
-  ResultFolder folder = ResultFolder::Create(temporary / "out", TheCampaign());
-  Database(temporary / "out" / "results.sqlite", Database::Mode::kExisting)
-      .Execute("UPDATE provenance SET value = '0.0.0+older' WHERE key = 'engine'");
-  try {
-    WriteReports(folder, TheCampaign());
-    FAIL() << "written";
-  } catch (const InputError& error) {
-    EXPECT_EQ(error.what(),
-              (temporary / "out").string() + ": flown by engine 0.0.0+older, this one is " + EngineVersion() +
-                  ": its flights cannot be flown again, allowed: the engine that flew it, or --no-histories");
+  const auto out = temporary / "out";
+  ReportOptions options = {.history_cases = 3, .threads = 1, .progress = {}};
+  {
+    ResultFolder folder = ResultFolder::Create(out, TheCampaign());
+    folder.Append(TheResults());
+    WriteReports(folder, TheCampaign(), options);
   }
+  const auto histories = [&] { return Files(out / "histories"); };
+  const auto before = histories();
+  const std::string page = TextOfFile(out / "report.html");
+  Database(out / "results.sqlite", Database::Mode::kExisting)
+      .Execute("UPDATE provenance SET value = '0.0.0+older' WHERE key = 'engine'");
+  options.history_cases = 1;
+  options.progress = [](const std::string&, std::uint64_t, std::uint64_t) { FAIL() << "a flight"; };
+  const ResultFolder folder = ResultFolder::Open(out);
+  const CampaignSummary summary = WriteReports(folder, TheCampaign(), options);
+  EXPECT_EQ(summary.engine, "0.0.0+older");
+  ASSERT_TRUE(summary.envelope);
+  EXPECT_EQ(summary.envelope->flights, 3u) << "as they were made";
+  EXPECT_EQ(summary.envelope->extreme_flights, 1u);
+  EXPECT_TRUE(histories() == before);
+  const std::string again = TextOfFile(out / "report.html");
+  EXPECT_THAT(again, HasSubstr(", page by engine <code>" + EngineVersion().substr(0, 12) +
+                               "</code>, which flew nothing"));
+  const auto figures = [](const std::string& html) {
+    std::size_t count = 0;
+    for (std::size_t at = html.find("<svg"); at != std::string::npos; at = html.find("<svg", at + 1)) ++count;
+    return count;
+  };
+  EXPECT_EQ(figures(again), figures(page));
+  options.histories = false;
+  EXPECT_FALSE(WriteReports(folder, TheCampaign(), options).envelope);
+  EXPECT_TRUE(histories() == before) << "nobody could make them again";
+  options.histories = true;
+  for (const char* name : {"bands.csv.gz", "nominal.csv.gz"}) {
+    std::ofstream(out / "histories" / name) << "changed";
+    EXPECT_FALSE(WriteReports(folder, TheCampaign(), options).envelope) << name;
+    std::ofstream(out / "histories" / name) << before.at(name);
+  }
+  EXPECT_TRUE(WriteReports(folder, TheCampaign(), options).envelope);
 }
 
 TEST(Reports, TellTheirProgressAndStopWhenAsked) {
