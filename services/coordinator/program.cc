@@ -55,7 +55,7 @@ void AddWebOptions(CLI::App& app, CoordinatorOptions& options) {
   app.add_option(
          "--metrics", options.metrics,
          "PORT of 127.0.0.1, or ADDRESS:PORT (0.0.0.0: all interfaces), that serves figures in Prometheus' "
-         "text\nformat to everybody who reaches it")
+         "text\nformat and the probes /healthz and /readyz to everybody who reaches it")
       ->type_name("TEXT")
       ->check(IsHttpAddress());
   app.add_option("--web", options.web,
@@ -162,7 +162,7 @@ WebOptions WebOf(const CoordinatorOptions& options) {
 ClientOptions ClientsOf(const CoordinatorOptions& options) {
   ClientOptions clients = options.clients;
   for (const std::string& limit : options.keep) ReadRetention(limit, &clients.retention);
-  if (!options.metrics.empty()) ReadHttpAddress(options.metrics, &clients.prometheus.emplace());
+  if (!options.metrics.empty()) ReadHttpAddress(options.metrics, &clients.metrics.emplace());
   for (const std::string& limits : options.quotas) clients.quotas.Add(limits);
   if (!options.web.empty()) clients.web = WebOf(options);
   return clients;

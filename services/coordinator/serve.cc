@@ -18,8 +18,9 @@
 #include "services/coordinator/coordinator.h"
 #include "services/coordinator/epoch.h"
 #include "services/coordinator/front_desk.h"
+#include "services/coordinator/health.h"
+#include "services/coordinator/monitor_port.h"
 #include "services/coordinator/packed_files.h"
-#include "services/coordinator/prometheus_port.h"
 #include "services/coordinator/prometheus_text.h"
 #include "services/coordinator/service.h"
 #include "services/coordinator/watchdog.h"
@@ -35,7 +36,8 @@ namespace dispersa {
 namespace {
 
 constexpr std::chrono::milliseconds kRound(50);
-constexpr double kPrometheus_s = 1.0;
+constexpr double kFigures_s = 1.0;
+constexpr double kHealth_s = 0.5;
 constexpr double kWeb_s = 1.0;
 constexpr double kWebPause_s = 0.2;
 constexpr double kLogCounts_s = 1.0;
@@ -92,6 +94,11 @@ CampaignFile FilesBelow(const std::filesystem::path& data) {
   };
 }
 
+std::string WhyPaused(const Service& service, const std::filesystem::path& data) {
+  const std::string reason = service.WhyPaused();
+  return reason.empty() ? WhyDiskIsFull(data) : reason;
+}
+
 WebPages PagesOf(const ClientOptions& clients) {
   if (!clients.web) return {};
   const auto& [host, port] = clients.web->address;
@@ -104,6 +111,10 @@ WebPages PagesOf(const ClientOptions& clients) {
 int ServeClients(const ServeOptions& options, const ClientOptions& clients) {
   MakeDataFolder(clients.data);
   const std::uint64_t epoch = NextEpoch(clients.data, IsStartedByItself());
+  // Before all that takes time, and until all of it has ended.
+  Health health;
+  std::optional<MonitorPort> monitors;
+  if (clients.metrics) monitors.emplace(*clients.metrics, health);
   Coordinator coordinator(options.network, options.audit, epoch);
   ServiceOptions service_options;
   service_options.data = clients.data;
@@ -126,16 +137,14 @@ int ServeClients(const ServeOptions& options, const ClientOptions& clients) {
   });
   LogInfo("domain {}, workers and clients can join at port {}", options.network.domain,
           CoordinatorPort(options.network.domain));
-  std::optional<PrometheusPort> prometheus;
-  if (clients.prometheus) prometheus.emplace(*clients.prometheus);
   std::optional<WebServer> web;
   WebRows web_rows;
   if (clients.web) web.emplace(*clients.web, FilesBelow(clients.data));
   std::uint64_t shown_changes = 0;
-  Every web_period(kWeb_s), web_pause(kWebPause_s), prometheus_period(kPrometheus_s),
-      counts_period(kLogCounts_s);
+  Every web_period(kWeb_s), web_pause(kWebPause_s), figures_period(kFigures_s),
+      counts_period(kLogCounts_s), health_period(kHealth_s);
   Attendance attendance(options.network.domain);
-  std::optional<Watchdog> watchdog(std::in_place, options.again, coordinator.StartPulse());
+  std::optional<Watchdog> watchdog(std::in_place, options.again, coordinator.StartPulse(), health);
   double drained_s = 0.0;  // since when
   while (!StopRequested() && (drained_s == 0.0 || coordinator.now_s() - drained_s < kFarewell_s)) {
     const Stopwatch round;
@@ -144,6 +153,7 @@ int ServeClients(const ServeOptions& options, const ClientOptions& clients) {
     if (!service.IsDrained()) drained_s = 0.0;
     if (service.IsDrained() && drained_s == 0.0) drained_s = coordinator.now_s();
     watchdog->Note(coordinator.ReceivesReports(), service.HasWorkToFly());
+    if (health_period.IsDue(coordinator.now_s())) health.SetPause(WhyPaused(service, clients.data));
     attendance.Check(coordinator.joined() > 0 || !service.HasWork(), coordinator.now_s());
     // Whoever has launched a campaign opens its page at once.
     const bool is_new =
@@ -153,12 +163,13 @@ int ServeClients(const ServeOptions& options, const ClientOptions& clients) {
       shown_changes = service.catalogue().changes();
     }
     if (counts_period.IsDue(coordinator.now_s())) LogCounts();
-    if (prometheus && prometheus_period.IsDue(coordinator.now_s())) {
-      prometheus->Set(PrometheusText(service, coordinator, times));
+    if (monitors && figures_period.IsDue(coordinator.now_s())) {
+      monitors->SetFigures(PrometheusText(service, coordinator, times));
       times.longest_round_s *= kFade;
     }
     times.longest_round_s = std::max(times.longest_round_s, round.elapsed_s());
   }
+  health.SetPause("it shuts down");
   watchdog.reset();
   EndForeignProcesses();  // a slow control law keeps nobody
   service.Flush();

@@ -22,8 +22,8 @@ struct ServeOptions {
 };
 
 struct ClientOptions {
-  std::string data;                            ///< folder
-  std::optional<HttpAddress> prometheus = {};  ///< where its figures are served
+  std::string data;                         ///< folder
+  std::optional<HttpAddress> metrics = {};  ///< of the port for monitors
   std::optional<WebOptions> web = {};
   std::uint64_t max_cases = kDefaultMaxCases;
   Retention retention = {};

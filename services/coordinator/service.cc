@@ -291,6 +291,12 @@ std::optional<std::uint64_t> Service::free_bytes() const {
   return error ? std::nullopt : std::optional<std::uint64_t>(space.available);
 }
 
+std::string Service::WhyPaused() const {
+  for (const auto& [id, flying] : flying_)
+    if (!flying.book->pause().empty()) return flying.book->pause();
+  return delayed_.empty() ? "" : delayed_.begin()->second.problem;
+}
+
 // One that flies goes back into the queue if this one has a higher priority.
 bool Service::MakeRoomFor(const CatalogueEntry& entry) {
   if (flying_.size() < options_.flying_at_once) return true;

@@ -102,6 +102,8 @@ class Service {
   double report_wait_s() const;
   /// Bytes that are free on the disk of the campaigns; none if the system does not say.
   std::optional<std::uint64_t> free_bytes() const;
+  /// Why campaigns wait now: something cannot be stored. Empty: they do not.
+  std::string WhyPaused() const;
   /// Whether any campaign has not ended.
   bool HasWork() const;
   /// Whether workers are needed now.

@@ -48,9 +48,10 @@ bool RestartRule::Check(double now_s, bool receives, bool has_work, long beats) 
          (has_received_ && now_s - received_s_ > kNoReports_s);
 }
 
-Watchdog::Watchdog(std::vector<std::string> arguments, std::shared_ptr<const Pulse> pulse)
+Watchdog::Watchdog(std::vector<std::string> arguments, std::shared_ptr<const Pulse> pulse, Health& health)
     : arguments_(std::move(arguments)),
       pulse_(std::move(pulse)),
+      health_(health),
       thread_([this](const std::stop_token& stop) { Watch(stop); }) {}
 
 // The time is what the thread has slept, not the clock's: a program that was stopped, or a machine that
@@ -58,10 +59,14 @@ Watchdog::Watchdog(std::vector<std::string> arguments, std::shared_ptr<const Pul
 void Watchdog::Watch(const std::stop_token& stop) {
   pthread_setname_np(pthread_self(), "watchdog");
   RestartRule rule;
+  long heard = 0;
   for (double awake_s = 0.0; !stop.stop_requested();
        awake_s += std::chrono::duration<double>(kPeriod).count()) {
     std::this_thread::sleep_for(kPeriod);
-    if (!rule.Check(awake_s, receives_, has_work_, pulse_->beats())) continue;
+    const long beats = pulse_->beats();
+    if (beats != heard) health_.Beat();
+    heard = beats;
+    if (!rule.Check(awake_s, receives_, has_work_, beats)) continue;
     LogWarning("no messages arrive any more: the coordinator restarts");
     StartAgain(arguments_);
     // Whoever supervises this program starts it again.

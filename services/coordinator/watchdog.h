@@ -7,6 +7,7 @@
 #include <thread>
 #include <vector>
 
+#include "services/coordinator/health.h"
 #include "services/transport/pulse.h"
 
 namespace dispersa {
@@ -36,8 +37,8 @@ bool IsStartedByItself();
 /// its own, because the message thread may hang, and asks nothing of the middleware.
 class Watchdog {
  public:
-  /// `arguments`: the command line of the restarted program.
-  Watchdog(std::vector<std::string> arguments, std::shared_ptr<const Pulse> pulse);
+  /// `arguments`: the command line of the restarted program. `health` learns of the beats.
+  Watchdog(std::vector<std::string> arguments, std::shared_ptr<const Pulse> pulse, Health& health);
 
   /// Call it in each round: whether reports arrive, and whether there is work, so that they should.
   void Note(bool receives, bool has_work) {
@@ -50,6 +51,7 @@ class Watchdog {
 
   std::vector<std::string> arguments_;
   std::shared_ptr<const Pulse> pulse_;
+  Health& health_;
   std::atomic<bool> receives_ = false, has_work_ = false;
   std::jthread thread_;
 };

@@ -512,6 +512,7 @@ TEST_F(ServiceTroubleTest, AFullDiskPausesCampaignsAndTheyGoOnByThemselves) {
       return "the opening is not delayed";
     note(Failure(flying.id));
     note(Failure(opening.id));
+    note(service_->WhyPaused());
     workforce_.Join("another");
     note(std::to_string(MadeUpWorkforce::CasesIn(workforce_.Tick())) + " assigned");
     try {
@@ -525,7 +526,9 @@ TEST_F(ServiceTroubleTest, AFullDiskPausesCampaignsAndTheyGoOnByThemselves) {
     workforce_.Join("w");
     note(std::to_string(MadeUpWorkforce::CasesIn(workforce_.Tick()) > 0) + " assigned again");
     note(Failure(flying.id));
+    note(service_->WhyPaused());
     if (!Reaches(opening.id, CampaignState::kFlying)) return "the opening is not tried again";
+    note(service_->WhyPaused());
     note(Failure(opening.id));
     if (!Reaches(Launch(launching), CampaignState::kFlying)) return "does not fly when launched again";
     note(std::to_string(ResultFolder::Open(service_->catalogue().ResultsOf(flying.id)).CaseCount()) +
@@ -537,9 +540,10 @@ TEST_F(ServiceTroubleTest, AFullDiskPausesCampaignsAndTheyGoOnByThemselves) {
   EXPECT_EQ(OnASmallDisk(folder_.path(), "3m", steps),
             "flying 0: " + data + "/" + flying.id + "/results/results.sqlite" + later +  //
                 "waiting 0: " + data + "/" + opening.id + "/results/campaign.yaml" + later +
-                "0 assigned\n" +  //
+                data + "/" + flying.id + "/results/results.sqlite: no space left on the disk\n0 assigned\n" +  //
                 data + "/" + launching.id + "/campaign.yaml: no space left on the disk\n" +
-                "1 assigned again\nflying 0: \nflying 0: \n150 stored\n");
+                "1 assigned again\nflying 0: \n" + data + "/" + opening.id +
+                "/results/campaign.yaml: no space left on the disk\n\nflying 0: \n150 stored\n");
 }
 
 // A campaign takes over results of the same flights.

@@ -68,7 +68,10 @@ class DeployTest(unittest.TestCase):
         self.start(coordinator)
         worker = self.start(worker) if isinstance(worker, list) else worker()
         wait_for(workers, "a worker")
-        self.assertEqual(subprocess.run(self.on_loopback(probe), timeout=PATIENCE_S).returncode, 0)
+        if isinstance(probe, str):
+            self.assertEqual(urllib.request.urlopen(probe, timeout=PATIENCE_S).read(), b"ok\n")
+        else:
+            self.assertEqual(subprocess.run(self.on_loopback(probe), timeout=PATIENCE_S).returncode, 0)
         worker.send_signal(signal.SIGTERM)
         self.assertEqual(worker.wait(timeout=PATIENCE_S), 0)
 
@@ -119,15 +122,18 @@ class DeployTest(unittest.TestCase):
             self.assertEqual([volume["secret"]["defaultMode"] for volume in pod["volumes"] if "secret" in volume], [0o440])
             self.assertEqual(pod["securityContext"]["fsGroup"], 1000)
         self.assert_each_pod_has_its_own_keys(workers["spec"], scaled["maxReplicas"])
-        self.assert_they_find_each_other(coordinator["command"], worker["command"],
-                                         coordinator["readinessProbe"]["exec"]["command"])
         # As a monitor elsewhere in the cluster: not from the loopback address that the program would take by itself.
         address, port = coordinator["command"][coordinator["command"].index("--metrics") + 1].split(":")
+        probes = {kind: coordinator[f"{kind}Probe"]["httpGet"] for kind in ("readiness", "liveness")}
+        self.assertEqual(probes, {"readiness": {"path": "/readyz", "port": "metrics"},
+                                  "liveness": {"path": "/healthz", "port": "metrics"}})
+        self.assert_they_find_each_other(coordinator["command"], worker["command"], f"http://127.0.0.3:{port}/readyz")
+        self.assertEqual(urllib.request.urlopen(f"http://127.0.0.3:{port}/healthz", timeout=PATIENCE_S).read(), b"ok\n")
         self.assertEqual(address, "0.0.0.0")
         for annotation, value in (("scrape", "true"), ("port", port), ("path", "/metrics")):
             annotations = coordinators["metadata"]["annotations"]
             self.assertEqual(annotations[f"prometheus.io/{annotation}"], value)
-        self.assertEqual([p["containerPort"] for p in coordinator["ports"]], [int(port)])
+        self.assertEqual({p["name"]: p["containerPort"] for p in coordinator["ports"]}, {"metrics": int(port)})
         metrics = urllib.request.urlopen(f"http://127.0.0.3:{port}/metrics", timeout=PATIENCE_S).read().decode()
         self.assertIn(f"\n{scaled['metrics'][0]['external']['metric']['name']} 0\n", metrics)
         for line in metrics.splitlines():
