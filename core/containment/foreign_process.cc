@@ -36,6 +36,8 @@ bool is_foreign_program = false;
 
 std::atomic<bool> is_ending = false;
 
+int foreign_output = STDERR_FILENO;
+
 // Beside the program or library that has this function, or in the folder bin of one above it: the programs of
 // a build or an installation, its tests and its Python package lie so.
 fs::path FindProgram() {
@@ -71,6 +73,7 @@ std::vector<char*> Pointers(std::vector<std::string>& words) {
 // Between fork and exec of a process with threads: only what is safe in a signal handler.
 [[noreturn]] void BecomeForeign(const char* program, char* const* words, char* const* environment,
                                 int socket) {
+  if (foreign_output != STDERR_FILENO) dup2(foreign_output, STDERR_FILENO);  // it may be the number below
   if (socket == kSocket) {
     fcntl(kSocket, F_SETFD, 0);
   } else {
@@ -156,6 +159,8 @@ void ForeignProcess::Ask(const std::string& order, const Say& hear, const StopCh
   Fail(WIFEXITED(status) && WEXITSTATUS(status) == kExecFailed ? std::string(kProgram) + " cannot be executed"
                                                                : std::string(kProgram) + " ended");
 }
+
+void SendForeignOutputTo(int file) { foreign_output = file; }
 
 void EndForeignProcesses() { is_ending = true; }
 

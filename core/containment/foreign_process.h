@@ -41,6 +41,10 @@ class ForeignProcess {
 /// whatever a law is doing.
 void EndForeignProcesses();
 
+/// What foreign code prints goes to this descriptor in place of the standard error. Call it before any thread
+/// starts.
+void SendForeignOutputTo(int file);
+
 /// A plug-in's description of itself, asked in such a process. Throws PluginError, ContainedEnd, NoChild.
 PluginDescription DescribePlugin(const PluginConfig& config);
 

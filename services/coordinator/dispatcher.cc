@@ -332,6 +332,7 @@ void Dispatcher::On(const std::string& sender, const CampaignRefusal& refusal, d
   known->second.heard_s = known->second.last_report_s = now_s;
   const std::string reason = Printable(refusal.reason, 1000);
   CampaignBook& book = *campaign->second.book;
+  const LogAbout about(book.campaign().id);
   if (refusal.engine_fault) {
     NoteFault(refusal, reason, campaign->second, known->second);
   } else {

@@ -16,6 +16,7 @@
 #include "services/coordinator/dump_any_text.h"
 #include "services/coordinator/packed_files.h"
 #include "services/ledger/result_exit_code.h"
+#include "services/log/log.h"
 #include "services/program/exit_code.h"
 #include "services/transport/permissions.h"
 #include "services/transport/validity.h"
@@ -187,6 +188,7 @@ Reply FrontDesk::Answer(const Request& request) {
   Reply reply;
   reply.client = request.client;
   reply.number = request.number;
+  const LogAbout about("", fmt::format("{} {} of {}", request.method, request.number, request.client));
   ForgetUploads();
   copies_.ForgetUnused(workforce_.now_s());
   try {

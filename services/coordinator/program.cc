@@ -9,6 +9,7 @@
 #include <utility>
 #include <vector>
 
+#include "core/containment/foreign_process.h"
 #include "core/results/result_error.h"
 #include "services/coordinator/serve.h"
 #include "services/ledger/result_exit_code.h"
@@ -43,6 +44,7 @@ struct CoordinatorOptions {
   ClientOptions clients;
   std::string metrics, web, web_token;
   bool behind_tls = false;
+  std::string log = "text";
   std::vector<std::string> keep, quotas;
   bool health = false, drain = false;
   std::optional<double> audit;
@@ -137,6 +139,7 @@ std::optional<ExitCode> ReadArguments(int argc, char** argv, CoordinatorOptions&
   AddLimits(app, options);
   AddFlightOptions(app, options);
   AddNetworkOptions(app, options);
+  AddLogOption(app, options.log);
   app.footer(
       "Example: dispersa-coordinator --data /var/lib/dispersa --domain 7 --keys coordinator-main\n"
       "         dispersa-worker --domain 7 --peer coordinator-host --keys worker-node1");
@@ -191,7 +194,10 @@ int RunCoordinator(int argc, char** argv) {
   LogForDaemon("dispersa-coordinator");
   CoordinatorOptions options;
   if (const auto code = ReadArguments(argc, argv, options)) return *code;
+  const bool as_json = options.log == "json";
+  if (as_json) LogAsJson();
   try {
+    if (as_json) SendForeignOutputTo(OpenLoggedPipe());
     return DoTask(options, std::vector<std::string>(argv, argv + argc));
   } catch (const InputError& error) {
     return EndFor(error, options.json);

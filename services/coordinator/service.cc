@@ -206,6 +206,7 @@ void Service::CloseComplete() {
     });
   }
   for (const std::string& id : complete) {
+    const LogAbout about(id);
     if (const CampaignBook& book = *flying_.at(id).book; book.IsAudited()) {
       LogInfo("campaign {} ({}): {} results were flown again and agree", book.campaign().name,
               id.substr(0, 8), book.confirmed());
@@ -235,7 +236,8 @@ bool Service::StartReport() {
   try {
     auto reported =
         std::async(std::launch::async, [this, text = SoundTextOf(id), name = entry.name,
-                                        results = catalogue_.ResultsOf(id), root = options_.data] {
+                                        results = catalogue_.ResultsOf(id), root = options_.data, id] {
+          const LogAbout about(id);
           ReportOptions options;
           options.threads = options_.report_threads;
           options.progress = [this](const std::string&, std::uint64_t, std::uint64_t) {
@@ -305,6 +307,7 @@ bool Service::MakeRoomFor(const CatalogueEntry& entry) {
   const CatalogueEntry* last = WhoGivesWayTo(entry, flying);
   if (last == nullptr || !flying_.at(last->id).book->TryFlush()) return false;
   CatalogueEntry& lowest = catalogue_.At(last->id);
+  const LogAbout about(lowest.id);
   TakeBack(lowest.id);
   lowest.state = CampaignState::kWaiting;
   Save(lowest);
@@ -347,6 +350,7 @@ void Service::BeginToOpen(const CatalogueEntry& entry) {
 void Service::FinishOpening() {
   if (!opening_ || !IsReady(opening_->book)) return;
   Opening opened = *std::move(opening_);
+  const LogAbout about(opened.id);
   opening_.reset();
   CatalogueEntry& entry = catalogue_.At(opened.id);
   try {
@@ -377,6 +381,7 @@ std::string Service::SoundTextOf(const std::string& id) const {
 
 // Whatever it is: of this campaign alone. A full disk is waited for.
 void Service::Fail(CatalogueEntry& entry, std::exception_ptr error) {
+  const LogAbout about(entry.id);
   try {
     std::rethrow_exception(error);
   } catch (const ResultError& problem) {
@@ -410,6 +415,7 @@ bool Service::IsDelayed(const std::string& id) const {
 }
 
 void Service::Save(const CatalogueEntry& entry) {
+  const LogAbout about(entry.id);
   try {
     catalogue_.Write(entry);
     unsaved_.erase(entry.id);
@@ -529,6 +535,7 @@ Service::Book Service::TakeBack(const std::string& id) {
 }
 
 void Service::End(CatalogueEntry& entry, CampaignState state, int code, const std::string& problem) {
+  const LogAbout about(entry.id);
   entry.state = state;
   entry.code = code;
   entry.problem = problem.substr(0, kMaxProblem);
@@ -684,6 +691,7 @@ void Service::Relaunch(const std::string& id, int priority, const std::vector<st
 }
 
 void Service::Launch(CatalogueEntry entry, const std::string& text) {
+  const LogAbout about(entry.id);
   RequireQuota(entry);
   entry.launched_unix_s = options_.unix_time_s();
   entry.engine = EngineVersion();
@@ -702,6 +710,7 @@ bool Service::MayBeDeleted(const std::string& id) const {
 void Service::Delete(const std::string& id) { Delete(id, ""); }
 
 void Service::Delete(const std::string& id, const std::string& why) {
+  const LogAbout about(id);
   const CatalogueEntry& entry = catalogue_.At(id);
   if (!MayBeDeleted(id)) {
     throw Refused(
@@ -764,6 +773,7 @@ void Service::DeleteOld() {
 }
 
 void Service::Repair(const std::string& id, const std::string& worker) {
+  const LogAbout about(id);
   CatalogueEntry& entry = catalogue_.At(id);
   RequireSound(entry);
   if (IsOfAnotherEngine(entry)) {
@@ -792,6 +802,7 @@ void Service::Repair(const std::string& id, const std::string& worker) {
 }
 
 void Service::Cancel(const std::string& id) {
+  const LogAbout about(id);
   CatalogueEntry& entry = catalogue_.At(id);
   if (entry.state == CampaignState::kCancelled) return;
   RequireSound(entry);

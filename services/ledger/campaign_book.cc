@@ -141,6 +141,7 @@ bool CampaignBook::Try(Action action) {
 }
 
 void CampaignBook::Break(const std::string& fault) {
+  const LogAbout about(campaign_.id);
   if (!breakdown_.empty()) return;
   LogError("campaign {} ends: {}", Title(campaign_), fault);
   try {
@@ -266,7 +267,8 @@ Acceptance CampaignBook::Accept(const std::string& worker, const std::string& ho
                                                          now_s - start.mapped().now_s});
       if (audit_) audit_->Consider(claim);
       break;
-    case Acceptance::kConflict:
+    case Acceptance::kConflict: {
+      const LogAbout about(campaign_.id);
       if (audit_) {
         Dispute(claim);
       } else if (campaign_.autopilot.plugin) {
@@ -283,9 +285,12 @@ Acceptance CampaignBook::Accept(const std::string& worker, const std::string& ho
                       : "a processor, a library or a build breaks the floating-point contract; no result "
                         "can be trusted");
       break;
-    case Acceptance::kUnknown:
+    }
+    case Acceptance::kUnknown: {
+      const LogAbout about(campaign_.id);
       LogError("case {} of worker {} on {} does not exist in this campaign", result.case_index, worker, host);
       break;
+    }
     case Acceptance::kDuplicate:
       break;
   }
@@ -300,6 +305,7 @@ bool CampaignBook::FlushIfDue(double now_s) {
 }
 
 bool CampaignBook::TryFlush() {
+  const LogAbout about(campaign_.id);
   if (!breakdown_.empty()) return false;
   bool is_stored = false;
   Guard([&] { is_stored = Try([this] { Flush(); }); });

@@ -48,6 +48,7 @@ void TryToTakeOver(const fs::path& from, const Campaign& campaign, const std::ve
 
 std::unique_ptr<CampaignBook> OpenBook(const BookRequest& opening) {
   const Campaign campaign = ParseCampaign(opening.text, opening.name);
+  const LogAbout about(campaign.id);
   const bool is_new = !HasResults(opening.results) || IsEmptyOfAnotherEngine(opening.results);
   if (is_new) {
     // Of a start that was killed: nothing is in it.

@@ -12,6 +12,7 @@
 #include <optional>
 #include <utility>
 
+#include "services/log/json_lines.h"
 #include "services/log/log_limits.h"
 
 namespace dispersa {
@@ -19,6 +20,7 @@ namespace {
 
 std::mutex limits_mutex;
 std::optional<LogLimits> limits;  // of a daemon
+bool is_json = false;             // set before other threads start
 
 double Now_s() {
   return std::chrono::duration<double>(std::chrono::steady_clock::now().time_since_epoch()).count();
@@ -60,6 +62,19 @@ void LogForDaemon(const std::string& name) {
   limits.emplace();
 }
 
+void LogAsJson() {
+  is_json = true;
+  spdlog::set_formatter(JsonLines());
+}
+
+LogAbout::LogAbout(const std::string& campaign_id, const std::string& request)
+    : campaign_(Subject().campaign), request_(Subject().request) {
+  if (!campaign_id.empty()) Subject().campaign = campaign_id;
+  if (!request.empty()) Subject().request = request;
+}
+
+LogAbout::~LogAbout() { Subject() = {std::move(campaign_), std::move(request_)}; }
+
 void SetLogLevel(LogLevel least) { spdlog::set_level(LevelOf(least)); }
 
 void Log(LogLevel level, std::string_view kind, std::string_view text) {
@@ -79,6 +94,9 @@ void LogCounts() {
   for (const std::string& line : lines) spdlog::info(line);
 }
 
-void TellText(std::string_view text) { std::fwrite(text.data(), 1, text.size(), stderr); }
+void TellText(std::string_view text) {
+  if (is_json) return spdlog::error(text.substr(0, text.find_last_not_of('\n') + 1));
+  std::fwrite(text.data(), 1, text.size(), stderr);
+}
 
 }  // namespace dispersa

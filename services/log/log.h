@@ -18,6 +18,23 @@ void LogForPeople(LogColor color, std::string_view before = {});
 /// For a daemon's journal: with time and name. Of one kind (one format) 60 lines a minute are written, and
 /// then how many more there were (log_limits.h).
 void LogForDaemon(const std::string& name);
+/// From now on the lines of a daemon are JSON objects (json_lines.h), those of TellText too.
+void LogAsJson();
+/// A descriptor for the output of foreign code: each line written to it becomes a line of this log, on a
+/// thread of its own. It stays open. Throws std::system_error.
+int OpenLoggedPipe();
+/// As long as it lives, lines of this thread name this campaign and request as JSON members. An empty one
+/// leaves what an outer one has set.
+class LogAbout {
+ public:
+  explicit LogAbout(const std::string& campaign_id, const std::string& request = "");
+  ~LogAbout();
+  LogAbout(const LogAbout&) = delete;
+  LogAbout& operator=(const LogAbout&) = delete;
+
+ private:
+  std::string campaign_, request_;  ///< of the outer one
+};
 /// Messages below `least` are dropped.
 void SetLogLevel(LogLevel least);
 
@@ -26,7 +43,7 @@ void Log(LogLevel level, std::string_view kind, std::string_view text);
 /// Writes the counts of lines that were not written, of minutes that are over. A daemon calls it now and
 /// then.
 void LogCounts();
-/// Prints the text unchanged. Text that stderr does not take is lost, which is no reason to end a program.
+/// Prints the text unchanged, unless LogAsJson() was called. Text that stderr does not take is lost, which is no reason to end a program.
 void TellText(std::string_view text);
 
 template <class... Values>

@@ -91,6 +91,11 @@ void BeginCommandLine(CLI::App& app, bool& json, const char* json_help) {
   app.add_flag("--json", json, json_help);
 }
 
+void AddLogOption(CLI::App& app, std::string& log) {
+  app.add_option("--log", log, "lines on standard error: text, or json: one JSON object each; default: text")
+      ->check(CLI::IsMember({"text", "json"}));
+}
+
 std::optional<ExitCode> ParseCommandLine(CLI::App& app, int argc, char** argv) {
   const Words words(argv + 1, argv + argc);
   if (words.size() >= 2 && words[0] == "completion" && words[1] == "words") {

@@ -10,6 +10,7 @@
 #include <utility>
 
 #include "core/containment/contained.h"
+#include "core/containment/foreign_process.h"
 #include "core/flight/lane_engine.h"
 #include "services/log/log.h"
 #include "services/program/command_line.h"
@@ -57,10 +58,13 @@ int RunWorker(int argc, char** argv) {
                  "end with exit code 5 after this number of seconds without a coordinator; default: never")
       ->check(CLI::NonNegativeNumber);
   app.add_option("--uuid", options.uuid, "name of this process; default: a random one");
+  std::string log = "text";
+  AddLogOption(app, log);
   std::optional<int> run_pass;
   app.add_option("--run-pass", run_pass, "descriptor from which `dispersa run` tells its worker who it is")
       ->group("");  // for it alone
   if (const auto code = ParseCommandLine(app, argc, argv)) return *code;
+  if (log == "json") LogAsJson();
   try {
     ChosenEngine();
   } catch (const std::invalid_argument& error) {
@@ -76,6 +80,7 @@ int RunWorker(int argc, char** argv) {
 
   int code = kExitInternalError;
   try {
+    if (log == "json") SendForeignOutputTo(OpenLoggedPipe());
     options.peers = ParsePeers(peer, options.network.domain);
     if (run_pass) {  // a worker of `dispersa run` has the secret of its run
       RunPass pass = TakeRunPass(*run_pass);

@@ -98,7 +98,7 @@ void Worker::Connect() {
 }
 
 void Worker::Load(const CampaignText& text) {
-  std::string problem;
+  std::string problem, id;
   bool engine_fault = false;
   std::shared_ptr<const CampaignFlights> flights;
   try {
@@ -107,6 +107,7 @@ void Worker::Load(const CampaignText& text) {
                 EngineVersion();
     } else {
       const Campaign campaign = ParseCampaign(text.text, text.name);
+      id = campaign.id;
       if (campaign.result_id() == text.flight_id) {
         flights = std::make_shared<CampaignFlights>(campaign);
         CheckPluginIsDeterministic(*flights, campaign.sampling.cases);
@@ -119,6 +120,7 @@ void Worker::Load(const CampaignText& text) {
     problem = error.what();
     engine_fault = dynamic_cast<const AssertionFailed*>(&error) != nullptr;
   }
+  const LogAbout about(id);
   if (engine_fault) return Break(text.flight_id, problem);
   if (!problem.empty()) flights.reset();
   if (!problem.empty()) LogError("campaign {} is refused: {}", text.name, problem);

@@ -19,6 +19,7 @@ from service_case import ServiceCase
 
 SOURCE = pathlib.Path(os.environ["DISPERSA_SOURCE"])
 CASES = 16
+PRINTS = 13
 DIFFERS_BY_WORKER = 20
 CRASHES_IN_WORKERS = 27
 REFUSAL = (r"the control law pd_test is not deterministic: of case \d+, flown (by worker \S+|here before the campaign) and again by \S+, "
@@ -96,6 +97,33 @@ class LawsTest(ServiceCase):
         identity = self.dispersa("launch", campaign).strip()
         self.dispersa("watch", identity, code=reference.code)
         self.assert_same_folder(identity, reference)
+
+    def test_logs_as_json_are_objects_with_their_campaign_and_a_law_prints_no_other_line(self):
+        reference, campaign = self.campaign(PRINTS)
+        self.start("dispersa-coordinator", "--data", self.data, *self.DAEMON, "--log", "json")
+        self.start_worker("--log", "json")
+        identity = self.dispersa("launch", campaign).strip()
+        self.dispersa("watch", identity, code=reference.code)
+        lines = [json.loads(line) for line in self.log.read_text().splitlines()]
+        for line in lines:
+            self.assertEqual(list(line)[:4], ["time", "level", "program", "message"])
+            self.assertLessEqual(set(line), {"time", "level", "program", "message", "campaign", "request"})
+        self.assertIn(("dispersa-worker", "info", "a control law prints: a law prints this"),
+                      {(line["program"], line["level"], line["message"]) for line in lines})
+        of_campaign = [line for line in lines if line["message"].startswith("campaign smoke ")]
+        self.assertGreater(len(of_campaign), 2)
+        self.assertEqual({line.get("campaign") for line in of_campaign}, {identity})
+        launched = next(line for line in of_campaign if "launched by" in line["message"])
+        self.assertRegex(launched["request"], r"^launch \d+ of [0-9a-f]{32}$")
+        self.assertNotIn("request", next(line for line in lines if " joined: " in line["message"]))
+
+    def test_an_end_is_an_object_of_the_log(self):
+        for program, arguments in (("dispersa-coordinator", ["--data", self.data, "--keys", self.data]),
+                                   ("dispersa-worker", ["--peer", "127.0.0.1:x"])):
+            ended = subprocess.run([BINARIES / program, *arguments, "--log", "json"], capture_output=True, text=True, timeout=PATIENCE_S)
+            self.assertEqual(ended.returncode, 2)
+            line = json.loads(ended.stderr)
+            self.assertEqual((line["level"], line["program"]), ("error", program))
 
     def test_two_workers_that_agree_fly_it(self):
         reference, campaign = self.campaign(0)
