@@ -118,9 +118,9 @@ class Batch {
   void Guide();
   void Meter(M powered);
   void MeterFree();
-  void Watch();
-  void See(M shown, unsigned parts, LauncherSeen<T>& seen) const;
-  void Digest();
+  void Watch(M due);
+  void See(M shown, RowColumns read, LauncherSeen<T>& seen) const;
+  void Digest(unsigned due);
   void FlyOn();
   void CheckEnds();
 

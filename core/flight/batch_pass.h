@@ -27,8 +27,10 @@ void Batch<T>::Pass() {
   lanes_.metrics.AddMoment(loaded, lanes_.step.LargestMomentNow(lanes_.metrics.sums.bending_moment_max_n_m));
   if (has_free_stage_) MeterFree();
   Meter(Powered());
-  Watch();
-  Digest();
+  const M due = lanes_.at.live & (lanes_.at.tick >= lanes_.at.next_row_tick);
+  if (lanes_.own_parts > 0 || Any(due)) Watch(due);
+  const M digested = lanes_.at.live & (lanes_.at.tick >= lanes_.at.next_digest_tick);
+  if (Any(digested)) Digest(Bits(digested));
   if (flies_on_) FlyOn();
   CheckEnds();
   if (flying_ > 0) Advance();
@@ -172,26 +174,25 @@ void Batch<T>::Meter(M powered) {
   }
 }
 
-/// Rows of histories, the campaign's own metrics, and observers. `due`: of the lanes with a history.
+/// Rows of histories, the campaign's own metrics, and observers. `due`: the lanes that have a row or are
+/// observed at this tick.
 template <class T>
-void Batch<T>::Watch() {
-  const M due = lanes_.at.live & (lanes_.at.tick >= lanes_.at.next_row_tick);
+DISPERSA_OUT_OF_LINE void Batch<T>::Watch(M due) {
+  const OwnMetricsPlan* const own = model_.own_metrics();
   const bool any_due = Any(due);
-  if (!any_due && lanes_.own_parts == 0) return;
+  const RowColumns read = any_due ? kWholeRow : own->row_columns;
   T row[kBodyColumns + kLauncherColumns + kRowConditions];
-  const unsigned parts = any_due ? kWholeRow : model_.own_metrics()->row_parts;
   LauncherSeen<T> seen;
-  See(lanes_.own_parts > 0 ? lanes_.at.live : due, parts, seen);
-  FillLauncher<T>(model_.nominal_plant().environment.earth, seen, parts, row);
-  if (lanes_.own_parts > 0) {
+  See(own != nullptr ? lanes_.at.live : due, read, seen);
+  FillLauncher<T>(model_.nominal_plant().environment.earth, seen, read, row);
+  if (own != nullptr) {
     T* const conditions = row + kBodyColumns + kLauncherColumns;
     conditions[0] = OneWhere<T>(seen.burning);
     for (int stage = 1; stage <= kMaxStages; ++stage)
       conditions[stage] = OneWhere<T>(seen.burning & (Abs(seen.stage - T(stage)) < T(0.5)));
     conditions[1 + kMaxStages] = OneWhere<T>(lanes_.at.coasting);
     for (int i = 0; i < lanes_.own_parts; ++i)
-      AddTick<T>(model_.own_metrics()->parts.data()[i], lanes_.at.live, lanes_.at.time_s, tick_s_, row,
-                 lanes_.own_sums[i]);
+      AddTick<T>(own->parts.data()[i], lanes_.at.live, lanes_.at.time_s, tick_s_, row, lanes_.own_sums[i]);
   }
   for (int lane = 0; any_due && lane < kLanes; ++lane) {
     if (!(Bits(due) >> lane & 1u)) continue;
@@ -214,50 +215,60 @@ void Batch<T>::Watch() {
   }
 }
 
-/// What a row shows of the lanes. `shown`: those whose row is read.
+/// What the columns that are `read` show of the lanes. `shown`: those whose row is read.
 template <class T>
-void Batch<T>::See(M shown, unsigned parts, LauncherSeen<T>& seen) const {
+DISPERSA_OUT_OF_LINE void Batch<T>::See(M shown, RowColumns read, LauncherSeen<T>& seen) const {
   const Instant<T>& now = lanes_.step.now();
-  static_cast<BodySeen<T>&>(seen) = {
-      lanes_.at.time_s, lanes_.step.motion(), parts & kFlow ? lanes_.step.VelocityThroughAir() : Zero<T>(),
-      now.mach,         now.qbar_pa,          now.mass_kg};
+  seen.time_s = lanes_.at.time_s;
+  seen.motion = lanes_.step.motion();
+  if (kFlowAngles.IsRead(read) || kIncidence.IsRead(read)) seen.v_AB_B = lanes_.step.VelocityThroughAir();
+  seen.mach = now.mach;
+  seen.qbar_pa = now.qbar_pa;
+  seen.mass_kg = now.mass_kg;
   seen.burning = lanes_.step.phase().burning;
   seen.steered = !lanes_.at.unsteered;
   seen.thrust_n = now.thrust_n;
   seen.force_n = now.force_n;
-  seen.R_IL = MatrixAt(model_.frame().R_IL.data());
-  seen.errors = lanes_.errors;
-  const T* const n = lanes_.step.drives(0).first.angle_rad;
-  seen.felt_pitch_rad = T(0.5) * (n[0] + n[1]);
-  seen.felt_yaw_rad = T(0.5) * (n[2] + n[3]);
-  seen.felt_roll_rad = T(0.25) * ((n[0] - n[1]) + (n[2] - n[3]));
-  if (lanes_.step.plant().nozzles_listed) {
-    seen.felt_pitch_rad = lanes_.computer.FeltAboutAll(kPitch, lanes_.step);
-    seen.felt_yaw_rad = lanes_.computer.FeltAboutAll(kYaw, lanes_.step);
-    seen.felt_roll_rad = lanes_.computer.FeltAboutAll(kRoll, lanes_.step);
+  if (kLaunchPitch.IsRead(read)) seen.R_IL = MatrixAt(model_.frame().R_IL.data());
+  if (kSteered.IsRead(read)) {
+    seen.errors = lanes_.errors;
+    const T* const n = lanes_.step.drives(0).first.angle_rad;
+    seen.felt_pitch_rad = T(0.5) * (n[0] + n[1]);
+    seen.felt_yaw_rad = T(0.5) * (n[2] + n[3]);
+    seen.felt_roll_rad = T(0.25) * ((n[0] - n[1]) + (n[2] - n[3]));
+    if (lanes_.step.plant().nozzles_listed) {
+      seen.felt_pitch_rad = lanes_.computer.FeltAboutAll(kPitch, lanes_.step);
+      seen.felt_yaw_rad = lanes_.computer.FeltAboutAll(kYaw, lanes_.step);
+      seen.felt_roll_rad = lanes_.computer.FeltAboutAll(kRoll, lanes_.step);
+    }
+    for (int i = 0; i < kNozzles; ++i) seen.nozzle_rad[i] = n[i];
   }
-  for (int i = 0; i < kNozzles; ++i) seen.nozzle_rad[i] = n[i];
   const AxisOutput<T>& pitch = lanes_.computer.output().axes[kPitch];
-  seen.command_pitch_rad = lanes_.computer.output().deflection_rad[kPitch];
-  seen.control_rad_s2 = pitch.command_rad_s2;
-  seen.adaptation_norm_rad_s2 = Sqrt(pitch.departure_norm2);
-  seen.v = pitch.v;
-  seen.v_rate_sign = pitch.v_rate_sign;
-  seen.frozen = OneWhere<T>(pitch.frozen > T(0.0));
-  seen.total_gain = lanes_.computer.memory(kPitch).total_gain;
-  seen.thruster_roll = lanes_.computer.thruster(kRoll).direction;
-  seen.thruster_pitch = lanes_.computer.thruster(kPitch).direction;
-  seen.thruster_yaw = lanes_.computer.thruster(kYaw).direction;
+  if (kLawColumns.IsRead(read)) {
+    seen.command_pitch_rad = lanes_.computer.output().deflection_rad[kPitch];
+    seen.control_rad_s2 = pitch.command_rad_s2;
+    seen.adaptation_norm_rad_s2 = Sqrt(pitch.departure_norm2);
+    seen.v = pitch.v;
+    seen.v_rate_sign = pitch.v_rate_sign;
+    seen.frozen = OneWhere<T>(pitch.frozen > T(0.0));
+    seen.total_gain = lanes_.computer.memory(kPitch).total_gain;
+    seen.projected = seen.rules_fired = T(0.0);
+  }
+  if (kThrusters.IsRead(read)) {
+    seen.thruster_roll = lanes_.computer.thruster(kRoll).direction;
+    seen.thruster_pitch = lanes_.computer.thruster(kPitch).direction;
+    seen.thruster_yaw = lanes_.computer.thruster(kYaw).direction;
+  }
   seen.expelled_kg = lanes_.step.phase().expelled_kg;
-  seen.stage = seen.program_pitch_rad = seen.projected = seen.rules_fired = T(0.0);
+  seen.stage = seen.program_pitch_rad = T(0.0);
   for (T& told : seen.law_telemetry) told = T(__builtin_nan(""));
   for (int lane = 0; lane < kLanes; ++lane) {
     if (!(Bits(shown) >> lane & 1u)) continue;
     const Slot& slot = lanes_.at.slot[lane];
     Lane(seen.stage, lane) = slot.stack + 1.0;
-    if (parts & kProgram)
+    if (kProgramPitch.IsRead(read))
       Lane(seen.program_pitch_rad, lane) = slot.record->ProgramPitch(Lane(lanes_.at.time_s, lane));
-    if (parts & kLearnt) {
+    if (kLearntColumns.IsRead(read)) {
       const AxisTelemetry learnt = TelemetryOf(model_.autopilot().laws.data()[kPitch].config, pitch,
                                                lanes_.computer.memory(kPitch), lane);
       Lane(seen.projected, lane) = learnt.projected ? 1.0 : 0.0;
@@ -269,16 +280,14 @@ void Batch<T>::See(M shown, unsigned parts, LauncherSeen<T>& seen) const {
   }
 }
 
+/// `due`: bits of lanes at a whole second, or at their lift-off.
 template <class T>
-void Batch<T>::Digest() {
-  const unsigned due = Bits(lanes_.at.live & (lanes_.at.tick >= lanes_.at.next_digest_tick));
-  if (due == 0) return;
+DISPERSA_OUT_OF_LINE void Batch<T>::Digest(unsigned due) {
   const long second = static_cast<long>(1.0 / tick_s_ + 0.5);
   for (int lane = 0; lane < kLanes; ++lane) {
     if (!(due >> lane & 1u)) continue;
     FlightRecord& record = *lanes_.at.slot[lane].record;
     const long tick = static_cast<long>(Lane(lanes_.at.tick, lane));
-    if (static_cast<double>(tick) < Lane(lanes_.at.next_digest_tick, lane)) continue;
     if (tick % second == 0) {
       StateValues y;
       lanes_.step.ReadLane(lane, y);

@@ -3,7 +3,6 @@
 #include <algorithm>
 #include <bit>
 #include <limits>
-#include <map>
 
 #include "core/flight/history.h"
 #include "core/flight/history_row.h"
@@ -65,36 +64,6 @@ const std::vector<LauncherColumn>& LauncherColumns() {
                                                       {"law_telemetry_3", kForeign},
                                                       {"law_telemetry_4", kForeign}};
   return columns;
-}
-
-unsigned PartsOf(int column) {
-  static const std::vector<unsigned> parts = [] {
-    const std::map<std::string, unsigned> of = {{"ned_v_n_m_s", kNorthEastDown},
-                                                {"ned_v_e_m_s", kNorthEastDown},
-                                                {"ned_v_d_m_s", kNorthEastDown},
-                                                {"altitude_m", kPlace},
-                                                {"latitude_deg", kPlace},
-                                                {"longitude_deg", kPlace},
-                                                {"yaw_deg", kNorthEastDown},
-                                                {"pitch_deg", kNorthEastDown},
-                                                {"roll_deg", kNorthEastDown},
-                                                {"alpha_deg", kFlow},
-                                                {"beta_deg", kFlow},
-                                                {"inertial_velocity_m_s", kOrbit},
-                                                {"flight_path_angle_deg", kOrbit},
-                                                {"pitch_program_deg", kProgram},
-                                                {"pitch_launch_deg", kLaunchAttitude},
-                                                {"adaptation_projected", kLearnt},
-                                                {"rules_fired", kLearnt},
-                                                {"incidence_deg", kFlow}};
-    std::vector<unsigned> list;
-    for (const std::string& name : HistoryColumns()) {
-      const auto found = of.find(name);
-      list.push_back(found == of.end() ? 0u : found->second);
-    }
-    return list;
-  }();
-  return parts[static_cast<std::size_t>(column)];
 }
 
 namespace {

@@ -1,6 +1,7 @@
 // The two halves of a history row: motion of any body, and what only a launcher has.
 #pragma once
 
+#include <cstdint>
 #include <string>
 #include <vector>
 
@@ -12,17 +13,9 @@
 
 namespace dispersa {
 
-/// Parts of a row that take time to compute. A row without a part has no meaningful value in its columns.
-enum RowPart : unsigned {
-  kPlace = 1u << 0,           ///< geodetic place
-  kNorthEastDown = 1u << 1,   ///< velocity and attitude against local axes
-  kFlow = 1u << 2,            ///< angles of the air's velocity
-  kOrbit = 1u << 4,           ///< inertial speed and path angle
-  kProgram = 1u << 5,         ///< the reference's attitude
-  kLaunchAttitude = 1u << 6,  ///< attitude against the launch axes
-  kLearnt = 1u << 7,          ///< what the pitch law's rules say
-};
-inline constexpr unsigned kWholeRow = ~0u;
+/// Columns of a row that are read: bit i is column i. All others have no meaningful value.
+using RowColumns = std::uint64_t;
+inline constexpr RowColumns kWholeRow = ~RowColumns{0};
 
 /// Columns of any body, and behind them those of a launcher.
 inline constexpr int kBodyColumns = 24, kLauncherColumns = 37;
@@ -35,8 +28,17 @@ struct LauncherColumn {
 };
 const std::vector<LauncherColumn>& LauncherColumns();
 
-/// Bits of RowPart that the value of a column needs. `column`: its position in HistoryColumns().
-unsigned PartsOf(int column);
+/// A group of neighbouring columns that are made together.
+struct ColumnGroup {
+  int first, last;
+  constexpr bool IsRead(RowColumns read) const {
+    return (read >> first & ((RowColumns{2} << (last - first)) - 1)) != 0;
+  }
+};
+inline constexpr ColumnGroup kLocalVelocity{7, 9}, kPlaceColumns{10, 12}, kLocalAttitude{13, 15},
+    kFlowAngles{21, 22}, kOrbitColumns{26, 27}, kProgramPitch{28, 28}, kLaunchPitch{29, 29}, kSteered{30, 40},
+    kLawColumns{41, 49}, kLearntColumns{46, 48}, kThrusters{50, 52}, kLoads{54, 55}, kIncidence{56, 56},
+    kToldByLaw{57, 60};
 
 /// Appends a row of a body, one value a name of KinematicColumnNames(). `v_AB_B` is the velocity through the
 /// air.

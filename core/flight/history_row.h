@@ -49,10 +49,11 @@ struct MiddleAngle {
       : sine(Clamp(s, T(-1.0), T(1.0))), is_singular(T(1.0) - Abs(sine) < T(kSingularSine)) {}
 };
 
-/// `row`: kBodyColumns values. What needs none of `parts` is always set.
+/// `row`: kBodyColumns values, of which those that are `read` are set.
 template <class T>
-DISPERSA_OUT_OF_LINE void FillBody(const Earth& earth, const BodySeen<T>& s, unsigned parts, T* row) {
+DISPERSA_OUT_OF_LINE void FillBody(const Earth& earth, const BodySeen<T>& s, RowColumns read, T* row) {
   const T degrees(kDegPerRad), none(0.0);
+  const auto reads = [read](int column) { return (read >> column & 1u) != 0; };
   const RigidMotion<T>& m = s.motion;
   row[0] = s.time_s;
   row[1] = m.p.x;
@@ -61,16 +62,18 @@ DISPERSA_OUT_OF_LINE void FillBody(const Earth& earth, const BodySeen<T>& s, uns
   row[4] = m.v.x;
   row[5] = m.v.y;
   row[6] = m.v.z;
-  if (parts & (kPlace | kNorthEastDown)) {
+  const bool has_place = kPlaceColumns.IsRead(read);
+  const bool has_velocity = kLocalVelocity.IsRead(read), has_attitude = kLocalAttitude.IsRead(read);
+  if (has_place || has_velocity || has_attitude) {
     const Place<T> place = PlaceAt(earth, m.p);
-    if (parts & kPlace) {
+    row[10] = place.altitude_m;
+    if (reads(11)) row[11] = Atan2(place.sin_latitude, place.cos_latitude) * degrees;
+    if (reads(12)) {
       const T turn = T(earth.rotation_rate_rad_s) * s.time_s;
       const T c = Cos(turn), sine = Sin(turn);
-      row[10] = place.altitude_m;
-      row[11] = Atan2(place.sin_latitude, place.cos_latitude) * degrees;
       row[12] = Atan2(c * m.p.y - sine * m.p.x, c * m.p.x + sine * m.p.y) * degrees;
     }
-    if (parts & kNorthEastDown) {
+    if (has_velocity || has_attitude) {
       const auto is_off_axis = place.axis_distance_m > none;
       const T inverse = T(1.0) / Select(is_off_axis, place.axis_distance_m, T(1.0));
       const T c = Select(is_off_axis, m.p.x * inverse, T(1.0)), sine = m.p.y * inverse;
@@ -86,9 +89,9 @@ DISPERSA_OUT_OF_LINE void FillBody(const Earth& earth, const BodySeen<T>& s, uns
                       d = TransposeTimes(R_IB, down);
       const MiddleAngle<T> pitch(-d.x);
       const T sign = Select(pitch.sine > none, T(1.0), T(-1.0));
-      row[13] = Select(pitch.is_singular, none, Atan2(e.x, n.x) * degrees);
-      row[14] = Atan2(pitch.sine, Sqrt(Fma(n.x, n.x, e.x * e.x))) * degrees;
-      row[15] = Select(pitch.is_singular, Atan2(sign * n.y, e.y), Atan2(d.y, d.z)) * degrees;
+      if (reads(13)) row[13] = Select(pitch.is_singular, none, Atan2(e.x, n.x) * degrees);
+      if (reads(14)) row[14] = Atan2(pitch.sine, Sqrt(Fma(n.x, n.x, e.x * e.x))) * degrees;
+      if (reads(15)) row[15] = Select(pitch.is_singular, Atan2(sign * n.y, e.y), Atan2(d.y, d.z)) * degrees;
     }
   }
   row[16] = m.w.x * degrees;
@@ -96,7 +99,7 @@ DISPERSA_OUT_OF_LINE void FillBody(const Earth& earth, const BodySeen<T>& s, uns
   row[18] = m.w.z * degrees;
   row[19] = s.mach;
   row[20] = s.qbar_pa;
-  if (parts & kFlow) {
+  if (kFlowAngles.IsRead(read)) {
     const Vector<T>& v = s.v_AB_B;
     row[21] = Atan2(v.z, v.x) * degrees;
     row[22] = Atan2(v.y, Sqrt(Fma(v.x, v.x, v.z * v.z))) * degrees;
@@ -104,23 +107,24 @@ DISPERSA_OUT_OF_LINE void FillBody(const Earth& earth, const BodySeen<T>& s, uns
   row[23] = s.mass_kg;
 }
 
-/// `row`: kBodyColumns + kLauncherColumns values.
+/// `row`: kBodyColumns + kLauncherColumns values, of which those that are `read` are set.
 template <class T>
-DISPERSA_OUT_OF_LINE void FillLauncher(const Earth& earth, const LauncherSeen<T>& s, unsigned parts, T* row) {
-  FillBody<T>(earth, s, parts, row);
+DISPERSA_OUT_OF_LINE void FillLauncher(const Earth& earth, const LauncherSeen<T>& s, RowColumns read,
+                                       T* row) {
+  FillBody<T>(earth, s, read, row);
   T* const o = row + kBodyColumns;
   const T degrees(kDegPerRad), none(0.0), undefined(__builtin_nan(""));
   const auto powered = s.burning & s.steered;
   const RigidMotion<T>& m = s.motion;
   o[0] = s.stage;
   o[1] = s.thrust_n;
-  if (parts & kOrbit) {
+  if (kOrbitColumns.IsRead(read)) {
     const Vector<T> h = Cross(m.p, m.v);
     o[2] = Sqrt(Dot(m.v, m.v));
     o[3] = Atan2(Dot(m.p, m.v), Sqrt(Dot(h, h))) * degrees;
   }
-  if (parts & kProgram) o[4] = Select(s.steered, s.program_pitch_rad * degrees, undefined);
-  if (parts & kLaunchAttitude) {
+  if (kProgramPitch.IsRead(read)) o[4] = Select(s.steered, s.program_pitch_rad * degrees, undefined);
+  if (kLaunchPitch.IsRead(read)) {
     const Matrix<T> R_IB = RotationMatrix(m.q);
     // The body's x axis along an axis of L.
     const auto along = [&](int axis) {
@@ -131,33 +135,42 @@ DISPERSA_OUT_OF_LINE void FillLauncher(const Earth& earth, const LauncherSeen<T>
     const MiddleAngle<T> yaw(along(1));
     o[5] = Select(yaw.is_singular, none, Atan2(-along(2), along(0))) * degrees;
   }
-  const T steered[] = {-s.errors.angle_rad.y,  -s.errors.angle_rad.z, -s.errors.angle_rad.x,
-                       -s.errors.rate_rad_s.y, s.felt_pitch_rad,      s.felt_yaw_rad,
-                       s.felt_roll_rad,        s.nozzle_rad[0],       s.nozzle_rad[1],
-                       s.nozzle_rad[2],        s.nozzle_rad[3]};
-  for (int i = 0; i < 11; ++i) o[6 + i] = Select(s.steered, steered[i] * degrees, undefined);
-  const T law[] = {s.command_pitch_rad * degrees,
-                   s.control_rad_s2 * degrees,
-                   s.adaptation_norm_rad_s2 * degrees,
-                   s.v,
-                   s.v_rate_sign,
-                   s.projected,
-                   s.frozen,
-                   s.rules_fired,
-                   s.total_gain};
-  for (int i = 0; i < 9; ++i) o[17 + i] = Select(powered, law[i], undefined);
-  o[26] = s.thruster_roll;
-  o[27] = s.thruster_pitch;
-  o[28] = s.thruster_yaw;
+  if (kSteered.IsRead(read)) {
+    const T steered[] = {-s.errors.angle_rad.y,  -s.errors.angle_rad.z, -s.errors.angle_rad.x,
+                         -s.errors.rate_rad_s.y, s.felt_pitch_rad,      s.felt_yaw_rad,
+                         s.felt_roll_rad,        s.nozzle_rad[0],       s.nozzle_rad[1],
+                         s.nozzle_rad[2],        s.nozzle_rad[3]};
+    for (int i = 0; i < 11; ++i) o[6 + i] = Select(s.steered, steered[i] * degrees, undefined);
+  }
+  if (kLawColumns.IsRead(read)) {
+    const T law[] = {s.command_pitch_rad * degrees,
+                     s.control_rad_s2 * degrees,
+                     s.adaptation_norm_rad_s2 * degrees,
+                     s.v,
+                     s.v_rate_sign,
+                     s.projected,
+                     s.frozen,
+                     s.rules_fired,
+                     s.total_gain};
+    for (int i = 0; i < 9; ++i) o[17 + i] = Select(powered, law[i], undefined);
+  }
+  if (kThrusters.IsRead(read)) {
+    o[26] = s.thruster_roll;
+    o[27] = s.thruster_pitch;
+    o[28] = s.thruster_yaw;
+  }
   o[29] = s.expelled_kg;
-  const T weight = s.mass_kg * T(kStandardGravity);
-  o[30] = s.force_n.x / weight;
-  o[31] = Sqrt(Fma(s.force_n.y, s.force_n.y, s.force_n.z * s.force_n.z)) / weight;
-  if (parts & kFlow) {
+  if (kLoads.IsRead(read)) {
+    const T weight = s.mass_kg * T(kStandardGravity);
+    o[30] = s.force_n.x / weight;
+    o[31] = Sqrt(Fma(s.force_n.y, s.force_n.y, s.force_n.z * s.force_n.z)) / weight;
+  }
+  if (kIncidence.IsRead(read)) {
     const Vector<T>& v = s.v_AB_B;
     o[32] = Atan2(Sqrt(Fma(v.y, v.y, v.z * v.z)), v.x) * degrees;
   }
-  for (int i = 0; i < kLawTelemetry; ++i) o[33 + i] = Select(powered, s.law_telemetry[i], undefined);
+  for (int i = 0; kToldByLaw.IsRead(read) && i < kLawTelemetry; ++i)
+    o[33 + i] = Select(powered, s.law_telemetry[i], undefined);
 }
 
 }  // namespace DISPERSA_ISA

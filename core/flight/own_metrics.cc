@@ -59,7 +59,7 @@ OwnMetricsPlan::OwnMetricsPlan(const std::vector<OwnMetric>& metrics) {
   for (const OwnMetric& metric : metrics) expressions.push_back(metric.parsed);
   const auto read = [&](const Expression& expression) {
     for (const int position : expression.Positions())
-      if (position < FirstCondition()) row_parts |= PartsOf(position);
+      if (position < FirstCondition()) row_columns |= RowColumns{1} << position;
   };
   for (const FlightExpression& expression : expressions) {
     for (const OverFlight& part : expression.parts) {

@@ -2,6 +2,7 @@
 #pragma once
 
 #include <cstddef>
+#include <cstdint>
 #include <optional>
 #include <string>
 #include <vector>
@@ -39,7 +40,7 @@ inline constexpr int kRowConditions = 1 + kMaxStages + 1;
 struct OwnMetricsPlan {
   std::vector<FlightExpression> expressions;
   std::vector<SummedPart> parts;  ///< of all expressions, one after the other
-  unsigned row_parts = 0;         ///< bits of RowPart (history_columns.h) that they read
+  std::uint64_t row_columns = 0;  ///< RowColumns (history_columns.h) that they read
 
   explicit OwnMetricsPlan(const std::vector<OwnMetric>& metrics);
   OwnMetricsPlan(const OwnMetricsPlan&) = delete;

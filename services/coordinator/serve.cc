@@ -95,6 +95,7 @@ CampaignFile FilesBelow(const std::filesystem::path& data) {
 }
 
 std::string WhyPaused(const Service& service, const std::filesystem::path& data) {
+  if (service.IsDraining()) return "is drained: it takes no campaign";
   const std::string reason = service.WhyPaused();
   return reason.empty() ? WhyDiskIsFull(data) : reason;
 }
@@ -141,8 +142,8 @@ int ServeClients(const ServeOptions& options, const ClientOptions& clients) {
   WebRows web_rows;
   if (clients.web) web.emplace(*clients.web, FilesBelow(clients.data));
   std::uint64_t shown_changes = 0;
-  Every web_period(kWeb_s), web_pause(kWebPause_s), figures_period(kFigures_s),
-      counts_period(kLogCounts_s), health_period(kHealth_s);
+  Every web_period(kWeb_s), web_pause(kWebPause_s), figures_period(kFigures_s), counts_period(kLogCounts_s),
+      health_period(kHealth_s);
   Attendance attendance(options.network.domain);
   std::optional<Watchdog> watchdog(std::in_place, options.again, coordinator.StartPulse(), health);
   double drained_s = 0.0;  // since when

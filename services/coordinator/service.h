@@ -112,6 +112,7 @@ class Service {
   /// From now on no campaign begins to fly: what waits stays stored for the next coordinator. What flies
   /// ends, with its report.
   void Drain() { is_draining_ = true; }
+  bool IsDraining() const { return is_draining_; }
   bool is_draining() const { return is_draining_; }
   bool IsDrained() const;
   std::uint64_t epoch() const { return options_.epoch; }

@@ -43,7 +43,8 @@ void Log(LogLevel level, std::string_view kind, std::string_view text);
 /// Writes the counts of lines that were not written, of minutes that are over. A daemon calls it now and
 /// then.
 void LogCounts();
-/// Prints the text unchanged, unless LogAsJson() was called. Text that stderr does not take is lost, which is no reason to end a program.
+/// Prints the text unchanged, unless LogAsJson() was called. Text that stderr does not take is lost, which is
+/// no reason to end a program.
 void TellText(std::string_view text);
 
 template <class... Values>

@@ -539,8 +539,8 @@ TEST_F(ServiceTroubleTest, AFullDiskPausesCampaignsAndTheyGoOnByThemselves) {
                     later = ": no space left on the disk; it continues when the disk has space\n";
   EXPECT_EQ(OnASmallDisk(folder_.path(), "3m", steps),
             "flying 0: " + data + "/" + flying.id + "/results/results.sqlite" + later +  //
-                "waiting 0: " + data + "/" + opening.id + "/results/campaign.yaml" + later +
-                data + "/" + flying.id + "/results/results.sqlite: no space left on the disk\n0 assigned\n" +  //
+                "waiting 0: " + data + "/" + opening.id + "/results/campaign.yaml" + later + data + "/" +
+                flying.id + "/results/results.sqlite: no space left on the disk\n0 assigned\n" +  //
                 data + "/" + launching.id + "/campaign.yaml: no space left on the disk\n" +
                 "1 assigned again\nflying 0: \n" + data + "/" + opening.id +
                 "/results/campaign.yaml: no space left on the disk\n\nflying 0: \n150 stored\n");
