@@ -9,6 +9,7 @@
 #include <limits>
 #include <system_error>
 
+#include "core/input/disk_full.h"
 #include "core/input/input_error.h"
 #include "core/results/file_system.h"
 #include "core/results/result_error.h"
@@ -134,6 +135,9 @@ Statement Database::Prepare(const std::string& sql) { return Statement(*this, sq
 void Database::Fail(int code) const {
   const int system_error = handle_ != nullptr ? sqlite3_system_errno(handle_) : 0;
   if ((code & 0xff) == SQLITE_FULL) FailFile(file_.string(), "cannot be written", SqliteFullError());
+  // A new file without an inode or a descriptor.
+  if ((code & 0xff) == SQLITE_CANTOPEN && DiskFullWords(system_error))
+    FailFile(file_.string(), "cannot be opened", system_error);
   if (const char* lack = LackOf(code, system_error)) RefuseFileSystem(file_.string(), lack, system_error);
   throw ResultError(ResultError::Kind::kFile,
                     fmt::format("{}: {}", file_.string(),

@@ -146,6 +146,7 @@ void AppendLine(const fs::path& file, std::string_view line) {
   const ssize_t written = write(descriptor, text.data(), text.size());
   int error = written == std::ssize(text) ? 0 : (written < 0 ? errno : ENOSPC);
   if (error == 0) error = SyncFile(descriptor);
+  if (error != 0 && size >= 0) (void)!ftruncate(descriptor, size);  // a part of a line is none
   if (error != 0) FailFile(file.string(), kUnwritable, error);
   if (size <= 0) SyncFolderOf(file);
 }

@@ -11,7 +11,7 @@ namespace dispersa {
 class ResultError : public std::runtime_error {
  public:
   enum class Kind {
-    kDiskFull,    ///< no space left, over quota, or a file at its limit: the run can be resumed
+    kDiskFull,    ///< no space left, over quota, a file at its limit, no descriptor: the run can be resumed
     kFewer,       ///< fewer results than there should be: a fuller file was not replaced
     kConflict,    ///< a case returned twice with different digests: an internal error that is never ignored
     kFileSystem,  ///< the file system lacks locks or shared memory: the user chooses another folder

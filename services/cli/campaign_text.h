@@ -10,7 +10,8 @@ namespace dispersa {
 std::string ShortId(const nlohmann::ordered_json& what);
 /// "2 of 140 fail pitch_error_peak_deg (fail so far)"
 std::string StandingText(const nlohmann::ordered_json& standing);
-/// One line, and one for each requirement, of an element of `campaigns` in the answer to `list`.
+/// An element of `campaigns` in the answer to `list`, in lines of 80 columns: id, state, cases, launch (UTC),
+/// name, verdict, owner, labels; and a line for each requirement.
 std::string CampaignStatusText(const nlohmann::ordered_json& campaign);
 
 }  // namespace dispersa

@@ -1,4 +1,4 @@
-// dispersa list, status, cancel, delete, repair, readmit: what a coordinator's campaigns do.
+// dispersa list, status, cancel, delete, give, repair, readmit: what a coordinator's campaigns do.
 #include <fmt/format.h>
 
 #include <memory>
@@ -99,6 +99,17 @@ void AddStatusCommand(CLI::App& app, Invocation& invocation) {
   BindSession(remove, invocation, [id = AddIdOption(remove)](Session& session, const GlobalOptions& global) {
     return Do("delete", {{"id", FullId(session, *id)}}, "deleted", session, global);
   });
+
+  CLI::App* give = app.add_subcommand("give", "hand a campaign over to another owner");
+  const auto owner = std::make_shared<std::string>();
+  give->add_option("--to", *owner, "name of the keys, or the local user, to own it")->required();
+  give->footer(
+      "Example: dispersa give 5f3a --to bob --peer coordinator-host --keys client-ops\n"
+      "For keys that may administer. The campaign then counts for the quota of its new owner.");
+  BindSession(give, invocation,
+              [id = AddIdOption(give), owner](Session& session, const GlobalOptions& global) {
+                return Do("give", {{"id", FullId(session, *id)}, {"to", *owner}}, "given", session, global);
+              });
 
   CLI::App* repair =
       app.add_subcommand("repair", "remove a worker's results from a campaign and fly those cases again");

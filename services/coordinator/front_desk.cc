@@ -3,6 +3,7 @@
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <cctype>
 #include <chrono>
 #include <cmath>
 #include <filesystem>
@@ -14,10 +15,12 @@
 #include "core/flight/engine_version.h"
 #include "core/results/json_number.h"
 #include "services/coordinator/dump_any_text.h"
+#include "services/coordinator/outcomes.h"
 #include "services/coordinator/packed_files.h"
 #include "services/ledger/result_exit_code.h"
 #include "services/log/log.h"
 #include "services/program/exit_code.h"
+#include "services/program/utc.h"
 #include "services/transport/permissions.h"
 #include "services/transport/validity.h"
 
@@ -57,6 +60,9 @@ CatalogueEntry Parse(const std::string& text, std::uint64_t max_cases) {
   return entry;
 }
 
+/// 0: not known.
+Json UtcOrNull(std::int64_t unix_s) { return unix_s == 0 ? Json(nullptr) : Json(UtcText(unix_s)); }
+
 /// With at most so many requirements.
 Json ToJson(const CampaignView& view, std::size_t most) {
   const CatalogueEntry& entry = *view.entry;
@@ -82,8 +88,11 @@ Json ToJson(const CampaignView& view, std::size_t most) {
           {"priority", entry.priority},
           {"owner", TextOrNull(entry.owner)},
           {"labels", entry.labels},
+          {"launched_utc", UtcOrNull(entry.launched_unix_s)},
+          {"ended_utc", UtcOrNull(HasEnded(entry.state) ? entry.ended_unix_s : 0)},
           {"bytes", entry.bytes},
           {"verdict", TextOrNull(entry.verdict)},
+          {"verdict_words", TextOrNull(VerdictWords(entry))},
           {"code", HasEnded(entry.state) ? Json(entry.code) : Json(nullptr)},
           {"problem", TextOrNull(view.problem)},
           {"requirements", std::move(standings)},
@@ -134,7 +143,8 @@ void RequireOwner(const Asker& asker, const CatalogueEntry& entry, const char* c
 Right RightFor(const Request& request) {
   if (request.method == "launch" || request.method == "upload") return Right::kRun;
   // A copy of all that the coordinator has.
-  if (request.method == "ids" || request.method == "readmit" || request.method == "drain")
+  if (request.method == "ids" || request.method == "readmit" || request.method == "give" ||
+      request.method == "drain")
     return Right::kAdminister;
   if (request.method == "files" || request.method == "read") {
     const Json json = Json::parse(request.arguments);
@@ -148,12 +158,25 @@ void RequireRight(const Asker& asker, const Request& request) {
   if (asker.right >= least) return;
   const std::string what = least != Right::kAdminister   ? "dispersa launch"
                            : request.method == "readmit" ? "dispersa readmit"
+                           : request.method == "give"    ? "dispersa give"
                            : request.method == "drain"   ? "dispersa-coordinator --drain"
                                                          : "dispersa backup";
   throw Refused(kExitBadInput,
                 fmt::format("the keys of '{0}' may {1}, and `{2}` needs the right to {3}, allowed: keys that "
                             "`dispersa keys issue --may {3}` made",
                             Printable(asker.account), Name(asker.right), what, Name(least)));
+}
+
+bool IsChange(const std::string& method) {
+  return method == "launch" || method == "cancel" || method == "give" || method == "repair" ||
+         method == "readmit" || method == "delete";
+}
+
+/// A name of keys or of a local user.
+bool IsOwner(const std::string& text) {
+  return !text.empty() && text.size() <= 64 && std::all_of(text.begin(), text.end(), [](unsigned char c) {
+    return std::isalnum(c) != 0 || c == '-' || c == '_' || c == '.';
+  });
 }
 
 constexpr char kLabelRule[] =
@@ -197,6 +220,7 @@ Reply FrontDesk::Answer(const Request& request) {
     if (!is_own || request.method != "drain") RequireRight(asker, request);
     if (service_.is_draining() && (request.method == "launch" || request.method == "repair"))
       throw IsDraining();
+    if (IsChange(request.method)) service_.actions().RequireWritten();
     if (request.method == "health") {
       reply.text = "{}";
     } else if (request.method == "upload") {
@@ -205,12 +229,14 @@ Reply FrontDesk::Answer(const Request& request) {
       reply.text = Launch(asker, request.arguments);
     } else if (request.method == "cancel") {
       reply.text = Cancel(asker, request.arguments);
+    } else if (request.method == "give") {
+      reply.text = Give(asker, request.arguments);
     } else if (request.method == "repair") {
       reply.text = Repair(asker, request.arguments);
     } else if (request.method == "drain") {
       reply.text = Drain(request.arguments);
     } else if (request.method == "readmit") {
-      reply.text = Readmit(request.arguments);
+      reply.text = Readmit(asker, request.arguments);
     } else if (request.method == "expelled") {
       reply.text = Expelled();
     } else if (request.method == "delete") {
@@ -283,8 +309,8 @@ std::string FrontDesk::TakePart(const std::string& client, const std::string& ar
 }
 
 Asker FrontDesk::AskerOf(const std::string& client) const {
-  if (!everybody_.empty()) return {everybody_, Right::kAdminister};
-  return {AccountOf(client), RightOf(client)};
+  if (!everybody_.empty()) return {everybody_, client, Right::kAdminister};
+  return {AccountOf(client), client, RightOf(client)};
 }
 
 // A campaign that is not known is "unknown" until its text is here, and "checked" while it is parsed, which
@@ -343,6 +369,7 @@ std::string FrontDesk::Launch(const Asker& asker, const std::string& arguments) 
   entry.owner = asker.account;
   AddLabels(&entry, labels);
   service_.Launch(std::move(entry), complete.text);
+  Note("launch", asker, service_.catalogue().entries().at(id));
   return answer("waiting");
 }
 
@@ -359,8 +386,10 @@ std::string FrontDesk::LaunchAgain(const Asker& asker, const CatalogueEntry& ent
       RequireOwner(asker, entry, "label");
   }
   if (MayChange(asker, entry)) {
+    const CatalogueEntry before = entry;
     copies_.Forget(service_.catalogue().ResultsOf(id));
     service_.Relaunch(id, priority.value_or(entry.priority), labels);
+    if (entry != before) Note("launch", asker, entry);
   }
   return Json{{"id", id}, {"state", CampaignStateName(service_.catalogue().entries().at(id).state)}}.dump();
 }
@@ -368,8 +397,36 @@ std::string FrontDesk::LaunchAgain(const Asker& asker, const CatalogueEntry& ent
 std::string FrontDesk::Cancel(const Asker& asker, const std::string& arguments) {
   const CatalogueEntry& entry = Named(Json::parse(arguments).at("id"));
   RequireOwner(asker, entry, "cancel");
+  const bool is_new = entry.state != CampaignState::kCancelled;
   service_.Cancel(entry.id);
+  if (is_new) Note("cancel", asker, entry);
   return Json{{"id", entry.id}}.dump();
+}
+
+std::string FrontDesk::Give(const Asker& asker, const std::string& arguments) {
+  const Json json = Json::parse(arguments);
+  const CatalogueEntry& entry = Named(json.at("id"));
+  const std::string to = json.at("to");
+  if (!IsOwner(to)) {
+    throw Refused(kExitBadInput, "'" + Printable(to) +
+                                     "' cannot own a campaign, allowed: a name of keys or of a local user, 1 "
+                                     "to 64 letters, digits, '-', '_' and '.'");
+  }
+  if (entry.owner == to) return Json{{"id", entry.id}}.dump();
+  service_.Give(entry.id, to);
+  Action more;
+  more.to = to;
+  Note("give", asker, entry, more);
+  return Json{{"id", entry.id}}.dump();
+}
+
+void FrontDesk::Note(const char* what, const Asker& asker, const CatalogueEntry& entry, Action more) {
+  more.what = what;
+  more.by = asker.account;
+  more.client = asker.client;
+  more.campaign = entry.id;
+  more.name = entry.name;
+  service_.actions().Note(more);
 }
 
 std::string FrontDesk::Repair(const Asker& asker, const std::string& arguments) {
@@ -381,6 +438,9 @@ std::string FrontDesk::Repair(const Asker& asker, const std::string& arguments) 
   RequireOwner(asker, entry, "repair");
   copies_.Forget(service_.catalogue().ResultsOf(id));
   service_.Repair(id, worker);
+  Action more;
+  more.worker = worker;
+  Note("repair", asker, entry, more);
   return Json{{"id", id}}.dump();
 }
 
@@ -394,10 +454,13 @@ std::string FrontDesk::Drain(const std::string& arguments) {
   return Json{{"epoch", service_.epoch()}, {"busy", busy}, {"waiting", waiting}}.dump();
 }
 
-std::string FrontDesk::Readmit(const std::string& arguments) {
+std::string FrontDesk::Readmit(const Asker& asker, const std::string& arguments) {
   const std::string name = Json::parse(arguments).at("name");
   if (!service_.Readmit(name).empty()) {
     readmitted_.insert(name);
+    Action action;
+    action.worker = name;
+    Note("readmit", asker, {}, action);
   } else if (!readmitted_.contains(name)) {
     throw Refused(kExitBadInput, "nobody with the name '" + Printable(name) +
                                      "' is expelled, allowed: names that `dispersa "
@@ -424,12 +487,13 @@ std::string FrontDesk::Delete(const Asker& asker, const std::string& arguments) 
   const std::string wanted = Json::parse(arguments).at("id");
   if (service_.catalogue().Find(wanted) == nullptr && wanted.size() >= 64 && deleted_.contains(wanted))
     return Json{{"id", wanted}}.dump();
-  const CatalogueEntry& entry = Named(wanted);
+  const CatalogueEntry entry = Named(wanted);
   const std::string id = entry.id;
   RequireOwner(asker, entry, "delete");
   copies_.Forget(service_.catalogue().ResultsOf(id));
   service_.Delete(id);
   deleted_.insert(id);
+  Note("delete", asker, entry);
   return Json{{"id", id}}.dump();
 }
 

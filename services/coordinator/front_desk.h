@@ -19,6 +19,7 @@ namespace dispersa {
 /// Who asks: a campaign that it launches belongs to `account`.
 struct Asker {
   std::string account;  ///< the name of its keys, or the local user
+  std::string client;   ///< its process
   Right right = Right::kRun;
 };
 
@@ -62,9 +63,10 @@ class FrontDesk {
   std::string LaunchAgain(const Asker& asker, const CatalogueEntry& entry, std::optional<int> priority,
                           const std::vector<std::string>& labels);
   std::string Cancel(const Asker& asker, const std::string& arguments);
+  std::string Give(const Asker& asker, const std::string& arguments);
   std::string Repair(const Asker& asker, const std::string& arguments);
   std::string Drain(const std::string& arguments);
-  std::string Readmit(const std::string& arguments);
+  std::string Readmit(const Asker& asker, const std::string& arguments);
   std::string Expelled() const;
   std::string Delete(const Asker& asker, const std::string& arguments);
   std::string Ids(const std::string& arguments) const;
@@ -78,6 +80,8 @@ class FrontDesk {
                                        const std::filesystem::path& path);
   std::filesystem::path FindInResults(const CatalogueEntry& entry, const std::filesystem::path& path);
   std::string Read(const std::string& arguments, std::string* data);
+  /// Into the log of actions, when it is done.
+  void Note(const char* what, const Asker& asker, const CatalogueEntry& entry, Action more = {});
   const CatalogueEntry& Named(const std::string& id) const;
   void ForgetUploads();
 

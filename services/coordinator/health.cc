@@ -1,13 +1,20 @@
 #include "services/coordinator/health.h"
 
 #include <fmt/format.h>
+#include <sys/resource.h>
 #include <sys/statvfs.h>
+
+#include <algorithm>
+#include <iterator>
+#include <system_error>
 
 namespace dispersa {
 namespace {
 
 // A launch stores a text and a state, each first beside its place.
 constexpr std::uint64_t kLeastBytes = 1 << 20, kLeastFiles = 16;
+// A database and its copy, a report, a control law's process.
+constexpr std::ptrdiff_t kLeastDescriptors = 16;
 
 }  // namespace
 
@@ -31,6 +38,19 @@ std::string WhyDiskIsFull(const std::filesystem::path& folder) {
     return fmt::format("{}: no space left on the disk: {} more files can be made", folder.string(),
                        disk.f_favail);
   return "";
+}
+
+std::string WhyDescriptorsAreShort() {
+  rlimit limit{};
+  getrlimit(RLIMIT_NOFILE, &limit);
+  if (limit.rlim_cur == RLIM_INFINITY) return "";
+  std::error_code error;
+  const std::filesystem::directory_iterator open("/proc/self/fd", error);
+  const auto left =
+      error ? 0 : static_cast<std::ptrdiff_t>(limit.rlim_cur) - std::distance(begin(open), end(open));
+  if (error.value() != EMFILE && (error || left >= kLeastDescriptors)) return "";
+  return fmt::format("too many files are open: {} of {} are left (`ulimit -n`, LimitNOFILE of a unit)",
+                     std::max<std::ptrdiff_t>(left, 0), limit.rlim_cur);
 }
 
 std::string Health::WhyDead(Clock::time_point now) const {

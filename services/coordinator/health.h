@@ -34,5 +34,7 @@ class Health {
 
 /// Why a launch cannot be stored below this folder. Empty: it can, or the system does not say.
 std::string WhyDiskIsFull(const std::filesystem::path& folder);
+/// Why a campaign cannot be opened: this process has few descriptors left. Empty: it can.
+std::string WhyDescriptorsAreShort();
 
 }  // namespace dispersa

@@ -5,7 +5,9 @@
 
 #include "core/analysis/load_check.h"
 #include "core/analysis/requirement_summary.h"
+#include "core/analysis/standing.h"
 #include "services/coordinator/catalogue.h"
+#include "services/program/exit_code.h"
 
 namespace dispersa {
 
@@ -23,6 +25,26 @@ std::vector<RequirementOutcome> OutcomesOf(const CampaignSummary& summary) {
       outcomes.push_back(
           {check.metric, LoadCheckSentence(check), 0.0, check.n, check.failures, {}, {}, "fail"});
   return outcomes;
+}
+
+std::string VerdictWords(const CatalogueEntry& entry) {
+  if (entry.state != CampaignState::kDone) return "";
+  switch (entry.code) {
+    case kExitDone:
+      return entry.verdict == StandingVerdictName(StandingVerdict::kNothingJudged)
+                 ? "nothing is required"
+                 : "every requirement is met";
+    case kExitRequirementFailed:
+      return "a requirement failed";
+    case kExitInconclusive:
+      return "undecided: more cases can decide";
+    case kExitNotEvidence:
+      return "not evidence";
+    case kExitIncomplete:
+      return "incomplete";
+    default:
+      return "two results of a case differ";  // CampaignExitCode
+  }
 }
 
 }  // namespace dispersa

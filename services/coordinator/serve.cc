@@ -6,7 +6,10 @@
 
 #include <algorithm>
 #include <chrono>
+#include <cstdlib>
 #include <nlohmann/json.hpp>
+#include <optional>
+#include <stop_token>
 #include <thread>
 #include <utility>
 
@@ -47,6 +50,10 @@ constexpr double kFarewell_s = 2.0;  // until the answer to the last request has
 constexpr std::chrono::seconds kDrainPeriod(1);
 constexpr std::chrono::seconds kLockPatience(30);
 
+/// From the signal to the end, whatever still reads, parses or reports: the disk has all that is promised.
+constexpr std::chrono::milliseconds kLongestEnd(3500);
+constexpr std::chrono::milliseconds kLook(100);
+
 constexpr double kFade = 0.9;  // each second: a monitor that looks every 15 s still sees a long round
 
 class Stopwatch {
@@ -74,6 +81,19 @@ class Every {
   double due_s_ = 0.0;
 };
 
+/// Ends this program in time, though what it began takes minutes. The next coordinator begins it anew.
+void EndInTime(const std::stop_token& stop) {
+  using Clock = std::chrono::steady_clock;
+  std::optional<Clock::time_point> asked;
+  for (; !stop.stop_requested(); std::this_thread::sleep_for(kLook)) {
+    if (!StopRequested()) continue;
+    if (!asked) asked = Clock::now();
+    if (Clock::now() - *asked < kLongestEnd) continue;
+    LogWarning("what goes on is not waited for; the next coordinator begins it again");
+    std::_Exit(kExitDone);
+  }
+}
+
 /// Without keys the coordinator hears its own user alone, or everybody (--insecure). Empty: with keys.
 std::string EverybodyOn(const NetworkOptions& network) {
   if (network.keys) return "";
@@ -95,9 +115,10 @@ CampaignFile FilesBelow(const std::filesystem::path& data) {
 }
 
 std::string WhyPaused(const Service& service, const std::filesystem::path& data) {
-  if (service.IsDraining()) return "is drained: it takes no campaign";
-  const std::string reason = service.WhyPaused();
-  return reason.empty() ? WhyDiskIsFull(data) : reason;
+  if (service.is_draining()) return "is drained: it takes no campaign";
+  for (const std::string& reason : {service.WhyPaused(), WhyDiskIsFull(data), WhyDescriptorsAreShort()})
+    if (!reason.empty()) return reason;
+  return "";
 }
 
 WebPages PagesOf(const ClientOptions& clients) {
@@ -112,6 +133,7 @@ WebPages PagesOf(const ClientOptions& clients) {
 int ServeClients(const ServeOptions& options, const ClientOptions& clients) {
   MakeDataFolder(clients.data);
   const std::uint64_t epoch = NextEpoch(clients.data, IsStartedByItself());
+  const std::jthread end_in_time(EndInTime);
   // Before all that takes time, and until all of it has ended.
   Health health;
   std::optional<MonitorPort> monitors;

@@ -19,6 +19,7 @@
 #include "core/results/output_file.h"
 #include "services/coordinator/dump_any_text.h"
 #include "services/coordinator/epoch.h"
+#include "services/coordinator/health.h"
 #include "services/coordinator/outcomes.h"
 #include "services/coordinator/packed_files.h"
 #include "services/coordinator/queue.h"
@@ -39,6 +40,7 @@ constexpr std::size_t kRemembered = 16;  // tallies of campaigns that fly no mor
 constexpr double kRetention_s = 60.0;  // what is old is looked for so often
 constexpr char kDeletedFile[] = "deleted.jsonl";
 constexpr char kExpelledRule[] = "the file of a backup; or none, which readmits everybody";
+constexpr char kActionsFile[] = "actions.jsonl";
 constexpr double kCount_s = 10.0;  // the bytes of what flies are counted so often
 constexpr double kDelay_s = 10.0;  // until a full disk is tried again
 
@@ -73,7 +75,7 @@ std::string Gigabytes(std::uint64_t bytes) {
 
 std::string OwnerOf(const CatalogueEntry& entry) { return entry.owner.empty() ? "nobody" : entry.owner; }
 
-std::string Waiting(const std::string& problem) { return problem + "; it continues when the disk has space"; }
+std::string Waiting(const std::string& problem) { return problem + "; it continues by itself"; }
 
 template <typename T>
 bool IsReady(const std::future<T>& future) {
@@ -98,7 +100,10 @@ void RequireSound(const CatalogueEntry& entry) {
 }
 
 Service::Service(const ServiceOptions& options, Workforce& workforce)
-    : options_(options), workforce_(workforce), catalogue_(options.data) {
+    : options_(options),
+      workforce_(workforce),
+      catalogue_(options.data),
+      actions_(options.data / kActionsFile) {
   std::size_t open = 0;
   for (const auto& [id, entry] : catalogue_.entries()) open += !HasEnded(entry.state);
   LogInfo("{}: {} campaigns, {} of them have not ended", options.data.string(), catalogue_.entries().size(),
@@ -296,7 +301,7 @@ std::optional<std::uint64_t> Service::free_bytes() const {
 std::string Service::WhyPaused() const {
   for (const auto& [id, flying] : flying_)
     if (!flying.book->pause().empty()) return flying.book->pause();
-  return delayed_.empty() ? "" : delayed_.begin()->second.problem;
+  return delayed_.empty() ? actions_.problem() : delayed_.begin()->second.problem;
 }
 
 // One that flies goes back into the queue if this one has a higher priority.
@@ -379,9 +384,11 @@ std::string Service::SoundTextOf(const std::string& id) const {
   return text;
 }
 
-// Whatever it is: of this campaign alone. A full disk is waited for.
+// Whatever it is: of this campaign alone. A full disk, and too many open files, are waited for.
 void Service::Fail(CatalogueEntry& entry, std::exception_ptr error) {
   const LogAbout about(entry.id);
+  // Whatever it is then, it comes of that.
+  if (const std::string short_of = WhyDescriptorsAreShort(); !short_of.empty()) return Delay(entry, short_of);
   try {
     std::rethrow_exception(error);
   } catch (const ResultError& problem) {
@@ -402,7 +409,7 @@ void Service::Fail(CatalogueEntry& entry, std::exception_ptr error) {
 
 void Service::Delay(const CatalogueEntry& entry, const std::string& problem) {
   if (!delayed_.contains(entry.id)) {
-    LogError("campaign {} ({}) waits until the disk has space: {}", entry.name, entry.id.substr(0, 8),
+    LogError("campaign {} ({}) waits, and continues by itself: {}", entry.name, entry.id.substr(0, 8),
              problem);
   }
   delayed_[entry.id] = {workforce_.now_s() + kDelay_s, problem};
@@ -437,6 +444,7 @@ void Service::Measure() {
   if (now_s - measured_s_ < kMeasure_s) return;
   measured_s_ = now_s;
   SaveAgain();
+  actions_.Retry();
   NoteExpelled();
   const bool counts = now_s - counted_s_ >= kCount_s;
   if (counts) counted_s_ = now_s;
@@ -491,6 +499,13 @@ void Service::NoteExpelled() {
 
 void Service::WriteExpelled() {
   WriteFile(options_.data / kExpelledFile, SealedText(workforce_.expelled()));
+  for (const auto& [name, expulsion] : workforce_.expelled()) {
+    if (expelled_noted_.contains(name)) continue;
+    Action action{.what = "expel"};
+    action.worker = name;
+    action.reason = expulsion.reason;
+    actions_.Note(action);
+  }
   expelled_noted_ = workforce_.expelled();
 }
 
@@ -597,7 +612,7 @@ const RunningTally* Service::TallyOf(const std::string& id) const {
 
 std::vector<std::filesystem::path> Service::Journals() const {
   std::vector<std::filesystem::path> files;
-  for (const char* name : {kDeletedFile, kExpelledFile, kEpochFile, kLedgerName}) {
+  for (const char* name : {kDeletedFile, kExpelledFile, kActionsFile, kEpochFile, kLedgerName}) {
     std::error_code error;
     if (std::filesystem::is_regular_file(options_.data / name, error)) files.push_back(options_.data / name);
   }
@@ -759,17 +774,20 @@ void Service::DeleteOld() {
   std::vector<Stored> campaigns;
   for (const auto& [id, entry] : catalogue_.entries())
     campaigns.push_back({id, entry.ended_unix_s, entry.bytes, MayBeDeleted(id)});
-  DeleteBeyond(
-      keep, std::move(campaigns), options_.unix_time_s(), [this](const std::string& id, bool is_old) {
-        try {
-          Delete(id,
-                 is_old ? ": it ended long ago (--keep)" : ": the campaigns take too much space (--keep)");
-          return true;
-        } catch (const ResultError& error) {
-          LogError("campaign {} cannot be deleted: {}", id.substr(0, 8), error.what());
-          return false;
-        }
-      });
+  DeleteBeyond(keep, std::move(campaigns), options_.unix_time_s(),
+               [this](const std::string& id, bool is_old) {
+                 try {
+                   const std::string why =
+                       is_old ? "it ended long ago (--keep)" : "the campaigns take too much space (--keep)";
+                   const std::string name = catalogue_.At(id).name;
+                   Delete(id, ": " + why);
+                   actions_.Note({.what = "delete", .campaign = id, .name = name, .reason = why});
+                   return true;
+                 } catch (const ResultError& error) {
+                   LogError("campaign {} cannot be deleted: {}", id.substr(0, 8), error.what());
+                   return false;
+                 }
+               });
 }
 
 void Service::Repair(const std::string& id, const std::string& worker) {
@@ -799,6 +817,15 @@ void Service::Repair(const std::string& id, const std::string& worker) {
   entry = repaired;
   TryToRemoveReports(catalogue_.ResultsOf(id));
   LogInfo("campaign {} ({}): the results of {} are flown again", entry.name, id.substr(0, 8), worker);
+}
+
+void Service::Give(const std::string& id, const std::string& owner) {
+  const LogAbout about(id);
+  CatalogueEntry given = catalogue_.At(id);
+  LogInfo("campaign {} ({}) of {} is given to {}", given.name, id.substr(0, 8), OwnerOf(given), owner);
+  given.owner = owner;
+  catalogue_.Write(given);
+  catalogue_.At(id) = given;
 }
 
 void Service::Cancel(const std::string& id) {

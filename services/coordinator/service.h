@@ -18,6 +18,7 @@
 #include <utility>
 #include <vector>
 
+#include "services/coordinator/action_log.h"
 #include "services/coordinator/catalogue.h"
 #include "services/coordinator/pace.h"
 #include "services/coordinator/quota.h"
@@ -84,9 +85,10 @@ class Service {
   void Flush();
 
   const Catalogue& catalogue() const { return catalogue_; }
+  ActionLog& actions() { return actions_; }
   std::uint64_t max_cases() const { return options_.max_cases; }
   /// Files of the data directory that belong to no campaign: deletions, expelled workers, the last start,
-  /// attempts.
+  /// attempts, actions.
   std::vector<std::filesystem::path> Journals() const;
   /// The one with this name. Throws Refused.
   std::filesystem::path JournalAt(const std::filesystem::path& name) const;
@@ -112,7 +114,6 @@ class Service {
   /// From now on no campaign begins to fly: what waits stays stored for the next coordinator. What flies
   /// ends, with its report.
   void Drain() { is_draining_ = true; }
-  bool IsDraining() const { return is_draining_; }
   bool is_draining() const { return is_draining_; }
   bool IsDrained() const;
   std::uint64_t epoch() const { return options_.epoch; }
@@ -130,6 +131,8 @@ class Service {
   void Launch(CatalogueEntry entry, const std::string& text);
   /// Ends it. Stored results stay. Called again it does nothing. Throws Refused if it has ended already.
   void Cancel(const std::string& id);
+  /// From now on it is a campaign of this owner.
+  void Give(const std::string& id, const std::string& owner);
   /// Results of the workers that `worker` means (IsMeantBy) are removed and flown again. Contradictions,
   /// verdict and report are forgotten: they were with these. Throws Refused while its report is written.
   void Repair(const std::string& id, const std::string& worker);
@@ -200,6 +203,7 @@ class Service {
   ServiceOptions options_;
   Workforce& workforce_;
   Catalogue catalogue_;
+  ActionLog actions_;
   std::map<std::string, Flying> flying_;                   ///< by id
   std::deque<std::pair<std::string, RunningTally>> flew_;  ///< by id: what the last ones came to
   std::optional<Opening> opening_;

@@ -310,7 +310,7 @@ bool CampaignBook::TryFlush() {
   bool is_stored = false;
   Guard([&] { is_stored = Try([this] { Flush(); }); });
   if (!is_stored) return false;
-  if (!pause_.empty()) LogInfo("campaign {} continues: the disk has space again", Title(campaign_));
+  if (!pause_.empty()) LogInfo("campaign {} continues: its results can be stored again", Title(campaign_));
   pause_.clear();
   return true;
 }

@@ -13,4 +13,8 @@ std::string UtcNow() {
                      fmt::gmtime(std::chrono::system_clock::to_time_t(seconds)), (now - seconds).count());
 }
 
+std::string UtcText(std::int64_t unix_s) {
+  return fmt::format("{:%Y-%m-%dT%H:%M:%S}Z", fmt::gmtime(static_cast<std::time_t>(unix_s)));
+}
+
 }  // namespace dispersa

@@ -536,7 +536,7 @@ TEST_F(ServiceTroubleTest, AFullDiskPausesCampaignsAndTheyGoOnByThemselves) {
     return said;
   };
   const std::string data = (folder_ / "data").string(),
-                    later = ": no space left on the disk; it continues when the disk has space\n";
+                    later = ": no space left on the disk; it continues by itself\n";
   EXPECT_EQ(OnASmallDisk(folder_.path(), "3m", steps),
             "flying 0: " + data + "/" + flying.id + "/results/results.sqlite" + later +  //
                 "waiting 0: " + data + "/" + opening.id + "/results/campaign.yaml" + later + data + "/" +

@@ -2,9 +2,11 @@
 #include "services/coordinator/front_desk.h"
 
 #include <nlohmann/json.hpp>
+#include <sstream>
 
 #include "core/results/result_folder.h"
 #include "made_up_service.h"
+#include "services/coordinator/outcomes.h"
 #include "services/coordinator/web_rows.h"
 #include "services/program/exit_code.h"
 #include "tests/test.h"
@@ -52,6 +54,31 @@ TEST_F(FrontDeskTest, AnAnswerNamesItsClientAndItsQuestion) {
   EXPECT_EQ(reply.number, 17u);
   EXPECT_EQ(reply.code, kExitDone);
   EXPECT_EQ(reply.text, "{}");
+}
+
+TEST(VerdictWords, SayWhatTheCodeMeans) {
+  CatalogueEntry entry;
+  for (const CampaignState state :
+       {CampaignState::kFlying, CampaignState::kCancelled, CampaignState::kFailed}) {
+    entry.state = state;
+    entry.code = kExitIncomplete;
+    EXPECT_EQ(VerdictWords(entry), "") << CampaignStateName(state);
+  }
+  entry.state = CampaignState::kDone;
+  const std::vector<std::pair<int, std::string>> expected = {
+      {kExitDone, "every requirement is met"},
+      {kExitInternalError, "two results of a case differ"},
+      {kExitRequirementFailed, "a requirement failed"},
+      {kExitInconclusive, "undecided: more cases can decide"},
+      {kExitIncomplete, "incomplete"},
+      {kExitNotEvidence, "not evidence"}};
+  for (const auto& [code, words] : expected) {
+    entry.code = code;
+    EXPECT_EQ(VerdictWords(entry), words);
+  }
+  entry.code = kExitDone;
+  entry.verdict = "nothing_judged";
+  EXPECT_EQ(VerdictWords(entry), "nothing is required");
 }
 
 TEST_F(FrontDeskTest, AnUnknownRequestIsRefusedInWords) {
@@ -500,6 +527,76 @@ TEST_F(OwnersTest, OnlyWhoAdministersDrainsAndTheCoordinatorsOwnKeys) {
     EXPECT_EQ(StateOf(Smoke(2).id), CampaignState::kWaiting);
     EXPECT_THAT(As(own, "backup", Json::object()), Not(HasSubstr("drained")));
   }
+// Every kind of action, done and refused, by owner, administrator and the coordinator itself.
+TEST_F(OwnersTest, EachActionHasItsLineAndNothingElseHasOne) {
+  const Campaign campaign = Smoke(2);
+  const Json named = {{"id", campaign.id}};
+  for (int answer_got_lost = 0; answer_got_lost < 2; ++answer_got_lost) LaunchAs(ann_, campaign);
+  As(bob_, "cancel", named);  // refused
+  As(eve_, "list", named);
+  for (int answer_got_lost = 0; answer_got_lost < 2; ++answer_got_lost) As(ann_, "cancel", named);
+  LaunchAs(ann_, campaign);  // it continues
+  for (int answer_got_lost = 0; answer_got_lost < 2; ++answer_got_lost)
+    As(root_, "give", {{"id", campaign.id}, {"to", "bob"}});
+  As(bob_, "repair", {{"id", campaign.id}, {"worker", "w"}});
+  workforce_.Expel({{"node1", {"case 4 gives other bits"}}});
+  workforce_.time_s += 1.0;
+  service_->Step();
+  for (int answer_got_lost = 0; answer_got_lost < 2; ++answer_got_lost)
+    As(root_, "readmit", {{"name", "node1"}});
+  As(bob_, "cancel", named);
+  ASSERT_TRUE(Until([&] { return service_->IsAtRest(campaign.id); }));
+  for (int answer_got_lost = 0; answer_got_lost < 2; ++answer_got_lost) As(bob_, "delete", named);
+  std::istringstream stream(TextOfFile(folder_ / "data" / "actions.jsonl"));
+  Json lines = Json::array();
+  for (std::string text; std::getline(stream, text);) {
+    lines.push_back(Json::parse(text));
+    EXPECT_THAT(lines.back().at("time").get<std::string>(), StartsWith("20"));
+    lines.back().erase("time");
+  }
+  const auto line = [&](const char* action, const std::string& client, const char* by, Json more = {}) {
+    Json expected = {{"action", action}, {"by", by}, {"client", client}};
+    if (std::string(action) != "readmit") expected.update({{"campaign", campaign.id}, {"name", "smoke"}});
+    if (!more.is_null()) expected.update(more);
+    return expected;
+  };
+  EXPECT_EQ(
+      lines.dump(1),
+      Json(
+          {line("launch", ann_, "ann"),
+           line("cancel", ann_, "ann"),
+           line("launch", ann_, "ann"),
+           line("give", root_, "root", {{"to", "bob"}}),
+           line("repair", bob_, "bob", {{"worker", "w"}}),
+           {{"action", "expel"}, {"by", nullptr}, {"worker", "node1"}, {"reason", "case 4 gives other bits"}},
+           line("readmit", root_, "root", {{"worker", "node1"}}),
+           line("cancel", bob_, "bob"),
+           line("delete", bob_, "bob")})
+          .dump(1));
+  const std::string before = TextOfFile(folder_ / "data" / "actions.jsonl");
+  StartService();
+  EXPECT_EQ(TextOfFile(folder_ / "data" / "actions.jsonl"), before) << "a start again rewrites nothing";
+  EXPECT_THAT(service_->Journals(), testing::Contains(folder_ / "data" / "actions.jsonl")) << "in a backup";
+}
+
+TEST_F(OwnersTest, AnAdministratorGivesACampaignToAnotherOwner) {
+  const Campaign campaign = Smoke(2);
+  LaunchAs(ann_, campaign);
+  const auto give = [&](const std::string& who, const std::string& to) {
+    return As(who, "give", {{"id", campaign.id}, {"to", to}});
+  };
+  for (const std::string& who : {ann_, bob_})
+    EXPECT_THAT(give(who, "bob"), HasSubstr("`dispersa give` needs the right to administer")) << who;
+  for (const char* bad : {"", "bob jones", "b\x1b"})
+    EXPECT_THAT(give(root_, bad), HasSubstr("cannot own a campaign, allowed: a name of keys or of a local "
+                                            "user, 1 to 64 letters, digits, '-', '_' and '.'"))
+        << bad;
+  EXPECT_EQ(service_->catalogue().entries().at(campaign.id).owner, "ann");
+  EXPECT_EQ(give(root_, "bob"), Json({{"id", campaign.id}}).dump());
+  StartService();  // it is on the disk
+  desk_ = std::make_unique<FrontDesk>(*service_, workforce_, "");
+  EXPECT_EQ(As(ann_, "cancel", {{"id", campaign.id}}), NotTheirs(campaign, "'bob'", "ann", "run", "cancel"));
+  EXPECT_EQ(As(bob_, "cancel", {{"id", campaign.id}}), Json({{"id", campaign.id}}).dump());
 }
 
 TEST_F(OwnersTest, ACampaignOfAnotherOwnerIsFoundAndNotChanged) {

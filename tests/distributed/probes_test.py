@@ -11,7 +11,7 @@ import unittest
 import urllib.error
 import urllib.request
 
-from processes import ISOLATED, main, wait_for
+from processes import BRIEF, ISOLATED, main, wait_for
 from service_case import ServiceCase
 
 PORT = 9481
@@ -79,6 +79,27 @@ class ProbesTest(ServiceCase):
         self.wait_for_answer("/healthz", (200, "ok"))
         self.wait_for_answer("/readyz", (200, "ok"))
         self.assertNotIn("the coordinator restarts", self.log.read_text())
+
+    def assert_ends_in_time(self, coordinator):
+        begun = time.monotonic()
+        coordinator.terminate()
+        self.assertEqual(coordinator.wait(timeout=30), 0, self.log.read_text())
+        self.assertLess(time.monotonic() - begun, 5.0)
+
+    def test_a_coordinator_ends_in_time_while_it_reads_its_data(self):
+        os.mkfifo(self.data / "expelled.json")  # nobody ever writes it
+        coordinator = self.start_coordinator()
+        self.wait_for_answer("/healthz", (200, "ok"))
+        self.assert_ends_in_time(coordinator)
+
+    def test_a_coordinator_ends_in_time_while_it_opens_a_campaign(self):
+        os.mkfifo(self.data / "dispersa-attempts.jsonl")  # read when a campaign is opened
+        coordinator = self.start_coordinator()
+        self.dispersa("launch", BRIEF)
+        time.sleep(1)
+        self.assertIn('"state": "waiting"', self.dispersa("list", "--json"))
+        self.assert_ends_in_time(coordinator)
+        self.assertIn("what goes on is not waited for", self.log.read_text())
 
     def on_a_small_disk(self, option):
         subprocess.run(["mount", "-t", "tmpfs", "-o", option, "disk", self.data], check=True)

@@ -174,7 +174,7 @@ class ServiceTest(ServiceCase):
             self.assertIn(standing["so_far"], ("pass", "fail", "inconclusive", "study"))
         self.assertEqual({r["metric"] for r in campaign["requirements"]},
                          {r["metric"] for r in json.loads((self.reference.out / "summary.json").read_text())["requirements"]})
-        self.assertRegex(self.dispersa("status", low), rf"(?m)^{low[:12]}  flying +\d+/2000 +smoke\b")
+        self.assertRegex(self.dispersa("status", low), rf"(?m)^{low[:12]}  flying +\d+/2000 +20\d\d-\d\d-\d\d \d\d:\d\dZ  smoke\b")
         self.dispersa("cancel", low)
         out = self.root / "cancelled"
         self.dispersa("fetch", low, "--out", out)

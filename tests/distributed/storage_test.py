@@ -5,6 +5,7 @@ Environment as of processes.py. The full disk is a tmpfs in the mount namespace 
 import errno
 import json
 import os
+import resource
 import sqlite3
 import subprocess
 import unittest
@@ -77,6 +78,27 @@ class StorageTest(ServiceCase):
         self.dispersa("watch", other, code=reference.code)
         self.assert_same_folder(other, reference)
         self.assertIsNone(coordinator.poll())
+
+    def test_descriptors_that_run_out_delay_a_campaign(self):
+        coordinator = self.start_coordinator()
+        self.start_worker()
+        first = self.dispersa("launch", self.tiny, "--cases", 20).strip()
+        self.dispersa("watch", first, code=self.status_code(first))
+        usual = resource.prlimit(coordinator.pid, resource.RLIMIT_NOFILE)
+        few = len(os.listdir(f"/proc/{coordinator.pid}/fd")) + 3
+        resource.prlimit(coordinator.pid, resource.RLIMIT_NOFILE, (few, usual[1]))
+        identity = self.dispersa("launch", self.tiny, "--cases", SMALL).strip()
+        wait_for(lambda: "too many files are open" in (self.status(identity)["problem"] or ""), "the words that say so")
+        self.assertEqual(self.status(identity)["state"], "waiting")
+        self.assertRegex(self.status(identity)["problem"], "; it continues by itself$")
+        resource.prlimit(coordinator.pid, resource.RLIMIT_NOFILE, usual)
+        self.dispersa("watch", identity, code=self.tiny_reference.code)
+        self.assert_same_folder(identity, self.tiny_reference)
+        self.assertIsNone(coordinator.poll())
+
+    def status_code(self, identity):
+        wait_for(lambda: self.status(identity)["code"] is not None, "the end of a campaign")
+        return self.status(identity)["code"]
 
     def test_a_campaign_whose_database_somebody_reads_is_fetched_whole(self):
         self.start_coordinator()

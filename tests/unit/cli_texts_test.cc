@@ -133,28 +133,56 @@ TEST(ProgressBar, IsThirtyWideWhateverTheCounts) {
 
 TEST(CampaignStatusText, SaysHowFarACampaignIs) {
   nlohmann::ordered_json campaign = SampleCampaign();
-  EXPECT_EQ(CampaignStatusText(campaign), "0123456789ab  flying            40/100       trial\n");
+  EXPECT_EQ(CampaignStatusText(campaign),
+            "0123456789ab  flying          40/100      -                  trial\n");  // of an earlier version
   campaign["owner"] = nullptr;
-  EXPECT_EQ(CampaignStatusText(campaign), "0123456789ab  flying            40/100       trial\n");
+  campaign["launched_utc"] = nullptr;
+  EXPECT_EQ(CampaignStatusText(campaign),
+            "0123456789ab  flying          40/100      -                  trial\n");
   campaign["owner"] = "ann";
+  campaign["launched_utc"] = "2026-01-31T12:34:56Z";
   campaign["rate_per_s"] = 12.34;
   campaign["eta_s"] = 65;
   campaign["quarantined"] = 2;
+  campaign["labels"] = {"commit=1a2b3c4", "branch=main"};
   campaign["requirements"].push_back(
       {{"failures", 3}, {"n", 40}, {"metric", "alpha_max_deg"}, {"so_far", "inconclusive"}});
   EXPECT_EQ(CampaignStatusText(campaign),
-            "0123456789ab  flying            40/100       trial  12.3/s  1m05s left  2 quarantined  of ann\n"
+            "0123456789ab  flying          40/100      2026-01-31 12:34Z  trial  12.3/s\n"
+            "              1m05s left  2 quarantined  of ann  commit=1a2b3c4  branch=main\n"
             "  3 of 40 fail alpha_max_deg (inconclusive so far)\n");
-  campaign = SampleCampaign();
-  campaign["state"] = "ended";
+}
+
+TEST(CampaignStatusText, SaysHowACampaignEnded) {
+  nlohmann::ordered_json campaign = SampleCampaign();
+  campaign["state"] = "failed";
   campaign["code"] = 1;
-  campaign["problem"] = "no space left";
+  campaign["problem"] = "/var/lib/dispersa/0123/results/results.sqlite: its folder is gone, and nothing can";
   EXPECT_EQ(CampaignStatusText(campaign),
-            "0123456789ab  ended             40/100       trial  exit code 1  no space left\n");
-  campaign["quarantined"] = 2;
-  EXPECT_EQ(
-      CampaignStatusText(campaign),
-      "0123456789ab  ended             40/100       trial  2 quarantined  exit code 1  no space left\n");
+            "0123456789ab  failed          40/100      -                  trial\n"
+            "              /var/lib/dispersa/0123/results/results.sqlite: its folder is gone,\n"
+            "              and nothing can\n");
+  campaign = SampleCampaign();
+  campaign["state"] = "done";
+  campaign["code"] = 3;
+  campaign["verdict_words"] = "a requirement failed";
+  EXPECT_EQ(CampaignStatusText(campaign),
+            "0123456789ab  done            40/100      -                  trial\n"
+            "              a requirement failed\n");
+}
+
+// Columns and not bytes; the widest states and numbers; an item that no line has room for.
+TEST(CampaignStatusText, IsReadableIn80Columns) {
+  nlohmann::ordered_json campaign = SampleCampaign();
+  campaign["state"] = "reporting";
+  campaign["done"] = campaign["total"] = 5000000;
+  campaign["name"] = "äöüäöüäöüäöüäöüäö";
+  campaign["launched_utc"] = "2026-01-31T12:34:56Z";
+  campaign["labels"] = {std::string(100, 'k'), "a=b"};
+  EXPECT_EQ(CampaignStatusText(campaign),
+            "0123456789ab  reporting  5000000/5000000  2026-01-31 12:34Z  äöüäöüäöüäöüäöüäö\n"
+            "              " +
+                std::string(100, 'k') + "\n              a=b\n");
 }
 
 // The object says the code that the process ends with.

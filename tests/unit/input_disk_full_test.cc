@@ -10,6 +10,8 @@ TEST(DiskFull, HasTheSameWordsForEachLimitAndNamesIt) {
   EXPECT_EQ(DiskFullWords(EDQUOT), "no space left on the disk: the quota is used up");
   EXPECT_EQ(DiskFullWords(EFBIG),
             "no space left on the disk: a file has reached its limit (`ulimit -f`, or the file system's)");
+  for (const int full : {EMFILE, ENFILE})
+    EXPECT_EQ(DiskFullWords(full), "too many files are open (`ulimit -n`, LimitNOFILE of a unit)");
   for (const int other : {0, EIO, EACCES, EROFS, ENOENT, ENOMEM})
     EXPECT_EQ(DiskFullWords(other), std::nullopt);
 }

@@ -489,6 +489,22 @@ TEST_F(OutputFiles, ReportsAFullDisk) {
   EXPECT_EQ(message, (folder / "file").string() + ": no space left on the disk");
 }
 
+TEST_F(OutputFiles, ADatabaseWithoutAnInodeIsOnAFullDisk) {
+  const std::filesystem::path folder = (temporary / "file").parent_path();
+  const std::string message = OnASmallDisk(folder, "1m,nr_inodes=3", [&folder]() -> std::string {
+    std::ofstream(folder / "a") << "the last but the root";
+    std::ofstream(folder / "b") << "";
+    try {
+      const Database database(folder / "results.sqlite", Database::Mode::kCreate);
+      return "created";
+    } catch (const ResultError& error) {
+      return error.kind() == ResultError::Kind::kDiskFull ? error.what()
+                                                          : std::string("not full: ") + error.what();
+    }
+  });
+  EXPECT_EQ(message, (folder / "results.sqlite").string() + ": no space left on the disk");
+}
+
 TEST_F(OutputFiles, KeepsLinksAndPermissions) {
   const mode_t mask = umask(022);
   std::ofstream(temporary / "file") << "old";
