@@ -19,7 +19,7 @@ constexpr int kIssuedDays = 365;
 constexpr int kMostDays = 36500;
 
 struct KeysOptions {
-  std::string directory, role, name, may;
+  std::string directory, role, name, may, serial;
   int days = 0;
 };
 
@@ -48,9 +48,43 @@ ExitCode Issue(const KeysOptions& options, const GlobalOptions& global) {
 }
 
 ExitCode Revoke(const KeysOptions& options, const GlobalOptions& global) {
-  const auto file = RevokeKeys(options.directory, *ParseRole(options.role), options.name);
+  const auto file = RevokeKeys(options.directory, *ParseRole(options.role), options.name, options.serial);
   return TellMade("revoked; copy this list into the folders of all coordinators' and workers' keys",
                   file.string(), global);
+}
+
+ExitCode Renew(const KeysOptions& options, const GlobalOptions& global) {
+  const auto former = RenewAuthority(options.directory, ValidFor(options.days));
+  return TellMade("renewed; copy identity_ca.pem and permissions_ca.pem of " + options.directory +
+                      "/authority into the folders of all keys; the former authority is in",
+                  former.string(), global);
+}
+
+ExitCode Retire(const KeysOptions& options, const GlobalOptions& global) {
+  const auto former = RetireAuthority(options.directory);
+  return TellMade("retired; copy identity_ca.pem and permissions_ca.pem of " + options.directory +
+                      "/authority into the folders of all keys; the former authority is in",
+                  former.string(), global);
+}
+
+ExitCode List(const KeysOptions& options, const GlobalOptions& global) {
+  nlohmann::ordered_json listed = nlohmann::ordered_json::array();
+  for (const IssuedKeys& keys : ListKeys(options.directory)) {
+    if (!global.json) {
+      fmt::print("{:<11}  {:<31}  {:<16}  {:<10}{}\n", Name(keys.role), keys.name, keys.serial, keys.until,
+                 keys.is_revoked ? "  revoked" : "");
+    }
+    listed.push_back({{"role", Name(keys.role)},
+                      {"name", keys.name},
+                      {"serial", keys.serial},
+                      {"until", keys.until},
+                      {"revoked", keys.is_revoked}});
+  }
+  if (global.json) {
+    const nlohmann::ordered_json object = {{"schema", "dispersa/keys-list/1"}, {"keys", listed}};
+    fmt::print("{}\n", object.dump(2));
+  }
+  return kExitDone;
 }
 
 void AddRoleAndName(CLI::App* command, const std::shared_ptr<KeysOptions>& options,
@@ -96,6 +130,7 @@ void AddKeysCommand(CLI::App& app, Invocation& invocation) {
       "          dispersa keys issue authority --role client --name ann --may administer\n"
       "          dispersa-worker --keys authority/issued/worker-node1 --peer coordinator-host\n"
       "          dispersa keys revoke authority --role worker --name node1\n"
+      "          dispersa keys renew authority\n"
       "The folder `authority` stays on the machine where it was made. Every other machine gets only its own "
       "issued folder.");
   AddCommand(keys, invocation, "init", "make an authority", kAuthorityDays, Init);
@@ -110,8 +145,15 @@ void AddKeysCommand(CLI::App& app, Invocation& invocation) {
                    "campaigns;\nadminister: change all campaigns; default: run")
       ->check(CLI::IsMember(rights));
   const auto [revoke, revoked] =
-      AddCommand(keys, invocation, "revoke", "no longer accept the keys of a worker or client", 0, Revoke);
+      AddCommand(keys, invocation, "revoke", "no longer accept keys that were issued", 0, Revoke);
   AddRoleAndName(revoke, revoked, "its name");
+  revoke->add_option(
+      "--serial", revoked->serial,
+      "the keys with this serial alone; -: those of an earlier version; default: all of the name");
+  AddCommand(keys, invocation, "list", "list the keys that were issued, with serial and end", 0, List);
+  AddCommand(keys, invocation, "renew", "let a new authority issue keys, beside those of before",
+             kAuthorityDays, Renew);
+  AddCommand(keys, invocation, "retire", "no longer accept keys of before `dispersa keys renew`", 0, Retire);
 }
 
 }  // namespace dispersa

@@ -65,26 +65,11 @@ void Coordinator::Step(std::chrono::milliseconds timeout) {
 void Coordinator::LookForRevocations() {
   if (!revocations_ || now_s_ - looked_s_ < kRevocations_s) return;
   looked_s_ = now_s_;
-  if (!revocations_->Refresh()) return;
-  ExpulsionMap workers;
-  if (const auto names = revocations_->revoked().find(Role::kWorker); names != revocations_->revoked().end())
-    for (const std::string& name : names->second) workers[name].reason = "its keys are revoked";
-  dispatcher_.Expel(workers);
-}
-
-std::vector<std::string> Coordinator::Readmit(const std::string& name) {
-  if (revocations_ && revocations_->Contains(Role::kWorker, name))
-    throw Refused(kExitBadInput, "the keys '" + name + "' are revoked, allowed: new keys under another name");
-  return dispatcher_.Readmit(name);
+  revocations_->Refresh();
 }
 
 void Coordinator::Answer(const Request& request) {
   if (!answer_) return;
-  if (revocations_ && revocations_->Contains(Role::kClient, KeyNameOf(request.client))) {
-    link_.Send({request.client, request.number, kExitBadInput, "the keys of this client are revoked", ""});
-    clients_[request.client] = now_s_;
-    return;
-  }
   if (!clients_.contains(request.client) && clients_.size() >= kMaxClients) return;  // it asks again
   clients_[request.client] = now_s_;
   link_.Send(answer_(request));
@@ -104,7 +89,17 @@ void Coordinator::Advance() {
   last_ = now;
 }
 
+void Coordinator::RefuseRevoked(const CoordinatorEvent& event) {
+  if (const auto* request = std::get_if<Request>(&event.what)) {
+    link_.Send({request->client, request->number, kExitBadInput, "the keys of this client are revoked", ""});
+    clients_[request->client] = now_s_;
+  } else if (const auto* status = std::get_if<WorkerStatus>(&event.what)) {
+    dispatcher_.RefuseKeys(status->worker);
+  }
+}
+
 void Coordinator::Handle(const CoordinatorEvent& event) {
+  if (revocations_ && revocations_->IsOf(event.sender)) return RefuseRevoked(event);
   if (const auto* request = std::get_if<TextRequest>(&event.what)) {
     if (const auto part = dispatcher_.On(*request, kTextPart, now_s_)) link_.Send(*part);
   } else if (const auto* asked = std::get_if<Request>(&event.what)) {

@@ -65,7 +65,7 @@ class Coordinator : public Workforce {
   std::uint64_t audits() const override { return dispatcher_.audits(); }
   const ExpulsionMap& expelled() const override { return dispatcher_.expelled(); }
   void Expel(const ExpulsionMap& names) override { dispatcher_.Expel(names, false); }
-  std::vector<std::string> Readmit(const std::string& name) override;
+  std::vector<std::string> Readmit(const std::string& name) override { return dispatcher_.Readmit(name); }
   /// Without the seconds for which this process or machine stood still.
   double now_s() const override { return now_s_; }
 
@@ -75,6 +75,7 @@ class Coordinator : public Workforce {
   void Answer(const Request& request);
   void ForgetClients();
   void LookForRevocations();
+  void RefuseRevoked(const CoordinatorEvent& event);
   void Send(const std::vector<Orders>& messages);
 
   std::uint64_t epoch_;

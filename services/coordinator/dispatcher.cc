@@ -154,6 +154,15 @@ void Dispatcher::Refuse(const std::string& worker, const std::string& reason) {
   TellRefusal(worker, reason);
 }
 
+void Dispatcher::RefuseKeys(const std::string& worker) {
+  const std::string reason = "its keys are revoked";
+  if (workers_.contains(worker)) {
+    Lose(worker, WorkerEnd::kKilled, reason);
+    ForEach([&](const std::string&, FlyingCampaign& campaign) { campaign.book->Disown(worker); });
+  }
+  Refuse(worker, reason);
+}
+
 void Dispatcher::TakeClaims(const OnClaims& fly) {
   ForEach([&](const std::string&, FlyingCampaign& campaign) {
     fly(campaign.book->campaign(), campaign.book->TakeClaims());

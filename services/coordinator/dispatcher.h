@@ -99,9 +99,11 @@ class Dispatcher {
   const AuditOptions& audit() const { return options_.audit; }
   std::uint64_t audits() const { return audits_; }
   const ExpulsionMap& expelled() const { return expelled_; }
-  /// Expels workers from now on, if they are not expelled yet: those that an earlier coordinator expelled, or
-  /// that the issuer of keys revoked. `is_news`: the log tells them one by one.
+  /// Expels workers from now on, if they are not expelled yet: those that an earlier coordinator expelled.
+  /// `is_news`: the log tells them one by one.
   void Expel(const ExpulsionMap& names, bool is_news = true);
+  /// The issuer of its keys has revoked them. Its results in flying campaigns are flown again.
+  void RefuseKeys(const std::string& worker);
   /// See Readmit() of expulsions.h.
   std::vector<std::string> Readmit(const std::string& name) { return dispersa::Readmit(&expelled_, name); }
 

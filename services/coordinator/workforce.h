@@ -30,7 +30,7 @@ class Workforce {
   virtual std::uint64_t audits() const = 0;
   virtual const ExpulsionMap& expelled() const = 0;
   virtual void Expel(const ExpulsionMap& names) = 0;
-  /// The names that changed. Throws Refused for keys that their issuer revoked.
+  /// The names that changed.
   virtual std::vector<std::string> Readmit(const std::string& name) = 0;
   /// Seconds since the start.
   virtual double now_s() const = 0;

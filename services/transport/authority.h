@@ -4,6 +4,7 @@
 #include <ctime>
 #include <filesystem>
 #include <string>
+#include <vector>
 
 #include "services/transport/permissions.h"
 
@@ -26,18 +27,39 @@ Validity ValidFor(int days);
 ///   authority/governance.p7s             the protection of all topics
 ///   issued/<role>-<name>/                one folder for each participant, with all that it needs
 ///   revoked.p7s                          revoked keys (revocations.h), once there are any
+///   serials.txt                          a line "ROLE NAME SERIAL UNTIL" for all keys that were issued
 ///
-/// The first two functions make a folder as a whole or not at all, readable by the owner alone, and throw
+/// After RenewAuthority() the files of certificates have those of before, too: whoever has these files
+/// believes keys of both.
+///
+/// MakeAuthority and IssueKeys make a folder as a whole or not at all, readable by the owner alone, and throw
 /// InputError rather than overwrite one.
 void MakeAuthority(const std::filesystem::path& directory, const Validity& validity);
 
-/// Returns the folder. `right` is that of a client. Keys end with the authority at the latest. More than a
-/// day longer is an InputError.
+/// From now on another authority issues keys. The keys of before are believed too, until RetireAuthority().
+/// Return the folder with the former authority, which nobody needs when all is well.
+std::filesystem::path RenewAuthority(const std::filesystem::path& directory, const Validity& validity);
+std::filesystem::path RetireAuthority(const std::filesystem::path& directory);
+
+/// Returns the folder. Revoked keys of the same name give way. `right` is that of a client. Keys end with the
+/// authority at the latest. More than a day longer is an InputError.
 std::filesystem::path IssueKeys(const std::filesystem::path& directory, Role role, const std::string& name,
                                 const Validity& validity, Right right = Right::kRun);
 
-/// Adds issued keys to the list of revoked keys, and returns the list's file. The list takes effect where it
-/// is copied into the folder of a coordinator's keys. Throws InputError.
-std::filesystem::path RevokeKeys(const std::filesystem::path& directory, Role role, const std::string& name);
+struct IssuedKeys {
+  Role role;
+  std::string name;
+  std::string serial;
+  std::string until;  ///< "2027-01-31"; empty: not known
+  bool is_revoked;
+};
+/// All that this and former authorities of the folder issued, the first first.
+std::vector<IssuedKeys> ListKeys(const std::filesystem::path& directory);
+
+/// Adds issued keys to the list of revoked keys, and returns the list's file: those with this serial, or all
+/// of this name. The list takes effect where it is copied into the folder of a coordinator's keys. Throws
+/// InputError.
+std::filesystem::path RevokeKeys(const std::filesystem::path& directory, Role role, const std::string& name,
+                                 const std::string& serial = "");
 
 }  // namespace dispersa

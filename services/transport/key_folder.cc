@@ -95,21 +95,25 @@ KeyFolder OpenKeyFolder(const fs::path& directory, std::initializer_list<Role> r
     RefuseKeys(directory, "the folder of the authority, which signs and does not speak: give one of " +
                               (directory / "issued").string());
   }
-  const auto certificate_in = [&](const char* name) { return Parse(directory / name, ReadCertificate); };
-  const Certificate identity_ca = certificate_in(kIdentityAuthorityFile);
-  const Certificate permissions_ca = certificate_in(kPermissionsAuthorityFile);
-  const Certificate identity = certificate_in(kIdentityFile);
+  const auto identity_cas = Parse(directory / kIdentityAuthorityFile, ReadCertificates);
+  const auto permissions_cas = Parse(directory / kPermissionsAuthorityFile, ReadCertificates);
+  const Certificate identity = Parse(directory / kIdentityFile, ReadCertificate);
   RefuseOpenKey(directory / kIdentityKeyFile);
   const PrivateKey key = Parse(directory / kIdentityKeyFile, ReadPrivateKey);
   if (X509_check_private_key(identity.get(), key.get()) != 1) {
     RefuseKeys(directory / kIdentityKeyFile, std::string("not the key of ") + kIdentityFile);
   }
-  if (!IsSignedBy(identity.get(), identity_ca.get())) {
+  const auto identity_ca =
+      std::find_if(identity_cas.begin(), identity_cas.end(),
+                   [&](const Certificate& each) { return IsSignedBy(identity.get(), each.get()); });
+  if (identity_ca == identity_cas.end()) {
     RefuseKeys(directory / kIdentityFile, std::string("not signed by ") + kIdentityAuthorityFile);
   }
+  X509* permissions_ca = nullptr;
   const auto document_in = [&](const char* name) {
-    return Parse(directory / name,
-                 [&](const std::string& text) { return VerifiedDocument(text, permissions_ca.get()); });
+    return Parse(directory / name, [&](const std::string& text) {
+      return VerifiedDocument(text, permissions_cas, &permissions_ca);
+    });
   };
   document_in(kGovernanceFile);
   const std::string permissions = document_in(kPermissionsFile);
@@ -124,8 +128,8 @@ KeyFolder OpenKeyFolder(const fs::path& directory, std::initializer_list<Role> r
     RefuseKeys(directory, "keys of the " + unit + " '" + subject.name + "'; here those of a " +
                               JoinRoles(roles) + " are needed");
   }
-  CheckDates(directory / kIdentityAuthorityFile, identity_ca.get(), "make a new authority");
-  CheckDates(directory / kPermissionsAuthorityFile, permissions_ca.get(), "make a new authority");
+  CheckDates(directory / kIdentityAuthorityFile, identity_ca->get(), "make a new authority");
+  CheckDates(directory / kPermissionsAuthorityFile, permissions_ca, "make a new authority");
   CheckDates(directory / kIdentityFile, identity.get(), "issue new keys");
   const auto right =
       unit.size() == subject.unit.size() ? std::nullopt : ParseRight(subject.unit.substr(unit.size() + 1));

@@ -18,7 +18,7 @@ struct KeyFolder {
   std::optional<Right> right = {};  ///< of a client; none in keys of an earlier version
 };
 
-// The files of a folder.
+// The files of a folder. Those of the authorities may have several certificates: each is believed.
 inline constexpr char kIdentityAuthorityFile[] = "identity_ca.pem";
 inline constexpr char kPermissionsAuthorityFile[] = "permissions_ca.pem";
 inline constexpr char kGovernanceFile[] = "governance.p7s";

@@ -65,6 +65,7 @@ void Fill(X509_NAME* name, const Subject& subject) {
   AddToName(name, "O", "dispersa");
   AddToName(name, "OU", subject.unit);
   AddToName(name, "CN", subject.name);
+  AddToName(name, "serialNumber", subject.serial);
 }
 
 std::string FieldOf(X509* certificate, int field) {
@@ -87,21 +88,27 @@ PrivateKey MakePrivateKey() {
   return key;
 }
 
+std::string MakeSerial() {
+  std::uint64_t serial = 0;
+  Check(RAND_bytes(reinterpret_cast<unsigned char*>(&serial), sizeof serial) == 1, "random numbers");
+  return fmt::format("{:016x}", serial >> 1);  // positive
+}
+
 Certificate MakeCertificate(const CertificateContents& contents, EVP_PKEY* key, X509* issuer,
                             EVP_PKEY* issuer_key) {
   Certificate made(X509_new());
   Check(made != nullptr, "no memory");
-  std::uint64_t serial = 0;
-  Check(RAND_bytes(reinterpret_cast<unsigned char*>(&serial), sizeof serial) == 1, "random numbers");
+  const std::string serial = contents.subject.serial.empty() ? MakeSerial() : contents.subject.serial;
   X509_NAME* name = X509_get_subject_name(made.get());
   Fill(name, contents.subject);
-  Check(X509_set_version(made.get(), X509_VERSION_3) == 1 &&
-            ASN1_INTEGER_set_uint64(X509_get_serialNumber(made.get()), serial >> 1) == 1 &&
-            ASN1_TIME_set(X509_getm_notBefore(made.get()), contents.not_before) != nullptr &&
-            ASN1_TIME_set(X509_getm_notAfter(made.get()), contents.not_after) != nullptr &&
-            X509_set_issuer_name(made.get(), issuer ? X509_get_subject_name(issuer) : name) == 1 &&
-            X509_set_pubkey(made.get(), key) == 1,
-        "a certificate");
+  Check(
+      X509_set_version(made.get(), X509_VERSION_3) == 1 &&
+          ASN1_INTEGER_set_uint64(X509_get_serialNumber(made.get()), std::stoull(serial, nullptr, 16)) == 1 &&
+          ASN1_TIME_set(X509_getm_notBefore(made.get()), contents.not_before) != nullptr &&
+          ASN1_TIME_set(X509_getm_notAfter(made.get()), contents.not_after) != nullptr &&
+          X509_set_issuer_name(made.get(), issuer ? X509_get_subject_name(issuer) : name) == 1 &&
+          X509_set_pubkey(made.get(), key) == 1,
+      "a certificate");
   AddExtension(made.get(), NID_basic_constraints,
                contents.is_authority ? "critical,CA:TRUE,pathlen:0" : "critical,CA:FALSE");
   AddExtension(made.get(), NID_key_usage,
@@ -141,6 +148,15 @@ Certificate ReadCertificate(const std::string& pem) {
   return certificate;
 }
 
+std::vector<Certificate> ReadCertificates(const std::string& pem) {
+  std::vector<Certificate> certificates;
+  const Bio in = MemoryOf(pem);
+  while (X509* next = PEM_read_bio_X509(in.get(), nullptr, nullptr, nullptr)) certificates.emplace_back(next);
+  ERR_clear_error();  // the last reading finds none
+  if (certificates.empty()) throw std::runtime_error("no certificate in PEM");
+  return certificates;
+}
+
 PrivateKey ReadPrivateKey(const std::string& pem) {
   PrivateKey key(PEM_read_bio_PrivateKey(MemoryOf(pem).get(), nullptr, nullptr, nullptr));
   if (!key) {
@@ -151,7 +167,8 @@ PrivateKey ReadPrivateKey(const std::string& pem) {
 }
 
 Subject SubjectOf(X509* certificate) {
-  return {FieldOf(certificate, NID_commonName), FieldOf(certificate, NID_organizationalUnitName)};
+  return {FieldOf(certificate, NID_commonName), FieldOf(certificate, NID_organizationalUnitName),
+          FieldOf(certificate, NID_serialNumber)};
 }
 
 std::string SubjectText(X509* certificate) {
@@ -210,6 +227,18 @@ std::string VerifiedDocument(const std::string& smime, X509* signer) {
     throw std::runtime_error("the signature does not fit: damaged, or of another authority");
   }
   return TextOf(out.get());
+}
+
+std::string VerifiedDocument(const std::string& smime, const std::vector<Certificate>& signers, X509** by) {
+  for (std::size_t i = 0;; ++i) {
+    try {
+      std::string text = VerifiedDocument(smime, signers.at(i).get());
+      if (by != nullptr) *by = signers[i].get();
+      return text;
+    } catch (const std::runtime_error&) {
+      if (i + 1 == signers.size()) throw;
+    }
+  }
 }
 
 }  // namespace dispersa

@@ -9,6 +9,7 @@
 #include <filesystem>
 #include <memory>
 #include <string>
+#include <vector>
 
 namespace dispersa {
 
@@ -28,6 +29,8 @@ using Certificate = std::unique_ptr<X509, OpenSslFree<X509_free>>;
 struct Subject {
   std::string name;  ///< CN
   std::string unit;  ///< OU: a role, of a client ROLE-RIGHT, or empty
+  std::string serial =
+      {};  ///< 16 digits, that of its certificate; empty: an authority, or of an earlier version
 };
 
 struct CertificateContents {
@@ -40,6 +43,8 @@ struct CertificateContents {
 /// On the curve P-256, the one that the middleware's key exchange knows. All of these throw
 /// std::runtime_error with OpenSSL's words.
 PrivateKey MakePrivateKey();
+/// 16 random hexadecimal digits.
+std::string MakeSerial();
 /// Signed by `issuer` with its key, or by itself without an issuer.
 Certificate MakeCertificate(const CertificateContents& contents, EVP_PKEY* key, X509* issuer,
                             EVP_PKEY* issuer_key);
@@ -49,13 +54,16 @@ std::string SignDocument(const std::string& text, X509* signer, EVP_PKEY* key);
 std::string ToPem(X509* certificate);
 std::string ToPem(EVP_PKEY* key);
 Certificate ReadCertificate(const std::string& pem);
+/// All of a file: at least one.
+std::vector<Certificate> ReadCertificates(const std::string& pem);
 PrivateKey ReadPrivateKey(const std::string& pem);
 
 Subject SubjectOf(X509* certificate);
-/// "CN=node1,OU=worker,O=dispersa": the form in which permissions name their owner.
+/// "serialNumber=0f3a...,CN=node1,OU=worker,O=dispersa": the form in which permissions name their owner.
 std::string SubjectText(X509* certificate);
-/// The first 12 digits of the names of participants (ParticipantOf) with keys of this owner: the middleware
-/// checks that a participant's name and its certificate agree.
+inline constexpr std::size_t kParticipantDigits = 12;
+/// The first kParticipantDigits digits of the names of participants (ParticipantOf) with keys of this owner:
+/// the middleware checks that a participant's name and its certificate agree.
 std::string ParticipantsOf(const Subject& subject);
 std::time_t EndOf(X509* certificate);
 std::time_t BeginOf(X509* certificate);
@@ -64,5 +72,8 @@ bool IsSignedBy(X509* certificate, X509* authority);
 /// The text of a signed document. Throws if it is not one, or if `signer`, whose dates are not checked, has
 /// not signed it.
 std::string VerifiedDocument(const std::string& smime, X509* signer);
+/// The same for one of several, which `by` then has.
+std::string VerifiedDocument(const std::string& smime, const std::vector<Certificate>& signers,
+                             X509** by = nullptr);
 
 }  // namespace dispersa

@@ -1,9 +1,10 @@
 #include "services/transport/revocations.h"
 
-#include <algorithm>
 #include <sstream>
 #include <stdexcept>
 #include <system_error>
+#include <utility>
+#include <vector>
 
 #include "services/log/log.h"
 #include "services/transport/openssl.h"
@@ -11,14 +12,22 @@
 namespace dispersa {
 namespace {
 
-constexpr char kRevokedHead[] = "dispersa revoked keys 1";
+constexpr char kRevokedHead[] = "dispersa revoked keys 2", kHeadWithoutSerials[] = "dispersa revoked keys 1";
+
+/// What a certificate of these keys may have as its unit.
+std::vector<std::string> UnitsOf(Role role) {
+  std::vector<std::string> units = {Name(role)};
+  if (role != Role::kClient) return units;
+  for (const Right right : kRights) units.push_back(std::string(Name(role)) + "-" + Name(right));
+  return units;
+}
 
 }  // namespace
 
 std::string RevocationText(const Revoked& revoked) {
   std::string text = std::string(kRevokedHead) + "\n";
-  for (const auto& [role, names] : revoked)
-    for (const std::string& name : names) text += std::string(Name(role)) + " " + name + "\n";
+  for (const RevokedKeys& keys : revoked)
+    text += std::string(Name(keys.role)) + " " + keys.name + " " + keys.serial + "\n";
   return text;
 }
 
@@ -30,14 +39,16 @@ Revoked ParseRevocations(const std::string& text) {
     if (!line.empty() && line.back() == '\r') line.pop_back();  // S/MIME's line ends
     return true;
   };
-  if (!next() || line != kRevokedHead) throw std::runtime_error("no list of revoked keys");
+  const bool has_serials = next() && line == kRevokedHead;
+  if (!has_serials && line != kHeadWithoutSerials) throw std::runtime_error("no list of revoked keys");
   Revoked revoked;
   while (next()) {
-    const std::size_t space = line.find(' ');
-    const auto role = ParseRole(line.substr(0, space));
-    if (!role || space == std::string::npos || space + 1 == line.size())
-      throw std::runtime_error("a line is not 'ROLE NAME': '" + line + "'");
-    revoked[*role].insert(line.substr(space + 1));
+    std::istringstream words(line + (has_serials ? "" : std::string(" ") + kNoSerial));
+    std::string role, name, serial, more;
+    words >> role >> name >> serial;
+    if (!ParseRole(role) || serial.empty() || words >> more)
+      throw std::runtime_error("a line is not 'ROLE NAME SERIAL': '" + line + "'");
+    revoked.insert({*ParseRole(role), name, serial});
   }
   return revoked;
 }
@@ -49,8 +60,12 @@ bool Revocations::Refresh() {
   if (error || read_ == written) return false;
   read_ = written;
   try {
-    const Certificate signer = ReadCertificate(ReadKeyFile(directory_ / kPermissionsAuthorityFile));
-    revoked_ = ParseRevocations(VerifiedDocument(ReadKeyFile(file), signer.get()));
+    const auto signers = ReadCertificates(ReadKeyFile(directory_ / kPermissionsAuthorityFile));
+    std::set<std::string> participants;
+    for (const RevokedKeys& keys : ParseRevocations(VerifiedDocument(ReadKeyFile(file), signers)))
+      for (const std::string& unit : UnitsOf(keys.role))
+        participants.insert(ParticipantsOf({keys.name, unit, keys.serial == kNoSerial ? "" : keys.serial}));
+    participants_ = std::move(participants);
     return true;
   } catch (const std::runtime_error& problem) {
     LogError("{}: the list of revoked keys is not taken: {}", file.string(), problem.what());
@@ -58,17 +73,8 @@ bool Revocations::Refresh() {
   }
 }
 
-bool Revocations::Contains(Role role, const std::string& name) const {
-  const auto found = revoked_.find(role);
-  return found != revoked_.end() && found->second.contains(name);
-}
-
-bool Revocations::IsOf(Role role, const std::string& participant) const {
-  const auto names = revoked_.find(role);
-  return names != revoked_.end() &&
-         std::any_of(names->second.begin(), names->second.end(), [&](const std::string& name) {
-           return participant.starts_with(ParticipantsOf({name, Name(role)}));
-         });
+bool Revocations::IsOf(const std::string& participant) const {
+  return participants_.contains(participant.substr(0, kParticipantDigits));
 }
 
 }  // namespace dispersa

@@ -1,9 +1,9 @@
 // Keys that are not to be believed any more, though they are valid: a list that the authority signs.
 #pragma once
 
+#include <compare>
 #include <ctime>
 #include <filesystem>
-#include <map>
 #include <optional>
 #include <set>
 #include <string>
@@ -12,12 +12,21 @@
 
 namespace dispersa {
 
-/// Names of revoked keys, by role.
-using Revoked = std::map<Role, std::set<std::string>>;
+/// The serial of keys that have none, of an earlier version.
+inline constexpr char kNoSerial[] = "-";
 
-/// "dispersa revoked keys 1", then a line "ROLE NAME" for each.
+struct RevokedKeys {
+  Role role;
+  std::string name;
+  std::string serial;
+
+  auto operator<=>(const RevokedKeys&) const = default;
+};
+using Revoked = std::set<RevokedKeys>;
+
+/// "dispersa revoked keys 2", then a line "ROLE NAME SERIAL" for each.
 std::string RevocationText(const Revoked& revoked);
-/// Throws std::runtime_error when it is no such text.
+/// Reads version 1 too, which has no serials. Throws std::runtime_error when it is no such text.
 Revoked ParseRevocations(const std::string& text);
 
 /// The list `revoked.p7s` beside the keys of its reader. It is read at the start of the program and whenever
@@ -29,15 +38,14 @@ class Revocations {
 
   /// Whether the list has become another one.
   bool Refresh();
-  const Revoked& revoked() const { return revoked_; }
-  bool Contains(Role role, const std::string& name) const;
-  /// Whether a participant has revoked keys of this role, which is no client's.
-  bool IsOf(Role role, const std::string& participant) const;
+  /// Whether a participant has revoked keys: its name follows from the subject of its certificate, which has
+  /// the serial.
+  bool IsOf(const std::string& participant) const;
 
  private:
   std::filesystem::path directory_;
   std::optional<std::filesystem::file_time_type> read_;
-  Revoked revoked_;
+  std::set<std::string> participants_;  ///< the first digits of their names
 };
 
 }  // namespace dispersa

@@ -53,7 +53,7 @@ struct WorkerLink::Impl {
     }
     std::vector<WorkerEvent> believed;
     for (Heard& each : heard) {
-      if (revocations && revocations->IsOf(Role::kCoordinator, each.sender)) {
+      if (revocations && revocations->IsOf(each.sender)) {
         Complain("message", each.sender, "the keys of this coordinator are revoked");
       } else {
         believed.push_back(std::move(each.what));

@@ -33,6 +33,10 @@ class KeyFolderTest : public testing::Test {
   fs::path Worker(const std::string& name = "one") {
     return IssueKeys(authority(), Role::kWorker, name, ValidFor(1));
   }
+  /// The first digits of the names of participants with these keys.
+  static std::string ParticipantOfFolder(const fs::path& folder) {
+    return ParticipantsOf(SubjectOf(CertificateIn(folder / kIdentityFile).get())) + "0123456789ab";
+  }
   static Certificate CertificateIn(const fs::path& file) { return ReadCertificate(TextOfFile(file)); }
   static void Write(const fs::path& file, const std::string& text) { std::ofstream(file) << text; }
 
@@ -95,37 +99,110 @@ TEST_F(KeyFolderTest, RevokedKeysAreOnAListThatTheAuthoritySigned) {
                         fs::file_time_type::clock::now() + std::chrono::seconds(++takes_));
     return revocations.Refresh();
   };
+  const std::string node1 = ParticipantOfFolder(IssueKeys(authority(), Role::kWorker, "node1", ValidFor(1))),
+                    node2 = ParticipantOfFolder(IssueKeys(authority(), Role::kWorker, "node2", ValidFor(1)));
+  const std::string ann =
+      ParticipantOfFolder(IssueKeys(authority(), Role::kClient, "ann", ValidFor(1), Right::kAdminister));
   EXPECT_EQ(RevokeKeys(authority(), Role::kWorker, "node1"), authority() / kRevokedFile);
   RevokeKeys(authority(), Role::kClient, "ann");
   EXPECT_TRUE(take());
   EXPECT_FALSE(revocations.Refresh()) << "it is the same";
-  EXPECT_TRUE(revocations.Contains(Role::kWorker, "node1"));
-  EXPECT_TRUE(revocations.Contains(Role::kClient, "ann"));
-  EXPECT_FALSE(revocations.Contains(Role::kWorker, "ann"));
-  EXPECT_EQ(IssueError("node1"), "the keys of the worker 'node1' are revoked, allowed: another name");
+  EXPECT_TRUE(revocations.IsOf(node1));
+  EXPECT_TRUE(revocations.IsOf(ann));
+  EXPECT_FALSE(revocations.IsOf(node2));
+  // The name may be issued again, and its new keys are good.
+  const fs::path again = IssueKeys(authority(), Role::kWorker, "node1", ValidFor(1));
+  EXPECT_FALSE(revocations.IsOf(ParticipantOfFolder(again)));
+  EXPECT_TRUE(revocations.IsOf(node1));
+  EXPECT_EQ(IssueError("node1"), again.string() +
+                                     ": these keys exist already and are not overwritten, allowed: "
+                                     "another name, or to remove the folder first");
+  // Without a serial all keys of the name, with one these alone.
+  const auto serials = [&](bool is_revoked) {
+    std::vector<std::string> of_node1;
+    for (const IssuedKeys& keys : ListKeys(authority()))
+      if (keys.name == "node1" && keys.is_revoked == is_revoked) of_node1.push_back(keys.serial);
+    return of_node1;
+  };
+  ASSERT_EQ(serials(true).size(), 1u);
+  ASSERT_EQ(serials(false).size(), 1u);
+  const std::string old = serials(true)[0], fresh = serials(false)[0];
+  EXPECT_EQ(ErrorOf([&] { RevokeKeys(authority(), Role::kWorker, "node3"); }),
+            "no keys of the worker 'node3' were issued here, allowed: keys that `dispersa keys list` prints; "
+            "--serial - for keys of an earlier version");
+  EXPECT_THAT(ErrorOf([&] { RevokeKeys(authority(), Role::kClient, "node1", fresh); }),
+              StartsWith("no keys of the client 'node1' with the serial " + fresh + " were issued here"));
+  RevokeKeys(authority(), Role::kWorker, "node1", old);
+  EXPECT_THAT(serials(false), ElementsAre(fresh)) << "it was revoked already";
   // Neither a list of another authority nor one that was edited.
   MakeAuthority(folder_ / "theirs", ValidFor(30));
+  IssueKeys(folder_ / "theirs", Role::kWorker, "node2", ValidFor(1));
   const fs::path theirs = RevokeKeys(folder_ / "theirs", Role::kWorker, "node2");
   std::string edited = TextOfFile(authority() / kRevokedFile);
   edited.replace(edited.find("node1"), 5, "node3");
   for (const std::string& text : {TextOfFile(theirs), edited}) {
     Write(authority() / kRevokedFile, text);
     EXPECT_FALSE(take());
-    EXPECT_TRUE(revocations.Contains(Role::kWorker, "node1")) << "the last good one holds";
-    EXPECT_FALSE(revocations.Contains(Role::kWorker, "node2"));
-    EXPECT_FALSE(revocations.Contains(Role::kWorker, "node3"));
+    EXPECT_TRUE(revocations.IsOf(node1)) << "the last good one holds";
+    EXPECT_FALSE(revocations.IsOf(node2));
   }
 }
 
 TEST(RevocationsTest, ATextIsReadAsItIsWritten) {
-  const Revoked revoked = {{Role::kWorker, {"a", "b"}}, {Role::kClient, {"a"}}};
-  EXPECT_EQ(RevocationText(revoked), "dispersa revoked keys 1\nworker a\nworker b\nclient a\n");
-  EXPECT_EQ(ParseRevocations("dispersa revoked keys 1\r\nworker a\r\nworker b\r\nclient a\r\n"), revoked);
-  for (const std::string text : {"", "dispersa revoked keys 2\n"})
+  const Revoked revoked = {{Role::kWorker, "a", "0f"}, {Role::kWorker, "a", "1f"}, {Role::kClient, "a", "-"}};
+  EXPECT_EQ(RevocationText(revoked), "dispersa revoked keys 2\nworker a 0f\nworker a 1f\nclient a -\n");
+  EXPECT_EQ(ParseRevocations("dispersa revoked keys 2\r\nworker a 1f\r\nworker a 0f\r\nclient a -\r\n"),
+            revoked);
+  EXPECT_EQ(ParseRevocations("dispersa revoked keys 1\r\nclient a\r\n"),
+            Revoked({{Role::kClient, "a", "-"}}));
+  for (const std::string text : {"", "dispersa revoked keys 3\n"})
     EXPECT_EQ(ErrorOf([&] { ParseRevocations(text); }), "no list of revoked keys");
-  for (const std::string line : {"king a", "worker", "worker "})
-    EXPECT_EQ(ErrorOf([&] { ParseRevocations("dispersa revoked keys 1\n" + line + "\n"); }),
-              "a line is not 'ROLE NAME': '" + line + "'");
+  for (const std::string line : {"king a 0f", "worker", "worker a", "worker a 0f 1f"})
+    EXPECT_EQ(ErrorOf([&] { ParseRevocations("dispersa revoked keys 2\n" + line + "\n"); }),
+              "a line is not 'ROLE NAME SERIAL': '" + line + "'");
+}
+
+// Both signers, before and after; what each program believes.
+TEST_F(KeyFolderTest, TwoAuthoritiesAreBelievedUntilTheOldOneRetires) {
+  const fs::path old = Worker();
+  const auto copy_authorities = [&](const fs::path& to) {
+    for (const char* file : {kIdentityAuthorityFile, kPermissionsAuthorityFile})
+      fs::copy_file(authority() / "authority" / file, to / file, fs::copy_options::overwrite_existing);
+  };
+  EXPECT_EQ(
+      ErrorOf([&] { RetireAuthority(authority()); }),
+      authority().string() +
+          ": has one authority, which issues its keys, allowed: an authority after `dispersa keys renew`");
+  const fs::path former = RenewAuthority(authority(), ValidFor(30));
+  EXPECT_TRUE(fs::exists(former / "identity_ca.key"));
+  EXPECT_THAT(ErrorOf([&] { RenewAuthority(authority(), ValidFor(30)); }),
+              HasSubstr("was renewed, and the keys of before are still accepted"));
+  const fs::path fresh = IssueKeys(authority(), Role::kWorker, "two", ValidFor(1));
+  EXPECT_EQ(OpenError(old), "none") << "it needs nothing";
+  EXPECT_EQ(OpenError(fresh), "none");
+  copy_authorities(old);
+  EXPECT_EQ(OpenError(old), "none");
+  const auto first_name = [&](const fs::path& folder) {
+    return SubjectOf(CertificateIn(folder / kPermissionsAuthorityFile).get()).name;
+  };
+  EXPECT_EQ(first_name(fresh), "dispersa permissions");
+  RevokeKeys(authority(), Role::kWorker, "two");
+  RetireAuthority(authority());
+  copy_authorities(fresh);
+  EXPECT_EQ(OpenError(fresh), "none");
+  EXPECT_EQ(first_name(fresh), "dispersa permissions");
+  EXPECT_EQ(ListKeys(authority()).back().is_revoked, true) << "the list is signed again";
+  copy_authorities(old);
+  EXPECT_EQ(OpenError(old), (old / kIdentityFile).string() + ": not signed by identity_ca.pem");
+  // And once more.
+  RenewAuthority(authority(), ValidFor(30));
+  const fs::path third = IssueKeys(authority(), Role::kWorker, "three", ValidFor(1));
+  copy_authorities(fresh);
+  RetireAuthority(authority());
+  EXPECT_EQ(OpenError(fresh), "none");
+  copy_authorities(third);
+  EXPECT_EQ(OpenError(third), "none");
+  EXPECT_EQ(first_name(third), "dispersa permissions");
 }
 
 TEST_F(KeyFolderTest, NothingIsOverwritten) {

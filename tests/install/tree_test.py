@@ -64,7 +64,7 @@ class Tree(unittest.TestCase):
         pages = {page.name for page in (self.prefix / "share/man/man1").iterdir()}
         commands = [line.split("\t")[0] for line in self.dispersa("completion", "words", "").stdout.splitlines()]
         self.assertEqual(pages, {f"dispersa{end}.1.gz" for end in
-                                 ["", "-coordinator", "-worker", "-keys-init", "-keys-issue", "-keys-revoke",
+                                 ["", "-coordinator", "-worker", "-keys-init", "-keys-issue", "-keys-list", "-keys-renew", "-keys-retire", "-keys-revoke",
                                   *["-" + name for name in commands]]})
         for place in ("bash-completion/completions/dispersa-worker", "fish/vendor_completions.d/dispersa.fish",
                       "zsh/site-functions/_dispersa"):
