@@ -27,7 +27,7 @@ class Words(unittest.TestCase):
     def test_commands_and_their_commands(self):
         self.assertTrue({"validate", "run", "keys", "completion"} <= set(words("")))
         self.assertEqual(words("f"), ["fly", "fetch", "fsck"])
-        self.assertEqual(words("keys", ""), ["init", "issue", "list", "renew", "retire", "revoke"])
+        self.assertEqual(words("keys", ""), ["init", "issue", "revoke", "list", "renew", "retire"])
         # As parsed: an option's value is no command.
         self.assertEqual(words("--color", "keys", "v"), ["validate"])
 
