@@ -33,11 +33,11 @@ ExitCode ReportAgain(const ReportCommand& options, const GlobalOptions& global) 
   TerminalObserver observer(global.quiet);
   const CampaignSummary summary =
       MakeReports(stored.folder, stored.campaign, UsableCores(), options.reflown, observer);
-  if (!is_ours) {
-    LogWarning("{}: flown by engine {}, and this one, {}, flew nothing: {}", options.directory, engine,
-               EngineVersion(),
-               summary.envelope ? "the stored histories are drawn"
-                                : "no stored histories fit the report, see --envelope");
+  if (!is_ours && !options.reflown.none) {
+    LogWarning(
+        "{}: flown by engine {}, and this one, {}, flew nothing: {}", options.directory, engine,
+        EngineVersion(),
+        summary.envelope ? "the stored histories are drawn" : "it has no stored histories that are whole");
   }
   PrintSummary(summary, stored.folder.directory(), global.json);
   if (options.open)

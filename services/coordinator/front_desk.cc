@@ -485,7 +485,7 @@ std::string FrontDesk::Expelled() const {
 
 std::string FrontDesk::Delete(const Asker& asker, const std::string& arguments) {
   const std::string wanted = Json::parse(arguments).at("id");
-  if (service_.catalogue().Find(wanted) == nullptr && wanted.size() >= 64 && deleted_.contains(wanted))
+  if (!service_.catalogue().entries().contains(wanted) && wanted.size() >= 64 && deleted_.contains(wanted))
     return Json{{"id", wanted}}.dump();
   const CatalogueEntry entry = Named(wanted);
   const std::string id = entry.id;
@@ -591,7 +591,8 @@ std::string FrontDesk::Snapshot(const CatalogueEntry& entry, const std::string& 
   const fs::path directory = service_.catalogue().ResultsOf(entry.id);
   CampaignSnapshot& snapshot = snapshots_[entry.id];
   if (snapshot.name != name) {
-    snapshot = {name, service_.catalogue().StateTextOf(entry.id), {}};
+    const bool is_damaged = entry.state == CampaignState::kDamaged;  // and is so in the copy
+    snapshot = {name, is_damaged ? "" : service_.catalogue().StateTextOf(entry.id), {}};
     if (service_.IsAtRest(entry.id)) {
       snapshot.files = StoredFilesIn(directory);
     } else if (fs::exists(directory / kDatabase)) {

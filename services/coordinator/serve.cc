@@ -47,7 +47,7 @@ constexpr double kLogCounts_s = 1.0;
 constexpr int kMostReports = 8;  // at once: each takes memory of its campaign
 constexpr std::chrono::seconds kHealthPatience(8);
 constexpr double kFarewell_s = 2.0;  // until the answer to the last request has arrived
-constexpr std::chrono::seconds kDrainPeriod(1);
+constexpr std::chrono::seconds kDrainPeriod(1), kDrainPatience(2);
 constexpr std::chrono::seconds kLockPatience(30);
 
 /// From the signal to the end, whatever still reads, parses or reports: the disk has all that is promised.
@@ -236,7 +236,9 @@ int AskDrain(const NetworkOptions& network, const std::string& host, const std::
   for (;;) {
     const nlohmann::json arguments =
         epoch.is_null() ? nlohmann::json::object() : nlohmann::json{{"epoch", epoch}};
-    const auto reply = client.Call("drain", arguments.dump(), "", kHealthPatience);
+    // Who knows the folder asks it whether the coordinator has ended.
+    const auto patience = epoch.is_null() || data.empty() ? kHealthPatience : kDrainPatience;
+    const auto reply = client.Call("drain", arguments.dump(), "", patience);
     if (!reply && epoch.is_null()) throw DoesNotAnswer(network);
     if (!reply) break;
     if (reply->code != 0) throw Failure{static_cast<ExitCode>(reply->code), reply->text};

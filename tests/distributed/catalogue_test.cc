@@ -228,13 +228,13 @@ TEST_F(CatalogueTest, FindsTheFlightOfAnEarlierEngineByBothPartsOfItsId) {
     const CatalogueEntry* entry = catalogue.Find(wanted);
     return entry == nullptr ? "none" : entry->id;
   };
-  EXPECT_EQ(found("abc1"), "abc1") << "rather the present flight";
-  EXPECT_EQ(found("abc2"), "abc2-f1") << "the only one";
+  EXPECT_EQ(found("abc1"), "abc1");
   EXPECT_EQ(found("abc"), "abc1");
   EXPECT_EQ(found("abc1-e1"), "abc1-e1");
   EXPECT_EQ(found("abc-e"), "abc1-e1");
   EXPECT_EQ(found("abc-f"), "abc2-f1");
-  for (const char* none : {"abc-", "abc-e2", "d3-e", "-e1", "-"}) EXPECT_EQ(found(none), "none") << none;
+  for (const char* none : {"abc-", "abc-e2", "d3-e", "-e1", "-", "abc2"})
+    EXPECT_EQ(found(none), "none") << none;
   EXPECT_EQ(Catalogue(root_ / "other").Find("abc1"), nullptr);
 }
 

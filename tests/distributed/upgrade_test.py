@@ -6,6 +6,7 @@ import json
 import signal
 import sqlite3
 import subprocess
+import urllib.request
 
 import aged
 from processes import BINARIES, CAMPAIGN, PATIENCE_S, main, stored, wait_for
@@ -17,6 +18,8 @@ MANY = 5000  # more than fly until the coordinator is stopped
 
 class UpgradeTest(ServiceCase):
     DOMAIN = "35"
+    PORT = 18535
+    DAEMON = ["--web", PORT]
 
     def setUp(self):
         super().setUp()
@@ -102,7 +105,7 @@ class UpgradeTest(ServiceCase):
         # Histories that somebody has changed are not drawn, and not removed.
         changed = out / "histories" / "nominal.csv.gz"
         changed.write_bytes(changed.read_bytes()[:-1])
-        self.assertIn("no stored histories fit", self.local("report", out).stderr)
+        self.assertIn("it has no stored histories that are whole", self.local("report", out).stderr)
         self.assertIn("without time histories", (out / page).read_text())
         self.local("report", out, "--no-histories")
         self.assertEqual({file.name for file in (out / "histories").iterdir()}, {file.name for file in histories})
@@ -121,6 +124,8 @@ class UpgradeTest(ServiceCase):
             self.assertEqual(self.status(name)["id"], old)
         engines = [json.loads((self.fetch(name) / "summary.json").read_text())["engine"] for name in (identity, old)]
         self.assertEqual(engines, [self.engine, self.engine], "the old report is as it was written")
+        page = f"http://127.0.0.1:{self.PORT}/campaign/{old}"
+        self.assertIn(aged.ENGINE.encode(), urllib.request.urlopen(page, timeout=PATIENCE_S).read())
         self.launch_and_watch()
         self.assertEqual(len(self.listed()), 2, "launched again it is there already")
         self.stop()

@@ -219,7 +219,7 @@ class Streams(unittest.TestCase):
         self.assertEqual(dispersa("fly", SMOKE, "--autopilot", "-", "--json", input=pid.read_text()).stdout,
                          dispersa("fly", SMOKE, "--autopilot", pid, "--json").stdout)
         done = run("dispersa-coordinator")
-        self.assertEqual((done.returncode, done.stderr), (2, "give one of --data and --health\n"))
+        self.assertEqual((done.returncode, done.stderr), (2, "give one of --data, --health and --drain\n"))
 
     def test_a_file_to_standard_output(self):
         with tempfile.TemporaryDirectory() as folder:
