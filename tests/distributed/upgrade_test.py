@@ -19,12 +19,14 @@ MANY = 5000  # more than fly until the coordinator is stopped
 class UpgradeTest(ServiceCase):
     DOMAIN = "35"
     PORT = 18535
-    DAEMON = ["--web", PORT]
 
     def setUp(self):
         super().setUp()
         version = subprocess.run([BINARIES / "dispersa", "--version", "--json"], capture_output=True, text=True)
         self.engine = json.loads(version.stdout)["engine"]
+
+    def start_coordinator(self):
+        return self.start("dispersa-coordinator", "--data", self.data, "--web", self.PORT)
 
     def stop(self):
         for process in self.processes:
