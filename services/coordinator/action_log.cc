@@ -28,9 +28,10 @@ ActionLog::ActionLog(std::filesystem::path file) : file_(std::move(file)) {
 void ActionLog::Note(const Action& action) {
   nlohmann::ordered_json line = {{"time", UtcNow()}, {"action", action.what}, {"by", nullptr}};
   if (!action.by.empty()) line["by"] = action.by;
-  for (const auto& [key, value] : {std::pair("client", &action.client), std::pair("campaign", &action.campaign),
-                                   std::pair("name", &action.name), std::pair("to", &action.to),
-                                   std::pair("worker", &action.worker), std::pair("reason", &action.reason)})
+  for (const auto& [key, value] :
+       {std::pair("client", &action.client), std::pair("campaign", &action.campaign),
+        std::pair("name", &action.name), std::pair("to", &action.to), std::pair("worker", &action.worker),
+        std::pair("reason", &action.reason)})
     if (!value->empty()) line[key] = *value;
   waiting_.push_back(DumpAnyText(line));
   Retry();

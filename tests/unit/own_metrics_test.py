@@ -20,7 +20,6 @@ OWN = {"q_burn1_max_kpa": "max(qbar_pa while burn1) / 1000",
        "impulse_mn_s": "integral(thrust_n while burn) / 1e6",
        "pitch_at_30_deg": "at(pitch_deg, 30.004)",
        "log_q_max": "max(log(qbar_pa + 1) * exp(-abs(mach)) + sin_deg(alpha_deg))",
-       "rules_fired_most": "max(rules_fired)",
        "program_mean_deg": "mean(pitch_program_deg while burn)",
        "lyapunov_never": "max(lyapunov_v while stage > 9)"}
 
