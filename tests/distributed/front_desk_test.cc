@@ -528,229 +528,228 @@ TEST_F(OwnersTest, OnlyWhoAdministersDrainsAndTheCoordinatorsOwnKeys) {
     EXPECT_THAT(As(own, "backup", Json::object()), Not(HasSubstr("drained")));
   }
   // Every kind of action, done and refused, by owner, administrator and the coordinator itself.
-  TEST_F(OwnersTest, EachActionHasItsLineAndNothingElseHasOne) {
-    const Campaign campaign = Smoke(2);
-    const Json named = {{"id", campaign.id}};
-    for (int answer_got_lost = 0; answer_got_lost < 2; ++answer_got_lost) LaunchAs(ann_, campaign);
-    As(bob_, "cancel", named);  // refused
-    As(eve_, "list", named);
-    for (int answer_got_lost = 0; answer_got_lost < 2; ++answer_got_lost) As(ann_, "cancel", named);
-    LaunchAs(ann_, campaign);  // it continues
-    for (int answer_got_lost = 0; answer_got_lost < 2; ++answer_got_lost)
-      As(root_, "give", {{"id", campaign.id}, {"to", "bob"}});
-    As(bob_, "repair", {{"id", campaign.id}, {"worker", "w"}});
-    workforce_.Expel({{"node1", {"case 4 gives other bits"}}});
-    workforce_.time_s += 1.0;
-    service_->Step();
-    for (int answer_got_lost = 0; answer_got_lost < 2; ++answer_got_lost)
-      As(root_, "readmit", {{"name", "node1"}});
-    As(bob_, "cancel", named);
-    ASSERT_TRUE(Until([&] { return service_->IsAtRest(campaign.id); }));
-    for (int answer_got_lost = 0; answer_got_lost < 2; ++answer_got_lost) As(bob_, "delete", named);
-    std::istringstream stream(TextOfFile(folder_ / "data" / "actions.jsonl"));
-    Json lines = Json::array();
-    for (std::string text; std::getline(stream, text);) {
-      lines.push_back(Json::parse(text));
-      EXPECT_THAT(lines.back().at("time").get<std::string>(), StartsWith("20"));
-      lines.back().erase("time");
-    }
-    const auto line = [&](const char* action, const std::string& client, const char* by, Json more = {}) {
-      Json expected = {{"action", action}, {"by", by}, {"client", client}};
-      if (std::string(action) != "readmit") expected.update({{"campaign", campaign.id}, {"name", "smoke"}});
-      if (!more.is_null()) expected.update(more);
-      return expected;
-    };
-    EXPECT_EQ(lines.dump(1), Json({line("launch", ann_, "ann"),
-                                   line("cancel", ann_, "ann"),
-                                   line("launch", ann_, "ann"),
-                                   line("give", root_, "root", {{"to", "bob"}}),
-                                   line("repair", bob_, "bob", {{"worker", "w"}}),
-                                   {{"action", "expel"},
-                                    {"by", nullptr},
-                                    {"worker", "node1"},
-                                    {"reason", "case 4 gives other bits"}},
-                                   line("readmit", root_, "root", {{"worker", "node1"}}),
-                                   line("cancel", bob_, "bob"),
-                                   line("delete", bob_, "bob")})
-                                 .dump(1));
-    const std::string before = TextOfFile(folder_ / "data" / "actions.jsonl");
-    StartService();
-    EXPECT_EQ(TextOfFile(folder_ / "data" / "actions.jsonl"), before) << "a start again rewrites nothing";
-    EXPECT_THAT(service_->Journals(), testing::Contains(folder_ / "data" / "actions.jsonl")) << "in a backup";
-  }
+}
 
-  TEST_F(OwnersTest, AnAdministratorGivesACampaignToAnotherOwner) {
-    const Campaign campaign = Smoke(2);
-    LaunchAs(ann_, campaign);
-    const auto give = [&](const std::string& who, const std::string& to) {
-      return As(who, "give", {{"id", campaign.id}, {"to", to}});
-    };
-    for (const std::string& who : {ann_, bob_})
-      EXPECT_THAT(give(who, "bob"), HasSubstr("`dispersa give` needs the right to administer")) << who;
-    for (const char* bad : {"", "bob jones", "b\x1b"})
-      EXPECT_THAT(give(root_, bad), HasSubstr("cannot own a campaign, allowed: a name of keys or of a local "
-                                              "user, 1 to 64 letters, digits, '-', '_' and '.'"))
-          << bad;
-    EXPECT_EQ(service_->catalogue().entries().at(campaign.id).owner, "ann");
-    EXPECT_EQ(give(root_, "bob"), Json({{"id", campaign.id}}).dump());
-    StartService();  // it is on the disk
-    desk_ = std::make_unique<FrontDesk>(*service_, workforce_, "");
-    EXPECT_EQ(As(ann_, "cancel", {{"id", campaign.id}}),
-              NotTheirs(campaign, "'bob'", "ann", "run", "cancel"));
-    EXPECT_EQ(As(bob_, "cancel", {{"id", campaign.id}}), Json({{"id", campaign.id}}).dump());
+TEST_F(OwnersTest, EachActionHasItsLineAndNothingElseHasOne) {
+  const Campaign campaign = Smoke(2);
+  const Json named = {{"id", campaign.id}};
+  for (int answer_got_lost = 0; answer_got_lost < 2; ++answer_got_lost) LaunchAs(ann_, campaign);
+  As(bob_, "cancel", named);  // refused
+  As(eve_, "list", named);
+  for (int answer_got_lost = 0; answer_got_lost < 2; ++answer_got_lost) As(ann_, "cancel", named);
+  LaunchAs(ann_, campaign);  // it continues
+  for (int answer_got_lost = 0; answer_got_lost < 2; ++answer_got_lost)
+    As(root_, "give", {{"id", campaign.id}, {"to", "bob"}});
+  As(bob_, "repair", {{"id", campaign.id}, {"worker", "w"}});
+  workforce_.Expel({{"node1", {"case 4 gives other bits"}}});
+  workforce_.time_s += 1.0;
+  service_->Step();
+  for (int answer_got_lost = 0; answer_got_lost < 2; ++answer_got_lost)
+    As(root_, "readmit", {{"name", "node1"}});
+  As(bob_, "cancel", named);
+  ASSERT_TRUE(Until([&] { return service_->IsAtRest(campaign.id); }));
+  for (int answer_got_lost = 0; answer_got_lost < 2; ++answer_got_lost) As(bob_, "delete", named);
+  std::istringstream stream(TextOfFile(folder_ / "data" / "actions.jsonl"));
+  Json lines = Json::array();
+  for (std::string text; std::getline(stream, text);) {
+    lines.push_back(Json::parse(text));
+    EXPECT_THAT(lines.back().at("time").get<std::string>(), StartsWith("20"));
+    lines.back().erase("time");
   }
+  const auto line = [&](const char* action, const std::string& client, const char* by, Json more = {}) {
+    Json expected = {{"action", action}, {"by", by}, {"client", client}};
+    if (std::string(action) != "readmit") expected.update({{"campaign", campaign.id}, {"name", "smoke"}});
+    if (!more.is_null()) expected.update(more);
+    return expected;
+  };
+  EXPECT_EQ(
+      lines.dump(1),
+      Json(
+          {line("launch", ann_, "ann"),
+           line("cancel", ann_, "ann"),
+           line("launch", ann_, "ann"),
+           line("give", root_, "root", {{"to", "bob"}}),
+           line("repair", bob_, "bob", {{"worker", "w"}}),
+           {{"action", "expel"}, {"by", nullptr}, {"worker", "node1"}, {"reason", "case 4 gives other bits"}},
+           line("readmit", root_, "root", {{"worker", "node1"}}),
+           line("cancel", bob_, "bob"),
+           line("delete", bob_, "bob")})
+          .dump(1));
+  const std::string before = TextOfFile(folder_ / "data" / "actions.jsonl");
+  StartService();
+  EXPECT_EQ(TextOfFile(folder_ / "data" / "actions.jsonl"), before) << "a start again rewrites nothing";
+  EXPECT_THAT(service_->Journals(), testing::Contains(folder_ / "data" / "actions.jsonl")) << "in a backup";
+}
 
-  TEST_F(OwnersTest, ACampaignOfAnotherOwnerIsFoundAndNotChanged) {
-    const Campaign campaign = Smoke(2);
-    LaunchAs(ann_, campaign, {{"priority", 3}});
-    EXPECT_EQ(LaunchAs(bob_, campaign), "waiting");
-    EXPECT_EQ(LaunchAs(bob_, campaign, {{"priority", 3}}), "waiting") << "it has this priority";
-    std::string its_priority = NotTheirs(campaign, "'ann'", "bob", "run", "change the priority of");
-    EXPECT_EQ(LaunchAs(bob_, campaign, {{"priority", 4}}), its_priority);
-    EXPECT_EQ(LaunchAs(bob_, campaign, {{"labels", {"commit=1"}}}),
-              NotTheirs(campaign, "'ann'", "bob", "run", "label"));
-    const CatalogueEntry& entry = service_->catalogue().entries().at(campaign.id);
-    EXPECT_EQ(entry.owner, "ann");
-    EXPECT_EQ(entry.priority, 3);
-    EXPECT_TRUE(entry.labels.empty());
-    EXPECT_EQ(LaunchAs(ann_, campaign), "waiting");
-    EXPECT_EQ(entry.priority, 3) << "none was given";
-    EXPECT_EQ(LaunchAs(root_, campaign, {{"priority", 4}, {"labels", {"commit=1"}}}), "waiting");
-    EXPECT_EQ(entry.priority, 4);
-    EXPECT_EQ(entry.owner, "ann");
-    const Json listed = Json::parse(As(eve_, "list", {{"id", campaign.id}})).at("campaigns").at(0);
-    EXPECT_EQ(listed.at("owner"), "ann");
-    EXPECT_EQ(listed.at("labels"), Json({"commit=1"}));
-  }
+TEST_F(OwnersTest, AnAdministratorGivesACampaignToAnotherOwner) {
+  const Campaign campaign = Smoke(2);
+  LaunchAs(ann_, campaign);
+  const auto give = [&](const std::string& who, const std::string& to) {
+    return As(who, "give", {{"id", campaign.id}, {"to", to}});
+  };
+  for (const std::string& who : {ann_, bob_})
+    EXPECT_THAT(give(who, "bob"), HasSubstr("`dispersa give` needs the right to administer")) << who;
+  for (const char* bad : {"", "bob jones", "b\x1b"})
+    EXPECT_THAT(give(root_, bad), HasSubstr("cannot own a campaign, allowed: a name of keys or of a local "
+                                            "user, 1 to 64 letters, digits, '-', '_' and '.'"))
+        << bad;
+  EXPECT_EQ(service_->catalogue().entries().at(campaign.id).owner, "ann");
+  EXPECT_EQ(give(root_, "bob"), Json({{"id", campaign.id}}).dump());
+  StartService();  // it is on the disk
+  desk_ = std::make_unique<FrontDesk>(*service_, workforce_, "");
+  EXPECT_EQ(As(ann_, "cancel", {{"id", campaign.id}}), NotTheirs(campaign, "'bob'", "ann", "run", "cancel"));
+  EXPECT_EQ(As(bob_, "cancel", {{"id", campaign.id}}), Json({{"id", campaign.id}}).dump());
+}
 
-  TEST_F(OwnersTest, KeysThatMayReadLookAndTakeAndNothingElse) {
-    const Campaign campaign = Smoke(2);
-    LaunchAs(ann_, campaign);
-    const std::string lacks =
-        "2: the keys of 'eve' may read, and `dispersa launch` needs the right to run, allowed: keys that "
-        "`dispersa keys issue --may run` made";
-    EXPECT_EQ(LaunchAs(eve_, Smoke(3)), lacks);
-    EXPECT_EQ(LaunchAs(eve_, campaign), lacks);
-    EXPECT_EQ(As(eve_, "upload", {{"id", "x"}, {"size", 1}, {"offset", 0}}, "x"), lacks);
-    for (const char* method : {"list", "status"})
-      EXPECT_THAT(As(eve_, method, {{"id", campaign.id}}), HasSubstr(campaign.id)) << method;
-    As(ann_, "cancel", {{"id", campaign.id}});
-    ASSERT_TRUE(Until([&] { return service_->IsAtRest(campaign.id); }));
-    EXPECT_THAT(As(eve_, "files", {{"id", campaign.id}}), HasSubstr("\"id\""));
-    const std::string no_backup =
-        "2: the keys of 'bob' may run, and `dispersa backup` needs the right to administer, allowed: keys "
-        "that "
-        "`dispersa keys issue --may administer` made";
-    EXPECT_EQ(As(bob_, "ids", Json::object()), no_backup);
-    EXPECT_EQ(As(bob_, "files", {{"id", ""}}), no_backup);
-    EXPECT_EQ(As(bob_, "read", {{"id", campaign.id}, {"path", "a"}, {"offset", 0}, {"snapshot", "s"}}),
-              no_backup);
-    EXPECT_THAT(As(root_, "ids", Json::object()), HasSubstr(campaign.id));
-  }
+TEST_F(OwnersTest, ACampaignOfAnotherOwnerIsFoundAndNotChanged) {
+  const Campaign campaign = Smoke(2);
+  LaunchAs(ann_, campaign, {{"priority", 3}});
+  EXPECT_EQ(LaunchAs(bob_, campaign), "waiting");
+  EXPECT_EQ(LaunchAs(bob_, campaign, {{"priority", 3}}), "waiting") << "it has this priority";
+  std::string its_priority = NotTheirs(campaign, "'ann'", "bob", "run", "change the priority of");
+  EXPECT_EQ(LaunchAs(bob_, campaign, {{"priority", 4}}), its_priority);
+  EXPECT_EQ(LaunchAs(bob_, campaign, {{"labels", {"commit=1"}}}),
+            NotTheirs(campaign, "'ann'", "bob", "run", "label"));
+  const CatalogueEntry& entry = service_->catalogue().entries().at(campaign.id);
+  EXPECT_EQ(entry.owner, "ann");
+  EXPECT_EQ(entry.priority, 3);
+  EXPECT_TRUE(entry.labels.empty());
+  EXPECT_EQ(LaunchAs(ann_, campaign), "waiting");
+  EXPECT_EQ(entry.priority, 3) << "none was given";
+  EXPECT_EQ(LaunchAs(root_, campaign, {{"priority", 4}, {"labels", {"commit=1"}}}), "waiting");
+  EXPECT_EQ(entry.priority, 4);
+  EXPECT_EQ(entry.owner, "ann");
+  const Json listed = Json::parse(As(eve_, "list", {{"id", campaign.id}})).at("campaigns").at(0);
+  EXPECT_EQ(listed.at("owner"), "ann");
+  EXPECT_EQ(listed.at("labels"), Json({"commit=1"}));
+}
 
-  // An owner whose keys were replaced by ones that read.
-  TEST_F(OwnersTest, KeysThatMayReadChangeNothingUnderTheOwnersName) {
-    const Campaign campaign = Smoke(2);
-    LaunchAs(ann_, campaign);
-    EXPECT_EQ(As("_read_ann_9", "cancel", {{"id", campaign.id}}),
-              NotTheirs(campaign, "'ann'", "ann", "read", "cancel"));
-  }
+TEST_F(OwnersTest, KeysThatMayReadLookAndTakeAndNothingElse) {
+  const Campaign campaign = Smoke(2);
+  LaunchAs(ann_, campaign);
+  const std::string lacks =
+      "2: the keys of 'eve' may read, and `dispersa launch` needs the right to run, allowed: keys that "
+      "`dispersa keys issue --may run` made";
+  EXPECT_EQ(LaunchAs(eve_, Smoke(3)), lacks);
+  EXPECT_EQ(LaunchAs(eve_, campaign), lacks);
+  EXPECT_EQ(As(eve_, "upload", {{"id", "x"}, {"size", 1}, {"offset", 0}}, "x"), lacks);
+  for (const char* method : {"list", "status"})
+    EXPECT_THAT(As(eve_, method, {{"id", campaign.id}}), HasSubstr(campaign.id)) << method;
+  As(ann_, "cancel", {{"id", campaign.id}});
+  ASSERT_TRUE(Until([&] { return service_->IsAtRest(campaign.id); }));
+  EXPECT_THAT(As(eve_, "files", {{"id", campaign.id}}), HasSubstr("\"id\""));
+  const std::string no_backup =
+      "2: the keys of 'bob' may run, and `dispersa backup` needs the right to administer, allowed: keys "
+      "that "
+      "`dispersa keys issue --may administer` made";
+  EXPECT_EQ(As(bob_, "ids", Json::object()), no_backup);
+  EXPECT_EQ(As(bob_, "files", {{"id", ""}}), no_backup);
+  EXPECT_EQ(As(bob_, "read", {{"id", campaign.id}, {"path", "a"}, {"offset", 0}, {"snapshot", "s"}}),
+            no_backup);
+  EXPECT_THAT(As(root_, "ids", Json::object()), HasSubstr(campaign.id));
+}
 
-  // Nobody is its owner: a client that has a name of no letters neither.
-  TEST_F(OwnersTest, ACampaignOfAnEarlierVersionBelongsToAdministrators) {
-    const Campaign campaign = Smoke(2);
-    Launch(campaign);
-    EXPECT_EQ(As(ann_, "cancel", {{"id", campaign.id}}),
-              NotTheirs(campaign, "nobody, since an earlier version launched it", "ann", "run", "cancel"));
-    EXPECT_EQ(As("_run__5", "cancel", {{"id", campaign.id}}).substr(0, 2), "2:");
-    EXPECT_EQ(As(root_, "cancel", {{"id", campaign.id}}), Json({{"id", campaign.id}}).dump());
-  }
+// An owner whose keys were replaced by ones that read.
+TEST_F(OwnersTest, KeysThatMayReadChangeNothingUnderTheOwnersName) {
+  const Campaign campaign = Smoke(2);
+  LaunchAs(ann_, campaign);
+  EXPECT_EQ(As("_read_ann_9", "cancel", {{"id", campaign.id}}),
+            NotTheirs(campaign, "'ann'", "ann", "read", "cancel"));
+}
 
-  TEST_F(OwnersTest, WithoutKeysTheLocalUserOwnsAllAndMayAll) {
-    StartService();  // everybody is ann
-    const Campaign campaign = Smoke(2);
-    EXPECT_EQ(LaunchAs("0123", campaign), "waiting");
-    EXPECT_EQ(service_->catalogue().entries().at(campaign.id).owner, "ann");
-    EXPECT_EQ(LaunchAs("_read_eve_1", Smoke(3)), "waiting") << "a name proves nothing here";
-    EXPECT_EQ(service_->catalogue().entries().at(Smoke(3).id).owner, "ann");
-    EXPECT_EQ(As("4567", "cancel", {{"id", campaign.id}}), Json({{"id", campaign.id}}).dump());
-  }
+// Nobody is its owner: a client that has a name of no letters neither.
+TEST_F(OwnersTest, ACampaignOfAnEarlierVersionBelongsToAdministrators) {
+  const Campaign campaign = Smoke(2);
+  Launch(campaign);
+  EXPECT_EQ(As(ann_, "cancel", {{"id", campaign.id}}),
+            NotTheirs(campaign, "nobody, since an earlier version launched it", "ann", "run", "cancel"));
+  EXPECT_EQ(As("_run__5", "cancel", {{"id", campaign.id}}).substr(0, 2), "2:");
+  EXPECT_EQ(As(root_, "cancel", {{"id", campaign.id}}), Json({{"id", campaign.id}}).dump());
+}
 
-  TEST_F(OwnersTest, AQuotaIsOfOneOwnerAndOfWhatHasNotEnded) {
-    Start({"cases=10,campaigns=2"});
-    const Campaign first = Smoke(4), second = Smoke(6, 2), third = Smoke(1, 3);
-    EXPECT_EQ(LaunchAs(ann_, first), "waiting");
-    EXPECT_EQ(LaunchAs(ann_, Smoke(7, 2)),
-              "2: 'ann' would have 11 cases in campaigns that have not ended, allowed: at most 10; wait, or "
-              "launch fewer (dispersa-coordinator --quota cases)");
-    EXPECT_EQ(LaunchAs(ann_, second), "waiting");
-    const std::string too_many =
-        "2: 'ann' would have 3 campaigns that have not ended, allowed: at most 2; wait, or cancel one "
-        "(dispersa-coordinator --quota campaigns)";
-    EXPECT_EQ(LaunchAs(ann_, third), too_many);
-    EXPECT_EQ(LaunchAs(bob_, third), "waiting") << "of another owner";
-    EXPECT_EQ(LaunchAs(ann_, first), "waiting") << "nothing more";
-    As(ann_, "cancel", {{"id", first.id}});
-    EXPECT_EQ(LaunchAs(ann_, Smoke(1, 4)), "waiting") << "a campaign has ended";
-    EXPECT_EQ(LaunchAs(ann_, first), too_many) << "continued, it would be the third";
-    EXPECT_EQ(StateOf(first.id), CampaignState::kCancelled);
-  }
+TEST_F(OwnersTest, WithoutKeysTheLocalUserOwnsAllAndMayAll) {
+  StartService();  // everybody is ann
+  const Campaign campaign = Smoke(2);
+  EXPECT_EQ(LaunchAs("0123", campaign), "waiting");
+  EXPECT_EQ(service_->catalogue().entries().at(campaign.id).owner, "ann");
+  EXPECT_EQ(LaunchAs("_read_eve_1", Smoke(3)), "waiting") << "a name proves nothing here";
+  EXPECT_EQ(service_->catalogue().entries().at(Smoke(3).id).owner, "ann");
+  EXPECT_EQ(As("4567", "cancel", {{"id", campaign.id}}), Json({{"id", campaign.id}}).dump());
+}
 
-  TEST_F(OwnersTest, OneOwnerDoesNotTakeAllPlaces) {
-    Start({"places=1"});
-    const Campaign first = Smoke(200, 1), second = Smoke(200, 2), third = Smoke(200, 3);
-    LaunchAs(ann_, first, {{"priority", 9}});
-    LaunchAs(ann_, second, {{"priority", 9}});
-    LaunchAs(bob_, third);
-    ASSERT_TRUE(Reaches(third.id, CampaignState::kFlying));
-    EXPECT_EQ(StateOf(first.id), CampaignState::kFlying);
-    EXPECT_EQ(StateOf(second.id), CampaignState::kWaiting) << "in spite of its priority";
-    As(ann_, "cancel", {{"id", first.id}});
-    ASSERT_TRUE(Reaches(second.id, CampaignState::kFlying));
-  }
+TEST_F(OwnersTest, AQuotaIsOfOneOwnerAndOfWhatHasNotEnded) {
+  Start({"cases=10,campaigns=2"});
+  const Campaign first = Smoke(4), second = Smoke(6, 2), third = Smoke(1, 3);
+  EXPECT_EQ(LaunchAs(ann_, first), "waiting");
+  EXPECT_EQ(LaunchAs(ann_, Smoke(7, 2)),
+            "2: 'ann' would have 11 cases in campaigns that have not ended, allowed: at most 10; wait, or "
+            "launch fewer (dispersa-coordinator --quota cases)");
+  EXPECT_EQ(LaunchAs(ann_, second), "waiting");
+  const std::string too_many =
+      "2: 'ann' would have 3 campaigns that have not ended, allowed: at most 2; wait, or cancel one "
+      "(dispersa-coordinator --quota campaigns)";
+  EXPECT_EQ(LaunchAs(ann_, third), too_many);
+  EXPECT_EQ(LaunchAs(bob_, third), "waiting") << "of another owner";
+  EXPECT_EQ(LaunchAs(ann_, first), "waiting") << "nothing more";
+  As(ann_, "cancel", {{"id", first.id}});
+  EXPECT_EQ(LaunchAs(ann_, Smoke(1, 4)), "waiting") << "a campaign has ended";
+  EXPECT_EQ(LaunchAs(ann_, first), too_many) << "continued, it would be the third";
+  EXPECT_EQ(StateOf(first.id), CampaignState::kCancelled);
+}
 
-  // A team that needs more than the others, and one that gets less.
-  TEST_F(OwnersTest, AnOwnerMayHaveAQuotaOfItsOwn) {
-    Start({"bob:cases=20,campaigns=none", "cases=10,campaigns=1", "carol:cases=3"});
-    const std::string carol = ClientPrefix("carol", Right::kRun) + "1";
-    EXPECT_THAT(LaunchAs(ann_, Smoke(11)), HasSubstr("allowed: at most 10;"));
-    EXPECT_EQ(LaunchAs(ann_, Smoke(10)), "waiting");
-    EXPECT_THAT(LaunchAs(bob_, Smoke(21)), HasSubstr("allowed: at most 20;"));
-    EXPECT_EQ(LaunchAs(bob_, Smoke(17, 2)), "waiting");
-    EXPECT_EQ(LaunchAs(bob_, Smoke(2, 3)), "waiting") << "two campaigns";
-    EXPECT_EQ(LaunchAs(bob_, Smoke(1, 4)), "waiting");
-    EXPECT_EQ(LaunchAs(bob_, Smoke(1, 5)),
-              "2: 'bob' would have 21 cases in campaigns that have not ended, allowed: at most 20; wait, or "
-              "launch fewer (dispersa-coordinator --quota cases)");
-    EXPECT_THAT(LaunchAs(carol, Smoke(4, 6)), HasSubstr("allowed: at most 3;"));
-    EXPECT_EQ(LaunchAs(carol, Smoke(3, 6)), "waiting");
-    EXPECT_THAT(LaunchAs(carol, Smoke(1, 7)), HasSubstr("2 campaigns")) << "that of all";
-  }
+TEST_F(OwnersTest, OneOwnerDoesNotTakeAllPlaces) {
+  Start({"places=1"});
+  const Campaign first = Smoke(200, 1), second = Smoke(200, 2), third = Smoke(200, 3);
+  LaunchAs(ann_, first, {{"priority", 9}});
+  LaunchAs(ann_, second, {{"priority", 9}});
+  LaunchAs(bob_, third);
+  ASSERT_TRUE(Reaches(third.id, CampaignState::kFlying));
+  EXPECT_EQ(StateOf(first.id), CampaignState::kFlying);
+  EXPECT_EQ(StateOf(second.id), CampaignState::kWaiting) << "in spite of its priority";
+  As(ann_, "cancel", {{"id", first.id}});
+  ASSERT_TRUE(Reaches(second.id, CampaignState::kFlying));
+}
 
-  TEST(QuotaTest, SaysWhatIsWrong) {
-    const auto problem = [](const std::string& text) { return Quotas().Add(text); };
-    EXPECT_EQ(problem("case=1"),
-              "'case=1' is no limit, allowed: cases=N, campaigns=N, places=N and disk=SIZE, with commas "
-              "between them, for all owners, or after OWNER: for one of them");
-    EXPECT_EQ(problem("cases=0"),
-              "'0' is no value of cases, allowed: a whole number from 1; none only after OWNER:");
-    EXPECT_EQ(problem("ann:disk=5"), "'5' is no value of disk, allowed: a size as 200GB, or none");
-    EXPECT_EQ(problem(":cases=1"),
-              "':cases=1' has no owner before ':', allowed: the name of a client's keys");
-    for (const char* text : {"", "cases", "cases=", "cases=-1", "cases=1e6", "disk=5", "disk=5d",
-                             "ann:", "cases=1,,places=2", "cases=1 ", "cases=none", "ann:cases=1:2", "none"})
-      EXPECT_NE(problem(text), "") << text;
-  }
+// A team that needs more than the others, and one that gets less.
+TEST_F(OwnersTest, AnOwnerMayHaveAQuotaOfItsOwn) {
+  Start({"bob:cases=20,campaigns=none", "cases=10,campaigns=1", "carol:cases=3"});
+  const std::string carol = ClientPrefix("carol", Right::kRun) + "1";
+  EXPECT_THAT(LaunchAs(ann_, Smoke(11)), HasSubstr("allowed: at most 10;"));
+  EXPECT_EQ(LaunchAs(ann_, Smoke(10)), "waiting");
+  EXPECT_THAT(LaunchAs(bob_, Smoke(21)), HasSubstr("allowed: at most 20;"));
+  EXPECT_EQ(LaunchAs(bob_, Smoke(17, 2)), "waiting");
+  EXPECT_EQ(LaunchAs(bob_, Smoke(2, 3)), "waiting") << "two campaigns";
+  EXPECT_EQ(LaunchAs(bob_, Smoke(1, 4)), "waiting");
+  EXPECT_EQ(LaunchAs(bob_, Smoke(1, 5)),
+            "2: 'bob' would have 21 cases in campaigns that have not ended, allowed: at most 20; wait, or "
+            "launch fewer (dispersa-coordinator --quota cases)");
+  EXPECT_THAT(LaunchAs(carol, Smoke(4, 6)), HasSubstr("allowed: at most 3;"));
+  EXPECT_EQ(LaunchAs(carol, Smoke(3, 6)), "waiting");
+  EXPECT_THAT(LaunchAs(carol, Smoke(1, 7)), HasSubstr("2 campaigns")) << "that of all";
+}
 
-  TEST_F(OwnersTest, LabelsAreShortTexts) {
-    const Campaign campaign = Smoke(2);
-    for (const std::string label :
-         {"commit", "=1", "commit=", "com mit=1", "commit=1\n",
-          "commit="
-          "12345678901234567890123456789012345678901234567890123456789012345678901234"
-          "567890123456789012345678901"})
-      EXPECT_THAT(LaunchAs(ann_, campaign, {{"labels", {label}}}), HasSubstr("is no label, allowed: "))
-          << label;
-  }
+TEST(QuotaTest, SaysWhatIsWrong) {
+  const auto problem = [](const std::string& text) { return Quotas().Add(text); };
+  EXPECT_EQ(problem("case=1"),
+            "'case=1' is no limit, allowed: cases=N, campaigns=N, places=N and disk=SIZE, with commas "
+            "between them, for all owners, or after OWNER: for one of them");
+  EXPECT_EQ(problem("cases=0"),
+            "'0' is no value of cases, allowed: a whole number from 1; none only after OWNER:");
+  EXPECT_EQ(problem("ann:disk=5"), "'5' is no value of disk, allowed: a size as 200GB, or none");
+  EXPECT_EQ(problem(":cases=1"), "':cases=1' has no owner before ':', allowed: the name of a client's keys");
+  for (const char* text : {"", "cases", "cases=", "cases=-1", "cases=1e6", "disk=5", "disk=5d",
+                           "ann:", "cases=1,,places=2", "cases=1 ", "cases=none", "ann:cases=1:2", "none"})
+    EXPECT_NE(problem(text), "") << text;
+}
+
+TEST_F(OwnersTest, LabelsAreShortTexts) {
+  const Campaign campaign = Smoke(2);
+  for (const std::string label : {"commit", "=1", "commit=", "com mit=1", "commit=1\n",
+                                  "commit="
+                                  "12345678901234567890123456789012345678901234567890123456789012345678901234"
+                                  "567890123456789012345678901"})
+    EXPECT_THAT(LaunchAs(ann_, campaign, {{"labels", {label}}}), HasSubstr("is no label, allowed: "))
+        << label;
+}
 
 }  // namespace dispersa::front_desk_test
