@@ -2,6 +2,7 @@
 
 #include <fmt/format.h>
 #include <sqlite3.h>
+#include <sys/statvfs.h>
 #include <unistd.h>
 
 #include <cerrno>
@@ -67,6 +68,12 @@ std::string ImmutableUri(const std::filesystem::path& file) {
       uri += c;
   }
   return uri + "?immutable=1";
+}
+
+// SQLite says ENOENT then: it tries to open the file for reading, too. Some file systems count no inodes.
+bool HasNoInode(const std::filesystem::path& file) {
+  struct statvfs disk {};
+  return statvfs(file.parent_path().c_str(), &disk) == 0 && disk.f_files > 0 && disk.f_favail == 0;
 }
 
 }  // namespace
@@ -136,8 +143,9 @@ void Database::Fail(int code) const {
   const int system_error = handle_ != nullptr ? sqlite3_system_errno(handle_) : 0;
   if ((code & 0xff) == SQLITE_FULL) FailFile(file_.string(), "cannot be written", SqliteFullError());
   // A new file without an inode or a descriptor.
-  if ((code & 0xff) == SQLITE_CANTOPEN && DiskFullWords(system_error))
-    FailFile(file_.string(), "cannot be opened", system_error);
+  const int lack_of_files = HasNoInode(file_) ? ENOSPC : system_error;
+  if ((code & 0xff) == SQLITE_CANTOPEN && DiskFullWords(lack_of_files))
+    FailFile(file_.string(), "cannot be opened", lack_of_files);
   if (const char* lack = LackOf(code, system_error)) RefuseFileSystem(file_.string(), lack, system_error);
   throw ResultError(ResultError::Kind::kFile,
                     fmt::format("{}: {}", file_.string(),

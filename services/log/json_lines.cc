@@ -34,8 +34,8 @@ class JsonFormatter : public spdlog::formatter {
                                      {"level", text(spdlog::level::to_string_view(line.level))},
                                      {"program", text(line.logger_name)},
                                      {"message", text(line.payload)}};
-    if (!Subject().campaign.empty()) object["campaign"] = Subject().campaign;
-    if (!Subject().request.empty()) object["request"] = Subject().request;
+    if (!SubjectOfLines().campaign.empty()) object["campaign"] = SubjectOfLines().campaign;
+    if (!SubjectOfLines().request.empty()) object["request"] = SubjectOfLines().request;
     const std::string bytes = object.dump(-1, ' ', true, nlohmann::json::error_handler_t::replace) + "\n";
     to.append(bytes.data(), bytes.data() + bytes.size());
   }
@@ -62,7 +62,7 @@ void LogLinesOf(int file) {
 
 std::unique_ptr<spdlog::formatter> JsonLines() { return std::make_unique<JsonFormatter>(); }
 
-LogSubject& Subject() {
+LogSubject& SubjectOfLines() {
   thread_local LogSubject subject;
   return subject;
 }

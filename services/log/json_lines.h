@@ -21,6 +21,6 @@ struct LogSubject {
 std::unique_ptr<spdlog::formatter> JsonLines();
 
 /// Of this thread.
-LogSubject& Subject();
+LogSubject& SubjectOfLines();
 
 }  // namespace dispersa

@@ -68,12 +68,12 @@ void LogAsJson() {
 }
 
 LogAbout::LogAbout(const std::string& campaign_id, const std::string& request)
-    : campaign_(Subject().campaign), request_(Subject().request) {
-  if (!campaign_id.empty()) Subject().campaign = campaign_id;
-  if (!request.empty()) Subject().request = request;
+    : campaign_(SubjectOfLines().campaign), request_(SubjectOfLines().request) {
+  if (!campaign_id.empty()) SubjectOfLines().campaign = campaign_id;
+  if (!request.empty()) SubjectOfLines().request = request;
 }
 
-LogAbout::~LogAbout() { Subject() = {std::move(campaign_), std::move(request_)}; }
+LogAbout::~LogAbout() { SubjectOfLines() = {std::move(campaign_), std::move(request_)}; }
 
 void SetLogLevel(LogLevel least) { spdlog::set_level(LevelOf(least)); }
 
