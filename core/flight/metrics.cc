@@ -97,9 +97,13 @@ constexpr Traits kOfNode{.is_digested = false, .needs = MetricNeeds::kNode, .cir
 constexpr Traits kOfSectionLoads{.needs = MetricNeeds::kSectionLoads},
     kOfLimits{.needs = MetricNeeds::kLimits};
 constexpr const char* kCommandedEnd = "the end of the last burn that a command ends";
-constexpr Traits kOfCutOff{.is_digested = false, .needs = MetricNeeds::kCutOff, .over = kCommandedEnd, .since = 4},
-    kOfEachCutOff{
-        .by_stage = true, .is_digested = false, .needs = MetricNeeds::kCutOff, .over = kCommandedEnd, .since = 4};
+constexpr Traits kOfCutOff{
+    .is_digested = false, .needs = MetricNeeds::kCutOff, .over = kCommandedEnd, .since = 4},
+    kOfEachCutOff{.by_stage = true,
+                  .is_digested = false,
+                  .needs = MetricNeeds::kCutOff,
+                  .over = kCommandedEnd,
+                  .since = 4};
 constexpr Traits kAtHandover{.over = kLastIgnition},
     kAtGuidedIgnition{.is_digested = false, .over = kLastIgnition},
     kOfThrusters{.over = "lift-off to the end of the last burn"};

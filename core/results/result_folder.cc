@@ -248,9 +248,8 @@ CaseResult AsOf(const RowShape& shape, CaseResult result) {
 /// Bytes, or in rows that hold all inputs their digits.
 std::string RowDigestText(const CaseResult& result, const RowShape& shape) {
   const bool holds_all_inputs = shape.version < 3;
-  const Digest digest = shape.version == kRowVersion
-                            ? Fingerprint(result)
-                            : Fingerprint(AsOf(shape, result), !holds_all_inputs);
+  const Digest digest = shape.version == kRowVersion ? Fingerprint(result)
+                                                     : Fingerprint(AsOf(shape, result), !holds_all_inputs);
   if (holds_all_inputs) return digest.Hex();
   std::string bytes(sizeof digest.high + sizeof digest.low, '\0');
   std::memcpy(bytes.data(), &digest.high, sizeof digest.high);

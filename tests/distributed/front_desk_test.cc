@@ -527,9 +527,9 @@ TEST_F(OwnersTest, OnlyWhoAdministersDrainsAndTheCoordinatorsOwnKeys) {
     EXPECT_EQ(StateOf(Smoke(2).id), CampaignState::kWaiting);
     EXPECT_THAT(As(own, "backup", Json::object()), Not(HasSubstr("drained")));
   }
-  // Every kind of action, done and refused, by owner, administrator and the coordinator itself.
 }
 
+// Every kind of action, done and refused, by owner, administrator and the coordinator itself.
 TEST_F(OwnersTest, EachActionHasItsLineAndNothingElseHasOne) {
   const Campaign campaign = Smoke(2);
   const Json named = {{"id", campaign.id}};

@@ -75,7 +75,8 @@ TEST(FreeFlightCampaign, FlightsToInjectionHaveNoColumnsOfOthers) {
       default:
         ADD_FAILURE() << Metrics()[position].name << " needs " << NeedsOf(Metrics()[position]);
     }
-  // Thirteen of rails, free stages, apogee and impact, those of the angles of a target, and the propellant left.
+  // Thirteen of rails, free stages, apogee and impact, those of the angles of a target, and the propellant
+  // left.
   EXPECT_EQ(ResultMetrics(campaign).size() - MeasuredMetrics(campaign).size(), 13u + 3u + 6u);
 }
 
