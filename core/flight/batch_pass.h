@@ -179,12 +179,19 @@ void Batch<T>::Meter(M powered) {
 template <class T>
 DISPERSA_OUT_OF_LINE void Batch<T>::Watch(M due) {
   const OwnMetricsPlan* const own = model_.own_metrics();
-  const bool any_due = Any(due);
-  const RowColumns read = any_due ? kWholeRow : own->row_columns;
+  M has_row = NoLane<T>();
+  for (int lane = 0; lane < kLanes; ++lane) {
+    if (!(Bits(due) >> lane & 1u)) continue;
+    const long every = lanes_.at.slot[lane].record->history_ticks;
+    SetLane(has_row, lane, every > 0 && static_cast<long>(Lane(lanes_.at.tick, lane)) % every == 0);
+  }
+  const RowColumns read = Any(has_row) ? kWholeRow : own != nullptr ? own->row_columns : 0;
   T row[kBodyColumns + kLauncherColumns + kRowConditions];
   LauncherSeen<T> seen;
-  See(own != nullptr ? lanes_.at.live : due, read, seen);
-  FillLauncher<T>(model_.nominal_plant().environment.earth, seen, read, row);
+  if (own != nullptr || Any(has_row)) {  // an observer alone sees the lane itself
+    See(own != nullptr ? lanes_.at.live : has_row, read, seen);
+    FillLauncher<T>(model_.nominal_plant().environment.earth, seen, read, row);
+  }
   if (own != nullptr) {
     T* const conditions = row + kBodyColumns + kLauncherColumns;
     conditions[0] = OneWhere<T>(seen.burning);
@@ -194,7 +201,7 @@ DISPERSA_OUT_OF_LINE void Batch<T>::Watch(M due) {
     for (int i = 0; i < lanes_.own_parts; ++i)
       AddTick<T>(own->parts.data()[i], lanes_.at.live, lanes_.at.time_s, tick_s_, row, lanes_.own_sums[i]);
   }
-  for (int lane = 0; any_due && lane < kLanes; ++lane) {
+  for (int lane = 0; lane < kLanes; ++lane) {
     if (!(Bits(due) >> lane & 1u)) continue;
     FlightRecord& record = *lanes_.at.slot[lane].record;
     if (record.options.observe) {
@@ -202,12 +209,12 @@ DISPERSA_OUT_OF_LINE void Batch<T>::Watch(M due) {
       view.has_error = true;
       record.Watch(view);
     }
-    const long tick = static_cast<long>(Lane(lanes_.at.tick, lane));
-    if (record.history_ticks > 0 && tick % record.history_ticks == 0) {
+    if (Bits(has_row) >> lane & 1u) {
       double values[kBodyColumns + kLauncherColumns];
       for (int i = 0; i < kBodyColumns + kLauncherColumns; ++i) values[i] = Lane(row[i], lane);
       record.AppendRow(values);
     }
+    const long tick = static_cast<long>(Lane(lanes_.at.tick, lane));
     Lane(lanes_.at.next_row_tick, lane) =
         record.options.observe
             ? Lane(lanes_.at.tick, lane)

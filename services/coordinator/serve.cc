@@ -115,7 +115,7 @@ CampaignFile FilesBelow(const std::filesystem::path& data) {
 }
 
 std::string WhyPaused(const Service& service, const std::filesystem::path& data) {
-  if (service.is_draining()) return "is drained: it takes no campaign";
+  if (service.is_draining()) return "it is drained, and takes no campaign";
   for (const std::string& reason : {service.WhyPaused(), WhyDiskIsFull(data), WhyDescriptorsAreShort()})
     if (!reason.empty()) return reason;
   return "";

@@ -159,7 +159,7 @@ class LawsTest(ServiceCase):
             self.start_worker()
         wait_for(lambda: len(json.loads(self.dispersa("status", "--json"))["workers"]) == 2, "two workers")
         identity = self.launch(campaign)
-        self.assertRegex(self.dispersa("watch", identity, code=2), REFUSAL)
+        self.assertRegex(" ".join(self.dispersa("watch", identity, code=2).split()), REFUSAL)
         self.assertEqual(self.status(identity)["state"], "refused")
         self.assertRegex(self.status(identity)["problem"], REFUSAL)
         self.assertFalse((self.fetch(identity) / "report.html").exists())

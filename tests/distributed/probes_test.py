@@ -18,6 +18,27 @@ PORT = 9481
 PTRACE_DETACH, PTRACE_SEIZE, PTRACE_INTERRUPT = 17, 0x4206, 0x4207
 
 
+# A disk that answers late: whoever looks at the file HOLD_AT, or opens it, waits while the file HOLD_WHILE is there.
+SLOW_DISK = r"""
+#define _GNU_SOURCE
+#include <dlfcn.h>
+#include <fcntl.h>
+#include <stdlib.h>
+#include <string.h>
+#include <sys/stat.h>
+#include <unistd.h>
+static void hold(const char* path) {
+  const char *at = getenv("HOLD_AT"), *during = getenv("HOLD_WHILE");
+  if (at && during && path && strcmp(path, at) == 0) while (access(during, F_OK) == 0) usleep(20000);
+}
+#define NEXT(name) ((__typeof__(&name))dlsym(RTLD_NEXT, #name))
+int stat(const char* path, struct stat* s) { hold(path); return NEXT(stat)(path, s); }
+int stat64(const char* path, struct stat64* s) { hold(path); return NEXT(stat64)(path, s); }
+int open(const char* path, int flags, ...) { hold(path); return NEXT(open)(path, flags | O_LARGEFILE, 0666); }
+int open64(const char* path, int flags, ...) { hold(path); return NEXT(open64)(path, flags, 0666); }
+"""
+
+
 def ptrace(request, thread):
     libc = ctypes.CDLL(None, use_errno=True)
     libc.ptrace.argtypes = [ctypes.c_long, ctypes.c_long, ctypes.c_void_p, ctypes.c_void_p]
@@ -43,13 +64,29 @@ class ProbesTest(ServiceCase):
     def wait_for_answer(self, path, expected):
         wait_for(lambda: probe(path) == expected, f"{expected} of {path} in place of {probe(path)}")
 
-    def test_a_coordinator_that_starts_and_ends_is_alive_and_not_ready(self):
-        os.mkfifo(self.data / "expelled.json")  # it reads this file of its data when somebody writes it
+    def slow_disk(self, name):
+        """From now on a coordinator waits at this file of its data until the file is gone that is returned."""
+        shim, during = self.root / "slow_disk.so", self.root / "slow"
+        subprocess.run(["cc", "-shared", "-fPIC", "-x", "c", "-", "-o", shim, "-ldl"], input=SLOW_DISK, text=True, check=True)
+        during.touch()
+        for key, value in (("LD_PRELOAD", shim), ("HOLD_AT", self.data / name), ("HOLD_WHILE", during)):
+            os.environ[key] = str(value)
+            self.addCleanup(os.environ.pop, key, None)
+        return during
+
+    def start_on_it(self):
         coordinator = self.start_coordinator()
+        os.environ.pop("LD_PRELOAD")  # of no other program
+        return coordinator
+
+    def test_a_coordinator_that_starts_and_ends_is_alive_and_not_ready(self):
+        (self.data / "expelled.json").write_text("{}")
+        slow = self.slow_disk("expelled.json")
+        coordinator = self.start_on_it()
         self.wait_for_answer("/readyz", (503, "it starts and reads its campaigns"))
         self.assertEqual(probe("/healthz"), (200, "ok"))
         self.assertEqual(probe("/metrics"), (503, "it has no figures yet"))
-        (self.data / "expelled.json").write_text("{}")
+        slow.unlink()
         self.wait_for_answer("/readyz", (200, "ok"))
         self.assertIn("no workers", self.dispersa("status"))
         self.assertEqual(probe("/healthz"), (200, "ok"))
@@ -80,6 +117,13 @@ class ProbesTest(ServiceCase):
         self.wait_for_answer("/readyz", (200, "ok"))
         self.assertNotIn("the coordinator restarts", self.log.read_text())
 
+    def test_a_coordinator_that_drains_is_not_ready(self):
+        coordinator = self.start_coordinator()
+        self.wait_for_answer("/readyz", (200, "ok"))
+        draining = self.start("dispersa-coordinator", "--drain", *self.DAEMON[2:])
+        self.wait_for_answer("/readyz", (503, "it is drained, and takes no campaign"))
+        self.assertEqual((draining.wait(timeout=60), coordinator.wait(timeout=60)), (0, 0), self.log.read_text())
+
     def assert_ends_in_time(self, coordinator):
         begun = time.monotonic()
         coordinator.terminate()
@@ -87,14 +131,15 @@ class ProbesTest(ServiceCase):
         self.assertLess(time.monotonic() - begun, 5.0)
 
     def test_a_coordinator_ends_in_time_while_it_reads_its_data(self):
-        os.mkfifo(self.data / "expelled.json")  # nobody ever writes it
-        coordinator = self.start_coordinator()
+        (self.data / "expelled.json").write_text("{}")
+        self.slow_disk("expelled.json")
+        coordinator = self.start_on_it()
         self.wait_for_answer("/healthz", (200, "ok"))
         self.assert_ends_in_time(coordinator)
 
     def test_a_coordinator_ends_in_time_while_it_opens_a_campaign(self):
-        os.mkfifo(self.data / "dispersa-attempts.jsonl")  # read when a campaign is opened
-        coordinator = self.start_coordinator()
+        self.slow_disk("dispersa-attempts.jsonl")  # read when a campaign is opened
+        coordinator = self.start_on_it()
         self.dispersa("launch", BRIEF)
         time.sleep(1)
         self.assertIn('"state": "waiting"', self.dispersa("list", "--json"))

@@ -131,6 +131,10 @@ class Shares(unittest.TestCase):
     def test_judges_nothing(self):
         self.assertEqual(sorted(file.name for file in self.shares[1].iterdir()),
                          ["campaign.yaml", "execution.json", "results.sqlite"])
+        done = dispersa("report", self.shares[1])
+        self.assertEqual((done.returncode, done.stderr), (
+            2, f"{self.shares[1]}: is a share of a campaign, which is judged as a whole, allowed: the folder that `dispersa merge` "
+            "makes of all shares\n"))
         done = share(SMOKE, "0/3", self.folder / self.id(), *self.campaign)
         self.assertEqual(done.stdout.splitlines(), [
             "share: 10 of 10 cases flown, next: 'dispersa merge' when all shares are flown", f"result: {self.folder / self.id()}"])
