@@ -106,12 +106,11 @@ PreparedRun MergedRun(const std::vector<std::string>& folders, const std::string
   ResultFolder merged = ResultFolder::Create(out, campaign);
   Unfinished begun(merged.directory());
   for (const Part& part : parts) {
-    const std::uint64_t before = merged.CaseCount();
-    const std::uint64_t others = TakeOver(part.folder, campaign, {}, merged);
-    const std::uint64_t taken = merged.CaseCount() - before;
-    if (others > 0 || taken != part.folder.CaseCount())
+    const std::uint64_t flown = part.folder.CaseCount();
+    const std::uint64_t taken = TakeOver(part.folder, campaign, {}, merged).results;
+    if (taken != flown)
       throw InputError(fmt::format("{}: {} of its {} results are not those of the campaign that it holds",
-                                   part.name, part.folder.CaseCount() - taken, part.folder.CaseCount()),
+                                   part.name, flown - taken, flown),
                        "the share flown again");
     for (const QuarantinedCase& one : part.folder.QuarantinedCases()) merged.Quarantine(one);
   }

@@ -32,7 +32,7 @@ void TryToTakeOver(const fs::path& from, const Campaign& campaign, const std::ve
   try {
     const ResultFolder folder = ResultFolder::Open(from);
     if (folder.Provenance("flight_id") != campaign.flight_id) return;
-    if (const std::uint64_t others = TakeOver(folder, campaign, distrusted, to); others > 0) {
+    if (const std::uint64_t others = TakeOver(folder, campaign, distrusted, to).others; others > 0) {
       LogWarning("{}: {} results are not taken over: their inputs are not those that the campaign draws",
                  from.string(), others);
     }

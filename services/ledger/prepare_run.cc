@@ -116,10 +116,14 @@ PreparedRun PrepareUnrecorded(const RunRequest& request, const StopCheck& should
     ResultFolder folder = ResultFolder::Create(directory, campaign, std::move(lock), share);
     return {std::move(campaign), std::move(folder), std::move(flown)};
   }
-  if (const auto kept = ResultFolder::Open(directory).ItsShare(); kept != share)
-    throw InputError(
-        fmt::format("{}: is for {}, this run for {}", directory.string(), RangeText(kept), RangeText(share)));
-  const std::optional<std::uint64_t> last = ResultFolder::Open(directory).LastCase();
+  std::optional<std::uint64_t> last;
+  {
+    const ResultFolder present = ResultFolder::Open(directory);
+    if (const auto kept = present.ItsShare(); kept != share)
+      throw InputError(fmt::format("{}: is for {}, this run for {}", directory.string(), RangeText(kept),
+                                   RangeText(share)));
+    last = present.LastCase();
+  }
   if (last && *last >= campaign.sampling.cases) {
     CampaignOverrides extended = request.overrides;
     extended.cases = *last + 1;

@@ -54,29 +54,30 @@ CaseResult WithOwnMetrics(const CaseResult& result, const MetricList& list,
 
 }  // namespace
 
-std::uint64_t TakeOver(const ResultFolder& from, const Campaign& campaign,
-                       const std::vector<std::string>& distrusted, ResultFolder& to) {
+TakenOver TakeOver(const ResultFolder& from, const Campaign& campaign,
+                   const std::vector<std::string>& distrusted, ResultFolder& to) {
   const std::optional<std::vector<std::size_t>> own = FindOwn(campaign.own_metrics, from.own_metrics());
   if (!own) {
     LogInfo("{}: its results are not taken over: they lack metrics of the campaign {}",
             from.directory().string(), campaign.name);
-    return 0;
+    return {};
   }
   const CaseDesign design(campaign);
   const RowInputs rows(campaign);
   const Fliers fliers(from);
   std::vector<CaseResult> results;
   std::vector<ExecutionRecord> records;
+  TakenOver taken;
   const auto store = [&] {
     to.Store(results, records);
+    taken.results += results.size();
     results.clear();
     records.clear();
   };
-  std::uint64_t others = 0;
   from.ForEach([&](const CaseResult& result) {
     if (result.case_index >= campaign.sampling.cases || to.Contains(result.case_index)) return;
     if (!HasInputs(rows, InputValues(design.Draw(result.case_index), rows.column_class()), result)) {
-      ++others;
+      ++taken.others;
       return;
     }
     ExecutionRecord record = fliers.Of(result.case_index);
@@ -88,7 +89,7 @@ std::uint64_t TakeOver(const ResultFolder& from, const Campaign& campaign,
     if (results.size() >= kBatch) store();
   });
   store();
-  return others;
+  return taken;
 }
 
 }  // namespace dispersa
