@@ -4,14 +4,13 @@
 
 #include <algorithm>
 #include <charconv>
-#include <fstream>
 #include <map>
 #include <nlohmann/json.hpp>
-#include <sstream>
 #include <string_view>
 
 #include "core/flight/engine_version.h"
 #include "core/math/assertion.h"
+#include "core/pages/file_text.h"
 #include "core/results/fingerprint.h"
 #include "core/results/gzip.h"
 #include "core/results/number_csv.h"
@@ -25,13 +24,6 @@ namespace fs = std::filesystem;
 using Json = nlohmann::json;
 
 constexpr char kMadeOf[] = "made_of.json";
-
-std::string ReadText(const fs::path& file) {
-  // In one piece: character by character took longer than the flights of a small campaign.
-  std::ostringstream text;
-  if (const std::ifstream stream(file, std::ios::binary); stream) text << stream.rdbuf();
-  return std::move(text).str();
-}
 
 std::vector<std::string> FilesOf(const HistoryFlights& flights) {
   std::vector<std::string> files = {kNominalHistoryName, kBandsName};
@@ -55,7 +47,9 @@ std::vector<fs::path> Others(const fs::path& directory, const std::map<std::stri
   return others;
 }
 
-Json MadeOf(const fs::path& directory) { return Json::parse(ReadText(directory / kMadeOf), nullptr, false); }
+Json MadeOf(const fs::path& directory) {
+  return Json::parse(TextOfFile(directory / kMadeOf), nullptr, false);
+}
 
 // A file that cannot be read as it was written is no reason to fail.
 Json Member(const Json& object, const std::string& name) {
@@ -75,7 +69,7 @@ std::optional<std::map<std::string, std::string>> TextsOf(const fs::path& direct
                                                           const std::vector<std::string>& names) {
   std::map<std::string, std::string> texts;
   for (const std::string& name : names) {
-    const std::string bytes = ReadText(directory / name);
+    const std::string bytes = TextOfFile(directory / name);
     std::optional<std::string> text = Gunzip(bytes);
     if (!text || Member(fingerprints, name) != Fingerprint(bytes).Hex()) return std::nullopt;
     texts[name] = *std::move(text);
@@ -148,7 +142,7 @@ void KeepHistories(const fs::path& directory, const std::string& key, const Hist
                                     {"sampled", flights.sampled},
                                     {"extreme", flights.indices.size() - flights.sampled}};
   for (const std::string& name : FilesOf(flights))
-    made_of["files"][name] = Fingerprint(ReadText(directory / name)).Hex();
+    made_of["files"][name] = Fingerprint(TextOfFile(directory / name)).Hex();
   WriteFile(directory / kMadeOf, made_of.dump(1) + "\n");
 }
 

@@ -1,13 +1,13 @@
 #include "core/pages/report_sums.h"
 
 #include <algorithm>
-#include <fstream>
 #include <nlohmann/json.hpp>
 #include <optional>
 #include <sstream>
 #include <system_error>
 
 #include "core/campaign_yaml/sha256.h"
+#include "core/pages/file_text.h"
 #include "core/results/gzip.h"
 #include "core/results/output_file.h"
 
@@ -19,17 +19,11 @@ namespace fs = std::filesystem;
 constexpr std::size_t kDigits = 64;
 constexpr char kBetween[] = "  ";  // as sha256sum has it
 
-std::string TextOf(const fs::path& file) {
-  std::ostringstream text;
-  if (const std::ifstream stream(file, std::ios::binary); stream) text << stream.rdbuf();
-  return std::move(text).str();
-}
-
 /// Empty: it cannot be read.
 std::string SumOf(const fs::path& file) {
   std::error_code error;
   if (fs::is_regular_file(file, error)) return Sha256OfFile(file);
-  const auto text = Gunzip(TextOf(file.string() + ".gz"));
+  const auto text = Gunzip(TextOfFile(file.string() + ".gz"));
   return text ? Sha256Hex(*text) : "";
 }
 
@@ -51,11 +45,11 @@ std::vector<std::string> ChangedReports(const fs::path& folder) {
   std::error_code error;
   if (!fs::exists(folder / kSumsName, error)) {
     const fs::path summary = folder / "summary.json";
-    if (fs::exists(summary, error) && !nlohmann::json::accept(TextOf(summary)))
+    if (fs::exists(summary, error) && !nlohmann::json::accept(TextOfFile(summary)))
       changed.push_back("summary.json");
     return changed;
   }
-  std::istringstream lines(TextOf(folder / kSumsName));
+  std::istringstream lines(TextOfFile(folder / kSumsName));
   bool is_whole = false;
   for (std::string line; std::getline(lines, line);) {
     const std::string sum = line.substr(0, kDigits);
