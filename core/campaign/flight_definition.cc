@@ -19,6 +19,17 @@ AscentResult FlyReference(const Campaign& campaign) {
   return FlyAscent(model, campaign.reference.program, options);
 }
 
+}  // namespace
+
+double AltitudeOfMaxQ(const Campaign& campaign) {
+  const AscentResult ascent = FlyReference(campaign);
+  const auto less = [](const AscentSample& a, const AscentSample& b) { return a.qbar_pa < b.qbar_pa; };
+  const auto greatest = std::max_element(ascent.samples.begin(), ascent.samples.end(), less);
+  return greatest == ascent.samples.end() ? 0.0 : greatest->altitude_m;
+}
+
+namespace {
+
 bool Jettisons(const Vehicle& vehicle) {
   return std::any_of(vehicle.stages.begin(), vehicle.stages.end(),
                      [](const Stage& stage) { return !stage.jettisoned.empty(); });

@@ -9,4 +9,8 @@ namespace dispersa {
 
 FlightDefinition DefinitionOf(const Campaign& campaign);
 
+/// Geodetic altitude at which the reference, as a point mass in still air, has its greatest dynamic pressure.
+/// Precondition: the campaign has a reference.
+double AltitudeOfMaxQ(const Campaign& campaign);
+
 }  // namespace dispersa

@@ -7,6 +7,7 @@
 #include "core/campaign/case_result.h"
 #include "core/campaign/dispersion_fields.h"
 #include "core/campaign/dispersion_table.h"
+#include "core/campaign/flight_definition.h"
 #include "core/campaign/free_flight.h"
 #include "core/campaign/plausible_dispersions.h"
 #include "core/campaign_yaml/campaign_ids.h"
@@ -253,6 +254,7 @@ class CampaignDescription {
     if (decoded_.optimize)
       WarnOfInclination(decoded_.optimize->target_inclination_rad, optimize_, "target.inclination_deg");
     if (reference_.node == nullptr) return;
+    WarnOfShortWeather(whole);
     WarnOfInclination(campaign_.reference.orbit.inclination_rad, reference_, "orbit.inclination_deg");
     if (!campaign_.reference.target_missed.empty())
       WarnOf(reference_, "target_missed",
@@ -307,6 +309,17 @@ class CampaignDescription {
   }
 
   // A launch due east has the inclination of its latitude.
+  // A balloon that burst too early.
+  void WarnOfShortWeather(const Part& whole) {
+    if (!campaign_.wind_table || !flies()) return;
+    const double top_m = campaign_.wind_table->altitude_m.back(), of_max_q_m = AltitudeOfMaxQ(campaign_);
+    if (top_m >= of_max_q_m) return;
+    WarnOf(whole, "dispersions.wind_profile",
+           "ends at " + FormatRounded(top_m) + " m, below the reference's greatest dynamic pressure",
+           FormatRounded(of_max_q_m) + " m or more; above its end the wind fades within " +
+               FormatRounded(kWindFade_m) + " m");
+    warnings_->back().unusual = true;
+  }
   void WarnOfInclination(std::optional<double> inclination_rad, const Part& part, const std::string& key) {
     const double latitude_rad = std::fabs(campaign_.vehicle.site.latitude_rad);
     if (!inclination_rad) return;

@@ -8,6 +8,7 @@
 #include "core/campaign_yaml/load.h"
 #include "core/campaign_yaml/parse_csv.h"
 #include "core/campaign_yaml/parse_rasp.h"
+#include "core/campaign_yaml/parse_sounding.h"
 #include "core/campaign_yaml/parse_yaml.h"
 #include "core/campaign_yaml/sha256.h"
 #include "core/campaign_yaml/standard_input.h"
@@ -20,8 +21,14 @@ namespace {
 // A campaign's text carries it to every worker.
 constexpr std::size_t kLargestFileOfBytes = std::size_t{32} << 20;
 
-// A thrust curve may be what hobby motors have: by the end of its name.
+// A thrust curve may be what hobby motors have, by the end of its name; a wind profile what weather services
+// give.
 InputNode ParseTable(const std::string& text, const std::string& file, std::vector<InputProblem>& problems) {
+  const std::size_t before = problems.size();
+  if (IsSoundingText(text) && CheckUtf8(text, file, problems)) {
+    const Sounding sounding = ReadSounding(text, file, "", problems);
+    return problems.size() > before ? InputNode() : TableOf(sounding, file, problems);
+  }
   if (WithoutByteOrderMark(text).starts_with('<')) {
     problems.push_back({file, 1, 1, "", "the file is XML, such as RockSim's motors (.rse), and no table",
                         "a CSV file; of a motor also an .eng file"});
@@ -29,7 +36,11 @@ InputNode ParseTable(const std::string& text, const std::string& file, std::vect
   }
   std::string end = std::filesystem::path(file).extension().string();
   for (char& c : end) c = c >= 'A' && c <= 'Z' ? static_cast<char>(c - 'A' + 'a') : c;
-  return end == ".eng" ? ParseRasp(text, file, problems) : ParseCsv(text, file, problems);
+  if (end == ".eng") return ParseRasp(text, file, problems);
+  InputNode table = ParseCsv(text, file, problems);
+  if (problems.size() > before || !IsSoundingTable(table)) return table;
+  const Sounding sounding = ReadSounding(table, problems);
+  return problems.size() > before ? InputNode() : TableOf(sounding, file, problems);
 }
 
 /// Whether a file could not be read because there is none.
@@ -76,17 +87,22 @@ void NamedFiles::Read(InputNode& name, const std::string& path, Holds holds,
     name = Bytes(text, file, place, path, problems);
 }
 
-InputNode ReadYamlFile(const std::string& path, std::vector<InputProblem>& problems) {
-  std::string text;
-  std::string reason;
+InputText ReadInputFile(const std::string& path, std::vector<InputProblem>& problems) {
   // Without a folder, so that the names in it are relative to the current one.
-  const std::string file = path == kStandardInput ? kStandardInputName : path;
-  if (!(path == kStandardInput ? ReadStandardInput(&text, &reason) : ReadFile(path, &text, &reason))) {
-    problems.push_back({file, 1, 1, "", IsMissing(reason) ? "file not found" : "cannot be read: " + reason,
+  InputText file{path == kStandardInput ? kStandardInputName : path, {}};
+  std::string reason;
+  if (!(path == kStandardInput ? ReadStandardInput(&file.text, &reason)
+                               : ReadFile(path, &file.text, &reason)))
+    problems.push_back({file.name, 1, 1, "",
+                        IsMissing(reason) ? "file not found" : "cannot be read: " + reason,
                         IsMissing(reason) ? "a file that exists" : "a readable file"});
-    return {};
-  }
-  return ParseYaml(text, file, problems);
+  return file;
+}
+
+InputNode ReadYamlFile(const std::string& path, std::vector<InputProblem>& problems) {
+  const std::size_t before = problems.size();
+  const InputText file = ReadInputFile(path, problems);
+  return problems.size() > before ? InputNode() : ParseYaml(file.text, file.name, problems);
 }
 
 }  // namespace dispersa

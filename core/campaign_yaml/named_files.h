@@ -18,7 +18,7 @@ inline constexpr char kScenarioSchema[] = "dispersa/scenario/1";
 enum class FileNames { kAllowed, kRefused };
 
 /// Reads the files that a tree names. Names are relative to the file in which they stand. A table is a CSV
-/// file, or RASP's format if its name ends so. Bytes become {sha256, base64}.
+/// file, RASP's format if its name ends so, or a sounding. Bytes become {sha256, base64}.
 class NamedFiles : public FileSource {
  public:
   explicit NamedFiles(FileNames names = FileNames::kAllowed) : names_(names) {}
@@ -31,6 +31,12 @@ class NamedFiles : public FileSource {
   const FileNames names_;
 };
 
+/// A file's name in messages, and its text.
+struct InputText {
+  std::string name, text;
+};
+/// Reads a whole file; "-" is standard input. An unreadable one is a problem at line 1, column 1.
+InputText ReadInputFile(const std::string& path, std::vector<InputProblem>& problems);
 /// Reads a YAML file. An unreadable one is a problem at line 1, column 1.
 InputNode ReadYamlFile(const std::string& path, std::vector<InputProblem>& problems);
 

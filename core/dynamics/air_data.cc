@@ -8,8 +8,7 @@ namespace {
 
 AirState StateAt(const AirTable& table, double altitude_m) {
   const lanes::AirPressure<double> air = lanes::AirAt(table, altitude_m);
-  constexpr double kGasConstant_j_kg_k = 8314.32 / 28.9644;
-  return {air.energy_j_kg / kGasConstant_j_kg_k, air.pressure_pa, air.pressure_pa / air.energy_j_kg,
+  return {air.energy_j_kg / kAirGasConstant_j_kg_k, air.pressure_pa, air.pressure_pa / air.energy_j_kg,
           Sqrt(1.4 * air.energy_j_kg)};
 }
 

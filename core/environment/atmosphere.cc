@@ -14,7 +14,6 @@ constexpr double kEarthRadius = 6356766.0;    // r0, m
 constexpr double kGasConstant = 8.31432e3;    // R*, N m/(kmol K)
 constexpr double kMolecularWeight = 28.9644;  // M0, kg/kmol
 constexpr double kHeatRatio = 1.4;            // gamma
-constexpr double kSpecificGasConstant = kGasConstant / kMolecularWeight;
 constexpr double kSeaLevelPressure = 101325.0;
 
 // Altitudes (m) of the end of the lower part, and of the start of the decrease in molecular weight.
@@ -58,7 +57,7 @@ std::array<Layer, 7> MakeLayers() {
     layer.temperature = temperature;
     layer.pressure = pressure;
     layer.exponent =
-        -kGravity / (kSpecificGasConstant * (layer.gradient == 0.0 ? temperature : layer.gradient));
+        -kGravity / (kAirGasConstant_j_kg_k * (layer.gradient == 0.0 ? temperature : layer.gradient));
     if (i + 1 == layers.size()) break;
     const double top = layers[i + 1].base;
     temperature += layer.gradient * (top - layer.base);

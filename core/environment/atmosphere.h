@@ -14,6 +14,9 @@ struct AirState {
   double speed_of_sound_m_s;
 };
 
+/// Of dry air, J/(kg K), by the standard: 8314.32 J/(kmol K) over 28.9644 kg/kmol.
+inline constexpr double kAirGasConstant_j_kg_k = 8314.32 / 28.9644;
+
 /// Range of StandardAtmosphere1976.
 inline constexpr double kAtmosphereBottom_m = -5000.0;
 inline constexpr double kAtmosphereTop_m = 1.0e6;

@@ -8,13 +8,6 @@
 #include "core/math/assertion.h"
 
 namespace dispersa {
-namespace {
-
-// Of dry air, by the U.S. Standard Atmosphere, 1976: 8314.32 J/(kmol K) over 28.9644 kg/kmol.
-constexpr double kGasConstant_j_kg_k = 8314.32 / 28.9644;
-
-}  // namespace
-
 void Describe(Fields& fields, WeatherTable& table) {
   Describe(fields, static_cast<WindTable&>(table), "one value an altitude in each column");
   constexpr const char* kTwo = "two or three of temperature_k, pressure_* and density_kg_m3 are the air's";
@@ -57,7 +50,7 @@ void Describe(Fields& fields, WeatherTable& table) {
 LevelAir AirOfLevel(const WeatherTable& table, std::size_t level) {
   DISPERSA_ASSERT(level < table.altitude_m.size(), level, table.altitude_m.size());
   DISPERSA_ASSERT(!table.pressure_pa.empty() || !table.density_kg_m3.empty());
-  const auto energy = [&] { return kGasConstant_j_kg_k * table.temperature_k[level]; };
+  const auto energy = [&] { return kAirGasConstant_j_kg_k * table.temperature_k[level]; };
   if (table.pressure_pa.empty()) {
     const double density = table.density_kg_m3[level];
     return {density * energy(), density};
@@ -70,7 +63,7 @@ GasLawMiss MissOfGasLaw(const WeatherTable& table) {
   GasLawMiss miss;
   if (table.pressure_pa.empty() || table.density_kg_m3.empty() || table.temperature_k.empty()) return miss;
   for (std::size_t i = 0; i < table.altitude_m.size(); ++i) {
-    const double law_pa = table.density_kg_m3[i] * kGasConstant_j_kg_k * table.temperature_k[i];
+    const double law_pa = table.density_kg_m3[i] * kAirGasConstant_j_kg_k * table.temperature_k[i];
     const double part = table.pressure_pa[i] / law_pa - 1.0;
     if (std::fabs(part) > std::fabs(miss.part)) miss = {part, i};
   }
