@@ -42,12 +42,10 @@ using Units = std::vector<UnitOf>;
 // Units by their names in the headers of columns, in lower case.
 const Units& UnitsOf(Quantity quantity) {
   static const Units length = {{"m"}, {"km", 1e3}, {"ft", 0.3048}, {"kft", 304.8}};
-  static const Units pressure = {{"pa"},        {"hpa", 1e2},        {"kpa", 1e3},      {"mb", 1e2},
+  static const Units pressure = {{"pa"},        {"hpa", 1e2},       {"kpa", 1e3},        {"mb", 1e2},
                                  {"mbar", 1e2}, {"inhg", 3386.389}, {"mmhg", 133.322387}};
-  static const Units temperature = {{"k"},
-                                    {"c", 1.0, 273.15},
-                                    {"degc", 1.0, 273.15},
-                                    {"f", 5.0 / 9.0, 459.67 * 5.0 / 9.0}};
+  static const Units temperature = {
+      {"k"}, {"c", 1.0, 273.15}, {"degc", 1.0, 273.15}, {"f", 5.0 / 9.0, 459.67 * 5.0 / 9.0}};
   static const Units difference = {{"k"}, {"c"}};
   static const Units part = {{"%", 0.01}, {"percent", 0.01}, {"1"}};
   static const Units density = {{"kg_m3"}, {"kg/m3"}, {"g_m3", 1e-3}, {"g/m3", 1e-3}};
@@ -202,7 +200,8 @@ bool IsMissing(Quantity quantity, std::string_view text) {
   for (const double code : {-9999.0, -8888.0, -999.0, -999.9, -9999.9, 99999.0, 999999.0})
     if (*value == code) return true;
   if (quantity == kHeight || quantity == kGeopotential || quantity == kPressureOf) return false;
-  return *value == 999.9 || *value == 9999.0 || *value == 9999.9 || (quantity != kTemperatureOf && *value == 999.0);
+  return *value == 999.9 || *value == 9999.0 || *value == 9999.9 ||
+         (quantity != kTemperatureOf && *value == 999.0);
 }
 
 struct Limits {
@@ -249,10 +248,11 @@ class LevelReader {
     const Limits limits = LimitsOf(meaning.quantity);
     const double value = number ? *number * meaning.unit.factor + meaning.unit.offset : SoundingLevel::kNone;
     if (!(value >= limits.low && value <= limits.high)) {
-      problems_.push_back({file_, line_, column, "",
-                           "'" + std::string(text) + "'" + (number ? " " + std::string(meaning.unit.name) : "") +
-                               " is no value of this column",
-                           std::string("a number ") + limits.words + ", or -9999, 999.9, // or nothing if missing"});
+      problems_.push_back(
+          {file_, line_, column, "",
+           "'" + std::string(text) + "'" + (number ? " " + std::string(meaning.unit.name) : "") +
+               " is no value of this column",
+           std::string("a number ") + limits.words + ", or -9999, 999.9, // or nothing if missing"});
       return;
     }
     values_[meaning.quantity] = value;
@@ -276,8 +276,9 @@ class LevelReader {
       level.north_m_s = wind.north_m_s;
       level.east_m_s = wind.east_m_s;
     }
-    const double dew_point_k = std::isnan(values_[kDewPoint]) ? level.temperature_k - values_[kDewPointDepression]
-                                                              : values_[kDewPoint];
+    const double dew_point_k = std::isnan(values_[kDewPoint])
+                                   ? level.temperature_k - values_[kDewPointDepression]
+                                   : values_[kDewPoint];
     if (!std::isnan(dew_point_k))
       level.vapour_pa = SaturationPressure(dew_point_k);
     else if (!std::isnan(level.temperature_k) && !std::isnan(values_[kHumidity]))
@@ -366,7 +367,8 @@ Sounding ReadWyoming(const std::vector<std::string_view>& lines, const std::stri
       meaning.unit = *known;
     } else {
       problems.push_back({file, static_cast<int>(header) + 2, unit.column, "",
-                          "'" + unit.text + "' is no unit of the column " + name, UnitNames(meaning.quantity)});
+                          "'" + unit.text + "' is no unit of the column " + name,
+                          UnitNames(meaning.quantity)});
     }
     columns.push_back({begin, end, meaning});
     begin = end;
@@ -423,29 +425,32 @@ bool IsIgraHeader(std::string_view line) {
 }
 
 std::string IgraDate(std::string_view line) {
-  return fmt::format("{}-{}-{}T{}", line.substr(13, 4), line.substr(18, 2), line.substr(21, 2), line.substr(24, 2));
+  return fmt::format("{}-{}-{}T{}", line.substr(13, 4), line.substr(18, 2), line.substr(21, 2),
+                     line.substr(24, 2));
 }
 
-Sounding ReadIgra(const std::vector<std::string_view>& lines, const std::string& file, const std::string& date,
-                  std::vector<InputProblem>& problems) {
+Sounding ReadIgra(const std::vector<std::string_view>& lines, const std::string& file,
+                  const std::string& date, std::vector<InputProblem>& problems) {
   std::vector<std::size_t> headers;
   for (std::size_t i = 0; i < lines.size(); ++i)
-    if (IsIgraHeader(lines[i]) && (date.empty() || IgraDate(lines[i]).starts_with(date))) headers.push_back(i);
+    if (IsIgraHeader(lines[i]) && (date.empty() || IgraDate(lines[i]).starts_with(date)))
+      headers.push_back(i);
   Sounding sounding;
   if (headers.size() != 1) {
     const std::size_t second = headers.size() > 1 ? headers[1] : 0;
-    problems.push_back(
-        {file, static_cast<int>(second) + 1, 1, "",
-         headers.empty() ? "the file has no sounding of " + date
-                         : fmt::format("the file has {} soundings{}, here that of {}", headers.size(),
-                                       date.empty() ? "" : " of " + date, IgraDate(lines[second])),
-         "one sounding: dispersa convert FILE --date YYYY-MM-DDTHH --out FILE"});
+    problems.push_back({file, static_cast<int>(second) + 1, 1, "",
+                        headers.empty()
+                            ? "the file has no sounding of " + date
+                            : fmt::format("the file has {} soundings{}, here that of {}", headers.size(),
+                                          date.empty() ? "" : " of " + date, IgraDate(lines[second])),
+                        "one sounding: dispersa convert FILE --date YYYY-MM-DDTHH --out FILE"});
     return sounding;
   }
   const std::string_view header = lines[headers.front()];
   const std::string station = Trimmed(header.substr(1, 11));
   sounding.title = fmt::format("IGRA 2 station {}, {} UTC", station, IgraDate(header));
-  if (const auto latitude = ParseNumber(FieldOf(header, 55, 62).text); latitude && std::fabs(*latitude) <= 900000.0)
+  if (const auto latitude = ParseNumber(FieldOf(header, 55, 62).text);
+      latitude && std::fabs(*latitude) <= 900000.0)
     sounding.latitude_rad = *latitude * 1e-4 * kRadPerDeg;
   const Field count = FieldOf(header, 32, 36);
   const std::optional<std::uint64_t> levels = ParseInteger(count.text);
@@ -470,7 +475,8 @@ Sounding ReadIgra(const std::vector<std::string_view>& lines, const std::string&
 
 bool IsSoundingText(const std::string& text) {
   const std::vector<std::string_view> lines = Lines(WithoutByteOrderMark(text));
-  return !lines.empty() && (IsIgraHeader(lines.front()) || std::any_of(lines.begin(), lines.end(), IsWyomingHeader));
+  return !lines.empty() &&
+         (IsIgraHeader(lines.front()) || std::any_of(lines.begin(), lines.end(), IsWyomingHeader));
 }
 
 bool IsSoundingTable(const InputNode& table) {
@@ -481,9 +487,10 @@ bool IsSoundingTable(const InputNode& table) {
     if (meaning.quantity == kQuantities) continue;
     has[meaning.quantity] = true;
     // Units of our own tables are metres, kilometres and m/s; the air's are those of unit tables.
-    other_unit |= (meaning.quantity == kHeight && (meaning.unit.name == "ft" || meaning.unit.name == "kft")) ||
-                  ((meaning.quantity == kNorthOf || meaning.quantity == kEastOf) && meaning.unit.name != "m_s") ||
-                  (meaning.quantity == kTemperatureOf && meaning.unit.name != "k") || meaning.quantity == kGeopotential;
+    other_unit |=
+        (meaning.quantity == kHeight && (meaning.unit.name == "ft" || meaning.unit.name == "kft")) ||
+        ((meaning.quantity == kNorthOf || meaning.quantity == kEastOf) && meaning.unit.name != "m_s") ||
+        (meaning.quantity == kTemperatureOf && meaning.unit.name != "k") || meaning.quantity == kGeopotential;
   }
   const bool has_wind = (has[kWindSpeed] && has[kDirection]) || (has[kNorthOf] && has[kEastOf] && other_unit);
   return (has[kHeight] || has[kGeopotential] || has[kPressureOf]) && has_wind;
@@ -492,7 +499,8 @@ bool IsSoundingTable(const InputNode& table) {
 Sounding ReadSounding(const std::string& text, const std::string& file, const std::string& date,
                       std::vector<InputProblem>& problems) {
   const std::vector<std::string_view> lines = Lines(WithoutByteOrderMark(text));
-  return IsIgraHeader(lines.front()) ? ReadIgra(lines, file, date, problems) : ReadWyoming(lines, file, problems);
+  return IsIgraHeader(lines.front()) ? ReadIgra(lines, file, date, problems)
+                                     : ReadWyoming(lines, file, problems);
 }
 
 Sounding ReadSounding(const InputNode& table, std::vector<InputProblem>& problems) {
@@ -507,12 +515,13 @@ Sounding ReadSounding(const InputNode& table, std::vector<InputProblem>& problem
     }
     if (meaning.unit.name.empty())
       problems.push_back({*table.file, column.line, column.column, "",
-                          "the column '" + column.key + "' names no unit", "one of " + UnitNames(meaning.quantity) +
-                                                                               ", as in altitude_ft or altitude (ft)"});
+                          "the column '" + column.key + "' names no unit",
+                          "one of " + UnitNames(meaning.quantity) + ", as in altitude_ft or altitude (ft)"});
     if (first[meaning.quantity] != nullptr)
-      problems.push_back({*table.file, column.line, column.column, "",
-                          "the columns '" + first[meaning.quantity]->key + "' and '" + column.key + "' are the same",
-                          "each quantity once"});
+      problems.push_back(
+          {*table.file, column.line, column.column, "",
+           "the columns '" + first[meaning.quantity]->key + "' and '" + column.key + "' are the same",
+           "each quantity once"});
     first[meaning.quantity] = &column;
   }
   const std::size_t rows = table.members.empty() ? 0 : table.members.front().value.items.size();
@@ -547,14 +556,15 @@ void EachColumn(const WeatherTable& table, const Visit& visit) {
 }
 
 // Of a sounding that was read without problems.
-SoundingProfile Profile(const Sounding& sounding, const std::string& file, std::vector<InputProblem>& problems) {
+SoundingProfile Profile(const Sounding& sounding, const std::string& file,
+                        std::vector<InputProblem>& problems) {
   SoundingProfile profile = ProfileOf(sounding.levels, sounding.latitude_rad);
   const bool has_wind = profile.without_wind < profile.table.altitude_m.size();
   if (profile.table.altitude_m.size() < 2 || !has_wind)
     problems.push_back({file, 1, 1, "",
                         profile.table.altitude_m.size() < 2
-                            ? fmt::format("{} of {} levels have a height and a value", profile.table.altitude_m.size(),
-                                          profile.levels)
+                            ? fmt::format("{} of {} levels have a height and a value",
+                                          profile.table.altitude_m.size(), profile.levels)
                             : std::string("no level has a wind"),
                         "two levels or more, with heights or pressures, and a wind"});
   return profile;
@@ -591,9 +601,10 @@ std::string ConvertSounding(const std::string& path, const std::string& date) {
   } else {
     const InputNode table = ParseCsv(text, file, problems);
     if (problems.empty() && !IsSoundingTable(table))
-      problems.push_back({file, table.line, 1, "", "the file is no sounding",
-                          "text of the University of Wyoming, IGRA 2, or a CSV file with an altitude or pressure, and "
-                          "the wind's speed and direction or north and east, each with its unit"});
+      problems.push_back(
+          {file, table.line, 1, "", "the file is no sounding",
+           "text of the University of Wyoming, IGRA 2, or a CSV file with an altitude or pressure, and "
+           "the wind's speed and direction or north and east, each with its unit"});
     if (problems.empty()) sounding = ReadSounding(table, problems);
   }
   if (!problems.empty()) throw InputError(problems);
@@ -601,14 +612,17 @@ std::string ConvertSounding(const std::string& path, const std::string& date) {
   if (!problems.empty()) throw InputError(problems);
   std::string csv = "# Wind and air of a sounding, for dispersions: {wind_profile: {table: FILE}}.\n";
   if (!sounding.title.empty()) csv += "# " + sounding.title + "\n";
-  csv += fmt::format("# {} levels, of which {} are here; {} got heights by their pressures.\n", profile.levels,
-                     profile.table.altitude_m.size(), profile.with_heights_by_pressure);
+  csv += fmt::format("# {} levels, of which {} are here; {} got heights by their pressures.\n",
+                     profile.levels, profile.table.altitude_m.size(), profile.with_heights_by_pressure);
   csv += fmt::format("# {} without wind are linear between their neighbours; {} without air exponential.\n",
                      profile.without_wind, profile.without_air);
   csv += fmt::format("# Geometric altitudes in m, by normal gravity at {}.\n",
-                     sounding.latitude_rad ? fmt::format("{:.2f} degrees of latitude", *sounding.latitude_rad * kDegPerRad)
-                                           : std::string("45 degrees of latitude, for the file names none"));
-  csv += "# Wind in m/s towards north and towards east. Density is that of moist air where the file has humidity.\n";
+                     sounding.latitude_rad
+                         ? fmt::format("{:.2f} degrees of latitude", *sounding.latitude_rad * kDegPerRad)
+                         : std::string("45 degrees of latitude, for the file names none"));
+  csv +=
+      "# Wind in m/s towards north and towards east. Density is that of moist air where the file has "
+      "humidity.\n";
   if (!sounding.not_read.empty())
     csv += fmt::format("# Columns not read: {}\n", fmt::join(sounding.not_read, ", "));
   std::vector<std::string> rows(profile.table.altitude_m.size() + 1);

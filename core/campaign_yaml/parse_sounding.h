@@ -13,7 +13,7 @@ namespace dispersa {
 
 /// A sounding as its file gives it. `source` of a level is its line.
 struct Sounding {
-  std::string title;                  ///< the station and the time, as far as the file names them
+  std::string title;                   ///< the station and the time, as far as the file names them
   std::optional<double> latitude_rad;  ///< of the station
   std::vector<SoundingLevel> levels;
   std::vector<std::string> not_read;  ///< names of further columns
@@ -25,14 +25,14 @@ bool IsSoundingText(const std::string& text);
 /// that our own tables do not have.
 bool IsSoundingTable(const InputNode& table);
 
-/// One sounding. Of an IGRA 2 file with several, `date` (YYYY-MM-DDTHH) chooses. Columns and their units come from
-/// the file. Values for "missing" are missing. A text of another form is a problem and gives no levels.
+/// One sounding. Of an IGRA 2 file with several, `date` (YYYY-MM-DDTHH) chooses. Columns and their units come
+/// from the file. Values for "missing" are missing. A text of another form is a problem and gives no levels.
 Sounding ReadSounding(const std::string& text, const std::string& file, const std::string& date,
                       std::vector<InputProblem>& problems);
 Sounding ReadSounding(const InputNode& table, std::vector<InputProblem>& problems);
 
-/// The columns altitude_m, north_m_s, east_m_s, and, where the sounding has air, pressure_pa and density_kg_m3. A
-/// value's place is its level's. Without a table, an absent node.
+/// The columns altitude_m, north_m_s, east_m_s, and, where the sounding has air, pressure_pa and
+/// density_kg_m3. A value's place is its level's. Without a table, an absent node.
 InputNode TableOf(const Sounding& sounding, const std::string& file, std::vector<InputProblem>& problems);
 
 /// A sounding's file as our own CSV table, under comments that say what was read and what was added.

@@ -25,9 +25,7 @@ void CompleteAir(SoundingLevel& level) {
       (level.pressure_pa - kLighter * vapour_pa) / (kAirGasConstant_j_kg_k * level.temperature_k);
 }
 
-bool HasAir(const SoundingLevel& level) {
-  return IsGiven(level.pressure_pa) && IsGiven(level.density_kg_m3);
-}
+bool HasAir(const SoundingLevel& level) { return IsGiven(level.pressure_pa) && IsGiven(level.density_kg_m3); }
 
 // By pressure: R T / g0 of moist air, which is p / (density g0).
 double ScaleHeight(const SoundingLevel& level) {
@@ -91,16 +89,16 @@ std::size_t AddHeights(Levels& levels) {
 void Complete(SoundingLevel& level, const SoundingLevel& other) {
   if (!HasAir(level) && HasAir(other))
     level.pressure_pa = other.pressure_pa, level.density_kg_m3 = other.density_kg_m3;
-  if (!level.has_wind() && other.has_wind()) level.north_m_s = other.north_m_s, level.east_m_s = other.east_m_s;
+  if (!level.has_wind() && other.has_wind())
+    level.north_m_s = other.north_m_s, level.east_m_s = other.east_m_s;
 }
 
 Levels InOrder(const Levels& levels) {
   Levels sorted;
   for (const SoundingLevel& level : levels)
     if (level.has_height() && (level.has_wind() || HasAir(level))) sorted.push_back(level);
-  std::stable_sort(sorted.begin(), sorted.end(), [](const SoundingLevel& a, const SoundingLevel& b) {
-    return a.height_m < b.height_m;
-  });
+  std::stable_sort(sorted.begin(), sorted.end(),
+                   [](const SoundingLevel& a, const SoundingLevel& b) { return a.height_m < b.height_m; });
   Levels apart;
   for (const SoundingLevel& level : sorted) {
     if (apart.empty() || level.height_m - apart.back().height_m >= kLeastLevel_m)
@@ -153,8 +151,7 @@ LevelAir AirAt(const Levels& levels, double height_m) {
   }
   const SoundingLevel& end = below != nullptr ? *below : *above;
   const AirState there = StandardAtmosphere1976(end.height_m), here = StandardAtmosphere1976(height_m);
-  const double left =
-      below == nullptr ? 1.0 : std::max(0.0, 1.0 - (height_m - end.height_m) / kWindFade_m);
+  const double left = below == nullptr ? 1.0 : std::max(0.0, 1.0 - (height_m - end.height_m) / kWindFade_m);
   return {here.pressure_pa * (1.0 + left * (end.pressure_pa / there.pressure_pa - 1.0)),
           here.density_kg_m3 * (1.0 + left * (end.density_kg_m3 / there.density_kg_m3 - 1.0))};
 }

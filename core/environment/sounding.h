@@ -1,8 +1,8 @@
 // A balloon's sounding: levels as they were measured, and the weather table that they make.
 //
 // Source of the heights: WMO-No. 8, Guide to Instruments and Methods of Observation, volume I, upper-air
-// pressure, temperature and humidity: geopotential by the hypsometric equation, and its conversion with normal
-// gravity at the latitude (WGS-84). Source of the vapour: Bolton (1980), equation 10.
+// pressure, temperature and humidity: geopotential by the hypsometric equation, and its conversion with
+// normal gravity at the latitude (WGS-84). Source of the vapour: Bolton (1980), equation 10.
 //
 // Heights count from mean sea level, and altitudes from the ellipsoid. Both are taken as equal: the geoid is
 // within 110 m of the ellipsoid.
@@ -33,8 +33,8 @@ struct SoundingLevel {
   bool has_wind() const { return north_m_s == north_m_s && east_m_s == east_m_s; }
 };
 
-/// Of a geopotential height (standard metres, 9.80665 m²/s² each) at a geodetic latitude, and back. Within 1 m
-/// of the Earth's own potential up to 60 km.
+/// Of a geopotential height (standard metres, 9.80665 m²/s² each) at a geodetic latitude, and back. Within 1
+/// m of the Earth's own potential up to 60 km.
 double GeometricHeight(double geopotential_m, double latitude_rad);
 double GeopotentialHeight(double height_m, double latitude_rad);
 /// Saturation over water at a temperature (Bolton, equation 10), Pa. Within 0.3 % from -35 to 35 °C.

@@ -43,7 +43,8 @@ void AddConvertCommand(CLI::App& app, Invocation& invocation) {
   command->add_option("--out", options->out, "CSV file to write; -: standard output")
       ->required()
       ->type_name(kFileType);
-  command->add_option("--date", options->date, "of an IGRA 2 file with several soundings: YYYY-MM-DDTHH, or its begin");
+  command->add_option("--date", options->date,
+                      "of an IGRA 2 file with several soundings: YYYY-MM-DDTHH, or its begin");
   command->footer(
       "A campaign may also name the file itself: dispersions: {wind_profile: {table: sounding.txt}}.\n"
       "Example: dispersa convert sounding.txt --out wind.csv");

@@ -1,10 +1,9 @@
 #include "core/campaign_yaml/parse_sounding.h"
 
-
 #include "core/campaign_yaml/parse_csv.h"
 #include "core/math/constants.h"
-#include "tests/test.h"
 #include "tests/temporary_folder.h"
+#include "tests/test.h"
 
 namespace dispersa::campaign_yaml_sounding_test {
 
@@ -49,8 +48,8 @@ constexpr double kKnot = 1852.0 / 3600.0;
 
 TEST(ConvertSounding, OfWyoming) {
   const Converted table = Convert(std::string(kData) + "wyoming.txt");
-  EXPECT_EQ(table.names,
-            (std::vector<std::string>{"altitude_m", "north_m_s", "east_m_s", "pressure_pa", "density_kg_m3"}));
+  EXPECT_EQ(table.names, (std::vector<std::string>{"altitude_m", "north_m_s", "east_m_s", "pressure_pa",
+                                                   "density_kg_m3"}));
   ASSERT_EQ(table.rows.size(), 12u);
   EXPECT_THAT(table.comments, HasSubstr("74794 XMR Cape Kennedy Observations at 12Z 15 Jan 2020"));
   EXPECT_THAT(table.comments, HasSubstr("12 levels, of which 12 are here; 0 got heights by their pressures"));
@@ -74,12 +73,14 @@ TEST(ConvertSounding, OfWyoming) {
 }
 
 TEST(ConvertSounding, OfIgra) {
-  const Converted table = Convert(std::string(kData) + "igra.txt"), wyoming = Convert(std::string(kData) + "wyoming.txt");
+  const Converted table = Convert(std::string(kData) + "igra.txt"),
+                  wyoming = Convert(std::string(kData) + "wyoming.txt");
   EXPECT_THAT(table.comments, HasSubstr("IGRA 2 station USM00074794, 2020-01-15T12 UTC"));
   EXPECT_THAT(table.comments, HasSubstr("13 levels, of which 13 are here; 3 got heights by their pressures"));
   ASSERT_EQ(table.rows.size(), 13u);
   // The same levels of the same day.
-  for (const auto& [here, there] : {std::pair(0, 0), {1, 1}, {3, 2}, {4, 3}, {6, 4}, {8, 5}, {9, 7}, {10, 8}, {11, 9}}) {
+  for (const auto& [here, there] :
+       {std::pair(0, 0), {1, 1}, {3, 2}, {4, 3}, {6, 4}, {8, 5}, {9, 7}, {10, 8}, {11, 9}}) {
     EXPECT_NEAR(table.At(here, "altitude_m"), wyoming.At(there, "altitude_m"), 0.01) << here;
     EXPECT_EQ(table.At(here, "pressure_pa"), wyoming.At(there, "pressure_pa")) << here;
     EXPECT_NEAR(table.At(here, "density_kg_m3") / wyoming.At(there, "density_kg_m3"), 1.0, 2e-4) << here;
@@ -109,9 +110,11 @@ TEST(ConvertSounding, OfOneDateAmongSeveral) {
     }
     return std::string();
   };
-  const std::string allowed = ", allowed: one sounding: dispersa convert FILE --date YYYY-MM-DDTHH --out FILE";
+  const std::string allowed =
+      ", allowed: one sounding: dispersa convert FILE --date YYYY-MM-DDTHH --out FILE";
   EXPECT_EQ(problem(""), ":15:1: the file has 2 soundings, here that of 2020-01-16T00" + allowed);
-  EXPECT_EQ(problem("2020-01"), ":15:1: the file has 2 soundings of 2020-01, here that of 2020-01-16T00" + allowed);
+  EXPECT_EQ(problem("2020-01"),
+            ":15:1: the file has 2 soundings of 2020-01, here that of 2020-01-16T00" + allowed);
   EXPECT_EQ(problem("2020-02"), ":1:1: the file has no sounding of 2020-02" + allowed);
 }
 
@@ -140,23 +143,39 @@ TEST(ConvertSounding, UnitsOfColumns) {
   const std::string wind = ",direction_deg,speed_m_s", calm = ",0,0";
   for (const auto& [unit, metres] : {std::pair("m", 2.0), {"km", 2000.0}, {"ft", 0.6096}, {"kft", 609.6}})
     EXPECT_NEAR(read(std::string("altitude_") + unit + wind, "2" + calm, "altitude_m"), metres, 1e-3) << unit;
-  for (const auto& [unit, speed] :
-       {std::pair("m_s", 9.0), {"kt", 4.63}, {"kts", 4.63}, {"knots", 4.63}, {"km_h", 2.5}, {"mph", 4.02336}, {"ft_s", 2.7432}})
-    EXPECT_NEAR(read(std::string("altitude_km,direction_deg,speed_") + unit, "2,180,9", "north_m_s"), speed, 1e-3) << unit;
+  for (const auto& [unit, speed] : {std::pair("m_s", 9.0),
+                                    {"kt", 4.63},
+                                    {"kts", 4.63},
+                                    {"knots", 4.63},
+                                    {"km_h", 2.5},
+                                    {"mph", 4.02336},
+                                    {"ft_s", 2.7432}})
+    EXPECT_NEAR(read(std::string("altitude_km,direction_deg,speed_") + unit, "2,180,9", "north_m_s"), speed,
+                1e-3)
+        << unit;
   EXPECT_NEAR(read("altitude_km,direction_rad,speed_m_s", "2,3,9", "north_m_s"), -9.0 * std::cos(3.0), 1e-3);
-  for (const auto& [unit, pressure] : {std::pair("pa", 20.0), {"hpa", 2000.0}, {"kpa", 20000.0}, {"mbar", 2000.0}, {"mb", 2000.0},
-                                       {"inhg", 67727.78}, {"mmhg", 2666.44774}})
-    EXPECT_NEAR(read(std::string("altitude_km,temperature_k,direction_deg,speed_m_s,pressure_") + unit, "2,280,0,0,20", "pressure_pa"),
+  for (const auto& [unit, pressure] : {std::pair("pa", 20.0),
+                                       {"hpa", 2000.0},
+                                       {"kpa", 20000.0},
+                                       {"mbar", 2000.0},
+                                       {"mb", 2000.0},
+                                       {"inhg", 67727.78},
+                                       {"mmhg", 2666.44774}})
+    EXPECT_NEAR(read(std::string("altitude_km,temperature_k,direction_deg,speed_m_s,pressure_") + unit,
+                     "2,280,0,0,20", "pressure_pa"),
                 pressure, 1e-2)
         << unit;
   for (const auto& [unit, kelvin] : {std::pair("k", 250.0), {"c", 523.15}, {"f", 394.2611}})
     EXPECT_NEAR(1e4 / kAirGasConstant_j_kg_k /
-                    read(std::string("altitude_km,pressure_hpa,direction_deg,speed_m_s,temperature_") + unit, "2,100,0,0,250",
-                         "density_kg_m3"),
+                    read(std::string("altitude_km,pressure_hpa,direction_deg,speed_m_s,temperature_") + unit,
+                         "2,100,0,0,250", "density_kg_m3"),
                 kelvin, 1e-3)
         << unit;
-  EXPECT_NEAR(read("altitude_km,pressure_hpa,direction_deg,speed_m_s,density_g_m3", "2,100,0,0,250", "density_kg_m3"), 0.25, 1e-9);
-  EXPECT_NEAR(read("geopotential_height (km),u (kt),v (kt)", "20,0,9", "altitude_m"), GeometricHeight(20000.0, 45 * kRadPerDeg), 1e-3);
+  EXPECT_NEAR(
+      read("altitude_km,pressure_hpa,direction_deg,speed_m_s,density_g_m3", "2,100,0,0,250", "density_kg_m3"),
+      0.25, 1e-9);
+  EXPECT_NEAR(read("geopotential_height (km),u (kt),v (kt)", "20,0,9", "altitude_m"),
+              GeometricHeight(20000.0, 45 * kRadPerDeg), 1e-3);
   EXPECT_NEAR(read("altitude_ft,north_kt,east_kt", "2,9,-9", "east_m_s"), -4.63, 1e-3);
 }
 
@@ -165,11 +184,12 @@ TEST(ConvertSounding, MissingValues) {
   TemporaryFolder folder;
   const std::string file = (folder.path() / "s.csv").string();
   const auto convert = [&](const std::string& level) {
-    std::ofstream(file) << "altitude_m,direction_deg,speed_m_s,pressure_hpa,temperature_c\n0,90,10,1013,15\n" << level
-                        << "\n20000,90,30,55,-56\n";
+    std::ofstream(file) << "altitude_m,direction_deg,speed_m_s,pressure_hpa,temperature_c\n0,90,10,1013,15\n"
+                        << level << "\n20000,90,30,55,-56\n";
     return Convert(file);
   };
-  for (const char* code : {"", "//", "/////", "-", "NaN", "M", "-9999", "-8888", "-999.9", "999.9", "9999", "9999.9", "99999"}) {
+  for (const char* code :
+       {"", "//", "/////", "-", "NaN", "M", "-9999", "-8888", "-999.9", "999.9", "9999", "9999.9", "99999"}) {
     const Converted table = convert("10000,90," + std::string(code) + ",264,-50");
     ASSERT_EQ(table.rows.size(), 3u) << code;
     EXPECT_EQ(table.At(1, "east_m_s"), -20.0) << code;
@@ -177,7 +197,8 @@ TEST(ConvertSounding, MissingValues) {
   }
   EXPECT_EQ(convert("110,90,20,999.9,14").At(1, "pressure_pa"), 99990.0);
   EXPECT_EQ(convert("9999,90,22,264,-50").At(1, "altitude_m"), 9999.0);
-  EXPECT_NEAR(convert("10000,90,22,264,99").At(1, "density_kg_m3"), 26400.0 / (kAirGasConstant_j_kg_k * 372.15), 1e-7);
+  EXPECT_NEAR(convert("10000,90,22,264,99").At(1, "density_kg_m3"),
+              26400.0 / (kAirGasConstant_j_kg_k * 372.15), 1e-7);
   // A calm needs no direction. A direction without speed is no wind.
   EXPECT_EQ(convert("10000,//,0,264,-50").At(1, "east_m_s"), 0.0);
   EXPECT_EQ(convert("10000,90,//,264,-50").At(1, "east_m_s"), -20.0);
@@ -188,8 +209,8 @@ TEST(ConvertSounding, HumidityIsOfWater) {
   TemporaryFolder folder;
   const std::string file = (folder.path() / "s.csv").string();
   const auto density = [&](const std::string& name, const std::string& value) {
-    std::ofstream(file) << "altitude_m,direction_deg,speed_m_s,pressure_hpa,temperature_c," << name << "\n0,0,0,1000,30," << value
-                        << "\n5000,0,0,540,-10," << value << "\n";
+    std::ofstream(file) << "altitude_m,direction_deg,speed_m_s,pressure_hpa,temperature_c," << name
+                        << "\n0,0,0,1000,30," << value << "\n5000,0,0,540,-10," << value << "\n";
     return Convert(file).At(0, "density_kg_m3");
   };
   const double dry = 1e5 / (kAirGasConstant_j_kg_k * 303.15);

@@ -32,7 +32,8 @@ TEST(GeometricHeight, IsThatOfTheEarthsField) {
       const double latitude = latitude_deg * kRadPerDeg;
       const double geopotential = GeopotentialByGravity(height_m, latitude);
       EXPECT_NEAR(GeometricHeight(geopotential, latitude), height_m, 1.0) << latitude_deg << " " << height_m;
-      EXPECT_NEAR(GeopotentialHeight(height_m, latitude), geopotential, 1.0) << latitude_deg << " " << height_m;
+      EXPECT_NEAR(GeopotentialHeight(height_m, latitude), geopotential, 1.0)
+          << latitude_deg << " " << height_m;
       EXPECT_NEAR(GeometricHeight(GeopotentialHeight(height_m, latitude), latitude), height_m, 1e-7);
     }
 }
@@ -46,8 +47,12 @@ TEST(SaturationPressure, IsBoltons) {
 
 Level OfStandard(double height_m) {
   const AirState air = StandardAtmosphere1976(height_m);
-  return {.height_m = height_m, .pressure_pa = air.pressure_pa, .temperature_k = air.temperature_k,
-          .north_m_s = height_m * 1e-3, .east_m_s = -height_m * 2e-3, .source = static_cast<int>(height_m)};
+  return {.height_m = height_m,
+          .pressure_pa = air.pressure_pa,
+          .temperature_k = air.temperature_k,
+          .north_m_s = height_m * 1e-3,
+          .east_m_s = -height_m * 2e-3,
+          .source = static_cast<int>(height_m)};
 }
 
 TEST(ProfileOf, LevelsAsMeasuredStay) {
@@ -57,9 +62,11 @@ TEST(ProfileOf, LevelsAsMeasuredStay) {
   EXPECT_EQ(profile.table.east_m_s, (std::vector<double>{0.0, -10.0, -40.0}));
   EXPECT_EQ(profile.sources, (std::vector<int>{0, 5000, 20000}));
   for (std::size_t i = 0; i < 3; ++i)
-    EXPECT_NEAR(profile.table.density_kg_m3[i] / StandardAtmosphere1976(profile.table.altitude_m[i]).density_kg_m3, 1.0,
-                1e-12);
-  EXPECT_EQ(profile.with_heights_by_pressure + profile.dropped + profile.without_air + profile.without_wind, 0u);
+    EXPECT_NEAR(
+        profile.table.density_kg_m3[i] / StandardAtmosphere1976(profile.table.altitude_m[i]).density_kg_m3,
+        1.0, 1e-12);
+  EXPECT_EQ(profile.with_heights_by_pressure + profile.dropped + profile.without_air + profile.without_wind,
+            0u);
 }
 
 // Three levels between two heights and two above the last one; those below the first one have none. The
@@ -87,11 +94,13 @@ TEST(ProfileOf, HeightsByPressure) {
 
 TEST(ProfileOf, TheWindIsLinearWhereItLacksHoldsBelowAndFadesAbove) {
   std::vector<Level> levels;
-  for (const double height_m : {0.0, 2000.0, 3000.0, 6000.0, 11000.0, 17000.0}) levels.push_back(OfStandard(height_m));
+  for (const double height_m : {0.0, 2000.0, 3000.0, 6000.0, 11000.0, 17000.0})
+    levels.push_back(OfStandard(height_m));
   for (const std::size_t without : {0u, 2u, 4u, 5u}) levels[without].north_m_s = Level::kNone;
   const SoundingProfile profile = ProfileOf(levels, {});
   EXPECT_EQ(profile.without_wind, 4u);
-  const std::vector<double> north = {2.0, 2.0, 3.0, 6.0, 3.0, 0.0}, east = {-4.0, -4.0, -6.0, -12.0, -6.0, 0.0};
+  const std::vector<double> north = {2.0, 2.0, 3.0, 6.0, 3.0, 0.0},
+                            east = {-4.0, -4.0, -6.0, -12.0, -6.0, 0.0};
   for (std::size_t i = 0; i < north.size(); ++i) {
     EXPECT_NEAR(profile.table.north_m_s[i], north[i], 1e-12) << i;
     EXPECT_NEAR(profile.table.east_m_s[i], east[i], 1e-12) << i;
@@ -100,16 +109,17 @@ TEST(ProfileOf, TheWindIsLinearWhereItLacksHoldsBelowAndFadesAbove) {
 
 TEST(ProfileOf, TheAirIsThatOfAWeatherTable) {
   std::vector<Level> levels;
-  for (const double height_m : {0.0, 1000.0, 2000.0, 4000.0, 9000.0, 15000.0}) levels.push_back(OfStandard(height_m));
+  for (const double height_m : {0.0, 1000.0, 2000.0, 4000.0, 9000.0, 15000.0})
+    levels.push_back(OfStandard(height_m));
   for (const std::size_t without : {0u, 2u, 4u, 5u}) levels[without].temperature_k = Level::kNone;
   levels[1].pressure_pa *= 1.02, levels[3].pressure_pa *= 0.98;
   const SoundingProfile profile = ProfileOf(levels, {});
   EXPECT_EQ(profile.without_air, 4u);
   const std::vector<double>& p = profile.table.pressure_pa;
   const auto standard = [&](std::size_t i) { return StandardAtmosphere1976(levels[i].height_m).pressure_pa; };
-  EXPECT_NEAR(p[0] / standard(0), 1.02, 1e-12);                              // below: the ratio holds
+  EXPECT_NEAR(p[0] / standard(0), 1.02, 1e-12);                            // below: the ratio holds
   EXPECT_NEAR(p[2], p[1] * std::pow(p[3] / p[1], 1000.0 / 3000.0), 1e-6);  // exponential
-  EXPECT_NEAR(p[4] / standard(4), 0.99, 1e-12);                              // half-way of 10 km above
+  EXPECT_NEAR(p[4] / standard(4), 0.99, 1e-12);                            // half-way of 10 km above
   EXPECT_NEAR(p[5] / standard(5), 1.0, 1e-12);
 }
 
@@ -125,7 +135,8 @@ TEST(ProfileOf, VapourMakesAirLighter) {
   EXPECT_EQ(density(moist), 1.3);
   // And gives the pressure that lacks.
   dry.density_kg_m3 = 1.2, dry.pressure_pa = Level::kNone;
-  EXPECT_NEAR(ProfileOf({dry, OfStandard(5000.0)}, {}).table.pressure_pa[0], 1.2 * kAirGasConstant_j_kg_k * 288.15, 1e-6);
+  EXPECT_NEAR(ProfileOf({dry, OfStandard(5000.0)}, {}).table.pressure_pa[0],
+              1.2 * kAirGasConstant_j_kg_k * 288.15, 1e-6);
 }
 
 TEST(ProfileOf, LevelsInAnyOrderAndAtOnePlaceAreOne) {
