@@ -109,6 +109,7 @@ constexpr Traits kAtHandover{.over = kLastIgnition},
     kOfThrusters{.over = "lift-off to the end of the last burn"};
 constexpr Traits kOfFreeStage{.is_digested = false, .needs = MetricNeeds::kFreeStage},
     kOfRail{.is_digested = false, .needs = MetricNeeds::kRail},
+    kOfRailSince3{.is_digested = false, .needs = MetricNeeds::kRail, .since = 3},
     kOfApogee{.is_usual = true, .is_digested = false, .needs = MetricNeeds::kApogee},
     kOfImpact{.is_digested = false, .needs = MetricNeeds::kImpact},
     kLongitudeOfImpact{.is_digested = false, .needs = MetricNeeds::kImpact, .circle = kCutAt180Deg},
@@ -409,7 +410,7 @@ constexpr Row kRows[] = {
     {"rail_exit_incidence", kDegrees, "α_rail", kFreeFlight, "Incidence off the rail",
      "total, to the air and its wind, where the vehicle leaves the rail", kLarger,
      [](const Measured& m) { return m.OffTheRail(m.sums.free.rail_exit_incidence_rad * kDegPerRad); },
-     kOfRail},
+     kOfRailSince3},
 
     {"propellant_left", kKilograms, "m_left", kInjection, "Propellant left",
      "usable, at the end of a burn that a command ends: without the residual, which grows with the mixture",

@@ -64,15 +64,18 @@ std::optional<std::uint64_t> CaseOf(const std::string& name) {
   return CaseHistoryName(index) == name ? std::optional(index) : std::nullopt;
 }
 
-/// The texts of these files, if each is as it was written.
+/// As it is called today. Release 0.1.0 wrote histories without compression.
+std::string NameToday(const std::string& name) { return name.ends_with(".gz") ? name : name + ".gz"; }
+
+/// The texts of these files by their names of today, if each is as it was written.
 std::optional<std::map<std::string, std::string>> TextsOf(const fs::path& directory, const Json& fingerprints,
                                                           const std::vector<std::string>& names) {
   std::map<std::string, std::string> texts;
   for (const std::string& name : names) {
     const std::string bytes = TextOfFile(directory / name);
-    std::optional<std::string> text = Gunzip(bytes);
+    std::optional<std::string> text = name == NameToday(name) ? Gunzip(bytes) : bytes;
     if (!text || Member(fingerprints, name) != Fingerprint(bytes).Hex()) return std::nullopt;
-    texts[name] = *std::move(text);
+    texts[NameToday(name)] = *std::move(text);
   }
   return texts;
 }
@@ -166,7 +169,7 @@ std::optional<FlightHistories> ReadForeignHistories(const fs::path& directory,
   if (files.is_object())
     for (const auto& [name, fingerprint] : files.items()) {
       names.push_back(name);
-      if (const auto index = CaseOf(name)) flights.written.push_back(*index);
+      if (const auto index = CaseOf(NameToday(name))) flights.written.push_back(*index);
     }
   std::sort(flights.written.begin(), flights.written.end());
   const auto texts = TextsOf(directory, files, names);

@@ -42,8 +42,11 @@ using Positions = std::vector<std::size_t>;
 
 std::string CaseColumnList(const RowShape& shape, const char* type) {
   std::string columns;
-  for (const std::size_t i : shape.inputs.positions())
-    columns += fmt::format(", input_{}{}", InputColumns()[i].name, type);
+  for (const std::size_t i : shape.inputs.positions()) {
+    const auto former = shape.former_names.find(i);
+    columns += fmt::format(
+        ", input_{}{}", former == shape.former_names.end() ? InputColumns()[i].name : former->second, type);
+  }
   for (const std::size_t i : shape.metrics)
     columns += fmt::format(", metric_{}{}", shape.list.NameAt(i), type);
   return columns;
@@ -74,25 +77,42 @@ std::size_t ClassOf(const std::vector<std::string>& inputs) {
   return further > 0 ? kMaxStages + further : stages;
 }
 
-/// Rows hold the inputs of which the table has columns. Every other one stands in the table `nominal`, which
-/// folders of older releases do not have. InputError for an input that this program does not know.
-RowInputs StoredInputs(Database& database, const fs::path& directory) {
+/// By its name, or by the one of release 0.1.0, in which winds of a profile's levels had no unit. Negative:
+/// this program does not know it.
+int FindStoredInput(const std::string& name) {
+  const int input = FindInput(name);
+  return input >= 0 ? input : FindInput(name + "_m_s");
+}
+
+/// Sets the inputs of which the table has columns. Every other one stands in the table `nominal`, which
+/// folders of older releases do not have. InputError for a column that this program does not know; such a
+/// constant is left out.
+void ReadStoredInputs(Database& database, const fs::path& directory, RowShape& shape) {
   std::vector<std::string> names;
   std::vector<std::size_t> positions;
-  const auto position = [&](const std::string& name) {
-    names.push_back(name);
-    if (const int input = FindInput(name); input >= 0) return static_cast<std::size_t>(input);
-    throw InputError(fmt::format("{}: this dispersa does not know its input {}", directory.string(), name));
-  };
+  shape.former_names.clear();
   Statement columns =
       database.Prepare("SELECT substr(name, 7) FROM pragma_table_info('cases') WHERE name GLOB 'input_*'");
-  while (columns.Step()) positions.push_back(position(columns.Text(0)));
+  while (columns.Step()) {
+    const std::string name = columns.Text(0);
+    const int input = FindStoredInput(name);
+    if (input < 0)
+      throw InputError(fmt::format("{}: this dispersa does not know its input {}", directory.string(), name));
+    positions.push_back(static_cast<std::size_t>(input));
+    names.push_back(InputColumns()[positions.back()].name);
+    if (names.back() != name) shape.former_names[positions.back()] = name;
+  }
   std::vector<std::pair<std::size_t, double>> constants;
   if (HasTable(database, kNominal)) {
     Statement select = database.Prepare(fmt::format("SELECT input, value FROM {}", kNominal));
-    while (select.Step()) constants.emplace_back(position(select.Text(0)), select.Real(1));
+    while (select.Step()) {
+      const int input = FindStoredInput(select.Text(0));
+      if (input < 0) continue;
+      constants.emplace_back(static_cast<std::size_t>(input), select.Real(1));
+      names.push_back(InputColumns()[constants.back().first].name);
+    }
   }
-  return RowInputs(ClassOf(names), std::move(positions), constants);
+  shape.inputs = RowInputs(ClassOf(names), std::move(positions), constants);
 }
 
 /// A law's own metrics are there if it was flown. Those that a kind of flight has are there together, or none
@@ -370,7 +390,7 @@ void ResultFolder::ReadColumnsOfTable() {
   own_metrics_ = OwnMetricsOf(*database_);
   std::vector<std::string> names;
   for (const OwnMetric& metric : own_metrics_) names.push_back(metric.name);
-  shape_.inputs = StoredInputs(*database_, directory_);
+  ReadStoredInputs(*database_, directory_, shape_);
   shape_.list = MetricList(shape_.inputs.column_class(), std::move(names));
   shape_.version = VersionOf(*database_);
   shape_.metrics = StoredMetrics(*database_, shape_.list, shape_.version);

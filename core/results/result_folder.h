@@ -5,6 +5,7 @@
 #include <cstdint>
 #include <filesystem>
 #include <functional>
+#include <map>
 #include <memory>
 #include <optional>
 #include <span>
@@ -34,6 +35,8 @@ struct RowShape {
   MetricList list;                   ///< names and positions of the metrics in the results
   std::vector<std::size_t> metrics;  ///< positions of the stored ones
   int version = kRowVersion;
+  /// Of inputs, by position, in folders of older releases.
+  std::map<std::size_t, std::string> former_names = {};
 };
 
 /// A verdict that was read.

@@ -65,11 +65,13 @@ class OfAnOlderRelease(ExportTest):
         return done.returncode, done.stderr, file.read_bytes() if done.returncode == 0 else b""
 
     def test_is_reported_and_exported_as_it_was(self):
+        # Winds of a profile's levels have got a unit in their names since.
+        self.csv = re.sub(rb"(input_wind_profile_(?:north|east)_\d+)", rb"\1_m_s", self.csv)
         self.assertEqual(self.exported("csv"), (0, "", self.csv))
         self.assertEqual(json.loads(self.exported("jsonl")[2].splitlines()[0])["input_wind_altitude_m"], 3000)
         self.assertEqual(self.exported("hdf5")[:2], (0, ""))
         done = dispersa("report", self.old, "--no-histories", "--quiet")
-        self.assertEqual((done.returncode, done.stderr), (4, ""))
+        self.assertEqual(done.returncode, 4, done.stderr)
         self.assertEqual((self.old / "cases.csv").read_bytes(), self.csv)
         self.assertEqual(json.loads((self.old / "nominal.json").read_text())["inputs"], {})
         self.change("DROP TABLE audits; PRAGMA user_version = 0")  # and of the first version
@@ -80,11 +82,18 @@ class OfAnOlderRelease(ExportTest):
         dispersa("run", CAMPAIGNS / "gallery/nike_apache/campaign.yaml", "--cases", "3", "--workers", "0", "--no-histories", "--quiet",
                  "--out", today)
         columns = [len(file.read_text().partition("\n")[0].split(",")) for file in (self.old / "cases.csv", today / "cases.csv")]
-        self.assertGreater(columns[0], columns[1] + 400)
+        self.assertGreater(columns[0], columns[1] + 350)
         for sides in ((self.old, today), (today, self.old)):
             compared = json.loads(dispersa("compare", *sides, "--json").stdout)
             pairing = compared["pairing"]
             self.assertEqual((pairing["changed_inputs"], pairing["pairs"]), ([], 3), pairing["sentence"])
+
+    def test_a_constant_that_this_release_does_not_know_is_left_out(self):
+        self.change("CREATE TABLE nominal (input TEXT PRIMARY KEY, value REAL); INSERT INTO nominal VALUES ('of_an_older_engine', 1)")
+        self.assertEqual(self.exported("csv")[:2], (0, ""))
+        self.change("ALTER TABLE cases RENAME COLUMN input_cg_factor TO input_of_an_older_engine")
+        code, error, _ = self.exported("csv")
+        self.assertEqual((code, "this dispersa does not know its input of_an_older_engine" in error), (2, True), error)
 
     def test_a_changed_row_is_damaged(self):
         self.change("UPDATE cases SET input_cg_factor = 1.01 WHERE case_index = 1")

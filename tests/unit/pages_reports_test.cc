@@ -8,6 +8,7 @@
 #include "core/flight/engine_version.h"
 #include "core/pages/histories.h"
 #include "core/results/database.h"
+#include "core/results/fingerprint.h"
 #include "core/results/gzip.h"
 #include "tests/test.h"
 #include "tests/unit/made_up_results.h"
@@ -272,6 +273,21 @@ TEST(Reports, OfAnotherEngineDrawItsHistoriesAndFlyNothing) {
     std::ofstream(out / "histories" / name) << before.at(name);
   }
   EXPECT_TRUE(WriteReports(folder, TheCampaign(), options).envelope);
+
+  // As release 0.1.0 left them: without compression.
+  nlohmann::json made_of = {{"schema", "dispersa/histories/1"}, {"key", ""}};
+  for (const auto& [name, bytes] : before) {
+    std::filesystem::remove(out / "histories" / name);
+    if (!name.ends_with(".gz")) continue;
+    const std::string plain = name.substr(0, name.size() - 3), text = *Gunzip(bytes);
+    std::ofstream(out / "histories" / plain) << text;
+    made_of["files"][plain] = Fingerprint(text).Hex();
+  }
+  std::ofstream(out / "histories" / "made_of.json") << made_of;
+  ASSERT_TRUE(WriteReports(folder, TheCampaign(), options).envelope);
+  EXPECT_EQ(figures(TextOfFile(out / "report.html")), figures(page));
+  std::ofstream(out / "histories" / "nominal.csv", std::ios::app) << "1";
+  EXPECT_FALSE(WriteReports(folder, TheCampaign(), options).envelope);
 }
 
 TEST(Reports, TellTheirProgressAndStopWhenAsked) {
