@@ -34,6 +34,12 @@ inline constexpr int kDepth = 512;
 /// Number of samples after which a writer is replaced, so that no reader has to skip more (sieve.h).
 inline constexpr std::uint64_t kRenewAfter = 1 << 20;
 
+/// A "reader" or "writer" that the middleware does not make: mostly because the keys do not allow its topic.
+inline NetworkError NotCreated(const char* end, const std::string& topic) {
+  return NetworkError(std::string("cannot create a ") + end + " of " + topic +
+                      "; if the keys are of an older release, issue them again");
+}
+
 eprosima::fastdds::dds::DataWriterQos MakeWriterQos(int depth);
 /// With a socket of its own on `port`, if that is not 0.
 eprosima::fastdds::dds::DataReaderQos MakeReaderQos(const std::string& address, std::uint16_t port);
@@ -176,7 +182,7 @@ class Writer : private eprosima::fastdds::dds::DataWriterListener {
   void Open() DISPERSA_PROVED(requires_capability(mutex_)) {
     written_ = 0;
     writer_ = publisher_->create_datawriter(topic_, MakeWriterQos(depth_), this);
-    if (writer_ == nullptr) throw NetworkError("cannot create a writer of " + name_);
+    if (writer_ == nullptr) throw NotCreated("writer", name_);
   }
   void Close() DISPERSA_PROVED(requires_capability(mutex_)) {
     writer_->set_listener(nullptr);
@@ -213,7 +219,7 @@ class Reader : private eprosima::fastdds::dds::DataReaderListener {
         participant_(participant),
         subscriber_(subscriber) {
     reader_ = subscriber->create_datareader(participant.TopicOf<GuardedType<PubSubType>>(topic), qos, this);
-    if (reader_ == nullptr) throw NetworkError("cannot create a reader of " + topic);
+    if (reader_ == nullptr) throw NotCreated("reader", topic);
   }
   ~Reader() override {
     reader_->set_listener(nullptr);

@@ -212,7 +212,8 @@ class SecurityTest(ServiceCase):
         self.start_coordinator()
         # By its own middleware already.
         honest = self.stranger(*self.publish("ReportV3", "", "--keys", self.folder("observer"))).leave()
-        self.assertEqual((honest["created"], honest["problem"]), (False, "cannot create a writer of dispersa/ReportV3"))
+        self.assertEqual((honest["created"], honest["problem"]),
+                         (False, "cannot create a writer of dispersa/ReportV3; if the keys are of an older release, issue them again"))
         # And by the coordinator's, if its own does not mind.
         for role, topic, name in (("observer", "ReportV3", ""), ("observer", "RequestV1", "one_a"), ("client", "ReportV3", "one_b"),
                                   ("worker", "RequestV1", "one_c")):
