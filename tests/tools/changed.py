@@ -32,7 +32,7 @@ STARTED = {
     "install": (["cli", "coordinator", "python"], ["all"]),
     "docs": (["cli", "coordinator", "worker"], PROGRAMS),
     "unit": (["cli"], PROGRAMS),
-    "compilers": (["cases", "campaign_yaml"], ["same_flights"]),
+    "compilers": (["cases", "campaign_yaml"], ["same_flights", "engine_library"]),
 }
 ALWAYS = "static"  # a folder whose checks read the sources themselves
 LONG = "long"
@@ -156,6 +156,8 @@ class Tests:
         for word in map(str, test.get("command", [])):
             if word.endswith((".py", "same_flights_from", "tests/format")) and str(root / "tests") in word:
                 return os.path.relpath(word, root)
+            if word.endswith("/same_flights"):  # with the engine of another compiler
+                return "tests/compilers/same_flights_from"
         label, _, rest = test["name"].partition(".")
         return next((self.suites[f"{label}.{word}"] for word in re.split(r"[./]", rest) if f"{label}.{word}" in self.suites), None)
 
