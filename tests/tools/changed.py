@@ -97,7 +97,7 @@ def reached(root, table, files, sources):
     rooms = {room_of(file) for file in files} - {None}
     # Build files, campaigns, data and tools: who reads them is not known.
     is_any = any(not room_of(file) and not file.startswith("tests/") and not file.endswith(".md") for file in files)
-    is_any = is_any or any(re.match(r"tests/(data|plugins/law\.c|tools/|CMakeLists)", file) for file in files)
+    is_any = is_any or any(re.match(r"tests/(data|plugins/law\.c|tools/|CMakeLists|suites\.cmake)", file) for file in files)
     links = {room: distances(table, room) for room in table}
     groups = []
     for source in sources:
@@ -168,10 +168,9 @@ class Tests:
 def targets_of(groups):
     found = set()
     for group in groups:
-        folder, name = pathlib.PurePath(group.file).parts[1], pathlib.PurePath(group.file).stem
+        folder = pathlib.PurePath(group.file).parts[1]
         if group.file.endswith(".cc"):
-            apart = re.search(r"APART ([\w\s]+)\)", (ROOT / f"tests/{folder}/CMakeLists.txt").read_text())
-            found.add(f"{folder}_{name}" if apart and name in apart[1].split() else f"{folder}_tests")
+            found.add(f"{folder}_tests")
         elif folder != ALWAYS:
             found.update(STARTED.get(folder, ([], PROGRAMS))[1])
     return sorted(found)
