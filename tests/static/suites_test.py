@@ -16,6 +16,9 @@ Of/Pair.
   Flies/0  # GetParam() = 1. of two
 Lanes/0.  # TypeParam = double
   Add
+Long/Ones.
+  Fly/0  # GetParam() = "a [ b; c"
+  Fly/twice  # GetParam() = (1, ";")
 """
 
 
@@ -24,7 +27,7 @@ class Suites(unittest.TestCase):
         self.folder = pathlib.Path(self.enterContext(tempfile.TemporaryDirectory()))
         self.program = self.folder / "unit_tests"
         (self.folder / "CTestTestfile.cmake").write_text(
-            f'set(label unit)\nset(program "{self.program}")\nset(limit_s 77)\nset(cost_s 3)\ninclude("{SUITES}")\n')
+            f'set(label unit)\nset(program "{self.program}")\nset(limit_s 77)\nset(cost_s 3)\nset(singly Long/Ones Pair)\ninclude("{SUITES}")\n')
 
     def write(self, text):
         self.program.write_text(f"#!/bin/sh\n{text}\n")
@@ -39,7 +42,10 @@ class Suites(unittest.TestCase):
         tests = self.listed()
         self.assertEqual({test["name"]: test["command"][1:] for test in tests},
                          {"unit.Sobol": ["--gtest_filter=Sobol.*"], "unit.Of/Pair": ["--gtest_filter=Of/Pair.*"],
-                          "unit.Lanes/0": ["--gtest_filter=Lanes/0.*"]})
+                          "unit.Lanes/0": ["--gtest_filter=Lanes/0.*"],
+                          "unit.Long/Ones.Fly/0": ["--gtest_filter=Long/Ones.Fly/0"],
+                          "unit.Long/Ones.Fly/twice": ["--gtest_filter=Long/Ones.Fly/twice"]})
+        self.assertEqual(len(tests), 5)
         properties = {each["name"]: each["value"] for each in tests[0]["properties"]}
         self.assertEqual((properties["LABELS"], properties["TIMEOUT"], properties["COST"]), (["unit"], 77.0, 3.0))
 
