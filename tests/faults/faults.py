@@ -216,12 +216,8 @@ def test_source(program):
 
 
 def program_of(fault):
-    """What is built and run: a test that is not alone in a program for a reason is in that of its label."""
-    label, _, name = fault["program"].partition("_")
-    folder = ROOT / "tests" / label
-    if "script" in fault or re.search(rf"\bAPART\b[^)]*\b{name}\b", (folder / "CMakeLists.txt").read_text()):
-        return fault["program"]
-    return f"{label}_tests"
+    """What is built and run: that of its label has all tests."""
+    return fault["program"] if "script" in fault else fault["program"].partition("_")[0] + "_tests"
 
 
 def outcome_alone(copy, fault, limit_s):

@@ -23,10 +23,14 @@ def needed_libraries(program):
     return set(re.findall(r"\(NEEDED\).*\[(.*)\]", output))
 
 
-def owner(library):
-    """The Debian package of a library of the x86-64 programs, or None."""
-    found = subprocess.run(["dpkg-query", "--search", f"*/x86_64-linux-gnu/{library}"], text=True, capture_output=True).stdout
-    return found.split(":")[0] or None
+def owners(libraries):
+    """{library: the Debian package of it for x86-64 programs, or None}. One question for all: each reads every package's list."""
+    found = subprocess.run(["dpkg-query", "--search", *(f"*/x86_64-linux-gnu/{library}" for library in sorted(libraries))], text=True,
+                           capture_output=True).stdout
+    packages = {}
+    for line in found.splitlines():
+        packages.setdefault(line.rpartition("/")[2], line.split(":")[0])
+    return {library: packages.get(library) for library in libraries}
 
 
 def check(listed, needed):
@@ -39,6 +43,6 @@ def check(listed, needed):
 
 if __name__ == "__main__":
     libraries = set().union(*(needed_libraries(program) for program in sys.argv[2:]))
-    found = check(listed_packages(pathlib.Path(sys.argv[1]).read_text()), {name: owner(name) for name in libraries})
+    found = check(listed_packages(pathlib.Path(sys.argv[1]).read_text()), owners(libraries))
     print("\n".join(found))
     sys.exit(1 if found else 0)

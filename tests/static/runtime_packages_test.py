@@ -8,8 +8,8 @@ class RuntimePackagesTest(unittest.TestCase):
     def test_reads_lists_and_programs(self):
         self.assertEqual(runtime_packages.listed_packages("# why\nliba1\nlibb2  # more\n"), {"liba1", "libb2"})
         self.assertIn("libc.so.6", runtime_packages.needed_libraries("/bin/ls"))
-        self.assertEqual(runtime_packages.owner("libc.so.6"), "libc6")
-        self.assertIsNone(runtime_packages.owner("libnosuch.so.1"))
+        self.assertEqual(runtime_packages.owners({"libc.so.6", "libnosuch.so.1", "libgcc_s.so.1"}),
+                         {"libc.so.6": "libc6", "libnosuch.so.1": None, "libgcc_s.so.1": "libgcc-s1"})
 
     def test_accepts_what_fits(self):
         self.assertEqual(runtime_packages.check({"liba1"}, {"liba.so.1": "liba1", "libc.so.6": "libc6"}), [])

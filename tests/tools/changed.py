@@ -32,7 +32,7 @@ STARTED = {
     "install": (["cli", "coordinator", "python"], ["all"]),
     "docs": (["cli", "coordinator", "worker"], PROGRAMS),
     "unit": (["cli"], PROGRAMS),
-    "compilers": (["cases", "campaign_yaml"], ["same_flights"]),
+    "compilers": (["cases", "campaign_yaml"], ["same_flights", "engine_library"]),
 }
 ALWAYS = "static"  # a folder whose checks read the sources themselves
 LONG = "long"
@@ -97,7 +97,7 @@ def reached(root, table, files, sources):
     rooms = {room_of(file) for file in files} - {None}
     # Build files, campaigns, data and tools: who reads them is not known.
     is_any = any(not room_of(file) and not file.startswith("tests/") and not file.endswith(".md") for file in files)
-    is_any = is_any or any(re.match(r"tests/(data|plugins/law\.c|tools/|CMakeLists)", file) for file in files)
+    is_any = is_any or any(re.match(r"tests/(data|plugins/law\.c|tools/|CMakeLists|suites\.cmake)", file) for file in files)
     links = {room: distances(table, room) for room in table}
     groups = []
     for source in sources:
@@ -156,6 +156,8 @@ class Tests:
         for word in map(str, test.get("command", [])):
             if word.endswith((".py", "same_flights_from", "tests/format")) and str(root / "tests") in word:
                 return os.path.relpath(word, root)
+            if word.endswith("/same_flights"):  # with the engine of another compiler
+                return "tests/compilers/same_flights_from"
         label, _, rest = test["name"].partition(".")
         return next((self.suites[f"{label}.{word}"] for word in re.split(r"[./]", rest) if f"{label}.{word}" in self.suites), None)
 
@@ -166,10 +168,9 @@ class Tests:
 def targets_of(groups):
     found = set()
     for group in groups:
-        folder, name = pathlib.PurePath(group.file).parts[1], pathlib.PurePath(group.file).stem
+        folder = pathlib.PurePath(group.file).parts[1]
         if group.file.endswith(".cc"):
-            apart = re.search(r"APART ([\w\s]+)\)", (ROOT / f"tests/{folder}/CMakeLists.txt").read_text())
-            found.add(f"{folder}_{name}" if apart and name in apart[1].split() else f"{folder}_tests")
+            found.add(f"{folder}_tests")
         elif folder != ALWAYS:
             found.update(STARTED.get(folder, ([], PROGRAMS))[1])
     return sorted(found)

@@ -1,5 +1,6 @@
 """Completion in bash, zsh and fish, each used as its user does, with the scripts that the program prints.
 """
+import functools
 import os
 import re
 import select
@@ -19,6 +20,11 @@ def output(*command, **options):
 
 def words(*line, program="dispersa"):
     return [answer.split("\t")[0] for answer in output(BINARIES / program, "completion", "words", *line).splitlines()]
+
+
+@functools.cache
+def printed(shell):
+    return output(BINARIES / "dispersa", "completion", shell)
 
 
 class Words(unittest.TestCase):
@@ -92,7 +98,7 @@ class Shells(unittest.TestCase):
     def script(self, shell):
         # Not among the files that are completed.
         file = self.folder / f".completion.{shell}"
-        file.write_text(output(BINARIES / "dispersa", "completion", shell))
+        file.write_text(printed(shell))
         return file
 
     def bash(self, *line):

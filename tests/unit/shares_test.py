@@ -88,7 +88,7 @@ class Shares(unittest.TestCase):
                                   out, "--resume").returncode, 0)
 
     def test_more_shares_than_cases_and_one(self):
-        for count in (1, 40):
+        for count in (1, CASES + 1):
             folders = [self.folder / self.id() / str(count) / str(i) for i in range(count)]
             some = folders if count == 1 else random.Random(count).sample(folders, count)
             for folder in some:
