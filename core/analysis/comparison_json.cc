@@ -28,9 +28,9 @@ Json SideJson(const Comparison::Side& side) {
 }
 
 Json PairingJson(const Pairing& pairing) {
-  Json changed = Json::array();
-  for (const Pairing::ChangedInput& input : pairing.changed)
-    changed.push_back({{"input", input.input}, {"key", input.key}, {"cases", input.cases}});
+  const Json changed = ListOf(pairing.changed, [](const Pairing::ChangedInput& input) -> Json {
+    return {{"input", input.input}, {"key", input.key}, {"cases", input.cases}};
+  });
   return {{"paired", pairing.paired},       {"pairs", pairing.paired ? pairing.shared : 0},
           {"shared_cases", pairing.shared}, {"only_a", pairing.only_a},
           {"only_b", pairing.only_b},       {"same_inputs", pairing.same},
@@ -42,15 +42,13 @@ Json ReplayJson(const Comparison::Side& side, std::uint64_t case_index) {
 }
 
 Json PairsJson(const std::vector<MetricComparison::Pair>& pairs, const Comparison& comparison) {
-  Json list = Json::array();
-  for (const MetricComparison::Pair& pair : pairs) {
-    list.push_back({{"case_index", pair.case_index},
-                    {"a", Number(pair.a)},
-                    {"b", Number(pair.b)},
-                    {"replay_a", ReplayJson(comparison.a, pair.case_index)},
-                    {"replay_b", ReplayJson(comparison.b, pair.case_index)}});
-  }
-  return list;
+  return ListOf(pairs, [&](const MetricComparison::Pair& pair) -> Json {
+    return {{"case_index", pair.case_index},
+            {"a", Number(pair.a)},
+            {"b", Number(pair.b)},
+            {"replay_a", ReplayJson(comparison.a, pair.case_index)},
+            {"replay_b", ReplayJson(comparison.b, pair.case_index)}};
+  });
 }
 
 Json MetricJson(const MetricComparison& metric, const Comparison& comparison) {
@@ -126,20 +124,17 @@ Json RequirementJson(const RequirementComparison& requirement, bool paired) {
 }
 
 Json CasesJson(const std::vector<ChangedCase>& cases, const Comparison& comparison) {
-  Json list = Json::array();
-  for (const ChangedCase& one : cases) {
-    Json reasons = Json::array();
-    for (const ChangedCase::Reason& reason : one.reasons)
-      reasons.push_back(
-          {{"requirement", reason.requirement}, {"a", Number(reason.a)}, {"b", Number(reason.b)}});
-    list.push_back({{"case_index", one.case_index},
-                    {"outcome_a", OutcomeName(one.outcome_a)},
-                    {"outcome_b", OutcomeName(one.outcome_b)},
-                    {"requirements", std::move(reasons)},
-                    {"replay_a", ReplayJson(comparison.a, one.case_index)},
-                    {"replay_b", ReplayJson(comparison.b, one.case_index)}});
-  }
-  return list;
+  const auto reason = [](const ChangedCase::Reason& one) -> Json {
+    return {{"requirement", one.requirement}, {"a", Number(one.a)}, {"b", Number(one.b)}};
+  };
+  return ListOf(cases, [&](const ChangedCase& one) -> Json {
+    return {{"case_index", one.case_index},
+            {"outcome_a", OutcomeName(one.outcome_a)},
+            {"outcome_b", OutcomeName(one.outcome_b)},
+            {"requirements", ListOf(one.reasons, reason)},
+            {"replay_a", ReplayJson(comparison.a, one.case_index)},
+            {"replay_b", ReplayJson(comparison.b, one.case_index)}};
+  });
 }
 
 }  // namespace
@@ -157,21 +152,17 @@ std::string ComparisonJson(const Comparison& comparison) {
   json["practical_share"] = comparison.practical_share;
   json["differs_in"] = comparison.differs;
   json["pairing"] = PairingJson(comparison.pairing);
-  json["changes"] = Json::array();
-  for (const CampaignChange& change : comparison.changes) {
-    json["changes"].push_back(
-        {{"path", change.path}, {"a", TextOrNull(change.a)}, {"b", TextOrNull(change.b)}});
-  }
-  json["metrics"] = Json::array();
-  for (const MetricComparison& metric : comparison.metrics)
-    json["metrics"].push_back(MetricJson(metric, comparison));
-  json["requirements"] = Json::array();
-  for (const RequirementComparison& requirement : comparison.requirements)
-    json["requirements"].push_back(RequirementJson(requirement, comparison.pairing.paired));
-  json["load_checks"] = Json::array();
-  for (const Comparison::LoadCheck& check : comparison.load_checks)
-    json["load_checks"].push_back(
-        {{"metric", check.metric}, {"failures_a", check.failures_a}, {"failures_b", check.failures_b}});
+  json["changes"] = ListOf(comparison.changes, [](const CampaignChange& change) -> Json {
+    return {{"path", change.path}, {"a", TextOrNull(change.a)}, {"b", TextOrNull(change.b)}};
+  });
+  json["metrics"] = ListOf(comparison.metrics,
+                           [&](const MetricComparison& metric) { return MetricJson(metric, comparison); });
+  json["requirements"] = ListOf(comparison.requirements, [&](const RequirementComparison& requirement) {
+    return RequirementJson(requirement, comparison.pairing.paired);
+  });
+  json["load_checks"] = ListOf(comparison.load_checks, [](const Comparison::LoadCheck& check) -> Json {
+    return {{"metric", check.metric}, {"failures_a", check.failures_a}, {"failures_b", check.failures_b}};
+  });
   json["harmed"] = CasesJson(comparison.harmed, comparison);
   json["rescued"] = CasesJson(comparison.rescued, comparison);
   return json.dump(2) + "\n";

@@ -14,16 +14,6 @@ namespace {
 
 using Json = nlohmann::ordered_json;
 
-template <typename T>
-Json OrNull(const std::optional<T>& value) {
-  if (!value) return nullptr;
-  if constexpr (std::is_same_v<T, double>) {
-    return Number(*value);
-  } else {
-    return *value;
-  }
-}
-
 Json StatisticsJson(const Summary& statistics) {
   return {{"n", statistics.n},
           {"undefined", statistics.undefined},
@@ -90,53 +80,44 @@ Json RequirementJson(const RequirementSummary& requirement) {
   json["attained_risk"] = OrNull(requirement.attained_risk);
   json["accepts"] = OrNull(requirement.accepts);
   json["rejects"] = OrNull(requirement.rejects);
-  json["looks"] = Json::array();
-  for (const Look& look : requirement.looks) {
-    json["looks"].push_back({{"n", look.n},
-                             {"failures", look.failures},
-                             {"verdict", LookVerdict(look.verdict)},
-                             {"planned", look.planned}});
-  }
+  json["looks"] = ListOf(requirement.looks, [](const Look& look) -> Json {
+    return {{"n", look.n},
+            {"failures", look.failures},
+            {"verdict", LookVerdict(look.verdict)},
+            {"planned", look.planned}};
+  });
   json["beyond_plan"] = requirement.beyond_plan;
   json["risk_if_each_look_were_the_only_one"] = OrNull(requirement.naive_risk);
   json["contradicted"] = requirement.contradicted;
   json["post_hoc"] = requirement.post_hoc;
   json["cases_needed"] = OrNull(requirement.cases_needed);
-  json["pass_probability"] = Json::array();
-  for (const auto& chance : requirement.pass_chances)
-    json["pass_probability"].push_back({{"cases", chance.cases}, {"probability", chance.probability}});
-  json["convergence"] = Json::array();
-  for (const auto& at : requirement.convergence) {
-    json["convergence"].push_back({{"n", at.n},
-                                   {"failures", at.failures},
-                                   {"success_lower", Number(at.success_lower)},
-                                   {"success_upper", Number(at.success_upper)}});
-  }
+  json["pass_probability"] = ListOf(requirement.pass_chances, [](const auto& chance) -> Json {
+    return {{"cases", chance.cases}, {"probability", chance.probability}};
+  });
+  json["convergence"] = ListOf(requirement.convergence, [](const auto& at) -> Json {
+    return {{"n", at.n},
+            {"failures", at.failures},
+            {"success_lower", Number(at.success_lower)},
+            {"success_upper", Number(at.success_upper)}};
+  });
   json["sentence"] = requirement.sentence + AdviceSentence(requirement);
   return json;
 }
 
 Json InjectionJson(const InjectionSummary& injection) {
-  Json covariance = Json::array();
-  for (const auto& row : injection.scatter.covariance) {
-    Json& list = covariance.emplace_back(Json::array());
-    for (const double value : row) list.push_back(Number(value));
-  }
-  Json mean = Json::array();
-  for (const double value : injection.scatter.mean) mean.push_back(Number(value));
-  Json containment = Json::array();
-  for (const Containment& one : injection.containment) {
-    containment.push_back({{"stated", one.stated},
-                           {"inside", one.inside},
-                           {"empirical", one.empirical},
-                           {"lower", one.limits.lower},
-                           {"upper", one.limits.upper}});
-  }
+  const auto containment = [](const Containment& one) -> Json {
+    return {{"stated", one.stated},
+            {"inside", one.inside},
+            {"empirical", one.empirical},
+            {"lower", one.limits.lower},
+            {"upper", one.limits.upper}};
+  };
   return {{"coordinates", kInjectionMetrics},
           {"n", injection.scatter.n},
-          {"mean", mean},
-          {"covariance", covariance},
-          {"containment", containment}};
+          {"mean", ListOf(injection.scatter.mean, Number)},
+          {"covariance",
+           ListOf(injection.scatter.covariance, [](const auto& row) { return ListOf(row, Number); })},
+          {"containment", ListOf(injection.containment, containment)}};
 }
 
 Json NominalJson(const CaseResult& nominal, const CampaignSummary& summary) {
@@ -186,15 +167,13 @@ Json OutcomesJson(const CampaignSummary& summary) {
 }
 
 Json LostFlightsJson(const CampaignSummary& summary) {
-  Json list = Json::array();
-  for (const LostFlight& lost : summary.lost_flights) {
-    list.push_back({{"case_index", lost.case_index},
-                    {"outcome", OutcomeName(lost.outcome)},
-                    {"end_time_s", Number(lost.end_time_s)},
-                    {"end_stage", lost.end_stage},
-                    {"reason", lost.reason}});
-  }
-  return list;
+  return ListOf(summary.lost_flights, [&](const LostFlight& lost) -> Json {
+    return {{"case_index", lost.case_index},
+            {"outcome", OutcomeName(lost.outcome)},
+            {"end_time_s", Number(lost.end_time_s)},
+            {"end_stage", lost.end_stage},
+            {"reason", lost.reason}};
+  });
 }
 
 Json LimitsJson(const CampaignSummary& summary) {
@@ -210,17 +189,14 @@ Json LimitsJson(const CampaignSummary& summary) {
 }
 
 Json LoadChecksJson(const CampaignSummary& summary) {
-  Json list = Json::array();
-  for (const LoadCheck& check : summary.load_checks)
-    list.push_back({{"metric", check.metric}, {"n", check.n}, {"failures", check.failures}});
-  return list;
+  return ListOf(summary.load_checks, [&](const LoadCheck& check) -> Json {
+    return {{"metric", check.metric}, {"n", check.n}, {"failures", check.failures}};
+  });
 }
 
 Json RequirementsJson(const CampaignSummary& summary) {
-  Json list = Json::array();
-  for (const RequirementSummary& requirement : summary.requirements)
-    list.push_back(RequirementJson(requirement));
-  return list;
+  return ListOf(summary.requirements,
+                [](const RequirementSummary& requirement) { return RequirementJson(requirement); });
 }
 
 Json JointRiskJson(const CampaignSummary& summary) {
@@ -271,48 +247,38 @@ Json DriversJson(const CampaignSummary& summary) {
 }
 
 Json FailureInputsJson(const FailureDrivers& requirement) {
-  Json list = Json::array();
-  for (const FailureDriver& driver : requirement.drivers) {
-    list.push_back({{"input", driver.input},
-                    {"key", driver.key},
-                    {"feature", driver.feature},
-                    {"larger", driver.larger},
-                    {"p", Number(driver.p)},
-                    {"false_discovery_rate", Number(driver.false_discovery_rate)}});
-  }
-  return list;
+  return ListOf(requirement.drivers, [&](const FailureDriver& driver) -> Json {
+    return {{"input", driver.input},     {"key", driver.key},
+            {"feature", driver.feature}, {"larger", driver.larger},
+            {"p", Number(driver.p)},     {"false_discovery_rate", Number(driver.false_discovery_rate)}};
+  });
 }
 
 Json FailurePairsJson(const FailureDrivers& requirement) {
-  Json list = Json::array();
-  for (const FailurePair& pair : requirement.pairs) {
-    list.push_back({{"inputs", {pair.first, pair.second}},
-                    {"keys", {pair.first_key, pair.second_key}},
-                    {"features", {pair.first_feature, pair.second_feature}},
-                    {"correlation", Number(pair.correlation)},
-                    {"p", Number(pair.p)},
-                    {"false_discovery_rate", Number(pair.false_discovery_rate)}});
-  }
-  return list;
+  return ListOf(requirement.pairs, [&](const FailurePair& pair) -> Json {
+    return {{"inputs", {pair.first, pair.second}},
+            {"keys", {pair.first_key, pair.second_key}},
+            {"features", {pair.first_feature, pair.second_feature}},
+            {"correlation", Number(pair.correlation)},
+            {"p", Number(pair.p)},
+            {"false_discovery_rate", Number(pair.false_discovery_rate)}};
+  });
 }
 
 Json FailureDriversJson(const CampaignSummary& summary) {
-  Json list = Json::array();
-  for (const FailureDrivers& requirement : summary.failure_drivers) {
-    list.push_back({{"metric", requirement.metric},
-                    {"basis", requirement.nearest ? "nearest" : "failed"},
-                    {"flights", requirement.flights},
-                    {"inputs", FailureInputsJson(requirement)},
-                    {"pairs", FailurePairsJson(requirement)}});
-  }
-  return list;
+  return ListOf(summary.failure_drivers, [&](const FailureDrivers& requirement) -> Json {
+    return {{"metric", requirement.metric},
+            {"basis", requirement.nearest ? "nearest" : "failed"},
+            {"flights", requirement.flights},
+            {"inputs", FailureInputsJson(requirement)},
+            {"pairs", FailurePairsJson(requirement)}};
+  });
 }
 
 Json QuarantinedJson(const CampaignSummary& summary) {
-  Json list = Json::array();
-  for (const QuarantinedCase& quarantined : summary.quarantined)
-    list.push_back({{"case_index", quarantined.case_index}, {"reason", quarantined.reason}});
-  return list;
+  return ListOf(summary.quarantined, [&](const QuarantinedCase& quarantined) -> Json {
+    return {{"case_index", quarantined.case_index}, {"reason", quarantined.reason}};
+  });
 }
 
 Json WorstCasesJson(const CampaignSummary& summary) {
@@ -337,18 +303,16 @@ Json InputsJson(const CampaignSummary& summary) {
 }
 
 Json DispersionsJson(const CampaignSummary& summary) {
-  Json list = Json::array();
-  for (const DispersionSummary& dispersion : summary.dispersions) {
-    list.push_back({{"dispersion", dispersion.dispersion},
-                    {"input", dispersion.input},
-                    {"key", dispersion.key},
-                    {"declared", dispersion.declared},
-                    {"expected_mean", OrNull(dispersion.expected_mean)},
-                    {"expected_std", OrNull(dispersion.expected_std)},
-                    {"consistent", OrNull(dispersion.consistent)},
-                    {"drawn", StatisticsJson(dispersion.drawn)}});
-  }
-  return list;
+  return ListOf(summary.dispersions, [&](const DispersionSummary& dispersion) -> Json {
+    return {{"dispersion", dispersion.dispersion},
+            {"input", dispersion.input},
+            {"key", dispersion.key},
+            {"declared", dispersion.declared},
+            {"expected_mean", OrNull(dispersion.expected_mean)},
+            {"expected_std", OrNull(dispersion.expected_std)},
+            {"consistent", OrNull(dispersion.consistent)},
+            {"drawn", StatisticsJson(dispersion.drawn)}};
+  });
 }
 
 Json EnvelopeJson(const CampaignSummary& summary) {

@@ -1,13 +1,11 @@
 #include "core/campaign/dispersion_fields.h"
 
 #include <algorithm>
-#include <functional>
 #include <numeric>
 #include <set>
 
 #include "core/campaign/dispersion_table.h"
 #include "core/environment/turbulence.h"
-#include "core/flight/dispersed_vehicle.h"
 #include "core/math/assertion.h"
 #include "core/math/functions.h"
 #include "core/vehicle/mass.h"

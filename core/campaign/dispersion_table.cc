@@ -53,6 +53,11 @@ DispersionRow OffAxis(const char* key, Dimension dimension, const std::string& s
   return row;
 }
 
+DispersionRow Row(const char* key, const char* meaning, Draws draws, const DispersedScalar& scalar,
+                  std::vector<std::string> columns) {
+  return {key, meaning, draws, scalar, std::move(columns)};
+}
+
 // The column of the whole vehicle, and those of its stages' stacks.
 DispersionRow VehicleOrStages(const char* key, const std::string& column, const char* meaning) {
   return {key, meaning, Draws::kVehicleOrStages, kPositiveFactor, {column, column + "_{stage}"}};
@@ -102,43 +107,32 @@ std::vector<DispersionRow> MakeRows() {
        {"nozzle_thrust_factor_{stage}_{nozzle}", "nozzle_flow_factor_{stage}_{nozzle}"}});
   add(stages("burn_rate", {"thrust_factor_{stage}", "mass_flow_factor_{stage}"},
              "factor of thrust and flow together"));
-  add({"propellant_temperature",
-       "difference to the nominal temperature of a solid propellant; sets the burn rate",
-       Draws::kPropellantTemperature,
-       {kTemperatureDifference, Between(-200.0, 200.0), kOfTemperature},
-       {"thrust_factor_{stage}", "mass_flow_factor_{stage}"}})
+  add(Row("propellant_temperature",
+          "difference to the nominal temperature of a solid propellant; sets the burn rate",
+          Draws::kPropellantTemperature, {kTemperatureDifference, Between(-200.0, 200.0), kOfTemperature},
+          {"thrust_factor_{stage}", "mass_flow_factor_{stage}"}))
       .unfit = LiquidStage;
   add(stages("specific_impulse", {"specific_impulse_factor_{stage}"},
              "factor of the thrust at the same flow"));
   add(stages("dry_mass", {"dry_mass_factor_{stage}"},
              "factor of a stage's whole structure; in the last stage with the payload"));
   add(stages("propellant_load", {"propellant_factor_{stage}"}, "factor of the propellant at ignition"));
-  add({"payload_mass",
-       "added to one element of the last stage's structure",
-       Draws::kPayloadMass,
-       Any(kMass),
-       {"payload_mass_kg", "payload_element"}});
+  add(Row("payload_mass", "added to one element of the last stage's structure", Draws::kPayloadMass,
+          Any(kMass), {"payload_mass_kg", "payload_element"}));
   DispersionRow& products =
       add({"product_of_inertia", "of the stack, about its centre of gravity, constant over the burn",
            Draws::kParts});
   for (const char* plane : {"xy", "xz", "yz"}) {
-    products.parts.push_back({plane,
-                              "in this plane of the body axes",
-                              Draws::kStages,
-                              Any(kInertia),
-                              {"product_of_inertia_" + std::string(plane) + "_{stage}_kg_m2"}});
+    products.parts.push_back(Row(plane, "in this plane of the body axes", Draws::kStages, Any(kInertia),
+                                 {"product_of_inertia_" + std::string(plane) + "_{stage}_kg_m2"}));
   }
-  DispersionRow& ignition = add({"ignition_delay",
-                                 "delay of a stage's ignition; stage 1 ignites before lift-off",
-                                 Draws::kStages,
-                                 Any(kTime),
-                                 {"ignition_delay_{stage}_s"}});
+  DispersionRow& ignition =
+      add(Row("ignition_delay", "delay of a stage's ignition; stage 1 ignites before lift-off",
+              Draws::kStages, Any(kTime), {"ignition_delay_{stage}_s"}));
   ignition.first_stage = 2;
-  DispersionRow& separation = add({"separation_delay",
-                                   "delay of a stage's separation; the last stage does not separate",
-                                   Draws::kStages,
-                                   Any(kTime),
-                                   {"separation_delay_{stage}_s"}});
+  DispersionRow& separation =
+      add(Row("separation_delay", "delay of a stage's separation; the last stage does not separate",
+              Draws::kStages, Any(kTime), {"separation_delay_{stage}_s"}));
   separation.last_stages_without = 1;
   add(once("launch_azimuth_error", Any(kAngle), "launch_azimuth_error_deg",
            "clockwise, of the vehicle and the inertial unit; not measured"));
@@ -163,12 +157,10 @@ std::vector<DispersionRow> MakeRows() {
         {"altitude", "altitude at which it begins", Draws::kFixed, Any(kLength), {"gust_altitude_m"}},
         {"length", "in altitude", Draws::kFixed, Any(kLength), {"gust_length_m"}},
         {"azimuth", "direction from which it blows", Draws::kDirection, Any(kAngle), {"gust_azimuth_deg"}}}});
-  add({"wind_profile",
-       "one profile for all flights, the nominal too, or statistics to draw profiles from",
-       Draws::kWindProfile,
-       Any(kSpeed),
-       {"wind_profile_north_{level}_m_s", "wind_profile_east_{level}_m_s",
-        "wind_profile_altitude_{level}_m"}});
+  add(Row("wind_profile", "one profile for all flights, the nominal too, or statistics to draw profiles from",
+          Draws::kWindProfile, Any(kSpeed),
+          {"wind_profile_north_{level}_m_s", "wind_profile_east_{level}_m_s",
+           "wind_profile_altitude_{level}_m"}));
   add({"turbulence",
        "Dryden's, of MIL-F-8785C",
        Draws::kTurbulence,
@@ -192,11 +184,8 @@ std::vector<DispersionRow> MakeRows() {
   add(once("density", kPositiveFactor, "density_factor", "factor of the air's density"));
   add(VehicleOrStages("inertia", "inertia_factor", "factor of the moments of inertia"));
   add(VehicleOrStages("actuator_bandwidth", "actuator_bandwidth_factor", "factor of the drives' bandwidth"));
-  add({"bending_frequency",
-       "factor of the modes' frequencies",
-       Draws::kEachMode,
-       kPositiveFactor,
-       {"bending_frequency_factor_{mode}"}});
+  add(Row("bending_frequency", "factor of the modes' frequencies", Draws::kEachMode, kPositiveFactor,
+          {"bending_frequency_factor_{mode}"}));
   add(once("bending_damping", kPositiveFactor, "bending_damping_factor",
            "factor of the modes' damping ratio"));
   add(once("bending_slope", kPositiveFactor, "bending_slope_factor",
@@ -207,16 +196,10 @@ std::vector<DispersionRow> MakeRows() {
   for (DispersionRow& part : tip_off.parts) part.last_stages_without = 1;
   add(BodyAxes("gyro_bias", Draws::kOnce, kAngularRate, "gyro_bias_{body}_deg_s", "of the rate gyros"));
   add(once("gyro_noise", Any(kAngularRate), "gyro_noise_deg_s", "standard deviation of a sample"));
-  add({"navigation_position_error",
-       "constant error of guidance's navigation",
-       Draws::kEachAxis,
-       Any(kLength),
-       {"navigation_position_error_{axis}_m"}});
-  add({"navigation_velocity_error",
-       "constant error of guidance's navigation",
-       Draws::kEachAxis,
-       Any(kSpeed),
-       {"navigation_velocity_error_{axis}_m_s"}});
+  add(Row("navigation_position_error", "constant error of guidance's navigation", Draws::kEachAxis,
+          Any(kLength), {"navigation_position_error_{axis}_m"}));
+  add(Row("navigation_velocity_error", "constant error of guidance's navigation", Draws::kEachAxis,
+          Any(kSpeed), {"navigation_velocity_error_{axis}_m_s"}));
   add(once("accelerometer_scale", kPositiveFactor, "accelerometer_scale_factor",
            "factor of the specific force measured for guidance"));
   add({"stuck_nozzle",
@@ -228,43 +211,30 @@ std::vector<DispersionRow> MakeRows() {
        {{"angle", "at which it stays", Draws::kFixed, Any(kAngle), {"stuck_nozzle_deg"}}}});
   const std::vector<std::string> of_booster = {"nozzle_thrust_factor_{further}",
                                                "nozzle_flow_factor_{further}"};
-  add({"booster_burn_rate", "factor of a booster's thrust and flow together; its impulse stays",
-       Draws::kBoosters, kPositiveFactor, of_booster});
-  add({"booster_temperature",
-       "difference to the nominal temperature of a booster's propellant; sets its burn rate",
-       Draws::kBoostersTemperature,
-       {kTemperatureDifference, Between(-200.0, 200.0), kOfTemperature},
-       of_booster})
+  add(Row("booster_burn_rate", "factor of a booster's thrust and flow together; its impulse stays",
+          Draws::kBoosters, kPositiveFactor, of_booster));
+  add(Row("booster_temperature",
+          "difference to the nominal temperature of a booster's propellant; sets its burn rate",
+          Draws::kBoostersTemperature, {kTemperatureDifference, Between(-200.0, 200.0), kOfTemperature},
+          of_booster))
       .unfit = LiquidBoosters;
-  add({"booster_misalignment",
-       "of a booster's thrust off its nozzle's axis: components towards body y and z",
-       Draws::kBoostersAside,
-       Any(kAngle),
-       {"nozzle_misalignment_y_{further}_deg", "nozzle_misalignment_z_{further}_deg"}});
-  add({"booster_dry_mass",
-       "factor of a booster's shell",
-       Draws::kBoosters,
-       kPositiveFactor,
-       {"booster_dry_mass_factor_{further}"}});
-  add({"booster_propellant_load",
-       "factor of a booster's propellant",
-       Draws::kBoosters,
-       kPositiveFactor,
-       {"booster_propellant_factor_{further}"}});
-  add({"booster_mixture_ratio",
-       "factor of the first tank's flow over the others'",
-       Draws::kBoosters,
-       kPositiveFactor,
-       {"booster_mixture_ratio_factor_{further}"}})
+  add(Row("booster_misalignment",
+          "of a booster's thrust off its nozzle's axis: components towards body y and z",
+          Draws::kBoostersAside, Any(kAngle),
+          {"nozzle_misalignment_y_{further}_deg", "nozzle_misalignment_z_{further}_deg"}));
+  add(Row("booster_dry_mass", "factor of a booster's shell", Draws::kBoosters, kPositiveFactor,
+          {"booster_dry_mass_factor_{further}"}));
+  add(Row("booster_propellant_load", "factor of a booster's propellant", Draws::kBoosters, kPositiveFactor,
+          {"booster_propellant_factor_{further}"}));
+  add(Row("booster_mixture_ratio", "factor of the first tank's flow over the others'", Draws::kBoosters,
+          kPositiveFactor, {"booster_mixture_ratio_factor_{further}"}))
       .unfit = BoostersWithoutMixture;
   add(stages("mixture_ratio", {"mixture_ratio_factor_{stage}"},
              "factor of the first tank's flow over the others'"))
       .unfit = StageWithoutMixture;
-  add({"aerodynamic_uncertainty",
-       "of the vehicle's aerodynamic tables, as they state it",
-       Draws::kAeroUncertainty,
-       Any({}),
-       {"table_ca_sigmas", "table_cn_sigmas", "table_xcp_sigmas", "table_damping_sigmas"}});
+  add(Row("aerodynamic_uncertainty", "of the vehicle's aerodynamic tables, as they state it",
+          Draws::kAeroUncertainty, Any({}),
+          {"table_ca_sigmas", "table_cn_sigmas", "table_xcp_sigmas", "table_damping_sigmas"}));
   // Those that their inputs declare (core/flight/flight_inputs.h).
   for (const DispersedInput& input : DeclaredDispersals()) {
     const Draws draws = input.drawn_for == DrawnFor::kEachStage  ? Draws::kStages

@@ -64,11 +64,8 @@ std::string CausesSection(const CampaignSummary& summary) {
     html += fmt::format("<h3>{} of {}: {} {}</h3>\n", requirement.nearest ? "Nearest to failing" : "Failing",
                         HtmlText(DescribeMetric(requirement.metric).title), requirement.flights,
                         requirement.flights == 1 ? "flight" : "flights");
-    HtmlTable table({{"Input", false, true},
-                     {"Feature"},
-                     {"Among them"},
-                     {"p", true},
-                     {Term("expected false alarms", "Expected false alarms in the list so far"), true}});
+    HtmlTable table("!Input|Feature|Among them|#p|#" +
+                    Term("expected false alarms", "Expected false alarms in the list so far"));
     constexpr std::size_t kShown = 5;
     for (std::size_t i = 0; i < std::min(kShown, requirement.drivers.size()); ++i) {
       const FailureDriver& driver = requirement.drivers[i];
@@ -84,11 +81,8 @@ std::string CausesSection(const CampaignSummary& summary) {
     html +=
         "<p>Combinations: two inputs that belong together among the failing flights and not among the "
         "others.</p>\n";
-    HtmlTable pairs({{"Inputs", false, true},
-                     {"Among the failing flights"},
-                     {"Rank correlation", true},
-                     {"p", true},
-                     {Term("expected false alarms", "Expected false alarms in the list so far"), true}});
+    HtmlTable pairs("!Inputs|Among the failing flights|#Rank correlation|#p|#" +
+                    Term("expected false alarms", "Expected false alarms in the list so far"));
     for (const FailurePair& pair : requirement.pairs) {
       pairs.Row({InputNames(pair.first_key, pair.first) + " by " + HtmlText(pair.first_feature) + " and " +
                      InputNames(pair.second_key, pair.second) + " by " + HtmlText(pair.second_feature),

@@ -112,13 +112,7 @@ std::string RequirementsTable(const Comparison& c) {
   };
   std::stable_sort(order.begin(), order.end(),
                    [&](const auto* x, const auto* y) { return rank(*x) < rank(*y); });
-  HtmlTable table({{"Finding"},
-                   {"Requirement", false, true},
-                   {"A breaks it in", true},
-                   {"B breaks it in", true},
-                   {"B − A", true},
-                   {"In words"},
-                   {"p, Holm", true}});
+  HtmlTable table("Finding|!Requirement|#A breaks it in|#B breaks it in|#B − A|In words|#p, Holm");
   for (const RequirementComparison* each : order) {
     const RequirementComparison& r = *each;
     const auto share = [](std::size_t failures, std::size_t n) {
@@ -195,7 +189,7 @@ std::string Header(const Comparison& c) {
 
 std::string ComparedSection(const Comparison& c) {
   std::string html = "<h2 id=\"compared\">Compared campaigns</h2>\n";
-  HtmlTable table({{"", false, true}, {"A"}, {"B"}});
+  HtmlTable table("!|A|B");
   const auto row = [&](const char* title, const std::string& a, const std::string& b) {
     table.Row({title, HtmlText(a), HtmlText(b)});
   };
@@ -294,16 +288,8 @@ std::string MetricsSection(const Comparison& c) {
       c.pairing.paired ? "The difference is the median of B minus A over the pairs."
                        : "The difference is that of the medians.",
       PercentText(c.practical_share));
-  HtmlTable table({{"Metric", false, true},
-                   {"Unit", true},
-                   {"Median A", true},
-                   {"Median B", true},
-                   {"Difference", true},
-                   {"of p95", true},
-                   {"of p99", true},
-                   {c.pairing.paired ? "B better : worse" : "Flights", true},
-                   {"p, Holm", true},
-                   {"Finding"}});
+  HtmlTable table(std::string("!Metric|#Unit|#Median A|#Median B|#Difference|#of p95|#of p99|#") +
+                  (c.pairing.paired ? "B better : worse" : "Flights") + "|#p, Holm|Finding");
   for (const MetricComparison& metric : c.metrics) {
     const auto tail = [&](const char* name, const char* other) {
       for (const PercentileComparison& each : metric.tails)
@@ -430,7 +416,7 @@ std::string ChangesSection(const Comparison& c) {
   html +=
       "<p>The pairs in which B loses most and gains most, with or without a limit between the two "
       "values.</p>\n";
-  HtmlTable table({{"Metric"}, {"B is"}, {"Case", true, true}, {"A", true}, {"B", true}, {"Replay both"}});
+  HtmlTable table("Metric|B is|!#Case|#A|#B|Replay both");
   for (const MetricComparison* metric : ShownMetrics(c)) {
     bool titled = false;
     const bool neither = metric->info.worse == Worse::kNeither;

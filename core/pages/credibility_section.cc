@@ -6,7 +6,6 @@
 
 #include "core/pages/html_parts.h"
 #include "core/pages/report_sections.h"
-#include "core/results/text.h"
 
 namespace dispersa {
 namespace {
@@ -43,7 +42,7 @@ std::string UncertaintyWords(const CampaignSummary& summary) {
 }  // namespace
 
 std::string CredibilitySection(const CampaignSummary& summary) {
-  HtmlTable table({{"Factor", false, true}, {"Shown here"}, {"Not shown here because"}});
+  HtmlTable table("!Factor|Shown here|Not shown here because");
   table.Row({"Data pedigree",
              "All values of vehicle, reference and autopilot stand in <code>campaign.yaml</code>.",
              "Where the values come from is known to their authors alone."});

@@ -151,11 +151,8 @@ std::string RequirementsTable(const CampaignSummary& summary) {
     return Rank(standing.requirements[a].verdict) < Rank(standing.requirements[b].verdict);
   });
   const std::vector<int> successors = Successors(summary);
-  HtmlTable table({{"Verdict"},
-                   {"Requirement", false, true},
-                   {"Result"},
-                   {Term("margin", "Margin"), true},
-                   {Term("attained risk", "Attained risk"), true}});
+  HtmlTable table("Verdict|!Requirement|Result|#" + Term("margin", "Margin") + "|#" +
+                  Term("attained risk", "Attained risk"));
   for (std::size_t d = 0; d < successors.size(); ++d) {
     const Standing::Dropped& dropped = standing.dropped[d];
     if (successors[d] >= 0) continue;

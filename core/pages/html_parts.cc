@@ -40,11 +40,16 @@ std::string WithUnit(double value, const std::string& unit) {
 HtmlTable::HtmlTable(std::string_view titles) {
   for (bool more = true; more;) {
     const std::size_t end = titles.find('|');
-    const std::string_view title = titles.substr(0, end);
+    std::string_view title = titles.substr(0, end);
     more = end != std::string_view::npos;
     if (more) titles.remove_prefix(end + 1);
-    const bool is_number = title.starts_with('#');
-    columns_.push_back({std::string(title.substr(is_number)), is_number, columns_.empty()});
+    const auto has = [&title](char mark) {
+      const bool marked = title.starts_with(mark);
+      title.remove_prefix(marked);
+      return marked;
+    };
+    const bool names_row = has('!'), is_number = has('#');
+    columns_.push_back({std::string(title), is_number, names_row});
   }
 }
 

@@ -18,7 +18,7 @@ class HtmlTable {
   };
 
   explicit HtmlTable(std::vector<Column> columns) : columns_(std::move(columns)) {}
-  /// "Stage|#thrust, kN|Motor": titles of columns, the first of which names its rows; # is before that of
+  /// "!Stage|#thrust, kN|Motor": titles of columns; ! is before that of the names of rows, # before those of
   /// numbers.
   explicit HtmlTable(std::string_view titles);
 

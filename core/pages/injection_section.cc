@@ -15,11 +15,7 @@ std::string InjectionSection(const InjectionSummary& injection) {
       "<code>summary.json</code> has the covariance. If the scatter is normal, an ellipsoid contains the "
       "stated share. The share of these flights inside shows whether it is normal.</p>\n",
       scatter.n);
-  HtmlTable spread({{"", false, true},
-                    {"Mean", true},
-                    {"Std", true},
-                    {"Correlation with altitude", true},
-                    {"with velocity", true}});
+  HtmlTable spread("!|#Mean|#Std|#Correlation with altitude|#with velocity");
   for (std::size_t i = 0; i < kInjectionMetrics.size(); ++i) {
     const MetricInfo info = DescribeMetric(kInjectionMetrics[i]);
     const double deviation = std::sqrt(scatter.covariance[i][i]);
@@ -34,8 +30,7 @@ std::string InjectionSection(const InjectionSummary& injection) {
   }
   html += spread.Html("narrow");
   if (injection.containment.empty()) return html + "<p>Too few flights, or no spread, for ellipsoids.</p>\n";
-  HtmlTable contained(
-      {{"Stated", true, true}, {"Flights inside", true}, {"Share", true}, {"its 95 % limits", true}});
+  HtmlTable contained("!#Stated|#Flights inside|#Share|#its 95 % limits");
   for (const Containment& one : injection.containment) {
     contained.Row(
         {PercentText(one.stated), fmt::format("{} of {}", one.inside, scatter.n), ShareText(one.empirical),

@@ -10,7 +10,6 @@
 
 #include "core/flight/engine_version.h"
 #include "core/math/assertion.h"
-#include "core/pages/file_text.h"
 #include "core/results/fingerprint.h"
 #include "core/results/gzip.h"
 #include "core/results/number_csv.h"
@@ -48,7 +47,7 @@ std::vector<fs::path> Others(const fs::path& directory, const std::map<std::stri
 }
 
 Json MadeOf(const fs::path& directory) {
-  return Json::parse(TextOfFile(directory / kMadeOf), nullptr, false);
+  return Json::parse(ReadWholeFile(directory / kMadeOf, ""), nullptr, false);
 }
 
 // A file that cannot be read as it was written is no reason to fail.
@@ -72,7 +71,7 @@ std::optional<std::map<std::string, std::string>> TextsOf(const fs::path& direct
                                                           const std::vector<std::string>& names) {
   std::map<std::string, std::string> texts;
   for (const std::string& name : names) {
-    const std::string bytes = TextOfFile(directory / name);
+    const std::string bytes = ReadWholeFile(directory / name, "");
     std::optional<std::string> text = name == NameToday(name) ? Gunzip(bytes) : bytes;
     if (!text || Member(fingerprints, name) != Fingerprint(bytes).Hex()) return std::nullopt;
     texts[NameToday(name)] = *std::move(text);
@@ -145,7 +144,7 @@ void KeepHistories(const fs::path& directory, const std::string& key, const Hist
                                     {"sampled", flights.sampled},
                                     {"extreme", flights.indices.size() - flights.sampled}};
   for (const std::string& name : FilesOf(flights))
-    made_of["files"][name] = Fingerprint(TextOfFile(directory / name)).Hex();
+    made_of["files"][name] = Fingerprint(ReadWholeFile(directory / name, "")).Hex();
   WriteFile(directory / kMadeOf, made_of.dump(1) + "\n");
 }
 

@@ -49,11 +49,7 @@ std::string PercentileCell(const MetricSummary& metric, const std::string& name)
 
 std::string LimitsTable(const CampaignSummary& summary) {
   if (summary.limits.empty()) return "";
-  HtmlTable table({{"Load", false, true},
-                   {"Limit", true},
-                   {"Largest", true},
-                   {"of case", true},
-                   {"Flights beyond", true}});
+  HtmlTable table("!Load|#Limit|#Largest|#of case|#Flights beyond");
   for (const CampaignSummary::Limit& one : summary.limits) {
     const MetricInfo info = DescribeMetric(one.metric);
     table.Row({HtmlText(info.title), StatedText(one.limit) + (info.unit.empty() ? "" : " " + info.unit),
@@ -80,7 +76,7 @@ std::string OwnDefinition(const CampaignSummary& summary, const std::string& met
 
 std::string OutcomesSection(const CampaignSummary& summary) {
   std::string html = "<h2 id=\"outcomes\">Outcomes</h2>\n";
-  HtmlTable table({{"Outcome", false, true}, {"Cases", true}, {"Share of those flown", true}});
+  HtmlTable table("!Outcome|#Cases|#Share of those flown");
   for (int i = 0; i < kOutcomeCount; ++i) {
     const std::uint64_t count = summary.outcomes[static_cast<std::size_t>(i)];
     const double share =
@@ -115,12 +111,7 @@ std::string OutcomesSection(const CampaignSummary& summary) {
     const std::uint64_t lost =
         summary.flown - summary.outcomes[static_cast<std::size_t>(Outcome::kCompleted)];
     html += fmt::format("<h3>Lost flights: {}</h3>\n", lost);
-    HtmlTable lost_table({{"Case", true, true},
-                          {"Outcome"},
-                          {"Time, s", true},
-                          {"Stage", true},
-                          {"Reason"},
-                          {"To fly it again"}});
+    HtmlTable lost_table("!#Case|Outcome|#Time, s|#Stage|Reason|To fly it again");
     for (const LostFlight& flight : summary.lost_flights) {
       lost_table.Row({std::to_string(flight.case_index), OutcomeWords(flight.outcome),
                       ReadableText(flight.end_time_s), std::to_string(flight.end_stage),
@@ -138,7 +129,7 @@ std::string OutcomesSection(const CampaignSummary& summary) {
     html +=
         "<h3>Quarantined cases</h3>\n<p>They killed or hung their workers and are not flown any more. They "
         "have no result: verdicts count them as failed for a pass and as met for a failure.</p>\n";
-    HtmlTable quarantine({{"Case", true, true}, {"Reason"}});
+    HtmlTable quarantine("!#Case|Reason");
     for (const QuarantinedCase& one : summary.quarantined) {
       quarantine.Row({std::to_string(one.case_index), HtmlText(one.reason)});
     }
@@ -156,12 +147,7 @@ std::string WorstCasesSection(const CampaignSummary& summary, const FlightHistor
               : " The commands run in the result folder. They check that the case has the same " +
                     Term("digest") +
                     " to the last bit; <code>--history FILE</code> adds its time history.</p>\n";
-  HtmlTable table({{"Metric"},
-                   {"Case", true, true},
-                   {"Value", true},
-                   {"Outcome"},
-                   {"To fly it again"},
-                   {"Time history"}});
+  HtmlTable table("Metric|!#Case|#Value|Outcome|To fly it again|Time history");
   constexpr std::size_t kPrinted = 2;
   for (const WorstCases& worst : summary.worst_cases) {
     const MetricInfo info = DescribeMetric(worst.metric);
@@ -203,17 +189,7 @@ std::string StatisticsSection(const CampaignSummary& summary) {
       "the "
       "coast has its own. Words: " +
       Term("max q") + ", " + Term("q·α") + ", " + Term("limit cycle") + ".</p>\n";
-  HtmlTable table({{"Nominal", true},
-                   {"n", true},
-                   {"Mean", true},
-                   {"Std", true},
-                   {"Skewness", true},
-                   {"Min", true},
-                   {"p50", true},
-                   {"p95", true},
-                   {"p99", true},
-                   {"p99.73", true},
-                   {"Max", true}});
+  HtmlTable table("#Nominal|#n|#Mean|#Std|#Skewness|#Min|#p50|#p95|#p99|#p99.73|#Max");
   for (const char* group : kMetricGroupTitles) {
     bool titled = false;
     std::string same, around, undefined;  // what does not vary needs no row of eleven equal numbers
@@ -273,15 +249,7 @@ std::string DispersionsTable(const CampaignSummary& summary) {
       "standard deviation lie within five standard errors of the declared ones. A direction from anywhere "
       "has "
       "no mean.</p>\n";
-  HtmlTable table({{"Input", false, true},
-                   {"Declared"},
-                   {"Expected mean", true},
-                   {"drawn", true},
-                   {"Expected std", true},
-                   {"drawn", true},
-                   {"Min", true},
-                   {"Max", true},
-                   {"Check"}});
+  HtmlTable table("!Input|Declared|#Expected mean|#drawn|#Expected std|#drawn|#Min|#Max|Check");
   for (const DispersionSummary& one : summary.dispersions) {
     const double std = one.drawn.std;
     const auto text = [&](const std::optional<double>& value) {
@@ -362,7 +330,7 @@ hysteresis; their uncertainty is what the campaign disperses.</li>
 
 std::string ProvenanceSection(const Campaign& campaign, const CampaignSummary& summary) {
   std::string html = "<h2 id=\"provenance\">Provenance</h2>\n";
-  HtmlTable table({{"", false, true}, {""}});
+  HtmlTable table("!|");
   table.Row({"Campaign id", Code(summary.id)});
   table.Row({"Flight id", Code(summary.flight_id) +
                               "<span class=\"definition\">of what decides a case: vehicle, reference, "

@@ -2,12 +2,10 @@
 
 #include <algorithm>
 #include <nlohmann/json.hpp>
-#include <optional>
 #include <sstream>
 #include <system_error>
 
 #include "core/campaign_yaml/sha256.h"
-#include "core/pages/file_text.h"
 #include "core/results/gzip.h"
 #include "core/results/output_file.h"
 
@@ -23,7 +21,7 @@ constexpr char kBetween[] = "  ";  // as sha256sum has it
 std::string SumOf(const fs::path& file) {
   std::error_code error;
   if (fs::is_regular_file(file, error)) return Sha256OfFile(file);
-  const auto text = Gunzip(TextOfFile(file.string() + ".gz"));
+  const auto text = Gunzip(ReadWholeFile(file.string() + ".gz", ""));
   return text ? Sha256Hex(*text) : "";
 }
 
@@ -45,11 +43,11 @@ std::vector<std::string> ChangedReports(const fs::path& folder) {
   std::error_code error;
   if (!fs::exists(folder / kSumsName, error)) {
     const fs::path summary = folder / "summary.json";
-    if (fs::exists(summary, error) && !nlohmann::json::accept(TextOfFile(summary)))
+    if (fs::exists(summary, error) && !nlohmann::json::accept(ReadWholeFile(summary, "")))
       changed.push_back("summary.json");
     return changed;
   }
-  std::istringstream lines(TextOfFile(folder / kSumsName));
+  std::istringstream lines(ReadWholeFile(folder / kSumsName, ""));
   bool is_whole = false;
   for (std::string line; std::getline(lines, line);) {
     const std::string sum = line.substr(0, kDigits);

@@ -11,7 +11,6 @@
 #include "core/pages/report_sections.h"
 #include "core/pages/svg_chart.h"
 #include "core/results/metric_catalogue.h"
-#include "core/results/sampling_text.h"
 #include "core/results/text.h"
 
 namespace dispersa {
@@ -49,7 +48,7 @@ std::string WorstWords(const RequirementSummary& requirement, const std::string&
 
 std::string LooksTable(const RequirementSummary& requirement) {
   if (requirement.looks.size() < 2) return "";
-  HtmlTable table({{"Flights at the look", true, true}, {"Failures", true}, {"Verdict"}, {"In the plan"}});
+  HtmlTable table("!#Flights at the look|#Failures|Verdict|In the plan");
   for (const Look& look : requirement.looks) {
     table.Row({std::to_string(look.n), std::to_string(look.failures), LookName(look.verdict),
                look.planned ? "yes" : "no"});

@@ -52,7 +52,7 @@ double Unwrapped(double azimuth_rad, const Bounds& bounds) {
 std::string VariableTable(const Reference& reference) {
   const TrajectoryProblem& problem = reference.problem;
   const FlightProgram& program = reference.program;
-  HtmlTable table({{"Variable"}, {"value", true}, {"from", true}, {"to", true}, {""}});
+  HtmlTable table("Variable|#value|#from|#to|");
   const auto row = [&](const char* name, double value, const Bounds& bounds, double unit) {
     const std::string bound = BoundReached(value, bounds);
     table.Row({name, FixedText(value / unit, 6), ReadableText(bounds.low / unit),
@@ -81,7 +81,7 @@ std::string VariableTable(const Reference& reference) {
 }
 
 std::string ConstraintTable(const Reference& reference) {
-  HtmlTable table({{"Constraint"}, {"value", true}, {"limit", true}, {"margin", true}});
+  HtmlTable table("Constraint|#value|#limit|#margin");
   for (const ConstraintMargin& c : reference.constraints) {
     table.Row({"<code>" + HtmlText(c.name) + "</code>", ReadableText(c.value),
                c.enforced ? ReadableText(c.limit) : "none", c.enforced ? ReadableText(c.margin) : "–"});

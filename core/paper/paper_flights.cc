@@ -106,7 +106,7 @@ PaperPart RobustnessPart(const PaperStudy& study) {
   struct Set {
     const char *title, *quiet, *disturbed;
   };
-  HtmlTable table("Set|Table 3|" + kDigestTitles + "|Report");
+  HtmlTable table("!Set|Table 3|" + kDigestTitles + "|Report");
   std::size_t lost = 0, flown = 0;
   double worst_deg = 0.0;
   for (const Set& set : {Set{"all 16 corners", "aero20_quiet", "aero20"},

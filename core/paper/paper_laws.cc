@@ -50,7 +50,8 @@ std::string WorthOfAdaptation(const PaperStudy& study) {
 }
 
 PaperPart BaselinePart(const PaperStudy& study) {
-  HtmlTable table("Autopilot|" + kDigestTitles + "|#RMS over the adaptive law’s|#smaller in|Report|Compared");
+  HtmlTable table("!Autopilot|" + kDigestTitles +
+                  "|#RMS over the adaptive law’s|#smaller in|Report|Compared");
   const PaperFlights& law = study.at(kPaperLaw);
   DigestRow(table, {HtmlText(law.campaign.autopilot.name)}, law.cases, {"", "", ReportLink(kPaperLaw), ""});
   bool is_best = true;
@@ -162,7 +163,7 @@ PaperPart LyapunovPart(const PaperStudy& study) {
   const auto percent = [](double part, double of) {
     return of > 0.0 ? fmt::format("{:.1f} %", 100.0 * part / of) : "–";
   };
-  HtmlTable table("V outside the level of|#powered flight spent there|#of it with dV/dt &lt; 0");
+  HtmlTable table("!V outside the level of|#powered flight spent there|#of it with dV/dt &lt; 0");
   for (const int bin : {kLeastBin, -8, -4, 0})
     table.Row({bin > kLeastBin ? fmt::format("{:g}° of error", level_deg(bin)) : "0 (everything)",
                percent(from(bin).all, all), percent(from(bin).falling, from(bin).all)});
@@ -210,7 +211,7 @@ std::map<double, CaseColumns> Settings(const PaperFlights& swept, const std::str
 
 PaperPart CompletionPart(const PaperStudy& study) {
   const PaperFlights& table3 = study.at("table3");
-  HtmlTable table("Completion|#times|" + kDigestTitles +
+  HtmlTable table("!Completion|#times|" + kDigestTitles +
                   "|requirements of table3 that fail|least computed margins|least measured|gates");
   const auto row = [&](const std::string& title, const CaseColumns& flown, const CompletionMargins& margins) {
     const auto& [input, factor, computed, measured, passed] = margins;

@@ -2,15 +2,12 @@
 
 #include <fmt/format.h>
 
-#include <algorithm>
-
 #include "core/flight/engine_version.h"
 #include "core/pages/embedded.h"
 #include "core/pages/heat_map.h"
 #include "core/pages/html_parts.h"
 #include "core/paper/paper_parts.h"
 #include "core/results/sampling_text.h"
-#include "core/results/text.h"
 
 namespace dispersa {
 namespace {
@@ -64,8 +61,7 @@ std::string Header(const PaperStudy& study) {
 }
 
 std::string ClaimsTable(const std::vector<PaperPart>& parts) {
-  HtmlTable table(
-      {{"Part", false, true}, {"The paper"}, {"Found"}, {"Difference"}, {"Verdict"}, {"Shown by"}});
+  HtmlTable table("!Part|The paper|Found|Difference|Verdict|Shown by");
   for (const PaperPart& part : parts) {
     const std::string name = part.title.substr(0, part.title.find(':'));
     const std::string below = "<a href=\"#" + part.id + "\">";
@@ -79,7 +75,7 @@ std::string ClaimsTable(const std::vector<PaperPart>& parts) {
 }
 
 std::string CampaignSection(const PaperStudy& study) {
-  HtmlTable table("Report|Shows|Sampling|#flights here|#in the file|All of them");
+  HtmlTable table("!Report|Shows|Sampling|#flights here|#in the file|All of them");
   for (const PaperCampaign& campaign : PaperCampaigns()) {
     const PaperFlights& flown = study.at(campaign.name);
     table.Row({ReportLink(campaign.name), campaign.shows,

@@ -86,14 +86,14 @@ std::string Curves(const PaperStudy& study, double end_s, bool is_size, const st
 
 /// P_n of each stage with the equation that it comes from, and those that are refused.
 std::string PnTables(const AxisConfig& pitch, const std::vector<BadPn>& refused) {
-  HtmlTable gains("Stage|#kp, 1/s²|#kd, 1/s|#p12|#p22|#γ");
+  HtmlTable gains("!Stage|#kp, 1/s²|#kd, 1/s|#p12|#p22|#γ");
   for (std::size_t i = 0; i < pitch.gains.size(); ++i) {
     const Matrix2 p = SolveLyapunov(pitch.gains[i], pitch.adaptation.q);
     gains.Row({fmt::format("{}", i + 1), ReadableText(pitch.gains[i].kp_1_s2),
                ReadableText(pitch.gains[i].kd_1_s), ReadableText(p(0, 1)), ReadableText(p(1, 1)),
                ReadableText(pitch.adaptation.gamma[i])});
   }
-  HtmlTable table("P_n that is refused|answer|flown with allow_unproven");
+  HtmlTable table("!P_n that is refused|answer|flown with allow_unproven");
   for (const BadPn& bad : refused)
     table.Row({fmt::format("[{}, {}]", ReadableText(bad.p_n.x()), ReadableText(bad.p_n.y())),
                HtmlText(bad.refusal),

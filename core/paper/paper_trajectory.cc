@@ -18,7 +18,7 @@ std::string Signed(double value) { return fmt::format("{:+.3g}", value); }
 
 PaperPart VehiclePart(const Vehicle& vehicle) {
   HtmlTable table(
-      "Stage|#lift-off mass, t|#propellant, t|#thrust, kN|#flow as printed, kg/s|#flow as flown, kg/s|"
+      "!Stage|#lift-off mass, t|#propellant, t|#thrust, kN|#flow as printed, kg/s|#flow as flown, kg/s|"
       "#burning time, s|#diameter, m");
   std::vector<double> departures;
   for (const Stage& stage : vehicle.stages) {
@@ -58,7 +58,7 @@ PaperPart VehiclePart(const Vehicle& vehicle) {
 PaperPart OptimizationPart(const OptimizationResult& result) {
   constexpr const char* kPrinted[] = {"500.406", "7612.585",
                                       "0.0000055"};  // the paper's optimum, km, m/s, deg
-  HtmlTable table("Injection|#desired|#paper|#paper’s error|#reached|#error|#with half the step");
+  HtmlTable table("!Injection|#desired|#paper|#paper’s error|#reached|#error|#with half the step");
   bool closer = true;
   const std::vector<InjectionRow> rows = InjectionRows(result, std::nullopt);
   for (std::size_t i = 0; i < std::min(rows.size(), std::size(kPrinted)); ++i) {

@@ -139,6 +139,12 @@ void Database::CopyTo(const std::filesystem::path& file) const {
 
 Statement Database::Prepare(const std::string& sql) { return Statement(*this, sql); }
 
+std::uint64_t Database::Count(const std::string& table) {
+  Statement select(*this, "SELECT COUNT(*) FROM " + table);
+  select.Step();
+  return static_cast<std::uint64_t>(select.Integer(0));
+}
+
 void Database::Fail(int code) const {
   const int system_error = handle_ != nullptr ? sqlite3_system_errno(handle_) : 0;
   if ((code & 0xff) == SQLITE_FULL) FailFile(file_.string(), "cannot be written", SqliteFullError());

@@ -5,6 +5,7 @@
 #include <filesystem>
 #include <string>
 #include <string_view>
+#include <type_traits>
 
 struct sqlite3;
 struct sqlite3_stmt;
@@ -31,6 +32,8 @@ class Database {
 
   void Execute(const std::string& sql);
   Statement Prepare(const std::string& sql);
+  /// The number of rows of a table.
+  std::uint64_t Count(const std::string& table);
   /// Replaces `file` by a copy of everything committed, including the write-ahead log. Other processes may
   /// read and write meanwhile.
   void CopyTo(const std::filesystem::path& file) const;
@@ -72,6 +75,14 @@ class Statement {
   void BindText(int parameter, std::string_view value);
   void BindBytes(int parameter, std::string_view value);
 
+  /// Begins anew with numbers and texts for the first parameters. True if there is a row.
+  template <typename... Values>
+  bool Run(const Values&... values) {
+    Reset();
+    int parameter = 0;
+    (Bind(++parameter, values), ...);
+    return Step();
+  }
   /// True while there is a row.
   bool Step();
   /// Ready for the next parameters.
@@ -84,6 +95,16 @@ class Statement {
   std::string Text(int column) const;
 
  private:
+  template <typename Value>
+  void Bind(int parameter, const Value& value) {
+    if constexpr (std::is_floating_point_v<Value>) {
+      BindReal(parameter, value);
+    } else if constexpr (std::is_integral_v<Value>) {
+      BindInteger(parameter, static_cast<std::int64_t>(value));
+    } else {
+      BindText(parameter, value);
+    }
+  }
   void Check(int code) const;
 
   const Database& database_;

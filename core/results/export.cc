@@ -1,13 +1,10 @@
 #include "core/results/export.h"
 
-#include <fmt/format.h>
-
 #include <nlohmann/json.hpp>
 
 #include "core/flight/flight_inputs.h"
 #include "core/results/json_number.h"
 #include "core/results/output_file.h"
-#include "core/results/text.h"
 
 namespace dispersa {
 namespace {

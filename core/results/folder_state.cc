@@ -24,12 +24,6 @@ bool IsDatabase(const fs::path& file) {
   return std::equal(std::begin(kMagic), std::end(kMagic), std::begin(begin));
 }
 
-std::uint64_t Count(Database& database, const char* table) {
-  Statement select = database.Prepare(fmt::format("SELECT COUNT(*) FROM {}", table));
-  select.Step();
-  return static_cast<std::uint64_t>(select.Integer(0));
-}
-
 }  // namespace
 
 std::unique_ptr<Database> OpenResultDatabase(const fs::path& directory) {
@@ -54,7 +48,7 @@ FolderState ReadFolderState(const fs::path& directory) {
   FolderState state = {provenance["campaign_id"], provenance["flight_id"],
                        provenance["engine"],      provenance["name"],
                        provenance["seed"],        0,
-                       Count(*database, "cases"), Count(*database, "quarantined")};
+                       database->Count("cases"),  database->Count("quarantined")};
   const std::string& planned = provenance["cases"];
   std::from_chars(planned.data(), planned.data() + planned.size(), state.planned);
   return state;

@@ -5,9 +5,12 @@
 #include <unistd.h>
 
 #include <cerrno>
+#include <fstream>
+#include <sstream>
 #include <utility>
 
 #include "core/results/file_system.h"
+#include "core/results/result_error.h"
 
 namespace dispersa {
 
@@ -120,6 +123,17 @@ void WriteFile(const std::filesystem::path& target, std::string_view bytes) {
   OutputFile file(target);
   file.Write(bytes);
   file.Commit();
+}
+
+std::string ReadWholeFile(const fs::path& file, const char* otherwise) {
+  std::error_code error;
+  std::ifstream stream;
+  if (fs::is_regular_file(file, error)) stream.open(file, std::ios::binary);
+  std::ostringstream text;
+  text << stream.rdbuf();  // character by character took longer than the flights of a small campaign
+  if (stream.is_open() && stream) return std::move(text).str();
+  if (otherwise != nullptr) return otherwise;
+  throw ResultError(ResultError::Kind::kFile, file.string() + ": cannot be read");
 }
 
 std::string ReadLines(const fs::path& file) {

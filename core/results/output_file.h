@@ -37,6 +37,9 @@ class OutputFile {
 /// Writes a whole file at once.
 void WriteFile(const std::filesystem::path& target, std::string_view bytes);
 
+/// A whole file. `otherwise`: in the place of one that cannot be read, or is none; without it ResultError.
+std::string ReadWholeFile(const std::filesystem::path& file, const char* otherwise = nullptr);
+
 /// The text of a file of lines; empty: there is none. Throws ResultError if it is no regular file.
 std::string ReadLines(const std::filesystem::path& file);
 

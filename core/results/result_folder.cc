@@ -59,8 +59,7 @@ std::string SelectCases(const RowShape& shape, const char* table = "cases") {
 
 bool HasTable(Database& database, const std::string& name) {
   Statement select = database.Prepare("SELECT 1 FROM sqlite_master WHERE type = 'table' AND name = ?");
-  select.BindText(1, name);
-  return select.Step();
+  return select.Run(name);
 }
 
 constexpr char kNominal[] = "nominal";
@@ -159,8 +158,7 @@ std::vector<OwnMetric> OwnMetricsOf(Database& database) {
   std::vector<OwnMetric> metrics;
   if (!HasTable(database, "provenance")) return metrics;
   Statement select = database.Prepare("SELECT value FROM provenance WHERE key = ?");
-  select.BindText(1, kOwnMetrics);
-  if (!select.Step()) return metrics;
+  if (!select.Run(kOwnMetrics)) return metrics;
   std::istringstream lines(select.Text(0));
   for (std::string line; std::getline(lines, line);) {
     const std::size_t sign = line.find(" = ");
@@ -194,12 +192,8 @@ void CreateTables(Database& database, const Campaign& campaign) {
   database.Execute(
       fmt::format("CREATE TABLE {} (input TEXT PRIMARY KEY, value REAL) WITHOUT ROWID", kNominal));
   Statement constant = database.Prepare(fmt::format("INSERT INTO {} VALUES (?, ?)", kNominal));
-  for (const std::size_t input : shape.inputs.constants()) {
-    constant.Reset();
-    constant.BindText(1, InputColumns()[input].name);
-    constant.BindReal(2, shape.inputs.constant(input));
-    constant.Step();
-  }
+  for (const std::size_t input : shape.inputs.constants())
+    constant.Run(InputColumns()[input].name, shape.inputs.constant(input));
   database.Execute("CREATE TABLE quarantined (case_index INTEGER PRIMARY KEY, reason TEXT NOT NULL)");
   database.Execute("CREATE TABLE provenance (key TEXT PRIMARY KEY, value TEXT NOT NULL)");
   database.Execute(
@@ -215,10 +209,7 @@ void CreateTables(Database& database, const Campaign& campaign) {
 }
 
 void WriteProvenance(Database& database, const char* key, const std::string& value) {
-  Statement insert = database.Prepare("INSERT OR REPLACE INTO provenance VALUES (?, ?)");
-  insert.BindText(1, key);
-  insert.BindText(2, value);
-  insert.Step();
+  database.Prepare("INSERT OR REPLACE INTO provenance VALUES (?, ?)").Run(key, value);
 }
 
 void WriteOwnMetrics(Database& database, const Campaign& campaign) {
@@ -369,14 +360,10 @@ void RequireFits(const CaseResult& result, const RowShape& shape) {
 /// The row of a case that was flown again goes, and who flew it before.
 void TakeTheUnmeasured(Database& database, std::int64_t case_index, const std::string& digest) {
   Statement stored = database.Prepare(fmt::format("SELECT digest FROM {} WHERE case_index = ?", kUnmeasured));
-  stored.BindInteger(1, case_index);
-  if (!stored.Step()) return;
+  if (!stored.Run(case_index)) return;
   RequireSame(case_index, stored.Text(0), digest);
-  for (const char* table : {kUnmeasured, "execution", "audits"}) {
-    Statement remove = database.Prepare(fmt::format("DELETE FROM {} WHERE case_index = ?", table));
-    remove.BindInteger(1, case_index);
-    remove.Step();
-  }
+  for (const char* table : {kUnmeasured, "execution", "audits"})
+    database.Prepare(fmt::format("DELETE FROM {} WHERE case_index = ?", table)).Run(case_index);
 }
 
 }  // namespace
@@ -539,18 +526,13 @@ void ResultFolder::Remove(const std::vector<std::uint64_t>& cases) {
   for (const char* table : {"cases", "execution", kUnmeasured}) {
     if (table == kUnmeasured && !has_unmeasured_) continue;
     Statement remove = database_->Prepare(fmt::format("DELETE FROM {} WHERE case_index = ?", table));
-    for (const std::uint64_t case_index : cases) {
-      remove.Reset();
-      remove.BindInteger(1, static_cast<std::int64_t>(case_index));
-      remove.Step();
-    }
+    for (const std::uint64_t case_index : cases) remove.Run(case_index);
   }
 }
 
 std::string ResultFolder::Provenance(const std::string& key) const {
   Statement select = database_->Prepare("SELECT value FROM provenance WHERE key = ?");
-  select.BindText(1, key);
-  if (!select.Step()) {
+  if (!select.Run(key)) {
     throw ResultError(Kind::kFile,
                       fmt::format("{}: no {} in the provenance", (directory_ / kDatabaseName).string(), key));
   }
@@ -558,13 +540,8 @@ std::string ResultFolder::Provenance(const std::string& key) const {
 }
 
 void ResultFolder::RecordLook(const LookRecord& look) const {
-  Statement insert = database_->Prepare("INSERT OR REPLACE INTO looks VALUES (?, ?, ?, ?, ?)");
-  insert.BindText(1, look.requirements_id);
-  insert.BindText(2, look.requirement);
-  insert.BindInteger(3, look.n);
-  insert.BindInteger(4, look.failures);
-  insert.BindText(5, look.verdict);
-  insert.Step();
+  database_->Prepare("INSERT OR REPLACE INTO looks VALUES (?, ?, ?, ?, ?)")
+      .Run(look.requirements_id, look.requirement, look.n, look.failures, look.verdict);
 }
 
 std::vector<LookRecord> ResultFolder::Looks() const {
@@ -580,8 +557,7 @@ std::int64_t ResultFolder::PlannedCases() const { return std::stoll(Provenance("
 
 std::optional<CaseShare> ResultFolder::ItsShare() const {
   Statement select = database_->Prepare("SELECT value FROM provenance WHERE key = ?");
-  select.BindText(1, kShareKey);
-  if (!select.Step()) return std::nullopt;
+  if (!select.Run(kShareKey)) return std::nullopt;
   CaseShare share;
   std::istringstream(select.Text(0)) >> share.cases.first >> share.cases.end >> share.round_end;
   return share;
@@ -621,17 +597,13 @@ std::size_t ResultFolder::Insert(std::span<const CaseResult> results) {
   for (const CaseResult* flown : ordered) {
     const auto index = static_cast<std::int64_t>(flown->case_index);
     const CaseResult result = WithMetrics(*flown, shape_.metrics);
-    stored.Reset();
-    stored.BindInteger(1, index);
-    if (stored.Step()) {
+    if (stored.Run(index)) {
       RequireSame(index, stored.Text(0), result.digest.Hex());
       continue;
     }
     RequireFits(result, shape_);
     InsertRow(insert, result, shape_);
-    lift.Reset();
-    lift.BindInteger(1, index);
-    lift.Step();
+    lift.Run(index);
     if (has_unmeasured_) TakeTheUnmeasured(*database_, index, result.digest.Hex());
     ++added;
   }
@@ -640,29 +612,16 @@ std::size_t ResultFolder::Insert(std::span<const CaseResult> results) {
 
 void ResultFolder::Insert(std::span<const ExecutionRecord> records) {
   Statement insert = database_->Prepare("INSERT INTO execution VALUES (?, ?, ?, ?, ?)");
-  for (const ExecutionRecord& record : records) {
-    insert.Reset();
-    insert.BindInteger(1, static_cast<std::int64_t>(record.case_index));
-    insert.BindText(2, record.worker);
-    insert.BindText(3, record.host);
-    insert.BindText(4, record.started_utc);
-    insert.BindReal(5, record.seconds);
-    insert.Step();
-  }
+  for (const ExecutionRecord& record : records)
+    insert.Run(record.case_index, record.worker, record.host, record.started_utc, record.seconds);
 }
 
 void ResultFolder::Quarantine(const QuarantinedCase& quarantined) {
-  Statement insert = database_->Prepare("INSERT OR REPLACE INTO quarantined VALUES (?, ?)");
-  insert.BindInteger(1, static_cast<std::int64_t>(quarantined.case_index));
-  insert.BindText(2, quarantined.reason);
-  insert.Step();
+  database_->Prepare("INSERT OR REPLACE INTO quarantined VALUES (?, ?)")
+      .Run(quarantined.case_index, quarantined.reason);
 }
 
-std::uint64_t ResultFolder::CaseCount() const {
-  Statement select = database_->Prepare("SELECT COUNT(*) FROM cases");
-  select.Step();
-  return static_cast<std::uint64_t>(select.Integer(0));
-}
+std::uint64_t ResultFolder::CaseCount() const { return database_->Count("cases"); }
 
 std::vector<std::uint64_t> ResultFolder::PresentCases() const {
   std::vector<std::uint64_t> present;
@@ -683,10 +642,7 @@ std::optional<std::uint64_t> ResultFolder::LastCase() const {
 }
 
 std::uint64_t ResultFolder::UnmeasuredCount() const {
-  if (!has_unmeasured_) return 0;
-  Statement select = database_->Prepare(fmt::format("SELECT COUNT(*) FROM {}", kUnmeasured));
-  select.Step();
-  return static_cast<std::uint64_t>(select.Integer(0));
+  return has_unmeasured_ ? database_->Count(kUnmeasured) : 0;
 }
 
 std::vector<std::pair<std::uint64_t, Digest>> ResultFolder::Fingerprints() const {
@@ -701,8 +657,7 @@ std::vector<std::pair<std::uint64_t, Digest>> ResultFolder::Fingerprints() const
 std::optional<std::string> ResultFolder::WorkerOf(std::uint64_t case_index) const {
   Statement select =
       database_->Prepare("SELECT worker FROM execution WHERE case_index = ? ORDER BY rowid DESC");
-  select.BindInteger(1, static_cast<std::int64_t>(case_index));
-  return select.Step() ? std::optional(select.Text(0)) : std::nullopt;
+  return select.Run(case_index) ? std::optional(select.Text(0)) : std::nullopt;
 }
 
 void ResultFolder::ForEachFlier(
@@ -715,12 +670,7 @@ void ResultFolder::ForEachFlier(
 void ResultFolder::AppendAudits(std::span<const Claim> claims) {
   Transaction transaction(*database_);
   Statement insert = database_->Prepare("INSERT OR IGNORE INTO audits VALUES (?, ?)");
-  for (const Claim& claim : claims) {
-    insert.Reset();
-    insert.BindInteger(1, static_cast<std::int64_t>(claim.case_index));
-    insert.BindText(2, claim.worker);
-    insert.Step();
-  }
+  for (const Claim& claim : claims) insert.Run(claim.case_index, claim.worker);
   transaction.Commit();
 }
 
@@ -761,14 +711,12 @@ std::vector<QuarantinedCase> ResultFolder::QuarantinedCases() const {
 
 bool ResultFolder::Contains(std::uint64_t case_index) const {
   Statement select = database_->Prepare("SELECT 1 FROM cases WHERE case_index = ?");
-  select.BindInteger(1, static_cast<std::int64_t>(case_index));
-  return select.Step();
+  return select.Run(case_index);
 }
 
 CaseResult ResultFolder::Load(std::uint64_t case_index) const {
   Statement select = database_->Prepare(SelectCases(shape_) + " WHERE case_index = ?");
-  select.BindInteger(1, static_cast<std::int64_t>(case_index));
-  if (!select.Step()) {
+  if (!select.Run(case_index)) {
     throw InputError(fmt::format("{}: has no result of case {}", directory_.string(), case_index));
   }
   return ReadCase(select, shape_, directory_);

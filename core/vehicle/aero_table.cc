@@ -6,7 +6,6 @@
 #include <optional>
 
 #include "core/input/fields.h"
-#include "core/math/constants.h"
 #include "core/math/functions.h"
 #include "core/math/table.h"
 #include "core/vehicle/drag.h"

@@ -74,15 +74,16 @@ void Apply(std::span<const Check> checks, const Subject& subject, const std::str
     if (subject.of_yaw_plane && InYawPlane(check) == nullptr) continue;  // the same as of the pitch plane
     const double value = check.value(subject);
     if (std::isnan(value)) continue;
-    const bool beyond = !check.possible.Holds(value);
-    if (!beyond && check.usual.Holds(value)) continue;
+    const bool beyond = !check.spans.possible.Holds(value);
+    if (!beyond && check.spans.usual.Holds(value)) continue;
     const bool impossible = beyond && !subject.vehicle.made_up;
     const std::string unit = check.unit;
-    findings.push_back({prefix + PathOf(check, subject),
-                        std::string(check.implies) + " " + Readable(value) +
-                            (unit.empty() ? "" : " " + unit) + (impossible ? ", which cannot be" : ""),
-                        SpanText(impossible ? check.possible : check.usual, unit) + " (" + check.source + ")",
-                        impossible});
+    findings.push_back(
+        {prefix + PathOf(check, subject),
+         std::string(check.implies) + " " + Readable(value) + (unit.empty() ? "" : " " + unit) +
+             (impossible ? ", which cannot be" : ""),
+         SpanText(impossible ? check.spans.possible : check.spans.usual, unit) + " (" + check.source + ")",
+         impossible});
   }
 }
 

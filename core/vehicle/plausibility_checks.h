@@ -19,7 +19,15 @@ struct Span {
   double high = kAny;
   bool Holds(double value) const { return value >= low && value <= high; }
 };
-inline constexpr Span kAnything{};
+
+/// What a value may be.
+struct Spans {
+  Span usual;          ///< beyond: none is known
+  Span possible = {};  ///< beyond: no such thing can exist
+
+  constexpr Spans Possible(double low, double high) const { return {usual, {low, high}}; }
+};
+constexpr Spans Usual(double low, double high) { return {{low, high}}; }
 
 /// The subject of a check: the vehicle, and one of its stages, nozzles or gyros, or its boosters'
 /// motor, gimbal or one of their tanks.
@@ -63,24 +71,22 @@ struct Check {
   const char* field;    ///< of the value that most probably is wrong
   const char* implies;  ///< "implies a specific impulse of"
   const char* unit;
-  Span possible;  ///< beyond: no such thing can exist
-  Span usual;     ///< beyond: none is known
+  Spans spans;
   const char* source;
   double (*value)(const Subject&);  ///< NaN: does not apply
 };
 
 /// Of engines of stages and of boosters.
 struct Known {
-  Span possible, usual;
+  Spans spans;
   const char* source;
 };
 inline constexpr Known kLiquidImpulse = {
-    {0.0, 1000.0},
-    {200.0, 470.0},
+    Usual(200.0, 470.0).Possible(0.0, 1000.0),
     "in vacuum 220 to 240 s of hydrazine alone, 280 to 330 s of storable pairs, 300 to 360 s of oxygen with "
     "kerosene, to 465 s with hydrogen; combustion never gave more than 550 s, reactors 900 s"};
-inline constexpr Known kResidual = {
-    kAnything, {0.0, 0.05}, "0.5 to 3 % of a liquid stage's propellant stays in tanks and lines"};
+inline constexpr Known kResidual = {Usual(0.0, 0.05),
+                                    "0.5 to 3 % of a liquid stage's propellant stays in tanks and lines"};
 
 /// The widest diameter of the mould line between two stations.
 double WidestDiameter(const Vehicle& vehicle, double top_m, double bottom_m);

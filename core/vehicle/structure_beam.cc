@@ -1,7 +1,6 @@
 #include "core/vehicle/structure_beam.h"
 
 #include <algorithm>
-#include <cmath>
 
 #include "core/math/assertion.h"
 #include "core/math/constants.h"

@@ -5,7 +5,6 @@
 
 #include "core/math/constants.h"
 #include "core/math/functions.h"
-#include "core/math/table.h"
 #include "core/vehicle/aerodynamics_build_up.h"
 #include "core/vehicle/cut_off.h"
 #include "core/vehicle/mass.h"

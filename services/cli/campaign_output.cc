@@ -14,7 +14,6 @@
 #include <string>
 
 #include "core/results/metric_catalogue.h"
-#include "core/results/text.h"
 #include "services/log/log.h"
 #include "services/program/option_values.h"
 

@@ -108,9 +108,7 @@ void AddCompareCommand(CLI::App& app, Invocation& invocation) {
   command->footer(
       "Example: dispersa compare results/controllers-1a2b3c4d results/controllers_pd-5e6f7a8b --out "
       "comparison");
-  command->callback([options, &invocation] {
-    invocation.command = [options](const GlobalOptions& global) { return CompareAndShow(*options, global); };
-  });
+  Bind(command, invocation, options, CompareAndShow);
 }
 
 }  // namespace dispersa

@@ -1,9 +1,7 @@
 // dispersa completion: what makes a shell complete dispersa's commands, options and values.
-#include <fmt/format.h>
 
 #include <map>
 #include <memory>
-#include <nlohmann/json.hpp>
 #include <string>
 
 #include "services/cli/command.h"
@@ -27,10 +25,8 @@ void AddCompletionCommand(CLI::App& app, Invocation& invocation) {
   command->callback([shell, &invocation] {
     invocation.command = [shell](const GlobalOptions& global) {
       const std::string script = scripts.at(*shell);
-      const nlohmann::ordered_json object = {
-          {"schema", "dispersa/completion/1"}, {"shell", *shell}, {"script", script}};
-      fmt::print("{}", global.json ? object.dump(2) + "\n" : script);
-      return kExitDone;
+      return Answer(global, {{"schema", "dispersa/completion/1"}, {"shell", *shell}, {"script", script}},
+                    script);
     };
   });
 }

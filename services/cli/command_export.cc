@@ -133,9 +133,7 @@ void AddExportCommand(CLI::App& app, Invocation& invocation) {
   command->footer(
       "Examples: dispersa export results/table3-1a2b3c4d --format junit --out requirements.xml\n"
       "          dispersa export results/table3-1a2b3c4d --format csv --columns varying --out cases.csv");
-  command->callback([options, &invocation] {
-    invocation.command = [options](const GlobalOptions& global) { return Export(*options, global); };
-  });
+  Bind(command, invocation, options, Export);
 }
 
 }  // namespace dispersa

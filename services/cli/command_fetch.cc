@@ -9,30 +9,18 @@
 namespace dispersa {
 namespace {
 
-using Json = nlohmann::ordered_json;
-
 ExitCode Fetch(const std::string& id, const std::string& target, Session& session,
                const GlobalOptions& global) {
   const FetchedCampaign fetched = FetchCampaign(session, id, target);
-  if (global.json) {
-    const Json object = {
-        {"schema", "dispersa/fetch/1"}, {"id", fetched.id}, {"directory", fetched.directory.string()}};
-    fmt::print("{}\n", object.dump(2));
-  } else {
-    fmt::print("result: {}\n", fetched.directory.string());
-  }
-  return kExitDone;
+  const std::string directory = fetched.directory.string();
+  return Answer(global, {{"schema", "dispersa/fetch/1"}, {"id", fetched.id}, {"directory", directory}},
+                "result: " + directory + "\n");
 }
 
 ExitCode Backup(const std::string& target, Session& session, const GlobalOptions& global) {
   const std::uint64_t campaigns = BackUp(session, target);
-  if (global.json) {
-    const Json object = {{"schema", "dispersa/backup/1"}, {"directory", target}, {"campaigns", campaigns}};
-    fmt::print("{}\n", object.dump(2));
-  } else {
-    fmt::print("backup of {} campaign{}: {}\n", campaigns, campaigns == 1 ? "" : "s", target);
-  }
-  return kExitDone;
+  return Answer(global, {{"schema", "dispersa/backup/1"}, {"directory", target}, {"campaigns", campaigns}},
+                fmt::format("backup of {} campaign{}: {}\n", campaigns, campaigns == 1 ? "" : "s", target));
 }
 
 }  // namespace

@@ -125,9 +125,7 @@ void AddFlyCommand(CLI::App& app, Invocation& invocation) {
       "Example: dispersa fly campaigns/nominal.yaml --history nominal.csv\n"
       "         dispersa fly campaigns/table3.yaml --case 17 --json\n"
       "         dispersa fly campaigns/scenarios/nesc_case09.yaml --history case09.csv");
-  command->callback([options, &invocation] {
-    invocation.command = [options](const GlobalOptions& global) { return FlyOne(*options, global); };
-  });
+  Bind(command, invocation, options, FlyOne);
 }
 
 }  // namespace dispersa

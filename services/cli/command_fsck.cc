@@ -53,9 +53,7 @@ void AddFsckCommand(CLI::App& app, Invocation& invocation) {
       "Examples: dispersa fsck results/table3-1a2b3c4d\n"
       "          dispersa fsck /var/lib/dispersa --repair\n"
       "Exit code 0: sound, or all is mended. 1: damage is left. 2: the folder is neither, or in use.");
-  command->callback([options, &invocation] {
-    invocation.command = [options](const GlobalOptions& global) { return Fsck(*options, global); };
-  });
+  Bind(command, invocation, options, Fsck);
 }
 
 }  // namespace dispersa

@@ -1,10 +1,8 @@
 // dispersa init: a folder with a campaign that flies, every key with its comment.
 #include <fmt/format.h>
 
-#include <algorithm>
 #include <filesystem>
 #include <memory>
-#include <nlohmann/json.hpp>
 #include <string>
 #include <system_error>
 #include <vector>
@@ -71,19 +69,16 @@ ExitCode Init(const InitOptions& options, const GlobalOptions& global) {
     written.push_back("schemas/" + NameOf(kind) + ".json");
     WriteFile((directory / written.back()).string(), SchemaText(kind, SchemaSet::kSplit));
   }
-  if (global.json) {
-    const nlohmann::ordered_json report = {{"schema", "dispersa/init/1"},
-                                           {"directory", options.directory},
-                                           {"from", options.from},
-                                           {"files", written}};
-    fmt::print("{}\n", report.dump(2));
-  } else if (!global.quiet) {
-    fmt::print(
-        "{}: {}\nNext: cd {}; dispersa validate --strict campaign.yaml; dispersa run campaign.yaml --cases "
-        "20\n",
-        options.directory, JoinWords(written), options.directory);
-  }
-  return kExitDone;
+  const std::string text = fmt::format(
+      "{0}: {1}\nNext: cd {0}; dispersa validate --strict campaign.yaml; dispersa run campaign.yaml --cases "
+      "20\n",
+      options.directory, JoinWords(written));
+  return Answer(global,
+                {{"schema", "dispersa/init/1"},
+                 {"directory", options.directory},
+                 {"from", options.from},
+                 {"files", written}},
+                global.quiet ? "" : text);
 }
 
 }  // namespace
@@ -104,9 +99,7 @@ void AddInitCommand(CLI::App& app, Invocation& invocation) {
       "editors complete and check these files.\n"
       "Example: dispersa init first\n"
       "         dispersa init launcher --from vega");
-  command->callback([options, &invocation] {
-    invocation.command = [options](const GlobalOptions& global) { return Init(*options, global); };
-  });
+  Bind(command, invocation, options, Init);
 }
 
 }  // namespace dispersa

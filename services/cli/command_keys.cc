@@ -24,13 +24,8 @@ struct KeysOptions {
 };
 
 ExitCode TellMade(const std::string& what, const std::string& directory, const GlobalOptions& global) {
-  if (global.json) {
-    const nlohmann::ordered_json object = {{"schema", "dispersa/keys/1"}, {"directory", directory}};
-    fmt::print("{}\n", object.dump(2));
-  } else {
-    fmt::print("{}: {}\n", what, directory);
-  }
-  return kExitDone;
+  return Answer(global, {{"schema", "dispersa/keys/1"}, {"directory", directory}},
+                what + ": " + directory + "\n");
 }
 
 ExitCode Init(const KeysOptions& options, const GlobalOptions& global) {
@@ -69,22 +64,17 @@ ExitCode Retire(const KeysOptions& options, const GlobalOptions& global) {
 
 ExitCode List(const KeysOptions& options, const GlobalOptions& global) {
   nlohmann::ordered_json listed = nlohmann::ordered_json::array();
+  std::string text;
   for (const IssuedKeys& keys : ListKeys(options.directory)) {
-    if (!global.json) {
-      fmt::print("{:<11}  {:<31}  {:<16}  {:<10}{}\n", Name(keys.role), keys.name, keys.serial, keys.until,
-                 keys.is_revoked ? "  revoked" : "");
-    }
+    text += fmt::format("{:<11}  {:<31}  {:<16}  {:<10}{}\n", Name(keys.role), keys.name, keys.serial,
+                        keys.until, keys.is_revoked ? "  revoked" : "");
     listed.push_back({{"role", Name(keys.role)},
                       {"name", keys.name},
                       {"serial", keys.serial},
                       {"until", keys.until},
                       {"revoked", keys.is_revoked}});
   }
-  if (global.json) {
-    const nlohmann::ordered_json object = {{"schema", "dispersa/keys-list/1"}, {"keys", listed}};
-    fmt::print("{}\n", object.dump(2));
-  }
-  return kExitDone;
+  return Answer(global, {{"schema", "dispersa/keys-list/1"}, {"keys", listed}}, text);
 }
 
 void AddRoleAndName(CLI::App* command, const std::shared_ptr<KeysOptions>& options,
@@ -110,9 +100,7 @@ std::pair<CLI::App*, std::shared_ptr<KeysOptions>> AddCommand(
     command->add_option("--days", options->days, fmt::format("days until the keys expire; default {}", days))
         ->transform(WholeNumber(1, kMostDays));
   }
-  command->callback([options, &invocation, run] {
-    invocation.command = [options, run](const GlobalOptions& global) { return run(*options, global); };
-  });
+  Bind(command, invocation, options, run);
   return {command, options};
 }
 

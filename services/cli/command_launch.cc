@@ -1,5 +1,4 @@
 // dispersa launch: gives a campaign to a coordinator.
-#include <fmt/format.h>
 
 #include <chrono>
 #include <memory>
@@ -16,8 +15,6 @@
 namespace dispersa {
 namespace {
 
-using Json = nlohmann::ordered_json;
-
 // A worker checks a control law from a shared object before it flies.
 constexpr std::chrono::seconds kCheckPatience(30);
 
@@ -32,18 +29,14 @@ ExitCode Launch(const LaunchOptions& options, Session& session, const GlobalOpti
   const Campaign campaign = LoadAndWarn(options.campaign, options.overrides);
   const std::string state = LaunchCampaign(session, campaign, options.priority, options.labels);
   const bool is_checked = !campaign.autopilot.plugin || AwaitCheck(session, campaign.id, kCheckPatience);
-  if (global.json) {
-    const Json object = {{"schema", "dispersa/launch/1"},
-                         {"id", campaign.id},
-                         {"flight_id", campaign.flight_id},
-                         {"state", state},
-                         {"checked", is_checked}};
-    fmt::print("{}\n", object.dump(2));
-  } else {
-    fmt::print("{}\n", campaign.id);
-    if (!is_checked) Tell("waiting for a check\n");
-  }
-  return kExitDone;
+  if (!is_checked && !global.json) Tell("waiting for a check\n");
+  return Answer(global,
+                {{"schema", "dispersa/launch/1"},
+                 {"id", campaign.id},
+                 {"flight_id", campaign.flight_id},
+                 {"state", state},
+                 {"checked", is_checked}},
+                campaign.id + "\n");
 }
 
 }  // namespace

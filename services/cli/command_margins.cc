@@ -57,9 +57,7 @@ void AddMarginsCommand(CLI::App& app, Invocation& invocation) {
       "delay of the loop is changed in flight until control is lost. Exit code 3: a gate is not met.\n"
       "Example: dispersa margins campaigns/nominal.yaml\n"
       "         dispersa margins campaigns/aero20.yaml --cases 32");
-  command->callback([options, &invocation] {
-    invocation.command = [options](const GlobalOptions& global) { return Margins(*options, global); };
-  });
+  Bind(command, invocation, options, Margins);
 }
 
 }  // namespace dispersa

@@ -1,5 +1,4 @@
 // dispersa merge: one result folder of the shares that schedulers flew apart.
-#include <fmt/format.h>
 
 #include <memory>
 #include <string>
@@ -51,9 +50,7 @@ void AddMergeCommand(CLI::App& app, Invocation& invocation) {
   AddGateOption(*command, options->run.gate);
   AddFreshOption(*command, options->fresh);
   command->footer("Example: dispersa merge shares/* --out results/table3");
-  command->callback([options, &invocation] {
-    invocation.command = [options](const GlobalOptions& global) { return Merge(*options, global); };
-  });
+  Bind(command, invocation, options, Merge);
 }
 
 }  // namespace dispersa

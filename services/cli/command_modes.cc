@@ -192,9 +192,7 @@ void AddModesCommand(CLI::App& app, Invocation& invocation) {
       "Frequencies, generalised masses, and deflection and slope at the beam's sensors and the nozzle "
       "pivot.\n"
       "Example: dispersa modes campaigns/vehicles/slv4_flexible.yaml --out modes");
-  command->callback([options, &invocation] {
-    invocation.command = [options](const GlobalOptions& global) { return Modes(*options, global); };
-  });
+  Bind(command, invocation, options, Modes);
 }
 
 }  // namespace dispersa

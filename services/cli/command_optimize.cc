@@ -120,9 +120,7 @@ void AddOptimizeCommand(CLI::App& app, Invocation& invocation) {
       "Example: dispersa optimize campaigns/nominal.yaml -o slv4_500km.yaml --seed 2\n"
       "The shipped reference: dispersa optimize campaigns/slv4_500km.yaml -o "
       "campaigns/references/slv4_500km.yaml");
-  command->callback([options, &invocation] {
-    invocation.command = [options](const GlobalOptions& global) { return Optimize(*options, global); };
-  });
+  Bind(command, invocation, options, Optimize);
 }
 
 }  // namespace dispersa

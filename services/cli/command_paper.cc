@@ -146,9 +146,7 @@ void AddPaperCommand(CLI::App& app, Invocation& invocation) {
   AddReflownOptions(*command, options->reflown);
   command->footer(
       "Example: dispersa paper --out paper\n         dispersa paper --out paper_quick --cases 10");
-  command->callback([options, &invocation] {
-    invocation.command = [options](const GlobalOptions& global) { return MakePaper(*options, global); };
-  });
+  Bind(command, invocation, options, MakePaper);
 }
 
 }  // namespace dispersa

@@ -5,7 +5,6 @@
 #include <memory>
 #include <nlohmann/json.hpp>
 #include <string>
-#include <vector>
 
 #include "core/campaign/case_design.h"
 #include "core/campaign/row_inputs.h"
@@ -102,9 +101,7 @@ void AddPlanCommand(CLI::App& app, Invocation& invocation) {
       "Prints the declared and the drawn distribution of each dispersed input, then its values in the first "
       "cases.\n"
       "Example: dispersa plan campaigns/table3.yaml --cases 20 --csv");
-  command->callback([options, &invocation] {
-    invocation.command = [options](const GlobalOptions& global) { return Plan(*options, global); };
-  });
+  Bind(command, invocation, options, Plan);
 }
 
 }  // namespace dispersa

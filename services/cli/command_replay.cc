@@ -61,9 +61,7 @@ void AddReplayCommand(CLI::App& app, Invocation& invocation) {
   command->add_option("--history", options->history, "file for the time history, CSV; -: standard output")
       ->type_name(kFileType);
   command->footer("Example: dispersa replay results/table3-1a2b3c4d --case 17 --history case17.csv");
-  command->callback([options, &invocation] {
-    invocation.command = [options](const GlobalOptions& global) { return Replay(*options, global); };
-  });
+  Bind(command, invocation, options, Replay);
 }
 
 }  // namespace dispersa

@@ -1,5 +1,4 @@
 // dispersa report: the reports of a result folder, made again from what is stored.
-#include <fmt/format.h>
 
 #include <memory>
 #include <string>
@@ -58,9 +57,7 @@ void AddReportCommand(CLI::App& app, Invocation& invocation) {
   AddGateOption(*command, options->gate);
   AddOpenOption(*command, options->open);
   command->footer("Example: dispersa report results/table3-1a2b3c4d");
-  command->callback([options, &invocation] {
-    invocation.command = [options](const GlobalOptions& global) { return ReportAgain(*options, global); };
-  });
+  Bind(command, invocation, options, ReportAgain);
 }
 
 }  // namespace dispersa

@@ -4,7 +4,6 @@
 #include <charconv>
 #include <filesystem>
 #include <memory>
-#include <nlohmann/json.hpp>
 #include <string>
 #include <utility>
 
@@ -45,19 +44,17 @@ std::string ResumeCommand(const RunCommand& options, const std::filesystem::path
 }
 
 /// No verdict: it is the merged campaign's.
-void PrintShare(const RunResult& result, const std::filesystem::path& directory, bool json) {
-  if (json) {
-    const nlohmann::ordered_json object = {{"schema", "dispersa/share/1"},
-                                           {"cases", result.cases},
-                                           {"flown", result.flown},
-                                           {"directory", directory.string()}};
-    fmt::print("{}\n", object.dump(2));
-    return;
-  }
-  fmt::print("share: {} of {} cases flown, next: {}\nresult: {}\n", result.flown, result.cases,
-             result.flown < result.cases ? "the same command with --resume"
-                                         : "'dispersa merge' when all shares are flown",
-             directory.string());
+void PrintShare(const RunResult& result, const std::filesystem::path& directory,
+                const GlobalOptions& global) {
+  Answer(global,
+         {{"schema", "dispersa/share/1"},
+          {"cases", result.cases},
+          {"flown", result.flown},
+          {"directory", directory.string()}},
+         fmt::format("share: {} of {} cases flown, next: {}\nresult: {}\n", result.flown, result.cases,
+                     result.flown < result.cases ? "the same command with --resume"
+                                                 : "'dispersa merge' when all shares are flown",
+                     directory.string()));
 }
 
 /// "2/7".
@@ -86,7 +83,7 @@ ExitCode Fly(const RunCommand& options, PreparedRun prepared, const GlobalOption
   try {
     const RunResult result = RunCampaign(std::move(prepared), run, observer);
     if (!result.summary) {
-      PrintShare(result, directory, global.json);
+      PrintShare(result, directory, global);
       return result.code;
     }
     PrintSummary(*result.summary, directory, global.json);
@@ -163,9 +160,7 @@ void AddRunCommand(CLI::App& app, Invocation& invocation) {
       "Example: dispersa run campaigns/table3.yaml --cases 200 --out results/trial\n"
       "         dispersa run campaigns/table3.yaml --cases 500 --out results/trial --resume\n"
       "         dispersa run campaigns/table3.yaml --shard 2/7 --out shares/2");
-  command->callback([options, &invocation] {
-    invocation.command = [options](const GlobalOptions& global) { return Run(*options, global); };
-  });
+  Bind(command, invocation, options, Run);
 }
 
 }  // namespace dispersa

@@ -5,7 +5,6 @@
 #include <filesystem>
 #include <iterator>
 #include <memory>
-#include <nlohmann/json.hpp>
 #include <string>
 #include <vector>
 
@@ -36,13 +35,10 @@ FileKind KindOf(const std::string& name) {
                        [&](FileKind kind) { return NameOf(kind) == name; });
 }
 
-void TellWritten(const std::vector<std::string>& files, const GlobalOptions& global) {
-  if (global.json) {
-    const nlohmann::ordered_json report = {{"schema", "dispersa/schema/1"}, {"files", files}};
-    fmt::print("{}\n", report.dump(2));
-  } else if (!global.quiet) {
-    for (const std::string& file : files) fmt::print("schema: {}\n", file);
-  }
+ExitCode TellWritten(const std::vector<std::string>& files, const GlobalOptions& global) {
+  std::string text;
+  for (const std::string& file : files) text += "schema: " + file + "\n";
+  return Answer(global, {{"schema", "dispersa/schema/1"}, {"files", files}}, global.quiet ? "" : text);
 }
 
 std::vector<std::string> WriteAll(const std::filesystem::path& folder) {
@@ -62,8 +58,7 @@ ExitCode Schema(const SchemaOptions& options, const GlobalOptions& global) {
                      "one of " + JoinWords(KindNames()) + ", or --all DIR");
   if (!options.all.empty()) {
     if (!options.out.empty()) throw InputError("--out and --all cannot be used together", "one of them");
-    TellWritten(WriteAll(options.all), global);
-    return kExitDone;
+    return TellWritten(WriteAll(options.all), global);
   }
   const FileKind kind = KindOf(options.kind);
   RequireWritableFile("--out", options.out);
@@ -73,8 +68,7 @@ ExitCode Schema(const SchemaOptions& options, const GlobalOptions& global) {
     return kExitDone;
   }
   WriteFile(options.out, text);
-  TellWritten({options.out}, global);
-  return kExitDone;
+  return TellWritten({options.out}, global);
 }
 
 }  // namespace
@@ -94,9 +88,7 @@ void AddSchemaCommand(CLI::App& app, Invocation& invocation) {
       "`# yaml-language-server: $schema=campaign.json`. `dispersa validate` checks more.\n"
       "Example: dispersa schema campaign --out campaign.json\n"
       "         dispersa schema --all schemas");
-  command->callback([options, &invocation] {
-    invocation.command = [options](const GlobalOptions& global) { return Schema(*options, global); };
-  });
+  Bind(command, invocation, options, Schema);
 }
 
 }  // namespace dispersa

@@ -14,10 +14,8 @@
 #include "core/cases/campaign_flights.h"
 #include "core/flight/flight.h"
 #include "core/input/input_error.h"
-#include "core/input/read_value.h"
 #include "core/optimization/parallel_for.h"
 #include "core/results/json_number.h"
-#include "core/results/metric_catalogue.h"
 #include "core/results/output_file.h"
 #include "core/results/requirement_text.h"
 #include "core/results/text.h"
@@ -299,9 +297,7 @@ void AddSearchCommand(CLI::App& app, Invocation& invocation) {
   command->footer(
       "Example: dispersa search campaigns/full.yaml --metric pitch_error_peak_deg --below 0.5 --flights "
       "2000");
-  command->callback([options, &invocation] {
-    invocation.command = [options](const GlobalOptions& global) { return SearchFor(*options, global); };
-  });
+  Bind(command, invocation, options, SearchFor);
 }
 
 }  // namespace dispersa

@@ -36,13 +36,9 @@ ExitCode Show(const char* method, const std::string& id, Session& session, const
 ExitCode Do(const std::string& method, const Json& arguments, const char* done, Session& session,
             const GlobalOptions& global) {
   const Json answer = Json::parse(session.Ask(method, arguments).text);
-  if (global.json) {
-    const Json object = {{"schema", "dispersa/" + method + "/1"}, {"id", answer.at("id")}};
-    fmt::print("{}\n", object.dump(2));
-  } else {
-    fmt::print("{}: {}\n", done, answer.at("id").get<std::string>());
-  }
-  return kExitDone;
+  const std::string its_id = answer.at("id");
+  return Answer(global, {{"schema", "dispersa/" + method + "/1"}, {"id", its_id}},
+                fmt::format("{}: {}\n", done, its_id));
 }
 
 ExitCode Readmit(const std::string& name, Session& session, const GlobalOptions& global) {

@@ -16,6 +16,7 @@
 #include "services/cli/progress.h"
 #include "services/cli/stream_beside.h"
 #include "services/cli/warn.h"
+#include "services/client/margins_of.h"
 #include "services/client/writable.h"
 #include "services/log/log.h"
 #include "services/program/option_values.h"
@@ -147,12 +148,6 @@ nlohmann::ordered_json ResultJson(const TuneOptions& options, const TuningResult
                       {"missed", TextOrNull(stage.missed)}});
     if (stage.surplus) stages.back()["surplus"] = Number(*stage.surplus);
   }
-  auto skipped = nlohmann::ordered_json::array();
-  for (const SkippedInstant& at : result.skipped)
-    skipped.push_back({{"place", at.place},
-                       {"stage", at.stage + 1},
-                       {"time_s", at.time_s},
-                       {"thrust_percent", 100.0 * at.thrust_fraction}});
   auto generations = nlohmann::ordered_json::array();
   for (const TuningRecord& record : log) {
     const GenerationRecord& g = record.generation;
@@ -186,7 +181,7 @@ nlohmann::ordered_json ResultJson(const TuneOptions& options, const TuningResult
           {"pitch_error_rms_median_deg", result.feasible ? Number(result.median_rms_deg) : nullptr},
           {"pitch_error_peak_deg", result.feasible ? Number(result.largest_peak_deg) : nullptr},
           {"stages", std::move(stages)},
-          {"skipped", std::move(skipped)},
+          {"skipped", SkippedJson(result.skipped)},
           {"augmentation", std::move(augmentation)},
           {"log", std::move(generations)}};
 }
@@ -330,9 +325,7 @@ void AddTuneCommand(CLI::App& app, Invocation& invocation) {
       "the gains of the file and keeps the times of its schedule. Exit code 3: no design meets the "
       "constraints.\n"
       "Example: dispersa tune campaigns/table3.yaml --autopilot campaigns/autopilots/pd.yaml --out pd.yaml");
-  command->callback([options, &invocation] {
-    invocation.command = [options](const GlobalOptions& global) { return RunTuning(*options, global); };
-  });
+  Bind(command, invocation, options, RunTuning);
 }
 
 }  // namespace dispersa

@@ -91,9 +91,7 @@ void AddValidateCommand(CLI::App& app, Invocation& invocation) {
       "masses, Isp, ideal delta-v and thrust-to-weight ratio.\n"
       "Example: dispersa validate campaigns/*.yaml campaigns/vehicles/slv4.yaml\n"
       "         dispersa validate --strict --picture slv4.svg campaigns/vehicles/slv4.yaml");
-  command->callback([options, &invocation] {
-    invocation.command = [options](const GlobalOptions& global) { return Validate(*options, global); };
-  });
+  Bind(command, invocation, options, Validate);
 }
 
 }  // namespace dispersa

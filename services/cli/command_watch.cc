@@ -1,5 +1,4 @@
 // dispersa watch: follow a campaign of a coordinator until it ends.
-#include <fmt/format.h>
 
 #include <chrono>
 #include <memory>
@@ -72,13 +71,9 @@ class Watcher {
 };
 
 ExitCode PrintEnd(const Json& campaign, const GlobalOptions& global) {
-  if (global.json) {
-    Json object = {{"schema", "dispersa/watch/1"}};
-    object.update(campaign);
-    fmt::print("{}\n", object.dump(2));
-  } else {
-    fmt::print("{}", CampaignStatusText(campaign));
-  }
+  Json object = {{"schema", "dispersa/watch/1"}};
+  object.update(campaign);
+  Answer(global, object, CampaignStatusText(campaign));
   return static_cast<ExitCode>(campaign.at("code").get<int>());
 }
 

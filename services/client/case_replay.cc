@@ -4,6 +4,7 @@
 
 #include "core/cases/campaign_flights.h"
 #include "core/flight/engine_version.h"
+#include "core/results/json_number.h"
 #include "services/log/log.h"
 
 namespace dispersa {
@@ -27,14 +28,13 @@ CaseReplay ReplayCase(const StoredCampaign& stored, std::uint64_t case_index, Hi
 }
 
 nlohmann::ordered_json ReplayJson(const CaseReplay& replay) {
-  auto list = nlohmann::ordered_json::array();
-  for (const ResultDifference& difference : replay.differences) {
-    list.push_back(
-        {{"name", difference.name}, {"stored", difference.first}, {"replayed", difference.second}});
-  }
-  return {{"schema", "dispersa/replay/1"},          {"case_index", replay.stored.case_index},
-          {"match", replay.differences.empty()},    {"stored_digest", replay.stored.digest.Hex()},
-          {"digest", replay.replayed.digest.Hex()}, {"differences", std::move(list)}};
+  const auto difference_json = [](const ResultDifference& one) -> nlohmann::ordered_json {
+    return {{"name", one.name}, {"stored", one.first}, {"replayed", one.second}};
+  };
+  return {
+      {"schema", "dispersa/replay/1"},          {"case_index", replay.stored.case_index},
+      {"match", replay.differences.empty()},    {"stored_digest", replay.stored.digest.Hex()},
+      {"digest", replay.replayed.digest.Hex()}, {"differences", ListOf(replay.differences, difference_json)}};
 }
 
 }  // namespace dispersa

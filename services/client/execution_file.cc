@@ -6,17 +6,13 @@
 #include <nlohmann/json.hpp>
 
 #include "core/flight/engine_version.h"
+#include "core/results/json_number.h"
 #include "core/results/output_file.h"
 
 namespace dispersa {
 namespace {
 
 using Json = nlohmann::ordered_json;
-
-template <typename T>
-Json OrNull(const std::optional<T>& value) {
-  return value ? Json(*value) : Json(nullptr);
-}
 
 /// Who started the run; empty where the system has no name for him.
 std::string UserName() {

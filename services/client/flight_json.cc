@@ -5,7 +5,6 @@
 #include <numeric>
 
 #include "core/flight/flight_inputs.h"
-#include "core/flight/metrics.h"
 #include "core/results/json_number.h"
 
 namespace dispersa {

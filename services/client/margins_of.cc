@@ -28,33 +28,40 @@ nlohmann::ordered_json LeastJson(const LeastMargin& m, double unit = 1.0) {
 }
 
 nlohmann::ordered_json DispersedJson(const CampaignMargins& dispersed) {
-  auto loops = nlohmann::ordered_json::array();
-  for (const LeastLoopMargins& loop : dispersed.loops) {
-    loops.push_back({{"stage", loop.stage + 1},
-                     {"axis", kAxisNames[loop.axis]},
-                     {"gain_up_db", LeastJson(loop.gain_up_db)},
-                     {"gain_down_db", LeastJson(loop.gain_down_db)},
-                     {"phase_deg", LeastJson(loop.phase_deg)},
-                     {"delay_ms", LeastJson(loop.delay_s, 1e3)}});
-  }
+  const auto loop_json = [](const LeastLoopMargins& loop) -> nlohmann::ordered_json {
+    return {{"stage", loop.stage + 1},
+            {"axis", kAxisNames[loop.axis]},
+            {"gain_up_db", LeastJson(loop.gain_up_db)},
+            {"gain_down_db", LeastJson(loop.gain_down_db)},
+            {"phase_deg", LeastJson(loop.phase_deg)},
+            {"delay_ms", LeastJson(loop.delay_s, 1e3)}};
+  };
   return {{"cases", dispersed.cases},
           {"gates", {{"gain_db", kDispersedGainGate_db}, {"phase_deg", kDispersedPhaseGate_deg}}},
           {"ended_early", dispersed.ended_early},
           {"missed", dispersed.missed},
-          {"least", std::move(loops)},
+          {"least", ListOf(dispersed.loops, loop_json)},
           {"passed", dispersed.Passed()}};
 }
 
 nlohmann::ordered_json BySetJson(const std::vector<SetMargins>& by_set) {
-  auto sets = nlohmann::ordered_json::array();
-  for (const auto& [frequencies, margins] : by_set) {
-    sets.push_back({{"frequencies", frequencies}});
-    sets.back().update(LoopJson(margins, PassesGates(margins)));
-  }
-  return sets;
+  return ListOf(by_set, [](const SetMargins& set) {
+    nlohmann::ordered_json json = {{"frequencies", set.frequencies}};
+    json.update(LoopJson(set.margins, PassesGates(set.margins)));
+    return json;
+  });
 }
 
 }  // namespace
+
+nlohmann::ordered_json SkippedJson(const std::vector<SkippedInstant>& skipped) {
+  return ListOf(skipped, [](const SkippedInstant& at) -> nlohmann::ordered_json {
+    return {{"place", at.place},
+            {"stage", at.stage + 1},
+            {"time_s", at.time_s},
+            {"thrust_percent", 100.0 * at.thrust_fraction}};
+  });
+}
 
 nlohmann::ordered_json MarginsJson(const MarginsResult& result) {
   auto computed = nlohmann::ordered_json::array();
@@ -68,21 +75,13 @@ nlohmann::ordered_json MarginsJson(const MarginsResult& result) {
                         {"learnt", m.learnt ? LoopJson(*m.learnt, LearntPasses(m)) : nullptr}});
     if (!m.by_set.empty()) computed.back()["by_frequencies"] = BySetJson(m.by_set);
   }
-  auto skipped = nlohmann::ordered_json::array();
-  for (const SkippedInstant& at : result.skipped) {
-    skipped.push_back({{"place", at.place},
-                       {"stage", at.stage + 1},
-                       {"time_s", at.time_s},
-                       {"thrust_percent", 100.0 * at.thrust_fraction}});
-  }
-  auto measured = nlohmann::ordered_json::array();
-  for (const MeasuredMargins& m : result.measured) {
-    measured.push_back({{"stage", m.stage + 1},
-                        {"gain_up_db", m.gain_up_db},
-                        {"gain_down_db", m.gain_down_db},
-                        {"delay_ms", 1e3 * m.delay_s},
-                        {"passed", PassesGates(m)}});
-  }
+  const auto measured_json = [](const MeasuredMargins& m) -> nlohmann::ordered_json {
+    return {{"stage", m.stage + 1},
+            {"gain_up_db", m.gain_up_db},
+            {"gain_down_db", m.gain_down_db},
+            {"delay_ms", 1e3 * m.delay_s},
+            {"passed", PassesGates(m)}};
+  };
   nlohmann::ordered_json json = {
       {"schema", "dispersa/margins/1"},
       {"model", result.bends ? "bending, no slosh" : "rigid body: no bending, no slosh"},
@@ -100,9 +99,9 @@ nlohmann::ordered_json MarginsJson(const MarginsResult& result) {
         {"delay_ms", 1e3 * kMeasuredDelayStep_s},
         {"delay_ceiling_ms", 1e3 * kMeasuredDelayCeiling_s}}},
       {"least_thrust_percent", 100.0 * kLeastThrustFraction},
-      {"skipped", std::move(skipped)},
+      {"skipped", SkippedJson(result.skipped)},
       {"computed", std::move(computed)},
-      {"measured", std::move(measured)},
+      {"measured", ListOf(result.measured, measured_json)},
       {"passed", result.passed}};
   if (result.dispersed) json["dispersed"] = DispersedJson(*result.dispersed);
   return json;

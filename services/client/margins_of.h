@@ -34,6 +34,7 @@ struct MarginsResult {
 /// Flies on all usable cores.
 MarginsResult MarginsOf(const Campaign& campaign, const MarginsOptions& options);
 
+nlohmann::ordered_json SkippedJson(const std::vector<SkippedInstant>& skipped);
 /// Schema "dispersa/margins/1".
 nlohmann::ordered_json MarginsJson(const MarginsResult& result);
 

@@ -32,32 +32,13 @@ const char* CampaignStateName(CampaignState state);
 /// Nothing more happens to it by itself.
 bool HasEnded(CampaignState state);
 
-struct CatalogueEntry {
-  /// The campaign's. As an earlier engine flew it: "<id>-<digits of the engine>" (see find_by_id.h).
-  std::string id;
+/// Of requirements it has the first kMaxOutcomes.
+struct CatalogueEntry : CampaignFacts {
   std::string flight_id;
-  std::string name;
-  int priority = 0;
-  std::uint64_t order = 0;  ///< of launching
-  std::uint64_t cases = 0;
-  std::uint64_t done = 0;  ///< when it was last written
-  std::uint64_t quarantined = 0;
   std::uint64_t conflicts = 0;  ///< results that contradicted others, ever
   CampaignState state = CampaignState::kWaiting;
-  int code = 0;         ///< exit code of a campaign that has ended
-  std::string problem;  ///< of one that failed or was refused
   std::uint64_t seed = 0;
-  std::int64_t ended_unix_s = 0;        ///< when it ended (0: it has not)
   std::vector<std::string> distrusted;  ///< workers whose results are still to be removed (dispersa repair)
-  std::string owner;                    ///< name of keys, or local user; empty: of an earlier version
-  std::int64_t launched_unix_s = 0;     ///< 0: by an earlier version
-  std::uint64_t bytes = 0;              ///< on the disk, when they were last counted
-  std::string verdict;                  ///< of its report: "pass", "fail", ...
-  std::vector<std::string> labels;      ///< "KEY=VALUE", the last given last
-  std::string design_id;                ///< of campaigns that judge the same design
-  std::string engine;                   ///< that flies or flew it; empty: no case has been flown
-  std::int64_t attempts = 0;            ///< at its design, this one too, by its report; 0: no report
-  std::vector<RequirementOutcome> requirements;  ///< of its report, the first kMaxOutcomes
 
   bool operator==(const CatalogueEntry&) const = default;
 };

@@ -19,7 +19,6 @@ constexpr double kLongestRound_s = 0.5;
 constexpr double kClientPatience_s = 30.0;
 constexpr std::size_t kMaxClients = 256;
 constexpr std::size_t kTextPart = 256 << 10;
-constexpr double kRevocations_s = 5.0;  // a new list is looked for so often
 
 std::uint64_t Draw() {
   std::random_device device;
@@ -56,16 +55,10 @@ void Coordinator::Step(std::chrono::milliseconds timeout) {
       dispatcher_.Audited(verdict.flight_id, verdict.claim, verdict.truth);
     for (const Auditor::Fault& fault : auditor_->TakeFaults()) dispatcher_.Break(fault.flight_id, fault.what);
   }
-  LookForRevocations();
+  if (revocations_) revocations_->RefreshIfDue();
   Send(dispatcher_.Tick(now_s_));
   for (const std::string& forgotten : dispatcher_.TakeForgotten()) link_.Forget(forgotten);
   ForgetClients();
-}
-
-void Coordinator::LookForRevocations() {
-  if (!revocations_ || now_s_ - looked_s_ < kRevocations_s) return;
-  looked_s_ = now_s_;
-  revocations_->Refresh();
 }
 
 void Coordinator::Answer(const Request& request) {

@@ -74,7 +74,6 @@ class Coordinator : public Workforce {
   void Handle(const CoordinatorEvent& event);
   void Answer(const Request& request);
   void ForgetClients();
-  void LookForRevocations();
   void RefuseRevoked(const CoordinatorEvent& event);
   void Send(const std::vector<Orders>& messages);
 
@@ -85,7 +84,6 @@ class Coordinator : public Workforce {
   std::optional<Auditor> auditor_;
   CoordinatorLink link_;
   std::optional<Revocations> revocations_;
-  double looked_s_ = -1e9;  ///< for another list
   std::function<Reply(const Request&)> answer_;
   std::map<std::string, double> clients_;  ///< when they asked last
 };

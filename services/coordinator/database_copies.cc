@@ -70,15 +70,7 @@ std::optional<fs::path> DatabaseCopies::Whole(const fs::path& results, std::uint
     copy.of = StateOf(results);
     copy.making = std::async(std::launch::async, MakeCopy, results, promised);
   }
-  Copy& copy = copies_.at(file);
-  copy.used_s = now_s;
-  try {
-    if (!IsMade(copy)) return std::nullopt;
-  } catch (...) {
-    Remove(file);
-    throw;
-  }
-  return Known(results, now_s);
+  return Made(file, now_s) ? std::optional(Known(results, now_s)) : std::nullopt;
 }
 
 std::optional<fs::path> DatabaseCopies::Snapshot(const fs::path& results, const std::string& name,
@@ -90,14 +82,7 @@ std::optional<fs::path> DatabaseCopies::Snapshot(const fs::path& results, const 
     copy.of = name;
     copy.making = std::async(std::launch::async, [results, file] { CopyResults(results, file); });
   }
-  Copy& copy = copies_.at(file);
-  copy.used_s = now_s;
-  try {
-    return IsMade(copy) ? std::optional(file) : std::nullopt;
-  } catch (...) {
-    Remove(file);
-    throw;
-  }
+  return Made(file, now_s) ? std::optional(file) : std::nullopt;
 }
 
 std::optional<fs::path> DatabaseCopies::KnownSnapshot(const fs::path& results, const std::string& name,
@@ -109,10 +94,17 @@ std::optional<fs::path> DatabaseCopies::KnownSnapshot(const fs::path& results, c
 }
 
 // Throws what the copying threw.
-bool DatabaseCopies::IsMade(Copy& copy) {
+bool DatabaseCopies::Made(const fs::path& file, double now_s) {
+  Copy& copy = copies_.at(file);
+  copy.used_s = now_s;
   if (copy.is_made) return true;
   if (copy.making.wait_for(kCopyWait) != std::future_status::ready) return false;
-  copy.making.get();
+  try {
+    copy.making.get();
+  } catch (...) {
+    Remove(file);
+    throw;
+  }
   return copy.is_made = true;
 }
 

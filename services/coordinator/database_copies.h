@@ -41,7 +41,7 @@ class DatabaseCopies {
     bool is_made = false;
     double used_s = 0.0;
   };
-  static bool IsMade(Copy& copy);
+  bool Made(const std::filesystem::path& file, double now_s);
   void Remove(const std::filesystem::path& file);
 
   std::map<std::filesystem::path, Copy> copies_;  ///< by the copy's file

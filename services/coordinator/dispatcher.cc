@@ -5,12 +5,11 @@
 #include <utility>
 
 #include "core/cases/plugin_check.h"
+#include "core/input/printable.h"
 #include "core/math/assertion.h"
 #include "core/results/fingerprint.h"
 #include "services/log/log.h"
 #include "services/transport/complaints.h"
-#include "services/transport/permissions.h"
-#include "services/transport/validity.h"
 
 namespace dispersa {
 namespace {

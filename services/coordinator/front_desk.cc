@@ -5,12 +5,10 @@
 #include <algorithm>
 #include <cctype>
 #include <chrono>
-#include <cmath>
 #include <filesystem>
 #include <span>
 #include <vector>
 
-#include "core/analysis/requirement_summary.h"
 #include "core/campaign_yaml/load.h"
 #include "core/flight/engine_version.h"
 #include "core/results/json_number.h"
@@ -139,37 +137,13 @@ void RequireOwner(const Asker& asker, const CatalogueEntry& entry, const char* c
                   entry.id.substr(0, 8), owner, Printable(asker.account), Name(asker.right), change));
 }
 
-/// The least right for a request, whatever campaign it is about.
-Right RightFor(const Request& request) {
-  if (request.method == "launch" || request.method == "upload") return Right::kRun;
-  // A copy of all that the coordinator has.
-  if (request.method == "ids" || request.method == "readmit" || request.method == "give" ||
-      request.method == "drain")
-    return Right::kAdminister;
-  if (request.method == "files" || request.method == "read") {
-    const Json json = Json::parse(request.arguments);
-    if (json.at("id") == "" || json.value("snapshot", "") != "") return Right::kAdminister;
-  }
-  return Right::kRead;
-}
-
-void RequireRight(const Asker& asker, const Request& request) {
-  const Right least = RightFor(request);
+/// `command`: what asks so.
+void RequireRight(const Asker& asker, Right least, const char* command) {
   if (asker.right >= least) return;
-  const std::string what = least != Right::kAdminister   ? "dispersa launch"
-                           : request.method == "readmit" ? "dispersa readmit"
-                           : request.method == "give"    ? "dispersa give"
-                           : request.method == "drain"   ? "dispersa-coordinator --drain"
-                                                         : "dispersa backup";
   throw Refused(kExitBadInput,
                 fmt::format("the keys of '{0}' may {1}, and `{2}` needs the right to {3}, allowed: keys that "
                             "`dispersa keys issue --may {3}` made",
-                            Printable(asker.account), Name(asker.right), what, Name(least)));
-}
-
-bool IsChange(const std::string& method) {
-  return method == "launch" || method == "cancel" || method == "give" || method == "repair" ||
-         method == "readmit" || method == "delete";
+                            Printable(asker.account), Name(asker.right), command, Name(least)));
 }
 
 /// A name of keys or of a local user.
@@ -207,6 +181,32 @@ FrontDesk::FrontDesk(Service& service, const Workforce& workforce, std::string e
     RemoveDatabaseCopies(service.catalogue().ResultsOf(id));
 }
 
+const FrontDesk::Method& FrontDesk::MethodOf(const std::string& name) {
+  static constexpr char kBackup[] = "dispersa backup", kLaunch[] = "dispersa launch";
+  using enum Right;
+  static constexpr Method kMethods[] = {
+      {"health", kRead, "", {}, &FrontDesk::Live},
+      {"upload", kRun, kLaunch, {}, &FrontDesk::TakePart},
+      {"launch", kRun, kLaunch, {.is_noted = true, .begins_flights = true}, &FrontDesk::Launch},
+      {"cancel", kRead, "", {.is_noted = true}, &FrontDesk::Cancel},
+      {"give", kAdminister, "dispersa give", {.is_noted = true}, &FrontDesk::Give},
+      {"repair", kRead, "", {.is_noted = true, .begins_flights = true}, &FrontDesk::Repair},
+      {"drain", kAdminister, "dispersa-coordinator --drain", {.is_for_itself = true}, &FrontDesk::Drain},
+      {"readmit", kAdminister, "dispersa readmit", {.is_noted = true}, &FrontDesk::Readmit},
+      {"expelled", kRead, "", {}, &FrontDesk::Expelled},
+      {"delete", kRead, "", {.is_noted = true}, &FrontDesk::Delete},
+      // A copy of all that the coordinator has.
+      {"ids", kAdminister, kBackup, {}, &FrontDesk::Ids},
+      {"list", kRead, "", {}, &FrontDesk::List},
+      {"status", kRead, "", {}, &FrontDesk::Status},
+      {"files", kRead, kBackup, {.is_for_backups = true}, &FrontDesk::Files},
+      {"read", kRead, kBackup, {.is_for_backups = true}, &FrontDesk::Read},
+  };
+  for (const Method& method : kMethods)
+    if (method.name == name) return method;
+  throw Refused(kExitBadInput, "the coordinator does not know the request '" + Printable(name) + "'");
+}
+
 Reply FrontDesk::Answer(const Request& request) {
   Reply reply;
   reply.client = request.client;
@@ -215,46 +215,16 @@ Reply FrontDesk::Answer(const Request& request) {
   ForgetUploads();
   copies_.ForgetUnused(workforce_.now_s());
   try {
-    const Asker asker = AskerOf(request.client);
+    const Method& method = MethodOf(request.method);
+    const Call call{AskerOf(request.client), Json::parse(request.arguments), request.data, reply.data};
     const bool is_own = !own_keys_.empty() && request.client.starts_with(OwnPrefix(own_keys_));
-    if (!is_own || request.method != "drain") RequireRight(asker, request);
-    if (service_.is_draining() && (request.method == "launch" || request.method == "repair"))
-      throw IsDraining();
-    if (IsChange(request.method)) service_.actions().RequireWritten();
-    if (request.method == "health") {
-      reply.text = "{}";
-    } else if (request.method == "upload") {
-      reply.text = TakePart(request.client, request.arguments, request.data);
-    } else if (request.method == "launch") {
-      reply.text = Launch(asker, request.arguments);
-    } else if (request.method == "cancel") {
-      reply.text = Cancel(asker, request.arguments);
-    } else if (request.method == "give") {
-      reply.text = Give(asker, request.arguments);
-    } else if (request.method == "repair") {
-      reply.text = Repair(asker, request.arguments);
-    } else if (request.method == "drain") {
-      reply.text = Drain(request.arguments);
-    } else if (request.method == "readmit") {
-      reply.text = Readmit(asker, request.arguments);
-    } else if (request.method == "expelled") {
-      reply.text = Expelled();
-    } else if (request.method == "delete") {
-      reply.text = Delete(asker, request.arguments);
-    } else if (request.method == "ids") {
-      reply.text = Ids(request.arguments);
-    } else if (request.method == "list") {
-      reply.text = List(request.arguments);
-    } else if (request.method == "status") {
-      reply.text = Status(request.arguments);
-    } else if (request.method == "files") {
-      reply.text = Files(request.arguments);
-    } else if (request.method == "read") {
-      reply.text = Read(request.arguments, &reply.data);
-    } else {
-      throw Refused(kExitBadInput,
-                    "the coordinator does not know the request '" + Printable(request.method) + "'");
-    }
+    if (!is_own || !method.how.is_for_itself) RequireRight(call.asker, method.right, method.command);
+    if (method.how.is_for_backups &&
+        (call.arguments.at("id") == "" || call.arguments.value("snapshot", "") != ""))
+      RequireRight(call.asker, Right::kAdminister, method.command);
+    if (service_.is_draining() && method.how.begins_flights) throw IsDraining();
+    if (method.how.is_noted) service_.actions().RequireWritten();
+    reply.text = (this->*method.answer)(call);
   } catch (const Refused& refused) {
     reply.code = refused.code;
     reply.text = refused.what();
@@ -280,9 +250,11 @@ void FrontDesk::ForgetUploads() {
   });
 }
 
-std::string FrontDesk::TakePart(const std::string& client, const std::string& arguments,
-                                const std::string& data) {
-  const Json json = Json::parse(arguments);
+std::string FrontDesk::Live(const Call&) { return "{}"; }
+
+std::string FrontDesk::TakePart(const Call& call) {
+  const Json& json = call.arguments;
+  const std::string& data = call.data;
   const std::string id = json.at("id");
   const std::uint64_t size = json.at("size"), offset = json.at("offset");
   if (size > kMaxTextBytes) throw Refused(kExitBadInput, "the campaign's text is larger than 64 MiB");
@@ -290,7 +262,7 @@ std::string FrontDesk::TakePart(const std::string& client, const std::string& ar
     throw Refused(kExitIncomplete,
                   "the coordinator takes " + std::to_string(kMaxUploads) + " texts at a time already");
   }
-  const std::string owner = AccountOf(client);
+  const std::string owner = AccountOf(call.asker.client);
   const auto taken = std::count_if(uploads_.begin(), uploads_.end(),
                                    [&](const auto& each) { return each.second.owner == owner; });
   if (!uploads_.contains(id) && taken >= kMaxUploadsOfOne) {
@@ -315,8 +287,9 @@ Asker FrontDesk::AskerOf(const std::string& client) const {
 
 // A campaign that is not known is "unknown" until its text is here, and "checked" while it is parsed, which
 // takes seconds when it is large.
-std::string FrontDesk::Launch(const Asker& asker, const std::string& arguments) {
-  const Json json = Json::parse(arguments);
+std::string FrontDesk::Launch(const Call& call) {
+  const Asker& asker = call.asker;
+  const Json& json = call.arguments;
   const std::string id = json.at("id"), flight_id = json.at("flight_id");
   const auto priority =
       json.contains("priority") ? std::optional(json.at("priority").get<int>()) : std::nullopt;
@@ -394,17 +367,18 @@ std::string FrontDesk::LaunchAgain(const Asker& asker, const CatalogueEntry& ent
   return Json{{"id", id}, {"state", CampaignStateName(service_.catalogue().entries().at(id).state)}}.dump();
 }
 
-std::string FrontDesk::Cancel(const Asker& asker, const std::string& arguments) {
-  const CatalogueEntry& entry = Named(Json::parse(arguments).at("id"));
-  RequireOwner(asker, entry, "cancel");
+std::string FrontDesk::Cancel(const Call& call) {
+  const CatalogueEntry& entry = Named(call.arguments.at("id"));
+  RequireOwner(call.asker, entry, "cancel");
   const bool is_new = entry.state != CampaignState::kCancelled;
   service_.Cancel(entry.id);
-  if (is_new) Note("cancel", asker, entry);
+  if (is_new) Note("cancel", call.asker, entry);
   return Json{{"id", entry.id}}.dump();
 }
 
-std::string FrontDesk::Give(const Asker& asker, const std::string& arguments) {
-  const Json json = Json::parse(arguments);
+std::string FrontDesk::Give(const Call& call) {
+  const Asker& asker = call.asker;
+  const Json& json = call.arguments;
   const CatalogueEntry& entry = Named(json.at("id"));
   const std::string to = json.at("to");
   if (!IsOwner(to)) {
@@ -429,8 +403,9 @@ void FrontDesk::Note(const char* what, const Asker& asker, const CatalogueEntry&
   service_.actions().Note(more);
 }
 
-std::string FrontDesk::Repair(const Asker& asker, const std::string& arguments) {
-  const Json json = Json::parse(arguments);
+std::string FrontDesk::Repair(const Call& call) {
+  const Asker& asker = call.asker;
+  const Json& json = call.arguments;
   const CatalogueEntry& entry = Named(json.at("id"));
   const std::string id = entry.id, worker = json.at("worker");
   if (worker.empty() || worker.size() > 64)
@@ -446,21 +421,21 @@ std::string FrontDesk::Repair(const Asker& asker, const std::string& arguments) 
 
 // A client that waits for the end must not drain the coordinator that comes after: it names the one that it
 // means.
-std::string FrontDesk::Drain(const std::string& arguments) {
-  if (Json::parse(arguments).value("epoch", service_.epoch()) == service_.epoch()) service_.Drain();
+std::string FrontDesk::Drain(const Call& call) {
+  if (call.arguments.value("epoch", service_.epoch()) == service_.epoch()) service_.Drain();
   std::uint64_t waiting = 0, busy = 0;
   for (const std::string& id : service_.catalogue().open())
     ++(service_.catalogue().entries().at(id).state == CampaignState::kWaiting ? waiting : busy);
   return Json{{"epoch", service_.epoch()}, {"busy", busy}, {"waiting", waiting}}.dump();
 }
 
-std::string FrontDesk::Readmit(const Asker& asker, const std::string& arguments) {
-  const std::string name = Json::parse(arguments).at("name");
+std::string FrontDesk::Readmit(const Call& call) {
+  const std::string name = call.arguments.at("name");
   if (!service_.Readmit(name).empty()) {
     readmitted_.insert(name);
     Action action;
     action.worker = name;
-    Note("readmit", asker, {}, action);
+    Note("readmit", call.asker, {}, action);
   } else if (!readmitted_.contains(name)) {
     throw Refused(kExitBadInput, "nobody with the name '" + Printable(name) +
                                      "' is expelled, allowed: names that `dispersa "
@@ -469,7 +444,7 @@ std::string FrontDesk::Readmit(const Asker& asker, const std::string& arguments)
   return Json{{"name", name}}.dump();
 }
 
-std::string FrontDesk::Expelled() const {
+std::string FrontDesk::Expelled(const Call&) {
   Json expelled = Json::array();
   std::size_t unlisted = 0;
   for (const auto& [name, expulsion] : workforce_.expelled()) {
@@ -483,22 +458,22 @@ std::string FrontDesk::Expelled() const {
   return DumpAnyText({{"expelled", std::move(expelled)}, {"unlisted", unlisted}});
 }
 
-std::string FrontDesk::Delete(const Asker& asker, const std::string& arguments) {
-  const std::string wanted = Json::parse(arguments).at("id");
+std::string FrontDesk::Delete(const Call& call) {
+  const std::string wanted = call.arguments.at("id");
   if (!service_.catalogue().entries().contains(wanted) && wanted.size() >= 64 && deleted_.contains(wanted))
     return Json{{"id", wanted}}.dump();
   const CatalogueEntry entry = Named(wanted);
   const std::string id = entry.id;
-  RequireOwner(asker, entry, "delete");
+  RequireOwner(call.asker, entry, "delete");
   copies_.Forget(service_.catalogue().ResultsOf(id));
   service_.Delete(id);
   deleted_.insert(id);
-  Note("delete", asker, entry);
+  Note("delete", call.asker, entry);
   return Json{{"id", id}}.dump();
 }
 
-std::string FrontDesk::List(const std::string& arguments) const {
-  const std::string wanted = Json::parse(arguments).value("id", "");
+std::string FrontDesk::List(const Call& call) {
+  const std::string wanted = call.arguments.value("id", "");
   // Whatever some of them have as requirements and names, the answer fits: fewer are shown, and how many are
   // not.
   for (std::size_t most = kMaxListed, standings = kMaxStandings;; most = (most + 1) / 2, standings /= 2) {
@@ -514,9 +489,9 @@ std::string FrontDesk::List(const std::string& arguments) const {
 }
 
 // All of them, page by page, in the order of their ids: those behind `after`.
-std::string FrontDesk::Ids(const std::string& arguments) const {
+std::string FrontDesk::Ids(const Call& call) {
   const auto& entries = service_.catalogue().entries();
-  auto next = entries.upper_bound(Json::parse(arguments).value("after", ""));
+  auto next = entries.upper_bound(call.arguments.value("after", ""));
   Json ids = Json::array();
   for (; next != entries.end() && ids.size() < kMaxIds; ++next) ids.push_back(next->first);
   return Json{{"ids", std::move(ids)}, {"more", next != entries.end()}}.dump();
@@ -533,8 +508,8 @@ std::vector<std::string> FrontDesk::Listed(std::size_t most) const {
   return ids;
 }
 
-std::string FrontDesk::Status(const std::string& arguments) const {
-  Json answer = Json::parse(List(arguments));
+std::string FrontDesk::Status(const Call& call) {
+  Json answer = Json::parse(List(call));
   answer["schema"] = "dispersa/status/1";
   Json workers = Json::array();
   for (const Dispatcher::WorkerView& worker : workforce_.Workers()) {
@@ -552,8 +527,8 @@ std::string FrontDesk::Status(const std::string& arguments) const {
 }
 
 // "copying" until the database can be handed out as a whole.
-std::string FrontDesk::Files(const std::string& arguments) {
-  const Json json = Json::parse(arguments);
+std::string FrontDesk::Files(const Call& call) {
+  const Json& json = call.arguments;
   const std::string snapshot = json.value("snapshot", ""), id = json.at("id");
   if (id.empty()) return Journals();
   const CatalogueEntry& entry = Named(id);
@@ -635,15 +610,15 @@ fs::path FrontDesk::FindInResults(const CatalogueEntry& entry, const fs::path& p
   return path == kDatabase ? copies_.Known(directory, workforce_.now_s()) : directory / path;
 }
 
-std::string FrontDesk::Read(const std::string& arguments, std::string* data) {
-  const Json json = Json::parse(arguments);
+std::string FrontDesk::Read(const Call& call) {
+  const Json& json = call.arguments;
   const fs::path path = json.at("path").get<std::string>();
   const std::uint64_t offset = json.at("offset");
   const std::string snapshot = json.value("snapshot", ""), id = json.at("id");
   const fs::path source = id.empty()         ? service_.JournalAt(path)
                           : snapshot.empty() ? FindInResults(Named(id), path)
                                              : FindInSnapshot(Named(id), snapshot, path);
-  *data = ReadPart(source, offset, kFilePart);
+  call.answered = ReadPart(source, offset, kFilePart);
   return "{}";
 }
 

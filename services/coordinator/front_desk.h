@@ -5,9 +5,11 @@
 #include <filesystem>
 #include <future>
 #include <map>
+#include <nlohmann/json.hpp>
 #include <optional>
 #include <set>
 #include <string>
+#include <string_view>
 #include <vector>
 
 #include "services/coordinator/database_copies.h"
@@ -57,29 +59,52 @@ class FrontDesk {
     std::vector<std::filesystem::path> files;
   };
 
-  std::string TakePart(const std::string& client, const std::string& arguments, const std::string& data);
+  struct Call {
+    Asker asker;
+    nlohmann::ordered_json arguments;
+    const std::string& data;
+    std::string& answered;  ///< data, beside the text
+  };
+  /// What may be asked for, and what answers.
+  struct Method {
+    struct How {
+      bool is_noted = false;        ///< in the log of actions
+      bool begins_flights = false;  ///< not while the coordinator is drained
+      bool is_for_itself = false;   ///< the coordinator's own keys may, whatever their right
+      bool is_for_backups = false;  ///< of all campaigns, or a snapshot: for those who may administer
+    };
+    std::string_view name;
+    Right right;  ///< the least, whatever campaign it is about
+    const char* command;
+    How how;
+    std::string (FrontDesk::*answer)(const Call&);
+  };
+  static const Method& MethodOf(const std::string& name);
+
   Asker AskerOf(const std::string& client) const;
-  std::string Launch(const Asker& asker, const std::string& arguments);
+  std::string Live(const Call& call);
+  std::string TakePart(const Call& call);
+  std::string Launch(const Call& call);
   std::string LaunchAgain(const Asker& asker, const CatalogueEntry& entry, std::optional<int> priority,
                           const std::vector<std::string>& labels);
-  std::string Cancel(const Asker& asker, const std::string& arguments);
-  std::string Give(const Asker& asker, const std::string& arguments);
-  std::string Repair(const Asker& asker, const std::string& arguments);
-  std::string Drain(const std::string& arguments);
-  std::string Readmit(const Asker& asker, const std::string& arguments);
-  std::string Expelled() const;
-  std::string Delete(const Asker& asker, const std::string& arguments);
-  std::string Ids(const std::string& arguments) const;
-  std::string List(const std::string& arguments) const;
+  std::string Cancel(const Call& call);
+  std::string Give(const Call& call);
+  std::string Repair(const Call& call);
+  std::string Drain(const Call& call);
+  std::string Readmit(const Call& call);
+  std::string Expelled(const Call& call);
+  std::string Delete(const Call& call);
+  std::string Ids(const Call& call);
+  std::string List(const Call& call);
+  std::string Status(const Call& call);
+  std::string Files(const Call& call);
+  std::string Read(const Call& call);
   std::vector<std::string> Listed(std::size_t most) const;
-  std::string Status(const std::string& arguments) const;
-  std::string Files(const std::string& arguments);
   std::string Journals() const;
   std::string Snapshot(const CatalogueEntry& entry, const std::string& name);
   std::filesystem::path FindInSnapshot(const CatalogueEntry& entry, const std::string& name,
                                        const std::filesystem::path& path);
   std::filesystem::path FindInResults(const CatalogueEntry& entry, const std::filesystem::path& path);
-  std::string Read(const std::string& arguments, std::string* data);
   /// Into the log of actions, when it is done.
   void Note(const char* what, const Asker& asker, const CatalogueEntry& entry, Action more = {});
   const CatalogueEntry& Named(const std::string& id) const;

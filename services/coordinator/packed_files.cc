@@ -1,13 +1,11 @@
 #include "services/coordinator/packed_files.h"
 
-#include <fmt/format.h>
 #include <zlib.h>
 
 #include <algorithm>
 #include <array>
 #include <fstream>
 #include <memory>
-#include <sstream>
 #include <system_error>
 
 #include "core/pages/report_sums.h"
@@ -46,11 +44,7 @@ void PackReports(const fs::path& results) {
   const fs::path page = results / kPage;
   std::error_code error;
   if (!fs::exists(page, error)) return;
-  std::ifstream stream(page, std::ios::binary);
-  std::ostringstream text;
-  text << stream.rdbuf();
-  if (!stream || !text) FailRead(page);
-  WriteFile(Packed(page), Gzip(text.str()));
+  WriteFile(Packed(page), Gzip(ReadWholeFile(page)));
   fs::remove(page);
 }
 

@@ -5,8 +5,8 @@
 #include <map>
 #include <vector>
 
+#include "core/input/printable.h"
 #include "services/transport/complaints.h"
-#include "services/transport/validity.h"
 
 namespace dispersa {
 namespace {

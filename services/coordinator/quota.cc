@@ -3,8 +3,8 @@
 #include <charconv>
 #include <sstream>
 
+#include "core/input/printable.h"
 #include "services/coordinator/retention.h"
-#include "services/transport/validity.h"
 
 namespace dispersa {
 namespace {

@@ -1,11 +1,8 @@
 #include "services/coordinator/sealed_json.h"
 
-#include <fstream>
-#include <sstream>
 #include <stdexcept>
 
 #include "core/campaign_yaml/sha256.h"
-#include "core/results/result_error.h"
 #include "services/coordinator/dump_any_text.h"
 
 namespace dispersa {
@@ -33,17 +30,6 @@ Json Unseal(const std::string& text, int first_sealed) {
   if (!is_sealed && checksum.is_null()) return object;
   if (checksum != Sha256Hex(DumpAnyText(object))) throw std::runtime_error("does not fit its checksum");
   return object;
-}
-
-std::string ReadWholeFile(const std::filesystem::path& file) {
-  std::error_code error;
-  std::ifstream stream;
-  if (std::filesystem::is_regular_file(file, error)) stream.open(file, std::ios::binary);
-  std::ostringstream text;
-  text << stream.rdbuf();
-  if (!stream.is_open() || !stream)
-    throw ResultError(ResultError::Kind::kFile, file.string() + ": cannot be read");
-  return std::move(text).str();
 }
 
 }  // namespace dispersa

@@ -1,7 +1,6 @@
 // The small files of a data folder. They tell when a disk, a copy or an editor has changed them.
 #pragma once
 
-#include <filesystem>
 #include <nlohmann/json_fwd.hpp>
 #include <string>
 
@@ -14,8 +13,5 @@ std::string Sealed(nlohmann::ordered_json object);
 /// The object in such a text. A version before `first_sealed` has no checksum. Throws std::runtime_error with
 /// words that follow "it ": the text is no whole JSON object, or its checksum does not fit.
 nlohmann::ordered_json Unseal(const std::string& text, int first_sealed);
-
-/// The whole file. Throws ResultError if it cannot be read: it is not there, or no file.
-std::string ReadWholeFile(const std::filesystem::path& file);
 
 }  // namespace dispersa

@@ -14,6 +14,7 @@
 #include "core/campaign_yaml/sha256.h"
 #include "core/cases/plugin_check.h"
 #include "core/flight/engine_version.h"
+#include "core/input/printable.h"
 #include "core/pages/reports.h"
 #include "core/results/folder_state.h"
 #include "core/results/output_file.h"
@@ -28,7 +29,6 @@
 #include "services/ledger/result_exit_code.h"
 #include "services/log/log.h"
 #include "services/program/exit_code.h"
-#include "services/transport/validity.h"
 
 namespace dispersa {
 namespace {

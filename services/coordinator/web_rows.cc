@@ -6,36 +6,18 @@
 #include <cmath>
 #include <utility>
 
+#include "core/input/printable.h"
 #include "core/results/requirement_text.h"
 #include "core/results/text.h"
-#include "services/transport/validity.h"
 
 namespace dispersa {
 namespace {
 
 CampaignRow RowOf(const CatalogueEntry& entry) {
   CampaignRow row;
-  row.id = entry.id;
-  row.name = entry.name;
-  row.owner = entry.owner;
+  static_cast<CampaignFacts&>(row) = entry;
   row.state = CampaignStateName(entry.state);
   row.has_ended = HasEnded(entry.state);
-  row.verdict = entry.verdict;
-  row.problem = entry.problem;
-  row.engine = entry.engine;
-  row.design_id = entry.design_id;
-  row.labels = entry.labels;
-  row.attempts = entry.attempts;
-  row.cases = entry.cases;
-  row.done = entry.done;
-  row.quarantined = entry.quarantined;
-  row.bytes = entry.bytes;
-  row.priority = entry.priority;
-  row.code = entry.code;
-  row.launched_unix_s = entry.launched_unix_s;
-  row.ended_unix_s = entry.ended_unix_s;
-  row.order = entry.order;
-  row.requirements = entry.requirements;
   return row;
 }
 

@@ -61,17 +61,10 @@ std::string UnitTable() {
 }
 
 const char* WorseWord(Worse worse) {
-  switch (worse) {
-    case Worse::kLarger:
-      return "larger";
-    case Worse::kSmaller:
-      return "smaller";
-    case Worse::kFartherFromZero:
-      return "farther from 0";
-    case Worse::kNeither:
-      return "–";
-  }
-  return "";
+  return worse == Worse::kLarger    ? "larger"
+         : worse == Worse::kSmaller ? "smaller"
+         : worse == Worse::kNeither ? "–"
+                                    : "farther from 0";
 }
 
 std::string NotesOf(const Metric& metric) {

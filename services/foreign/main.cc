@@ -1,11 +1,9 @@
 // dispersa-foreign: runs foreign code for one process, which starts it (core/containment/foreign_process.h).
 // It knows one campaign.
 #include <sys/stat.h>
-#include <unistd.h>
 
 #include <cstdio>
 #include <memory>
-#include <stdexcept>
 #include <string>
 
 #include "core/campaign_yaml/load.h"

@@ -3,10 +3,7 @@
 #include <cmath>
 
 #include "core/analysis/campaign_summary.h"
-#include "core/analysis/requirement_summary.h"
-#include "core/flight/metrics.h"
 #include "core/math/assertion.h"
-#include "core/results/sampling_text.h"
 #include "core/statistics/intervals.h"
 
 namespace dispersa {

@@ -1,7 +1,6 @@
 #include "services/transport/authority.h"
 
 #include <fcntl.h>
-#include <sys/stat.h>
 #include <unistd.h>
 
 #include <fmt/chrono.h>

@@ -7,9 +7,9 @@
 #include <chrono>
 #include <map>
 
+#include "core/input/printable.h"
 #include "services/log/log.h"
 #include "services/program/mutex.h"
-#include "services/transport/validity.h"
 
 namespace dispersa {
 namespace {

@@ -1,7 +1,6 @@
 #include "services/transport/neighbours.h"
 
 #include <algorithm>
-#include <utility>
 
 #include <fastdds/rtps/builtin/data/ParticipantProxyData.h>
 #include <fastdds/rtps/participant/ParticipantDiscoveryInfo.h>

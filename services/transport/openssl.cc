@@ -210,7 +210,7 @@ bool IsSignedBy(X509* certificate, X509* authority) {
   return valid;
 }
 
-std::string VerifiedDocument(const std::string& smime, X509* signer) {
+std::string VerifiedDocument(const std::string& smime, const std::vector<Certificate>& signers, X509** by) {
   BIO* content = nullptr;
   const Pkcs7 signature(SMIME_read_PKCS7(MemoryOf(smime).get(), &content));
   const Bio in(content), out = NewMemory();
@@ -219,26 +219,18 @@ std::string VerifiedDocument(const std::string& smime, X509* signer) {
     throw std::runtime_error("no signed document");
   }
   const Store store(X509_STORE_new());
-  Check(store && X509_STORE_add_cert(store.get(), signer) == 1 &&
-            X509_STORE_set_flags(store.get(), X509_V_FLAG_NO_CHECK_TIME) == 1,
-        "no memory");
+  Check(store && X509_STORE_set_flags(store.get(), X509_V_FLAG_NO_CHECK_TIME) == 1, "no memory");
+  for (const Certificate& signer : signers)
+    Check(X509_STORE_add_cert(store.get(), signer.get()) == 1, "no memory");
   if (PKCS7_verify(signature.get(), nullptr, store.get(), in.get(), out.get(), PKCS7_TEXT) != 1) {
     ERR_clear_error();
     throw std::runtime_error("the signature does not fit: damaged, or of another authority");
   }
+  STACK_OF(X509)* const found = PKCS7_get0_signers(signature.get(), nullptr, 0);
+  for (const Certificate& signer : signers)
+    if (by != nullptr && X509_cmp(signer.get(), sk_X509_value(found, 0)) == 0) *by = signer.get();
+  sk_X509_free(found);
   return TextOf(out.get());
-}
-
-std::string VerifiedDocument(const std::string& smime, const std::vector<Certificate>& signers, X509** by) {
-  for (std::size_t i = 0;; ++i) {
-    try {
-      std::string text = VerifiedDocument(smime, signers.at(i).get());
-      if (by != nullptr) *by = signers[i].get();
-      return text;
-    } catch (const std::runtime_error&) {
-      if (i + 1 == signers.size()) throw;
-    }
-  }
 }
 
 }  // namespace dispersa

@@ -6,7 +6,6 @@
 #include <openssl/pkcs7.h>
 #include <openssl/x509.h>
 
-#include <filesystem>
 #include <memory>
 #include <string>
 #include <vector>
@@ -69,10 +68,8 @@ std::time_t EndOf(X509* certificate);
 std::time_t BeginOf(X509* certificate);
 /// Whether `authority` has signed it. Its dates are not checked.
 bool IsSignedBy(X509* certificate, X509* authority);
-/// The text of a signed document. Throws if it is not one, or if `signer`, whose dates are not checked, has
-/// not signed it.
-std::string VerifiedDocument(const std::string& smime, X509* signer);
-/// The same for one of several, which `by` then has.
+/// The text of a signed document. Throws if it is not one, or if none of `signers`, whose dates are not
+/// checked, has signed it. `by` is then the one that has.
 std::string VerifiedDocument(const std::string& smime, const std::vector<Certificate>& signers,
                              X509** by = nullptr);
 

@@ -73,6 +73,13 @@ bool Revocations::Refresh() {
   }
 }
 
+void Revocations::RefreshIfDue() {
+  constexpr std::chrono::seconds kPeriod(5);
+  if (std::chrono::steady_clock::now() < due_) return;
+  due_ = std::chrono::steady_clock::now() + kPeriod;
+  Refresh();
+}
+
 bool Revocations::IsOf(const std::string& participant) const {
   return participants_.contains(participant.substr(0, kParticipantDigits));
 }

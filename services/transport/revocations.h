@@ -1,6 +1,7 @@
 // Keys that are not to be believed any more, though they are valid: a list that the authority signs.
 #pragma once
 
+#include <chrono>
 #include <compare>
 #include <ctime>
 #include <filesystem>
@@ -38,6 +39,8 @@ class Revocations {
 
   /// Whether the list has become another one.
   bool Refresh();
+  /// The same every few seconds: a new list counts soon, and no message waits for the disk.
+  void RefreshIfDue();
   /// Whether a participant has revoked keys: its name follows from the subject of its certificate, which has
   /// the serial.
   bool IsOf(const std::string& participant) const;
@@ -45,6 +48,7 @@ class Revocations {
  private:
   std::filesystem::path directory_;
   std::optional<std::filesystem::file_time_type> read_;
+  std::chrono::steady_clock::time_point due_ = {};
   std::set<std::string> participants_;  ///< the first digits of their names
 };
 

@@ -13,9 +13,6 @@ namespace dispersa {
 namespace {
 
 namespace dds = eprosima::fastdds::dds;
-
-constexpr std::chrono::seconds kRevocations(5);  // a new list is looked for so often
-
 }  // namespace
 
 struct WorkerLink::Impl {
@@ -46,11 +43,7 @@ struct WorkerLink::Impl {
 
   /// Those that are not of a coordinator with revoked keys.
   std::vector<WorkerEvent> Believed(std::vector<Heard> heard) {
-    const auto now = std::chrono::steady_clock::now();
-    if (revocations && now - looked > kRevocations) {
-      looked = now;
-      revocations->Refresh();
-    }
+    if (revocations) revocations->RefreshIfDue();
     std::vector<WorkerEvent> believed;
     for (Heard& each : heard) {
       if (revocations && revocations->IsOf(each.sender)) {
@@ -64,7 +57,6 @@ struct WorkerLink::Impl {
 
   EventQueue<Heard> events;
   std::optional<Revocations> revocations;
-  std::chrono::steady_clock::time_point looked;
   Participant participant;
   long met = 0;  ///< participants that the worker knows of
   dds::Publisher* publisher;

@@ -43,7 +43,7 @@ std::string RequirementTable(const CampaignRow& row) {
 /// Other campaigns of the same design: whoever sees a pass wants to know how often it was tried.
 std::string OthersOfDesign(const CampaignIndex& index, const CampaignRow& row) {
   if (row.design_id.empty()) return "";
-  HtmlTable table({{"Campaign"}, {"Verdict"}, {"Owner"}, {"Cases", true}, {"Launched, UTC"}, {""}});
+  HtmlTable table("Campaign|Verdict|Owner|#Cases|Launched, UTC|");
   std::size_t found = 0;
   for (const CampaignIndex::Row& other : index.rows()) {
     if (other->design_id != row.design_id || other->id == row.id || ++found > kMostAttempts) continue;

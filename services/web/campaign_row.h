@@ -40,31 +40,38 @@ struct WorkerRow {
   std::uint64_t flown = 0;  ///< cases
 };
 
-struct CampaignRow {
+/// What a coordinator knows of a campaign and shows.
+struct CampaignFacts {
+  /// The campaign's. As an earlier engine flew it: "<id>-<digits of the engine>" (see find_by_id.h).
   std::string id;
   std::string name;
-  std::string owner;  ///< empty: of an earlier version
+  int priority = 0;
+  std::uint64_t order = 0;  ///< of launching
+  std::uint64_t cases = 0;
+  std::uint64_t done = 0;  ///< when it was last written
+  std::uint64_t quarantined = 0;
+  int code = 0;                      ///< exit code of a campaign that has ended
+  std::string problem;               ///< of one that failed or was refused
+  std::int64_t ended_unix_s = 0;     ///< when it ended (0: it has not)
+  std::string owner;                 ///< name of keys, or local user; empty: of an earlier version
+  std::int64_t launched_unix_s = 0;  ///< 0: by an earlier version
+  std::uint64_t bytes = 0;           ///< on the disk, when they were last counted
+  std::string verdict;               ///< that stands, by its report: "pass", "fail", ...
+  std::vector<std::string> labels;   ///< "KEY=VALUE", the last given last
+  std::string design_id;             ///< of campaigns that judge the same design
+  std::string engine;                ///< that flies or flew it; empty: no case has been flown
+  std::int64_t attempts = 0;         ///< at its design, this one too, by its report; 0: no report
+  std::vector<RequirementOutcome> requirements;  ///< of its report; of a campaign that flies: so far
+
+  bool operator==(const CampaignFacts&) const = default;
+};
+
+struct CampaignRow : CampaignFacts {
   std::string state;  ///< "waiting", "flying", ...
   bool has_ended = false;
-  std::string verdict;  ///< that stands, by its report
-  std::string problem;
-  std::string engine;
-  std::string design_id;
-  std::vector<std::string> labels;
-  std::int64_t attempts = 0;
-  std::uint64_t cases = 0;
-  std::uint64_t done = 0;
-  std::uint64_t quarantined = 0;
-  std::uint64_t bytes = 0;
-  int priority = 0;
-  int code = 0;
-  std::int64_t launched_unix_s = 0;
-  std::int64_t ended_unix_s = 0;
-  std::uint64_t order = 0;  ///< of launching
   double rate_per_s = 0.0;
   std::optional<double> eta_s;
-  std::vector<RequirementOutcome> requirements;  ///< of a campaign that flies: so far
-  std::vector<LiveHistogram> histograms;         ///< of key metrics, while it flies
+  std::vector<LiveHistogram> histograms;  ///< of key metrics, while it flies
 };
 
 /// All campaigns at one moment. It does not change, so many threads may read it.

@@ -32,7 +32,7 @@ std::string Inputs(const CampaignRow& a, const CampaignRow& b, const CampaignFil
     return "<p>A campaign's text is damaged.</p>\n";
   }
   if (found.empty()) return "<p>Both have the same text.</p>\n";
-  HtmlTable table({{"Value"}, {"A"}, {"B"}});
+  HtmlTable table("Value|A|B");
   for (std::size_t i = 0; i < std::min(found.size(), kMostValues); ++i)
     table.Row({Code(found[i].path), ValueText(found[i].a), ValueText(found[i].b)});
   if (found.size() > kMostValues)
@@ -62,7 +62,7 @@ std::string Requirements(const CampaignRow& a, const CampaignRow& b) {
     both[one.words].second = &one;
   }
   if (words.empty()) return "<p>Neither campaign has judged a requirement.</p>\n";
-  HtmlTable table({{"Requirement"}, {"A"}, {"B"}});
+  HtmlTable table("Requirement|A|B");
   for (const std::string& each : words)
     table.Row({HtmlText(each), OneOutcome(both[each].first), OneOutcome(both[each].second)});
   return table.Html();
@@ -101,7 +101,7 @@ std::string Drivers(const CampaignRow& a, const CampaignRow& b, const CampaignFi
     return found == of.end() || found->second.empty() ? std::string("<span class=\"soft\">none</span>")
                                                       : "<ul class=\"plain\">" + found->second + "</ul>";
   };
-  HtmlTable table({{"Metric"}, {"A"}, {"B"}});
+  HtmlTable table("Metric|A|B");
   for (const std::string& metric : metrics) table.Row({Code(metric), list(of_a, metric), list(of_b, metric)});
   return table.Html("causes");
 }
@@ -109,7 +109,7 @@ std::string Drivers(const CampaignRow& a, const CampaignRow& b, const CampaignFi
 }  // namespace
 
 std::string DifferencePage(const CampaignRow& a, const CampaignRow& b, const CampaignFile& file) {
-  HtmlTable heads({{""}, {"A"}, {"B"}});
+  HtmlTable heads("|A|B");
   const auto differ = [](const std::string& one, const std::string& other) {
     return one == other ? std::string_view() : std::string_view("differs");
   };

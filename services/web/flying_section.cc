@@ -52,7 +52,7 @@ std::string Histograms(const CampaignRow& row) {
 std::string Workers(const std::vector<WorkerRow>& workers) {
   const std::string head = "<h2>Workers of this coordinator</h2>\n";
   if (workers.empty()) return head + "<p>There is no worker: the campaign waits.</p>\n";
-  HtmlTable table({{"Worker"}, {"Host"}, {"State"}, {"Slots", true}, {"Cases flown", true}});
+  HtmlTable table("Worker|Host|State|#Slots|#Cases flown");
   for (std::size_t i = 0; i < std::min(workers.size(), kMaxWorkers); ++i) {
     const WorkerRow& worker = workers[i];
     table.Row({Code(worker.id.substr(0, 8)), HtmlText(worker.host), worker.state,

@@ -32,14 +32,8 @@ std::string ListPage(const CampaignIndex& index, const std::string& search, std:
   const std::vector<const CampaignRow*> found = index.Search(search);
   const std::size_t pages = std::max<std::size_t>(1, (found.size() + kRowsOfPage - 1) / kRowsOfPage);
   page = std::clamp<std::size_t>(page, 1, pages);
-  HtmlTable table({{"<span class=\"hidden\">Compare</span>"},
-                   {"Campaign"},
-                   {"Verdict"},
-                   {"Owner"},
-                   {"Cases", true},
-                   {"Attempt", true},
-                   {"Labels"},
-                   {"Launched, UTC"}});
+  HtmlTable table(
+      "<span class=\"hidden\">Compare</span>|Campaign|Verdict|Owner|#Cases|#Attempt|Labels|Launched, UTC");
   const std::size_t first = (page - 1) * kRowsOfPage, last = std::min(found.size(), first + kRowsOfPage);
   for (std::size_t i = first; i < last; ++i) {
     const CampaignRow& row = *found[i];

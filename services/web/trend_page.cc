@@ -79,7 +79,7 @@ std::string Metrics(const CampaignIndex& index) {
     if (row->has_ended)
       for (const RequirementOutcome& one : row->requirements) ++counts[one.metric];
   if (counts.empty()) return "<p>No campaign has judged a requirement.</p>\n";
-  HtmlTable table({{"Metric"}, {"Campaigns", true}});
+  HtmlTable table("Metric|#Campaigns");
   for (const auto& [metric, count] : counts)
     table.Row({fmt::format("<a href=\"/trend?metric={}\">{}</a>", UrlText(metric), HtmlText(metric)),
                std::to_string(count)});
@@ -109,13 +109,7 @@ std::string TrendPage(const CampaignIndex& index, const std::string& metric, con
       "metrics</a></form>\n",
       HtmlText(metric), HtmlText(metric), HtmlText(search));
   if (points.empty()) return Frame("Trend", main + "<p>No campaign that has ended requires it.</p>\n");
-  HtmlTable table({{"Version"},
-                   {"Campaign"},
-                   {"Verdict"},
-                   {"Failures", true},
-                   {"Flights that meet it"},
-                   {"Requirement"},
-                   {""}});
+  HtmlTable table("Version|Campaign|Verdict|#Failures|Flights that meet it|Requirement|");
   for (std::size_t i = 0; i < points.size(); ++i) {
     const RequirementOutcome& one = *points[i].outcome;
     table.Row({Code(VersionOf(*points[i].row)), NameOf(*points[i].row), VerdictBadge(HtmlText(one.verdict)),

@@ -5,7 +5,6 @@
 
 #include <algorithm>
 
-#include "core/pages/embedded.h"
 #include "core/pages/html_parts.h"
 #include "core/results/text.h"
 #include "services/web/pages.h"

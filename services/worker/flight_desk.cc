@@ -4,7 +4,6 @@
 #include <utility>
 
 #include "core/math/assertion.h"
-#include "services/transport/validity.h"
 
 namespace dispersa {
 namespace {
