@@ -216,7 +216,8 @@ Reply FrontDesk::Answer(const Request& request) {
   copies_.ForgetUnused(workforce_.now_s());
   try {
     const Method& method = MethodOf(request.method);
-    const Call call{AskerOf(request.client), Json::parse(request.arguments), request.data, reply.data};
+    const Json arguments = request.arguments.empty() ? Json::object() : Json::parse(request.arguments);
+    const Call call{AskerOf(request.client), arguments, request.data, reply.data};
     const bool is_own = !own_keys_.empty() && request.client.starts_with(OwnPrefix(own_keys_));
     if (!is_own || !method.how.is_for_itself) RequireRight(call.asker, method.right, method.command);
     if (method.how.is_for_backups &&
