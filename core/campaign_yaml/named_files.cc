@@ -25,7 +25,8 @@ constexpr std::size_t kLargestFileOfBytes = std::size_t{32} << 20;
 // give.
 InputNode ParseTable(const std::string& text, const std::string& file, std::vector<InputProblem>& problems) {
   const std::size_t before = problems.size();
-  if (IsSoundingText(text) && CheckUtf8(text, file, problems)) {
+  if (IsSoundingText(text)) {
+    if (!CheckUtf8(text, file, problems)) return {};
     const Sounding sounding = ReadSounding(text, file, "", problems);
     return problems.size() > before ? InputNode() : TableOf(sounding, file, problems);
   }

@@ -163,15 +163,8 @@ class RaspReader {
 InputNode ParseRasp(const std::string& text, const std::string& file, std::vector<InputProblem>& problems) {
   if (!CheckUtf8(text, file, problems)) return {};
   RaspReader reader(file, problems);
-  std::string_view rest = WithoutByteOrderMark(text);
   int line_number = 0;
-  while (!rest.empty()) {
-    const std::size_t end = std::min(rest.find('\n'), rest.size());
-    std::string_view line = rest.substr(0, end);
-    rest.remove_prefix(std::min(end + 1, rest.size()));
-    if (line.ends_with('\r')) line.remove_suffix(1);
-    reader.Take(line, ++line_number);
-  }
+  for (const std::string_view line : LinesOf(WithoutByteOrderMark(text))) reader.Take(line, ++line_number);
   return reader.Finish(line_number);
 }
 

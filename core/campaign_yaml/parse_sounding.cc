@@ -60,7 +60,7 @@ const Units& UnitsOf(Quantity quantity) {
                               {"mph", 0.44704},
                               {"ft_s", 0.3048},
                               {"ft/s", 0.3048}};
-  static const Units angle = {{"deg", kRadPerDeg}, {"rad"}};
+  static const Units angle = {{"deg", kRadPerDeg}, {"degree", kRadPerDeg}, {"degrees", kRadPerDeg}, {"rad"}};
   switch (quantity) {
     case kPressureOf:
       return pressure;
@@ -293,18 +293,6 @@ class LevelReader {
   std::array<double, kQuantities> values_;
 };
 
-std::vector<std::string_view> Lines(std::string_view rest) {
-  std::vector<std::string_view> lines;
-  while (!rest.empty()) {
-    const std::size_t end = std::min(rest.find('\n'), rest.size());
-    std::string_view line = rest.substr(0, end);
-    rest.remove_prefix(std::min(end + 1, rest.size()));
-    if (line.ends_with('\r')) line.remove_suffix(1);
-    lines.push_back(line);
-  }
-  return lines;
-}
-
 // A field of fixed width, with the column of its first character.
 struct Field {
   std::string text;
@@ -324,8 +312,10 @@ Field FieldOf(std::string_view line, std::size_t begin, std::size_t end) {
 
 constexpr std::string_view kWyomingNames[] = {"PRES", "HGHT"};
 
+// Of a table of fixed columns, not of one with commas.
 bool IsWyomingHeader(std::string_view line) {
-  return std::all_of(std::begin(kWyomingNames), std::end(kWyomingNames),
+  return line.find_first_of(",;") == std::string_view::npos &&
+         std::all_of(std::begin(kWyomingNames), std::end(kWyomingNames),
                      [&](std::string_view name) { return line.find(name) != std::string_view::npos; });
 }
 
@@ -474,7 +464,8 @@ Sounding ReadIgra(const std::vector<std::string_view>& lines, const std::string&
 }  // namespace
 
 bool IsSoundingText(const std::string& text) {
-  const std::vector<std::string_view> lines = Lines(WithoutByteOrderMark(text));
+  constexpr std::size_t kHeadLines = 64;  // a page has some of HTML before its table
+  const std::vector<std::string_view> lines = LinesOf(WithoutByteOrderMark(text), kHeadLines);
   return !lines.empty() &&
          (IsIgraHeader(lines.front()) || std::any_of(lines.begin(), lines.end(), IsWyomingHeader));
 }
@@ -498,7 +489,7 @@ bool IsSoundingTable(const InputNode& table) {
 
 Sounding ReadSounding(const std::string& text, const std::string& file, const std::string& date,
                       std::vector<InputProblem>& problems) {
-  const std::vector<std::string_view> lines = Lines(WithoutByteOrderMark(text));
+  const std::vector<std::string_view> lines = LinesOf(WithoutByteOrderMark(text));
   return IsIgraHeader(lines.front()) ? ReadIgra(lines, file, date, problems)
                                      : ReadWyoming(lines, file, problems);
 }

@@ -1,6 +1,8 @@
 // Faults of a text before it is YAML or CSV: bytes that are not UTF-8, and tabs that indent.
 #pragma once
 
+#include <cstddef>
+#include <cstdint>
 #include <string>
 #include <string_view>
 #include <vector>
@@ -19,5 +21,8 @@ bool CheckIndentation(const std::string& text, const std::string& file, int last
 
 /// The text without the byte order mark that some programs, spreadsheets above all, write before UTF-8.
 std::string_view WithoutByteOrderMark(const std::string& text);
+
+/// Its lines, at most so many, without their ends.
+std::vector<std::string_view> LinesOf(std::string_view text, std::size_t most = SIZE_MAX);
 
 }  // namespace dispersa

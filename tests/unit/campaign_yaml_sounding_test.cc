@@ -179,6 +179,18 @@ TEST(ConvertSounding, UnitsOfColumns) {
   EXPECT_NEAR(read("altitude_ft,north_kt,east_kt", "2,9,-9", "east_m_s"), -4.63, 1e-3);
 }
 
+// Names of an archive's columns do not make a fixed table of one with commas.
+TEST(ConvertSounding, OfCommasWithTheNamesOfWyoming) {
+  TemporaryFolder folder;
+  const std::string file = (folder.path() / "s.csv").string();
+  std::ofstream(file)
+      << "PRES (hPa),HGHT (m),TEMP (C),DRCT (degree),SKNT (knot)\n1000,100,15,90,10\n850,1500,5,90,20\n";
+  const Converted table = Convert(file);
+  ASSERT_EQ(table.rows.size(), 2u);
+  EXPECT_EQ(table.At(1, "pressure_pa"), 85000.0);
+  ExpectWind(table, 1, 20.0 * kKnot, 90.0);
+}
+
 // Codes for "missing", and the same numbers where they are values.
 TEST(ConvertSounding, MissingValues) {
   TemporaryFolder folder;
