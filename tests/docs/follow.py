@@ -83,8 +83,8 @@ def main():
     parser.add_argument("--programs", type=pathlib.Path)
     parser.add_argument("--header", type=pathlib.Path)
     options = parser.parse_args()
-    # What `ls` lists first is the locale's.
-    environment = {**os.environ, "LC_ALL": "C.UTF-8", "NO_COLOR": "1", "DISPERSA_DOMAIN": str(20 + os.getpid() % 79)}
+    # What `ls` lists first is the locale's. The domain is one that no `dispersa run` takes (40 to 99, private_domain.cc).
+    environment = {**os.environ, "LC_ALL": "C.UTF-8", "NO_COLOR": "1", "DISPERSA_DOMAIN": str(20 + os.getpid() % 20)}
     if options.programs:
         environment["PATH"] = f"{options.programs}:{environment['PATH']}"
     with (tempfile.TemporaryDirectory(prefix="dispersa-page-") as folder,
