@@ -238,10 +238,13 @@ std::string JointRiskSentence(const CampaignSummary& summary) {
       fmt::format("A design that misses any requirement passes them all with a probability of at most {}.",
                   PercentText(summary.overall_risk));
   if (summary.requirements.size() > 1) {
-    sentence +=
-        fmt::format(" That any one of the {} verdicts to pass, taken by itself, is wrong: at most {}{}.",
-                    summary.requirements.size(), PercentText(summary.any_risk),
-                    summary.holm ? " (Holm)" : " (the sum of their risks; joint: holm keeps it down)");
+    sentence += summary.holm
+                    ? fmt::format(" The risk that any of the {} passes is wrong is at most {} (Holm).",
+                                  summary.requirements.size(), PercentText(summary.any_risk))
+                    : fmt::format(
+                          " The risks that the {} requirements allow add up to {}; joint: holm keeps them "
+                          "together at the largest one.",
+                          summary.requirements.size(), PercentText(summary.any_risk));
   }
   return sentence;
 }
@@ -264,9 +267,9 @@ std::string AdviceTogether(const CampaignSummary& summary) {
   }
   if (open == 0) return "";
   std::string text = fmt::format(
-      "To decide {}: a new campaign needs {} flights or more. By what was seen here, one of {} flights "
-      "passes "
-      "{} with a probability of {}{}.",
+      "To decide {}: a new campaign needs {} flights or more. By what was seen here, a campaign of {} "
+      "flights "
+      "passes {} with a probability of {}{}.",
       open == 1 ? "the inconclusive requirement" : fmt::format("all {} inconclusive requirements", open),
       most.least, most.likely.cases, open == 1 ? "it" : "each of them", open == 1 ? "" : "at least ",
       ShareText(most.likely.probability));
@@ -366,6 +369,7 @@ CampaignSummary BuildSummary(const ResultFolder& folder, const Campaign& campaig
   summary.any_risk = std::min(summary.any_risk, 1.0);
   for (const std::string& metric : KeyMetrics(campaign))
     summary.worst_cases.push_back(FindWorst(metric, AllLimits(campaign.requirements, metric), cases));
+  summary.events = SummarizeEvents(cases);
   summary.injection = SummarizeInjection(cases);
   summary.dispersions = SummarizeDispersions(campaign, cases);
   summary.drivers = FindDrivers(campaign, KeyMetrics(campaign), cases);

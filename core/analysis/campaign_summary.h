@@ -9,6 +9,7 @@
 
 #include "core/analysis/dispersion_summary.h"
 #include "core/analysis/drivers.h"
+#include "core/analysis/event_summary.h"
 #include "core/analysis/injection_summary.h"
 #include "core/analysis/load_check.h"
 #include "core/analysis/requirement_summary.h"
@@ -109,6 +110,7 @@ struct CampaignSummary {
   std::vector<WorstCases> worst_cases;
   std::vector<DispersionSummary> dispersions;
   bool is_controlled = true;                    ///< by an autopilot
+  std::vector<EventSummary> events;             ///< of folders of this release
   std::optional<InjectionSummary> injection;    ///< none with fewer than two injections
   std::vector<MetricDrivers> drivers;           ///< of KeyMetrics()
   std::vector<FailureDrivers> failure_drivers;  ///< of the requirements

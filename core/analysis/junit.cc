@@ -14,13 +14,13 @@ namespace {
 struct Finding {
   std::string element;  ///< "failure", "error", "skipped"; empty: it passed
   std::string text;
+  std::string type = {};  ///< of a failure or an error
 };
 
 Finding FindingOf(const RequirementSummary& requirement, const Standing::Requirement& standing) {
   const std::string text = JudgedSentence(requirement, standing) + AdviceSentence(requirement);
   if (standing.verdict == "pass") return {};
-  if (standing.verdict == "fail") return {"failure", text};
-  return {"error", text};
+  return {standing.verdict == "fail" ? "failure" : "error", text, standing.verdict};
 }
 
 std::string NameOf(const RequirementSummary& requirement) {
@@ -29,9 +29,10 @@ std::string NameOf(const RequirementSummary& requirement) {
 
 std::string TestCase(const std::string& suite, const std::string& name, const Finding& finding) {
   std::string xml =
-      fmt::format("    <testcase classname=\"{}\" name=\"{}\"", HtmlText(suite), HtmlText(name));
+      fmt::format("    <testcase classname=\"{}\" name=\"{}\" time=\"0\"", HtmlText(suite), HtmlText(name));
   if (finding.element.empty()) return xml + "/>\n";
-  return xml + fmt::format(">\n      <{} message=\"{}\"/>\n    </testcase>\n", finding.element,
+  const std::string type = finding.element == "skipped" ? "" : fmt::format(" type=\"{}\"", finding.type);
+  return xml + fmt::format(">\n      <{}{} message=\"{}\"/>\n    </testcase>\n", finding.element, type,
                            HtmlText(finding.text));
 }
 
@@ -55,20 +56,23 @@ std::string JUnitXml(const CampaignSummary& summary) {
     add(NameOf(summary.requirements[i]), FindingOf(summary.requirements[i], standing.requirements[i]));
   // A check without failures is no test that passed: it was seen, and not required.
   for (const LoadCheck& check : summary.load_checks)
-    if (check.failures > 0) add("load check: " + check.metric, {"failure", LoadCheckSentence(check)});
+    if (check.failures > 0)
+      add("load check: " + check.metric, {"failure", LoadCheckSentence(check), "load_check"});
   if (summary.verdict == CampaignVerdict::kIncomplete)
-    add("every case flown", {"error", MissingWords(summary.flown, summary.cases)});
+    add("every case flown", {"error", MissingWords(summary.flown, summary.cases), "incomplete"});
   else if (standing.verdict == StandingVerdict::kNothingJudged && summary.requirements.empty())
     add("requirements", {"skipped", "The campaign states no requirement: nothing is judged."});
   for (const Standing::Dropped& dropped : standing.dropped)
-    add(dropped.words,
-        {"error", fmt::format("Changed or left out after its flights were flown. Its last verdict: {}.",
-                              dropped.verdict.empty() ? "none" : dropped.verdict)});
+    add(dropped.words, {"error",
+                        fmt::format("Changed or left out after its flights were flown. Its last verdict: {}.",
+                                    dropped.verdict.empty() ? "none" : dropped.verdict),
+                        "post_hoc"});
   const bool judged_otherwise = standing.is_post_hoc && standing.dropped.empty() &&
                                 std::none_of(standing.requirements.begin(), standing.requirements.end(),
                                              [](const Standing::Requirement& one) { return one.post_hoc; });
   if (judged_otherwise)
-    add("verdicts", {"error", "The rules of judgement were changed after the first case was flown."});
+    add("verdicts",
+        {"error", "The rules of judgement were changed after the first case was flown.", "post_hoc"});
   std::string notes;
   for (const std::string& note : StandingNotes(standing, summary)) notes += note + "\n";
   for (std::size_t i = 0; i < standing.requirements.size(); ++i)  // a test that passes has no text of its own
@@ -79,7 +83,7 @@ std::string JUnitXml(const CampaignSummary& summary) {
   if (!notes.empty()) cases += fmt::format("    <system-out>{}</system-out>\n", HtmlText(notes));
   return fmt::format(
       "<?xml version=\"1.0\" encoding=\"UTF-8\"?>\n<testsuites>\n  <testsuite name=\"{}\" tests=\"{}\" "
-      "failures=\"{}\" errors=\"{}\" skipped=\"{}\">\n{}  </testsuite>\n</testsuites>\n",
+      "failures=\"{}\" errors=\"{}\" skipped=\"{}\" time=\"0\">\n{}  </testsuite>\n</testsuites>\n",
       HtmlText(summary.name), tests, failures, errors, skipped, cases);
 }
 

@@ -246,12 +246,23 @@ double LimitBeside(const RequirementSummary& requirement, double value) {
   return Limits{*requirement.low_limit, requirement.limit}.Beside(value);
 }
 
+namespace {
+
+/// Whether the bound is held against an upper limit.
+bool IsBoundedAbove(const RequirementSummary& requirement) {
+  return requirement.below && LimitBeside(requirement, *requirement.bound) == requirement.limit;
+}
+
+}  // namespace
+
+std::string BoundText(const RequirementSummary& requirement) {
+  return RoundedText(*requirement.bound, IsBoundedAbove(requirement) ? Rounding::kUp : Rounding::kDown,
+                     LimitBeside(requirement, *requirement.bound));
+}
+
 std::string BoundWords(const RequirementSummary& requirement, const std::string& unit) {
   if (!requirement.bound) return "";
-  const double bound = *requirement.bound, limit = LimitBeside(requirement, bound);
-  const bool below = requirement.below && limit == requirement.limit;
-  return fmt::format("{} {}{}", below ? "below" : "above",
-                     RoundedText(bound, below ? Rounding::kUp : Rounding::kDown, limit),
+  return fmt::format("{} {}{}", IsBoundedAbove(requirement) ? "below" : "above", BoundText(requirement),
                      unit.empty() ? "" : " " + unit);
 }
 
@@ -269,8 +280,8 @@ std::string AdviceSentence(const RequirementSummary& requirement) {
   if (!requirement.advice) return "";
   const RequirementSummary::Advice& advice = *requirement.advice;
   std::string text = fmt::format(
-      " A new campaign can pass with {} flights or more. By what was seen here, one of {} flights passes "
-      "with a probability of {}.",
+      " A new campaign can pass with {} flights or more. By what was seen here, a campaign of {} flights "
+      "passes with a probability of {}.",
       advice.least, advice.likely.cases, ShareText(advice.likely.probability));
   if (advice.extended)
     text +=

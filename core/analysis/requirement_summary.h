@@ -94,7 +94,9 @@ std::string LimitWords(const RequirementSummary& requirement, const std::string&
 std::string BoundSentence(const RequirementSummary& requirement, const std::string& unit);
 /// The limit that a value stands beside: of a range the nearer one.
 double LimitBeside(const RequirementSummary& requirement, double value);
-/// "below 0.225 °": the bound, rounded so that it still holds; empty without one.
+/// "0.225": the bound that it has, rounded so that it still holds.
+std::string BoundText(const RequirementSummary& requirement);
+/// "below 0.225 °"; empty without a bound.
 std::string BoundWords(const RequirementSummary& requirement, const std::string& unit);
 /// " A new campaign can pass with 852 flights or more. ..."; empty unless inconclusive.
 std::string AdviceSentence(const RequirementSummary& requirement);

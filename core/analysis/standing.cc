@@ -146,11 +146,15 @@ std::string TogetherReason(const AttemptsVerdict& verdict) {
                      verdict.pool_failures, verdict.pool_failures == 1 ? "" : "s");
 }
 
-std::string SeenReason(const AttemptsVerdict& verdict) {
-  return fmt::format(
-      "You added flights after seeing results; the stricter any-time rule now applies: {} flights with {} "
-      "failure{} are needed.",
-      verdict.pool_needed.value_or(0), verdict.pool_failures, verdict.pool_failures == 1 ? "" : "s");
+std::string SeenReason(const std::vector<Attempt>& attempts, const AttemptsVerdict& verdict) {
+  const bool of_one_seed = std::all_of(attempts.begin(), attempts.end(), [&](const Attempt& attempt) {
+    return attempt.seed == attempts.back().seed;
+  });
+  return fmt::format("{}; the stricter any-time rule now applies: {} flights with {} failure{} are needed.",
+                     of_one_seed ? "Flights were added after results had been seen"
+                                 : "Earlier attempts with other seeds count too",
+                     verdict.pool_needed.value_or(0), verdict.pool_failures,
+                     verdict.pool_failures == 1 ? "" : "s");
 }
 
 void Judge(const Requirement& requirement, const RequirementSummary& shown, const CampaignSummary& summary,
@@ -182,14 +186,14 @@ void Judge(const Requirement& requirement, const RequirementSummary& shown, cons
             ? fmt::format("{} attempts share the risk of {}: this one has {}.", reserved,
                           PercentText(requirement.consumer_risk),
                           PercentText(requirement.consumer_risk / static_cast<double>(reserved)))
-            : SeenReason(verdict);
+            : SeenReason(attempts, verdict);
     return;
   }
   if (verdict.passed && !shown.contradicted) {
     standing.verdict = "pass";
     standing.reason = TogetherReason(verdict);
   } else if (attempts.size() > 1 && verdict.pool_needed) {
-    standing.reason = SeenReason(verdict);
+    standing.reason = SeenReason(attempts, verdict);
   }
 }
 
@@ -347,8 +351,9 @@ std::vector<std::string> CampaignNotes(const Standing& standing) {
         fmt::format("Started anew, so that earlier attempts do not count: \"{}\".", standing.fresh));
   if (std::string attempts = AttemptsNote(standing); !attempts.empty()) notes.push_back(std::move(attempts));
   if (standing.earlier_designs > 0)
-    notes.push_back(fmt::format("Earlier designs here: {}, of which {} with this seed.",
-                                standing.earlier_designs, standing.earlier_designs_of_seed));
+    notes.push_back(
+        fmt::format("Earlier designs in this folder, of any vehicle: {}, of which {} with this seed.",
+                    standing.earlier_designs, standing.earlier_designs_of_seed));
   return notes;
 }
 

@@ -130,6 +130,23 @@ Json NominalJson(const CaseResult& nominal, const CampaignSummary& summary) {
           {"digest", nominal.digest.Hex()}};
 }
 
+Json EventsJson(const CampaignSummary& summary) {
+  return ListOf(summary.events, [&](const EventSummary& event) {
+    const SeenEvent* const nominal =
+        summary.nominal ? FindEvent(summary.nominal->events, event.name) : nullptr;
+    Json json = {{"event", event.name}, {"flights", event.flights()}};
+    for (std::size_t i = 0; i < event.values.size(); ++i) {
+      const Summary& over = event.values[i];
+      json[kEventValueNames[i]] = {
+          {"nominal", nominal == nullptr ? Json(nullptr) : Number(nominal->*SeenEvent::kValues[i])},
+          {"p01", Number(over.p01)},
+          {"p50", Number(over.p50)},
+          {"p99", Number(over.p99)}};
+    }
+    return json;
+  });
+}
+
 Json CampaignJson(const CampaignSummary& summary) {
   Json json = {
       {"name", summary.name},
@@ -340,6 +357,7 @@ std::string SummaryJson(const CampaignSummary& summary) {
   json["requirements"] = RequirementsJson(summary);
   json["joint"] = JointRiskJson(summary);
   json["metrics"] = MetricsJson(summary);
+  json["events"] = EventsJson(summary);
   json["injection"] = summary.injection ? InjectionJson(*summary.injection) : Json(nullptr);
   json["drivers"] = DriversJson(summary);
   json["failure_drivers"] = FailureDriversJson(summary);

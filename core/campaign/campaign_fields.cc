@@ -1,8 +1,10 @@
+#include <Eigen/Eigenvalues>
 #include <algorithm>
 #include <cmath>
 #include <sstream>
 
 #include "core/campaign/campaign.h"
+#include "core/input/number_text.h"
 #include "core/input/read_value.h"
 #include "core/math/functions.h"
 
@@ -64,6 +66,32 @@ std::vector<std::vector<double>> Cholesky(const std::vector<std::vector<double>>
     }
   }
   return factor;
+}
+
+// Which correlation contradicts the others most, and what of all would be possible. The direction of the
+// smallest eigenvalue is a sum of the quantities with a negative variance.
+std::string WhyImpossible(const std::vector<std::string>& names,
+                          const std::vector<std::vector<double>>& matrix) {
+  const auto size = static_cast<Eigen::Index>(matrix.size());
+  Eigen::MatrixXd correlations(size, size);
+  for (Eigen::Index i = 0; i < size; ++i)
+    for (Eigen::Index j = 0; j < size; ++j)
+      correlations(i, j) = matrix[static_cast<std::size_t>(i)][static_cast<std::size_t>(j)];
+  const Eigen::SelfAdjointEigenSolver<Eigen::MatrixXd> solver(correlations);
+  const Eigen::VectorXd sum = solver.eigenvectors().col(0);
+  Eigen::Index first = 1, second = 0;
+  double worst = 0.0;
+  for (Eigen::Index i = 0; i < size; ++i)
+    for (Eigen::Index j = 0; j < i; ++j)
+      if (const double part = sum(i) * sum(j) * correlations(i, j); part < worst) {
+        worst = part;
+        first = i;
+        second = j;
+      }
+  // All of them times this have the smallest eigenvalue 0; a little less holds.
+  const double factor = std::floor(99.0 / (1.0 - solver.eigenvalues()(0))) / 100.0;
+  return "'" + names[static_cast<std::size_t>(second)] + "' with '" + names[static_cast<std::size_t>(first)] +
+         "' contributes most; all correlations times " + FormatNumber(factor) + " can hold";
 }
 
 // The positions of the dispersions with these names; those that cannot be correlated are refused.
@@ -131,7 +159,9 @@ void Correlate(Fields& fields, const Correlation& correlation, const std::vector
   }
   const std::vector<std::vector<double>> factor = Cholesky(matrix);
   if (factor.empty())
-    return fields.Refuse(key, "the matrix is not positive definite", "correlations that can hold together");
+    return fields.Refuse(key,
+                         "the matrix is not positive definite: " + WhyImpossible(correlation.names, matrix),
+                         "correlations that can hold together");
   for (std::size_t i = 0; i < size; ++i)
     for (std::size_t j = 0; j <= i; ++j) dispersions[members[i]].mix.emplace_back(members[j], factor[i][j]);
 }

@@ -74,6 +74,7 @@ CaseResult ResultOf(const RowInputs& rows, std::uint64_t case_index, const Fligh
   SetInputs(rows, InputValues(inputs, rows.column_class()), result);
   result.metrics = std::move(flight.metrics);
   result.digest = flight.digest;
+  result.events = std::move(flight.events);
   return result;
 }
 

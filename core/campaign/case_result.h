@@ -26,6 +26,7 @@ struct CaseResult {
   /// In the order of MetricsOf the campaign. NaN: undefined, or not measured under its law.
   std::vector<double> metrics;
   Digest digest;
+  std::vector<SeenEvent> events;  ///< in the order of their times
 };
 
 /// The metrics of the campaign's vehicle, then its own.

@@ -1,5 +1,6 @@
 #include "core/cases/flights_here.h"
 
+#include <algorithm>
 #include <map>
 #include <utility>
 
@@ -84,7 +85,9 @@ bool FlightsHere::IsResult(const CaseResult& result) const {
   const auto& stages = model_->definition().vehicle.stages;
   return outcome >= 0 && outcome < kOutcomeCount && result.end_stage >= 0 &&
          result.end_stage <= static_cast<int>(stages.size()) && result.metrics.size() == metrics_ &&
-         result.inputs.size() == rows_.positions().size();
+         result.inputs.size() == rows_.positions().size() &&
+         std::all_of(result.events.begin(), result.events.end(),
+                     [](const SeenEvent& event) { return IsEventName(event.name); });
 }
 
 }  // namespace dispersa

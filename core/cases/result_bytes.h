@@ -57,6 +57,7 @@ class Unpacker {
     std::memcpy(numbers.data(), part, count * sizeof(double));
     return numbers;
   }
+  bool is_good() const { return is_whole_; }  ///< so far
   bool is_whole() const { return is_whole_ && at_ == bytes_.size(); }
 
  private:
@@ -85,6 +86,11 @@ inline void Pack(const CaseResult& result, Packer& out) {
   out.Value(result.inputs_digest);
   out.Numbers(result.metrics);
   out.Value(result.digest);
+  out.Value(result.events.size());
+  for (const SeenEvent& event : result.events) {
+    out.Text(event.name);
+    for (const auto value : SeenEvent::kValues) out.Value(event.*value);
+  }
 }
 
 inline CaseResult UnpackResult(Unpacker& in) {
@@ -98,6 +104,12 @@ inline CaseResult UnpackResult(Unpacker& in) {
   result.inputs_digest = in.Value<Digest>();
   result.metrics = in.Numbers();
   result.digest = in.Value<Digest>();
+  const auto events = in.Value<std::size_t>();
+  while (in.is_good() && result.events.size() < events) {
+    SeenEvent& event = result.events.emplace_back();
+    event.name = in.Text();
+    for (const auto value : SeenEvent::kValues) event.*value = in.Value<double>();
+  }
   return result;
 }
 

@@ -93,6 +93,7 @@ class Batch {
   void SetMass(int lane);
   void SetShape(int lane);
   void FindJudges();
+  void AddLoadsBetweenTicks(int lane, const Instant<double>& now);
 
  private:
   static constexpr int kLanes = kWidth<T>;
@@ -107,6 +108,7 @@ class Batch {
   void End(int lane, Outcome outcome, const char* reason);
   LauncherPhase PhaseOf(int lane) const;
   LaneView ViewOf(int lane) const;
+  EventView EventViewOf(int lane) const;
 
   // ---- a pass ----
   void Pass();
@@ -272,6 +274,7 @@ void Batch<T>::End(int lane, Outcome outcome, const char* reason) {
   record->sums.expelled_kg = Lane(lanes_.step.phase().expelled_kg, lane);
   record->sums.rules_fired =
       static_cast<std::uint32_t>(ToBits(Lane(lanes_.computer.memory(kPitch).rules_fired, lane)));
+  record->NoteEnd(outcome, EventViewOf(lane), y);
   for (int i = 0; i < lanes_.own_parts; ++i)
     record->own_sums.data()[i] = {Lane(lanes_.own_sums[i].value, lane), Lane(lanes_.own_sums[i].count, lane)};
   record->End(outcome, reason, Lane(lanes_.at.time_s, lane), slot.stack, y);
@@ -281,6 +284,12 @@ void Batch<T>::End(int lane, Outcome outcome, const char* reason) {
   --flying_;
   patience_ = 0;
   queue_.Done(record);
+}
+
+template <class T>
+DISPERSA_OUT_OF_LINE EventView Batch<T>::EventViewOf(int lane) const {
+  const Instant<double> now = lanes_.step.InstantOf(lane, lanes_.at.time_s);
+  return {Lane(lanes_.at.time_s, lane), now.altitude_m, now.qbar_pa, now.mass_kg};
 }
 
 template <class T>

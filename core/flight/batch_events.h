@@ -153,6 +153,7 @@ void Batch<T>::Happen(int lane) {
   StateValues y;
   lanes_.step.ReadLane(lane, y);
   record.AddToDigest(Lane(lanes_.at.time_s, lane), y);
+  record.Note(event, EventViewOf(lane), y);
   if (record.watched) record.WatchEvent(ViewOf(lane));
   // The last event is the last stage's burnout.
   if (slot.NextEvent() == nullptr) EndPowered(lane);
@@ -207,13 +208,20 @@ void Batch<T>::Ignite(int lane, int stage) {
 }
 
 template <class T>
+void Batch<T>::AddLoadsBetweenTicks(int lane, const Instant<double>& now) {
+  const Earth& earth = model_.nominal_plant().environment.earth;
+  lanes_.metrics.AddLoadsOfLane(lane, Lane(lanes_.at.time_s, lane), earth.rotation_rate_rad_s,
+                                LaneOf(lanes_.step.motion(), lane), now);
+}
+
+template <class T>
 void Batch<T>::BurnOut(int lane, int stage) {
   FlightRecord& record = *lanes_.at.slot[lane].record;
   StateValues y;
   lanes_.step.ReadLane(lane, y);
   // Loads peak here, between ticks.
   const Instant<double> now = lanes_.step.InstantOf(lane, lanes_.at.time_s);
-  lanes_.metrics.AddLoadsOfLane(lane, now);
+  AddLoadsBetweenTicks(lane, now);
   lanes_.metrics.EndStage(lane, stage, record.sums);
   record.ripple.Interrupt();
   record.limit_cycle.Interrupt();

@@ -23,6 +23,9 @@ void Batch<T>::Pass() {
   if (cuts_off_in_flight_) CutOff();
   if (definition_.guidance.closed_loop) Guide();
   const M loaded = lanes_.at.live & !lanes_.at.coasting;
+  lanes_.metrics.NoteMaxQ(loaded, lanes_.at.time_s,
+                          model_.nominal_plant().environment.earth.rotation_rate_rad_s, lanes_.step.motion(),
+                          lanes_.step.now());
   lanes_.metrics.AddLoads(loaded, lanes_.step.now());
   lanes_.metrics.AddMoment(loaded, lanes_.step.LargestMomentNow(lanes_.metrics.sums.bending_moment_max_n_m));
   if (has_free_stage_) MeterFree();
@@ -87,6 +90,7 @@ void Batch<T>::LetGo() {
     SetMass(lane);
     SetShape(lane);
     slot.record->AddToDigest(Lane(lanes_.at.time_s, lane), y);
+    slot.record->NoteJettisons(due, EventViewOf(lane), y);
     if (slot.record->watched) slot.record->WatchEvent(ViewOf(lane));
   }
   lanes_.step.EvaluateStart(lanes_.at.time_s);
@@ -108,6 +112,9 @@ void Batch<T>::CutOffAt(int lane, double at_s) {
   if (at_s >=
       Lane(lanes_.step.phase().ignition_s, lane) + record.plant.stacks.data()[slot.stack].burn.duration_s)
     return;
+  StateValues y;
+  lanes_.step.ReadLane(lane, y);
+  record.NoteCutOff(slot.stack, EventViewOf(lane), y);
   record.CutOff(slot.stack, at_s);
   lanes_.step.ShortenBurn(lane, record.plant.stacks.data()[slot.stack].burn);
   lanes_.computer.Commanded(lane, record.plant.stacks.data()[slot.stack].burn.tail_s > 0.0);

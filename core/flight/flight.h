@@ -14,6 +14,7 @@
 #include "core/flight/flight_model.h"
 #include "core/flight/history.h"
 #include "core/flight/metrics.h"
+#include "core/flight/seen_event.h"
 
 namespace dispersa {
 
@@ -32,7 +33,8 @@ struct FlightResult {
   double end_time_s = 0.0;
   int end_stage = 0;  ///< 1-based
   std::string reason;
-  std::vector<double> metrics;  ///< of the vehicle, in the order of MetricNames(), then the campaign's own
+  std::vector<double> metrics;    ///< of the vehicle, in the order of MetricNames(), then the campaign's own
+  std::vector<SeenEvent> events;  ///< in the order of their times
   Digest digest;
   RigidBodyState end_state;
 };

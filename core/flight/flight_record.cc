@@ -43,6 +43,11 @@ std::vector<FlightEvent> EventsOf(const FlightModel& model, const LauncherPlant&
   return events;
 }
 
+double SpeedOverEarth(const Earth& earth, const Vector3& p_EoC_I, const Vector3& v_IC_I) {
+  const Vector3 ground = p_EoC_I.cross(Vector3(0.0, 0.0, -earth.rotation_rate_rad_s));
+  return (v_IC_I - ground).norm();
+}
+
 // On a rail, without thrust.
 constexpr double kLongestSlide_s = 600.0;
 
@@ -280,6 +285,47 @@ bool FlightRecord::Climbs(const double* y) const {
   return s.v_IC_I.dot(NedAxes(place.latitude_rad, place.longitude_rad).col(2)) < 0.0;
 }
 
+void FlightRecord::Note(std::string name, const EventView& view, const Vector3& p_EoC_I,
+                        const Vector3& v_IC_I) {
+  result_.events.push_back({std::move(name), view.time_s, view.altitude_m,
+                            SpeedOverEarth(plant.environment.earth, p_EoC_I, v_IC_I), view.qbar_pa,
+                            view.mass_kg});
+}
+
+void FlightRecord::Note(const FlightEvent& event, const EventView& view, const double* y) {
+  std::string name = NameOf(model_.definition().vehicle, event);
+  const RigidBodyState s = ReadState(y);
+  if (!name.empty()) Note(std::move(name), view, s.p_EoC_I, s.v_IC_I);
+}
+
+void FlightRecord::NoteJettisons(unsigned due, const EventView& view, const double* y) {
+  const RigidBodyState s = ReadState(y);
+  for (int i = 0; i < kMaxJettisons; ++i)
+    if (due >> i & 1u) Note("jettison_" + std::to_string(i + 1), view, s.p_EoC_I, s.v_IC_I);
+}
+
+void FlightRecord::NoteCutOff(int stage, const EventView& view, const double* y) {
+  const RigidBodyState s = ReadState(y);
+  Note("stage_" + std::to_string(stage + 1) + "_cut_off", view, s.p_EoC_I, s.v_IC_I);
+}
+
+void FlightRecord::NoteEnd(Outcome outcome, const EventView& view, const double* y) {
+  const RigidBodyState s = ReadState(y);
+  if (outcome != Outcome::kCompleted)
+    Note("lost", view, s.p_EoC_I, s.v_IC_I);
+  else if (!fall_end_s_)  // else it ends on its fall, at an event of its own
+    Note("injection", view, s.p_EoC_I, s.v_IC_I);
+}
+
+// In its place among the events, which are in the order of their times.
+void FlightRecord::NoteMaxQ() {
+  if (!(sums.q_max_pa > 0.0)) return;
+  const MaxQ<double>& at = sums.max_q;
+  const auto next = std::find_if(result_.events.begin(), result_.events.end(),
+                                 [&](const SeenEvent& event) { return event.time_s >= at.time_s; });
+  result_.events.insert(next, {"max_q", at.time_s, at.altitude_m, at.speed_m_s, sums.q_max_pa, at.mass_kg});
+}
+
 Outcome FlightRecord::Fall(double time_s, double mass_kg, const double* y, const char** reason) {
   const FlightDefinition& definition = model_.definition();
   const Descent& descent = definition.vehicle.descent;
@@ -299,8 +345,14 @@ Outcome FlightRecord::Fall(double time_s, double mass_kg, const double* y, const
   // A body that only descends has its apogee where it begins to.
   free.apogee_time_s = path.apogee ? path.apogee->time_s : time_s;
   free.apogee_altitude_m = path.apogee ? path.apogee->altitude_m : ToGeodetic(earth, s.p_EoC_I).altitude_m;
+  // The way of a point tells no dynamic pressure.
+  if (free.has_apogee)
+    Note("apogee", {free.apogee_time_s, free.apogee_altitude_m, std::nan(""), mass_kg},
+         path.apogee ? path.apogee->p_EoP_I : s.p_EoC_I, path.apogee ? path.apogee->v_IP_I : s.v_IC_I);
   if (path.impact && !at_apogee) {
     const Impact& impact = *path.impact;
+    result_.events.push_back(
+        {"impact", impact.time_s, descent.ground_altitude_m, impact.speed_m_s, std::nan(""), mass_kg});
     free.has_impact = true;
     free.impact_time_s = impact.time_s;
     free.impact_latitude_rad = impact.place.latitude_rad;
@@ -431,9 +483,9 @@ void FlightRecord::Inject(double altitude_m, const double* y) {
 unsigned FlightRecord::LetGo(int stack, unsigned jettisoned, double time_s, double altitude_m,
                              double density_kg_m3, double propellant_kg, double* y) {
   const RigidBodyState s = ReadState(y);
-  const Vector3 ground = s.p_EoC_I.cross(Vector3(0.0, 0.0, -plant.environment.earth.rotation_rate_rad_s));
-  const unsigned due =
-      DueJettisons(plant, stack, jettisoned, {time_s, altitude_m, density_kg_m3, (s.v_IC_I - ground).norm()});
+  const unsigned due = DueJettisons(
+      plant, stack, jettisoned,
+      {time_s, altitude_m, density_kg_m3, SpeedOverEarth(plant.environment.earth, s.p_EoC_I, s.v_IC_I)});
   if (due == 0) return due;
   RigidBodyState left = AfterJettison(plant, stack, jettisoned, jettisoned | due, propellant_kg,
                                       time_s - events.front().time_s, s);
@@ -511,6 +563,7 @@ FlightResult FlightRecord::Result() {
   sums.ripple_rad = ripple.worst_rad();
   sums.limit_cycle_rad = limit_cycle.worst_rad();
   if (guided) sums.guidance = guided->outcome();
+  NoteMaxQ();
   MeasuredFlight measured = Measure(sums, model_.definition());
   result_.metrics = std::move(measured.metrics);
   if (model_.own_metrics()) {

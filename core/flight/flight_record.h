@@ -24,6 +24,11 @@ namespace dispersa {
 
 class RailSlide;
 
+/// A lane at an event, after it.
+struct EventView {
+  double time_s, altitude_m, qbar_pa, mass_kg;
+};
+
 /// Events at their own times, in the order in which they happen: a stage's own, and those of its parts
 /// (part_events.h).
 enum class EventKind { kIgnition, kBurnout, kSeparation, kPart };
@@ -96,6 +101,11 @@ class FlightRecord {
   void AppendRow(const double* row);
   /// An event: a row of the history.
   void WatchEvent(const LaneView& view);
+  /// What its result tells of an event (seen_event.h).
+  void Note(const FlightEvent& event, const EventView& view, const double* y);
+  void NoteJettisons(unsigned due, const EventView& view, const double* y);
+  void NoteCutOff(int stage, const EventView& view, const double* y);
+  void NoteEnd(Outcome outcome, const EventView& view, const double* y);
   /// Notes the state at which the reaction control hands over to the autopilot.
   void HandOver(double time_s, const double* y);
   /// The injection of a flight that completes.
@@ -140,6 +150,8 @@ class FlightRecord {
   class JudgedMotion;
   void SetEquations();
   void StandOnRail();
+  void Note(std::string name, const EventView& view, const Vector3& p_EoC_I, const Vector3& v_IC_I);
+  void NoteMaxQ();
   ReferenceAttitude ReferenceAt(double time_s) const;
   TickSample SampleOf(const LaneView& view) const;
 

@@ -42,7 +42,14 @@ struct TickSums {
   T axial_load_max_g = T(kNoPeak), lateral_load_max_g = T(kNoPeak), bending_moment_max_n_m = T(kNoPeak);
 };
 
+/// The tick of the largest dynamic pressure.
+template <class T>
+struct MaxQ {
+  T time_s, altitude_m, speed_m_s, mass_kg;  ///< speed: over the rotating Earth
+};
+
 struct FlightSums : TickSums<double> {
+  MaxQ<double> max_q{};
   ErrorSums pitch[kMaxStages];    ///< powered flight, by stage
   ErrorSums coast;                ///< pitch
   ErrorSums yaw, roll;            ///< powered flight
@@ -108,6 +115,7 @@ template <class T>
 struct LaneMetrics {
   ErrorSumsOf<T> pitch, coast, yaw, roll, deflection;  ///< pitch: of the current stage
   TickSums<T> sums;
+  MaxQ<T> max_q;
   T roll_rate_peak_rad_s, least_static_margin;  ///< of stages without gimbal
   T gust_bottom_m, gust_top_m;                  ///< altitudes of a gust (none if top <= bottom)
   T has_previous, previous_rad[kBanks][kDrives];
@@ -198,6 +206,15 @@ struct LaneMetrics {
     lanes::Add(coast, lanes, pitch_error_rad, time_s);
   }
 
+  /// Before AddLoads of the same tick.
+  DISPERSA_INLINE void NoteMaxQ(MaskOf<T> lanes, T time_s, double rotation_rate_rad_s,
+                                const RigidMotion<T>& motion, const Instant<T>& now) {
+    const auto is_higher = lanes & (now.qbar_pa > sums.q_max_pa);
+    if (!Any(is_higher)) return;
+    const T omega(rotation_rate_rad_s);
+    const Vector<T> v{Fma(omega, motion.p.y, motion.v.x), Fma(-omega, motion.p.x, motion.v.y), motion.v.z};
+    Blend<T>(is_higher, MaxQ<T>{time_s, now.altitude_m, Sqrt(Dot(v, v)), now.mass_kg}, max_q);
+  }
   /// Loads at a tick outside the coast.
   DISPERSA_INLINE void AddLoads(MaskOf<T> lanes, const Instant<T>& now) {
     Raise(lanes, now.qbar_pa, sums.q_max_pa);
@@ -231,13 +248,19 @@ struct LaneMetrics {
     s.roll = LaneOf(roll, lane);
     s.deflection = LaneOf(deflection, lane);
     ReadLaneValues<T>(sums, lane, static_cast<TickSums<double>&>(s));
+    ReadLaneValues<T>(max_q, lane, s.max_q);
     s.free.roll_rate_peak_rad_s = Lane(roll_rate_peak_rad_s, lane);
     if (const double least = Lane(least_static_margin, lane); least < kNoMargin)
       s.free.least_static_margin = least;
   }
   /// Loads of one lane at a moment between ticks, its burnout.
-  DISPERSA_INLINE void AddLoadsOfLane(int lane, const Instant<double>& now) {
+  DISPERSA_INLINE void AddLoadsOfLane(int lane, double time_s, double rotation_rate_rad_s,
+                                      const RigidMotion<double>& motion, const Instant<double>& now) {
     LaneMetrics<double> one{};
+    one.sums.q_max_pa = Lane(sums.q_max_pa, lane);
+    one.max_q = LaneOf(max_q, lane);
+    one.NoteMaxQ(true, time_s, rotation_rate_rad_s, motion, now);
+    SetLane(max_q, lane, one.max_q);
     one.AddLoads(true, now);
     // All other values of `one` are of no tick, which raises nothing.
     for (unsigned i = 0; i < kValues<T, TickSums<T>>; ++i) {

@@ -44,6 +44,25 @@ void SpinEnd::Times(const StageCourse& course, PartTimes& times) {
   if (end_s < course.times.burnout_s) times.push_back({end_s});  // else with the stage's own burnout
 }
 
+std::string NameOf(const Vehicle& vehicle, const FlightEvent& event) {
+  const std::string stage = "stage_" + std::to_string(event.stage + 1);
+  switch (event.kind) {
+    case EventKind::kIgnition:
+      return event.stage == 0 ? "lift_off" : stage + "_ignition";
+    case EventKind::kBurnout:
+      return stage + "_burnout";
+    case EventKind::kSeparation:
+      // Between two burns of one engine nothing leaves.
+      return vehicle.stages[static_cast<std::size_t>(event.stage) + 1].restarts ? "" : stage + "_separation";
+    case EventKind::kPart:
+      break;
+  }
+  if (Is<BoosterBurnout>(event)) return "booster_" + std::to_string(event.item + 1) + "_burnout";
+  if (Is<BoosterSeparation>(event)) return "boosters_separation";
+  if (Is<RailExit>(event)) return "rail_exit";
+  return Is<SpinEnd>(event) ? stage + "_spin_end" : "";
+}
+
 void AddEvents(const StageCourse& course, bool is_last, std::vector<FlightEvent>& events) {
   std::vector<FlightEvent> during, after;
   PartEvents::Each([&](auto of, int part) {

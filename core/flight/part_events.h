@@ -6,6 +6,7 @@
 // changes no state, and neither digests nor histories hold it.
 #pragma once
 
+#include <string>
 #include <type_traits>
 #include <vector>
 
@@ -49,7 +50,7 @@ struct BoosterBurnout {
   static void Happen(Batch& batch, int lane, const FlightEvent& event) {
     auto& m = batch.lanes();
     FlightRecord& record = *m.at.slot[lane].record;
-    m.metrics.AddLoadsOfLane(lane, m.step.InstantOf(lane, m.at.time_s));  // they peak here, between ticks
+    batch.AddLoadsBetweenTicks(lane, m.step.InstantOf(lane, m.at.time_s));  // they peak here
     // Commands of one unit turn other nozzles, or move the body less, from here on: no swing of a nozzle.
     record.ripple.Interrupt();
     record.limit_cycle.Interrupt();
@@ -133,6 +134,9 @@ bool Is(const FlightEvent& event) {
     PartEvents::At(event.part, [&](auto of) { is = std::is_same_v<decltype(of), Event>; });
   return is;
 }
+
+/// Its name in results (SeenEvent); empty where nothing is seen to happen.
+std::string NameOf(const Vehicle& vehicle, const FlightEvent& event);
 
 /// All events of a stage in their order.
 void AddEvents(const StageCourse& course, bool is_last, std::vector<FlightEvent>& events);

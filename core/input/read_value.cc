@@ -106,9 +106,32 @@ std::string JoinWords(const std::vector<std::string>& words) {
   return text;
 }
 
+namespace {
+
+/// "lh" of "latin_hypercube"; of one word nothing.
+std::string InitialsOf(const std::string& words) {
+  if (words.find('_') == std::string::npos) return "";
+  std::string initials = words.substr(0, 1);
+  for (std::size_t i = 1; i < words.size(); ++i)
+    if (words[i - 1] == '_') initials += words[i];
+  return initials;
+}
+
+/// Whether somebody may write so who means it: "lhs" is Latin hypercube sampling, and a column of cases.csv
+/// has a prefix.
+bool StandsFor(const std::string& word, const std::string& meant) {
+  const std::string initials = InitialsOf(meant);
+  return word == "metric_" + meant || word == "input_" + meant ||
+         (!initials.empty() && (word == initials || word == initials + "s"));
+}
+
+}  // namespace
+
 std::string Nearest(const std::string& word, const std::vector<std::string>& words) {
   constexpr std::size_t kLongestWord = 200;
   if (word.size() > kLongestWord) return "";
+  for (const std::string& candidate : words)
+    if (StandsFor(word, candidate)) return candidate;
   std::size_t best_distance = std::max<std::size_t>(2, word.size() / 4) + 1;
   std::string best;
   for (const std::string& candidate : words) {

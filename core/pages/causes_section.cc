@@ -31,9 +31,10 @@ std::string Bar(const Driver& driver) {
       "width=\"{:.1f}\" "
       "height=\"10\"/><path class=\"whisker\" d=\"M{:.1f} 5H{:.1f}\"/></svg></li>\n",
       names, HtmlText(driver.feature),
-      std::isfinite(driver.partial) ? ", partial " + FixedText(driver.partial, 2) : std::string(), correlated,
-      Share(driver.index), Share(driver.low), Share(driver.high), 1000.0 * driver.index, 1000.0 * driver.low,
-      1000.0 * driver.high);
+      std::isfinite(driver.partial) ? ", partial rank correlation " + FixedText(driver.partial, 2)
+                                    : std::string(),
+      correlated, Share(driver.index), Share(driver.low), Share(driver.high), 1000.0 * driver.index,
+      1000.0 * driver.low, 1000.0 * driver.high);
 }
 
 }  // namespace

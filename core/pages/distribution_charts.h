@@ -13,6 +13,8 @@ namespace dispersa {
 /// no case defines the metric, a sentence.
 std::string DistributionFigures(const std::string& metric, const CampaignSummary& summary,
                                 const CaseColumns& cases);
+/// The name of their place on the page.
+inline std::string DistributionId(const std::string& metric) { return "of-" + metric; }
 
 /// Where the completed cases come down: down-range against cross-range.
 std::string ImpactFigures(const CampaignSummary& summary, const CaseColumns& cases);

@@ -7,6 +7,7 @@
 #include <vector>
 
 #include "core/flight/engine_version.h"
+#include "core/pages/distribution_charts.h"
 #include "core/pages/glossary.h"
 #include "core/pages/html_parts.h"
 #include "core/pages/report_sections.h"
@@ -92,30 +93,68 @@ int Rank(const std::string& verdict) {
   return verdict == "fail" ? 0 : verdict == "not_evidence" ? 1 : verdict == "inconclusive" ? 2 : 3;
 }
 
+/// `notes`: what must be known beside it.
 std::string LimitCell(const RequirementSummary& requirement, const MetricInfo& info,
-                      const std::string& before) {
-  std::string cell = requirement.id.empty() ? "" : Code(requirement.id) + " ";
+                      const std::vector<std::string>& notes) {
+  std::string cell = "<span class=\"line\"><span>";
+  if (!requirement.id.empty()) cell += Code(requirement.id) + " ";
   std::string limit = HtmlText(LimitWords(requirement, info.unit));
   // A unit alone on the next line reads as a number without one.
   if (const std::size_t at = limit.rfind(" " + HtmlText(info.unit)); !info.unit.empty() && at < limit.size())
     limit.replace(at, 1, "&nbsp;");
-  cell += "<b>" + HtmlText(info.title) + "</b> " + limit;
-  if (requirement.every_case) cell += " in every case";
-  if (!before.empty()) cell += "<span class=\"definition\"><b>" + HtmlText(before) + "</b></span>";
+  cell += fmt::format("<b><a href=\"#{}\">{}</a></b> {}", DistributionId(requirement.metric),
+                      HtmlText(info.title), limit);
+  cell += "</span>";
+  // On a wide screen what fits on the line; the section of requirements has all of it.
   std::string words;
   for (const std::string& text : {requirement.source, requirement.rationale})
-    if (!text.empty()) words += (words.empty() ? "" : " · ") + HtmlText(text);
-  // One line; the section of requirements has all of it.
-  if (!words.empty()) cell += "<span class=\"definition clip\">" + words + "</span>";
+    if (!text.empty()) words += " · " + HtmlText(text);
+  if (!words.empty()) cell += "<span class=\"soft clip\">&nbsp;" + words + "</span>";
+  cell += "</span>";
+  for (const std::string& note : notes)
+    if (!note.empty()) cell += "<span class=\"definition\"><b>" + HtmlText(note) + "</b></span>";
   return cell;
 }
 
-std::string MarginCell(const RequirementSummary& requirement, const MetricInfo& info) {
-  if (!requirement.bound) return "–";
-  const std::string unit = info.unit.empty() ? "" : " " + HtmlText(info.unit);
-  return fmt::format("{}{}<span class=\"definition\">{} {}</span>",
-                     RoundedText(*requirement.margin, Rounding::kDown, 0.0), unit,
-                     PercentText(requirement.probability), BoundWords(requirement, HtmlText(info.unit)));
+/// Of the failures, those that broke no limit.
+std::string FailuresCell(const RequirementSummary& requirement) {
+  std::string cell = fmt::format("{} of {}", requirement.failures, requirement.n);
+  for (const auto& [count, word] :
+       {std::pair(requirement.lost_flights, "lost"), std::pair(requirement.not_measured, "not measured")})
+    if (count > 0) cell += fmt::format("<span class=\"definition\">{} {}</span>", count, word);
+  return cell;
+}
+
+/// The share of flights that meet it, as far as these flights show.
+std::string ShownCell(const RequirementSummary& requirement) {
+  if (!requirement.success_lower) return "–";
+  if (requirement.verdict == "fail")
+    return "≤ " + HtmlText(ShareText(*requirement.success_upper, Rounding::kUp, requirement.probability));
+  return "≥ " + HtmlText(ShareText(*requirement.success_lower, Rounding::kDown, requirement.probability));
+}
+
+/// A value of the metric with the digits that tell it from the limit.
+std::string ValueCell(const RequirementSummary& requirement, double value) {
+  return RoundedText(value, Rounding::kNearest, LimitBeside(requirement, value));
+}
+
+std::string NominalCell(const CampaignSummary& summary, const RequirementSummary& requirement) {
+  if (!summary.nominal) return "–";
+  if (summary.nominal->outcome != Outcome::kCompleted) return "lost";
+  return ValueCell(requirement, summary.nominal->metrics[summary.metric_list.PositionOf(requirement.metric)]);
+}
+
+std::string MedianCell(const CampaignSummary& summary, const RequirementSummary& requirement) {
+  for (const MetricSummary& metric : summary.metrics)
+    if (metric.name == requirement.metric) return ValueCell(requirement, metric.statistics.p50);
+  return "–";
+}
+
+std::string WorstCell(const RequirementSummary& requirement) {
+  if (!requirement.worst_completed) return "–";
+  return fmt::format("{} <span class=\"soft\">({})</span>",
+                     ValueCell(requirement, requirement.worst_completed->value),
+                     requirement.worst_completed->case_index);
 }
 
 /// "required before the flights: below 0.1 for 99.73 % of flights at 10 % risk; verdict: fail".
@@ -151,15 +190,18 @@ std::string RequirementsTable(const CampaignSummary& summary) {
     return Rank(standing.requirements[a].verdict) < Rank(standing.requirements[b].verdict);
   });
   const std::vector<int> successors = Successors(summary);
-  HtmlTable table("Verdict|!Requirement|Result|#" + Term("margin", "Margin") + "|#" +
-                  Term("attained risk", "Attained risk"));
+  HtmlTable table("Verdict|!Requirement|#Failures|#Shown|#Required|#Nominal|#Median|#Worst (case)|#" +
+                  Term("bound", "Bound") + "|#" + Term("margin", "Margin"));
   for (std::size_t d = 0; d < successors.size(); ++d) {
     const Standing::Dropped& dropped = standing.dropped[d];
     if (successors[d] >= 0) continue;
-    table.Row({VerdictBadge("post hoc"), HtmlText(dropped.words),
-               fmt::format("Left out after the first flight. Its last verdict: {}.",
-                           dropped.verdict.empty() ? "none" : dropped.verdict),
-               "–", "–"});
+    table.Row(
+        {VerdictBadge("post hoc"),
+         HtmlText(dropped.words) +
+             fmt::format("<span class=\"definition\"><b>left out after the first flight; its last verdict: "
+                         "{}</b></span>",
+                         dropped.verdict.empty() ? "none" : dropped.verdict),
+         "–", "–", "–", "–", "–", "–", "–", "–"});
   }
   for (const std::size_t i : order) {
     const RequirementSummary& requirement = summary.requirements[i];
@@ -169,13 +211,15 @@ std::string RequirementsTable(const CampaignSummary& summary) {
     for (std::size_t d = 0; d < successors.size(); ++d)
       if (successors[d] == static_cast<int>(i)) before = BeforeWords(standing.dropped[d]);
     table.Row({VerdictBadge(one.post_hoc && one.verdict == "not_evidence" ? "post hoc" : one.verdict),
-               LimitCell(requirement, info, before), HtmlText(JudgedSentence(requirement, one)),
-               MarginCell(requirement, info),
-               // A probability that doubles round to 0 is small, not 0.
-               requirement.attained_risk ? HtmlText(ShareText(std::max(*requirement.attained_risk, 1e-300)))
-                                         : "–"});
+               LimitCell(requirement, info, {before, one.post_hoc ? "" : one.reason}),
+               FailuresCell(requirement), ShownCell(requirement),
+               requirement.every_case ? "every case" : HtmlText(PercentText(requirement.probability)),
+               NominalCell(summary, requirement), MedianCell(summary, requirement), WorstCell(requirement),
+               requirement.bound ? BoundText(requirement) : "–",
+               requirement.bound ? RoundedText(*requirement.margin, Rounding::kDown, 0.0) : "–"});
   }
-  return table.Html("first judged");
+  constexpr std::size_t kMany = 12;  // rows, from which on they stand closer
+  return table.Html(order.size() > kMany ? "first judged dense" : "first judged");
 }
 
 /// What must be known before any number, each thing once. The changes of requirements stand in their rows.

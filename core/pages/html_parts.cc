@@ -78,7 +78,7 @@ std::string HtmlTable::Html(std::string_view table_class) const {
                                  : fmt::format("<th scope=\"col\"{}>{}</th>", style, column.title);
   }
   head = titled ? "<thead><tr>" + head + "</tr></thead>\n" : "";
-  return fmt::format("<div class=\"scroll\"><table{}>{}<tbody>\n{}</tbody></table></div>\n",
+  return fmt::format("<div class=\"scroll\" tabindex=\"0\"><table{}>{}<tbody>\n{}</tbody></table></div>\n",
                      table_class.empty() ? "" : fmt::format(" class=\"{}\"", table_class), head, rows_);
 }
 

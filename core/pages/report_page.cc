@@ -16,7 +16,7 @@ namespace {
 
 constexpr char kNavigation[] =
     "<nav><a href=\"#requirements\">Requirements</a><a href=\"#outcomes\">Outcomes</a><a "
-    "href=\"#envelope\">Envelope</a>"
+    "href=\"#events\">Events</a><a href=\"#envelope\">Envelope</a>"
     "<a href=\"#distributions\">Distributions</a><a href=\"#causes\">Causes</a><a href=\"#worst\">Worst "
     "cases</a><a "
     "href=\"#nominal\">Nominal flight</a>"
@@ -29,6 +29,12 @@ constexpr char kNavigation[] =
     "<code>summary.json</code> "
     "have them.</p>\n";
 
+/// Of the first element, so that links lead to it.
+std::string WithId(std::string html, const std::string& id) {
+  html.insert(html.find_first_of(" >"), fmt::format(" id=\"{}\"", id));
+  return html;
+}
+
 }  // namespace
 
 std::string ReportPage(const Campaign& campaign, const CampaignSummary& summary, const CaseColumns& cases,
@@ -39,6 +45,7 @@ std::string ReportPage(const Campaign& campaign, const CampaignSummary& summary,
   page += kNavigation;
   page += RequirementsSection(summary);
   page += OutcomesSection(summary);
+  page += EventsSection(campaign, summary);
 
   page += "<h2 id=\"envelope\">Envelope of the dispersed flights</h2>\n";
   const bool flown_again = histories.nominal_history.rows() > 0;
@@ -78,7 +85,7 @@ std::string ReportPage(const Campaign& campaign, const CampaignSummary& summary,
       "fall below the allowed share before the limit; the " +
       Term("bound") + " is the value that decides.</p>\n<div class=\"figures\">\n";
   for (const WorstCases& worst : summary.worst_cases)
-    page += DistributionFigures(worst.metric, summary, cases);
+    page += WithId(DistributionFigures(worst.metric, summary, cases), DistributionId(worst.metric));
   page += "</div>\n";
   if (summary.flown > 0 && campaign.course.ends == FlightEnd::kImpact)
     page +=

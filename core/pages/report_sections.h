@@ -14,6 +14,8 @@ namespace dispersa {
 std::string FirstPage(const Campaign& campaign, const CampaignSummary& summary);
 std::string RequirementsSection(const CampaignSummary& summary);
 std::string OutcomesSection(const CampaignSummary& summary);
+/// Nothing for results without events, which are of an older release.
+std::string EventsSection(const Campaign& campaign, const CampaignSummary& summary);
 std::string WorstCasesSection(const CampaignSummary& summary, const FlightHistories& histories);
 std::string CausesSection(const CampaignSummary& summary);
 std::string StatisticsSection(const CampaignSummary& summary);

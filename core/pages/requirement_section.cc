@@ -199,7 +199,10 @@ std::string Card(const RequirementSummary& requirement) {
   if (requirement.bound) {
     html += "<p class=\"value\">" + HtmlText(BoundSentence(requirement, info.unit)) + "</p>\n";
   } else if (!shows_nothing) {
-    html += "<p class=\"sentence\">No " + Term("bound") + ": too few cases or too many lost.</p>\n";
+    html += "<p class=\"sentence\">No " + Term("bound") +
+            (requirement.accepts ? ": in the flight that would be it the metric is undefined, or it was lost"
+                                 : ": with so few cases no flight bounds the required share") +
+            ".</p>\n";
   }
   html += "<dl class=\"facts\">";
   html += Fact("cases", std::to_string(requirement.n));
@@ -214,14 +217,18 @@ std::string Card(const RequirementSummary& requirement) {
                                  ShareText(*requirement.success_upper, Rounding::kUp))
                : requirement.verdict == "study" ? "none: design study"
                                                 : "none: no evidence");
+  // A probability that doubles round to 0 is small, not 0.
+  if (requirement.attained_risk)
+    html += Fact(Term("attained risk"), HtmlText(ShareText(std::max(*requirement.attained_risk, 1e-300))));
   if (!shows_nothing) {
     html += Fact("plan", PlanWords(requirement));
     html += Fact(
         "decision rule",
         fmt::format(
             "{}; {}",
-            requirement.accepts ? fmt::format("pass with {} failures or fewer", *requirement.accepts)
-                                : "no number of failures passes",
+            !requirement.accepts        ? "no number of failures passes"
+            : *requirement.accepts == 0 ? "pass without any failure"
+                                        : fmt::format("pass with {} or fewer failures", *requirement.accepts),
             requirement.rejects ? fmt::format("fail with {} or more", *requirement.rejects) : "none fails"));
   }
   return html + "</dl>\n" + LooksTable(requirement) + "</section>\n";

@@ -35,6 +35,16 @@ CaseColumns ReadColumns(const ResultFolder& folder, const std::vector<int>& want
     std::copy(result.metrics.begin(), result.metrics.end(), row.begin());
     for (std::size_t i = 0; i < places.size(); ++i) row[metrics + i] = result.inputs[places[i]];
     file->Append(row);
+    for (const SeenEvent& event : result.events) {
+      auto of = std::find_if(cases.events.begin(), cases.events.end(),
+                             [&](const CaseColumns::Event& known) { return known.name == event.name; });
+      if (of == cases.events.end())
+        of = cases.events.insert(
+            of, {event.name, std::make_shared<ColumnFile>(folder.directory(), SeenEvent::kValues.size())});
+      std::vector<double> values;
+      for (const auto value : SeenEvent::kValues) values.push_back(event.*value);
+      of->values->Append(values);
+    }
   });
   cases.metrics.resize(metrics);
   for (const std::size_t i : folder.metrics()) cases.metrics[i] = CaseColumn(file, i);

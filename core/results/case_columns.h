@@ -4,6 +4,7 @@
 #include <cstddef>
 #include <cstdint>
 #include <functional>
+#include <memory>
 #include <string>
 #include <vector>
 
@@ -23,6 +24,12 @@ struct CaseColumns {
       metrics;  ///< one for each metric of the vehicle (empty if its control law does not measure it)
   std::vector<std::string> own_metrics;  ///< names of the campaign's own metrics, the last ones of `metrics`
   bool are_alike = false;                ///< two flights or more, and all have one digest
+  /// An event: SeenEvent::kValues of each flight in which it happened.
+  struct Event {
+    std::string name;
+    std::shared_ptr<ColumnFile> values;
+  };
+  std::vector<Event> events;             ///< in the order in which they were first seen
   std::vector<LostFlight> lost_flights;  ///< the first kListedLostFlights lost flights
 
   std::size_t rows() const { return index.size(); }

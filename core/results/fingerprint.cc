@@ -50,6 +50,10 @@ Digest Fingerprint(const CaseResult& result, bool with_inputs_digest) {
     words.push_back(std::bit_cast<double>(result.inputs_digest.high));
     words.push_back(std::bit_cast<double>(result.inputs_digest.low));
   }
+  for (const SeenEvent& event : result.events) {
+    Append(event.name, words);
+    for (const auto value : SeenEvent::kValues) words.push_back(AsStored(event.*value));
+  }
   return DigestOf(words);
 }
 

@@ -57,12 +57,45 @@ std::string SelectCases(const RowShape& shape, const char* table = "cases") {
          ", digest, row_digest FROM " + table;
 }
 
+constexpr char kInOrder[] = " ORDER BY case_index";
+
 bool HasTable(Database& database, const std::string& name) {
   Statement select = database.Prepare("SELECT 1 FROM sqlite_master WHERE type = 'table' AND name = ?");
   return select.Run(name);
 }
 
-constexpr char kNominal[] = "nominal";
+constexpr char kNominal[] = "nominal", kEvents[] = "events";
+
+/// Events of cases in ascending order, read beside their rows. Folders of older releases have none.
+class EventsBeside {
+ public:
+  EventsBeside(Database& database, const RowShape& shape, std::uint64_t first_case = 0) {
+    if (shape.version < 5) return;
+    std::string columns;
+    for (const char* name : kEventValueNames) columns += fmt::format(", {}", name);
+    select_.emplace(database, fmt::format("SELECT case_index, event{} FROM {} WHERE case_index >= ? ORDER BY "
+                                          "case_index, place",
+                                          columns, kEvents));
+    has_row_ = select_->Run(first_case);
+  }
+  std::vector<SeenEvent> Of(std::uint64_t case_index) {
+    std::vector<SeenEvent> events;
+    for (; has_row_ && CaseOfRow() <= case_index; has_row_ = select_->Step()) {
+      if (CaseOfRow() < case_index) continue;
+      SeenEvent& event = events.emplace_back();
+      event.name = select_->Text(1);
+      int column = 2;
+      for (const auto value : SeenEvent::kValues) event.*value = select_->Real(column++);
+    }
+    return events;
+  }
+
+ private:
+  std::uint64_t CaseOfRow() const { return static_cast<std::uint64_t>(select_->Integer(0)); }
+
+  std::optional<Statement> select_;
+  bool has_row_ = false;
+};
 
 /// Vehicles of few stages, and without clusters of engines, have fewer inputs (ColumnClass).
 std::size_t ClassOf(const std::vector<std::string>& inputs) {
@@ -194,6 +227,12 @@ void CreateTables(Database& database, const Campaign& campaign) {
   Statement constant = database.Prepare(fmt::format("INSERT INTO {} VALUES (?, ?)", kNominal));
   for (const std::size_t input : shape.inputs.constants())
     constant.Run(InputColumns()[input].name, shape.inputs.constant(input));
+  std::string values;
+  for (const char* name : kEventValueNames) values += fmt::format(", {} REAL", name);
+  database.Execute(fmt::format(
+      "CREATE TABLE {} (case_index INTEGER NOT NULL, place INTEGER NOT NULL, event TEXT NOT NULL{}, "
+      "PRIMARY KEY (case_index, place)) WITHOUT ROWID",
+      kEvents, values));
   database.Execute("CREATE TABLE quarantined (case_index INTEGER PRIMARY KEY, reason TEXT NOT NULL)");
   database.Execute("CREATE TABLE provenance (key TEXT PRIMARY KEY, value TEXT NOT NULL)");
   database.Execute(
@@ -277,7 +316,7 @@ Digest RowDigestIn(const std::string& text) {
 }
 
 /// None if the row is damaged.
-std::optional<CaseResult> ReadRow(const Statement& row, const RowShape& shape) {
+std::optional<CaseResult> ReadRow(const Statement& row, const RowShape& shape, EventsBeside& events) {
   CaseResult result;
   result.case_index = static_cast<std::uint64_t>(row.Integer(0));
   result.end_time_s = row.Real(2);
@@ -292,13 +331,15 @@ std::optional<CaseResult> ReadRow(const Statement& row, const RowShape& shape) {
   const std::optional<Digest> digest = ParseDigest(row.Text(column));
   if (!ParseOutcome(row.Text(1), &result.outcome) || !digest) return std::nullopt;
   result.digest = *digest;
+  result.events = events.Of(result.case_index);
   // Whatever a disk, a copy or an editor changed: no number of it reaches a table or a verdict.
   if (RowDigestText(result, shape) != row.Text(column + 1)) return std::nullopt;
   return result;
 }
 
-CaseResult ReadCase(const Statement& row, const RowShape& shape, const fs::path& directory) {
-  if (auto result = ReadRow(row, shape)) return *std::move(result);
+CaseResult ReadCase(const Statement& row, const RowShape& shape, EventsBeside& events,
+                    const fs::path& directory) {
+  if (auto result = ReadRow(row, shape, events)) return *std::move(result);
   throw ResultError(Kind::kFile, fmt::format("{}: the row of case {} is damaged; --resume flies it again",
                                              (directory / kDatabaseName).string(), row.Integer(0)));
 }
@@ -493,10 +534,11 @@ void ResultFolder::MeasureOwn(const Campaign& campaign) {
   if (!places && !has_unmeasured_) CreateCases(*database_, kUnmeasured, OfVehicle(then));
   {
     const RowShape to = places ? ShapeOf(campaign) : OfVehicle(then);
-    Statement select = database_->Prepare(SelectCases(then, "cases_then"));
+    Statement select = database_->Prepare(SelectCases(then, "cases_then") + kInOrder);
+    EventsBeside events(*database_, then);
     Statement insert = database_->Prepare(InsertInto(places ? "cases" : kUnmeasured, to));
     while (select.Step()) {
-      CaseResult result = ReadCase(select, then, directory_);
+      CaseResult result = ReadCase(select, then, events, directory_);
       std::vector<double> own;
       for (const std::size_t place : places.value_or(Positions()))
         own.push_back(result.metrics[of_vehicle + place]);
@@ -516,14 +558,15 @@ void ResultFolder::MeasureOwn(const Campaign& campaign) {
 
 std::vector<std::uint64_t> ResultFolder::DamagedRows() const {
   std::vector<std::uint64_t> damaged;
-  Statement select = database_->Prepare(SelectCases(shape_));
+  Statement select = database_->Prepare(SelectCases(shape_) + kInOrder);
+  EventsBeside events(*database_, shape_);
   while (select.Step())
-    if (!ReadRow(select, shape_)) damaged.push_back(static_cast<std::uint64_t>(select.Integer(0)));
+    if (!ReadRow(select, shape_, events)) damaged.push_back(static_cast<std::uint64_t>(select.Integer(0)));
   return damaged;
 }
 
 void ResultFolder::Remove(const std::vector<std::uint64_t>& cases) {
-  for (const char* table : {"cases", "execution", kUnmeasured}) {
+  for (const char* table : {"cases", "execution", kEvents, kUnmeasured}) {
     if (table == kUnmeasured && !has_unmeasured_) continue;
     Statement remove = database_->Prepare(fmt::format("DELETE FROM {} WHERE case_index = ?", table));
     for (const std::uint64_t case_index : cases) remove.Run(case_index);
@@ -587,6 +630,9 @@ void ResultFolder::Store(std::span<const CaseResult> results, std::span<const Ex
 std::size_t ResultFolder::Insert(std::span<const CaseResult> results) {
   Statement stored = database_->Prepare("SELECT digest FROM cases WHERE case_index = ?");
   Statement insert = database_->Prepare(InsertInto("cases", shape_));
+  Statement forget = database_->Prepare(fmt::format("DELETE FROM {} WHERE case_index = ?", kEvents));
+  Statement event =
+      database_->Prepare(fmt::format("INSERT INTO {} VALUES (?, ?, ?, ?, ?, ?, ?, ?)", kEvents));
   Statement lift = database_->Prepare("DELETE FROM quarantined WHERE case_index = ?");
   std::size_t added = 0;
   // In order, so that fewer pages are split.
@@ -603,6 +649,11 @@ std::size_t ResultFolder::Insert(std::span<const CaseResult> results) {
     }
     RequireFits(result, shape_);
     InsertRow(insert, result, shape_);
+    forget.Run(index);  // of a case that was flown before, without all of the campaign's own metrics
+    std::int64_t place = 0;
+    for (const SeenEvent& seen : result.events)
+      event.Run(index, place++, seen.name, seen.time_s, seen.altitude_m, seen.speed_m_s, seen.qbar_pa,
+                seen.mass_kg);
     lift.Run(index);
     if (has_unmeasured_) TakeTheUnmeasured(*database_, index, result.digest.Hex());
     ++added;
@@ -719,12 +770,14 @@ CaseResult ResultFolder::Load(std::uint64_t case_index) const {
   if (!select.Run(case_index)) {
     throw InputError(fmt::format("{}: has no result of case {}", directory_.string(), case_index));
   }
-  return ReadCase(select, shape_, directory_);
+  EventsBeside events(*database_, shape_, case_index);
+  return ReadCase(select, shape_, events, directory_);
 }
 
 void ResultFolder::ForEach(const std::function<void(const CaseResult&)>& callback) const {
-  Statement select = database_->Prepare(SelectCases(shape_) + " ORDER BY case_index");
-  while (select.Step()) callback(ReadCase(select, shape_, directory_));
+  Statement select = database_->Prepare(SelectCases(shape_) + kInOrder);
+  EventsBeside events(*database_, shape_);
+  while (select.Step()) callback(ReadCase(select, shape_, events, directory_));
 }
 
 }  // namespace dispersa

@@ -26,8 +26,9 @@ class Database;
 
 /// Of the tables, as SQLite's user_version. 1 (stored as 0): without `audits`. 2: with it; rows hold all
 /// inputs. 3: rows hold those that the campaign sets, and the table `nominal` the others. 4: a row digest
-/// covers the metrics that the version knows (Metric::since), so that later ones damage no row.
-inline constexpr int kRowVersion = 4;
+/// covers the metrics that the version knows (Metric::since), so that later ones damage no row. 5: with
+/// `events`, which the row digest covers.
+inline constexpr int kRowVersion = 5;
 
 /// What a table of cases holds beside outcomes and digests.
 struct RowShape {

@@ -13,6 +13,7 @@
 #include <nlohmann/json.hpp>
 #include <string>
 
+#include "core/flight/engine_version.h"
 #include "core/results/metric_catalogue.h"
 #include "services/log/log.h"
 #include "services/program/option_values.h"
@@ -39,7 +40,9 @@ std::string NextStep(const CampaignSummary& summary) {
     case StandingVerdict::kFail:
       return "read the causes in the report; 'dispersa search' finds the smallest dispersion that fails";
     case StandingVerdict::kIncomplete:
-      return "the same command with --resume flies what is missing";
+      return summary.engine == EngineVersion()
+                 ? "the same command with --resume flies what is missing"
+                 : "this engine cannot go on: fly the campaign into a new folder";
   }
   return "";
 }

@@ -44,7 +44,8 @@ void PrintJson(const CaseResult& result, const RowInputs& rows, const Campaign& 
       {"row_inputs", std::move(in_rows)},
       {"inputs_digest", result.inputs_digest.Hex()},
       {"metrics", MetricsJson(result.metrics, MetricsOf(campaign), ResultMetrics(campaign))},
-      {"digest", result.digest.Hex()}};
+      {"digest", result.digest.Hex()},
+      {"events", EventsJson(result.events)}};
   fmt::print("{}\n", json.dump(2));
 }
 
@@ -54,13 +55,16 @@ void PrintText(std::FILE* stream, const CaseResult& result, const RowInputs& row
   const std::vector<double> all = rows.AllOf(result.inputs);
   for (std::size_t i = 0; i < all.size(); ++i) {
     if (all[i] == nominal[i]) continue;
-    fmt::print(stream, "{:<44} {}\n", "input_" + InputColumns()[i].name, ShortestText(all[i]));
+    fmt::print(stream, "{:<44} {}\n", "input_" + InputColumns()[i].name, ReadableText(all[i]));
   }
   const MetricList metrics = MetricsOf(campaign);
   for (const std::size_t i : MeasuredMetrics(campaign)) {
-    const std::string value = ShortestText(result.metrics[i]);
-    fmt::print(stream, "{:<44} {}\n", "metric_" + metrics.NameAt(i), value.empty() ? "-" : value);
+    fmt::print(stream, "{:<44} {}\n", "metric_" + metrics.NameAt(i), ReadableText(result.metrics[i]));
   }
+  for (const SeenEvent& event : result.events)
+    fmt::print(stream, "{:<44} {} s, {} m, {} m/s, {} kg\n", "event_" + event.name,
+               ReadableText(event.time_s), ReadableText(event.altitude_m), ReadableText(event.speed_m_s),
+               ReadableText(event.mass_kg));
 }
 
 ExitCode FlyOne(const FlyOptions& options, const GlobalOptions& global) {

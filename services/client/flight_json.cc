@@ -31,6 +31,15 @@ nlohmann::ordered_json MetricsJson(const std::vector<double>& metrics, const Met
   return json;
 }
 
+nlohmann::ordered_json EventsJson(const std::vector<SeenEvent>& events) {
+  return ListOf(events, [](const SeenEvent& event) {
+    nlohmann::ordered_json json = {{"event", event.name}};
+    for (std::size_t i = 0; i < kEventValueNames.size(); ++i)
+      json[kEventValueNames[i]] = Number(event.*SeenEvent::kValues[i]);
+    return json;
+  });
+}
+
 std::string OutcomeText(const CaseResult& result) {
   if (result.outcome == Outcome::kCompleted) return OutcomeName(result.outcome);
   return fmt::format("{} at {:.2f} s in stage {}: {}", OutcomeName(result.outcome), result.end_time_s,

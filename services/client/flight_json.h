@@ -16,6 +16,9 @@ nlohmann::ordered_json InputsJson(const RowInputs& rows, const CaseResult& resul
 nlohmann::ordered_json MetricsJson(const std::vector<double>& metrics, const MetricList& list,
                                    const std::vector<std::size_t>& positions);
 
+/// A list of {"event": "lift_off", "time_s": 0, ...}.
+nlohmann::ordered_json EventsJson(const std::vector<SeenEvent>& events);
+
 /// "completed", or the outcome with time, stage and reason.
 std::string OutcomeText(const CaseResult& result);
 

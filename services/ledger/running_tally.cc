@@ -43,8 +43,8 @@ std::vector<RequirementStanding> RunningTally::Standings() const {
   std::vector<RequirementStanding> standings;
   for (std::size_t i = 0; i < requirements_.size(); ++i) {
     const Requirement& requirement = requirements_[i];
-    RequirementStanding standing{requirement.metric, RequirementLine(requirement), n_, failures_[i],
-                                 independent_ ? "inconclusive" : "study"};
+    RequirementStanding standing{requirement.metric, LineWords(RequirementLine(requirement)), n_,
+                                 failures_[i], independent_ ? "inconclusive" : "study"};
     if (independent_ && n_ > 0) {
       const double confidence = 1.0 - requirement.consumer_risk, failing = 1.0 - requirement.probability;
       if (ClopperPearsonUpper(failures_[i], n_, confidence) <= failing) standing.so_far = "pass";

@@ -15,7 +15,7 @@ namespace dispersa {
 /// Counts over the cases flown so far, in any order. For display only: no verdict uses it.
 struct RequirementStanding {
   std::string metric;       ///< without the prefix
-  std::string requirement;  ///< RequirementLine()
+  std::string requirement;  ///< in words
   std::int64_t n = 0;
   std::int64_t failures = 0;  ///< beyond the limit, undefined, or a lost flight
   /// From the exact binomial limits of these n cases alone: "pass", "fail" or "inconclusive". "study": the

@@ -25,6 +25,15 @@ void Members(Is<FlyOrder> auto& plain, Is<idl::AssignmentV2> auto& wire, auto& e
   each(plain.cases, wire.case_indices());
 }
 
+void Members(Is<SeenEvent> auto& plain, Is<idl::SeenEventV1> auto& wire, auto& each) {
+  each.EventName(plain.name, wire.name());
+  each(plain.time_s, wire.time_s());
+  each(plain.altitude_m, wire.altitude_m());
+  each(plain.speed_m_s, wire.speed_m_s());
+  each(plain.qbar_pa, wire.qbar_pa());
+  each(plain.mass_kg, wire.mass_kg());
+}
+
 void Members(Is<FlownCase> auto& plain, Is<idl::FlownCaseV3> auto& wire, auto& each) {
   each(plain.result.case_index, wire.case_index());
   each(plain.attempt, wire.attempt());
@@ -38,6 +47,7 @@ void Members(Is<FlownCase> auto& plain, Is<idl::FlownCaseV3> auto& wire, auto& e
   each(plain.result.metrics, wire.metrics());
   each(plain.result.digest.high, wire.digest_high());
   each(plain.result.digest.low, wire.digest_low());
+  each(plain.result.events, wire.events());
 }
 
 void Members(Is<WorkerStatus> auto& plain, Is<idl::WorkerStatusV2> auto& wire, auto& each) {
@@ -147,10 +157,11 @@ struct ToWire {
   void Outcome(const FlownCase& plain, idl::FlownCaseV3& wire) {
     wire.outcome(plain.is_quarantined ? kQuarantinedOutcome : OutcomeName(plain.result.outcome));
   }
+  void EventName(const std::string& plain, std::string& wire) { wire = plain; }
 };
 
 struct FromWire {
-  bool is_known = true;  ///< every enumerator and outcome
+  bool is_known = true;  ///< every enumerator and outcome; every event has the form of a name
 
   template <typename Plain, typename Wire>
   void operator()(Plain& plain, const Wire& wire) {
@@ -169,6 +180,10 @@ struct FromWire {
   void Outcome(FlownCase& plain, const idl::FlownCaseV3& wire) {
     plain.is_quarantined = wire.outcome() == kQuarantinedOutcome;
     is_known = is_known && (plain.is_quarantined || ParseOutcome(wire.outcome(), &plain.result.outcome));
+  }
+  void EventName(std::string& plain, const std::string& wire) {
+    is_known = is_known && IsEventName(wire);
+    plain = wire;
   }
 };
 

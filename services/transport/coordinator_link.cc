@@ -110,7 +110,7 @@ struct CoordinatorLink::Impl {
   };
 
   explicit Impl(const NetworkOptions& options)
-      : network(options), doors(std::make_shared<Doors>(options.address)) {
+      : network(options), doors(std::make_shared<Doors>(options.address, options.keys.has_value())) {
     Open();
   }
 

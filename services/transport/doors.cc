@@ -23,8 +23,9 @@ double Seconds() {
 
 }  // namespace
 
-Doors::Doors(const std::string& address)
+Doors::Doors(const std::string& address, bool with_keys)
     : address_(address.empty() ? "127.0.0.1" : address),
+      most_(with_keys ? kMostWithKeys : kMost),
       socket_(socket(AF_INET, SOCK_DGRAM | SOCK_CLOEXEC | SOCK_NONBLOCK, 0)) {
   if (socket_ < 0) throw NetworkError(std::string("no UDP socket: ") + std::strerror(errno));
 }
@@ -51,7 +52,7 @@ bool Doors::IsShort() const {
   const Lock lock(mutex_);
   const auto workers = static_cast<std::size_t>(
       std::count_if(peers_.begin(), peers_.end(), [](const auto& each) { return each.second.is_worker; }));
-  return ports_.size() < kMost && (ports_.size() * kForWorkers < workers + kAtOnce ||
+  return ports_.size() < most_ && (ports_.size() * kForWorkers < workers + kAtOnce ||
                                    ports_.size() * kForOthers < peers_.size() - workers + kForOthers / 2);
 }
 
@@ -72,7 +73,7 @@ Doors::Answer Doors::DoorOf(const Greeting& greeting, double now_s) {
   }
   const auto emptiest = std::max_element(left.begin(), left.end());
   const bool has_place = emptiest != left.end() && *emptiest > 0;
-  if (!has_place && left.size() >= kMost) return {std::nullopt, true};
+  if (!has_place && left.size() >= most_) return {std::nullopt, true};
   if (!has_place || joining >= kAtOnce) return {};
   const int door = static_cast<int>(emptiest - left.begin());
   peers_[greeting.from] = {.door = door, .is_worker = is_worker, .since_s = now_s};
@@ -129,7 +130,7 @@ bool Doors::Admits(int door, const Greeting& greeting, const std::uint8_t* datag
     Complain(
         "greeting", sender,
         fmt::format("this coordinator serves {} workers and {} others at most; it waits until one leaves",
-                    kForWorkers * kMost, kForOthers * kMost));
+                    kForWorkers * most_, kForOthers * most_));
   }
   return false;
 }

@@ -39,7 +39,8 @@ struct Greeting {
 /// Thread-safe. Times are seconds from any origin.
 class Doors {
  public:
-  static constexpr std::size_t kMost = 16;
+  /// Doors at most. With keys no more than what joined within a minute twenty times of twenty (capacity.md).
+  static constexpr std::size_t kMost = 16, kMostWithKeys = 7;
   /// Workers of a door, and others (clients, observers): neither keeps the other out.
   static constexpr std::size_t kForWorkers = 30, kForOthers = 6, kPlaces = kForWorkers + kForOthers;
   /// Workers that join at a time, and others that do.
@@ -49,7 +50,7 @@ class Doors {
   /// A peer that the middleware has not found after this time loses its place.
   static constexpr double kFind_s = 10.0;
 
-  explicit Doors(const std::string& address);
+  explicit Doors(const std::string& address, bool with_keys = false);
   ~Doors();
   Doors(const Doors&) = delete;
   Doors& operator=(const Doors&) = delete;
@@ -91,6 +92,7 @@ class Doors {
       DISPERSA_PROVED(requires_capability(mutex_));
 
   std::string address_;
+  const std::size_t most_;
   int socket_;
   mutable Mutex mutex_;
   std::vector<std::uint16_t> ports_ DISPERSA_GUARDED_BY(mutex_);  ///< by door

@@ -235,8 +235,10 @@ std::optional<WorkerExit> Worker::Exit(double now_s) {
     told_s_ = 0.0;
   } else if (now_s - std::max(heard_s_, told_s_) > kSayAgain_s) {
     told_s_ = now_s;
-    LogWarning("no coordinator has answered at {} for {:.0f} s; it is tried again", Where(),
-               now_s - heard_s_);
+    LogWarning(
+        "no coordinator has answered at {} for {:.0f} s; it is tried again. One that has as many workers as "
+        "it serves says so in its own log",
+        Where(), now_s - heard_s_);
   }
   if (!desk_.IsIdle()) busy_s_ = now_s;
   if (!desk_.refusal().empty()) {

@@ -96,12 +96,26 @@ class BoardInABrowser(BrowserCase):
         self.assertEqual(header.count("new campaign needs"), 1)
         self.assertIn("To decide all 6 inconclusive requirements", header)
 
-    def test_numbers_of_the_first_page_have_three_digits(self):
+    def test_the_first_table_answers_in_numbers(self):
         for name in ("undecided", "failed"):
             self.show(name)
-            for number in self.browser.run("return [...document.querySelectorAll('table.judged td.n')].map(c => c.innerText)"):
-                for digits in re.findall(r"\d[\d.]*", number.split("\n")[0]):
-                    self.assertLessEqual(len(digits.replace(".", "").strip("0")), 3, number)
+            columns = self.browser.run("return [...document.querySelectorAll('table.judged thead th')].map(c => c.innerText)")
+            self.assertEqual(columns, ["Verdict", "Requirement", "Failures", "Shown", "Required", "Nominal", "Median", "Worst (case)",
+                                       "Bound", "Margin"])
+            rows = self.browser.run("return [...document.querySelectorAll('table.judged tbody tr')]"
+                                    ".map(r => [...r.children].map(c => c.innerText))")
+            for row in rows:
+                self.assertRegex(row[2], r"^\d+ of 300$")
+                self.assertRegex(row[3], r"^[≥≤] [\d.]+ %$")
+                self.assertRegex(row[7], r"^[\d.e-]+ \(\d+\)$")
+                for number in (row[5], row[6], row[9]):  # three digits, or two of the distance to the limit
+                    self.assertLessEqual(len(re.sub(r"e.*|\D", "", number).strip("0")), 4, row)
+
+    def test_a_title_leads_to_its_chart(self):
+        self.show("failed")
+        self.assertEqual(self.browser.run(
+            "return [...document.querySelectorAll('table.judged a[href^=\"#of-\"]')]"
+            ".filter(a => !document.querySelector(a.getAttribute('href'))).map(a => a.innerText)"), [])
 
     def test_table3_is_at_most_twelve_pages(self):
         self.run_campaign("table3", re.sub(r"(?m)^(vehicle|reference|autopilot): (.*)$", rf"\1: {CAMPAIGNS}/\2",

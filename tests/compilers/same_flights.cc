@@ -10,6 +10,7 @@
 
 #include "core/campaign_yaml/load.h"
 #include "tests/compilers/fly_cases.h"
+#include "tests/same_events.h"
 
 namespace dispersa {
 namespace {
@@ -40,6 +41,7 @@ std::string Difference(const CaseResult& expected, const CaseResult& actual) {
                        expected.end_time_s, expected.reason);
   if (const std::string text = Difference(MetricNames(), expected.metrics, actual.metrics); !text.empty())
     return "metric " + text;
+  if (!AreSame(actual.events, expected.events)) return "the events differ";
   if (actual.digest != expected.digest)
     return fmt::format("digest is {}, not {}", actual.digest.Hex(), expected.digest.Hex());
   return {};

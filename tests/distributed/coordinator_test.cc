@@ -197,6 +197,27 @@ TEST(FingerprintTest, ChangesWithEveryField) {
       [](CaseResult& r) { r.metrics[2] = std::numeric_limits<double>::quiet_NaN(); },
       [](CaseResult& r) { r.digest.high ^= 1; },
       [](CaseResult& r) { r.digest.low ^= 1; },
+      [](CaseResult& r) {
+        r.events = {{"lift_off", 0.0, 1.0, 2.0, 3.0, 4.0}};
+      },
+      [](CaseResult& r) {
+        r.events = {{"max_q", 0.0, 1.0, 2.0, 3.0, 4.0}};
+      },
+      [](CaseResult& r) {
+        r.events = {{"max_q", 0.5, 1.0, 2.0, 3.0, 4.0}};
+      },
+      [](CaseResult& r) {
+        r.events = {{"max_q", 0.0, 1.5, 2.0, 3.0, 4.0}};
+      },
+      [](CaseResult& r) {
+        r.events = {{"max_q", 0.0, 1.0, 2.5, 3.0, 4.0}};
+      },
+      [](CaseResult& r) {
+        r.events = {{"max_q", 0.0, 1.0, 2.0, 3.5, 4.0}};
+      },
+      [](CaseResult& r) {
+        r.events = {{"max_q", 0.0, 1.0, 2.0, 3.0, 4.5}};
+      },
   };
   EXPECT_EQ(Fingerprint(base), Fingerprint(ResultOf(1)));
   std::vector<Digest> seen = {Fingerprint(base)};

@@ -7,6 +7,7 @@ import csv
 import json
 import os
 import pathlib
+import sqlite3
 import subprocess
 
 from processes import BINARIES, CAMPAIGN, PATIENCE_S, main, wait_for
@@ -73,6 +74,10 @@ class CycloneTest(ServiceCase):
             measured = [number(v) for k, v in row.items() if k.startswith("metric_")]
             self.assertEqual([v for v in measured if v is not None], [v for v in result["metrics"] if v is not None])
             self.assertEqual(row["digest"], f"{result['digest_high']:016x}{result['digest_low']:016x}")
+        with sqlite3.connect(self.fetch(identity) / "results.sqlite") as database:
+            stored = database.execute("SELECT case_index, event, time_s, altitude_m, speed_m_s, qbar_pa, mass_kg FROM events "
+                                      "ORDER BY case_index, place").fetchall()
+        self.assertEqual(stored, [(result["case_index"], *event) for result in results for event in result["events"]])
 
     def test_a_worker_flies_an_assignment(self):
         self.take_everybody()

@@ -12,7 +12,8 @@ Greeting From(std::size_t number, const std::string& name = kWorkerParticipant) 
   return greeting;
 }
 
-class DoorsTest : public testing::Test {
+/// Without keys, and with them.
+class DoorsTest : public testing::TestWithParam<bool> {
  protected:
   /// Whether it was let in, and then joined.
   bool Join(std::size_t number, double now_s) {
@@ -22,10 +23,12 @@ class DoorsTest : public testing::Test {
     return true;
   }
 
-  Doors doors_{"127.0.0.1"};
+  const std::size_t most_ = GetParam() ? Doors::kMostWithKeys : Doors::kMost;
+  Doors doors_{"127.0.0.1", GetParam()};
 };
+INSTANTIATE_TEST_SUITE_P(Keys, DoorsTest, testing::Bool());
 
-TEST_F(DoorsTest, FewJoinAtATimeAndTheOthersLater) {
+TEST_P(DoorsTest, FewJoinAtATimeAndTheOthersLater) {
   doors_.Open(7405);
   for (std::size_t i = 0; i < Doors::kAtOnce; ++i) EXPECT_EQ(doors_.DoorOf(From(i), 0.0).door, 0) << i;
   const auto next = doors_.DoorOf(From(100), 0.0);
@@ -41,15 +44,15 @@ TEST_F(DoorsTest, FewJoinAtATimeAndTheOthersLater) {
   EXPECT_EQ(doors_.DoorOf(From(101), Doors::kJoin_s).door, 0) << "nobody holds up the others for ever";
 }
 
-TEST_F(DoorsTest, NoDoorHasMorePeersThanPlaces) {
+TEST_P(DoorsTest, NoDoorHasMorePeersThanPlaces) {
   std::map<int, std::size_t> taken;
   std::size_t let_in = 0;
-  for (std::size_t open = 1; open <= Doors::kMost; ++open) {
+  for (std::size_t open = 1; open <= most_; ++open) {
     doors_.Open(7405);
     for (std::size_t i = 0; i < Doors::kPlaces; ++i) let_in += Join(let_in, 0.0) ? 1 : 0;
     EXPECT_EQ(let_in, open * Doors::kForWorkers);
-    EXPECT_EQ(doors_.IsShort(), open < Doors::kMost) << open;
-    EXPECT_EQ(doors_.DoorOf(From(let_in), 0.0).is_full, open == Doors::kMost) << open;
+    EXPECT_EQ(doors_.IsShort(), open < most_) << open;
+    EXPECT_EQ(doors_.DoorOf(From(let_in), 0.0).is_full, open == most_) << open;
     EXPECT_TRUE(doors_.DoorOf(From(9000 + open, "dispersa-client"), 0.0).door)
         << "clients have places of their own";
   }
@@ -59,8 +62,8 @@ TEST_F(DoorsTest, NoDoorHasMorePeersThanPlaces) {
   EXPECT_TRUE(Join(9900, 0.0)) << "a place is free again";
 }
 
-TEST_F(DoorsTest, ClientsAloneHaveDoorsOpenedToo) {
-  for (std::size_t client = 0; client < Doors::kMost * Doors::kForOthers; ++client) {
+TEST_P(DoorsTest, ClientsAloneHaveDoorsOpenedToo) {
+  for (std::size_t client = 0; client < most_ * Doors::kForOthers; ++client) {
     if (doors_.IsShort()) doors_.Open(7405);
     ASSERT_TRUE(doors_.DoorOf(From(client, "dispersa-client"), 0.0).door) << client;
     doors_.Found(From(client).from);
@@ -70,7 +73,7 @@ TEST_F(DoorsTest, ClientsAloneHaveDoorsOpenedToo) {
   EXPECT_TRUE(Join(1, 0.0)) << "workers have their own";
 }
 
-TEST_F(DoorsTest, APeerThatTheMiddlewareDoesNotFindLosesItsPlace) {
+TEST_P(DoorsTest, APeerThatTheMiddlewareDoesNotFindLosesItsPlace) {
   doors_.Open(7405);
   for (std::size_t i = 0; i < Doors::kForWorkers; ++i)
     ASSERT_TRUE(doors_.DoorOf(From(i), i < Doors::kAtOnce ? 0.0 : Doors::kJoin_s).door) << i;
@@ -81,7 +84,7 @@ TEST_F(DoorsTest, APeerThatTheMiddlewareDoesNotFindLosesItsPlace) {
   EXPECT_FALSE(doors_.DoorOf(From(200), 0.1 + Doors::kFind_s).door) << "the first one was found and stays";
 }
 
-TEST_F(DoorsTest, FarewellsAndOtherCoordinatorsTakeNoPlace) {
+TEST_P(DoorsTest, FarewellsAndOtherCoordinatorsTakeNoPlace) {
   doors_.Open(7405);
   Greeting farewell = From(1);
   farewell.is_farewell = true;

@@ -73,6 +73,7 @@ CaseResult ResultOf(std::uint64_t case_index) {
   result.inputs_digest = {3, 0xbeefull << 40};
   result.metrics.assign(MetricCount(kUsualStages), -0.0);
   result.digest = {0xfeedull << 48, 1};
+  result.events = {{"lift_off", 0.0, 1.0, 2.0, 3.0, 4.0}, {"stage_1_burnout", 5.0 / 3.0, 6.0, 7.0, 8.0, 9.0}};
   return result;
 }
 
@@ -96,7 +97,7 @@ TEST_F(Transport, CarriesWhatAWorkerSaysToTheLastBit) {
                                    ElementsAre(StartedCase{8, 3}, StartedCase{9, 3})));
   const CaseResult &result = received->flown.at(0).result, &sent = report.flown[0].result;
   EXPECT_THAT(result, FieldsAre(7, Outcome::kLostControl, 123.456, 3, "attitude error", sent.inputs,
-                                sent.inputs_digest, SizeIs(sent.metrics.size()), sent.digest));
+                                sent.inputs_digest, SizeIs(sent.metrics.size()), sent.digest, sent.events));
   for (std::size_t i = 0; i < sent.metrics.size(); ++i)
     EXPECT_EQ(Bits(result.metrics[i]), Bits(sent.metrics[i])) << i;
 

@@ -196,6 +196,21 @@ TEST(Conversion, KeepsWhatObserversAndClientsAreTold) {
               Optional(FieldsAre("c", 7, "read", "{}", bytes)));
 }
 
+TEST(Conversion, AnEventWithoutTheFormOfANameIsNoMessage) {
+  FlownCase flown{3, {}, false};
+  for (const std::string name : {"max_q", "stage_12_burnout", "a234567890123456789012345678901234567890"}) {
+    flown.result.events = {{"lift_off", 0, 0, 0, 0, 0}, {name, 1, 2, 3, 4, 5}};
+    const auto report = FromIdl(ToIdl(Report{"w", 9, 3, kFlight, {flown}, {}}));
+    ASSERT_TRUE(report) << name;
+    EXPECT_EQ(report->flown[0].result.events, flown.result.events);
+  }
+  for (const std::string name : {"", "Max_q", "max q", "max-q", "<b>", "\x1b[1m", "max_q\n",
+                                 "a2345678901234567890123456789012345678901"}) {
+    flown.result.events = {{"lift_off", 0, 0, 0, 0, 0}, {name, 1, 2, 3, 4, 5}};
+    EXPECT_FALSE(FromIdl(ToIdl(Report{"w", 9, 3, kFlight, {flown}, {}}))) << name;
+  }
+}
+
 TEST(Conversion, AQuarantinedCaseArrivesAsSuch) {
   FlownCase flown{3, {}, true};
   flown.result.case_index = 8;

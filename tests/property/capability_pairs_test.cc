@@ -16,6 +16,7 @@
 #include "core/vehicle/aerodynamics_build_up.h"
 #include "core/vehicle/mass.h"
 #include "tests/liquid_stage.h"
+#include "tests/same_events.h"
 #include "tests/slv4_flight.h"
 #include "tests/tabulated_masses.h"
 #include "tests/temporary_folder.h"
@@ -527,9 +528,11 @@ void ExpectFlies(const Launcher& launcher) {
   for (const LaneEngine& engine : EnginesToCompare()) {
     Queue together(model, orders);
     engine.fly(model, together);
-    for (std::size_t i = 0; i < orders.size(); ++i)
+    for (std::size_t i = 0; i < orders.size(); ++i) {
       EXPECT_EQ(together.results[i].digest, alone[i].digest)
           << engine.isa << ", " << engine.lanes << " lanes, case " << i;
+      EXPECT_TRUE(AreSame(together.results[i].events, alone[i].events)) << engine.isa << ", case " << i;
+    }
   }
 }
 

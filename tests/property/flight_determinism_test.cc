@@ -1,6 +1,7 @@
 // A flight is a pure function of its arguments. Flights before it or beside it, and its thread, do not change
 // it.
 #include "core/cases/campaign_flights.h"
+#include "tests/same_events.h"
 #include "tests/slv4_flight.h"
 #include "tests/test.h"
 
@@ -44,6 +45,7 @@ const std::vector<FlightResult>& Alone() {
 
 void ExpectSame(const FlightResult& a, const FlightResult& b, std::size_t k) {
   EXPECT_EQ(a.digest, b.digest) << "case " << k;
+  EXPECT_TRUE(AreSame(a.events, b.events)) << "case " << k;
   EXPECT_EQ(a.outcome, b.outcome) << "case " << k;
   EXPECT_EQ(a.end_time_s, b.end_time_s) << "case " << k;
   ASSERT_EQ(a.metrics.size(), b.metrics.size());

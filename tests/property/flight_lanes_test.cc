@@ -9,6 +9,7 @@
 #include "core/vehicle/aerodynamics_build_up.h"
 #include "tests/flexible_guided.h"
 #include "tests/liquid_stage.h"
+#include "tests/same_events.h"
 #include "tests/slv4_flight.h"
 #include "tests/tabulated_masses.h"
 #include "tests/test.h"
@@ -396,6 +397,7 @@ void ExpectTheFlightsAlone(const FlightModel& model, std::uint64_t flights) {
     for (std::uint64_t k = 0; k < flights; ++k) {
       const FlightResult &a = alone.flown[k].result, &b = together.flown[k].result;
       ASSERT_EQ(a.digest, b.digest) << engine.isa << " " << engine.lanes << " lanes, flight " << k;
+      EXPECT_TRUE(AreSame(a.events, b.events)) << engine.isa << " " << engine.lanes << ", flight " << k;
       EXPECT_EQ(a.outcome, b.outcome);
       EXPECT_EQ(a.reason, b.reason);
       EXPECT_EQ(a.end_time_s, b.end_time_s);

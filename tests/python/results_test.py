@@ -168,6 +168,16 @@ class Runs(unittest.TestCase):
         summary.unlink()
         self.assertEqual(dispersa.results(copied).summary["verdict"], "pass")
 
+    def test_events(self):
+        events = self.ours.events()
+        self.assertEqual(len(set(events["case_index"])), len(self.ours))
+        one = events[events["case_index"] == 5]
+        self.assertEqual(list(one["event"]), [each["event"] for each in printed("fly", SMOKE, "--case", "5")["events"]])
+        for name in ("time_s", "altitude_m", "speed_m_s", "qbar_pa", "mass_kg"):
+            self.assertEqual(list(one[name]), [each[name] for each in printed("fly", SMOKE, "--case", "5")["events"]])
+        self.assertEqual(one["event"][0], "lift_off")
+        self.assertEqual(one[one["event"] == "max_q"]["qbar_pa"][0], self.ours.metrics["q_max_pa"][list(self.ours.case_index).index(5)])
+
     def test_histories_of_the_report(self):
         bands, nominal = self.ours.bands(), self.ours.history()
         self.assertEqual(bands.columns[0], "time_s")

@@ -233,10 +233,11 @@ TEST(AdviceTogether, NamesTheGreatestNumbers) {
       summary.requirements.push_back(requirements[i]);
       summary.standing.requirements.emplace_back().verdict = "inconclusive";
     }
-    EXPECT_EQ(AdviceTogether(summary),
-              "To decide all 3 inconclusive requirements: a new campaign needs 76 flights or more. By what "
-              "was seen here, one of 400 flights passes each of them with a probability of at least 50 %. "
-              "This campaign, extended, needs 300 flights in all with no further failure (any-time rule).");
+    EXPECT_EQ(
+        AdviceTogether(summary),
+        "To decide all 3 inconclusive requirements: a new campaign needs 76 flights or more. By what "
+        "was seen here, a campaign of 400 flights passes each of them with a probability of at least 50 %. "
+        "This campaign, extended, needs 300 flights in all with no further failure (any-time rule).");
   }
 }
 

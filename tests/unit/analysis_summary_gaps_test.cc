@@ -65,13 +65,14 @@ TEST(JointRisk, IsTheSumOfTheRisksAndOfHolmTheLargest) {
   EXPECT_EQ(summary.overall_risk, 0.2);
   EXPECT_DOUBLE_EQ(summary.any_risk, 0.35);
   EXPECT_EQ(JointRiskSentence(summary),
-            "A design that misses any requirement passes them all with a probability of at most 20 %. That "
-            "any one of the 3 verdicts to pass, taken by itself, is wrong: at most 35 % (the sum of their "
-            "risks; joint: holm keeps it down).");
+            "A design that misses any requirement passes them all with a probability of at most 20 %. The "
+            "risks that the 3 requirements allow add up to 35 %; joint: holm keeps them together at the "
+            "largest one.");
   campaign.verdicts.holm = true;
   summary = SummaryOf(campaign, results);
   EXPECT_EQ(summary.any_risk, 0.2);
-  EXPECT_THAT(JointRiskSentence(summary), HasSubstr("is wrong: at most 20 % (Holm)."));
+  EXPECT_THAT(JointRiskSentence(summary),
+              HasSubstr("The risk that any of the 3 passes is wrong is at most 20 % (Holm)."));
   campaign.verdicts.holm = false;
   campaign.requirements.assign(4, PeakBelow(10.0, 0.9, 0.4));
   EXPECT_EQ(SummaryOf(campaign, results).any_risk, 1.0);

@@ -72,10 +72,11 @@ TEST(Judge, SaysWhyNothingIsDecided) {
   EXPECT_EQ(open.sentence,
             "0 of 200 flights broke the limit. Between 98.8 % and 100 % of flights meet it, each bound with "
             "90 % confidence; 99.73 % required.");
-  EXPECT_EQ(AdviceSentence(open),
-            " A new campaign can pass with 852 flights or more. By what was seen here, one of 6816 flights "
-            "passes with a probability of 61 %. This one, extended, needs 1104 flights in all with no "
-            "further failure (any-time rule).");
+  EXPECT_EQ(
+      AdviceSentence(open),
+      " A new campaign can pass with 852 flights or more. By what was seen here, a campaign of 6816 flights "
+      "passes with a probability of 61 %. This one, extended, needs 1104 flights in all with no "
+      "further failure (any-time rule).");
   // One flight says next to nothing, and so does the advice.
   EXPECT_THAT(AdviceSentence(Judged(PeakBelow(0.5, 0.9973, 0.10), Columns(1, 0))),
               HasSubstr("passes with a probability of 5.51 %"));
@@ -460,10 +461,10 @@ TEST_F(Misuse, ALimitThatWasChangedAfterTheFirstCaseShows) {
                   "Post hoc: pitch_error_peak_deg below 0.05 for 90 % of flights at 10 % risk was required, "
                   "and was changed or left out after the first case was flown. Its last verdict: fail."));
   EXPECT_THAT(JUnitXml(summary_), HasSubstr("errors=\"2\""));
-  EXPECT_THAT(
-      JUnitXml(summary_),
-      HasSubstr("name=\"pitch_error_peak_deg below 0.05 for 90 % of flights at 10 % risk\">\n      <error "
-                "message=\"Changed or left out after its flights were flown. Its last verdict: fail.\"/>"));
+  EXPECT_THAT(JUnitXml(summary_), HasSubstr("name=\"pitch_error_peak_deg below 0.05 for 90 % of flights at "
+                                            "10 % risk\" time=\"0\">\n      <error "
+                                            "type=\"post_hoc\" message=\"Changed or left out after its "
+                                            "flights were flown. Its last verdict: fail.\"/>"));
   campaign_.requirements.clear();
   Fly(40, 0);
   EXPECT_EQ(summary_.standing.verdict, StandingVerdict::kNotEvidence) << "dropped";

@@ -301,6 +301,20 @@ TEST(CampaignYamlDispersions, CorrelationsAreRowsOfTheCholeskyFactor) {
   EXPECT_NEAR(LoadCampaign(files.Path("campaign.yaml")).dispersions[drag].mix[0].second, 0.6, 1e-9);
 }
 
+TEST(CampaignYamlDispersions, SaysWhichCorrelationsCannotHoldTogether) {
+  const InputFiles files;
+  files.Edit(
+      "campaign.yaml", "requirements:",
+      "correlations:\n  - {of: [thrust/stage1, drag_coefficient, thrust/stage2], matrix: [[1, 0.5, -0.9], "
+      "[0.5, 1, 0.4], [-0.9, 0.4, 1]]}\n"
+      "requirements:");
+  EXPECT_THAT(
+      ErrorOf<InputError>([&] { LoadCampaign(files.Path("campaign.yaml")); }),
+      testing::EndsWith("correlations[0].matrix: the matrix is not positive definite: 'thrust/stage1' with "
+                        "'thrust/stage2' contributes most; all correlations times 0.8 can hold, allowed: "
+                        "correlations that can hold together"));
+}
+
 TEST(CampaignYaml, RequirementsNameTheirPlan) {
   const InputFiles files;
   files.Edit(

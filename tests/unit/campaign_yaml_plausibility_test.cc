@@ -152,6 +152,12 @@ TEST(CampaignYamlPlausibility, AColumnMayHaveAnyUnit) {
 TEST(CampaignYamlPlausibility, NoOtherUnitIsProposed) {
   EXPECT_EQ(DidYouMean("altitude_km", {"altitude_m"}), "");
   EXPECT_EQ(DidYouMean("altitud_m", {"altitude_m"}), " (did you mean 'altitude_m'?)");
+  const std::vector<std::string> methods = {"monte_carlo", "latin_hypercube", "sobol", "grid"};
+  EXPECT_EQ(DidYouMean("lhs", methods), " (did you mean 'latin_hypercube'?)");
+  EXPECT_EQ(DidYouMean("mc", methods), " (did you mean 'monte_carlo'?)");
+  EXPECT_EQ(DidYouMean("sx", methods), "") << "one word has no initials";
+  EXPECT_EQ(DidYouMean("metric_q_max_pa", {"q_alpha_max_pa", "q_max_pa"}), " (did you mean 'q_max_pa'?)");
+  EXPECT_EQ(DidYouMean("input_drag_factor", {"drag_factor"}), " (did you mean 'drag_factor'?)");
 }
 
 }  // namespace

@@ -167,7 +167,7 @@ class EvidenceTest(unittest.TestCase):
             self.assertEqual((late / name).read_bytes(), (alone / name).read_bytes(), name)
         pages = [RUN.sub(b"", (folder / "report.html").read_bytes()) for folder in (late, alone)]
         self.assertEqual(*pages)
-        self.assertIn("Earlier designs here: 1, of which 0 with this seed.", self.page_of_another_design())
+        self.assertIn("Earlier designs in this folder, of any vehicle: 1, of which 0 with this seed.", self.page_of_another_design())
         # A folder that was extended has the summary of one flown at once.
         self.fly(self.campaign(MET), "extended", "--seed", "6", "--cases", "4")
         self.fly(self.campaign(MET), "extended", "--seed", "6", "--resume")

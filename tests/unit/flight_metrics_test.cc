@@ -72,7 +72,7 @@ class MetricsRecorder {
       Add(0.25 * (s.nozzle_rad[0] - s.nozzle_rad[1] + s.nozzle_rad[2] - s.nozzle_rad[3]),
           0.5 * (s.nozzle_rad[0] + s.nozzle_rad[1]), 0.5 * (s.nozzle_rad[2] + s.nozzle_rad[3]));
   }
-  void AddLoads(const LauncherInstant& now) { metrics_.AddLoadsOfLane(0, InstantOf(now)); }
+  void AddLoads(const LauncherInstant& now) { metrics_.AddLoadsOfLane(0, 0.0, 0.0, {}, InstantOf(now)); }
   void AddMoment(double moment_n_m, double station_m) { metrics_.AddMoment(true, {moment_n_m, station_m}); }
   void AddHandover(const AttitudeError& error) {
     sums_.handed_over = true;

@@ -53,6 +53,8 @@ inline CaseResult MakeCase(std::uint64_t index, const RowInputs& rows = RowInput
     result.metrics.push_back(1.0 + static_cast<double>(i) + k / 3.0);
   result.metrics[MetricColumn("step_limit_fraction")] = 0.5;  // nobody is to be warned
   result.digest = {index + 1, 0xabcdef};
+  result.events = {{"lift_off", 0.0, 10.0 + k, 0.5, 0.25, 9000.0 - k},
+                   {"stage_1_burnout", 60.0 + k / 3.0, 21500.0, 2000.0 + k / 7.0, 4000.0, 5000.0}};
   return result;
 }
 

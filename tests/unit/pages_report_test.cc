@@ -304,6 +304,63 @@ TEST_F(ReportPageTest, GroupsMetricsAsTheyAreDeclaredAndNamesInputsAsTheFileDoes
   EXPECT_THAT(page_, HasSubstr("<code>thrust</code> <span class=\"soft\"><code>thrust_factor_stage1</code>"));
 }
 
+TEST_F(ReportPageTest, ARowAnswersByHowMuch) {
+  Build(40, 40);
+  const auto cells = [&] {
+    const std::string page = FirstPage(campaign_, summary_);
+    const std::string row = page.substr(page.find("<tbody>"), page.find("</tbody>") - page.find("<tbody>"));
+    const std::regex cell("<td class=\"n\">(.*?)</td>");
+    std::vector<std::string> found;
+    for (std::sregex_iterator at(row.begin(), row.end(), cell), end; at != end; ++at)
+      found.push_back((*at)[1]);
+    return found;
+  };
+  // 2 + k / 3 in case k, of which 32 to 39 are above 12.5 and the third is lost.
+  EXPECT_THAT(cells(), ElementsAre("9 of 40<span class=\"definition\">1 lost</span>", "≤ 86 %", "90 %", "335",
+                                   "8.67", "15 <span class=\"soft\">(39)</span>", "15", "-2.5"));
+  summary_.requirements[0].verdict = "inconclusive";
+  EXPECT_EQ(cells()[1], "≥ " + ShareText(*summary_.requirements[0].success_lower, Rounding::kDown, 0.9));
+  summary_.nominal->outcome = Outcome::kImpact;
+  EXPECT_EQ(cells()[3], "lost");
+  summary_.nominal.reset();
+  EXPECT_EQ(cells()[3], "–");
+  RequirementSummary& one = summary_.requirements[0];
+  one.lost_flights = 0;
+  one.not_measured = 2;
+  one.success_lower.reset();
+  one.bound.reset();
+  one.worst_completed.reset();
+  one.every_case = true;
+  EXPECT_THAT(cells(), ElementsAre("9 of 40<span class=\"definition\">2 not measured</span>", "–",
+                                   "every case", "–", "8.67", "–", "–", "–"));
+}
+
+TEST_F(ReportPageTest, EachEventHasTheNominalAndTheSpread) {
+  Build(40, 40);
+  campaign_.vehicle.stages = {Stage{}, Stage{}, Stage{}};
+  campaign_.vehicle.stages[0].jettisoned = {{.name = "fairing <1>"}};
+  campaign_.vehicle.stages[2].jettisoned = {{.name = "skirt"}};
+  summary_.events = {summary_.events.at(0), summary_.events.at(1), summary_.events.at(0),
+                     summary_.events.at(0)};
+  summary_.events[2].name = "jettison_2";
+  summary_.events[3].name = "jettison_1";
+  const std::string section = EventsSection(campaign_, summary_);
+  const Summary& time = summary_.events[1].values[0];
+  EXPECT_EQ(time.p50, 60.0 + 19.5 / 3.0);
+  EXPECT_THAT(section, HasSubstr("stage 1 burnout</th><td class=\"n\">40</td><td class=\"n\">" +
+                                 ScatterText(60.0 + 1000.0 / 3.0, time.std) + "<span class=\"definition\">" +
+                                 ScatterText(time.p01, time.std) + " · " + ScatterText(time.p50, time.std) +
+                                 " · " + ScatterText(time.p99, time.std) + "</span></td>"));
+  EXPECT_THAT(section, HasSubstr("<td class=\"n\">21.5<span class=\"definition\">21.5</span></td>"))
+      << "in km, and one number where all are equal";
+  EXPECT_THAT(section, HasSubstr("jettison: skirt</th>"));
+  EXPECT_THAT(section, HasSubstr("jettison: fairing &lt;1&gt;</th>"));
+  summary_.nominal->events.clear();
+  EXPECT_THAT(EventsSection(campaign_, summary_), HasSubstr("<td class=\"n\">–<span class=\"definition\">"));
+  summary_.events.clear();
+  EXPECT_EQ(EventsSection(campaign_, summary_), "");
+}
+
 TEST_F(ReportPageTest, SaysAdviceOnceForAllRequirements) {
   Build(20, 20);  // 22 flights are the least that can show 90 %
   campaign_.requirements[0].below = 1000.0;
@@ -327,8 +384,9 @@ TEST_F(ReportPageTest, SaysAdviceOnceForAllRequirements) {
   EXPECT_THAT(page.substr(page.find(advice) + advice.size()), Not(HasSubstr("new campaign")));
   EXPECT_THAT(page.substr(0, page.find(advice)), Not(HasSubstr("new campaign")));
   EXPECT_THAT(page,
-              HasSubstr("<code>GNC-2</code> <b>Yaw error, peak</b> below 1000&nbsp;°<span class=\"definition "
-                        "clip\">SRD 3.1 · the fairing's clearance</span>"));
+              HasSubstr("<code>GNC-2</code> <b><a href=\"#of-yaw_error_peak_deg\">Yaw error, peak</a></b> "
+                        "below 1000&nbsp;°</span><span "
+                        "class=\"soft clip\">&nbsp; · SRD 3.1 · the fairing's clearance</span></span></th>"));
   EXPECT_THAT(RequirementsSection(summary_), HasSubstr("<p>Why: the fairing's clearance</p>"));
 }
 
@@ -345,9 +403,9 @@ TEST_F(ReportPageTest, ARowSaysWhatWasRequiredBefore) {
   const std::string page = FirstPage(campaign_, summary_);
   EXPECT_THAT(page, HasSubstr("<b>required before the flights: below 0.1 for 90 % of flights at 10 % risk; "
                               "verdict: fail</b>"));
-  EXPECT_THAT(page,
-              HasSubstr("q_max_pa below 3 in every case</th><td>Left out after the first flight. Its last "
-                        "verdict: none.</td>"));
+  EXPECT_THAT(
+      page, HasSubstr("q_max_pa below 3 in every case<span class=\"definition\"><b>left out after the first "
+                      "flight; its last verdict: none</b></span></th>"));
   EXPECT_THAT(page, Not(HasSubstr("It was stated after"))) << "the badge and the note say so";
 }
 
@@ -426,7 +484,10 @@ TEST_F(ReportPageTest, AMetricOfOneValueIsSaidAndNotDrawn) {
   cases_.metrics[MetricColumn("deflection_saturated_fraction")] = std::vector<double>(40, 0.0);
   summary_.worst_cases = {{"deflection_saturated_fraction", {}}};
   const std::string page = ReportPage(campaign_, summary_, cases_, histories_);
-  EXPECT_THAT(page, HasSubstr("<p>Deflection saturated: 0 in 39 of 40 flown cases.</p>"));
+  EXPECT_THAT(
+      page,
+      HasSubstr(
+          "<p id=\"of-deflection_saturated_fraction\">Deflection saturated: 0 in 39 of 40 flown cases.</p>"));
   EXPECT_THAT(page, Not(HasSubstr("Histogram of Deflection saturated")));
 }
 

@@ -51,7 +51,28 @@ TEST_F(ResultFolders, ReturnsAResultToTheLastBit) {
   EXPECT_EQ(folder.Append({{stored}}), 1u);
   EXPECT_THAT(ResultFolder::Open(temporary / "out").Load(2),
               FieldsAre(2, Outcome::kLostControl, 569.25, 4, stored.reason, stored.inputs,
-                        stored.inputs_digest, stored.metrics, stored.digest));
+                        stored.inputs_digest, stored.metrics, stored.digest, stored.events));
+}
+
+TEST_F(ResultFolders, EachCaseHasItsEventsAndNoOther) {
+  ResultFolder folder = ResultFolder::Create(temporary / "out", MakeLimitedCampaign(4));
+  CaseResult silent = MakeCase(1), undefined = MakeCase(3);
+  silent.events.clear();
+  undefined.events[1].qbar_pa = kNaN;
+  folder.Append({{undefined, MakeCase(2), MakeCase(0), silent}});
+  const auto of = [&](std::uint64_t index) { return folder.Load(index).events; };
+  EXPECT_EQ(of(0), MakeCase(0).events);
+  EXPECT_THAT(of(1), IsEmpty());
+  EXPECT_EQ(of(2), MakeCase(2).events);
+  EXPECT_TRUE(std::isnan(of(3)[1].qbar_pa));
+  EXPECT_EQ(of(3)[1].mass_kg, 5000.0);
+  std::vector<std::size_t> in_order;
+  folder.ForEach([&](const CaseResult& result) { in_order.push_back(result.events.size()); });
+  EXPECT_THAT(in_order, ElementsAre(2, 0, 2, 2));
+  EXPECT_EQ(Query(temporary / "out", "SELECT group_concat(event) FROM events WHERE case_index = 2"),
+            "lift_off,stage_1_burnout");
+  EXPECT_EQ(Query(temporary / "out", "SELECT typeof(qbar_pa) FROM events WHERE case_index = 3 AND place = 1"),
+            "null");
 }
 
 TEST_F(ResultFolders, StoresUndefinedAsNullAndNoNegativeZero) {
@@ -131,7 +152,10 @@ TEST_F(ResultFolders, CasesWaitForMetricsThatTheyLack) {
   ResultFolder folder = ResultFolder::Resume(temporary / "out", WithOwn({}));
   EXPECT_THAT(folder.PresentCases(), ElementsAre(0, 1, 2));
   EXPECT_EQ(folder.UnmeasuredCount(), 0u);
-  for (const std::uint64_t index : {0, 1, 2}) EXPECT_EQ(folder.Load(index).metrics, MakeCase(index).metrics);
+  for (const std::uint64_t index : {0, 1, 2}) {
+    EXPECT_EQ(folder.Load(index).metrics, MakeCase(index).metrics);
+    EXPECT_EQ(folder.Load(index).events, MakeCase(index).events);
+  }
 }
 
 TEST_F(ResultFolders, AMetricWithAnotherExpressionIsAnother) {
@@ -366,10 +390,10 @@ TEST_F(ResultFolders, RefusesAFlightThatAppliedOtherConstants) {
 TEST_F(ResultFolders, AFolderOfALaterVersionIsLeftAlone) {
   ResultFolder::Create(temporary / "out", MakeLimitedCampaign(3));
   Database(temporary / "out" / "results.sqlite", Database::Mode::kExisting)
-      .Execute("PRAGMA user_version = 5");
+      .Execute("PRAGMA user_version = 6");
   const std::string error =
       (temporary / "out").string() +
-      ": written by a newer dispersa: its results.sqlite has version 5, this one reads 4";
+      ": written by a newer dispersa: its results.sqlite has version 6, this one reads 5";
   EXPECT_EQ(ErrorOf<InputError>([&] { ResultFolder::Open(temporary / "out"); }), error);
   EXPECT_EQ(ErrorOf<InputError>([&] { ResultFolder::Resume(temporary / "out", MakeLimitedCampaign(3)); }),
             error);
@@ -378,17 +402,22 @@ TEST_F(ResultFolders, AFolderOfALaterVersionIsLeftAlone) {
 TEST_F(ResultFolders, TellsADamagedRowAndRemovesItToBeFlownAgain) {
   const std::string metric = "metric_" + MetricNames()[0];
   for (const std::string& damage :
-       {metric + " = " + metric + " + 1e-9", std::string("outcome = 'impact'"), std::string("reason = 'x'"),
-        std::string("end_stage = end_stage + 1"), std::string("end_time_s = NULL"),
-        std::string("digest = '0' || substr(digest, 2, 30) || 'e'"), std::string("row_digest = ''"),
-        std::string("input_drag_factor = 1.5")}) {
+       {"UPDATE cases SET " + metric + " = " + metric + " + 1e-9",
+        std::string("UPDATE cases SET outcome = 'impact'"), std::string("UPDATE cases SET reason = 'x'"),
+        std::string("UPDATE cases SET end_stage = end_stage + 1"),
+        std::string("UPDATE cases SET end_time_s = NULL"),
+        std::string("UPDATE cases SET digest = '0' || substr(digest, 2, 30) || 'e'"),
+        std::string("UPDATE cases SET row_digest = ''"),
+        std::string("UPDATE cases SET input_drag_factor = 1.5"),
+        std::string("UPDATE events SET mass_kg = mass_kg + 1e-9"), std::string("DELETE FROM events"),
+        std::string("UPDATE events SET event = event || '0'")}) {
     TemporaryFolder own;
     {
       ResultFolder folder = ResultFolder::Create(own / "out", MakeLimitedCampaign(3));
       folder.Append({{MakeCase(0), MakeCase(1), MakeCase(2)}});
     }
     Database((own / "out") / "results.sqlite", Database::Mode::kExisting)
-        .Execute("UPDATE cases SET " + damage + " WHERE case_index = 1");
+        .Execute(damage + " WHERE case_index = 1");
     {
       const ResultFolder folder = ResultFolder::Open(own / "out");
       const std::string error =
@@ -399,6 +428,7 @@ TEST_F(ResultFolders, TellsADamagedRowAndRemovesItToBeFlownAgain) {
     const ResultFolder folder = ResultFolder::Resume(own / "out", MakeLimitedCampaign(3));
     EXPECT_THAT(folder.damaged(), ElementsAre(1)) << damage;
     EXPECT_THAT(folder.PresentCases(), ElementsAre(0, 2)) << damage;
+    EXPECT_EQ(Query(own / "out", "SELECT count(*) FROM events WHERE case_index = 1"), "0") << damage;
   }
 }
 

@@ -1,4 +1,5 @@
 """Result folders: runs, reports, comparisons; margins and references."""
+import contextlib
 import functools
 import gzip
 import html
@@ -6,6 +7,7 @@ import json
 import os
 import pathlib
 import shutil
+import sqlite3
 
 import numpy
 
@@ -151,6 +153,19 @@ class Results:
             for name in columns.dtype.names:
                 table[prefix + name] = columns[name]
         return table
+
+    def events(self):
+        """What happened in each case, as a structured array of shape (events,): `case_index`, `event`, `time_s` (since
+        lift-off), `altitude_m`, `speed_m_s` (over the rotating Earth), `qbar_pa`, `mass_kg`, right after the event. Undefined is
+        NaN. By case, then by time. Empty for results of an older release."""
+        names = [("case_index", "u8"), ("event", "U40"), ("time_s", "f8"), ("altitude_m", "f8"), ("speed_m_s", "f8"),
+                 ("qbar_pa", "f8"), ("mass_kg", "f8")]
+        mode = "mode=ro" if os.access(self.directory, os.W_OK) else "immutable=1"
+        with contextlib.closing(sqlite3.connect(f"{(self.directory / 'results.sqlite').as_uri()}?{mode}", uri=True)) as database:
+            if not database.execute("SELECT 1 FROM sqlite_master WHERE name = 'events'").fetchone():
+                return numpy.empty(0, dtype=names)
+            rows = database.execute(f"SELECT {', '.join(name for name, _ in names)} FROM events ORDER BY case_index, place")
+            return numpy.array([tuple(numpy.nan if value is None else value for value in row) for row in rows], dtype=names)
 
     @functools.cached_property
     def cases(self):

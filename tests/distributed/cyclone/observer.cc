@@ -39,6 +39,12 @@ Json Doubles(const dds_sequence_double& sequence) {
 
 Json ToJson(const dispersa_idl_ResultV2& result) {
   const dispersa_idl_FlownCaseV3& flown = result.flown;
+  Json events = Json::array();
+  for (std::uint32_t i = 0; i < flown.events._length; ++i) {
+    const dispersa_idl_SeenEventV1& event = flown.events._buffer[i];
+    events.push_back(
+        {event.name, event.time_s, event.altitude_m, event.speed_m_s, event.qbar_pa, event.mass_kg});
+  }
   return {{"flight_id", result.flight_id},
           {"worker", result.worker},
           {"case_index", flown.case_index},
@@ -51,7 +57,8 @@ Json ToJson(const dispersa_idl_ResultV2& result) {
           {"inputs_digest_high", flown.inputs_digest_high},
           {"inputs_digest_low", flown.inputs_digest_low},
           {"digest_high", flown.digest_high},
-          {"digest_low", flown.digest_low}};
+          {"digest_low", flown.digest_low},
+          {"events", std::move(events)}};
 }
 
 bool HasEnded(const std::string& state) {

@@ -35,6 +35,8 @@ struct Flown {
   std::int32_t end_stage = 0;
   std::vector<double> inputs, metrics;
   std::uint64_t inputs_digest[2], digest[2];  ///< high, low
+  std::vector<std::string> names;             ///< of the events
+  std::vector<dispersa_idl_SeenEventV1> events;
 };
 
 struct Assignment {
@@ -69,14 +71,23 @@ Flown Fly(const std::string& dispersa, const std::string& file, std::uint64_t ca
   Json in_row = Json::array();
   for (const Json& name : json.at("row_inputs"))
     in_row.push_back(json.at("inputs").at(name.get<std::string>()));
-  return {json.at("outcome"),
-          json.at("reason"),
-          json.at("end_time_s"),
-          json.at("end_stage"),
-          Doubles(in_row),
-          Doubles(json.at("metrics")),
-          {Half(json.at("inputs_digest"), 0), Half(json.at("inputs_digest"), 1)},
-          {Half(json.at("digest"), 0), Half(json.at("digest"), 1)}};
+  Flown flown = {json.at("outcome"),
+                 json.at("reason"),
+                 json.at("end_time_s"),
+                 json.at("end_stage"),
+                 Doubles(in_row),
+                 Doubles(json.at("metrics")),
+                 {Half(json.at("inputs_digest"), 0), Half(json.at("inputs_digest"), 1)},
+                 {Half(json.at("digest"), 0), Half(json.at("digest"), 1)},
+                 {},
+                 {}};
+  for (const Json& event : json.at("events")) {
+    const auto value = [&](const char* name) { return Doubles(Json::array({event.at(name)})).front(); };
+    flown.names.push_back(event.at("event"));
+    flown.events.push_back({nullptr, value("time_s"), value("altitude_m"), value("speed_m_s"),
+                            value("qbar_pa"), value("mass_kg")});
+  }
+  return flown;
 }
 
 /// A sequence of the middleware over what somebody else owns.
@@ -166,10 +177,12 @@ struct Worker {
     std::vector<dispersa_idl_FlownCaseV3> messages;
     for (std::size_t i = 0; i < flown.size(); ++i) {
       Flown& each = flown[i];
+      for (std::size_t k = 0; k < each.events.size(); ++k) each.events[k].name = View(each.names[k]);
       messages.push_back({assignment->cases[i], assignment->attempt, View(each.outcome), each.end_time_s,
                           each.end_stage, View(each.reason), View<dds_sequence_double>(each.inputs),
                           each.inputs_digest[0], each.inputs_digest[1],
-                          View<dds_sequence_double>(each.metrics), each.digest[0], each.digest[1]});
+                          View<dds_sequence_double>(each.metrics), each.digest[0], each.digest[1],
+                          View<dds_sequence_dispersa_idl_SeenEventV1>(each.events)});
     }
     std::vector<dispersa_idl_StartedCaseV2> started = Started();
     dispersa_idl_ReportV3 report{};
