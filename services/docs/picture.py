@@ -15,7 +15,7 @@ import tempfile
 HERE = pathlib.Path(__file__).resolve().parent
 CAMPAIGN = HERE.parent.parent / "campaigns" / "table3.yaml"
 PARTS = HERE / "pages" / "images" / "table3_report.txt"
-WIDTH, HEIGHT = 1000, 940
+WIDTH, HEIGHT = 1140, 940
 
 
 def parts(report):

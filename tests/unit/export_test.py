@@ -159,7 +159,7 @@ class Incomplete(ExportTest):
         self.assertEqual(self.export("jsonl").read_text().count("\n"), self.flown)
         self.assertEqual(json.loads(self.export("geojson").read_text())["incomplete"], self.words)
         self.assertIn(f"; {self.words}</description>", self.export("kml").read_text())
-        self.assertIn(f'<error message="{self.words.removeprefix("incomplete: ")}"/>', self.export("junit").read_text())
+        self.assertIn(f'<error type="incomplete" message="{self.words.removeprefix("incomplete: ")}"/>', self.export("junit").read_text())
         read = run(DEBIAN_PYTHON, "-c", f"import h5py; print(h5py.File({str(self.export('hdf5'))!r}).attrs['incomplete'].decode())")
         self.assertEqual(read.stdout, self.words + "\n", read.stderr)
         done = dispersa("export", self.killed, "--format", "csv", "--out", self.folder / "incomplete.csv", "--json")
