@@ -255,6 +255,10 @@ bool IsBoundedAbove(const RequirementSummary& requirement) {
 
 }  // namespace
 
+std::string ValueText(const RequirementSummary& requirement, double value) {
+  return RoundedText(value, Rounding::kNearest, LimitBeside(requirement, value));
+}
+
 std::string BoundText(const RequirementSummary& requirement) {
   return RoundedText(*requirement.bound, IsBoundedAbove(requirement) ? Rounding::kUp : Rounding::kDown,
                      LimitBeside(requirement, *requirement.bound));

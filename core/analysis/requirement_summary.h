@@ -94,6 +94,8 @@ std::string LimitWords(const RequirementSummary& requirement, const std::string&
 std::string BoundSentence(const RequirementSummary& requirement, const std::string& unit);
 /// The limit that a value stands beside: of a range the nearer one.
 double LimitBeside(const RequirementSummary& requirement, double value);
+/// "0.214": a value of its metric, with the digits that tell it from the limit.
+std::string ValueText(const RequirementSummary& requirement, double value);
 /// "0.225": the bound that it has, rounded so that it still holds.
 std::string BoundText(const RequirementSummary& requirement);
 /// "below 0.225 °"; empty without a bound.

@@ -133,27 +133,22 @@ std::string ShownCell(const RequirementSummary& requirement) {
   return "≥ " + HtmlText(ShareText(*requirement.success_lower, Rounding::kDown, requirement.probability));
 }
 
-/// A value of the metric with the digits that tell it from the limit.
-std::string ValueCell(const RequirementSummary& requirement, double value) {
-  return RoundedText(value, Rounding::kNearest, LimitBeside(requirement, value));
-}
-
 std::string NominalCell(const CampaignSummary& summary, const RequirementSummary& requirement) {
   if (!summary.nominal) return "–";
   if (summary.nominal->outcome != Outcome::kCompleted) return "lost";
-  return ValueCell(requirement, summary.nominal->metrics[summary.metric_list.PositionOf(requirement.metric)]);
+  return ValueText(requirement, summary.nominal->metrics[summary.metric_list.PositionOf(requirement.metric)]);
 }
 
 std::string MedianCell(const CampaignSummary& summary, const RequirementSummary& requirement) {
   for (const MetricSummary& metric : summary.metrics)
-    if (metric.name == requirement.metric) return ValueCell(requirement, metric.statistics.p50);
+    if (metric.name == requirement.metric) return ValueText(requirement, metric.statistics.p50);
   return "–";
 }
 
 std::string WorstCell(const RequirementSummary& requirement) {
   if (!requirement.worst_completed) return "–";
   return fmt::format("{} <span class=\"soft\">({})</span>",
-                     ValueCell(requirement, requirement.worst_completed->value),
+                     ValueText(requirement, requirement.worst_completed->value),
                      requirement.worst_completed->case_index);
 }
 

@@ -41,9 +41,8 @@ std::string PlanWords(const RequirementSummary& requirement) {
 std::string WorstWords(const RequirementSummary& requirement, const std::string& unit) {
   if (!requirement.worst_completed) return "–";
   const auto& [case_index, value] = *requirement.worst_completed;
-  return fmt::format("{}{} (case {})",
-                     RoundedText(value, Rounding::kNearest, LimitBeside(requirement, value)),
-                     unit.empty() ? "" : " " + unit, case_index);
+  return fmt::format("{}{} (case {})", ValueText(requirement, value), unit.empty() ? "" : " " + unit,
+                     case_index);
 }
 
 std::string LooksTable(const RequirementSummary& requirement) {

@@ -20,7 +20,7 @@ CaseColumns ReadColumns(const ResultFolder& folder, const std::vector<int>& want
     if (const auto place = folder.inputs().PlaceOf(static_cast<std::size_t>(input))) places.push_back(*place);
   cases.own_metrics = folder.metric_list().own();
   const auto file = std::make_shared<ColumnFile>(folder.directory(), metrics + places.size());
-  std::vector<double> row(metrics + places.size());
+  std::vector<double> row(metrics + places.size()), seen(SeenEvent::kValues.size());
   Digest first;
   folder.ForEach([&](const CaseResult& result) {
     if (observe) observe(result);
@@ -41,9 +41,8 @@ CaseColumns ReadColumns(const ResultFolder& folder, const std::vector<int>& want
       if (of == cases.events.end())
         of = cases.events.insert(
             of, {event.name, std::make_shared<ColumnFile>(folder.directory(), SeenEvent::kValues.size())});
-      std::vector<double> values;
-      for (const auto value : SeenEvent::kValues) values.push_back(event.*value);
-      of->values->Append(values);
+      for (std::size_t i = 0; i < seen.size(); ++i) seen[i] = event.*SeenEvent::kValues[i];
+      of->values->Append(seen);
     }
   });
   cases.metrics.resize(metrics);

@@ -403,7 +403,7 @@ void TakeTheUnmeasured(Database& database, std::int64_t case_index, const std::s
   Statement stored = database.Prepare(fmt::format("SELECT digest FROM {} WHERE case_index = ?", kUnmeasured));
   if (!stored.Run(case_index)) return;
   RequireSame(case_index, stored.Text(0), digest);
-  for (const char* table : {kUnmeasured, "execution", "audits"})
+  for (const char* table : {kUnmeasured, "execution", "audits", kEvents})
     database.Prepare(fmt::format("DELETE FROM {} WHERE case_index = ?", table)).Run(case_index);
 }
 
@@ -630,7 +630,6 @@ void ResultFolder::Store(std::span<const CaseResult> results, std::span<const Ex
 std::size_t ResultFolder::Insert(std::span<const CaseResult> results) {
   Statement stored = database_->Prepare("SELECT digest FROM cases WHERE case_index = ?");
   Statement insert = database_->Prepare(InsertInto("cases", shape_));
-  Statement forget = database_->Prepare(fmt::format("DELETE FROM {} WHERE case_index = ?", kEvents));
   Statement event =
       database_->Prepare(fmt::format("INSERT INTO {} VALUES (?, ?, ?, ?, ?, ?, ?, ?)", kEvents));
   Statement lift = database_->Prepare("DELETE FROM quarantined WHERE case_index = ?");
@@ -648,14 +647,13 @@ std::size_t ResultFolder::Insert(std::span<const CaseResult> results) {
       continue;
     }
     RequireFits(result, shape_);
+    if (has_unmeasured_) TakeTheUnmeasured(*database_, index, result.digest.Hex());
     InsertRow(insert, result, shape_);
-    forget.Run(index);  // of a case that was flown before, without all of the campaign's own metrics
     std::int64_t place = 0;
     for (const SeenEvent& seen : result.events)
       event.Run(index, place++, seen.name, seen.time_s, seen.altitude_m, seen.speed_m_s, seen.qbar_pa,
                 seen.mass_kg);
     lift.Run(index);
-    if (has_unmeasured_) TakeTheUnmeasured(*database_, index, result.digest.Hex());
     ++added;
   }
   return added;
