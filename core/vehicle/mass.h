@@ -124,6 +124,8 @@ double DryMass(const Vehicle& vehicle, int stage);
 /// Propellant density of a solid motor that follows from the grain's volume, kg/m³.
 double PropellantDensity(const Stage& stage);
 /// One entry a stack. Stack i has stages i, i+1, ... attached, with everything that they carry at lift-off.
+/// Their tables are the vehicle's: it lives longer.
 std::vector<StackMass> BuildStackMasses(const Vehicle& vehicle);
+std::vector<StackMass> BuildStackMasses(Vehicle&& vehicle) = delete;
 
 }  // namespace dispersa

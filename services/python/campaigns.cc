@@ -303,43 +303,57 @@ py::dict FlyOne(const LoadedCampaign& campaign, std::optional<std::uint64_t> cas
   return flight;
 }
 
-/// The histories of many flights in one buffer, in the order of their list. Flights end in nearly that order:
-/// the few that end before an earlier one wait for it.
+/// The results of many flights by column and their histories in one buffer, in the order of their list.
+/// Flights end in nearly that order: the few that end before an earlier one wait for it.
 class Gathering {
  public:
-  Gathering(std::vector<int> columns, std::size_t flights) : columns_(std::move(columns)) {
+  /// `inputs`, `metrics`, `columns`: positions of those that are kept, of results and histories.
+  Gathering(const Campaign& campaign, std::vector<std::size_t> inputs, std::vector<std::size_t> metrics,
+            std::vector<int> columns, std::size_t flights)
+      : in_rows_(campaign),
+        inputs_(std::move(inputs)),
+        table_(inputs_, MetricsOf(campaign), std::move(metrics)),
+        columns_(std::move(columns)) {
     offsets_.reserve(flights + 1);
     offsets_.push_back(0);
   }
 
-  void Add(std::size_t order, const History& history) {
+  void Add(std::size_t order, CaseResult result, const History& history) {
     if (order + 1 != offsets_.size()) {
-      waiting_[order] = history;
+      waiting_.emplace(order, std::pair(std::move(result), history));
       return;
     }
-    Append(history);
-    while (!waiting_.empty() && waiting_.begin()->first + 1 == offsets_.size())
-      Append(waiting_.extract(waiting_.begin()).mapped());
+    Append(std::move(result), history);
+    while (!waiting_.empty() && waiting_.begin()->first + 1 == offsets_.size()) {
+      auto [next, of_it] = waiting_.extract(waiting_.begin()).mapped();
+      Append(std::move(next), of_it);
+    }
   }
+  py::dict TakeTable() { return table_.Take(); }
   /// (rows, where each flight begins and the last ends).
-  std::pair<py::array, py::array> Take() {
+  std::pair<py::array, py::array> TakeHistories() {
     double* const values = rows_->data();
     const std::vector<py::ssize_t> shape = {offsets_.back(), static_cast<py::ssize_t>(columns_.size())};
     return {ArrayOver(values, shape, std::move(rows_)), ArrayOf(std::move(offsets_))};
   }
 
  private:
-  void Append(const History& history) {
+  void Append(CaseResult result, const History& history) {
+    result.inputs = ValuesAt(inputs_, in_rows_.AllOf(result.inputs));
+    table_.Add(result);
     double* value = rows_->Extend(history.rows() * columns_.size());
     for (std::size_t row = 0; row < history.rows(); ++row)
       for (const int column : columns_) *value++ = history.at(row, column);
     offsets_.push_back(offsets_.back() + static_cast<std::int64_t>(history.rows()));
   }
 
-  std::vector<int> columns_;  ///< that are kept
+  RowInputs in_rows_;
+  std::vector<std::size_t> inputs_;
+  ResultColumns table_;
+  std::vector<int> columns_;  ///< of histories
   std::unique_ptr<GrowingRows> rows_ = std::make_unique<GrowingRows>();
   std::vector<std::int64_t> offsets_;
-  std::map<std::size_t, History> waiting_;
+  std::map<std::size_t, std::pair<CaseResult, History>> waiting_;
 };
 
 /// Many cases, side by side. `columns`: names of those that are kept of each history of step `step_s`; None:
@@ -349,32 +363,23 @@ py::dict FlyMany(const LoadedCampaign& campaign, const std::vector<std::uint64_t
                  const py::object& progress, const py::object& law, unsigned axes) {
   PythonObserver observer(progress);
   const FlownWith with(campaign, law, axes, observer);
-  std::vector<CaseResult> results(cases.size());
   const std::vector<int> columns = ColumnsNamed(names, with.autopilot());
-  Gathering histories(columns, cases.size());
+  Gathering gathering(campaign.campaign(), campaign.inputs(), with.metrics(), columns, cases.size());
   observer.Watch([&] {
     std::vector<CaseOrder> orders;
     for (const std::uint64_t case_index : cases) orders.push_back({case_index, step_s});
     std::uint64_t done = 0;
     with.flights().FlyCases(orders, with.Threads(threads),
                             [&](std::size_t order, CaseResult result, const History& history) {
-                              results[order] = std::move(result);
-                              if (step_s > 0.0) histories.Add(order, history);
+                              gathering.Add(order, std::move(result), history);
                               observer.Show(campaign.campaign().name, ++done, cases.size());
                               if (observer.ShouldStop()) throw Interrupted();
                             });
   });
-  const RowInputs in_rows(campaign.campaign());
-  const std::vector<std::size_t> inputs = campaign.inputs();
-  ResultColumns table(inputs, MetricsOf(campaign.campaign()), with.metrics());
-  for (CaseResult& result : results) {
-    result.inputs = ValuesAt(inputs, in_rows.AllOf(result.inputs));
-    table.Add(result);
-  }
-  py::dict answer = table.Take();
+  py::dict answer = gathering.TakeTable();
   answer["history_columns"] = HistoryNames(columns);
   if (step_s > 0.0) {
-    auto [rows, offsets] = histories.Take();
+    auto [rows, offsets] = gathering.TakeHistories();
     answer["histories"] = rows;
     answer["offsets"] = offsets;
   }

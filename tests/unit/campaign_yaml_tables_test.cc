@@ -312,9 +312,11 @@ void Weigh(const InputFiles& files, const std::string& csv) {
 }
 TEST(MassTableFile, GivesTheStageItsMasses) {
   const InputFiles files;
-  const MassProperties tubes = BuildStackMasses(LoadVehicle(files.Path("vehicle.yaml")))[1].At(500.0);
+  const Vehicle plain = LoadVehicle(files.Path("vehicle.yaml"));
+  const MassProperties tubes = BuildStackMasses(plain)[1].At(500.0);
   Weigh(files, kMasses);
-  const StackMass stack = BuildStackMasses(LoadVehicle(files.Path("vehicle.yaml")))[0];
+  const Vehicle vehicle = LoadVehicle(files.Path("vehicle.yaml"));
+  const StackMass stack = BuildStackMasses(vehicle)[0];
   for (const auto& [left_kg, cg_m, axial, transverse] :
        {std::array{1500.0, 7.0, 180.0, 1900.0}, {750.0, 6.9, 120.0, 1300.0}, {0.0, 7.2, 70.0, 1000.0}}) {
     const double own_kg = 500.0 + left_kg, whole_kg = own_kg + 1000.0;

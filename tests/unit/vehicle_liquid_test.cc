@@ -80,7 +80,8 @@ TEST(DrainingTanks, OfOneCylinderAreTheTextbooks) {
 }
 
 TEST(DrainingTanks, DerivativesAreThoseOfTheMoments) {
-  const StackMass stack = BuildStackMasses(LiquidVehicle())[0];
+  const Vehicle vehicle = LiquidVehicle();
+  const StackMass stack = BuildStackMasses(vehicle)[0];
   for (const double kg : {3800.0, 1500.0, 200.0}) {
     const double h = 1.0;
     const auto slope = [&](double MassProperties::*of) {
@@ -99,7 +100,8 @@ TEST(DrainingTanks, AreFullInAStageThatWaitsAndTheSameAlongTheBeam) {
   MakeLiquid(vehicle.stages[1]);
   const Slices liquid = Sliced(vehicle.stages[1], 1000.0);
   const StackMass whole = BuildStackMasses(vehicle)[0], upper = BuildStackMasses(vehicle)[1];
-  const StackMass solid = BuildStackMasses(SampleVehicle())[0];
+  const Vehicle with_grains = SampleVehicle();
+  const StackMass solid = BuildStackMasses(with_grains)[0];
   const double grain_m = 7.5, grain_kg = 1000.0;
   EXPECT_NEAR(whole.fixed_first_moment_kg_m,
               solid.fixed_first_moment_kg_m - grain_kg * grain_m + liquid.first_kg_m, 1e-6);

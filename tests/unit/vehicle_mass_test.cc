@@ -23,7 +23,8 @@ TEST(PropellantDensity, IsMassOverTheGrainsVolume) {
 }
 
 TEST(StackMass, FullAndEmptyMassesAreTable1sReading) {
-  const auto stacks = BuildStackMasses(SampleVehicle());
+  const Vehicle vehicle = SampleVehicle();
+  const auto stacks = BuildStackMasses(vehicle);
   ASSERT_EQ(stacks.size(), 2u);
   EXPECT_NEAR(stacks[0].At(4000.0).mass_kg, 13000.0, 13000.0 * kRounding);
   EXPECT_NEAR(stacks[0].At(0.0).mass_kg, 9000.0, 9000.0 * kRounding);
@@ -32,7 +33,8 @@ TEST(StackMass, FullAndEmptyMassesAreTable1sReading) {
 
 TEST(StackMass, CentreOfGravityAndInertiaOfAnEmptySingleTube) {
   // The upper stack without propellant is one tube of 2000 kg from 1 m to 10.5 m, radii 0.5 and 0.45 m.
-  const MassProperties m = BuildStackMasses(SampleVehicle())[1].At(0.0);
+  const Vehicle vehicle = SampleVehicle();
+  const MassProperties m = BuildStackMasses(vehicle)[1].At(0.0);
   EXPECT_NEAR(m.cg_station_m, 5.75, 5.75 * kRounding);
   EXPECT_NEAR(m.axial_inertia_kg_m2, 0.5 * 2000.0 * (0.25 + 0.2025), 1000.0 * kRounding);
   // The transverse inertia is a difference of second moments about the nose (81 000): hence the factor.
@@ -64,21 +66,24 @@ TEST(StackMass, FullStackByHuygensAndSteinerElementByElement) {
     axial += 0.5 * p.mass * radii;
     transverse += p.mass * (0.25 * radii + length * length / 12.0 + arm * arm);
   }
-  const MassProperties m = BuildStackMasses(SampleVehicle())[0].At(4000.0);
+  const Vehicle vehicle = SampleVehicle();
+  const MassProperties m = BuildStackMasses(vehicle)[0].At(4000.0);
   EXPECT_NEAR(m.cg_station_m, cg, cg * kRounding);
   EXPECT_NEAR(m.axial_inertia_kg_m2, axial, axial * kRounding);
   EXPECT_NEAR(m.transverse_inertia_kg_m2, transverse, 10.0 * transverse * kRounding);
 }
 
 TEST(StackMass, BoreStartsAtItsDiameterAndReachesTheCaseAtBurnout) {
-  const StackMass stack = BuildStackMasses(SampleVehicle())[0];
+  const Vehicle vehicle = SampleVehicle();
+  const StackMass stack = BuildStackMasses(vehicle)[0];
   // axial_inertia_per_kg is the bore's radius squared.
   EXPECT_NEAR(stack.At(4000.0).axial_inertia_per_kg, 0.2 * 0.2, 1e-14);
   EXPECT_NEAR(stack.At(0.0).axial_inertia_per_kg, 0.6 * 0.6, 1e-14);
 }
 
 TEST(StackMass, DerivativesByPropellantAgreeWithDifferences) {
-  const StackMass stack = BuildStackMasses(SampleVehicle())[0];
+  const Vehicle vehicle = SampleVehicle();
+  const StackMass stack = BuildStackMasses(vehicle)[0];
   const double step_kg = 1.0;
   for (const double propellant : {200.0, 1700.0, 3900.0}) {
     const MassProperties here = stack.At(propellant);

@@ -66,8 +66,8 @@ void AddBooster(const Boosters& b, double propellant_kg, double y_m, double z_m,
   }
 }
 Bodies ByHand(const FlightDefinition& definition, const LauncherPlant& plant, double since_s) {
-  const MassProperties own =
-      BuildStackMasses(Bare(definition.vehicle))[0].At(plant.stacks[0].burn.Propellant(since_s));
+  const Vehicle bare = Bare(definition.vehicle);
+  const MassProperties own = BuildStackMasses(bare)[0].At(plant.stacks[0].burn.Propellant(since_s));
   std::vector<Part> parts = {{own.mass_kg, own.axial_inertia_kg_m2, own.transverse_inertia_kg_m2,
                               Vector3(own.cg_station_m, 0.0, 0.0)}};
   const Boosters& b = definition.vehicle.boosters;
@@ -110,8 +110,8 @@ TEST(LiquidBoosters, MassesAreThoseOfDrainingTanksAtTheirPlaces) {
     }
     LauncherPhase left = Boosting(0);
     left.jettisoned = kBoostersGone;
-    const MassProperties own =
-        BuildStackMasses(Bare(definition.vehicle))[0].At(plant.stacks[0].burn.Propellant(21.0));
+    const Vehicle bare = Bare(definition.vehicle);
+    const MassProperties own = BuildStackMasses(bare)[0].At(plant.stacks[0].burn.Propellant(21.0));
     const LauncherInstant now = LauncherModel(plant).Evaluate(left, 21.0, y.data());
     EXPECT_NEAR(now.loads.mass_kg, own.mass_kg, 1e-9 * own.mass_kg);
     EXPECT_NEAR(now.cg_station_m, own.cg_station_m, 1e-10 * own.cg_station_m);
