@@ -58,7 +58,8 @@ class WorkerFlights {
         LogWarning("worker {} does not answer: it is killed", uuid);
         workers.Kill(uuid);
       }
-      ShowFlying(book_, observer_, fmt::format("{} worker{}", workers.alive(), workers.alive() == 1 ? "" : "s"));
+      ShowFlying(book_, observer_,
+                 fmt::format("{} worker{}", workers.alive(), workers.alive() == 1 ? "" : "s"));
       workers.NoteJoined(coordinator.joined(), Now());
       reason = ReasonToEnd(coordinator, workers);
     }

@@ -12,7 +12,8 @@ void AddFetchCommand(CLI::App& app, Invocation& invocation);
 void AddKeysCommand(CLI::App& app, Invocation& invocation);
 
 inline void AddFleetCommands(CLI::App& app, Invocation& invocation) {
-  for (const auto add : {AddLaunchCommand, AddStatusCommand, AddWatchCommand, AddFetchCommand, AddKeysCommand})
+  for (const auto add :
+       {AddLaunchCommand, AddStatusCommand, AddWatchCommand, AddFetchCommand, AddKeysCommand})
     add(app, invocation);
 }
 
