@@ -4,8 +4,10 @@
 
 #include <algorithm>
 #include <cmath>
+#include <filesystem>
 #include <limits>
 #include <map>
+#include <tuple>
 
 #include "core/analysis/campaign_summary.h"
 #include "core/analysis/load_check.h"
@@ -176,23 +178,42 @@ void ComparePairs(const std::vector<double>& a, const std::vector<double>& b,
   name(result.gains, -1.0);
 }
 
-/// Whether the difference is too small in whatever shows one.
-bool IsTooSmall(const MetricComparison& metric) {
-  if (metric.lost_a != metric.lost_b || !std::isfinite(metric.difference)) return false;
-  return std::fabs(metric.difference) < metric.least &&
-         std::all_of(metric.tails.begin(), metric.tails.end(), [&](const PercentileComparison& tail) {
-           return !(tail.p_holm <= 1.0 - kComparisonConfidence) || std::fabs(tail.difference) < metric.least;
-         });
+/// The direction of the median. If as many pairs are better as worse, or without pairs, the ranks decide, as
+/// in the test: a median may be that of a lost flight.
+bool IsMedianWorse(const MetricComparison& metric, double sign) {
+  if (metric.a_better != metric.b_better) return metric.a_better > metric.b_better;
+  return sign * metric.tendency >= 0.0;
 }
 
-std::string FindingOf(const MetricComparison& metric) {
-  if (!(metric.p_holm <= 1.0 - kComparisonConfidence)) return "not shown";
-  if (IsTooSmall(metric)) return kTooSmall;
-  if (metric.info.worse == Worse::kNeither) return "differs";
-  if (metric.a_better != metric.b_better) return metric.b_better > metric.a_better ? "better" : "worse";
-  // Unpaired. A median may be that of a lost flight, so the ranks decide, as in the test.
+/// The finding is that of the largest difference that is certain and matters. The tails of a metric are
+/// several families of tests, so each has its part of the risk.
+void Judge(MetricComparison& metric) {
+  const double risk = 1.0 - kComparisonConfidence;
   const double sign = metric.info.worse == Worse::kSmaller ? -1.0 : 1.0;
-  return sign * metric.tendency < 0.0 ? "better" : "worse";
+  bool is_certain = false, is_worse = false;
+  const auto consider = [&](const std::string& name, double difference, bool worse, bool matters) {
+    is_certain = true;
+    if (!matters) return;
+    const double effect =
+        std::isfinite(difference) && metric.scale > 0.0 ? std::fabs(difference) / metric.scale : kInfinity;
+    if (!metric.effect_in.empty() && effect <= metric.effect) return;
+    metric.effect = effect;
+    metric.effect_in = name;
+    is_worse = worse;
+  };
+  if (metric.p_holm <= risk)
+    consider("median", metric.difference, IsMedianWorse(metric, sign),
+             metric.lost_a != metric.lost_b || !(std::fabs(metric.difference) < metric.least));
+  for (const PercentileComparison& tail : metric.tails)
+    if (tail.p_holm <= risk / static_cast<double>(metric.tails.size()) && std::isfinite(tail.difference) &&
+        tail.difference != 0.0)
+      consider(tail.name, tail.difference, sign * tail.difference > 0.0,
+               std::fabs(tail.difference) >= metric.least);
+  metric.finding = !is_certain                            ? "not shown"
+                   : metric.effect_in.empty()             ? kTooSmall
+                   : metric.info.worse == Worse::kNeither ? "differs"
+                   : is_worse                             ? "worse"
+                                                          : "better";
 }
 
 /// The share of what the metric's requirements allow, or of how it spreads in A.
@@ -210,10 +231,11 @@ void SetLeast(const ComparedCampaign& a, const ComparedCampaign& b, const std::v
       if (allows > 0.0) allowed = std::min(allowed, allows);
     }
   }
-  result.least_is_of_limit = std::isfinite(allowed);
+  result.scale_is_limit = std::isfinite(allowed);
   const std::vector<double> sorted = SortedFinite(values_a);
-  if (!result.least_is_of_limit)
+  if (!result.scale_is_limit)
     allowed = sorted.empty() ? 0.0 : Quantile(sorted, 0.95) - Quantile(sorted, 0.05);
+  result.scale = allowed;
   result.least = share * allowed;
 }
 
@@ -307,7 +329,7 @@ void AdjustMetrics(std::vector<MetricComparison>& metrics) {
     const std::vector<double> tail_adjusted = HolmAdjusted(tail_p);
     for (std::size_t i = 0; i < family.size(); ++i) family[i]->p_holm = tail_adjusted[i];
   }
-  for (MetricComparison& metric : metrics) metric.finding = FindingOf(metric);
+  for (MetricComparison& metric : metrics) Judge(metric);
 }
 
 /// Whether each row fails a limit: lost, undefined or outside.
@@ -524,10 +546,7 @@ struct Findings {
     too_small += finding == kTooSmall;
   }
   const char* Together() const {
-    return better > 0 && worse > 0 ? "mixed"
-           : better > 0            ? "better"
-           : worse > 0             ? "worse"
-                                   : "no difference shown";
+    return better > 0 && worse > 0 ? "mixed" : better > 0 ? "better" : worse > 0 ? "worse" : "";
   }
 };
 
@@ -547,6 +566,27 @@ std::string FoundWords(const std::vector<RequirementComparison>& requirements, c
       most->words, most->failures_b, most->n_b, most->failures_a, most->n_a);
 }
 
+/// " The largest change for the worse: pitch_error_rms_deg, median …."; empty if no counted metric has the
+/// finding.
+std::string LargestWords(const std::vector<const MetricComparison*>& by_effect, const std::string& finding,
+                         const char* title) {
+  for (const MetricComparison* each : by_effect)
+    if (each->is_counted && each->finding == finding)
+      return fmt::format(" {}: {}, {}.", title, each->metric, EffectWords(*each));
+  return "";
+}
+
+/// Of the largest effect; a metric that is neither good nor bad says something only if there is no other.
+std::string FindingByEffect(const std::vector<const MetricComparison*>& by_effect) {
+  std::string differs = "no relevant difference";
+  for (const MetricComparison* each : by_effect) {
+    if (!each->is_counted || each->effect_in.empty()) continue;
+    if (each->finding != "differs") return each->finding;
+    differs = each->finding;
+  }
+  return differs;
+}
+
 void Conclude(Comparison& comparison) {
   MarkCounted(comparison.metrics);
   Findings requirements, metrics;
@@ -559,19 +599,27 @@ void Conclude(Comparison& comparison) {
     sentence =
         "The points of at least one campaign are chosen, not drawn: differences are shown without limits.";
   } else {
-    comparison.finding = comparison.requirements.empty() ? metrics.Together() : requirements.Together();
+    const std::vector<const MetricComparison*> by_effect = ByEffect(comparison);
+    comparison.finding = requirements.Together();
+    if (comparison.finding.empty()) comparison.finding = FindingByEffect(by_effect);
     if (comparison.requirements.empty()) {
       sentence = "Neither campaign states a requirement.";
     } else if (requirements.better + requirements.worse == 0) {
-      sentence = "No requirement shows a difference between A and B.";
+      sentence = "No requirement is shown to be broken more often in A or in B.";
     } else {
       sentence = FoundWords(comparison.requirements, "worse", requirements.worse);
       const std::string better = FoundWords(comparison.requirements, "better", requirements.better);
       sentence += (sentence.empty() || better.empty() ? "" : " ") + better;
     }
+    const std::string worse = LargestWords(by_effect, "worse", "The largest change for the worse");
+    const std::string better = LargestWords(by_effect, "better", "The largest change for the better");
+    const bool is_better_first = comparison.finding == "better";
+    sentence += (is_better_first ? better : worse) + (is_better_first ? worse : better) +
+                LargestWords(by_effect, "differs", "The largest change that is neither good nor bad");
     sentence += fmt::format(
-        " Of {} metrics, each counted once, B is better in {} and worse in {}. It differs in {} that are "
-        "neither good nor bad.{} The others show no difference.",
+        " Of {} metrics, each counted once, B is better in {}, worse in {}, and differs in {} that are "
+        "neither "
+        "good nor bad.{}",
         metrics.all, metrics.better, metrics.worse, metrics.differs,
         metrics.too_small == 0
             ? ""
@@ -611,7 +659,46 @@ std::vector<std::string> IncompleteSides(const Comparison& comparison) {
 }
 
 std::string SideTitle(const Comparison& comparison, const Comparison::Side& side) {
-  return comparison.a.name == comparison.b.name ? fmt::format("{} in {}", side.name, side.folder) : side.name;
+  const auto last = [](const std::string& folder) {
+    const std::filesystem::path path = std::filesystem::path(folder + "/.").lexically_normal();
+    return path.parent_path().filename().string();
+  };
+  const std::string title = last(side.folder);
+  return title.empty() || last(comparison.a.folder) == last(comparison.b.folder) ? side.folder : title;
+}
+
+std::vector<const MetricComparison*> ByEffect(const Comparison& comparison) {
+  std::vector<const MetricComparison*> metrics;
+  for (const MetricComparison& each : comparison.metrics) metrics.push_back(&each);
+  std::stable_sort(metrics.begin(), metrics.end(), [](const auto* x, const auto* y) {
+    return x->effect_in.empty() != y->effect_in.empty() ? y->effect_in.empty() : x->effect > y->effect;
+  });
+  return metrics;
+}
+
+std::string ShareOfScale(const MetricComparison& metric) {
+  const char* const scale = metric.scale_is_limit ? "limit" : "spread of A";
+  return metric.effect < 1.0 ? fmt::format("{:.2g} % of the {}", 100.0 * metric.effect, scale)
+                             : fmt::format("{} times the {}", RoundedText(metric.effect), scale);
+}
+
+std::string EffectWords(const MetricComparison& metric) {
+  if (metric.effect_in.empty()) return "";
+  double a = metric.median_a, b = metric.median_b, difference = metric.difference;
+  for (const PercentileComparison& tail : metric.tails)
+    if (tail.name == metric.effect_in) std::tie(a, b, difference) = std::tie(tail.a, tail.b, tail.difference);
+  const auto value = [&](double number) {
+    if (!std::isfinite(number)) return std::string("a lost flight");
+    const std::string text = std::isfinite(difference) && difference != 0.0
+                                 ? ScatterText(number, 0.1 * std::fabs(difference))
+                                 : RoundedText(number);
+    return metric.info.unit.empty() ? text : text + " " + metric.info.unit;
+  };
+  std::string words = fmt::format("{} {} in A, {} in B", metric.effect_in, value(a), value(b));
+  if (std::isfinite(metric.effect)) words += ": a change by " + ShareOfScale(metric);
+  if (metric.lost_a != metric.lost_b)
+    words += fmt::format("; {} flights lost in A, {} in B", metric.lost_a, metric.lost_b);
+  return words;
 }
 
 Comparison Compare(const ComparedCampaign& a, const ComparedCampaign& b,

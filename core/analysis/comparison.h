@@ -91,12 +91,17 @@ struct MetricComparison {
   double p = kUndefined;
   double p_holm = kUndefined;  ///< over the metrics
   std::vector<PercentileComparison> tails;
-  /// The smallest difference that matters, in the metric's unit: the share of the smallest limit of a
-  /// requirement (of a range: of its width; of a metric that is neither good nor bad of a range alone), or
-  /// without one of the spread from 5 to 95 % of A. 0: any.
-  double least = 0.0;
-  bool least_is_of_limit = false;
-  std::string finding;  ///< "better", "worse" (of b), "differs", kTooSmall, "not shown"
+  /// What a difference is measured by, in the metric's unit: the smallest limit of a requirement (of a range:
+  /// its width; of a metric that is neither good nor bad a range alone), or without one the spread from 5 to
+  /// 95 % of A.
+  double scale = 0.0;
+  bool scale_is_limit = false;
+  double least = 0.0;  ///< the smallest difference that matters: practical_share of the scale. 0: any
+  /// The largest difference that is certain and matters, of the median or of a tail, as a share of the scale.
+  /// Infinite: the median is that of a lost flight. 0: none.
+  double effect = 0.0;
+  std::string effect_in = {};  ///< "median", "p99"; empty: none
+  std::string finding;         ///< "better", "worse" (of b), "differs", kTooSmall, "not shown"
   /// Counted in the sentence: neither a part of another metric (a stage's), nor a value whose error is
   /// compared.
   bool is_counted = true;
@@ -107,8 +112,7 @@ struct MetricComparison {
   std::vector<Pair> gains, losses;  ///< the pairs in which b gains most, and loses most
 };
 
-/// A difference that is certain but smaller than MetricComparison::least, in the median and in each
-/// percentile that differs, while both campaigns lost as many flights.
+/// Differences of the median or of tails are certain, and all smaller than MetricComparison::least.
 inline constexpr char kTooSmall[] = "too small to matter";
 /// The share that decides MetricComparison::least if nobody states another.
 inline constexpr double kPracticalShare = 0.01;
@@ -167,8 +171,9 @@ struct Comparison {
   std::vector<LoadCheck> load_checks;
   std::vector<ChangedCase> harmed;  ///< met in a and not in b, ascending; empty if unpaired
   std::vector<ChangedCase> rescued;
-  /// By the requirements; without any by the metrics that are counted: "better", "worse" (of b), "mixed", "no
-  /// difference shown"; "not judged" of chosen points.
+  /// By the requirements that differ ("better", "worse" (of b), "mixed"). If none differs, by the counted
+  /// metric with the largest effect ("better", "worse", or "differs" if no metric is either), or "no relevant
+  /// difference". "not judged" of chosen points.
   std::string finding;
   std::string sentence;  ///< the result in words
 };
@@ -185,7 +190,16 @@ Comparison Compare(const ComparedCampaign& a, const ComparedCampaign& b,
 /// "A (smoke) is incomplete: 160 of 3000 cases have a result", for each side that lacks cases.
 std::vector<std::string> IncompleteSides(const Comparison& comparison);
 
-/// The campaign's name, with the folder where both have the same name.
+/// The metrics with an effect, the largest first, and then the others in their order.
+std::vector<const MetricComparison*> ByEffect(const Comparison& comparison);
+
+/// "8.8 % of the limit", "9.6 times the spread of A": MetricComparison::effect, if it is finite.
+std::string ShareOfScale(const MetricComparison& metric);
+
+/// "median 0.011 in A, 0.055 in B: a change by 8.8 % of the limit"; empty if the metric has no effect.
+std::string EffectWords(const MetricComparison& metric);
+
+/// The last part of the folder's path; the whole path where the last parts are equal.
 std::string SideTitle(const Comparison& comparison, const Comparison::Side& side);
 
 /// "dispersa replay FOLDER --case N", for the shell and the folder in which the comparison was started.

@@ -15,7 +15,8 @@ namespace dispersa {
 namespace {
 
 constexpr char kComparisonNavigation[] =
-    "<nav><a href=\"#cases\">Harmed and rescued</a><a href=\"#metrics\">Metrics</a><a "
+    "<nav><a href=\"#differs\">Differing values</a><a href=\"#cases\">Harmed and rescued</a><a "
+    "href=\"#metrics\">Metrics</a><a "
     "href=\"#figures\">Figures</a><a href=\"#changes\">Largest changes</a><a href=\"#compared\">Compared "
     "campaigns</a><a href=\"#methods\">Methods</a><a href=\"#glossary\">Glossary</a></nav>\n";
 /// Rows of a long table that are always seen. compare.json has all rows.
@@ -83,7 +84,7 @@ std::string FindingBadge(const std::string& finding) {
 }
 
 /// What McNemar's or Fisher's test says, for who does not know it.
-std::string TestWords(const RequirementComparison& r, bool paired) {
+std::string RateWords(const RequirementComparison& r, bool paired) {
   if (r.n_a == 0 || r.n_b == 0) return "One campaign does not measure it.";
   if (r.failures_a + r.failures_b == 0) return "No flight breaks it.";
   const std::string probability = r.p < 1e-15 ? "below 1e-15" : "of " + PText(r.p);
@@ -103,6 +104,17 @@ std::string TestWords(const RequirementComparison& r, bool paired) {
                      probability);
 }
 
+/// A value can come nearer to its limit before any flight breaks it.
+std::string TestWords(const RequirementComparison& r, const Comparison& c) {
+  std::string words = RateWords(r, c.pairing.paired);
+  for (const MetricComparison& metric : c.metrics)
+    if (metric.metric == r.metric && !metric.effect_in.empty())
+      words += fmt::format(" <b>{}</b>: {}.",
+                           metric.finding == "differs" ? "It differs" : "B is " + metric.finding,
+                           HtmlText(EffectWords(metric)));
+  return words;
+}
+
 std::string RequirementsTable(const Comparison& c) {
   if (c.requirements.empty()) return "";
   std::vector<const RequirementComparison*> order;
@@ -112,7 +124,7 @@ std::string RequirementsTable(const Comparison& c) {
   };
   std::stable_sort(order.begin(), order.end(),
                    [&](const auto* x, const auto* y) { return rank(*x) < rank(*y); });
-  HtmlTable table("Finding|!Requirement|#A breaks it in|#B breaks it in|#B − A|In words|#p, Holm");
+  HtmlTable table("In failures|!Requirement|#A breaks it in|#B breaks it in|#B − A|In words|#p, Holm");
   for (const RequirementComparison* each : order) {
     const RequirementComparison& r = *each;
     const auto share = [](std::size_t failures, std::size_t n) {
@@ -134,7 +146,7 @@ std::string RequirementsTable(const Comparison& c) {
              (std::isfinite(r.interval.lower)
                   ? Definition(percent(r.interval.lower) + " … " + percent(r.interval.upper))
                   : ""),
-         TestWords(r, c.pairing.paired), PText(r.p_holm)});
+         TestWords(r, c), PText(r.p_holm)});
   }
   return table.Html("first requirements");
 }
@@ -146,11 +158,11 @@ std::string Header(const Comparison& c) {
     });
   };
   const auto side = [&](const char* letter, const Comparison::Side& s) {
-    return fmt::format("{}: {}, autopilot {}, vehicle {}, {} of {} flights completed", letter,
-                       HtmlText(SideTitle(c, s)), HtmlText(s.autopilot), HtmlText(s.vehicle), s.completed,
-                       s.flown);
+    return fmt::format("{}: <b>{}</b>, campaign {}, autopilot {}, vehicle {}, {} of {} flights completed",
+                       letter, HtmlText(SideTitle(c, s)), HtmlText(s.name), HtmlText(s.autopilot),
+                       HtmlText(s.vehicle), s.completed, s.flown);
   };
-  const bool decided = c.finding == "better" || c.finding == "worse" || c.finding == "mixed";
+  const bool decided = c.finding != "not judged" && c.finding != "no relevant difference";
   std::string html = fmt::format(
       "<header>\n<h1>{} against {}</h1>\n<p class=\"soft what\">{}<br>{}<br>{}Differences are B minus A; "
       "{}.</p>\n"
@@ -216,12 +228,22 @@ std::string ComparedSection(const Comparison& c) {
           {InputNames(input.key, input.input), fmt::format("{} of {}", input.cases, c.pairing.shared)});
     html += changed.Html();
   }
-  html += fmt::format("<h3>Differences of the two campaign files: {}</h3>\n", c.changes.size());
+  return html;
+}
+
+/// The requirements first: they say what A and B were judged by.
+std::string DiffersSection(const Comparison& c) {
+  std::string html =
+      fmt::format("<h2 id=\"differs\">Values of the campaign files that differ: {}</h2>\n", c.changes.size());
   if (c.changes.empty()) return html + "<p>None.</p>\n";
-  LongTable changes({{"Value", false, true}, {"A"}, {"B"}}, "; compare.json has all of them");
-  for (const CampaignChange& change : c.changes) {
-    const auto text = [](const std::string& value) { return value.empty() ? "–" : HtmlText(value); };
-    changes.Row({PathCell(change.path), text(change.a), text(change.b)});
+  LongTable changes({{"Value", false, true}, {"A: " + SideTitle(c, c.a)}, {"B: " + SideTitle(c, c.b)}},
+                    "; compare.json has all of them");
+  for (const bool of_requirements : {true, false}) {
+    for (const CampaignChange& change : c.changes) {
+      if (change.path.starts_with("requirements") != of_requirements) continue;
+      const auto text = [](const std::string& value) { return value.empty() ? "–" : HtmlText(value); };
+      changes.Row({PathCell(change.path), text(change.a), text(change.b)});
+    }
   }
   return html + "<div class=\"breaking\">" + changes.Html() + "</div>\n";
 }
@@ -280,17 +302,25 @@ std::string CasesSection(const Comparison& c) {
 
 std::string MetricsSection(const Comparison& c) {
   std::string html = fmt::format(
-      "<h2 id=\"metrics\">Every metric</h2>\n"
-      "<p>{} Its 95 % limits stand below it. The tails are on the bad side: 95 and 99 %, or 5 and 1 % if "
+      "<h2 id=\"metrics\">Metrics</h2>\n"
+      "<p>First those whose change is certain and matters, the largest first. {} Its 95 % limits stand below "
+      "it. The tails are on the bad side: 95 and 99 %, or 5 and 1 % if "
       "less is worse. <code>compare.json</code> has the other percentiles. “Not shown”: Holm’s adjusted p is "
       "above 5 %. This does not show that the campaigns are equal. A difference matters from {} of a "
       "requirement’s limit on, or without one of the spread of A from 5 to 95 %.</p>\n",
       c.pairing.paired ? "The difference is the median of B minus A over the pairs."
                        : "The difference is that of the medians.",
       PercentText(c.practical_share));
-  HtmlTable table(std::string("!Metric|#Unit|#Median A|#Median B|#Difference|#of p95|#of p99|#") +
-                  (c.pairing.paired ? "B better : worse" : "Flights") + "|#p, Holm|Finding");
-  for (const MetricComparison& metric : c.metrics) {
+  const std::string heads = std::string("!Metric|#Unit|#Median A|#Median B|#Difference|#of p95|#of p99|#") +
+                            (c.pairing.paired ? "B better : worse" : "Flights") + "|#p, Holm|Finding";
+  HtmlTable relevant(heads), rest(heads);
+  std::size_t others = 0, too_small = 0;
+  for (const MetricComparison* ranked : ByEffect(c)) {
+    const MetricComparison& metric = *ranked;
+    const bool is_other = c.independent && metric.effect_in.empty();
+    others += is_other;
+    too_small += is_other && metric.finding == kTooSmall;
+    HtmlTable& table = is_other ? rest : relevant;
     const auto tail = [&](const char* name, const char* other) {
       for (const PercentileComparison& each : metric.tails)
         if (each.name == name || (metric.info.worse == Worse::kSmaller && each.name == other))
@@ -310,10 +340,19 @@ std::string MetricsSection(const Comparison& c) {
                                 ? fmt::format("{} smaller<br>{} larger", metric.b_better, metric.a_better)
                                 : fmt::format("{} : {}", metric.b_better, metric.a_better)
                           : fmt::format("{}, {}", metric.n_a, metric.n_b),
-         PText(metric.p_holm), FindingBadge(metric.finding)},
-        metric.info.is_part ? "part screen" : "");
+         PText(metric.p_holm),
+         FindingBadge(metric.finding) + (metric.effect_in.empty() || !std::isfinite(metric.effect)
+                                             ? ""
+                                             : Definition(metric.effect_in + ": " + ShareOfScale(metric)))},
+        metric.info.is_part ? "screen" : "");
   }
-  return html + table.Html("metrics");
+  html += others == c.metrics.size() ? "<p>No metric has a change that is certain and matters.</p>\n"
+                                     : relevant.Html("metrics");
+  if (others == 0) return html;
+  return html + fmt::format(
+                    "<details><summary>{} metrics without a change that matters: {} not shown, {} certain "
+                    "but too small</summary>\n{}</details>\n",
+                    others, others - too_small, too_small, rest.Html("metrics"));
 }
 
 /// Share of the flights beyond each value. A lost flight counts as beyond any value.
@@ -466,7 +505,7 @@ std::string MethodsSection(const Comparison& c) {
   return html +
          "<li>Holm’s adjustment (<i>Scand. J. Statist.</i> 6 (1979) 65) is over the metrics for the medians, "
          "over the metrics for each percentile, and over the requirements. In such a family the probability "
-         "of any wrong finding is at most 5 %.</li>\n"
+         "of any wrong finding is at most 5 %. The tails of a metric share these 5 %.</li>\n"
          "<li>A lost flight counts as worse than any value (J. M. Lachin, <i>Control. Clin. Trials</i> 20 "
          "(1999) 408), so that no campaign gains by losing its worst flights. If a metric is neither good "
          "nor bad, lost flights are left out. If a metric is worse farther from zero, its magnitude is "
@@ -485,9 +524,9 @@ std::string ComparisonPage(const Comparison& comparison, const CaseColumns& a, c
   const std::string title =
       SideTitle(comparison, comparison.b) + " against " + SideTitle(comparison, comparison.a);
   std::string page = PageHead(title, title, kMoreStyle) + "<main>\n" + Header(comparison) +
-                     kComparisonNavigation + CasesSection(comparison) + MetricsSection(comparison) +
-                     FiguresSection(comparison, a, b) + ChangesSection(comparison) +
-                     ComparedSection(comparison) + MethodsSection(comparison);
+                     kComparisonNavigation + DiffersSection(comparison) + CasesSection(comparison) +
+                     MetricsSection(comparison) + FiguresSection(comparison, a, b) +
+                     ChangesSection(comparison) + ComparedSection(comparison) + MethodsSection(comparison);
   page += GlossarySection(page);
   return page + "</main>\n<script>" + std::string(ChartScript()) + "</script>\n</body>\n</html>\n";
 }

@@ -2,8 +2,13 @@
 
 #include <fmt/format.h>
 
+#include <algorithm>
 #include <cmath>
+#include <limits>
+#include <utility>
 
+#include "core/environment/earth.h"
+#include "core/flight/orbit.h"
 #include "core/math/constants.h"
 #include "core/pages/html_parts.h"
 #include "core/pages/svg_chart.h"
@@ -13,6 +18,7 @@ namespace dispersa {
 namespace {
 
 constexpr char kSinceLiftOff[] = "time since lift-off, s";
+constexpr double kLeastPerigeeKm = -2000.0;
 
 template <typename Value>
 std::vector<double> Column(const std::vector<AscentSample>& history, Value value) {
@@ -23,20 +29,61 @@ std::vector<double> Column(const std::vector<AscentSample>& history, Value value
 
 double TimeOf(const AscentSample& sample) { return sample.time_s; }
 
+/// Drag alone is thousandths of a g in the coast.
+constexpr double kThrust_g = 0.5;
+
+/// A stage's first and last sample with thrust, by their place in the history.
+struct Burn {
+  int stage;
+  std::size_t ignition, burnout;
+};
+
+std::vector<Burn> BurnsIn(const std::vector<AscentSample>& history) {
+  std::vector<Burn> burns;
+  for (std::size_t i = 0; i < history.size(); ++i) {
+    if (history[i].axial_load_g < kThrust_g) continue;
+    if (burns.empty() || history[i].stage != burns.back().stage) burns.push_back({history[i].stage, i, i});
+    burns.back().burnout = i;
+  }
+  return burns;
+}
+
 /// Marks ignitions, and gaps of more than 20 s without thrust as coast.
 void MarkStages(const std::vector<AscentSample>& history, SvgChart* chart) {
-  constexpr double kThrust_g = 0.5;  // drag alone is thousandths of a g in the coast
-  int marked = 0;
   double burnout_s = 0.0;
-  for (const AscentSample& sample : history) {
-    if (sample.axial_load_g < kThrust_g) continue;
-    if (sample.stage != marked) {
-      if (marked > 0 && sample.time_s - burnout_s > 20.0) chart->Shade(burnout_s, sample.time_s, "coast");
-      marked = sample.stage;
-      chart->Mark(sample.time_s, fmt::format("S{}", marked));
-    }
-    burnout_s = sample.time_s;
+  for (const Burn& burn : BurnsIn(history)) {
+    const double ignition_s = history[burn.ignition].time_s;
+    if (burnout_s > 0.0 && ignition_s - burnout_s > 20.0) chart->Shade(burnout_s, ignition_s, "coast");
+    chart->Mark(ignition_s, fmt::format("S{}", burn.stage));
+    burnout_s = history[burn.burnout].time_s;
   }
+}
+
+double ApogeeKm(const AscentSample& s) {
+  return ElementsOf(Wgs84(), s.p_EoC_I, s.v_IC_I).apogee_altitude_m * 1e-3;
+}
+
+double PerigeeKm(const AscentSample& s) {
+  return ElementsOf(Wgs84(), s.p_EoC_I, s.v_IC_I).perigee_altitude_m * 1e-3;
+}
+
+/// Burns and the largest dynamic pressure, in the order of time.
+std::vector<std::pair<std::size_t, std::string>> EventsIn(const std::vector<AscentSample>& history) {
+  std::vector<std::pair<std::size_t, std::string>> events;
+  const std::vector<Burn> burns = BurnsIn(history);
+  for (const Burn& burn : burns) {
+    const std::string stage = fmt::format(" of stage {}", burn.stage);
+    events.emplace_back(burn.ignition, (burn.ignition == 0 ? "lift-off, ignition" : "ignition") + stage);
+    if (burn.burnout + 1 < history.size()) events.emplace_back(burn.burnout, "end of the burn" + stage);
+  }
+  const auto hardest =
+      std::max_element(history.begin(), history.end(),
+                       [](const AscentSample& a, const AscentSample& b) { return a.qbar_pa < b.qbar_pa; });
+  events.emplace_back(hardest - history.begin(), "largest dynamic pressure");
+  events.emplace_back(history.size() - 1, "injection");
+  std::stable_sort(events.begin(), events.end(),
+                   [](const auto& a, const auto& b) { return a.first < b.first; });
+  return events;
 }
 
 std::string Draw(SvgChart chart, const std::string& caption) {
@@ -83,7 +130,37 @@ std::string ReferenceFigures(const std::vector<AscentSample>& history) {
   add("flight path angle, °",
       Column(history, [](const AscentSample& s) { return s.flight_path_angle_rad * kDegPerRad; }),
       "Inertial flight path angle, above the plane normal to the radius.");
+  add("dynamic pressure, kPa", Column(history, [](const AscentSample& s) { return s.qbar_pa * 1e-3; }),
+      "Dynamic pressure of the air.");
+  SvgChart apsides({.label = kSinceLiftOff}, {.label = "altitude above the equator’s radius, km"});
+  MarkStages(history, &apsides);
+  std::vector<double> apogee = Column(history, ApogeeKm), perigee = Column(history, PerigeeKm);
+  // On the ground and long after the perigee is kilometres above the centre: it would flatten the chart.
+  for (double& each : perigee)
+    if (each < kLeastPerigeeKm) each = std::numeric_limits<double>::quiet_NaN();
+  for (double& each : apogee)
+    if (!std::isfinite(each)) each = std::numeric_limits<double>::quiet_NaN();
+  apsides.Line(time_s, std::move(apogee), "line-0", "apogee");
+  apsides.Line(time_s, std::move(perigee), "line-1", "perigee");
+  figures += Draw(
+      std::move(apsides),
+      "Apogee and perigee of the two-body orbit at each instant; a perigee below −2000 km is not drawn.");
   return figures;
+}
+
+std::string AscentEventsTable(const std::vector<AscentSample>& history) {
+  if (history.empty()) return "";
+  HtmlTable table(
+      "Event|#Time, s|#Height, km|#Speed, m/s|#Dynamic pressure, kPa|#Mass, kg|#Apogee, km|#Perigee, km");
+  const auto text = [](double value) {
+    return std::isfinite(value) ? FixedText(value, 1) : std::string("none");
+  };
+  for (const auto& [at, name] : EventsIn(history)) {
+    const AscentSample& s = history[at];
+    table.Row({HtmlText(name), text(s.time_s), text(s.altitude_m * 1e-3), text(s.velocity_m_s),
+               FixedText(s.qbar_pa * 1e-3, 2), text(s.mass_kg), text(ApogeeKm(s)), text(PerigeeKm(s))});
+  }
+  return table.Html();
 }
 
 std::string AscentCsv(const std::vector<AscentSample>& history) {

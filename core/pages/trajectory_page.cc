@@ -126,6 +126,13 @@ std::string SearchFigures(const OptimizationResult& result) {
                     "q·α.");
 }
 
+std::string CheckFlightParagraph(const std::optional<CheckFlight>& check) {
+  if (!check)
+    return "<p class=\"soft\">No check flight was flown: whether an autopilot can fly it is not known.</p>\n";
+  return "<p>" + VerdictBadge(check->completed() ? "pass" : "fail") + " " +
+         HtmlText(CheckFlightText(*check)) + ".</p>\n";
+}
+
 // "0.01 a metre of altitude": the weight of a miss, as the file states it.
 std::string ObjectiveText(const TrajectoryProblem& problem) {
   std::string text = fmt::format("{} per km of altitude", ReadableText(problem.weight_altitude_1_m * 1e3));
@@ -234,8 +241,7 @@ std::string TrajectoryPage(const OptimizationResult& result, const std::optional
       HtmlText(reference.engine));
   if (!result.reached)
     page += "<p>" + VerdictBadge("fail") + " The target is missed: " + HtmlText(result.statement) + "</p>\n";
-  if (check && !check->completed())
-    page += "<p>" + VerdictBadge("fail") + " " + HtmlText(CheckFlightText(*check)) + ".</p>\n";
+  page += CheckFlightParagraph(check);
   page += "<h2>Injection</h2>\n" + InjectionTable(result, check);
   page +=
       fmt::format("<p>The orbit reached: {}.{}</p>\n", HtmlText(OrbitSentence(reference)),
@@ -243,6 +249,8 @@ std::string TrajectoryPage(const OptimizationResult& result, const std::optional
                       ? " Flown closed loop: the errors of the nominal flight with six degrees of freedom "
                         "under the campaign’s autopilot, reaction control included."
                       : "");
+  if (const std::string events = AscentEventsTable(result.history); !events.empty())
+    page += "<h2>Events</h2>\n" + events;
   page += "<h2>Flight program</h2>\n" + VariableTable(reference);
   page +=
       "<p class=\"soft\">A variable at its bound was limited by it. A better value may lie beyond the bound, "

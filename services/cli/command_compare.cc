@@ -47,7 +47,8 @@ void PrintText(const Comparison& comparison) {
   fmt::print("{}\n{}\n\n", comparison.pairing.sentence, comparison.sentence);
   fmt::print("{:<37} {:>10} {:>10} {:>11} {:>26} {:>11} {:>11}  {}\n", "metric", "median A", "median B",
              "B - A", "95 % interval", "p99 B - A", "p, Holm", "B is");
-  for (const MetricComparison& metric : comparison.metrics) {
+  for (const MetricComparison* ranked : ByEffect(comparison)) {
+    const MetricComparison& metric = *ranked;
     const auto tail =
         std::find_if(metric.tails.begin(), metric.tails.end(), [&](const PercentileComparison& each) {
           return each.name == (metric.info.worse == Worse::kSmaller ? "p01" : "p99");

@@ -4,6 +4,8 @@
 //
 // prints one JSON object with the Markdown of each named table: "keys vehicle.stages", "metrics", ... A map
 // of keys whose name is given too is left out of the table around it.
+#include <fmt/format.h>
+
 #include <algorithm>
 #include <cstdio>
 #include <nlohmann/json.hpp>
@@ -13,6 +15,7 @@
 #include "core/campaign/dispersion_table.h"
 #include "core/campaign_yaml/describe_file.h"
 #include "core/flight/metrics.h"
+#include "core/statistics/order_statistics.h"
 #include "services/docs/key_tables.h"
 #include "services/program/exit_code.h"
 
@@ -122,6 +125,24 @@ std::string ExitCodeTable() {
   return table;
 }
 
+// The least number of cases of one look at the end, by probability and risk, with no failure and with one.
+std::string CasesTable() {
+  constexpr double kRisks[] = {0.2, 0.1, 0.05, 0.01};
+  std::string table = "| probability |", rule = "|---|";
+  for (const double risk : kRisks) {
+    table += fmt::format(" risk {:g} % |", 100.0 * risk);
+    rule += "---|";
+  }
+  table += "\n" + rule + "\n";
+  for (const double probability : {0.5, 0.9, 0.95, 0.99, 0.9973, 0.999}) {
+    table += fmt::format("| {:g} % |", 100.0 * probability);
+    for (const double risk : kRisks)
+      table += fmt::format(" {}, {} |", CasesNeeded(probability, risk, 0), CasesNeeded(probability, risk, 1));
+    table += "\n";
+  }
+  return table;
+}
+
 // Throws std::invalid_argument for a name that is no table's, and for kinds of files that no name asks for.
 nlohmann::ordered_json Tables(const std::vector<std::string>& names) {
   const std::string keys = "keys ";
@@ -143,6 +164,8 @@ nlohmann::ordered_json Tables(const std::vector<std::string>& names) {
       table = InputTable();
     else if (name == "exit codes")
       table = ExitCodeTable();
+    else if (name == "cases")
+      table = CasesTable();
     else if (const std::vector<KeyRow>* rows =
                  name.starts_with(keys) ? Find(all, name.substr(keys.size())) : nullptr)
       table = KeyTable([&](const std::string& path) {

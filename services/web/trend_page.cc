@@ -12,6 +12,13 @@ namespace dispersa {
 namespace {
 
 constexpr std::size_t kMostPoints = 60;
+/// On the page of all requirements.
+constexpr std::size_t kMostInAll = 20, kMostCharts = 30;
+constexpr char kChartWords[] =
+    "Share of flights that meet the requirement, with its confidence bounds, by campaign in the order of "
+    "launching. The dashed line is the share that is required. The letter is the verdict’s first: P pass, F "
+    "fail, "
+    "I inconclusive, N not evidence, S study. The version is the label <code>commit</code>.";
 
 struct Point {
   const CampaignRow* row;
@@ -31,6 +38,27 @@ std::string VersionOf(const CampaignRow& row) {
     if (label->starts_with("commit=")) return label->substr(7, 10);
   }
   return row.id.substr(0, 8);
+}
+
+/// So that a verdict is read without colours.
+std::string LetterOf(const std::string& verdict) {
+  return verdict.empty()
+             ? ""
+             : std::string(1, static_cast<char>(verdict[0] -
+                                                ('a' <= verdict[0] && verdict[0] <= 'z' ? 'a' - 'A' : 0)));
+}
+
+/// Of the rows that have judged the metric, the newest first; `all` counts those left out too.
+std::vector<Point> PointsOf(const std::vector<const CampaignRow*>& rows, const std::string& metric,
+                            std::size_t most, std::size_t& all) {
+  std::vector<Point> points;
+  for (const CampaignRow* row : rows) {
+    if (!row->has_ended) continue;
+    const auto one = std::find_if(row->requirements.begin(), row->requirements.end(),
+                                  [&](const RequirementOutcome& each) { return each.metric == metric; });
+    if (one != row->requirements.end() && ++all <= most) points.push_back({row, &*one});
+  }
+  return points;
 }
 
 std::string TrendChart(const std::vector<Point>& points) {
@@ -62,8 +90,10 @@ std::string TrendChart(const std::vector<Point>& points) {
     if (one.success_lower && one.success_upper)
       svg += fmt::format("<path class=\"range\" d=\"M{:.1f} {:.1f}V{:.1f}\"/>", x, y(*one.success_lower),
                          y(*one.success_upper));
-    svg += fmt::format("<circle class=\"{}\" cx=\"{:.1f}\" cy=\"{:.1f}\" r=\"5\"/></a>",
-                       HtmlText(one.verdict), x, y(point.met()));
+    svg += fmt::format(
+        "<circle class=\"{}\" cx=\"{:.1f}\" cy=\"{:.1f}\" r=\"8\"/><text class=\"letter\" "
+        "text-anchor=\"middle\" x=\"{:.1f}\" y=\"{:.1f}\">{}</text></a>",
+        HtmlText(one.verdict), x, y(point.met()), x, y(point.met()) + 4.0, LetterOf(one.verdict));
     if (points.size() <= 30 || i % 2 == 0)
       svg += fmt::format(
           "<text class=\"tick\" text-anchor=\"end\" transform=\"translate({:.1f} {:.1f}) "
@@ -79,11 +109,20 @@ std::string Metrics(const CampaignIndex& index) {
     if (row->has_ended)
       for (const RequirementOutcome& one : row->requirements) ++counts[one.metric];
   if (counts.empty()) return "<p>No campaign has judged a requirement.</p>\n";
-  HtmlTable table("Metric|#Campaigns");
-  for (const auto& [metric, count] : counts)
-    table.Row({fmt::format("<a href=\"/trend?metric={}\">{}</a>", UrlText(metric), HtmlText(metric)),
-               std::to_string(count)});
-  return table.Html("narrow");
+  std::string html;
+  std::size_t drawn = 0;
+  const std::vector<const CampaignRow*> rows = index.Search("");
+  for (const auto& [metric, count] : counts) {
+    html +=
+        fmt::format("<h2><a href=\"/trend?metric={}\">{}</a></h2>\n<p class=\"soft\">{} campaign{}{}</p>\n",
+                    UrlText(metric), HtmlText(metric), count, count == 1 ? "" : "s",
+                    count > kMostInAll ? fmt::format(", the last {} are shown", kMostInAll) : "");
+    if (++drawn > kMostCharts) continue;
+    std::size_t all = 0;
+    const std::vector<Point> points = PointsOf(rows, metric, kMostInAll, all);
+    html += TrendChart({points.rbegin(), points.rend()});
+  }
+  return html + "<p class=\"soft\">" + kChartWords + "</p>\n";
 }
 
 }  // namespace
@@ -91,17 +130,12 @@ std::string Metrics(const CampaignIndex& index) {
 std::string TrendPage(const CampaignIndex& index, const std::string& metric, const std::string& search) {
   if (metric.empty())
     return Frame("Trends",
-                 "<h1>Trends</h1>\n<p>Choose a metric: its requirement is shown over all campaigns that have "
-                 "judged it.</p>\n" +
+                 "<h1>Trends</h1>\n<p>Each requirement over the campaigns that have judged it. A metric’s "
+                 "page has all "
+                 "of its campaigns, and their numbers.</p>\n" +
                      Metrics(index));
-  std::vector<Point> points;
   std::size_t all = 0;
-  for (const CampaignRow* row : index.Search(search)) {
-    if (!row->has_ended) continue;
-    const auto one = std::find_if(row->requirements.begin(), row->requirements.end(),
-                                  [&](const RequirementOutcome& each) { return each.metric == metric; });
-    if (one != row->requirements.end() && ++all <= kMostPoints) points.push_back({row, &*one});
-  }
+  const std::vector<Point> points = PointsOf(index.Search(search), metric, kMostPoints, all);
   std::string main = fmt::format(
       "<h1>Trend of {}</h1>\n<form class=\"filter\" action=\"/trend\"><input type=\"hidden\" name=\"metric\" "
       "value=\"{}\"><input type=\"search\" name=\"q\" value=\"{}\" placeholder=\"only campaigns with …, as "
@@ -125,10 +159,7 @@ std::string TrendPage(const CampaignIndex& index, const std::string& metric, con
   }
   std::vector<Point> by_age(points.rbegin(), points.rend());
   main += fmt::format(
-      "<figure class=\"wide\">{}<figcaption>Share of flights that meet the requirement, with its "
-      "confidence bounds, by campaign in the order of launching. The dashed line is the share that is "
-      "required.{} The version is the label <code>commit</code>.</figcaption></figure>\n",
-      TrendChart(by_age),
+      "<figure class=\"wide\">{}<figcaption>{}{}</figcaption></figure>\n", TrendChart(by_age), kChartWords,
       all > points.size() ? fmt::format(" The last {} of {} campaigns.", points.size(), all) : "");
   return Frame("Trend", main + table.Html());
 }

@@ -229,6 +229,22 @@ class SiteTest(unittest.TestCase):
             row, = [row for row in rows if row[0].startswith(words)]
             self.assertEqual(int(row[1].replace(",", "")), math.prod(constant(text, name) for name in names), row[0])
 
+    def test_the_least_numbers_of_cases_are_the_binomials(self):
+        """By another way than the program's: n grows until the risk is small enough."""
+        def needed(probability, risk, failures):
+            n = failures + 1
+            while sum(math.comb(n, k) * (1 - probability)**k * probability**(n - k) for k in range(failures + 1)) > risk:
+                n += 1
+            return n
+
+        risks = (0.2, 0.1, 0.05, 0.01)
+        rows = [row for row in self.page("input-files").rows if len(row) == 5 and row[0].endswith(" %") and ", " in row[1]]
+        self.assertEqual([row[0] for row in rows], ["50 %", "90 %", "95 %", "99 %", "99.73 %", "99.9 %"])
+        for row in rows:
+            probability = float(row[0][:-2]) / 100
+            for risk, cell in zip(risks, row[1:], strict=True):
+                self.assertEqual(cell, f"{needed(probability, risk, 0)}, {needed(probability, risk, 1)}", (row[0], risk))
+
     def test_schemas_can_be_taken(self):
         self.assertTrue((self.site / "schemas" / "campaign.json").exists())
 

@@ -43,6 +43,79 @@ TEST(ComparisonSentence, NamesTheLargestChange) {
   }
 }
 
+std::vector<double> Scaled(double factor, double scatter = 0.001, std::size_t n = 400) {
+  std::vector<double> values;
+  for (std::size_t i = 0; i < n; ++i)
+    values.push_back(factor * (0.01 + scatter * static_cast<double>(i % 40)));
+  return values;
+}
+
+Comparison OfFourHundred(const std::vector<double>& of_a, const std::vector<double>& of_b, bool paired,
+                         const std::vector<Requirement>& requirements = {}) {
+  std::vector<std::uint64_t> index;
+  std::vector<double> input, other;
+  for (std::uint64_t i = 0; i < 400; ++i) {
+    index.push_back(i);
+    input.push_back(0.1 * static_cast<double>(i));
+    other.push_back(0.1 * static_cast<double>(i) + (paired ? 0.0 : 0.05));
+  }
+  return CompareColumns(Columns(index, input, of_a), Columns(index, other, of_b), requirements);
+}
+
+// Far from its limit a value can become five times worse, and no flight breaks anything.
+TEST(ComparisonFinding, FollowsTheLargestEffectWithAndWithoutRequirements) {
+  for (const bool paired : {true, false}) {
+    for (const std::vector<Requirement>& requirements :
+         std::vector<std::vector<Requirement>>{{}, {Below(1.0)}}) {
+      const Comparison worse = OfFourHundred(Scaled(1.0), Scaled(5.0), paired, requirements);
+      EXPECT_EQ(worse.pairing.paired, paired);
+      EXPECT_EQ(worse.finding, "worse") << worse.sentence;
+      EXPECT_THAT(worse.sentence, HasSubstr("The largest change for the worse: pitch_error_rms_deg, "));
+      EXPECT_EQ(OfFourHundred(Scaled(5.0), Scaled(1.0), paired, requirements).finding, "better");
+      EXPECT_EQ(OfFourHundred(Scaled(1.0), Scaled(1.0 + 1e-8), paired, requirements).finding,
+                "no relevant difference");
+    }
+  }
+}
+
+// The median stays where it is, the tail does not: as if an uncertainty were doubled.
+TEST(ComparisonFinding, ATailThatMovesAloneIsFound) {
+  std::vector<double> narrow, wide;
+  for (int i = 0; i < 400; ++i) {
+    const double of = ((i * 37) % 400 - 199.5) / 200.0;
+    narrow.push_back(0.5 + 0.1 * of);
+    wide.push_back(0.5 + 0.2 * of);
+  }
+  const Comparison worse = OfFourHundred(narrow, wide, false), better = OfFourHundred(wide, narrow, false);
+  EXPECT_EQ(worse.metrics[0].finding, "worse");
+  EXPECT_EQ(better.metrics[0].finding, "better");
+  EXPECT_NE(worse.metrics[0].effect_in, "median");
+  EXPECT_THAT(EffectWords(worse.metrics[0]), HasSubstr(worse.metrics[0].effect_in + " 0."));
+  EXPECT_EQ(EffectWords(OfFourHundred(narrow, narrow, true).metrics[0]), "");
+}
+
+// The first row of the page is the largest effect; what does not matter is counted and folded.
+TEST(ComparisonPage, BeginsWithTheLargestEffect) {
+  CaseColumns a = Columns({}, {}, {}), b = a;
+  std::vector<std::uint64_t> index;
+  std::vector<double> input;
+  for (std::uint64_t i = 0; i < 400; ++i) index.push_back(i), input.push_back(0.1 * static_cast<double>(i));
+  a = Columns(index, input, Scaled(1.0));
+  b = Columns(index, input, Scaled(1.2));
+  for (const auto& [name, factor] : {std::pair{"deflection_peak_deg", 3.0}, std::pair{"q_max_pa", 1.0}}) {
+    a.metrics[MetricColumn(name)] = Scaled(1.0);
+    b.metrics[MetricColumn(name)] = Scaled(factor);
+  }
+  const Comparison comparison = CompareColumns(a, b);
+  ASSERT_EQ(comparison.metrics.size(), 3u);
+  EXPECT_EQ(ByEffect(comparison)[0]->metric, "deflection_peak_deg");
+  EXPECT_EQ(ByEffect(comparison)[1]->metric, "pitch_error_rms_deg");
+  EXPECT_THAT(
+      ComparisonPage(comparison, a, b),
+      HasSubstr("<details><summary>1 metrics without a change that matters: 1 not shown, 0 certain but too "
+                "small</summary>"));
+}
+
 // The campaigns share cases 2, 3 and 5, which stand in other rows of A than of B.
 TEST(ComparedCases, ShowTheValuesOfTheirOwnRows) {
   const Comparison comparison = CompareColumns(

@@ -175,9 +175,10 @@ TEST(ReportComparison, SaysTheResultByRequirementAndCountsEachMetricOnce) {
   EXPECT_EQ(
       comparison.sentence,
       "B is worse in 1 of 1 requirement, pitch_error_rms_deg below 1: broken in 60 of 60 flights of B, in 0 "
-      "of 60 of A. Of 2 metrics, each counted once, B is better in 0 and worse in 2. It differs in 0 that "
-      "are neither good nor bad. The others show no difference. 60 cases harmed by the change from A to B, "
-      "0 rescued.");
+      "of 60 of A. The largest change for the worse: injection_altitude_error_km, median 0.53 km in A, 2.06 "
+      "km in B: a change by 28.8 times the spread of A. Of 2 metrics, each counted once, B is better in 0, "
+      "worse in 2, and differs in "
+      "0 that are neither good nor bad. 60 cases harmed by the change from A to B, 0 rescued.");
   const auto json = nlohmann::json::parse(ComparisonJson(comparison));
   EXPECT_EQ(json["finding"], "worse");
   EXPECT_EQ(json["requirements"][0]["finding"], "worse");
@@ -198,7 +199,7 @@ TEST(ReportComparison, ThePageShowsTheResultBeforeTheDetails) {
   EXPECT_LT(badge, row);
   EXPECT_LT(row, cases);
   EXPECT_LT(cases, metrics);
-  EXPECT_LT(metrics, compared) << "what differs between the files comes last";
+  EXPECT_LT(metrics, compared) << "ids of the campaigns come last";
   EXPECT_THAT(page, AllOf(HasSubstr("&lt; 1e-15"), Not(HasSubstr("0e+00")), HasSubstr("<main>"),
                           HasSubstr("<dfn>harmed</dfn>"), HasSubstr("40 more rows")));
 }
@@ -335,7 +336,7 @@ TEST(ReportComparison, ADifferenceCanBeTooSmallToMatter) {
         Compare({"A", "engine", of_a, a}, {"B", "engine", of_b, b}, {kMetric}, {}, one.share);
     EXPECT_EQ(comparison.metrics[0].finding, one.finding);
     EXPECT_NEAR(comparison.metrics[0].least, one.least, 1e-12);
-    EXPECT_EQ(comparison.metrics[0].least_is_of_limit, !one.requirements.empty());
+    EXPECT_EQ(comparison.metrics[0].scale_is_limit, !one.requirements.empty());
     EXPECT_EQ(nlohmann::json::parse(ComparisonJson(comparison))["practical_share"], one.share);
     const bool small = one.finding == std::string(kTooSmall);
     EXPECT_EQ(comparison.sentence.find("In 1 the difference is certain but too small to matter: less than") !=
@@ -357,18 +358,29 @@ TEST(ReportComparison, OfEqualNamesTheFoldersAndWhatDiffersAreNamed) {
   alpha.name = "alpha";
   const std::vector<CampaignChange> changes = {{"vehicle.stages[0].thrust_n", "1", "2"},
                                                {"vehicle.name", "x", "y"},
-                                               {"dispersions.wind.max_speed_m_s", "3", "4"}};
+                                               {"dispersions.wind.max_speed_m_s", "3", "4"},
+                                               {"requirements[0].below", "5", "6"}};
   const Comparison same =
       Compare({"old", "engine", alpha, cases}, {"new", "engine", alpha, cases}, {kMetric}, changes);
   const std::string page = ComparisonPage(same, cases, cases);
-  EXPECT_THAT(page, HasSubstr("<h1>alpha in new against alpha in old</h1>"));
-  EXPECT_THAT(page,
-              HasSubstr("The campaign files differ in vehicle (2 values) and dispersions (1 value).<br>"));
+  EXPECT_LT(page.find(">requirements[0].<wbr>below"), page.find(">vehicle.<wbr>stages[0]"));
+  EXPECT_THAT(page, HasSubstr("<h1>new against old</h1>"));
+  EXPECT_THAT(page, HasSubstr("The campaign files differ in vehicle (2 values), dispersions (1 value) and "
+                              "requirements (1 value).<br>"));
   Campaign beta = alpha;
   beta.name = "beta";
   const Comparison other =
       Compare({"old", "engine", alpha, cases}, {"new", "engine", beta, cases}, {kMetric}, {});
-  EXPECT_THAT(ComparisonPage(other, cases, cases), HasSubstr("<h1>beta against alpha</h1>"));
+  EXPECT_THAT(ComparisonPage(other, cases, cases),
+              AllOf(HasSubstr("<h1>new against old</h1>"), HasSubstr("B: <b>new</b>, campaign beta")));
+  // The last part of a path is enough, unless both have the same.
+  const auto title = [&](const char* a, const char* b) {
+    const Comparison of = Compare({a, "", alpha, cases}, {b, "", alpha, cases}, {kMetric}, {});
+    return SideTitle(of, of.b);
+  };
+  EXPECT_EQ(title("x/old", "x/new/"), "new");
+  EXPECT_EQ(title("x/run", "y/run"), "y/run");
+  EXPECT_EQ(title("old", "."), ".");
 }
 
 // Before all tables, and each side its own.

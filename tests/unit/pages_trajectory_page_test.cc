@@ -1,6 +1,9 @@
 // The optimiser's page.
 #include "core/pages/trajectory_page.h"
 
+#include <cmath>
+
+#include "core/environment/earth.h"
 #include "core/math/constants.h"
 #include "tests/test.h"
 
@@ -64,6 +67,48 @@ TEST(TrajectoryPage, ShowsAnAzimuthWithinBoundsThatPassNorth) {
   result.reference.problem.launch_azimuth_rad = {350.0 * kRadPerDeg, 370.0 * kRadPerDeg};
   result.reference.program.launch_azimuth_rad = 5.0 * kRadPerDeg;
   EXPECT_THAT(TrajectoryPage(result, std::nullopt), HasSubstr("365.000000"));
+}
+
+/// On a circle of this altitude above the equator's radius.
+AscentSample Sample(double time_s, int stage, double load_g, double qbar_pa, double altitude_m) {
+  const Earth earth = Wgs84();
+  AscentSample s;
+  s.time_s = time_s;
+  s.stage = stage;
+  s.axial_load_g = load_g;
+  s.qbar_pa = qbar_pa;
+  s.altitude_m = altitude_m;
+  s.p_EoC_I = {earth.equatorial_radius_m + altitude_m, 0.0, 0.0};
+  s.v_IC_I = {0.0, std::sqrt(earth.mu_m3_s2 / s.p_EoC_I.x()), 0.0};
+  return s;
+}
+
+TEST(TrajectoryPage, HasEventsApsidesAndTheCheckFlight) {
+  OptimizationResult result = Result(5.0);
+  result.history = {Sample(0.0, 1, 1.5, 0.0, 100e3),   Sample(20.0, 1, 2.0, 40e3, 101e3),
+                    Sample(40.0, 1, 3.0, 9e3, 102e3),  Sample(60.0, 2, 0.0, 1.0, 103e3),
+                    Sample(100.0, 2, 1.0, 0.0, 104e3), Sample(140.0, 2, 2.0, 0.0, 150e3)};
+  const std::string page = TrajectoryPage(result, std::nullopt);
+  std::size_t at = page.find("<h2>Events</h2>");
+  for (const char* row :
+       {"<td>lift-off, ignition of stage 1</td><td class=\"n\">0.0<",
+        "<td>largest dynamic pressure</td><td class=\"n\">20.0<",
+        "<td>end of the burn of stage 1</td><td class=\"n\">40.0<",
+        "<td>ignition of stage 2</td><td class=\"n\">100.0<", "<td>injection</td><td class=\"n\">140.0<"}) {
+    const std::size_t next = page.find(row, at);
+    ASSERT_NE(next, std::string::npos) << row;
+    at = next;
+  }
+  EXPECT_THAT(page.substr(at, 400), HasSubstr("<td class=\"n\">150.0</td><td class=\"n\">150.0</td></tr>"));
+  EXPECT_THAT(page, AllOf(HasSubstr("dynamic pressure, kPa"), HasSubstr(">apogee</text>"),
+                          HasSubstr(">perigee</text>")));
+  EXPECT_THAT(page, HasSubstr("No check flight was flown"));
+  CheckFlight check;
+  check.end_time_s = 140.0;
+  EXPECT_THAT(TrajectoryPage(result, check), HasSubstr("check flight: completed at 140 s."));
+  check.outcome = Outcome::kImpact;
+  EXPECT_THAT(TrajectoryPage(result, check),
+              HasSubstr("<span class=\"badge fail\">fail</span> check flight: lost at 140 s"));
 }
 
 }  // namespace

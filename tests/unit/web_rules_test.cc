@@ -91,6 +91,7 @@ TEST(Trend, EachPointHasItsOwnShareAndItsOwnLimit) {
   };
   EXPECT_THAT(page, HasSubstr("<circle class=\"pass\" cx=\"294.0\" cy=\"" + y(0.9) + "\""));
   EXPECT_THAT(page, HasSubstr("<circle class=\"fail\" cx=\"758.0\" cy=\"" + y(0.6) + "\""));
+  EXPECT_THAT(page, AllOf(HasSubstr(">P</text></a>"), HasSubstr(">F</text></a>")));
   EXPECT_THAT(page, HasSubstr("<path class=\"limit\" d=\"M280.0 " + y(0.5)));
   EXPECT_THAT(page, HasSubstr("<path class=\"limit\" d=\"M744.0 " + y(0.95)));
   EXPECT_THAT(page, HasSubstr("d=\"M294.0 " + y(0.8) + "V" + y(0.95)));
@@ -103,8 +104,10 @@ TEST(Trend, MetricsAreCountedOfCampaignsThatHaveEnded) {
   CampaignRow flying = Row(3), other = Row(4, "alpha");
   flying.has_ended = false;
   const std::string page = TrendPage(IndexOf({Row(1), Row(2), flying, other}), "", "");
-  EXPECT_THAT(page, HasSubstr(">q_max_pa</a></td><td class=\"n\">2</td>"));
-  EXPECT_THAT(page, HasSubstr(">alpha</a></td><td class=\"n\">1</td>"));
+  EXPECT_THAT(page,
+              HasSubstr(">q_max_pa</a></h2>\n<p class=\"soft\">2 campaigns</p>\n<svg class=\"chart trend\""));
+  EXPECT_THAT(page,
+              HasSubstr(">alpha</a></h2>\n<p class=\"soft\">1 campaign</p>\n<svg class=\"chart trend\""));
 }
 
 TEST(Search, LooksAtEachLabelAtTheOwnerAndAtTheState) {
