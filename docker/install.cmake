@@ -8,7 +8,9 @@ install(DIRECTORY campaigns DESTINATION "${data}" USE_SOURCE_PERMISSIONS
   PATTERN run EXCLUDE
   PATTERN reference.csv EXCLUDE  # what optimize leaves
   PATTERN reference.html EXCLUDE)
-install(DIRECTORY services/deploy DESTINATION "${data}" USE_SOURCE_PERMISSIONS)
+if(DISPERSA_SERVICE)
+  install(DIRECTORY services/deploy DESTINATION "${data}" USE_SOURCE_PERMISSIONS)
+endif()
 install(FILES core/analysis/summary.schema.json DESTINATION "${data}/schemas")
 
 # Each README.md in its folder, so that their links lead somewhere.
@@ -23,7 +25,11 @@ install(FILES docker/debian/copyright DESTINATION "${CMAKE_INSTALL_DOCDIR}")
 
 # Completion. Where zsh looks depends on who installs: a package of Debian, or somebody below /usr/local.
 set(completion services/cli/completion)
-foreach(program IN ITEMS dispersa dispersa-coordinator dispersa-worker)
+set(programs dispersa)
+if(DISPERSA_SERVICE)
+  list(APPEND programs dispersa-coordinator dispersa-worker)
+endif()
+foreach(program IN LISTS programs)
   install(FILES ${completion}/dispersa.bash RENAME ${program}
     DESTINATION "${CMAKE_INSTALL_DATADIR}/bash-completion/completions")
   install(FILES ${completion}/dispersa.fish RENAME ${program}.fish
@@ -42,7 +48,7 @@ set(manual "${PROJECT_BINARY_DIR}/manual")
 if(HELP2MAN)
   add_custom_command(OUTPUT "${manual}/dispersa.1.gz"
     COMMAND docker/manual "${CMAKE_RUNTIME_OUTPUT_DIRECTORY}" "${manual}"
-    DEPENDS dispersa dispersa-coordinator dispersa-worker docker/manual docker/manual.h2m
+    DEPENDS ${programs} docker/manual docker/manual.h2m
     WORKING_DIRECTORY "${PROJECT_SOURCE_DIR}" COMMENT "Making the man pages" VERBATIM)
   add_custom_target(manual ALL DEPENDS "${manual}/dispersa.1.gz")
 else()

@@ -28,7 +28,7 @@
 namespace dispersa {
 namespace {
 
-std::string refusal;
+std::string refusal = WhyNoSandbox();
 std::set<std::string> not_refused;
 
 // The restrictions that the kernel granted to this process. Read in a child.

@@ -251,4 +251,6 @@ std::string SystemCallName(int call) {
   return name;
 }
 
+std::string WhyNoSandbox() { return ""; }
+
 }  // namespace dispersa

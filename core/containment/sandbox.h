@@ -26,6 +26,9 @@ SandboxParts EnterSandbox(const SandboxParts& wanted, void (*refused)(int call),
 /// objects does not exist.
 void AnswerPathCall(int listener);
 
+/// Why this build has no sandbox, of a control law; empty: it has one.
+std::string WhyNoSandbox();
+
 /// The name of a system call, as in the manual.
 std::string SystemCallName(int call);
 

@@ -11,7 +11,7 @@ namespace dispersa {
 class Database;
 
 /// Of the file in a result folder.
-inline constexpr char kDatabaseName[] = "results.sqlite";
+inline constexpr char kDatabaseName[] = "results.sqlite", kTextFile[] = "campaign.yaml";
 
 struct FolderState {
   std::string campaign_id, flight_id, engine, name, seed;

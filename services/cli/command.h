@@ -24,14 +24,26 @@
 #include <nlohmann/json.hpp>
 #include <string>
 
+#include "services/client/campaign_run.h"
+#include "services/client/folder_check.h"
 #include "services/program/completion_words.h"
 #include "services/program/exit_code.h"
 
 namespace dispersa {
 
+struct Invocation;
+
+/// What a build with the service adds to the program (services/fleet_cli/main.cc).
+struct Service {
+  void (*add_commands)(CLI::App& app, Invocation& invocation);
+  FlyWithWorkers fly_with_workers;
+  OtherFolder check_data;
+};
+
 struct GlobalOptions {
-  bool json = false;   ///< one JSON object on stdout instead of text
-  bool quiet = false;  ///< no progress, only warnings and errors on stderr
+  bool json = false;                 ///< one JSON object on stdout instead of text
+  bool quiet = false;                ///< no progress, only warnings and errors on stderr
+  const Service* service = nullptr;  ///< none: a build without the service
 };
 
 /// The parsed command, which program.cc runs.

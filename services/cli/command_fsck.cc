@@ -8,7 +8,6 @@
 #include <vector>
 
 #include "services/cli/command.h"
-#include "services/client/folder_check.h"
 
 namespace dispersa {
 namespace {
@@ -19,7 +18,8 @@ struct FsckOptions {
 };
 
 ExitCode Fsck(const FsckOptions& options, const GlobalOptions& global) {
-  const std::vector<FolderProblem> problems = CheckFolder(options.directory, options.repair);
+  const std::vector<FolderProblem> problems = CheckFolder(
+      options.directory, options.repair, global.service == nullptr ? nullptr : global.service->check_data);
   const auto mended =
       std::count_if(problems.begin(), problems.end(), [](const auto& one) { return one.is_mended; });
   if (global.json) {

@@ -11,7 +11,6 @@
 #include "services/cli/campaign_output.h"
 #include "services/cli/command.h"
 #include "services/cli/terminal_observer.h"
-#include "services/client/campaign_run.h"
 #include "services/log/log.h"
 #include "services/program/error_json.h"
 #include "services/program/option_values.h"
@@ -75,10 +74,9 @@ CLI::Validator ShardText(std::optional<Shard>& shard) {
       "");
 }
 
-ExitCode Fly(const RunCommand& options, PreparedRun prepared, const GlobalOptions& global) {
+ExitCode Fly(const RunCommand& options, const RunOptions& run, PreparedRun prepared,
+             const GlobalOptions& global) {
   const std::filesystem::path directory = prepared.folder.directory();
-  RunOptions run = options.run;
-  run.worker_program = std::filesystem::read_symlink("/proc/self/exe").parent_path() / "dispersa-worker";
   TerminalObserver observer(global.quiet);
   try {
     const RunResult result = RunCampaign(std::move(prepared), run, observer);
@@ -107,9 +105,12 @@ ExitCode Fly(const RunCommand& options, PreparedRun prepared, const GlobalOption
 ExitCode Run(const RunCommand& options, const GlobalOptions& global) {
   if (!options.request.after.empty() && !options.request.shard)
     throw InputError("--after: only shards are flown in rounds", "--after with --shard");
+  RunOptions run = options.run;
+  if (global.service != nullptr) run.fly_with_workers = global.service->fly_with_workers;
+  WorkersOf(run);
   CatchStopSignals();
   try {
-    return Fly(options, PrepareRun(options.request, StopRequested), global);
+    return Fly(options, run, PrepareRun(options.request, StopRequested), global);
   } catch (const Interrupted&) {
     Tell("interrupted before the first case\n");
     if (global.json) PrintErrorJson(kExitInterrupted, "interrupted");

@@ -45,9 +45,24 @@ ExitCode Execute(const Invocation& invocation) {
   }
 }
 
+// Commands of the service: known, so that a script learns why they fail, and not listed.
+void AddAbsentCommands(CLI::App& app, Invocation& invocation) {
+  for (const char* name : {"launch", "list", "status", "watch", "cancel", "delete", "give", "repair",
+                           "readmit", "fetch", "backup", "keys"}) {
+    CLI::App* command = app.add_subcommand(name, kNoService)->group("");
+    command->fallthrough(false)->allow_extras()->prefix_command();
+    command->callback([&invocation, name] {
+      invocation.command = [name](const GlobalOptions&) -> ExitCode {
+        throw InputError(std::string(name) + ": " + kNoService,
+                         "the package dispersa-cluster beside it, or a build with DISPERSA_SERVICE=ON");
+      };
+    });
+  }
+}
+
 }  // namespace
 
-int RunProgram(int argc, char** argv) {
+int RunProgram(int argc, char** argv, const Service* service) {
   PrepareFiles();
   LogForPeople(LogColor::kAuto);
   try {
@@ -71,6 +86,8 @@ int RunProgram(int argc, char** argv) {
       "          dispersa run campaigns/table3.yaml --cases 200\n"
       "`dispersa COMMAND --help` describes a command. An input FILE may be -, standard input.");
   AddCommands(app, invocation);
+  invocation.global.service = service;
+  service == nullptr ? AddAbsentCommands(app, invocation) : service->add_commands(app, invocation);
   if (const auto code = ParseCommandLine(app, argc, argv)) return *code;
   LogForPeople(ColorNamed(color));
   if (invocation.global.quiet) SetLogLevel(LogLevel::kWarning);

@@ -3,7 +3,9 @@
 
 namespace dispersa {
 
-/// The whole program. Returns its exit code.
-int RunProgram(int argc, char** argv);
+struct Service;
+
+/// The whole program. Returns its exit code. `service`: none of a build without it (command.h).
+int RunProgram(int argc, char** argv, const Service* service);
 
 }  // namespace dispersa

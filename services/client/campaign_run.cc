@@ -2,12 +2,9 @@
 
 #include <fmt/format.h>
 #include <fmt/ranges.h>
-#include <unistd.h>
 
-#include <cerrno>
 #include <chrono>
 #include <condition_variable>
-#include <cstring>
 #include <deque>
 #include <exception>
 #include <map>
@@ -19,39 +16,26 @@
 #include "core/cases/campaign_flights.h"
 #include "core/flight/engine_version.h"
 #include "services/client/execution_file.h"
-#include "services/client/local_workers.h"
-#include "services/coordinator/coordinator.h"
 #include "services/ledger/campaign_attempt.h"
 #include "services/ledger/campaign_book.h"
 #include "services/log/log.h"
 #include "services/program/threads.h"
 #include "services/program/utc.h"
-#include "services/transport/private_domain.h"
-#include "services/transport/run_pass.h"
 
 namespace dispersa {
 namespace {
-
-constexpr char kLoopback[] = "127.0.0.1";
-// Replaced workers in a row without a case flown or quarantined.
-constexpr int kFruitlessEndsAllowed = 10;
-// So many quarantined cases and none flown: the cases are not the cause.
-constexpr std::uint64_t kMaxQuarantinedWithoutResult = 20;
-constexpr double kJoinPatience_s = 60.0;
-constexpr double kLeavePatience_s = 0.3;
 
 double SecondsSince(std::chrono::steady_clock::time_point start) {
   return std::chrono::duration<double>(std::chrono::steady_clock::now() - start).count();
 }
 
-/// Flies the missing cases. The Fly functions return why they ended early, if they did; they throw
-/// Interrupted.
-class CampaignRun {
+/// Flies the missing cases on threads of this process.
+class FlyingHere {
  public:
-  CampaignRun(CampaignBook& book, ExecutionFile& execution, Observer& observer)
-      : book_(book), execution_(execution), observer_(observer) {}
+  FlyingHere(CampaignBook& book, Observer& observer) : book_(book), observer_(observer) {}
 
-  std::optional<std::string> FlyHere(int threads) {
+  /// Why it ended early, if it did. Throws Interrupted.
+  std::optional<std::string> Fly(int threads) {
     const CampaignFlights flights(book_.campaign());
     HereQueue queue(*this, threads);
     {
@@ -64,52 +48,11 @@ class CampaignRun {
     return queue.end_reason();
   }
 
-  std::optional<std::string> FlyWithWorkers(const std::filesystem::path& program, int count) {
-    if (access(program.c_str(), X_OK) != 0) {
-      return fmt::format("{}: no worker can be started: {}", program.string(), std::strerror(errno));
-    }
-    const PrivateDomain domain;
-    execution_.domain = domain.domain();
-    // Every user of this machine can join the domain: only who has the secret is listened to, on both sides.
-    RunPass pass{DrawSecret(), {}};
-    if (const auto& law = book_.campaign().autopilot.plugin; law && !law->in_python)
-      pass.plugins.insert(law->sha256);
-    NetworkOptions network{domain.domain(), kLoopback};
-    network.secret = pass.secret;
-    Coordinator coordinator(network, book_);
-    LocalWorkers workers(program,
-                         {"--domain", std::to_string(domain.domain()), "--address", kLoopback, "--peer",
-                          fmt::format("{}:{}", kLoopback, CoordinatorPort(domain.domain()))},
-                         count, ToText(pass));
-    std::optional<std::string> reason;
-    while (!book_.refusal() && !book_.Complete() && !reason) {
-      if (observer_.ShouldStop()) {
-        workers.End(0.0);
-        Note(workers);
-        throw Interrupted();
-      }
-      Supervise(coordinator, workers);
-      coordinator.Step(std::chrono::milliseconds(50));
-      for (const std::string& uuid : coordinator.TakeUnresponsive()) {
-        LogWarning("worker {} does not answer: it is killed", uuid);
-        workers.Kill(uuid);
-      }
-      ShowProgress(fmt::format("{} worker{}", workers.alive(), workers.alive() == 1 ? "" : "s"));
-      workers.NoteJoined(coordinator.joined(), Now());
-      reason = ReasonToEnd(coordinator, workers);
-    }
-    book_.Flush();
-    coordinator.Dismiss();
-    workers.End(reason ? 0.0 : kLeavePatience_s);
-    Note(workers);
-    return reason;
-  }
-
  private:
   /// The ledger's cases for threads of this process.
   class HereQueue : public CaseQueue {
    public:
-    HereQueue(CampaignRun& run, int threads) : run_(run) {
+    HereQueue(FlyingHere& run, int threads) : run_(run) {
       const auto slots = static_cast<std::uint32_t>(threads);
       run_.book_.ledger().Join(kInProcess, {EngineVersion(), slots, kAssignmentsAhead * slots}, run_.Now());
     }
@@ -160,7 +103,7 @@ class CampaignRun {
       try {
         run_.book_.Accept(kInProcess, "", attempts_.extract(result.case_index).mapped(), result, run_.Now());
         run_.book_.FlushIfDue(run_.Now());
-        run_.ShowProgress(kInProcess);
+        ShowFlying(run_.book_, run_.observer_, kInProcess);
       } catch (...) {
         error_ = std::current_exception();
       }
@@ -185,7 +128,7 @@ class CampaignRun {
    private:
     static constexpr std::uint32_t kAssignmentsAhead = 4;
 
-    CampaignRun& run_;
+    FlyingHere& run_;
     std::mutex mutex_;  ///< of all that follows, and of the book
     std::condition_variable changed_;
     std::deque<std::pair<std::uint64_t, std::uint64_t>> waiting_;  ///< case and attempt
@@ -196,64 +139,7 @@ class CampaignRun {
 
   double Now() const { return SecondsSince(start_); }
 
-  void Supervise(Coordinator& coordinator, LocalWorkers& workers) {
-    const std::uint64_t settled = book_.flown_now() + book_.ledger().Progress().quarantined;
-    const LocalWorkers::Changes changes = workers.Poll(Now(), settled);
-    for (const WorkerProcess& ended : changes.ended) {
-      LogWarning("worker {} (process {}) ended with {}; another takes its place", ended.uuid, ended.pid,
-                 ended.how);
-      coordinator.WorkerEnded(ended.uuid, ended.end, ended.how);
-    }
-    for (const WorkerProcess& started : changes.started) coordinator.Supervise(started.uuid);
-    if (!changes.ended.empty() || !changes.started.empty()) Note(workers);
-  }
-
-  std::optional<std::string> ReasonToEnd(const Coordinator& coordinator, const LocalWorkers& workers) const {
-    if (coordinator.joined() == 0 && coordinator.refusal()) {
-      return "no worker may fly this campaign: " + *coordinator.refusal();
-    }
-    if (!book_.breakdown().empty()) return book_.breakdown();
-    // Whoever takes their places would say the same.
-    if (const auto refusal = coordinator.RefusalByAll(book_.campaign().result_id())) {
-      return "no worker can fly this campaign: " + *refusal;
-    }
-    if (workers.fruitless_ends() > kFruitlessEndsAllowed) {
-      return fmt::format("{} workers ended in a row without a result, the last one with {}",
-                         workers.fruitless_ends(), LastEnd(workers));
-    }
-    if (const auto quarantined = book_.ledger().Progress().quarantined;
-        quarantined >= kMaxQuarantinedWithoutResult && book_.flown_now() == 0) {
-      return fmt::format("the first {} cases ended every worker that flew them, the last one with {}",
-                         quarantined, LastEnd(workers));
-    }
-    if (workers.NobodyJoined_s(Now()) > kJoinPatience_s) {
-      return fmt::format("no worker has joined for {:.0f} s", kJoinPatience_s);
-    }
-    return std::nullopt;
-  }
-
-  static std::string LastEnd(const LocalWorkers& workers) {
-    std::string how;
-    for (const WorkerProcess& worker : workers.history()) {
-      if (worker.ended_utc) how = worker.how;
-    }
-    return how;
-  }
-
-  void Note(const LocalWorkers& workers) {
-    execution_.workers = workers.history();
-    execution_.Write();
-  }
-
-  void ShowProgress(const std::string& who) {
-    const LedgerProgress progress = book_.ledger().Progress();
-    std::string note = who;
-    if (progress.quarantined > 0) note += fmt::format(", {} quarantined", progress.quarantined);
-    observer_.Show(book_.campaign().name, progress.done, progress.total, note);
-  }
-
   CampaignBook& book_;
-  ExecutionFile& execution_;
   Observer& observer_;
   std::chrono::steady_clock::time_point start_ = std::chrono::steady_clock::now();
 };
@@ -293,7 +179,7 @@ ExecutionFile BeginIn(const PreparedRun& prepared) {
 
 RunResult FlyAndReport(const RunOptions& options, PreparedRun prepared, ExecutionFile& execution,
                        Observer& observer) {
-  const int workers = options.workers >= 0 ? options.workers : UsableCores();
+  const int workers = WorkersOf(options);
   CampaignBook book(prepared.campaign, std::move(prepared.folder));
   book.Expect(std::move(prepared.flown));
   execution.workers_wanted = workers;
@@ -308,11 +194,8 @@ RunResult FlyAndReport(const RunOptions& options, PreparedRun prepared, Executio
   };
   if (!book.refusal() && !book.Complete()) {
     try {
-      CampaignRun run(book, execution, observer);
-      execution.problem = workers == 0 ? run.FlyHere(ThreadsOrAll(options.threads))
-                                       : run.FlyWithWorkers(options.worker_program, workers);
-    } catch (const NetworkError& error) {
-      execution.problem = error.what();
+      execution.problem = workers == 0 ? FlyingHere(book, observer).Fly(ThreadsOrAll(options.threads))
+                                       : options.fly_with_workers(book, execution, observer, workers);
     } catch (const Interrupted&) {
       note_end();
       if (book.folder().ItsShare()) throw;
@@ -339,6 +222,20 @@ RunResult FlyAndReport(const RunOptions& options, PreparedRun prepared, Executio
 }
 
 }  // namespace
+
+void ShowFlying(const CampaignBook& book, Observer& observer, const std::string& who) {
+  const LedgerProgress progress = book.ledger().Progress();
+  std::string note = who;
+  if (progress.quarantined > 0) note += fmt::format(", {} quarantined", progress.quarantined);
+  observer.Show(book.campaign().name, progress.done, progress.total, note);
+}
+
+int WorkersOf(const RunOptions& options) {
+  if (!options.fly_with_workers && options.workers > 0)
+    throw InputError(std::string("--workers: ") + kNoService, "--workers 0 and --threads N");
+  if (options.workers >= 0) return options.workers;
+  return options.fly_with_workers ? UsableCores() : 0;
+}
 
 RunResult ReportFlown(const PreparedRun& prepared, const RunOptions& options, Observer& observer) {
   ExecutionFile execution = BeginIn(prepared);

@@ -1,15 +1,27 @@
 // execution.json: who ran a campaign, when, in which processes. It has only facts that differ between runs.
 #pragma once
 
+#include <sys/types.h>
+
 #include <cstdint>
 #include <filesystem>
 #include <optional>
 #include <string>
 #include <vector>
 
-#include "services/client/local_workers.h"
+#include "services/ledger/ledger.h"
 
 namespace dispersa {
+
+/// One incarnation of a worker of this run.
+struct WorkerProcess {
+  std::string uuid;
+  pid_t pid = 0;
+  std::string started_utc;
+  std::optional<std::string> ended_utc;
+  WorkerEnd end = WorkerEnd::kLeft;  ///< once ended
+  std::string how;                   ///< "exit code 1", "signal 9 (Killed)"
+};
 
 /// Writes execution.json of the newest run in a result folder. Each Write replaces the file as a whole; it
 /// throws ResultError.

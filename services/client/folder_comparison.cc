@@ -6,12 +6,12 @@
 #include <utility>
 
 #include "core/campaign/case_result.h"
+#include "core/campaign_yaml/text_differences.h"
 #include "core/cases/campaign_flights.h"
 #include "core/flight/flight_inputs.h"
 #include "core/input/input_error.h"
 #include "core/results/output_file.h"
 #include "services/client/stored_campaign.h"
-#include "services/web/campaign_differences.h"
 
 namespace dispersa {
 namespace {

@@ -11,6 +11,7 @@
 #include <vector>
 
 #include "core/results/folder_lock.h"
+#include "core/results/folder_state.h"
 #include "services/web/campaign_row.h"
 
 namespace dispersa {
@@ -62,8 +63,7 @@ void QueueAgain(CatalogueEntry* entry);
 /// from `owner` on. Version 4 has a checksum. Earlier versions, which lack them, can be read too.
 inline constexpr int kStateVersion = 4;
 
-inline constexpr char kStateFile[] = "state.json", kTextFile[] = "campaign.yaml",
-                      kResultsFolder[] = "results";
+inline constexpr char kStateFile[] = "state.json", kResultsFolder[] = "results";
 
 /// The id of the campaign, without the engine that flew it.
 std::string CampaignIdOf(const std::string& id);

@@ -136,7 +136,8 @@ std::string CompletionWords(const CLI::App& app, const std::vector<std::string>&
   } else {
     if (!place.options_end)
       for (const CLI::App* command : place.app->get_subcommands(nullptr))
-        candidates.Add(command->get_name(), command->get_description());
+        if (!command->get_group().empty())  // help texts leave such a command out too
+          candidates.Add(command->get_name(), command->get_description());
     if (const CLI::Option* argument = NextArgument(place)) candidates.AddValues(*argument, "");
   }
   return candidates.text();

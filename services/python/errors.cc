@@ -8,8 +8,8 @@
 #include "core/containment/contained.h"
 #include "core/results/result_error.h"
 #include "services/client/observer.h"
-#include "services/client/session.h"
 #include "services/program/exit_code.h"
+#include "services/program/failure.h"
 
 namespace py = pybind11;
 

@@ -20,7 +20,6 @@
 #include "services/client/folder_comparison.h"
 #include "services/client/margins_of.h"
 #include "services/client/reference_search.h"
-#include "services/client/remote_campaign.h"
 #include "services/client/stored_campaign.h"
 #include "services/client/writable.h"
 #include "services/ledger/campaign_book.h"
@@ -63,33 +62,16 @@ py::tuple Run(const std::string& name, const std::string& text, const std::strin
   PythonObserver observer(progress);
   const CallsLaw calls_law(law, law_sha256, observer);
   std::filesystem::path folder;
+  const RunOptions options = {workers, calls_law.Threads(threads), WorkersOfProgramAt(worker_program),
+                              Reflown(envelope)};
   const RunResult result = observer.Watch([&] {
+    WorkersOf(options);
     PreparedRun prepared = PrepareRun({InputSource(name, text), {}, out, resume, {}},
                                       [&observer] { return observer.ShouldStop(); });
     folder = prepared.folder.directory();
-    return RunCampaign(std::move(prepared),
-                       {workers, calls_law.Threads(threads), worker_program, Reflown(envelope)}, observer);
+    return RunCampaign(std::move(prepared), options, observer);
   });
   return py::make_tuple(folder.string(), static_cast<int>(result.code), result.problem);
-}
-
-/// A campaign flown by a coordinator and fetched into a folder; its exit code.
-int RunRemotely(const std::string& name, const std::string& text, const std::string& out, int domain,
-                const std::string& peer, const std::string& address, const std::string& keys, bool insecure,
-                int priority, const py::object& progress) {
-  PythonObserver observer(progress);
-  return observer.Watch([&] {
-    RequireWritableFolder("out", out);
-    const Campaign campaign = LoadCampaign(InputSource(name, text));
-    SessionOptions options = {domain, peer, address, {}};
-    options.admission.keys = keys;
-    options.admission.insecure = insecure;
-    Session session(options);
-    LaunchCampaign(session, campaign, priority);
-    const ExitCode code = FollowCampaign(session, campaign.id, observer);
-    FetchCampaign(session, campaign.id, out);
-    return static_cast<int>(code);
-  });
 }
 
 /// The reports of a folder made again; its exit code.
@@ -182,7 +164,7 @@ std::string Replay(const std::string& directory, std::uint64_t case_index, const
 
 void AddResults(py::module_& module) {
   module.def("run", &Run);
-  module.def("run_remotely", &RunRemotely);
+  AddService(module);
   module.def("report", &MakeAgain);
   module.def("results", &Results);
   module.def("compare", &CompareResults);

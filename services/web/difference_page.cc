@@ -4,10 +4,10 @@
 #include <nlohmann/json.hpp>
 #include <set>
 
+#include "core/campaign_yaml/text_differences.h"
 #include "core/input/input_error.h"
 #include "core/pages/html_parts.h"
 #include "core/results/text.h"
-#include "services/web/campaign_differences.h"
 #include "services/web/pages.h"
 #include "services/web/web_parts.h"
 

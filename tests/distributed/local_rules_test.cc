@@ -2,7 +2,7 @@
 #include <nlohmann/json.hpp>
 
 #include "services/client/execution_file.h"
-#include "services/client/local_workers.h"
+#include "services/fleet/local_workers.h"
 #include "services/program/exit_code.h"
 #include "tests/temporary_folder.h"
 #include "tests/test.h"

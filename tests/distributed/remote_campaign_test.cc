@@ -1,6 +1,6 @@
 // A campaign sent to a coordinator, followed, and copied back, without a network: against a real front desk,
 // and against made-up coordinators.
-#include "services/client/remote_campaign.h"
+#include "services/fleet/remote_campaign.h"
 
 #include "core/results/database.h"
 #include "core/results/gzip.h"

@@ -1,8 +1,8 @@
 // Rules whose breach no campaign that goes well would show.
 #include "core/flight/flight_inputs.h"
 #include "core/flight/metrics.h"
-#include "services/client/local_workers.h"
 #include "services/coordinator/watchdog.h"
+#include "services/fleet/local_workers.h"
 #include "services/ledger/campaign_book.h"
 #include "services/ledger/prepare_run.h"
 #include "tests/distributed/forgetful_store.h"

@@ -9,7 +9,7 @@
 
 #include <nlohmann/json.hpp>
 
-#include "services/client/local_workers.h"
+#include "services/fleet/local_workers.h"
 #include "services/transport/coordinator_link.h"
 #include "services/transport/endpoints.h"
 #include "services/transport/private_domain.h"

@@ -18,8 +18,8 @@ OWNED = [
     (r"sqlite3\.h", {"results"}),
     (r"zlib\.h", {"coordinator", "results"}),
     (r"boost/(asio|beast)", {"http"}),
-    (r"CLI/", {"program", "cli", "coordinator", "worker"}),
-    (r"(pybind11/|Python\.h)", {"python"}),
+    (r"CLI/", {"program", "cli", "fleet_cli", "coordinator", "worker"}),
+    (r"(pybind11/|Python\.h)", {"python", "fleet_python"}),
 ]
 
 
@@ -40,6 +40,12 @@ def closure(table, module):
             reached.add(name)
             pending.extend(table.get(name, ()))
     return reached
+
+
+def service_modules(cmake_text):
+    """The modules that a build without the service lacks."""
+    found = re.search(r"^set\(DISPERSA_SERVICE_MODULES\s+([^)]*)\)", cmake_text, re.MULTILINE)
+    return set(found[1].split()) if found else set()
 
 
 def source_files(root):
@@ -65,8 +71,10 @@ def module_of(include, generated):
 
 def check(root):
     """Violations, one line each."""
-    table = link_table((root / "CMakeLists.txt").read_text())
-    problems = []
+    cmake_text = (root / "CMakeLists.txt").read_text()
+    table, service = link_table(cmake_text), service_modules(cmake_text)
+    problems = [f"CMakeLists.txt: module {module} needs {used} of the service, which a build without it lacks"
+                for module in sorted(set(table) - service) for used in sorted(closure(table, module) & service)]
     for module in table:
         if any(module in closure(table, link) for link in table[module]):
             problems.append(f"CMakeLists.txt: module {module} uses itself through its links")

@@ -41,6 +41,13 @@ class LayeringTest(unittest.TestCase):
         self.assertEqual(self.check({"core/flight/a.cc": '#  include "services/transport/bus.h"\n'}),
                          ["core/flight/a.cc:1: flight includes services/transport/bus.h but may not use transport"])
 
+    def test_finds_a_service_behind_the_links_of_the_engine_half(self):
+        self.assertEqual(self.check({}, CMAKE + "set(DISPERSA_SERVICE_MODULES idl transport)\n"), [])
+        wrong = CMAKE + "set(DISPERSA_LINKS_cli transport)\nset(DISPERSA_SERVICE_MODULES idl\n    transport)\n"
+        self.assertEqual(self.check({}, wrong), [
+            f"CMakeLists.txt: module cli needs {used} of the service, which a build without it lacks"
+            for used in ("idl", "transport")])
+
     def test_finds_generated_types_outside_transport(self):
         self.assertEqual(self.check({"core/flight/a.cc": "#include <dispersion.h>\n"}),
                          ["core/flight/a.cc:1: flight includes dispersion.h but may not use idl"])

@@ -32,7 +32,7 @@ class Words(unittest.TestCase):
 
     def test_commands_and_their_commands(self):
         self.assertTrue({"validate", "run", "keys", "completion"} <= set(words("")))
-        self.assertEqual(words("f"), ["fly", "fetch", "fsck"])
+        self.assertEqual(words("f"), ["fly", "fsck", "fetch"])
         self.assertEqual(words("keys", ""), ["init", "issue", "revoke", "list", "renew", "retire"])
         # As parsed: an option's value is no command.
         self.assertEqual(words("--color", "keys", "v"), ["validate"])
@@ -109,7 +109,7 @@ class Shells(unittest.TestCase):
                       "printf '%s\\n' \"${COMPREPLY[@]}\"", cwd=self.folder, env=self.environment).split("\n")[:-1]
 
     def test_bash(self):
-        self.assertEqual(self.bash("dispersa", "f"), ["fly", "fetch", "fsck"])
+        self.assertEqual(self.bash("dispersa", "f"), ["fly", "fsck", "fetch"])
         self.assertEqual(self.bash("dispersa", "fly", "--int"), ["--integrator"])
         self.assertEqual(self.bash("dispersa", "fly", "--integrator", ""), ["simpson", "erk4", "cvode"])
         self.assertEqual(self.bash("dispersa", "fly", "--integrator", "=", "e"), ["erk4"])

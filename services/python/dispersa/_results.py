@@ -298,6 +298,8 @@ def run(what, out="", *, cases=None, seed=None, autopilot=None, base=None, worke
         _refuse_unheeded("without `peer`", workers=(workers, None), threads=(threads, 0), resume=(resume, False),
                          histories=(histories, True), envelope=(envelope, ENVELOPE))
     if peer is not None:
+        if not hasattr(_core, "run_remotely"):
+            raise refuse("peer: this build has no service (DISPERSA_SERVICE=OFF)", "no peer")
         folder = _folder_of(campaign, out)
         code = _core.run_remotely(campaign.name, campaign.canonical_yaml, folder, whole("domain", domain, 0, 99),
                                   os.fspath(peer), os.fspath(address), os.fspath(keys), truth("insecure", insecure),

@@ -1,4 +1,4 @@
-#include "services/cli/campaign_text.h"
+#include "services/fleet_cli/campaign_text.h"
 
 #include <fmt/format.h>
 

@@ -8,9 +8,9 @@
 
 #include "core/input/input_error.h"
 #include "services/cli/campaign_output.h"
-#include "services/cli/campaign_text.h"
 #include "services/cli/progress.h"
-#include "services/cli/session_options.h"
+#include "services/fleet_cli/campaign_text.h"
+#include "services/fleet_cli/session_options.h"
 #include "services/log/log.h"
 #include "services/program/stop_signal.h"
 

@@ -1,4 +1,4 @@
-#include "services/client/local_workers.h"
+#include "services/fleet/local_workers.h"
 
 #include <fcntl.h>
 #include <sys/prctl.h>

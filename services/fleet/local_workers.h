@@ -8,19 +8,9 @@
 #include <string>
 #include <vector>
 
-#include "services/ledger/ledger.h"
+#include "services/client/execution_file.h"
 
 namespace dispersa {
-
-/// One incarnation of a worker.
-struct WorkerProcess {
-  std::string uuid;
-  pid_t pid = 0;
-  std::string started_utc;
-  std::optional<std::string> ended_utc;
-  WorkerEnd end = WorkerEnd::kLeft;  ///< once ended
-  std::string how;                   ///< "exit code 1", "signal 9 (Killed)"
-};
 
 /// How a process that ended with this status (waitpid) counts in the rules of blame.
 WorkerEnd ClassifyExit(int status, std::string* how);

@@ -1,4 +1,4 @@
-#include "services/web/campaign_differences.h"
+#include "core/campaign_yaml/text_differences.h"
 
 #include <algorithm>
 #include <set>

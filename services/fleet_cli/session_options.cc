@@ -1,4 +1,4 @@
-#include "services/cli/session_options.h"
+#include "services/fleet_cli/session_options.h"
 
 #include <utility>
 

@@ -3,8 +3,8 @@
 
 #include <memory>
 
-#include "services/cli/session_options.h"
-#include "services/client/remote_campaign.h"
+#include "services/fleet/remote_campaign.h"
+#include "services/fleet_cli/session_options.h"
 
 namespace dispersa {
 namespace {

@@ -1,4 +1,4 @@
-#include "services/client/session.h"
+#include "services/fleet/session.h"
 
 #include <fmt/format.h>
 

@@ -9,7 +9,7 @@
 
 #include "core/campaign/campaign.h"
 #include "services/client/observer.h"
-#include "services/client/session.h"
+#include "services/fleet/session.h"
 
 namespace dispersa {
 

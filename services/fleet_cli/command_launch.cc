@@ -6,9 +6,9 @@
 #include <string>
 #include <vector>
 
-#include "services/cli/session_options.h"
 #include "services/cli/warn.h"
-#include "services/client/remote_campaign.h"
+#include "services/fleet/remote_campaign.h"
+#include "services/fleet_cli/session_options.h"
 #include "services/log/log.h"
 #include "services/program/option_values.h"
 

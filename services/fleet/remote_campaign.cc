@@ -1,4 +1,4 @@
-#include "services/client/remote_campaign.h"
+#include "services/fleet/remote_campaign.h"
 
 #include <fmt/format.h>
 

@@ -6,7 +6,7 @@
 #include <string>
 
 #include "services/cli/command.h"
-#include "services/client/session.h"
+#include "services/fleet/session.h"
 
 namespace dispersa {
 

@@ -4,8 +4,8 @@
 #include <memory>
 #include <string>
 
-#include "services/cli/campaign_text.h"
-#include "services/cli/session_options.h"
+#include "services/fleet_cli/campaign_text.h"
+#include "services/fleet_cli/session_options.h"
 
 namespace dispersa {
 namespace {
