@@ -38,6 +38,7 @@ COAST_S = 10.0  # a gap between burns that is shown as one
 @contextlib.contextmanager
 def style():
     """The report's style for figures of your own: `with dispersa.plot.style(): ...`."""
+    pyplot.draw_if_interactive()  # loads the backend: what a notebook's one sets then must outlive the context
     with matplotlib.rc_context(STYLE):
         yield
 
