@@ -46,6 +46,7 @@ void Draw(const std::string& page_path) {
   };
   add("atmosphere", AtmosphereSheet(data));
   add("aerodynamics", AerodynamicsSheet(campaigns, data));
+  add("check_case_17", TwoStageSheet(campaigns, data));
   const std::vector<WorkPoint> points = MeasureWorkPrecision(campaigns);
   add("work_precision", WorkPrecisionSheet(points));
   page += "<pre>" + HtmlText(WorkPrecisionCsv(points)) + "</pre>\n</body>\n</html>\n";
