@@ -3,13 +3,25 @@
 #include <algorithm>
 #include <cmath>
 
+#include "core/math/circle.h"
+#include "core/math/constants.h"
 #include "core/results/text.h"
 #include "core/statistics/summary.h"
 
 namespace dispersa {
 
+int QAlphaColumn() { return static_cast<int>(HistoryColumns().size()); }
+
+const std::string& BandColumnName(int column) {
+  static const std::string q_alpha = "q_alpha_pa_rad";
+  return column == QAlphaColumn() ? q_alpha : HistoryColumns()[static_cast<std::size_t>(column)];
+}
+
 SampledFlight SampleFlight(const History& history, const std::vector<int>& columns, double step_s) {
+  static const int qbar_pa = FindHistoryColumn("qbar_pa"), incidence_deg = FindHistoryColumn("incidence_deg"),
+                   longitude_deg = FindHistoryColumn("longitude_deg");
   SampledFlight samples(columns.size());
+  double last_longitude_deg = 0.0;
   for (std::size_t row = 0; row < history.rows(); ++row) {
     const double time_s = history.at(row, 0);
     const double multiple = std::round(time_s / step_s);
@@ -17,7 +29,14 @@ SampledFlight SampleFlight(const History& history, const std::vector<int>& colum
     const auto step = static_cast<std::size_t>(multiple);
     for (std::size_t i = 0; i < columns.size(); ++i) {
       samples[i].resize(std::max(samples[i].size(), step + 1), kUndefined);
-      samples[i][step] = history.at(row, columns[i]);
+      double& value = samples[i][step];
+      if (columns[i] == QAlphaColumn()) {
+        value = history.at(row, qbar_pa) * history.at(row, incidence_deg) / kDegPerRad;
+        continue;
+      }
+      value = history.at(row, columns[i]);
+      if (columns[i] == longitude_deg && std::isfinite(value))
+        value = last_longitude_deg = NearTo(last_longitude_deg, value, kCutAt180Deg);
     }
   }
   return samples;
@@ -39,20 +58,15 @@ FlightBands ComputeBands(const std::vector<SampledFlight>& flights, const std::v
                       [&](const SampledFlight& flight) { return flight[0].size() > step; })));
   }
   for (std::size_t i = 0; i < columns.size(); ++i) {
-    Band band{.column = HistoryColumns()[static_cast<std::size_t>(columns[i])]};
+    Band band{.column = BandColumnName(columns[i])};
     for (std::size_t step = 0; step < steps; ++step) {
       std::vector<double> values;
       for (const SampledFlight& flight : flights) {
         if (step < flight[i].size()) values.push_back(flight[i][step]);
       }
       const std::vector<double> sorted = SortedFinite(std::move(values));
-      band.min.push_back(Quantile(sorted, 0.0));
-      band.p01.push_back(Quantile(sorted, 0.01));
-      band.p05.push_back(Quantile(sorted, 0.05));
-      band.p50.push_back(Quantile(sorted, 0.50));
-      band.p95.push_back(Quantile(sorted, 0.95));
-      band.p99.push_back(Quantile(sorted, 0.99));
-      band.max.push_back(Quantile(sorted, 1.0));
+      for (const BandStatistic& one : kBandStatistics)
+        (band.*one.values).push_back(Quantile(sorted, one.probability));
     }
     bands.bands.push_back(std::move(band));
   }
@@ -65,18 +79,13 @@ std::string BandsCsv(const FlightBands& bands, int digits) {
   };
   std::string csv = "time_s,flights";
   for (const Band& band : bands.bands) {
-    for (const char* statistic : {"min", "p01", "p05", "p50", "p95", "p99", "max"}) {
-      csv += "," + band.column + "_" + statistic;
-    }
+    for (const BandStatistic& one : kBandStatistics) csv += "," + band.column + "_" + one.name;
   }
   csv += "\n";
   for (std::size_t step = 0; step < bands.time_s.size(); ++step) {
     csv += text(bands.time_s[step]) + "," + std::to_string(bands.flying[step]);
     for (const Band& band : bands.bands) {
-      for (const auto* values :
-           {&band.min, &band.p01, &band.p05, &band.p50, &band.p95, &band.p99, &band.max}) {
-        csv += "," + text((*values)[step]);
-      }
+      for (const BandStatistic& one : kBandStatistics) csv += "," + text((band.*one.values)[step]);
     }
     csv += "\n";
   }

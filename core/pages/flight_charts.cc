@@ -4,6 +4,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <functional>
 #include <string_view>
 #include <vector>
 
@@ -56,6 +57,21 @@ struct Burns {
       chart->Mark(burns[i].from_s, fmt::format("S{}", burns[i].stage));
     }
   }
+
+  /// The number of burns before the first coast that is longer than the flight before it. On the time axis
+  /// of the whole flight they would have no room.
+  std::size_t Ascending() const {
+    std::size_t i = 1;
+    while (i < burns.size() && burns[i].from_s - burns[i - 1].to_s <= burns[i - 1].to_s) ++i;
+    return std::min(i, burns.size());
+  }
+  /// Undefined in coasts that AddTo() shades.
+  std::vector<double> Powered(std::vector<double> values, const std::vector<double>& time_s) const {
+    for (std::size_t i = 1; i < burns.size(); ++i)
+      for (std::size_t k = 0; k < values.size() && burns[i].from_s - burns[i - 1].to_s > 10.0; ++k)
+        if (time_s[k] > burns[i - 1].to_s && time_s[k] < burns[i].from_s) values[k] = std::nan("");
+    return values;
+  }
 };
 
 bool IsDefined(const std::vector<double>& values) {
@@ -79,6 +95,19 @@ std::vector<double> InAir(std::vector<double> values, const std::vector<double>&
 std::vector<double> Scaled(std::vector<double> values, double factor) {
   for (double& value : values) value *= factor;
   return values;
+}
+
+/// With fewer flights the outer percentiles lie between the extreme flight and its neighbour.
+constexpr std::size_t kForOuterPercentiles = 371;  // 1 / 0.0027
+
+void AddBands(const FlightBands& bands, const Band& band,
+              const std::function<std::vector<double>(std::vector<double>)>& shown, SvgChart* chart) {
+  chart->Band(bands.time_s, shown(band.min), shown(band.max), "band-outer", "min–max");
+  chart->Band(bands.time_s, shown(band.p01), shown(band.p99), "band-inner", "1–99 %");
+  if (bands.flights >= kForOuterPercentiles) {
+    chart->Line(bands.time_s, shown(band.p00_27), "band-edge", "0.27 and 99.73 %");
+    chart->Line(bands.time_s, shown(band.p99_73), "band-edge", "");
+  }
 }
 
 /// The nominal flight at the steps of the bands. Undefined after the end of the nominal flight.
@@ -108,21 +137,24 @@ std::string BandFigure(const BandView& view, const FlightHistories& histories, c
   if (!IsDefined(view.in_air ? InAir(band.p50, qbar_pa) : band.p50)) return "";
   SvgChart chart({.label = kTimeAxis, .low = view.from_s, .high = view.to_s}, {.label = view.label},
                  view.width, 280);
-  Burns(histories.nominal_history).AddTo(&chart);
+  const Burns burns(histories.nominal_history);
+  burns.AddTo(&chart);
   const std::vector<double> nominal =
       view.deviation ? AtSteps(histories.nominal_history, view.column, bands) : std::vector<double>();
   const auto shown = [&](std::vector<double> values) {
     for (std::size_t i = 0; i < nominal.size(); ++i) values[i] -= nominal[i];
     if (view.in_air) values = InAir(std::move(values), qbar_pa);
+    if (view.powered) values = burns.Powered(std::move(values), bands.time_s);
     return Scaled(std::move(values), view.factor);
   };
-  chart.Band(bands.time_s, shown(band.min), shown(band.max), "band-outer", "min–max");
-  chart.Band(bands.time_s, shown(band.p05), shown(band.p95), "band-inner", "5–95 %");
+  AddBands(bands, band, shown, &chart);
   chart.Line(bands.time_s, shown(band.p50), "line-0", "median");
   if (view.nominal && !view.deviation) {
     std::vector<double> flown = Column(histories.nominal_history, view.column, view.factor);
+    const std::vector<double> time_s = Column(histories.nominal_history, "time_s");
     if (view.in_air) flown = InAir(std::move(flown), Column(histories.nominal_history, "qbar_pa"));
-    chart.Line(Column(histories.nominal_history, "time_s"), flown, "line-1", "nominal");
+    if (view.powered) flown = burns.Powered(std::move(flown), time_s);
+    chart.Line(time_s, flown, "line-1", "nominal");
   }
   if (view.program)
     chart.Line(Column(histories.nominal_history, "time_s"),
@@ -132,7 +164,7 @@ std::string BandFigure(const BandView& view, const FlightHistories& histories, c
     chart.HorizontalLimit(requirement.limit, "limit of the peak");
     chart.HorizontalLimit(-requirement.limit, "");
   }
-  return Figure(chart.Svg(caption), HtmlText(caption), view.width > 600 ? "wide" : "");
+  return Figure(chart.Svg(caption), HtmlText(caption), view.style);
 }
 
 std::string NominalFigures(const History& nominal) {
@@ -199,46 +231,85 @@ std::string EnvelopeFigures(const FlightHistories& histories, const CampaignSumm
   const std::vector<double> time_s = Column(histories.nominal_history, "time_s");
   const double air_end_s = AtmosphereEnd(time_s, Column(histories.nominal_history, "qbar_pa"));
   const double pitch_over_end_s = 5.0 * std::ceil(0.2 * (kick_end_s + 5.0));
+  const std::size_t ascending = burns.Ascending();
+  std::optional<double> ascent_end_s;  // none: the whole flight has room
+  if (ascending > 0 && ascending < burns.burns.size())
+    ascent_end_s = 10.0 * std::ceil(0.1 * burns.burns[ascending - 1].to_s);
   std::string figures = "<div class=\"figures\">\n";
   const auto add = [&](const BandView& view, const std::string& caption) {
     figures += BandFigure(view, histories, summary, caption);
   };
-  add({.column = "pitch_error_deg", .label = "pitch error, °", .peak = "pitch_error_peak_deg", .width = 1060},
-      "Pitch error over the whole flight. The requirement binds powered flight; in the coast the reaction "
-      "control's "
-      "dead band shows.");
+  // The burns of the ascent on one axis.
+  const auto powered = [&](BandView view, const std::string& caption) {
+    view.from_s = 0.0;
+    view.to_s = ascent_end_s;
+    view.powered = true;
+    add(view, caption);
+  };
+  powered(
+      {.column = "pitch_error_deg",
+       .label = "pitch error, °",
+       .peak = "pitch_error_peak_deg",
+       .width = 1060,
+       .style = "wide"},
+      "Pitch error in powered flight, which the requirement binds. The band shall stay inside the limits.");
   add({.column = "pitch_error_deg", .label = "pitch error, °", .from_s = 0.0, .to_s = pitch_over_end_s},
       "Pitch error during lift-off and the initial pitch-over.");
-  if (!burns.burns.empty() && burns.burns.size() > 1) {
-    const Burns::Burn& last = burns.burns.back();
+  for (std::size_t i = std::max<std::size_t>(1, std::min(ascending, burns.burns.size() - 1));
+       i < burns.burns.size(); ++i) {
+    const Burns::Burn& burn = burns.burns[i];
     add({.column = "pitch_error_deg",
          .label = "pitch error, °",
-         .from_s = 10.0 * std::floor(0.1 * (last.from_s - 5.0)),
-         .to_s = 10.0 * std::ceil(0.1 * last.to_s)},
-        fmt::format("Pitch error while stage {} burns.", last.stage));
+         .from_s = 10.0 * std::floor(0.1 * (burn.from_s - 5.0)),
+         .to_s = 10.0 * std::ceil(0.1 * burn.to_s)},
+        fmt::format("Pitch error while stage {} burns.", burn.stage));
   }
-  add({.column = "altitude_m",
-       .label = "altitude minus that of the nominal, km",
-       .factor = 1e-3,
-       .deviation = true},
-      "Altitude of the flights above the nominal flight at the same time.");
-  add({.column = "deflection_pitch_deg", .label = "pitch deflection, °"}, "Deflection of the pitch channel.");
-  add({.column = "yaw_error_deg", .label = "yaw error, °", .nominal = false, .peak = "yaw_error_peak_deg"},
-      "Yaw error.");
-  add({.column = "roll_error_deg", .label = "roll error, °", .nominal = false, .peak = "roll_error_peak_deg"},
-      "Roll error.");
+  powered(
+      {.column = "yaw_error_deg", .label = "yaw error, °", .nominal = false, .peak = "yaw_error_peak_deg"},
+      "Yaw error in powered flight.");
+  powered(
+      {.column = "roll_error_deg", .label = "roll error, °", .nominal = false, .peak = "roll_error_peak_deg"},
+      "Roll error in powered flight.");
+  powered({.column = "deflection_pitch_deg", .label = "pitch deflection, °"},
+          "Gimbal deflection in pitch. Its distance to the stop is what is left to steer with.");
+  powered({.column = "deflection_yaw_deg", .label = "yaw deflection, °", .nominal = false},
+          "Gimbal deflection in yaw.");
   add({.column = "qbar_pa",
        .label = "dynamic pressure, kPa",
        .factor = 1e-3,
        .from_s = 0.0,
        .to_s = air_end_s},
-      "Dynamic pressure.");
+      "Dynamic pressure: the spread of its peak is that of thrust and density.");
   add({.column = "alpha_deg",
        .label = "angle of attack, °",
        .from_s = 0.0,
        .to_s = air_end_s,
        .in_air = true},
       "Angle of attack against the air, wind included, where the median dynamic pressure is at least 1 kPa.");
+  add({.column = "q_alpha_pa_rad",
+       .label = "q·α, kPa rad",
+       .factor = 1e-3,
+       .from_s = 0.0,
+       .to_s = air_end_s,
+       .nominal = false},
+      "Dynamic pressure times total incidence of each flight, wind included: what bends the vehicle.");
+  add({.column = "axial_load_g", .label = "axial load, g"},
+      "Axial load: thrust and drag over mass. It is largest before a burnout.");
+  add({.column = "mass_kg", .label = "mass, t", .factor = 1e-3, .style = "screen"},
+      "Mass of the vehicle. Where the band is wide, burnouts and separations differ in time.");
+  for (const auto& [column, label] :
+       {std::pair{"p_deg_s", "roll rate, °/s"}, std::pair{"q_deg_s", "pitch rate, °/s"},
+        std::pair{"r_deg_s", "yaw rate, °/s"}})
+    powered({.column = column, .label = label, .style = "screen"},
+            "Inertial rate about the body’s axis: what the gyros measure.");
+  add({.column = "altitude_m",
+       .label = "altitude minus that of the nominal, km",
+       .factor = 1e-3,
+       .deviation = true},
+      "Altitude of the flights above the nominal flight at the same time.");
+  if (burns.burns.size() > 1)
+    add({.column = "pitch_error_deg", .label = "pitch error, °", .style = "screen"},
+        "Pitch error over the whole flight. In a coast the dead band of the reaction control shows.");
   return figures + "</div>\n";
 }
 
@@ -266,7 +337,8 @@ const std::vector<WorstView>& WorstViews() {
         {"deflection_yaw_deg", "yaw deflection, °"},
         {"deflection_roll_deg", "roll deflection, °"}}},
       {"q_alpha", {{"alpha_deg", "angle of attack, °"}, {"beta_deg", "angle of sideslip, °"}}, true},
-      {"alpha_max", {{"alpha_deg", "angle of attack, °"}, {"beta_deg", "angle of sideslip, °"}}, true}};
+      {"alpha_max", {{"alpha_deg", "angle of attack, °"}, {"beta_deg", "angle of sideslip, °"}}, true},
+      {"axial_load", {{"axial_load_g", "axial load, g"}}}};
   return views;
 }
 
@@ -329,6 +401,18 @@ std::vector<std::uint64_t> WorstWritten(const WorstView& view, const FlightHisto
 
 }  // namespace
 
+std::string WorstQuantity(const std::string& metric, std::uint64_t case_index,
+                          const FlightHistories& histories) {
+  if (!std::binary_search(histories.written_cases.begin(), histories.written_cases.end(), case_index))
+    return "";
+  for (const WorstView& view : WorstViews()) {
+    if (!metric.starts_with(view.metrics)) continue;
+    const std::string label = view.columns[WrittenFlight(histories, case_index).PeakColumn(view)].label;
+    return label.substr(0, label.find(','));
+  }
+  return "";
+}
+
 std::string WorstFigures(const FlightHistories& histories, const CampaignSummary& summary) {
   const Burns burns(histories.nominal_history);
   const FlightBands& bands = histories.bands;
@@ -351,8 +435,7 @@ std::string WorstFigures(const FlightHistories& histories, const CampaignSummary
       const auto in_view = [&](const std::vector<double>& values) {
         return view.in_air ? InAir(values, BandOf(bands, "qbar_pa").p50) : values;
       };
-      chart.Band(bands.time_s, in_view(band.min), in_view(band.max), "band-outer", "min–max");
-      chart.Band(bands.time_s, in_view(band.p05), in_view(band.p95), "band-inner", "5–95 %");
+      AddBands(bands, band, in_view, &chart);
       for (std::size_t k = 0; k < shown.size(); ++k) {
         const std::vector<double> values = WrittenFlight(histories, shown[k]).Values(name, view.in_air);
         const std::vector<double> time_s(bands.time_s.begin(), bands.time_s.begin() + std::ssize(values));

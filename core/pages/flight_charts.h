@@ -1,6 +1,7 @@
 // Charts over time: the nominal flight, and the spread of the dispersed flights about it.
 #pragma once
 
+#include <cstdint>
 #include <optional>
 #include <string>
 
@@ -23,8 +24,10 @@ struct BandView {
   bool nominal = true;
   bool program = false;        ///< with the pitch program
   bool in_air = false;         ///< only where the air is dense enough for incidence to have an effect
+  bool powered = false;        ///< without the coasts of the nominal flight
   const char* peak = nullptr;  ///< the metric of its largest magnitude, whose limits are drawn
   int width = 520;
+  std::string style = "";  ///< of the figure
 };
 /// Empty if no flight defines the quantity. The bands must hold it, and "qbar_pa".
 std::string BandFigure(const BandView& view, const FlightHistories& histories, const CampaignSummary& summary,
@@ -34,6 +37,10 @@ std::string BandFigure(const BandView& view, const FlightHistories& histories, c
 /// somewhat later than `kick_end_s`.
 std::string EnvelopeFigures(const FlightHistories& histories, const CampaignSummary& summary,
                             double kick_end_s);
+
+/// The quantity whose peak the metric has in a flight with a history: "yaw deflection". Empty: unknown.
+std::string WorstQuantity(const std::string& metric, std::uint64_t case_index,
+                          const FlightHistories& histories);
 
 /// The worst cases that have a history. Each is drawn over the envelope of the quantity in which it is worst.
 std::string WorstFigures(const FlightHistories& histories, const CampaignSummary& summary);

@@ -45,7 +45,14 @@ const char* const kBandColumns[] = {"altitude_m",
                                     "deflection_roll_deg",
                                     "alpha_deg",
                                     "beta_deg",
-                                    "qbar_pa"};
+                                    "qbar_pa",
+                                    "axial_load_g",
+                                    "mass_kg",
+                                    "p_deg_s",
+                                    "q_deg_s",
+                                    "r_deg_s",
+                                    "latitude_deg",
+                                    "longitude_deg"};
 
 std::vector<int> BandColumns() {
   std::vector<int> columns;
@@ -54,6 +61,7 @@ std::vector<int> BandColumns() {
     DISPERSA_ASSERT(column >= 0, column);
     columns.push_back(column);
   }
+  columns.push_back(QAlphaColumn());
   return columns;
 }
 
@@ -96,7 +104,8 @@ HistoryFlights ChooseFlights(const CampaignSummary& summary, const CaseColumns& 
 /// What the rows and columns of the files are.
 std::string LayoutOfFiles(const std::vector<int>& band_columns) {
   std::string layout = fmt::format("gzip {} {} {}", kHistoryDigits, kHistoryStep_s, kBandStep_s);
-  for (const int column : band_columns) layout += " " + HistoryColumns()[static_cast<std::size_t>(column)];
+  for (const int column : band_columns) layout += " " + BandColumnName(column);
+  for (const BandStatistic& one : kBandStatistics) layout += fmt::format(" {}", one.name);
   return layout;
 }
 

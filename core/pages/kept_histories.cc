@@ -93,26 +93,29 @@ FlightHistories HistoriesIn(const std::map<std::string, std::string>& texts, con
 
 }  // namespace
 
+// By their names: another engine may have written other columns.
 FlightBands BandsIn(std::string_view csv, const std::vector<int>& columns, double step_s,
                     const HistoryFlights& flights) {
   FlightBands bands;
   bands.flights = flights.sampled;
   bands.extreme_flights = flights.indices.size() - flights.sampled;
   bands.step_s = step_s;
-  for (const int column : columns)
-    bands.bands.push_back({.column = HistoryColumns()[static_cast<std::size_t>(column)]});
-  for (const std::vector<double>& row : TableOf(csv).rows) {
-    std::size_t at = 0;
-    bands.time_s.push_back(row[at++]);
-    bands.flying.push_back(static_cast<std::size_t>(row[at++]));
-    for (Band& band : bands.bands)
-      for (auto* values : {&band.min, &band.p01, &band.p05, &band.p50, &band.p95, &band.p99, &band.max})
-        values->push_back(row[at++]);
+  for (const int column : columns) bands.bands.push_back({.column = BandColumnName(column)});
+  const NumberCsv table = TableOf(csv);
+  for (const std::vector<double>& row : table.rows) {
+    bands.time_s.push_back(row[0]);
+    bands.flying.push_back(static_cast<std::size_t>(row[1]));
   }
+  for (Band& band : bands.bands)
+    for (const BandStatistic& one : kBandStatistics) {
+      const auto name = std::find(table.columns.begin(), table.columns.end(), band.column + "_" + one.name);
+      const auto at = static_cast<std::size_t>(name - table.columns.begin());
+      for (const std::vector<double>& row : table.rows)
+        (band.*one.values).push_back(at < row.size() ? row[at] : kUndefined);
+    }
   return bands;
 }
 
-// By their names: another engine may have written other columns.
 History HistoryIn(std::string_view csv) {
   const NumberCsv table = TableOf(csv);
   std::vector<int> columns;
@@ -173,11 +176,6 @@ std::optional<FlightHistories> ReadForeignHistories(const fs::path& directory,
   std::sort(flights.written.begin(), flights.written.end());
   const auto texts = TextsOf(directory, files, names);
   if (!texts || !texts->contains(kBandsName) || !texts->contains(kNominalHistoryName)) return std::nullopt;
-  FlightBands none;
-  for (const int column : columns)
-    none.bands.push_back({.column = HistoryColumns()[static_cast<std::size_t>(column)]});
-  const std::string& bands = texts->at(kBandsName);
-  if (!bands.starts_with(BandsCsv(none, 0))) return std::nullopt;  // other columns
   const auto count = [&](const char* name, std::size_t otherwise) {
     const Json member = Member(made_of, name);
     return member.is_number_unsigned() ? member.get<std::size_t>() : otherwise;

@@ -45,7 +45,7 @@ std::optional<FlightHistories> ReadKeptHistories(const std::filesystem::path& di
                                                  const std::vector<int>& columns, double step_s);
 
 /// The histories that another engine has written. Its flights cannot be repeated, so whatever flights they
-/// are of, these are drawn. None if a file has changed, or the bands have other columns.
+/// are of, these are drawn. Undefined is what it did not write. None if a file has changed.
 std::optional<FlightHistories> ReadForeignHistories(const std::filesystem::path& directory,
                                                     const std::vector<int>& columns, double step_s);
 

@@ -76,6 +76,7 @@ std::string ReportPage(const Campaign& campaign, const CampaignSummary& summary,
         "lost.{} S1 to S{} mark ignitions. Peaks between the samples are in the metrics, not here. Numbers: "
         "<code>histories/bands.csv.gz</code>.</p>\n",
         sample, ReadableText(bands.step_s), extremes, campaign.vehicle.stages.size());
+    if (bands.flights < 371) page += "<p>Curves of 0.27 % and 99.73 % need 371 flights or more.</p>\n";
     page += EnvelopeFigures(histories, summary, campaign.reference.program.t2_s);
   }
 

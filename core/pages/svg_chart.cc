@@ -21,7 +21,8 @@ constexpr double kTitleRow = 20.0;  ///< the y axis's label
 constexpr double kLegendRow = 17.0;
 constexpr double kMarkRow = 13.0;  ///< labels of events
 constexpr std::size_t kManyPoints = 5000;
-constexpr double kCharacter = 6.9;  ///< mean width of a letter of the legend
+constexpr double kCharacter = 6.9;                      ///< mean width of a letter of the legend
+constexpr double kMarkCharacter = 6.2, kMarkGap = 4.0;  ///< the same of a mark's label, and beside it
 
 std::string Coordinate(double value) {
   std::string text = fmt::format("{:.1f}", value);
@@ -227,6 +228,10 @@ class SvgChart::Picture {
     std::string labels;  ///< above the plot
     std::string shapes;  ///< inside it
   };
+  struct MarkLabel {
+    double from, to;
+    std::string text;
+  };
 
   // Stages of the layout, in their order.
   std::vector<std::string> Legends() const;
@@ -237,6 +242,7 @@ class SvgChart::Picture {
 
   std::string Opening(const std::string& description) const;
   SpanParts Spans() const;
+  std::vector<MarkLabel> MarkLabels() const;
   std::string Ticks() const;
   std::string PlotOpening() const;
   std::string Drawn(const Series& series) const;
@@ -374,6 +380,8 @@ std::string SvgChart::Picture::Opening(const std::string& description) const {
 
 SvgChart::Picture::SpanParts SvgChart::Picture::Spans() const {
   SpanParts parts;
+  for (const MarkLabel& label : MarkLabels())
+    parts.labels += Text(label.from, top_ - 3.0, "mark-label", "start", label.text);
   for (const Span& span : chart_.spans_) {
     if (span.to < xs_.low() || span.from > xs_.high()) continue;
     const double from = xs_.At(std::max(span.from, xs_.low()));
@@ -382,15 +390,52 @@ SvgChart::Picture::SpanParts SvgChart::Picture::Spans() const {
       parts.shapes +=
           fmt::format("<rect class=\"shade\" x=\"{}\" y=\"{}\" width=\"{}\" height=\"{}\"/>",
                       Coordinate(from), Coordinate(top_), Coordinate(to - from), Coordinate(bottom_ - top_));
-      parts.labels += Text(0.5 * (from + to), top_ - 3.0, "mark-label", "middle", span.label);
     } else {
       parts.shapes += Segment(from, top_, from, bottom_, "mark");
-      const bool inside = from + kCharacter * static_cast<double>(span.label.size()) < chart_.width_;
-      parts.labels +=
-          Text(from + (inside ? 1.0 : -1.0), top_ - 3.0, "mark-label", inside ? "start" : "end", span.label);
     }
   }
   return parts;
+}
+
+std::vector<SvgChart::Picture::MarkLabel> SvgChart::Picture::MarkLabels() const {
+  const auto width = [](const std::string& text) {
+    return kMarkCharacter * static_cast<double>(text.size());
+  };
+  std::vector<Span> events, wide;
+  for (const Span& span : chart_.spans_)
+    if (!(span.to < xs_.low() || span.from > xs_.high()))
+      (span.to > span.from ? wide : events).push_back(span);
+  std::stable_sort(events.begin(), events.end(),
+                   [](const Span& a, const Span& b) { return a.from < b.from; });
+  std::vector<MarkLabel> labels;
+  for (const Span& event : events) {
+    const double x = xs_.At(event.from) + 1.0;
+    if (!labels.empty() && x < labels.back().to + kMarkGap) {
+      labels.back().text += ", " + event.label;
+      labels.back().to = labels.back().from + width(labels.back().text);
+    } else {
+      labels.push_back({x, x + width(event.label), event.label});
+    }
+  }
+  // Those at the right edge move to the left as far as they must, and join what they meet there.
+  for (std::size_t i = labels.size(); i-- > 0;) {
+    const double end = i + 1 < labels.size() ? labels[i + 1].from - kMarkGap : chart_.width_ - 2.0;
+    const double over = labels[i].to - end;
+    if (over <= 0.0) break;
+    labels[i].from -= over;
+    labels[i].to -= over;
+  }
+  const auto is_free = [&](double from, double to) {
+    return std::none_of(labels.begin(), labels.end(), [&](const MarkLabel& label) {
+      return from < label.to + kMarkGap && to > label.from - kMarkGap;
+    });
+  };
+  for (const Span& span : wide) {
+    const double from = xs_.At(std::max(span.from, xs_.low())), to = xs_.At(std::min(span.to, xs_.high()));
+    const double left = 0.5 * (from + to - width(span.label)), right = left + width(span.label);
+    if (left >= from && is_free(left, right)) labels.push_back({left, right, span.label});
+  }
+  return labels;
 }
 
 std::string SvgChart::Picture::Ticks() const {

@@ -17,8 +17,8 @@ std::string FlightProgramFigures(const FlightProgram& program, const std::vector
 /// perigee over time.
 std::string ReferenceFigures(const std::vector<AscentSample>& history);
 
-/// Begin and end of each burn, the largest dynamic pressure and the injection, with the state there. A burn has
-/// thrust: at least 0.5 g along the axis. Times are those of samples. Empty without a history.
+/// Begin and end of each burn, the largest dynamic pressure and the injection, with the state there. A burn
+/// has thrust: at least 0.5 g along the axis. Times are those of samples. Empty without a history.
 std::string AscentEventsTable(const std::vector<AscentSample>& history);
 
 /// The time history as CSV for other tools. The header names the columns with their units.

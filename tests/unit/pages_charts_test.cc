@@ -130,7 +130,7 @@ History Flown(double pitch_deflection_deg, double yaw_deflection_deg) {
 FlightHistories HistoriesOf(const std::vector<History>& flights) {
   FlightHistories histories;
   std::vector<int> columns;
-  for (int i = 0; i < static_cast<int>(HistoryColumns().size()); ++i) columns.push_back(i);
+  for (int i = 0; i <= QAlphaColumn(); ++i) columns.push_back(i);
   histories.nominal_history = flights[0];
   for (std::size_t i = 0; i < flights.size(); ++i) {
     histories.written_cases.push_back(i);
@@ -156,6 +156,46 @@ TEST(EnvelopeFigures, DrawTheLimitOfThePeakThatTheyShow) {
   }
 }
 
+/// Three burns: 100 s, a coast of 50 s, 100 s, then a coast of 1000 s, 100 s. Outside burns the error is 9.
+History WithCoasts() {
+  History history;
+  for (int k = 0; k <= 1350; ++k) {
+    std::vector<double> row(HistoryColumns().size(), 0.0);
+    const auto set = [&](const char* name, double value) {
+      row[static_cast<std::size_t>(FindHistoryColumn(name))] = value;
+    };
+    const bool burns = k <= 100 || (k >= 150 && k <= 250) || k >= 1250;
+    set("time_s", k);
+    set("stage", k < 150 ? 1 : k < 1250 ? 2 : 3);
+    set("thrust_n", burns ? 1000.0 : 0.0);
+    set("qbar_pa", 30000.0);
+    set("pitch_error_deg", burns ? 0.5 : 9.0);
+    history.values.insert(history.values.end(), row.begin(), row.end());
+  }
+  return history;
+}
+
+// The dead band of a coast would set the scale, and a long coast the axis.
+TEST(EnvelopeFigures, BeginWithPoweredFlight) {
+  const std::string html = EnvelopeFigures(HistoriesOf({WithCoasts()}), CampaignSummary{}, 10.0);
+  const auto [from_s, to_s] = AxisOf(html, "Pitch error in powered flight", "x");
+  EXPECT_EQ(from_s, 0.0);
+  EXPECT_EQ(to_s, 250.0);
+  EXPECT_LT(AxisOf(html, "Pitch error in powered flight", "y").second, 2.0);
+  EXPECT_GE(AxisOf(html, "Pitch error over the whole flight", "y").second, 9.0);
+  EXPECT_GE(AxisOf(html, "Pitch error over the whole flight", "x").second, 1350.0);
+  EXPECT_EQ(AxisOf(html, "Pitch error while stage 3 burns", "x"), std::pair(1240.0, 1350.0));
+  EXPECT_THAT(html, Not(HasSubstr("Pitch error while stage 2 burns")));
+}
+
+TEST(EnvelopeFigures, DrawTheOuterPercentilesOfEnoughFlights) {
+  FlightHistories histories = HistoriesOf({Flown(1.0, 1.0)});
+  for (const auto& [flights, curves] : {std::pair<std::size_t, bool>{370, false}, {371, true}}) {
+    histories.bands.flights = flights;
+    EXPECT_EQ(CountOf(EnvelopeFigures(histories, {}, 10.0), "0.27 and 99.73 %") > 0, curves);
+  }
+}
+
 CampaignSummary WorstOf(const std::string& metric, const std::vector<std::uint64_t>& cases) {
   CampaignSummary summary;
   summary.worst_cases.push_back({.metric = metric, .cases = {}});
@@ -175,6 +215,10 @@ TEST(WorstFigures, DrawTheChannelThatHasThePeak) {
   const std::string yaw = WorstFigures(histories, WorstOf("deflection_peak_deg", {0, 2}));
   EXPECT_THAT(yaw, Not(HasSubstr("pitch deflection")));
   EXPECT_EQ(CountOf(yaw, "data-case="), 2u);
+  EXPECT_EQ(WorstQuantity("deflection_peak_deg", 1, histories), "pitch deflection");
+  EXPECT_EQ(WorstQuantity("deflection_peak_deg", 2, histories), "yaw deflection");
+  EXPECT_EQ(WorstQuantity("q_alpha_max_pa_rad", 2, histories), "angle of sideslip");
+  EXPECT_EQ(WorstQuantity("deflection_peak_deg", 3, histories), "") << "it has no history";
   // Of the incidence in air the sideslip is the larger one, and at rest nothing counts.
   const std::string incidence = WorstFigures(histories, WorstOf("q_alpha_max_pa_rad", {0}));
   EXPECT_THAT(incidence, HasSubstr("angle of sideslip, °"));
