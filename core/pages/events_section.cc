@@ -20,21 +20,6 @@ struct Shown {
 constexpr Shown kShown[] = {
     {"Time, s", 1.0}, {"Altitude, km", 1e-3}, {"Speed, m/s", 1.0}, {"q, kPa", 1e-3, 5e-4}, {"Mass, kg", 1.0}};
 
-/// "stage 1 burnout", "jettison of the fairing".
-std::string Words(const std::string& name, const Vehicle& vehicle) {
-  constexpr std::string_view kJettison = "jettison_";
-  if (name.starts_with(kJettison)) {
-    std::size_t number = 0;
-    std::from_chars(name.data() + kJettison.size(), name.data() + name.size(), number);
-    for (const Stage& stage : vehicle.stages)
-      for (const Jettison& body : stage.jettisoned)
-        if (--number == 0) return "jettison: " + HtmlText(body.name);
-  }
-  std::string words = name;
-  std::replace(words.begin(), words.end(), '_', ' ');
-  return HtmlText(words);
-}
-
 std::string Cell(const Summary& over, const SeenEvent* nominal, double SeenEvent::*value, const Shown& as) {
   const auto text = [&](double number) {
     const double shown = number * as.per_unit;
@@ -53,6 +38,20 @@ std::string Cell(const Summary& over, const SeenEvent* nominal, double SeenEvent
 
 }  // namespace
 
+std::string EventWords(const std::string& name, const Vehicle& vehicle) {
+  constexpr std::string_view kJettison = "jettison_";
+  if (name.starts_with(kJettison)) {
+    std::size_t number = 0;
+    std::from_chars(name.data() + kJettison.size(), name.data() + name.size(), number);
+    for (const Stage& stage : vehicle.stages)
+      for (const Jettison& body : stage.jettisoned)
+        if (--number == 0) return "jettison: " + HtmlText(body.name);
+  }
+  std::string words = name;
+  std::replace(words.begin(), words.end(), '_', ' ');
+  return HtmlText(words);
+}
+
 std::string EventsSection(const Campaign& campaign, const CampaignSummary& summary) {
   if (summary.events.empty()) return "";
   std::string titles = "!Event|#Flights";
@@ -61,7 +60,7 @@ std::string EventsSection(const Campaign& campaign, const CampaignSummary& summa
   for (const EventSummary& event : summary.events) {
     const SeenEvent* const nominal =
         summary.nominal ? FindEvent(summary.nominal->events, event.name) : nullptr;
-    std::vector<std::string> row = {Words(event.name, campaign.vehicle), std::to_string(event.flights())};
+    std::vector<std::string> row = {EventWords(event.name, campaign.vehicle), std::to_string(event.flights())};
     for (std::size_t i = 0; i < event.values.size(); ++i)
       row.push_back(Cell(event.values[i], nominal, SeenEvent::kValues[i], kShown[i]));
     table.Row(row);

@@ -293,9 +293,9 @@ std::string EnvelopeFigures(const FlightHistories& histories, const CampaignSumm
        .to_s = air_end_s,
        .nominal = false},
       "Dynamic pressure times total incidence of each flight, wind included: what bends the vehicle.");
-  add({.column = "axial_load_g", .label = "axial load, g"},
-      "Axial load: thrust and drag over mass. It is largest before a burnout.");
-  add({.column = "mass_kg", .label = "mass, t", .factor = 1e-3, .style = "screen"},
+  powered({.column = "axial_load_g", .label = "axial load, g"},
+          "Axial load: thrust and drag over mass. It is largest before a burnout.");
+  powered({.column = "mass_kg", .label = "mass, t", .factor = 1e-3, .style = "screen"},
       "Mass of the vehicle. Where the band is wide, burnouts and separations differ in time.");
   for (const auto& [column, label] :
        {std::pair{"p_deg_s", "roll rate, °/s"}, std::pair{"q_deg_s", "pitch rate, °/s"},

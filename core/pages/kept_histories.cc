@@ -4,16 +4,19 @@
 
 #include <algorithm>
 #include <charconv>
+#include <cmath>
 #include <map>
 #include <nlohmann/json.hpp>
 #include <string_view>
 
 #include "core/flight/engine_version.h"
 #include "core/math/assertion.h"
+#include "core/math/constants.h"
 #include "core/results/fingerprint.h"
 #include "core/results/gzip.h"
 #include "core/results/number_csv.h"
 #include "core/results/output_file.h"
+#include "core/results/text.h"
 #include "core/statistics/summary.h"
 
 namespace dispersa {
@@ -25,7 +28,7 @@ using Json = nlohmann::json;
 constexpr char kMadeOf[] = "made_of.json";
 
 std::vector<std::string> FilesOf(const HistoryFlights& flights) {
-  std::vector<std::string> files = {kNominalHistoryName, kBandsName};
+  std::vector<std::string> files = {kNominalHistoryName, kBandsName, kImpactsName};
   for (const std::uint64_t index : flights.written) files.push_back(CaseHistoryName(index));
   return files;
 }
@@ -88,6 +91,9 @@ FlightHistories HistoriesIn(const std::map<std::string, std::string>& texts, con
         SampleFlight(HistoryIn(texts.at(CaseHistoryName(index))), columns, step_s));
   kept.nominal_history = HistoryIn(texts.at(kNominalHistoryName));
   kept.bands = BandsIn(texts.at(kBandsName), columns, step_s, flights);
+  // Another engine may have written none.
+  if (const auto impacts = texts.find(kImpactsName); impacts != texts.end())
+    kept.impacts = ImpactsIn(impacts->second);
   return kept;
 }
 
@@ -128,6 +134,34 @@ History HistoryIn(std::string_view csv) {
       if (columns[i] >= 0) history.values[begin + static_cast<std::size_t>(columns[i])] = row[i];
   }
   return history;
+}
+
+std::string ImpactsCsv(const std::vector<ImpactPoint>& impacts) {
+  constexpr int kDigits = 9;  // 1e-6 degree is 0.1 m
+  std::string csv = "case,stage,lost,latitude_deg,longitude_deg\n";
+  for (const ImpactPoint& point : impacts) {
+    csv += fmt::format("{},{},{},", point.case_index, point.stage, point.lost ? 1 : 0);
+    if (point.impact)
+      csv += DigitsText(point.impact->place.latitude_rad * kDegPerRad, kDigits) + "," +
+             DigitsText(point.impact->place.longitude_rad * kDegPerRad, kDigits);
+    else
+      csv += ",";
+    csv += "\n";
+  }
+  return csv;
+}
+
+std::vector<ImpactPoint> ImpactsIn(std::string_view csv) {
+  std::vector<ImpactPoint> impacts;
+  for (const std::vector<double>& row : TableOf(csv).rows) {
+    ImpactPoint& point = impacts.emplace_back();
+    point.case_index = static_cast<std::uint64_t>(row[0]);
+    point.stage = static_cast<int>(row[1]);
+    point.lost = row[2] > 0.0;
+    if (std::isfinite(row[3]))
+      point.impact = Impact{.place = {row[3] / kDegPerRad, row[4] / kDegPerRad, 0.0}};
+  }
+  return impacts;
 }
 
 std::string CaseHistoryName(std::uint64_t case_index) { return fmt::format("case_{}.csv.gz", case_index); }

@@ -14,6 +14,11 @@ namespace dispersa {
 std::string FirstPage(const Campaign& campaign, const CampaignSummary& summary);
 std::string RequirementsSection(const CampaignSummary& summary);
 std::string OutcomesSection(const CampaignSummary& summary);
+/// "stage 1 burnout", "jettison: fairing", as HTML.
+std::string EventWords(const std::string& name, const Vehicle& vehicle);
+/// The vehicle, the nominal ascent, and the requirement with the least margin with what drives it.
+std::string GlanceSection(const Campaign& campaign, const CampaignSummary& summary,
+                          const FlightHistories& histories);
 /// Nothing for results without events, which are of an older release.
 std::string EventsSection(const Campaign& campaign, const CampaignSummary& summary);
 std::string WorstCasesSection(const CampaignSummary& summary, const FlightHistories& histories);

@@ -231,6 +231,7 @@ class SvgChart::Picture {
   struct MarkLabel {
     double from, to;
     std::string text;
+    std::string first;  ///< event of several
   };
 
   // Stages of the layout, in their order.
@@ -411,10 +412,11 @@ std::vector<SvgChart::Picture::MarkLabel> SvgChart::Picture::MarkLabels() const 
   for (const Span& event : events) {
     const double x = xs_.At(event.from) + 1.0;
     if (!labels.empty() && x < labels.back().to + kMarkGap) {
-      labels.back().text += ", " + event.label;
+      const bool is_second = labels.back().text == labels.back().first;
+      labels.back().text = labels.back().first + (is_second ? ", " : "–") + event.label;
       labels.back().to = labels.back().from + width(labels.back().text);
     } else {
-      labels.push_back({x, x + width(event.label), event.label});
+      labels.push_back({x, x + width(event.label), event.label, event.label});
     }
   }
   // Those at the right edge move to the left as far as they must, and join what they meet there.
@@ -433,7 +435,7 @@ std::vector<SvgChart::Picture::MarkLabel> SvgChart::Picture::MarkLabels() const 
   for (const Span& span : wide) {
     const double from = xs_.At(std::max(span.from, xs_.low())), to = xs_.At(std::min(span.to, xs_.high()));
     const double left = 0.5 * (from + to - width(span.label)), right = left + width(span.label);
-    if (left >= from && is_free(left, right)) labels.push_back({left, right, span.label});
+    if (left >= from && is_free(left, right)) labels.push_back({left, right, span.label, span.label});
   }
   return labels;
 }

@@ -86,10 +86,39 @@ TEST(DistributionFigures, DrawALimitOnTheValuesSideOfTheCut) {
   }
 }
 
-// Charts beside each other in a section.
-TEST(ScatterFigures, AreOfOneSize) {
-  const std::string html = InjectionFigures({}, Values("apogee_km", {400, 500}));
+CaseColumns Pairs(const std::map<std::string, std::vector<double>>& metrics) {
+  CaseColumns cases;
+  for (const auto& [metric, values] : metrics) {
+    const CaseColumns one = Values(metric, values);
+    if (cases.rows() == 0) cases = one;
+    cases.metrics[MetricColumn(metric)] = values;
+  }
+  return cases;
+}
+
+// Charts beside each other in a section; a pair that no flight defines has none.
+TEST(ScatterFigures, AreOfOneSizeAndOnlyOfWhatIsDefined) {
+  const std::string html = InjectionFigures(
+      {}, Pairs({{"apogee_km", {400, 500}}, {"perigee_km", {300, 310}},
+                 {"injection_velocity_error_m_s", {1, 2}}, {"injection_altitude_error_km", {-1, 2}}}));
   EXPECT_EQ(CountOf(html, "<svg class=\"chart\" viewBox=\"0 0 520 300\""), 2u);
+  EXPECT_EQ(InjectionFigures({}, {}), "");
+}
+
+TEST(ScatterFigures, ShowTargetAndLimits) {
+  CampaignSummary summary;
+  summary.requirements = {Limited("perigee_km", false, 295.0, {}), Limited("apogee_km", true, 520.0, 380.0)};
+  summary.reference_orbit = {.altitude_m = 500e3, .velocity_m_s = 7612.6, .radius_m = 6878137.0};
+  std::vector<double> apogee, perigee;
+  for (int k = 0; k < 20; ++k) {
+    apogee.push_back(400.0 + 5.0 * k);
+    perigee.push_back(300.0 + k % 3);
+  }
+  const std::string html = InjectionFigures(summary, Pairs({{"apogee_km", apogee}, {"perigee_km", perigee}}));
+  EXPECT_EQ(CountOf(html, "<svg class=\"chart\""), 1u);
+  EXPECT_EQ(CountOf(html, "class=\"ellipse\" data-s"), 3u);
+  EXPECT_EQ(CountOf(html, "class=\"limit\" data-s"), 3u) << "a range has two";
+  EXPECT_THAT(html, HasSubstr(">reference</text>"));
 }
 
 // 1, 2 or 5 times a power of ten, and at most a fifth of the vehicle, which is 1080 px long.

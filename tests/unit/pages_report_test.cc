@@ -8,6 +8,7 @@
 #include "core/results/text.h"
 #include "tests/test.h"
 #include "tests/unit/made_up_results.h"
+#include "tests/unit/sample_vehicle.h"
 
 namespace dispersa::pages_report_test {
 namespace {
@@ -73,6 +74,7 @@ class ReportPageTest : public testing::Test {
     histories_.bands = ComputeBands(flights, columns, 1.0);
     histories_.written_cases = {3};
     histories_.written_flights = {SampleFlight(histories_.nominal_history, columns, 1.0)};
+    campaign_.vehicle = SampleVehicle();
     page_ = ReportPage(campaign_, summary_, cases_, histories_);
   }
 

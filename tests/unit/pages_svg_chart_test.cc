@@ -69,21 +69,21 @@ TEST(ChartScale, LivesWithConstantAndMissingData) {
   EXPECT_EQ(ChartScale({.label = "x"}, INFINITY, -INFINITY, 0.0, 100.0, 4).low(), 0.0);
 }
 
-// "S3, S4" where two ignitions are a pixel apart; a coast without room has no label.
+// "S2, S3" where two ignitions are a pixel apart, "S4–S6" of more; a coast without room has no label.
 TEST(SvgChart, JoinsTheLabelsThatWouldLieOverEachOther) {
   SvgChart chart({.label = "t", .low = 0.0, .high = 1000.0}, {.label = "y"});
   chart.Line({0.0, 1000.0}, {0.0, 1.0}, "line-0", "");
   chart.Shade(105.0, 110.0, "narrow");
   chart.Shade(400.0, 800.0, "coast");
-  for (const auto& [time_s, name] : {std::pair{0.0, "S1"}, {100.0, "S2"}, {104.0, "S3"}, {999.0, "S4"}})
+  for (const auto& [time_s, name] : {std::pair{0.0, "S1"}, {100.0, "S2"}, {104.0, "S3"}, {996.0, "S4"}, {997.0, "S5"}, {999.0, "S6"}})
     chart.Mark(time_s, name);
   const std::string svg = chart.Svg("marks");
   EXPECT_EQ(Count(svg, "class=\"mark-label\""), 4u);
-  for (const char* label : {">S1<", ">S2, S3<", ">S4<", ">coast<"}) EXPECT_THAT(svg, HasSubstr(label));
-  EXPECT_EQ(Count(svg, "class=\"mark\""), 4u);
-  const std::size_t last = svg.find(">S4<");
+  for (const char* label : {">S1<", ">S2, S3<", ">S4–S6<", ">coast<"}) EXPECT_THAT(svg, HasSubstr(label));
+  EXPECT_EQ(Count(svg, "class=\"mark\""), 6u);
+  const std::size_t last = svg.find(">S4–S6<");
   const double x = std::stod(svg.substr(svg.rfind("x=\"", last) + 3));
-  EXPECT_LT(x, 510.0) << "it is cut by the frame";
+  EXPECT_LT(x, 495.0) << "it is cut by the frame";
 }
 
 TEST(SvgChart, InterruptsALineWhereItIsUndefined) {
