@@ -7,9 +7,6 @@
 #include <optional>
 #include <vector>
 
-#include "core/environment/earth.h"
-#include "core/flight/orbit.h"
-#include "core/math/functions.h"
 #include "core/pages/html_parts.h"
 #include "core/pages/svg_chart.h"
 #include "core/results/metric_catalogue.h"
@@ -93,12 +90,6 @@ PointScatter PairsOf(const std::vector<double>& x, const std::vector<double>& y)
 
 namespace {
 
-/// What a scatter shows beside the cases.
-struct Target {
-  const char* name = "target";
-  double x = 0.0, y = 0.0;
-};
-
 void AddLimits(const std::string& metric, bool horizontal, const CampaignSummary& summary, SvgChart* chart) {
   for (const RequirementSummary& requirement : summary.requirements) {
     if (requirement.metric != metric) continue;
@@ -112,19 +103,18 @@ void AddLimits(const std::string& metric, bool horizontal, const CampaignSummary
 }
 
 /// The completed cases with the ellipses of their covariance. Empty if no case has both values.
-std::string ScatterFigure(const std::string& x, const std::string& y, const std::string& what,
-                          const std::optional<Target>& target, const CampaignSummary& summary,
-                          const CaseColumns& cases) {
+std::string ScatterFigure(const std::string& x, const std::string& y, const std::string& what, bool of_errors,
+                          const CampaignSummary& summary, const CaseColumns& cases) {
   const PointScatter scatter = PairsOf(CompletedValues(cases, x), CompletedValues(cases, y));
   if (scatter.n == 0) return "";
   SvgChart chart({.label = AxisLabel(x)}, {.label = AxisLabel(y)}, 520, 300);
   AddCases(x, y, summary, cases, &chart);
-  if (target) chart.Points({target->x}, {target->y}, "dot-target", target->name);
+  if (of_errors) chart.Points({0.0}, {0.0}, "dot-target", "target");
   AddLimits(x, false, summary, &chart);
   AddLimits(y, true, summary, &chart);
   std::string caption = what;
-  const bool has_spread = scatter.n >= kFewestForEllipses && scatter.covariance[0][0] > 0.0 &&
-                          scatter.covariance[1][1] > 0.0;
+  const bool has_spread =
+      scatter.n >= kFewestForEllipses && scatter.covariance[0][0] > 0.0 && scatter.covariance[1][1] > 0.0;
   if (has_spread) {
     std::string drawn;
     for (const double containment : {0.5, 0.95, 0.9973}) {
@@ -148,29 +138,22 @@ std::string ScatterFigure(const std::string& x, const std::string& y, const std:
 
 std::string ImpactFigures(const CampaignSummary& summary, const CaseColumns& cases) {
   return ScatterFigure("impact_crossrange_km", "impact_downrange_km",
-                       "Impact of each completed case, from the launch site along and across its azimuth.", {},
-                       summary, cases) +
+                       "Impact of each completed case, from the launch site along and across its azimuth.",
+                       false, summary, cases) +
          ScatterFigure("impact_downrange_km", "apogee_altitude_km",
-                       "Apogee and range of each completed case.", {}, summary, cases);
+                       "Apogee and range of each completed case.", false, summary, cases);
 }
 
 std::string InjectionFigures(const CampaignSummary& summary, const CaseColumns& cases) {
-  const Orbit& orbit = summary.reference_orbit;
-  std::optional<Target> apsides;
-  if (orbit.radius_m > 0.0) {
-    const SinCos path = SineCosine(orbit.flight_path_angle_rad);
-    const OrbitElements reached =
-        ElementsOf(Wgs84(), {orbit.radius_m, 0.0, 0.0}, orbit.velocity_m_s * Vector3(path.sin, path.cos, 0.0));
-    apsides = Target{"reference", reached.perigee_altitude_m * 1e-3, reached.apogee_altitude_m * 1e-3};
-  }
   return ScatterFigure("injection_velocity_error_m_s", "injection_altitude_error_km",
-                       "Injection of each completed case against the target.", Target{}, summary, cases) +
-         ScatterFigure("perigee_km", "apogee_km",
-                       "The orbits that follow from it. Near a circle they crowd on its line, far from a normal law.",
-                       apsides, summary, cases) +
+                       "Injection of each completed case against the target.", true, summary, cases) +
+         ScatterFigure(
+             "perigee_km", "apogee_km",
+             "The orbits that follow from it. Near a circle they crowd on its line, far from a normal law.",
+             false, summary, cases) +
          ScatterFigure("semi_major_axis_error_km", "inclination_error_deg",
-                       "Size and plane of the orbit of each completed case against the target.", Target{}, summary,
-                       cases);
+                       "Size and plane of the orbit of each completed case against the target.", true,
+                       summary, cases);
 }
 
 namespace {

@@ -60,7 +60,8 @@ std::string EventsSection(const Campaign& campaign, const CampaignSummary& summa
   for (const EventSummary& event : summary.events) {
     const SeenEvent* const nominal =
         summary.nominal ? FindEvent(summary.nominal->events, event.name) : nullptr;
-    std::vector<std::string> row = {EventWords(event.name, campaign.vehicle), std::to_string(event.flights())};
+    std::vector<std::string> row = {EventWords(event.name, campaign.vehicle),
+                                    std::to_string(event.flights())};
     for (std::size_t i = 0; i < event.values.size(); ++i)
       row.push_back(Cell(event.values[i], nominal, SeenEvent::kValues[i], kShown[i]));
     table.Row(row);

@@ -253,7 +253,11 @@ std::string EnvelopeFigures(const FlightHistories& histories, const CampaignSumm
        .width = 1060,
        .style = "wide"},
       "Pitch error in powered flight, which the requirement binds. The band shall stay inside the limits.");
-  add({.column = "pitch_error_deg", .label = "pitch error, °", .from_s = 0.0, .to_s = pitch_over_end_s},
+  add({.column = "pitch_error_deg",
+       .label = "pitch error, °",
+       .from_s = 0.0,
+       .to_s = pitch_over_end_s,
+       .style = "screen"},
       "Pitch error during lift-off and the initial pitch-over.");
   for (std::size_t i = std::max<std::size_t>(1, std::min(ascending, burns.burns.size() - 1));
        i < burns.burns.size(); ++i) {
@@ -272,7 +276,7 @@ std::string EnvelopeFigures(const FlightHistories& histories, const CampaignSumm
       "Roll error in powered flight.");
   powered({.column = "deflection_pitch_deg", .label = "pitch deflection, °"},
           "Gimbal deflection in pitch. Its distance to the stop is what is left to steer with.");
-  powered({.column = "deflection_yaw_deg", .label = "yaw deflection, °", .nominal = false},
+  powered({.column = "deflection_yaw_deg", .label = "yaw deflection, °", .nominal = false, .style = "screen"},
           "Gimbal deflection in yaw.");
   add({.column = "qbar_pa",
        .label = "dynamic pressure, kPa",
@@ -296,7 +300,7 @@ std::string EnvelopeFigures(const FlightHistories& histories, const CampaignSumm
   powered({.column = "axial_load_g", .label = "axial load, g"},
           "Axial load: thrust and drag over mass. It is largest before a burnout.");
   powered({.column = "mass_kg", .label = "mass, t", .factor = 1e-3, .style = "screen"},
-      "Mass of the vehicle. Where the band is wide, burnouts and separations differ in time.");
+          "Mass of the vehicle. Where the band is wide, burnouts and separations differ in time.");
   for (const auto& [column, label] :
        {std::pair{"p_deg_s", "roll rate, °/s"}, std::pair{"q_deg_s", "pitch rate, °/s"},
         std::pair{"r_deg_s", "yaw rate, °/s"}})
@@ -305,7 +309,8 @@ std::string EnvelopeFigures(const FlightHistories& histories, const CampaignSumm
   add({.column = "altitude_m",
        .label = "altitude minus that of the nominal, km",
        .factor = 1e-3,
-       .deviation = true},
+       .deviation = true,
+       .style = "screen"},
       "Altitude of the flights above the nominal flight at the same time.");
   if (burns.burns.size() > 1)
     add({.column = "pitch_error_deg", .label = "pitch error, °", .style = "screen"},

@@ -32,13 +32,15 @@ std::string AscentFigure(const Campaign& campaign, const FlightHistories& histor
   const Geodetic from = {site.latitude_rad, site.longitude_rad, site.altitude_m};
   std::vector<double> time_s, along_km, altitude_km;
   for (std::size_t row = 0; row < nominal.rows(); ++row) {
-    const Geodetic place = {nominal.at(row, latitude) / kDegPerRad, nominal.at(row, longitude) / kDegPerRad, 0.0};
+    const Geodetic place = {nominal.at(row, latitude) / kDegPerRad, nominal.at(row, longitude) / kDegPerRad,
+                            0.0};
     time_s.push_back(nominal.at(row, 0));
     along_km.push_back(1e-3 * TrackOf(from, campaign.reference.program.launch_azimuth_rad, place).along_m);
     altitude_km.push_back(1e-3 * nominal.at(row, altitude));
   }
   const double least_km = *std::min_element(along_km.begin(), along_km.end());
-  SvgChart chart({.label = "downrange, km", .low = std::min(0.0, least_km)}, {.label = "altitude, km"}, 640, 250);
+  SvgChart chart({.label = "downrange, km", .low = std::min(0.0, least_km)}, {.label = "altitude, km"}, 640,
+                 250);
   std::vector<double> x, y;
   std::string listed;
   for (const SeenEvent& event : histories.nominal.events) {
@@ -48,7 +50,7 @@ std::string AscentFigure(const Campaign& campaign, const FlightHistories& histor
     y.push_back(altitude_km[row]);
     chart.Mark(x.back(), std::to_string(x.size()));
     listed += fmt::format("{}<b>{}</b>&nbsp;{}&nbsp;{}&nbsp;s", listed.empty() ? "" : " · ", x.size(),
-                          EventWords(event.name, campaign.vehicle), ReadableText(event.time_s));
+                          EventWords(event.name, campaign.vehicle), FixedText(event.time_s, 1));
   }
   chart.Line(along_km, altitude_km, "line-0", "");
   chart.Points(x, y, "dots", "");
@@ -82,7 +84,8 @@ Nearest LeastMargin(const CampaignSummary& summary) {
     }
     const double scale = one.low_limit ? 0.5 * (one.limit - *one.low_limit) : std::fabs(one.limit);
     const double share = scale > 0.0 ? distance / scale : distance;
-    if (least.of != nullptr && (rank(*least.of) < rank(one) || (rank(*least.of) == rank(one) && least.share <= share)))
+    if (least.of != nullptr &&
+        (rank(*least.of) < rank(one) || (rank(*least.of) == rank(one) && least.share <= share)))
       continue;
     least = {&one, distance, share};
   }
@@ -123,9 +126,9 @@ std::string LeastMarginText(const CampaignSummary& summary) {
 
 std::string GlanceSection(const Campaign& campaign, const CampaignSummary& summary,
                           const FlightHistories& histories) {
-  const std::string vehicle = fmt::format(
-      "{}, {} m long. Red: centre of gravity, full; white: burnt out.", HtmlText(campaign.vehicle.name),
-      ReadableText(campaign.vehicle.stages.front().bottom_station_m));
+  const std::string vehicle = fmt::format("{}, {} m long. Red: centre of gravity, full; white: burnt out.",
+                                          HtmlText(campaign.vehicle.name),
+                                          ReadableText(campaign.vehicle.stages.front().bottom_station_m));
   return "<section class=\"glance\">\n" + AscentFigure(campaign, histories) + "<div>" +
          Figure(VehicleSketch(campaign.vehicle), vehicle) + LeastMarginText(summary) + "</div>\n</section>\n";
 }

@@ -63,8 +63,9 @@ class Map {
         window_(Points(), kWidth_px, kMostHeight_px) {}
 
   std::string Svg(const std::string& description) const {
-    std::string svg = fmt::format("<svg class=\"map\" viewBox=\"0 0 {:.0f} {:.0f}\" role=\"img\" aria-label=\"{}\">",
-                                  window_.width_px(), window_.height_px(), HtmlText(description));
+    std::string svg =
+        fmt::format("<svg class=\"map\" viewBox=\"0 0 {:.0f} {:.0f}\" role=\"img\" aria-label=\"{}\">",
+                    window_.width_px(), window_.height_px(), HtmlText(description));
     svg += Graticule() + Coast() + Envelope();
     svg += Path("line-1", track_);
     for (const Footprint& footprint : footprints_) svg += Fallen(footprint);
@@ -156,7 +157,8 @@ class Map {
                                base < window_.height_px() - 4.0;
         if (attempt < 7 && !(is_free && is_inside)) continue;
         taken.push_back({from, from + width, base});
-        svg += fmt::format("<text class=\"place\" x=\"{:.0f}\" y=\"{:.0f}\">{}</text>", from, base, HtmlText(text));
+        svg += fmt::format("<text class=\"place\" x=\"{:.0f}\" y=\"{:.0f}\">{}</text>", from, base,
+                           HtmlText(text));
         break;
       }
     }
@@ -175,7 +177,8 @@ class Map {
       for (std::size_t i = 1; i < line.size(); ++i) {
         const auto from = plane_.At(line[i - 1]), to = plane_.At(line[i]);
         const auto part = from && to ? window_.Inside(*from, *to) : std::nullopt;
-        for (const MapPoint& end : part ? std::vector<MapPoint>(part->begin(), part->end()) : std::vector<MapPoint>()) {
+        for (const MapPoint& end :
+             part ? std::vector<MapPoint>(part->begin(), part->end()) : std::vector<MapPoint>()) {
           const bool leaves = parallel ? end[0] < 0.01 : end[1] > window_.height_px() - 0.01;
           const bool has_room = std::all_of(labelled.begin(), labelled.end(), [&](const MapPoint& other) {
             return std::fabs(other[0] - end[0]) > 46.0 || std::fabs(other[1] - end[1]) > 16.0;
@@ -206,7 +209,8 @@ class Map {
   static std::string Degrees(double value_deg, const char* positive, const char* negative) {
     const double size_deg = std::fabs(value_deg);
     const bool plain = size_deg < 1e-9 || (size_deg == 180.0);
-    return ReadableText(size_deg) + "°" + (plain ? "" : fmt::format(" {}", value_deg > 0.0 ? positive : negative));
+    return ReadableText(size_deg) + "°" +
+           (plain ? "" : fmt::format(" {}", value_deg > 0.0 ? positive : negative));
   }
   std::string Scale() const {
     const double about_km = 0.18 * window_.width_px() / window_.px_per_km();
@@ -215,7 +219,8 @@ class Map {
     const double right = window_.width_px() - 16.0, y = window_.height_px() - 14.0;
     const double left = right - bar_km * window_.px_per_km();
     return fmt::format(
-        "<path class=\"axis\" d=\"M{0:.1f} {2:.1f}v5H{1:.1f}v-5\"/><text class=\"tick\" x=\"{1:.0f}\" y=\"{3:.0f}\" "
+        "<path class=\"axis\" d=\"M{0:.1f} {2:.1f}v5H{1:.1f}v-5\"/><text class=\"tick\" x=\"{1:.0f}\" "
+        "y=\"{3:.0f}\" "
         "text-anchor=\"end\">{4} km</text>",
         left, right, y - 5.0, y - 8.0, ReadableText(bar_km));
   }
@@ -253,11 +258,14 @@ std::string MapFigure(const Campaign& campaign, const FlightHistories& histories
   const bool has_envelope = histories.bands.flights > 0;
   std::string caption = "The ground track of the nominal flight (orange) from the launch site";
   if (has_envelope)
-    caption += ", and the area under the flights of the envelope: at each time from the least to the largest latitude "
-               "and longitude, so it is wider than the flights";
+    caption +=
+        ", and the area under the flights of the envelope: at each time from the least to the largest "
+        "latitude "
+        "and longitude, so it is wider than the flights";
   caption += ".";
   if (!footprints.empty())
-    caption += " A dot is where a part of a flight comes down; ellipses hold 50, 95 and 99 % of a normal law.";
+    caption +=
+        " A dot is where a part of a flight comes down; ellipses hold 50, 95 and 99 % of a normal law.";
   caption += " Coast lines: Natural Earth, 1:110 million.";
   const Map map(histories, footprints);
   return "<div class=\"figures\">\n" +

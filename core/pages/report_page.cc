@@ -47,7 +47,8 @@ std::string MapSection(const Campaign& campaign, const CampaignSummary& summary,
   if (figure.empty()) return html + "<p>A map needs time histories.</p>\n";
   if (!footprints.empty())
     html += fmt::format(
-        "<p>What falls from the first {} flights of the envelope is followed to the ground as a tumbling body. "
+        "<p>What falls from the first {} flights of the envelope is followed to the ground as a tumbling "
+        "body. "
         "<code>dispersa export --format geojson</code> does so for all {} flights.</p>\n",
         std::min(histories.bands.flights, kMostFallen), summary.flown);
   return html + figure;
@@ -59,8 +60,9 @@ std::string PropellantFigures(const CampaignSummary& summary, const CaseColumns&
   for (const MetricSummary& metric : summary.metrics)
     if (metric.name.starts_with("propellant_left") && metric.statistics.n > 0)
       figures += DistributionFigures(metric.name, summary, cases);
-  return figures.empty() ? ""
-                         : "<h3>Propellant left at cut-off</h3>\n<div class=\"figures\">\n" + figures + "</div>\n";
+  return figures.empty()
+             ? ""
+             : "<h3>Propellant left at cut-off</h3>\n<div class=\"figures\">\n" + figures + "</div>\n";
 }
 
 }  // namespace

@@ -5,7 +5,6 @@
 #include <algorithm>
 #include <cmath>
 #include <cstdint>
-#include <set>
 #include <utility>
 
 #include "core/pages/chart_scale.h"
@@ -501,17 +500,27 @@ std::string SvgChart::Picture::Lines(const Series& series, const std::string& na
   return svg;
 }
 
-/// One path of strokes without length, whose round ends are the dots: an element a case would be heavy.
+/// One path of strokes without length, whose round ends are the dots: an element a case would be heavy. From
+/// left to right the steps are short.
 std::string SvgChart::Picture::Dots(const Series& series, const std::string& named) const {
-  std::string dots;
-  std::set<std::pair<long, long>> taken;
+  const bool is_many = series.x.size() > kManyPoints;  // of many dots one a pixel is seen
+  std::vector<std::pair<std::int64_t, std::int64_t>> tenths;
   for (std::size_t i = 0; i < series.x.size(); ++i) {
     if (!std::isfinite(series.x[i]) || !std::isfinite(series.low[i])) continue;
-    const double x = xs_.At(series.x[i]);
-    const double y = ys_.At(series.low[i]);
-    // Of many dots one a pixel is seen.
-    if (series.x.size() > kManyPoints && !taken.insert({std::lround(x), std::lround(y)}).second) continue;
-    dots += "M" + Coordinate(x) + " " + Coordinate(y) + "h0";
+    const double x = xs_.At(series.x[i]), y = ys_.At(series.low[i]);
+    if (is_many)
+      tenths.emplace_back(10 * std::llround(x), 10 * std::llround(y));
+    else
+      tenths.emplace_back(std::llround(10.0 * x), std::llround(10.0 * y));
+  }
+  std::sort(tenths.begin(), tenths.end());
+  tenths.erase(std::unique(tenths.begin(), tenths.end()), tenths.end());
+  std::string dots;
+  std::pair<std::int64_t, std::int64_t> at = {0, 0};
+  for (const auto& next : tenths) {
+    const std::string dy = Step(next.second - at.second);
+    dots += (dots.empty() ? "M" : "m") + Step(next.first - at.first) + (dy[0] == '-' ? "" : " ") + dy + "h0";
+    at = next;
   }
   return fmt::format("<path class=\"{}\"{} d=\"{}\"/>", series.style, named, dots);
 }

@@ -50,9 +50,13 @@ class Drawing {
     DrawBoosters();
     DrawSensors();
     if (!has_words_) {
-      const double room_px = 0.5 * (bottom_px_ - axis_px_) + 26.0;  // boosters stand out
+      const Boosters& b = vehicle_.boosters;
+      const double reach_m =
+          b.count == 0 ? 0.0 : std::max(0.0, b.radius_m + 0.5 * b.diameter_m - 0.5 * widest_m_);
+      const double room_px = reach_m * scale_ + 36.0;  // dimensions stand below
       return fmt::format(
-          "<svg class=\"vehicle\" viewBox=\"0 {:.0f} {:.0f} {:.0f}\" role=\"img\" aria-label=\"{}, {} m long, to "
+          "<svg class=\"vehicle\" viewBox=\"0 {:.0f} {:.0f} {:.0f}\" role=\"img\" aria-label=\"{}, {} m "
+          "long, to "
           "scale\">{}</svg>\n",
           2.0 * axis_px_ - bottom_px_ - room_px, kLength_px + 2.0 * kMargin_px,
           2.0 * (bottom_px_ - axis_px_ + room_px), HtmlText(vehicle_.name), ReadableText(length_m_), svg_);

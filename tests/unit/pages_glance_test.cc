@@ -33,8 +33,8 @@ std::string Glance(const std::vector<RequirementSummary>& requirements,
 }
 
 TEST(GlanceSection, NamesTheLeastMarginOfTheWorstVerdict) {
-  const RequirementSummary near = Judged("pitch_error_peak_deg", "pass", 0.5, 0.1);   // 20 % of the limit
-  const RequirementSummary far = Judged("deflection_peak_deg", "pass", 5.0, 2.0);     // 40 %
+  const RequirementSummary near = Judged("pitch_error_peak_deg", "pass", 0.5, 0.1);  // 20 % of the limit
+  const RequirementSummary far = Judged("deflection_peak_deg", "pass", 5.0, 2.0);    // 40 %
   const RequirementSummary open = Judged("yaw_error_peak_deg", "inconclusive", 1.0, 0.9);
   const RequirementSummary failed = Judged("roll_error_peak_deg", "fail", 1.0, -0.25);
   EXPECT_THAT(Glance({far, near}), HasSubstr("20 % of the limit"));
@@ -50,7 +50,8 @@ TEST(GlanceSection, TakesTheWorstFlightWhereThereIsNoBound) {
   RequirementSummary range = Judged("injection_altitude_error_km", "inconclusive", 10.0, {});
   range.low_limit = -10.0;
   range.worst_completed = RequirementSummary::Worst{.case_index = 3, .value = -8.0};
-  EXPECT_THAT(Glance({range}), HasSubstr("The worst completed flight is 2 km away from it: 20 % of half the range"));
+  EXPECT_THAT(Glance({range}),
+              HasSubstr("The worst completed flight is 2 km away from it: 20 % of half the range"));
 }
 
 TEST(GlanceSection, SaysWhatDrivesIt) {
@@ -79,10 +80,11 @@ TEST(GlanceSection, DrawsTheAscentWithItsEvents) {
         campaign.vehicle.site.longitude_rad * 57.29577951308232;
     histories.nominal_history.values.insert(histories.nominal_history.values.end(), row.begin(), row.end());
   }
-  histories.nominal.events = {{.name = "lift_off"}, {.name = "max_q", .time_s = 40.0}, {.name = "impact", .time_s = 300.0}};
+  histories.nominal.events = {
+      {.name = "lift_off"}, {.name = "max_q", .time_s = 40.0}, {.name = "impact", .time_s = 300.0}};
   const std::string html = GlanceSection(campaign, {}, histories);
   EXPECT_THAT(html, HasSubstr("downrange, km"));
-  EXPECT_THAT(html, HasSubstr("<b>2</b>&nbsp;max q&nbsp;40&nbsp;s"));
+  EXPECT_THAT(html, HasSubstr("<b>2</b>&nbsp;max q&nbsp;40.0&nbsp;s"));
   EXPECT_THAT(html, Not(HasSubstr("impact"))) << "the history ends before";
 }
 
@@ -92,6 +94,18 @@ TEST(VehicleSketch, HasTheBodyWithoutWords) {
   EXPECT_THAT(sketch, Not(HasSubstr("<style")));
   EXPECT_THAT(sketch, HasSubstr("class=\"grain\""));
   EXPECT_THAT(sketch, HasSubstr("class=\"hinge\""));
+  // Boosters beside the body make the picture higher.
+  Vehicle boosted = SampleVehicle();
+  boosted.boosters.count = 2;
+  boosted.boosters.radius_m = 3.0;
+  boosted.boosters.diameter_m = 1.0;
+  const auto height = [](const std::string& svg) {
+    std::istringstream view(svg.substr(svg.find("viewBox=\"") + 9));
+    double left, top, width, high;
+    view >> left >> top >> width >> high;
+    return high;
+  };
+  EXPECT_GT(height(VehicleSketch(boosted)), height(sketch) + 100.0);
 }
 
 }  // namespace

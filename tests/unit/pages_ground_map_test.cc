@@ -14,7 +14,8 @@ double Away_km(const MapPlane& plane, const MapPlace& a, const MapPlace& b) {
   return std::hypot(to[0] - from[0], to[1] - from[1]);
 }
 
-// The middle is at the origin; north is up and east to the right in both hemispheres and on both sides of 180.
+// The middle is at the origin; north is up and east to the right in both hemispheres and on both sides of
+// 180.
 TEST(MapPlane, KeepsDistancesAndDirectionsFromItsMiddle) {
   for (const double latitude_deg : {5.0, -39.0, 62.0})
     for (const double longitude_deg : {-52.0, 0.0, 180.0, 177.0}) {
@@ -79,7 +80,8 @@ TEST(CoastLines, PassTheCapes) {
   for (const auto& line : lines)
     for (std::size_t i = 1; i < line.size(); ++i) {
       EXPECT_LT(std::fabs(line[i].longitude_deg - line[i - 1].longitude_deg), 180.0);
-      EXPECT_FALSE(std::fabs(line[i].longitude_deg) == 180.0 && std::fabs(line[i - 1].longitude_deg) == 180.0);
+      EXPECT_FALSE(std::fabs(line[i].longitude_deg) == 180.0 &&
+                   std::fabs(line[i - 1].longitude_deg) == 180.0);
       EXPECT_LE(std::fabs(line[i].latitude_deg), 90.0);
     }
 }
@@ -129,19 +131,22 @@ TEST(MapFigure, DrawsTheTrackInOnePieceAtAnyAzimuthAndPlace) {
     for (const auto& [north_deg, east_deg] :
          {std::pair{0.0, 20.0}, {0.0, -20.0}, {14.0, 3.0}, {-14.0, -3.0}, {10.0, 15.0}}) {
       const std::string html =
-          MapFigure({}, Flown({Track(latitude_deg, longitude_deg, north_deg, east_deg),
-                               Track(latitude_deg, longitude_deg, north_deg + 0.4, east_deg + 0.4)}), {});
+          MapFigure({},
+                    Flown({Track(latitude_deg, longitude_deg, north_deg, east_deg),
+                           Track(latitude_deg, longitude_deg, north_deg + 0.4, east_deg + 0.4)}),
+                    {});
       const std::vector<MapPoint> track = PathOf(html, "line-1");
       ASSERT_GT(track.size(), 90u);
       double longest_px = 0.0;
       for (std::size_t i = 1; i < track.size(); ++i)
-        longest_px = std::max(longest_px, std::hypot(track[i][0] - track[i - 1][0], track[i][1] - track[i - 1][1]));
+        longest_px =
+            std::max(longest_px, std::hypot(track[i][0] - track[i - 1][0], track[i][1] - track[i - 1][1]));
       EXPECT_LT(longest_px, 40.0) << latitude_deg << " " << longitude_deg << ": it jumps";
       if (north_deg == 0.0) {
         EXPECT_EQ(track.back()[0] > track.front()[0], east_deg > 0.0);
       }
       if (std::fabs(north_deg) > 10.0) {
-        EXPECT_EQ(track.back()[1] < track.front()[1], north_deg > 0.0);
+        EXPECT_EQ(track.back()[1]<track.front()[1], north_deg> 0.0);
       }
       EXPECT_FALSE(PathOf(html, "cover").empty());
       EXPECT_FALSE(PathOf(html, "grid").empty());
@@ -152,8 +157,11 @@ TEST(MapFigure, ShowsWhatFallsWithItsEllipses) {
   FlightHistories histories = Flown({Track(5.0, -52.0, 3.0, 20.0)});
   std::vector<ImpactPoint> impacts;
   for (std::uint64_t k = 0; k < 12; ++k) {
-    const double east_rad = 0.001 * static_cast<double>(k % 4), north_rad = 0.0007 * static_cast<double>(k % 3);
-    impacts.push_back({.case_index = k, .stage = 1, .lost = false,
+    const double east_rad = 0.001 * static_cast<double>(k % 4),
+                 north_rad = 0.0007 * static_cast<double>(k % 3);
+    impacts.push_back({.case_index = k,
+                       .stage = 1,
+                       .lost = false,
                        .impact = Impact{.place = {0.1 + north_rad, -0.85 + east_rad, 0.0}}});
     impacts.push_back({.case_index = k, .stage = 2, .lost = false});
   }

@@ -75,7 +75,8 @@ TEST(SvgChart, JoinsTheLabelsThatWouldLieOverEachOther) {
   chart.Line({0.0, 1000.0}, {0.0, 1.0}, "line-0", "");
   chart.Shade(105.0, 110.0, "narrow");
   chart.Shade(400.0, 800.0, "coast");
-  for (const auto& [time_s, name] : {std::pair{0.0, "S1"}, {100.0, "S2"}, {104.0, "S3"}, {996.0, "S4"}, {997.0, "S5"}, {999.0, "S6"}})
+  for (const auto& [time_s, name] :
+       {std::pair{0.0, "S1"}, {100.0, "S2"}, {104.0, "S3"}, {996.0, "S4"}, {997.0, "S5"}, {999.0, "S6"}})
     chart.Mark(time_s, name);
   const std::string svg = chart.Svg("marks");
   EXPECT_EQ(Count(svg, "class=\"mark-label\""), 4u);
