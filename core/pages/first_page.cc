@@ -244,8 +244,7 @@ std::string List(const char* list_class, const std::vector<std::string>& items) 
 std::string FirstPage(const Campaign& campaign, const CampaignSummary& summary) {
   const Standing& standing = summary.standing;
   const bool certain_fail = standing.verdict == StandingVerdict::kIncomplete && CountOf(standing, "fail") > 0;
-  std::string html =
-      fmt::format("<!-- run:begin -->\n<header>\n<h1>Dispersion campaign {}</h1>\n", HtmlText(summary.name));
+  std::string html = fmt::format("<header>\n<h1>Dispersion campaign {}</h1>\n", HtmlText(summary.name));
   html += Facts(summary);
   html += fmt::format(
       "<div class=\"headline{}\">{}{}{}{}<p>{}</p></div>\n", summary.beyond_limits == 0 ? "" : " exceeded",
@@ -271,7 +270,7 @@ std::string FirstPage(const Campaign& campaign, const CampaignSummary& summary) 
     html += "<p class=\"soft small\">" + Term("attempt", "Attempts") +
             " made in other folders are not known here.</p>\n";
   html += "<p class=\"sign\">Reviewed by: <span></span> Date: <span></span></p>\n";
-  return html + "</header>\n<!-- run:end -->\n";
+  return html + "</header>\n";
 }
 
 }  // namespace dispersa

@@ -3,6 +3,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <utility>
 
 #include "core/environment/ground_track.h"
 #include "core/math/constants.h"
@@ -60,17 +61,20 @@ std::string AscentFigure(const Campaign& campaign, const FlightHistories& histor
 
 struct Nearest {
   const RequirementSummary* of = nullptr;
+  std::string verdict;    ///< that stands
   double distance = 0.0;  ///< from the bound to the limit; without a bound from the worst flight
   double share = 0.0;     ///< of the limit
 };
 
 /// The failed first, then those that are not shown to be met, then by the share of the limit that is left.
 Nearest LeastMargin(const CampaignSummary& summary) {
-  const auto rank = [](const RequirementSummary& one) {
-    return one.verdict == "fail" ? 0 : one.verdict == "pass" ? 2 : 1;
+  const auto rank = [](const std::string& verdict) {
+    return verdict == "fail" ? 0 : verdict == "pass" ? 2 : 1;
   };
   Nearest least;
-  for (const RequirementSummary& one : summary.requirements) {
+  for (std::size_t i = 0; i < summary.requirements.size(); ++i) {
+    const RequirementSummary& one = summary.requirements[i];
+    const std::string& verdict = summary.standing.requirements[i].verdict;
     double distance = 0.0;
     if (one.margin) {
       distance = *one.margin;
@@ -84,10 +88,9 @@ Nearest LeastMargin(const CampaignSummary& summary) {
     }
     const double scale = one.low_limit ? 0.5 * (one.limit - *one.low_limit) : std::fabs(one.limit);
     const double share = scale > 0.0 ? distance / scale : distance;
-    if (least.of != nullptr &&
-        (rank(*least.of) < rank(one) || (rank(*least.of) == rank(one) && least.share <= share)))
+    if (least.of != nullptr && std::pair(rank(least.verdict), least.share) <= std::pair(rank(verdict), share))
       continue;
-    least = {&one, distance, share};
+    least = {&one, verdict, distance, share};
   }
   return least;
 }
@@ -115,7 +118,7 @@ std::string LeastMarginText(const CampaignSummary& summary) {
   return fmt::format(
       "<h3>Least margin</h3>\n<p>{} <a href=\"#{}\">{}</a> {}. {} is {} {}: {} of {}. {} <a "
       "href=\"#causes\">Causes</a></p>\n",
-      VerdictBadge(one.verdict), DistributionId(one.metric), HtmlText(info.title),
+      VerdictBadge(least.verdict), DistributionId(one.metric), HtmlText(info.title),
       HtmlText(LimitWords(one, info.unit)), from,
       HtmlText(WithUnit(std::stod(RoundedText(std::fabs(least.distance))), info.unit)), where,
       HtmlText(PercentText(std::round(100.0 * std::fabs(least.share)) / 100.0)),

@@ -71,7 +71,8 @@ std::string ReportPage(const Campaign& campaign, const CampaignSummary& summary,
                        const FlightHistories& histories) {
   std::string page = PageHead(
       summary.name, fmt::format("Dispersion campaign {} · {}", summary.name, summary.id.substr(0, 16)));
-  page += "<main>\n" + FirstPage(campaign, summary) + GlanceSection(campaign, summary, histories);
+  page += "<main>\n<!-- run:begin -->\n" + FirstPage(campaign, summary) +
+          GlanceSection(campaign, summary, histories) + "<!-- run:end -->\n";
   page += kNavigation;
   page += RequirementsSection(summary);
   page += OutcomesSection(summary);

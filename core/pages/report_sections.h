@@ -9,8 +9,8 @@
 
 namespace dispersa {
 
-/// The verdict that stands, for each requirement. All of it is between the marks `run:begin` and `run:end`,
-/// because it depends on the run.
+/// The verdict that stands, for each requirement. This and GlanceSection() are between the marks `run:begin`
+/// and `run:end`, because they depend on the run.
 std::string FirstPage(const Campaign& campaign, const CampaignSummary& summary);
 std::string RequirementsSection(const CampaignSummary& summary);
 std::string OutcomesSection(const CampaignSummary& summary);

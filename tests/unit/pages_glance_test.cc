@@ -28,6 +28,10 @@ std::string Glance(const std::vector<RequirementSummary>& requirements,
   campaign.vehicle = SampleVehicle();
   CampaignSummary summary;
   summary.requirements = requirements;
+  for (const RequirementSummary& one : requirements) {
+    summary.standing.requirements.emplace_back();
+    summary.standing.requirements.back().verdict = one.verdict;
+  }
   summary.drivers = drivers;
   return GlanceSection(campaign, summary, {});
 }

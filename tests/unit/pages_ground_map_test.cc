@@ -1,5 +1,7 @@
 // Maps: places on the plane, what the window shows, and coast lines.
 #include "core/pages/ground_map.h"
+
+#include "core/pages/kept_histories.h"
 #include "core/pages/map_plane.h"
 #include "tests/test.h"
 #include "tests/unit/made_up_results.h"
@@ -171,6 +173,25 @@ TEST(MapFigure, ShowsWhatFallsWithItsEllipses) {
   EXPECT_THAT(html, HasSubstr(">stage 1, spent</text>"));
   EXPECT_THAT(html, HasSubstr(">stage 2, spent</th><td class=\"n\">0</td><td class=\"n\">12</td>"));
   EXPECT_EQ(MapFigure({}, {}, {}), "") << "nothing was flown again";
+}
+
+TEST(Impacts, AreReadAsTheyWereWritten) {
+  const ImpactPoint points[] = {
+      {.case_index = 3, .stage = 0, .impact = Impact{.place = {0.5, -3.0, 0.0}}},
+      {.case_index = 4, .stage = 2, .lost = true, .impact = Impact{.place = {-1.25, 2.0, 0.0}}},
+      {.case_index = 5, .stage = 3}};
+  const std::vector<ImpactPoint> read = ImpactsIn(ImpactsCsv({std::begin(points), std::end(points)}));
+  ASSERT_EQ(read.size(), std::size(points));
+  for (std::size_t i = 0; i < read.size(); ++i) {
+    EXPECT_EQ(read[i].case_index, points[i].case_index);
+    EXPECT_EQ(read[i].stage, points[i].stage);
+    EXPECT_EQ(read[i].lost, points[i].lost);
+    ASSERT_EQ(read[i].impact.has_value(), points[i].impact.has_value());
+    if (!read[i].impact) continue;
+    EXPECT_NEAR(read[i].impact->place.latitude_rad, points[i].impact->place.latitude_rad, 1e-8);
+    EXPECT_NEAR(read[i].impact->place.longitude_rad, points[i].impact->place.longitude_rad, 1e-8);
+  }
+  EXPECT_TRUE(ImpactsIn(ImpactsCsv({})).empty());
 }
 
 }  // namespace
