@@ -167,7 +167,7 @@ class Incomplete(ExportTest):
 
     def test_a_comparison_says_what_is_missing(self):
         out = self.folder / "comparison"
-        side = f"B (smoke in {self.killed}) is {self.words}"
+        side = f"B ({self.killed.name}) is {self.words}"
         done = dispersa("compare", self.results, self.killed, "--out", out)
         self.assertEqual((done.returncode, done.stderr), (5, f"warning: {side}\n"))
         self.assertIn(f"{self.flown} of {self.flown} flights completed, {self.CASES - self.flown} cases missing\n", done.stdout)
