@@ -70,7 +70,8 @@ std::string AxisLabel(const std::string& metric) {
 /// The nominal flight's dot over those of the cases.
 void AddCases(const std::string& x, const std::string& y, const CampaignSummary& summary,
               const CaseColumns& cases, SvgChart* chart) {
-  chart->ShowsCases(x, y);
+  // The page holds no values of the others: they would make it too large to send.
+  if (x != "semi_major_axis_error_km") chart->ShowsCases(x, y);
   chart->Points(CompletedValues(cases, x), CompletedValues(cases, y), "dots", "cases");
   if (!summary.nominal) return;
   chart->Points({summary.nominal->metrics[summary.metric_list.PositionOf(x)]},

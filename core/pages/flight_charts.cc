@@ -265,15 +265,19 @@ std::string EnvelopeFigures(const FlightHistories& histories, const CampaignSumm
     add({.column = "pitch_error_deg",
          .label = "pitch error, °",
          .from_s = 10.0 * std::floor(0.1 * (burn.from_s - 5.0)),
-         .to_s = 10.0 * std::ceil(0.1 * burn.to_s)},
+         .to_s = 10.0 * std::ceil(0.1 * burn.to_s),
+         .style = "screen"},
         fmt::format("Pitch error while stage {} burns.", burn.stage));
   }
   powered(
       {.column = "yaw_error_deg", .label = "yaw error, °", .nominal = false, .peak = "yaw_error_peak_deg"},
       "Yaw error in powered flight.");
-  powered(
-      {.column = "roll_error_deg", .label = "roll error, °", .nominal = false, .peak = "roll_error_peak_deg"},
-      "Roll error in powered flight.");
+  powered({.column = "roll_error_deg",
+           .label = "roll error, °",
+           .nominal = false,
+           .peak = "roll_error_peak_deg",
+           .style = "screen"},
+          "Roll error in powered flight.");
   powered({.column = "deflection_pitch_deg", .label = "pitch deflection, °"},
           "Gimbal deflection in pitch. Its distance to the stop is what is left to steer with.");
   powered({.column = "deflection_yaw_deg", .label = "yaw deflection, °", .nominal = false, .style = "screen"},

@@ -130,7 +130,7 @@ std::string ReportPage(const Campaign& campaign, const CampaignSummary& summary,
             ? "Guidance is closed loop: it steers the last stages by a navigated state to the orbit."
             : "Guidance is open loop: the autopilot follows the pitch program, and nothing corrects what "
               "dispersed thrust, flow and drag do to speed and altitude. No requirement should rest on it.";
-    page += "</p>\n<div class=\"figures\">\n" + InjectionFigures(summary, cases) + "</div>\n";
+    page += "</p>\n<div class=\"figures small\">\n" + InjectionFigures(summary, cases) + "</div>\n";
     if (summary.injection) page += InjectionSection(*summary.injection);
     page += PropellantFigures(summary, cases);
   }
