@@ -618,8 +618,7 @@ void Conclude(Comparison& comparison) {
                 LargestWords(by_effect, "differs", "The largest change that is neither good nor bad");
     sentence += fmt::format(
         " Of {} metrics, each counted once, B is better in {}, worse in {}, and differs in {} that are "
-        "neither "
-        "good nor bad.{}",
+        "neither good nor bad.{}",
         metrics.all, metrics.better, metrics.worse, metrics.differs,
         metrics.too_small == 0
             ? ""

@@ -18,7 +18,6 @@ namespace dispersa {
 namespace {
 
 constexpr char kSinceLiftOff[] = "time since lift-off, s";
-constexpr double kLeastPerigeeKm = -2000.0;
 
 template <typename Value>
 std::vector<double> Column(const std::vector<AscentSample>& history, Value value) {
@@ -59,12 +58,14 @@ void MarkStages(const std::vector<AscentSample>& history, SvgChart* chart) {
   }
 }
 
-double ApogeeKm(const AscentSample& s) {
-  return ElementsOf(Wgs84(), s.p_EoC_I, s.v_IC_I).apogee_altitude_m * 1e-3;
-}
+/// Above the equator's radius; the apogee is infinite if the orbit is unbound.
+struct Apsides {
+  double apogee_km, perigee_km;
+};
 
-double PerigeeKm(const AscentSample& s) {
-  return ElementsOf(Wgs84(), s.p_EoC_I, s.v_IC_I).perigee_altitude_m * 1e-3;
+Apsides ApsidesOf(const AscentSample& s) {
+  const auto orbit = ElementsOf(Wgs84(), s.p_EoC_I, s.v_IC_I);
+  return {orbit.apogee_altitude_m * 1e-3, orbit.perigee_altitude_m * 1e-3};
 }
 
 /// Burns and the largest dynamic pressure, in the order of time.
@@ -134,12 +135,14 @@ std::string ReferenceFigures(const std::vector<AscentSample>& history) {
       "Dynamic pressure of the air.");
   SvgChart apsides({.label = kSinceLiftOff}, {.label = "altitude above the equator’s radius, km"});
   MarkStages(history, &apsides);
-  std::vector<double> apogee = Column(history, ApogeeKm), perigee = Column(history, PerigeeKm);
   // On the ground and long after the perigee is kilometres above the centre: it would flatten the chart.
-  for (double& each : perigee)
-    if (each < kLeastPerigeeKm) each = std::numeric_limits<double>::quiet_NaN();
-  for (double& each : apogee)
-    if (!std::isfinite(each)) each = std::numeric_limits<double>::quiet_NaN();
+  constexpr double kLeastPerigeeKm = -2000.0, kNotDrawn = std::numeric_limits<double>::quiet_NaN();
+  std::vector<double> apogee, perigee;
+  for (const AscentSample& sample : history) {
+    const auto [apogee_km, perigee_km] = ApsidesOf(sample);
+    apogee.push_back(std::isfinite(apogee_km) ? apogee_km : kNotDrawn);
+    perigee.push_back(perigee_km < kLeastPerigeeKm ? kNotDrawn : perigee_km);
+  }
   apsides.Line(time_s, std::move(apogee), "line-0", "apogee");
   apsides.Line(time_s, std::move(perigee), "line-1", "perigee");
   figures += Draw(
@@ -157,8 +160,10 @@ std::string AscentEventsTable(const std::vector<AscentSample>& history) {
   };
   for (const auto& [at, name] : EventsIn(history)) {
     const AscentSample& s = history[at];
+    const Apsides apsides = ApsidesOf(s);
     table.Row({HtmlText(name), text(s.time_s), text(s.altitude_m * 1e-3), text(s.velocity_m_s),
-               FixedText(s.qbar_pa * 1e-3, 2), text(s.mass_kg), text(ApogeeKm(s)), text(PerigeeKm(s))});
+               FixedText(s.qbar_pa * 1e-3, 2), text(s.mass_kg), text(apsides.apogee_km),
+               text(apsides.perigee_km)});
   }
   return table.Html();
 }

@@ -1,6 +1,7 @@
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <cctype>
 #include <map>
 
 #include "core/pages/html_parts.h"
@@ -16,9 +17,8 @@ constexpr std::size_t kMostPoints = 60;
 constexpr std::size_t kMostInAll = 20, kMostCharts = 30;
 constexpr char kChartWords[] =
     "Share of flights that meet the requirement, with its confidence bounds, by campaign in the order of "
-    "launching. The dashed line is the share that is required. The letter is the verdict’s first: P pass, F "
-    "fail, "
-    "I inconclusive, N not evidence, S study. The version is the label <code>commit</code>.";
+    "launching. The dashed line is the share that is required. The letter is the verdict’s first: P pass, "
+    "F fail, I inconclusive, N not evidence, S study. The version is the label <code>commit</code>.";
 
 struct Point {
   const CampaignRow* row;
@@ -42,10 +42,9 @@ std::string VersionOf(const CampaignRow& row) {
 
 /// So that a verdict is read without colours.
 std::string LetterOf(const std::string& verdict) {
-  return verdict.empty()
-             ? ""
-             : std::string(1, static_cast<char>(verdict[0] -
-                                                ('a' <= verdict[0] && verdict[0] <= 'z' ? 'a' - 'A' : 0)));
+  std::string letter = verdict.substr(0, 1);
+  for (char& each : letter) each = static_cast<char>(std::toupper(static_cast<unsigned char>(each)));
+  return letter;
 }
 
 /// Of the rows that have judged the metric, the newest first; `all` counts those left out too.
@@ -131,8 +130,7 @@ std::string TrendPage(const CampaignIndex& index, const std::string& metric, con
   if (metric.empty())
     return Frame("Trends",
                  "<h1>Trends</h1>\n<p>Each requirement over the campaigns that have judged it. A metric’s "
-                 "page has all "
-                 "of its campaigns, and their numbers.</p>\n" +
+                 "page has all of its campaigns, and their numbers.</p>\n" +
                      Metrics(index));
   std::size_t all = 0;
   const std::vector<Point> points = PointsOf(index.Search(search), metric, kMostPoints, all);
