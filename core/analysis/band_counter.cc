@@ -113,7 +113,7 @@ FlightBands BandCounter::CountedBands() const {
   for (std::size_t step = 0; step < flying_.size(); ++step)
     bands.time_s.push_back(static_cast<double>(step) * step_s_);
   for (std::size_t i = 0; i < columns_.size(); ++i) {
-    Band band{.column = BandColumnName(columns_[i])};
+    Band band{.column = BandColumnNames()[static_cast<std::size_t>(columns_[i])]};
     for (const Cell& cell : cells_[i]) {
       const bool any = cell.min <= cell.max;
       for (const BandStatistic& one : kBandStatistics)

@@ -10,16 +10,46 @@
 
 namespace dispersa {
 
-int QAlphaColumn() { return static_cast<int>(HistoryColumns().size()); }
-
-const std::string& BandColumnName(int column) {
-  static const std::string q_alpha = "q_alpha_pa_rad";
-  return column == QAlphaColumn() ? q_alpha : HistoryColumns()[static_cast<std::size_t>(column)];
+const std::vector<std::string>& BandColumnNames() {
+  static const std::vector<std::string> names = [] {
+    std::vector<std::string> all = HistoryColumns();
+    all.insert(all.end(), {"q_alpha_pa_rad", "pitch_error_powered_deg", "yaw_error_powered_deg",
+                           "roll_error_powered_deg"});
+    return all;
+  }();
+  return names;
 }
 
+int FindBandColumn(std::string_view name) {
+  const auto& names = BandColumnNames();
+  const auto found = std::find(names.begin(), names.end(), name);
+  return found == names.end() ? -1 : static_cast<int>(found - names.begin());
+}
+
+namespace {
+
+/// Reads band columns out of the rows of a history.
+class BandRow {
+ public:
+  double At(const History& history, std::size_t row, int column) const {
+    if (column < q_alpha_) return history.at(row, column);
+    if (column == q_alpha_) return history.at(row, qbar_pa_) * history.at(row, incidence_deg_) / kDegPerRad;
+    return history.at(row, thrust_n_) > 0.0 ? history.at(row, pitch_error_ + column - q_alpha_ - 1)
+                                            : kUndefined;
+  }
+
+ private:
+  const int qbar_pa_ = FindHistoryColumn("qbar_pa"), incidence_deg_ = FindHistoryColumn("incidence_deg"),
+            thrust_n_ = FindHistoryColumn("thrust_n");
+  const int pitch_error_ = FindHistoryColumn("pitch_error_deg");  // yaw and roll follow it
+  const int q_alpha_ = FindBandColumn("q_alpha_pa_rad");
+};
+
+}  // namespace
+
 SampledFlight SampleFlight(const History& history, const std::vector<int>& columns, double step_s) {
-  static const int qbar_pa = FindHistoryColumn("qbar_pa"), incidence_deg = FindHistoryColumn("incidence_deg"),
-                   longitude_deg = FindHistoryColumn("longitude_deg");
+  static const int longitude_deg = FindHistoryColumn("longitude_deg");
+  static const BandRow band_row;
   SampledFlight samples(columns.size());
   double last_longitude_deg = 0.0;
   for (std::size_t row = 0; row < history.rows(); ++row) {
@@ -30,11 +60,7 @@ SampledFlight SampleFlight(const History& history, const std::vector<int>& colum
     for (std::size_t i = 0; i < columns.size(); ++i) {
       samples[i].resize(std::max(samples[i].size(), step + 1), kUndefined);
       double& value = samples[i][step];
-      if (columns[i] == QAlphaColumn()) {
-        value = history.at(row, qbar_pa) * history.at(row, incidence_deg) / kDegPerRad;
-        continue;
-      }
-      value = history.at(row, columns[i]);
+      value = band_row.At(history, row, columns[i]);
       if (columns[i] == longitude_deg && std::isfinite(value))
         value = last_longitude_deg = NearTo(last_longitude_deg, value, kCutAt180Deg);
     }
@@ -58,7 +84,7 @@ FlightBands ComputeBands(const std::vector<SampledFlight>& flights, const std::v
                       [&](const SampledFlight& flight) { return flight[0].size() > step; })));
   }
   for (std::size_t i = 0; i < columns.size(); ++i) {
-    Band band{.column = BandColumnName(columns[i])};
+    Band band{.column = BandColumnNames()[static_cast<std::size_t>(columns[i])]};
     for (std::size_t step = 0; step < steps; ++step) {
       std::vector<double> values;
       for (const SampledFlight& flight : flights) {

@@ -3,6 +3,7 @@
 
 #include <cstddef>
 #include <string>
+#include <string_view>
 #include <vector>
 
 #include "core/flight/history.h"
@@ -12,7 +13,7 @@ namespace dispersa {
 /// Order statistics of one history column at each time, over the flights that still fly. In the unit of the
 /// column. NaN if no flight defines a value.
 struct Band {
-  std::string column;  ///< BandColumnName()
+  std::string column;  ///< of BandColumnNames()
   std::vector<double> min = {}, p00_27 = {}, p01 = {}, p50 = {}, p99 = {}, p99_73 = {}, max = {};
 };
 
@@ -27,10 +28,12 @@ inline constexpr BandStatistic kBandStatistics[] = {
     {"p50", &Band::p50, 0.5}, {"p99", &Band::p99, 0.99},         {"p99_73", &Band::p99_73, 0.9973},
     {"max", &Band::max, 1.0}};
 
-/// Position, behind the columns of a history, of the product of dynamic pressure and incidence, Pa rad.
-int QAlphaColumn();
-/// Name in HistoryColumns(), or "q_alpha_pa_rad".
-const std::string& BandColumnName(int column);
+/// The columns of a history, and behind them those that are made of several: "q_alpha_pa_rad", dynamic
+/// pressure times incidence, and the attitude errors of powered flight, as "pitch_error_powered_deg", which
+/// are undefined without thrust.
+const std::vector<std::string>& BandColumnNames();
+/// Position in BandColumnNames(); -1: none.
+int FindBandColumn(std::string_view name);
 
 struct FlightBands {
   double step_s = 0.0;

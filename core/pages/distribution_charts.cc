@@ -7,6 +7,9 @@
 #include <optional>
 #include <vector>
 
+#include "core/environment/earth.h"
+#include "core/flight/orbit.h"
+#include "core/math/functions.h"
 #include "core/pages/html_parts.h"
 #include "core/pages/svg_chart.h"
 #include "core/results/metric_catalogue.h"
@@ -103,14 +106,29 @@ void AddLimits(const std::string& metric, bool horizontal, const CampaignSummary
   }
 }
 
+struct Aim {
+  double x = 0.0, y = 0.0;
+  const char* legend = "target";
+};
+
+/// Apsides of the reference's orbit, if it has one.
+std::optional<Aim> ReferenceApsides(const Orbit& orbit) {
+  if (!(orbit.radius_m > 0.0)) return std::nullopt;
+  const SinCos path = SineCosine(orbit.flight_path_angle_rad);
+  const OrbitElements elements =
+      ElementsOf(Wgs84(), {orbit.radius_m, 0.0, 0.0}, Vector3(path.sin, path.cos, 0.0) * orbit.velocity_m_s);
+  return Aim{elements.perigee_altitude_m * 1e-3, elements.apogee_altitude_m * 1e-3, "reference"};
+}
+
 /// The completed cases with the ellipses of their covariance. Empty if no case has both values.
-std::string ScatterFigure(const std::string& x, const std::string& y, const std::string& what, bool of_errors,
-                          const CampaignSummary& summary, const CaseColumns& cases) {
+std::string ScatterFigure(const std::string& x, const std::string& y, const std::string& what,
+                          const std::optional<Aim>& aim, const CampaignSummary& summary,
+                          const CaseColumns& cases) {
   const PointScatter scatter = PairsOf(CompletedValues(cases, x), CompletedValues(cases, y));
   if (scatter.n == 0) return "";
   SvgChart chart({.label = AxisLabel(x)}, {.label = AxisLabel(y)}, 520, 300);
   AddCases(x, y, summary, cases, &chart);
-  if (of_errors) chart.Points({0.0}, {0.0}, "dot-target", "target");
+  if (aim && std::isfinite(aim->y)) chart.Points({aim->x}, {aim->y}, "dot-target", aim->legend);
   AddLimits(x, false, summary, &chart);
   AddLimits(y, true, summary, &chart);
   std::string caption = what;
@@ -140,20 +158,20 @@ std::string ScatterFigure(const std::string& x, const std::string& y, const std:
 std::string ImpactFigures(const CampaignSummary& summary, const CaseColumns& cases) {
   return ScatterFigure("impact_crossrange_km", "impact_downrange_km",
                        "Impact of each completed case, from the launch site along and across its azimuth.",
-                       false, summary, cases) +
+                       {}, summary, cases) +
          ScatterFigure("impact_downrange_km", "apogee_altitude_km",
-                       "Apogee and range of each completed case.", false, summary, cases);
+                       "Apogee and range of each completed case.", {}, summary, cases);
 }
 
 std::string InjectionFigures(const CampaignSummary& summary, const CaseColumns& cases) {
   return ScatterFigure("injection_velocity_error_m_s", "injection_altitude_error_km",
-                       "Injection of each completed case against the target.", true, summary, cases) +
+                       "Injection of each completed case against the target.", Aim{}, summary, cases) +
          ScatterFigure(
              "perigee_km", "apogee_km",
              "The orbits that follow from it. Near a circle they crowd on its line, far from a normal law.",
-             false, summary, cases) +
+             ReferenceApsides(summary.reference_orbit), summary, cases) +
          ScatterFigure("semi_major_axis_error_km", "inclination_error_deg",
-                       "Size and plane of the orbit of each completed case against the target.", true,
+                       "Size and plane of the orbit of each completed case against the target.", Aim{},
                        summary, cases);
 }
 

@@ -65,12 +65,11 @@ struct Burns {
     while (i < burns.size() && burns[i].from_s - burns[i - 1].to_s <= burns[i - 1].to_s) ++i;
     return std::min(i, burns.size());
   }
-  /// Undefined in coasts that AddTo() shades.
-  std::vector<double> Powered(std::vector<double> values, const std::vector<double>& time_s) const {
-    for (std::size_t i = 1; i < burns.size(); ++i)
-      for (std::size_t k = 0; k < values.size() && burns[i].from_s - burns[i - 1].to_s > 10.0; ++k)
-        if (time_s[k] > burns[i - 1].to_s && time_s[k] < burns[i].from_s) values[k] = std::nan("");
-    return values;
+  /// None: the whole flight has room on one axis.
+  std::optional<double> AscentEnd() const {
+    const std::size_t ascending = Ascending();
+    if (ascending == burns.size()) return std::nullopt;
+    return 10.0 * std::ceil(0.1 * burns[ascending - 1].to_s);
   }
 };
 
@@ -112,7 +111,7 @@ void AddBands(const FlightBands& bands, const Band& band,
 
 /// The nominal flight at the steps of the bands. Undefined after the end of the nominal flight.
 std::vector<double> AtSteps(const History& nominal, const char* column, const FlightBands& bands) {
-  std::vector<double> values = SampleFlight(nominal, {FindHistoryColumn(column)}, bands.step_s)[0];
+  std::vector<double> values = SampleFlight(nominal, {FindBandColumn(column)}, bands.step_s)[0];
   values.resize(bands.time_s.size(), std::nan(""));
   return values;
 }
@@ -139,26 +138,18 @@ std::string BandFigure(const BandView& view, const FlightHistories& histories, c
                  view.width, 280);
   const Burns burns(histories.nominal_history);
   burns.AddTo(&chart);
-  const std::vector<double> nominal =
-      view.deviation ? AtSteps(histories.nominal_history, view.column, bands) : std::vector<double>();
+  const std::vector<double> nominal = AtSteps(histories.nominal_history, view.column, bands);
   const auto shown = [&](std::vector<double> values) {
-    for (std::size_t i = 0; i < nominal.size(); ++i) values[i] -= nominal[i];
+    for (std::size_t i = 0; i < nominal.size() && view.deviation; ++i) values[i] -= nominal[i];
     if (view.in_air) values = InAir(std::move(values), qbar_pa);
-    if (view.powered) values = burns.Powered(std::move(values), bands.time_s);
     return Scaled(std::move(values), view.factor);
   };
   AddBands(bands, band, shown, &chart);
   chart.Line(bands.time_s, shown(band.p50), "line-0", "median");
-  if (view.nominal && !view.deviation) {
-    std::vector<double> flown = Column(histories.nominal_history, view.column, view.factor);
-    const std::vector<double> time_s = Column(histories.nominal_history, "time_s");
-    if (view.in_air) flown = InAir(std::move(flown), Column(histories.nominal_history, "qbar_pa"));
-    if (view.powered) flown = burns.Powered(std::move(flown), time_s);
-    chart.Line(time_s, flown, "line-1", "nominal");
-  }
+  if (!view.deviation) chart.Line(bands.time_s, shown(nominal), "line-1", "nominal");
   if (view.program)
-    chart.Line(Column(histories.nominal_history, "time_s"),
-               Column(histories.nominal_history, "pitch_program_deg"), "program", "program");
+    chart.Line(bands.time_s, AtSteps(histories.nominal_history, "pitch_program_deg", bands), "program",
+               "program");
   for (const RequirementSummary& requirement : summary.requirements) {
     if (view.peak == nullptr || requirement.metric != view.peak) continue;
     chart.HorizontalLimit(requirement.limit, "limit of the peak");
@@ -232,28 +223,27 @@ std::string EnvelopeFigures(const FlightHistories& histories, const CampaignSumm
   const double air_end_s = AtmosphereEnd(time_s, Column(histories.nominal_history, "qbar_pa"));
   const double pitch_over_end_s = 5.0 * std::ceil(0.2 * (kick_end_s + 5.0));
   const std::size_t ascending = burns.Ascending();
-  std::optional<double> ascent_end_s;  // none: the whole flight has room
-  if (ascending > 0 && ascending < burns.burns.size())
-    ascent_end_s = 10.0 * std::ceil(0.1 * burns.burns[ascending - 1].to_s);
   std::string figures = "<div class=\"figures\">\n";
   const auto add = [&](const BandView& view, const std::string& caption) {
     figures += BandFigure(view, histories, summary, caption);
   };
   // The burns of the ascent on one axis.
-  const auto powered = [&](BandView view, const std::string& caption) {
+  const auto ascent = [&](BandView view, const std::string& caption) {
     view.from_s = 0.0;
-    view.to_s = ascent_end_s;
-    view.powered = true;
+    view.to_s = burns.AscentEnd();
     add(view, caption);
   };
-  powered(
-      {.column = "pitch_error_deg",
-       .label = "pitch error, °",
-       .peak = "pitch_error_peak_deg",
-       .width = 1060,
-       .style = "wide"},
-      "Pitch error in powered flight, which the requirement binds. The band shall stay inside the limits.");
-  add({.column = "pitch_error_deg",
+  const bool is_bound =
+      std::any_of(summary.requirements.begin(), summary.requirements.end(),
+                  [](const RequirementSummary& one) { return one.metric == "pitch_error_peak_deg"; });
+  ascent({.column = "pitch_error_powered_deg",
+          .label = "pitch error, °",
+          .peak = "pitch_error_peak_deg",
+          .width = 1060,
+          .style = "wide"},
+         is_bound ? "Pitch error in powered flight. The band shall stay inside the limits."
+                  : "Pitch error in powered flight.");
+  add({.column = "pitch_error_powered_deg",
        .label = "pitch error, °",
        .from_s = 0.0,
        .to_s = pitch_over_end_s,
@@ -262,26 +252,24 @@ std::string EnvelopeFigures(const FlightHistories& histories, const CampaignSumm
   for (std::size_t i = std::max<std::size_t>(1, std::min(ascending, burns.burns.size() - 1));
        i < burns.burns.size(); ++i) {
     const Burns::Burn& burn = burns.burns[i];
-    add({.column = "pitch_error_deg",
+    add({.column = "pitch_error_powered_deg",
          .label = "pitch error, °",
          .from_s = 10.0 * std::floor(0.1 * (burn.from_s - 5.0)),
          .to_s = 10.0 * std::ceil(0.1 * burn.to_s),
          .style = "screen"},
         fmt::format("Pitch error while stage {} burns.", burn.stage));
   }
-  powered(
-      {.column = "yaw_error_deg", .label = "yaw error, °", .nominal = false, .peak = "yaw_error_peak_deg"},
-      "Yaw error in powered flight.");
-  powered({.column = "roll_error_deg",
-           .label = "roll error, °",
-           .nominal = false,
-           .peak = "roll_error_peak_deg",
-           .style = "screen"},
-          "Roll error in powered flight.");
-  powered({.column = "deflection_pitch_deg", .label = "pitch deflection, °"},
-          "Gimbal deflection in pitch. Its distance to the stop is what is left to steer with.");
-  powered({.column = "deflection_yaw_deg", .label = "yaw deflection, °", .nominal = false, .style = "screen"},
-          "Gimbal deflection in yaw.");
+  ascent({.column = "yaw_error_powered_deg", .label = "yaw error, °", .peak = "yaw_error_peak_deg"},
+         "Yaw error in powered flight.");
+  ascent({.column = "roll_error_powered_deg",
+          .label = "roll error, °",
+          .peak = "roll_error_peak_deg",
+          .style = "screen"},
+         "Roll error in powered flight.");
+  ascent({.column = "deflection_pitch_deg", .label = "pitch deflection, °"},
+         "Gimbal deflection in pitch. Its distance to the stop is what is left to steer with.");
+  ascent({.column = "deflection_yaw_deg", .label = "yaw deflection, °", .style = "screen"},
+         "Gimbal deflection in yaw.");
   add({.column = "qbar_pa",
        .label = "dynamic pressure, kPa",
        .factor = 1e-3,
@@ -294,22 +282,17 @@ std::string EnvelopeFigures(const FlightHistories& histories, const CampaignSumm
        .to_s = air_end_s,
        .in_air = true},
       "Angle of attack against the air, wind included, where the median dynamic pressure is at least 1 kPa.");
-  add({.column = "q_alpha_pa_rad",
-       .label = "q·α, kPa rad",
-       .factor = 1e-3,
-       .from_s = 0.0,
-       .to_s = air_end_s,
-       .nominal = false},
+  add({.column = "q_alpha_pa_rad", .label = "q·α, kPa rad", .factor = 1e-3, .from_s = 0.0, .to_s = air_end_s},
       "Dynamic pressure times total incidence of each flight, wind included: what bends the vehicle.");
-  powered({.column = "axial_load_g", .label = "axial load, g"},
-          "Axial load: thrust and drag over mass. It is largest before a burnout.");
-  powered({.column = "mass_kg", .label = "mass, t", .factor = 1e-3, .style = "screen"},
-          "Mass of the vehicle. Where the band is wide, burnouts and separations differ in time.");
+  ascent({.column = "axial_load_g", .label = "axial load, g"},
+         "Axial load: thrust and drag over mass. It is largest before a burnout.");
+  ascent({.column = "mass_kg", .label = "mass, t", .factor = 1e-3, .style = "screen"},
+         "Mass of the vehicle. Where the band is wide, burnouts and separations differ in time.");
   for (const auto& [column, label] :
        {std::pair{"p_deg_s", "roll rate, °/s"}, std::pair{"q_deg_s", "pitch rate, °/s"},
         std::pair{"r_deg_s", "yaw rate, °/s"}})
-    powered({.column = column, .label = label, .style = "screen"},
-            "Inertial rate about the body’s axis: what the gyros measure.");
+    ascent({.column = column, .label = label, .style = "screen"},
+           "Inertial rate about the body’s axis: what the gyros measure.");
   add({.column = "altitude_m",
        .label = "altitude minus that of the nominal, km",
        .factor = 1e-3,
@@ -338,9 +321,9 @@ struct WorstView {
 
 const std::vector<WorstView>& WorstViews() {
   static const std::vector<WorstView> views = {
-      {"pitch_error", {{"pitch_error_deg", "pitch error, °"}}},
-      {"yaw_error", {{"yaw_error_deg", "yaw error, °"}}},
-      {"roll_error", {{"roll_error_deg", "roll error, °"}}},
+      {"pitch_error", {{"pitch_error_powered_deg", "pitch error, °"}}},
+      {"yaw_error", {{"yaw_error_powered_deg", "yaw error, °"}}},
+      {"roll_error", {{"roll_error_powered_deg", "roll error, °"}}},
       {"deflection",
        {{"deflection_pitch_deg", "pitch deflection, °"},
         {"deflection_yaw_deg", "yaw deflection, °"},
@@ -363,9 +346,12 @@ class WrittenFlight {
   std::vector<double> Values(const char* column, bool in_air) const {
     return in_air ? InAir(At(column), At("qbar_pa")) : At(column);
   }
-  /// The column of a view that has the peak.
-  std::size_t PeakColumn(const WorstView& view) const {
-    std::size_t best = 0;
+  struct Peak {
+    std::size_t column = 0;  ///< of the view
+    double time_s = 0.0;
+  };
+  Peak PeakOf(const WorstView& view) const {
+    Peak peak;
     double most = -1.0;
     for (std::size_t i = 0; i < view.columns.size(); ++i) {
       const std::vector<double> values = Values(view.columns[i].name, view.in_air);
@@ -375,10 +361,10 @@ class WrittenFlight {
         const double size = std::fabs(values[k]) * (is_product ? qbar_pa[k] : 1.0);
         if (!(size > most)) continue;
         most = size;
-        best = i;
+        peak = {i, bands_.time_s[k]};
       }
     }
-    return best;
+    return peak;
   }
 
  private:
@@ -416,7 +402,7 @@ std::string WorstQuantity(const std::string& metric, std::uint64_t case_index,
     return "";
   for (const WorstView& view : WorstViews()) {
     if (!metric.starts_with(view.metrics)) continue;
-    const std::string label = view.columns[WrittenFlight(histories, case_index).PeakColumn(view)].label;
+    const std::string label = view.columns[WrittenFlight(histories, case_index).PeakOf(view).column].label;
     return label.substr(0, label.find(','));
   }
   return "";
@@ -433,11 +419,21 @@ std::string WorstFigures(const FlightHistories& histories, const CampaignSummary
     for (std::size_t i = 0; i < view.columns.size(); ++i) {
       const auto& [name, label] = view.columns[i];
       std::vector<std::uint64_t> shown;
-      for (const std::uint64_t one : worst)
-        if (WrittenFlight(histories, one).PeakColumn(view) == i) shown.push_back(one);
+      double last_peak_s = 0.0;
+      for (const std::uint64_t one : worst) {
+        const WrittenFlight::Peak peak = WrittenFlight(histories, one).PeakOf(view);
+        if (peak.column != i) continue;
+        shown.push_back(one);
+        last_peak_s = std::max(last_peak_s, peak.time_s);
+      }
       if (shown.empty()) continue;
-      ChartAxis time{.label = kTimeAxis};
-      if (view.in_air) time.low = 0.0, time.high = air_end_s;
+      ChartAxis time{.label = kTimeAxis, .low = 0.0};
+      const std::optional<double> ascent_end_s = burns.AscentEnd();
+      if (view.in_air) {
+        time.high = air_end_s;
+      } else if (ascent_end_s && last_peak_s <= *ascent_end_s) {
+        time.high = ascent_end_s;
+      }
       SvgChart chart(time, {.label = label}, 1060, 280);
       burns.AddTo(&chart);
       const Band& band = BandOf(bands, name);

@@ -15,16 +15,14 @@ std::string NominalFigures(const History& nominal);
 
 /// The bands of one quantity as a figure.
 struct BandView {
-  const char* column;  ///< of the history
+  const char* column;  ///< of BandColumnNames()
   const char* label;
   double factor = 1.0;  ///< from the unit of the column to the unit of the label
   bool deviation =
       false;  ///< difference from the nominal flight, beside which the spread would be too small to see
   std::optional<double> from_s = {}, to_s = {};
-  bool nominal = true;
   bool program = false;        ///< with the pitch program
   bool in_air = false;         ///< only where the air is dense enough for incidence to have an effect
-  bool powered = false;        ///< without the coasts of the nominal flight
   const char* peak = nullptr;  ///< the metric of its largest magnitude, whose limits are drawn
   int width = 520;
   std::string style = "";  ///< of the figure

@@ -39,8 +39,11 @@ std::string AscentFigure(const Campaign& campaign, const FlightHistories& histor
     along_km.push_back(1e-3 * TrackOf(from, campaign.reference.program.launch_azimuth_rad, place).along_m);
     altitude_km.push_back(1e-3 * nominal.at(row, altitude));
   }
-  const double least_km = *std::min_element(along_km.begin(), along_km.end());
-  SvgChart chart({.label = "downrange, km", .low = std::min(0.0, least_km)}, {.label = "altitude, km"}, 640,
+  const auto [least_km, most_km] = std::minmax_element(along_km.begin(), along_km.end());
+  // A step back from the pad, as by wind, would take a part of the axis.
+  if (*least_km > -0.02 * *most_km)
+    for (double& along : along_km) along = std::max(along, 0.0);
+  SvgChart chart({.label = "downrange, km", .low = std::min(0.0, *least_km)}, {.label = "altitude, km"}, 640,
                  250);
   std::vector<double> x, y;
   std::string listed;
@@ -63,7 +66,8 @@ struct Nearest {
   const RequirementSummary* of = nullptr;
   std::string verdict;    ///< that stands
   double distance = 0.0;  ///< from the bound to the limit; without a bound from the worst flight
-  double share = 0.0;     ///< of the limit
+  double scale = 0.0;     ///< the limit, or half of a range
+  double share = 0.0;     ///< of the scale
 };
 
 /// The failed first, then those that are not shown to be met, then by the share of the limit that is left.
@@ -90,9 +94,13 @@ Nearest LeastMargin(const CampaignSummary& summary) {
     const double share = scale > 0.0 ? distance / scale : distance;
     if (least.of != nullptr && std::pair(rank(least.verdict), least.share) <= std::pair(rank(verdict), share))
       continue;
-    least = {&one, verdict, distance, share};
+    least = {&one, verdict, distance, scale, share};
   }
   return least;
+}
+
+std::string WholePercent(double share) {
+  return share < 0.01 ? "less than 1 %" : fmt::format("{:.0f} %", 100.0 * share);
 }
 
 std::string DriverWords(const CampaignSummary& summary, const std::string& metric) {
@@ -102,27 +110,35 @@ std::string DriverWords(const CampaignSummary& summary, const std::string& metri
     std::string words;
     for (std::size_t i = 0; i < std::min(kMost, of.drivers.size()); ++i)
       words += fmt::format("{}{} ({})", i == 0 ? "" : ", ", Code(of.drivers[i].input),
-                           HtmlText(PercentText(std::round(100.0 * of.drivers[i].index) / 100.0)));
+                           WholePercent(of.drivers[i].index));
     return "Its scatter comes from " + words + ". A share is of the variance.";
   }
-  return "No input explains its scatter by itself.";
+  return "No input is shown to drive its scatter.";
 }
 
 std::string LeastMarginText(const CampaignSummary& summary) {
   const Nearest least = LeastMargin(summary);
-  if (least.of == nullptr) return "";
+  if (least.of == nullptr)
+    return summary.requirements.empty()
+               ? ""
+               : "<h3>Least margin</h3>\n<p>No completed flight has a value of a requirement’s metric.</p>\n";
   const RequirementSummary& one = *least.of;
   const MetricInfo info = DescribeMetric(one.metric);
   const std::string from = one.margin ? "The bound" : "The worst completed flight";
-  const std::string where = least.distance < 0.0 ? "beyond it" : "away from it";
+  // As the table rounds a margin.
+  std::string distance = RoundedText(least.distance, Rounding::kDown, 0.0);
+  const bool is_beyond = distance.starts_with('-');
+  distance.erase(0, is_beyond ? 1 : 0);
+  const std::string share = least.scale > 0.0
+                                ? fmt::format(": {} of {}", WholePercent(std::fabs(least.share)),
+                                              one.low_limit ? "half the range" : "the limit")
+                                : "";
   return fmt::format(
-      "<h3>Least margin</h3>\n<p>{} <a href=\"#{}\">{}</a> {}. {} is {} {}: {} of {}. {} <a "
+      "<h3>Least margin</h3>\n<p>{} <a href=\"#{}\">{}</a> {}. {} is {}{}{} {}{}. {} <a "
       "href=\"#causes\">Causes</a></p>\n",
       VerdictBadge(least.verdict), DistributionId(one.metric), HtmlText(info.title),
-      HtmlText(LimitWords(one, info.unit)), from,
-      HtmlText(WithUnit(std::stod(RoundedText(std::fabs(least.distance))), info.unit)), where,
-      HtmlText(PercentText(std::round(100.0 * std::fabs(least.share)) / 100.0)),
-      one.low_limit ? "half the range" : "the limit", DriverWords(summary, one.metric));
+      HtmlText(LimitWords(one, info.unit)), from, distance, info.unit.empty() ? "" : " ", HtmlText(info.unit),
+      is_beyond ? "beyond it" : "away from it", share, DriverWords(summary, one.metric));
 }
 
 }  // namespace

@@ -4,6 +4,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <optional>
 
 #include "core/math/constants.h"
 #include "core/pages/html_parts.h"
@@ -69,7 +70,9 @@ class Map {
     svg += Graticule() + Coast() + Envelope();
     svg += Path("line-1", track_);
     for (const Footprint& footprint : footprints_) svg += Fallen(footprint);
-    svg += Site() + Labels() + Scale();
+    if (const auto px = Site())
+      svg += fmt::format("<path class=\"dot-nominal\" d=\"M{:.1f} {:.1f}h0\"/>", (*px)[0], (*px)[1]);
+    svg += Labels() + Scale();
     return svg + fmt::format("<rect class=\"frame\" width=\"{:.0f}\" height=\"{:.0f}\"/></svg>",
                              window_.width_px(), window_.height_px());
   }
@@ -128,16 +131,15 @@ class Map {
     }
     return svg;
   }
-  std::string Site() const {
-    if (track_.empty()) return "";
-    const MapPoint px = window_.Pixel(*plane_.At(track_.front()));
-    return fmt::format("<path class=\"dot-nominal\" d=\"M{:.1f} {:.1f}h0\"/>", px[0], px[1]);
+  std::optional<MapPoint> Site() const {
+    const auto at = track_.empty() ? std::nullopt : plane_.At(track_.front());
+    return at ? std::optional(window_.Pixel(*at)) : std::nullopt;
   }
   /// The names of the places, each beside its place where no other stands.
   std::string Labels() const {
     constexpr double kLetter_px = 6.8, kRow_px = 14.0;
     std::vector<std::pair<MapPoint, std::string>> places;
-    if (!track_.empty()) places.emplace_back(window_.Pixel(*plane_.At(track_.front())), "launch");
+    if (const auto px = Site()) places.emplace_back(*px, "launch");
     for (const Footprint& footprint : footprints_)
       if (const auto mean = plane_.At(PlaceOf(footprint.mean)); mean && !footprint.points.empty())
         places.emplace_back(window_.Pixel(*mean), FootprintTitle(footprint));
@@ -234,9 +236,7 @@ class Map {
 
 std::string FootprintTable(const std::vector<Footprint>& footprints) {
   HtmlTable table("!What falls|#Down|#Aloft|#Mean latitude|#longitude|#99 % ellipse, km|#holds");
-  bool any = false;
   for (const Footprint& one : footprints) {
-    any = true;
     const bool has_ellipse = !one.ellipses.empty();
     const bool is_down = !one.points.empty();
     table.Row({FootprintTitle(one), std::to_string(one.points.size()), std::to_string(one.aloft),
@@ -247,7 +247,7 @@ std::string FootprintTable(const std::vector<Footprint>& footprints) {
                            : "–",
                has_ellipse ? ShareText(one.containment.back().empirical) : "–"});
   }
-  return any ? table.Html("narrow") : "";
+  return footprints.empty() ? "" : table.Html("narrow");
 }
 
 }  // namespace
@@ -260,9 +260,11 @@ std::string MapFigure(const Campaign& campaign, const FlightHistories& histories
   if (has_envelope)
     caption +=
         ", and the area under the flights of the envelope: at each time from the least to the largest "
-        "latitude "
-        "and longitude, so it is wider than the flights";
+        "latitude and "
+        "longitude, so it is wider than the flights";
   caption += ".";
+  if (campaign.course.ends != FlightEnd::kInjection)
+    caption += " Both end where the flight goes on as a point mass.";
   if (!footprints.empty())
     caption +=
         " A dot is where a part of a flight comes down; ellipses hold 50, 95 and 99 % of a normal law.";

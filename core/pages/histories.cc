@@ -55,16 +55,19 @@ const char* const kBandColumns[] = {"altitude_m",
                                     "q_deg_s",
                                     "r_deg_s",
                                     "latitude_deg",
-                                    "longitude_deg"};
+                                    "longitude_deg",
+                                    "q_alpha_pa_rad",
+                                    "pitch_error_powered_deg",
+                                    "yaw_error_powered_deg",
+                                    "roll_error_powered_deg"};
 
 std::vector<int> BandColumns() {
   std::vector<int> columns;
   for (const char* name : kBandColumns) {
-    const int column = FindHistoryColumn(name);
+    const int column = FindBandColumn(name);
     DISPERSA_ASSERT(column >= 0, column);
     columns.push_back(column);
   }
-  columns.push_back(QAlphaColumn());
   return columns;
 }
 
@@ -107,7 +110,7 @@ HistoryFlights ChooseFlights(const CampaignSummary& summary, const CaseColumns& 
 /// What the rows and columns of the files are.
 std::string LayoutOfFiles(const std::vector<int>& band_columns) {
   std::string layout = fmt::format("gzip impacts {} {} {}", kHistoryDigits, kHistoryStep_s, kBandStep_s);
-  for (const int column : band_columns) layout += " " + BandColumnName(column);
+  for (const int column : band_columns) layout += " " + BandColumnNames()[static_cast<std::size_t>(column)];
   for (const BandStatistic& one : kBandStatistics) layout += fmt::format(" {}", one.name);
   return layout;
 }

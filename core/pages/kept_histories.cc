@@ -106,7 +106,8 @@ FlightBands BandsIn(std::string_view csv, const std::vector<int>& columns, doubl
   bands.flights = flights.sampled;
   bands.extreme_flights = flights.indices.size() - flights.sampled;
   bands.step_s = step_s;
-  for (const int column : columns) bands.bands.push_back({.column = BandColumnName(column)});
+  for (const int column : columns)
+    bands.bands.push_back({.column = BandColumnNames()[static_cast<std::size_t>(column)]});
   const NumberCsv table = TableOf(csv);
   for (const std::vector<double>& row : table.rows) {
     bands.time_s.push_back(row[0]);

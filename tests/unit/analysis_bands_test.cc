@@ -1,5 +1,8 @@
 #include "core/analysis/flight_bands.h"
 
+#include <fmt/format.h>
+
+#include <cmath>
 #include <numbers>
 
 #include "core/analysis/band_counter.h"
@@ -48,12 +51,35 @@ TEST(SampleFlight, MakesQAlphaAndLetsLongitudesRunOn) {
       set(row, "qbar_pa", 1000.0);
       set(row, "incidence_deg", 18.0 * static_cast<double>(row));
     }
-    const SampledFlight samples =
-        SampleFlight(history, {FindHistoryColumn("longitude_deg"), QAlphaColumn()}, kStep_s);
+    const SampledFlight samples = SampleFlight(
+        history, {FindHistoryColumn("longitude_deg"), FindBandColumn("q_alpha_pa_rad")}, kStep_s);
     EXPECT_THAT(samples[0], ElementsAre(sign * 179.0, sign * 180.0, sign * 181.0));
     EXPECT_DOUBLE_EQ(samples[1][2], 1000.0 * std::numbers::pi / 5.0);
-    EXPECT_EQ(BandColumnName(QAlphaColumn()), "q_alpha_pa_rad");
   }
+}
+
+// Each axis by its own error, and by the thrust of its own flight: another coasts at another time.
+TEST(SampleFlight, LeavesAttitudeErrorsWithoutThrustOut) {
+  History history = MakeHistory({{0.0, 0.0}, {0.2, 0.0}, {0.4, 0.0}});
+  const char* const axes[] = {"pitch", "yaw", "roll"};
+  std::vector<int> columns;
+  for (std::size_t row = 0; row < 3; ++row) {
+    const auto set = [&](const std::string& name, double value) {
+      history.values[row * HistoryColumns().size() + static_cast<std::size_t>(FindHistoryColumn(name))] =
+          value;
+    };
+    set("thrust_n", row == 1 ? 0.0 : 10.0);
+    for (int axis = 0; axis < 3; ++axis) set(fmt::format("{}_error_deg", axes[axis]), axis + 1.0);
+  }
+  for (const char* axis : axes) columns.push_back(FindBandColumn(fmt::format("{}_error_powered_deg", axis)));
+  const SampledFlight samples = SampleFlight(history, columns, kStep_s);
+  for (std::size_t axis = 0; axis < 3; ++axis) {
+    EXPECT_EQ(samples[axis][0], static_cast<double>(axis) + 1.0);
+    EXPECT_TRUE(std::isnan(samples[axis][1]));
+    EXPECT_EQ(samples[axis][2], static_cast<double>(axis) + 1.0);
+  }
+  EXPECT_EQ(FindBandColumn("pitch_error_deg"), FindHistoryColumn("pitch_error_deg"));
+  EXPECT_EQ(FindBandColumn("none"), -1);
 }
 
 TEST(ComputeBands, AreOrderStatisticsOfThoseStillFlying) {

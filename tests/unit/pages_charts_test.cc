@@ -1,6 +1,7 @@
 // The charts of a report: what they draw, and over which range.
 #include <fmt/format.h>
 
+#include "core/environment/earth.h"
 #include "core/pages/distribution_charts.h"
 #include "core/pages/flight_charts.h"
 #include "core/pages/vehicle_drawing.h"
@@ -118,7 +119,12 @@ TEST(ScatterFigures, ShowTargetAndLimits) {
   EXPECT_EQ(CountOf(html, "<svg class=\"chart\""), 1u);
   EXPECT_EQ(CountOf(html, "class=\"ellipse\" data-s"), 3u);
   EXPECT_EQ(CountOf(html, "class=\"limit\" data-s"), 3u) << "a range has two";
-  EXPECT_THAT(html, Not(HasSubstr(">target</text>"))) << "no error of it is measured";
+  EXPECT_THAT(html, Not(HasSubstr("dot-target"))) << "no error of it is measured";
+  // On a circle of the radius of the equator and 450 km.
+  summary.reference_orbit.radius_m = Wgs84().equatorial_radius_m + 450e3;
+  summary.reference_orbit.velocity_m_s = std::sqrt(Wgs84().mu_m3_s2 / summary.reference_orbit.radius_m);
+  EXPECT_THAT(InjectionFigures(summary, Pairs({{"apogee_km", apogee}, {"perigee_km", perigee}})),
+              HasSubstr(">reference</text>"));
   EXPECT_THAT(InjectionFigures({}, Pairs({{"injection_velocity_error_m_s", {1, 2}},
                                           {"injection_altitude_error_km", {-1, 2}}})),
               HasSubstr(">target</text>"));
@@ -162,7 +168,7 @@ History Flown(double pitch_deflection_deg, double yaw_deflection_deg) {
 FlightHistories HistoriesOf(const std::vector<History>& flights) {
   FlightHistories histories;
   std::vector<int> columns;
-  for (int i = 0; i <= QAlphaColumn(); ++i) columns.push_back(i);
+  for (int i = 0; i < std::ssize(BandColumnNames()); ++i) columns.push_back(i);
   histories.nominal_history = flights[0];
   for (std::size_t i = 0; i < flights.size(); ++i) {
     histories.written_cases.push_back(i);

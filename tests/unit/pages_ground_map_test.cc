@@ -1,6 +1,8 @@
 // Maps: places on the plane, what the window shows, and coast lines.
 #include "core/pages/ground_map.h"
 
+#include "core/campaign_yaml/sha256.h"
+#include "core/pages/embedded.h"
 #include "core/pages/kept_histories.h"
 #include "core/pages/map_plane.h"
 #include "tests/test.h"
@@ -64,6 +66,14 @@ TEST(ConvexHull, LeavesOutWhatIsInside) {
   EXPECT_EQ(hull.size(), 4u);
   for (const MapPoint& inside : {MapPoint{1, 1}, MapPoint{1, 0}})
     EXPECT_EQ(std::count(hull.begin(), hull.end(), inside), 0);
+}
+
+TEST(CoastLines, AreTheLinesThatTheirHeaderNames) {
+  const std::string text(CoastLineData());
+  const std::string title = "# SHA-256 of the lines below: ";
+  const std::size_t at = text.find(title), after = text.find("\n", text.find("# A line: "));
+  ASSERT_NE(at, std::string::npos);
+  EXPECT_EQ(Sha256Hex(std::string_view(text).substr(after + 1)), text.substr(at + title.size(), 64));
 }
 
 // Well-known capes, to the 20 km of this scale; no line crosses the map along the antimeridian.

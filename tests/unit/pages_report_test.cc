@@ -68,7 +68,7 @@ class ReportPageTest : public testing::Test {
     histories_.nominal = *summary_.nominal;
     histories_.nominal_history = MakeHistory();
     std::vector<int> columns;
-    for (int i = 0; i <= QAlphaColumn(); ++i) columns.push_back(i);
+    for (int i = 0; i < std::ssize(BandColumnNames()); ++i) columns.push_back(i);
     std::vector<SampledFlight> flights;
     if (flown > 0) flights.push_back(SampleFlight(histories_.nominal_history, columns, 1.0));
     histories_.bands = ComputeBands(flights, columns, 1.0);
