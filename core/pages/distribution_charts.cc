@@ -111,12 +111,21 @@ struct Aim {
   const char* legend = "target";
 };
 
-/// Apsides of the reference's orbit, if it has one.
-std::optional<Aim> ReferenceApsides(const Orbit& orbit) {
-  if (!(orbit.radius_m > 0.0)) return std::nullopt;
+/// Apsides of the reference's orbit. Its file states speed, angle and geodetic altitude; the radius follows
+/// from the nominal flight, whose semi-major axis and its error are measured.
+std::optional<Aim> ReferenceApsides(const CampaignSummary& summary) {
+  if (!summary.nominal || summary.nominal->outcome != Outcome::kCompleted) return std::nullopt;
+  const auto nominal_m = [&](const char* metric) {
+    return 1e3 * summary.nominal->metrics[summary.metric_list.PositionOf(metric)];
+  };
+  const Earth earth = Wgs84();
+  const Orbit& orbit = summary.reference_orbit;
+  const double axis_m = earth.equatorial_radius_m + 0.5 * (nominal_m("apogee_km") + nominal_m("perigee_km")) -
+                        nominal_m("semi_major_axis_error_km");
+  const double radius_m = 2.0 / (Square(orbit.velocity_m_s) / earth.mu_m3_s2 + 1.0 / axis_m);
   const SinCos path = SineCosine(orbit.flight_path_angle_rad);
   const OrbitElements elements =
-      ElementsOf(Wgs84(), {orbit.radius_m, 0.0, 0.0}, Vector3(path.sin, path.cos, 0.0) * orbit.velocity_m_s);
+      ElementsOf(earth, {radius_m, 0.0, 0.0}, Vector3(path.sin, path.cos, 0.0) * orbit.velocity_m_s);
   return Aim{elements.perigee_altitude_m * 1e-3, elements.apogee_altitude_m * 1e-3, "reference"};
 }
 
@@ -128,7 +137,8 @@ std::string ScatterFigure(const std::string& x, const std::string& y, const std:
   if (scatter.n == 0) return "";
   SvgChart chart({.label = AxisLabel(x)}, {.label = AxisLabel(y)}, 520, 300);
   AddCases(x, y, summary, cases, &chart);
-  if (aim && std::isfinite(aim->y)) chart.Points({aim->x}, {aim->y}, "dot-target", aim->legend);
+  if (aim && std::isfinite(aim->x) && std::isfinite(aim->y))
+    chart.Points({aim->x}, {aim->y}, "dot-target", aim->legend);
   AddLimits(x, false, summary, &chart);
   AddLimits(y, true, summary, &chart);
   std::string caption = what;
@@ -169,7 +179,7 @@ std::string InjectionFigures(const CampaignSummary& summary, const CaseColumns& 
          ScatterFigure(
              "perigee_km", "apogee_km",
              "The orbits that follow from it. Near a circle they crowd on its line, far from a normal law.",
-             ReferenceApsides(summary.reference_orbit), summary, cases) +
+             ReferenceApsides(summary), summary, cases) +
          ScatterFigure("semi_major_axis_error_km", "inclination_error_deg",
                        "Size and plane of the orbit of each completed case against the target.", Aim{},
                        summary, cases);

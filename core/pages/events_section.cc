@@ -17,8 +17,11 @@ struct Shown {
   double least = 0.0;  ///< what is smaller is shown as 0
 };
 // As kEventValueNames.
-constexpr Shown kShown[] = {
-    {"Time, s", 1.0}, {"Altitude, km", 1e-3}, {"Speed, m/s", 1.0}, {"q, kPa", 1e-3, 5e-4}, {"Mass, kg", 1.0}};
+constexpr Shown kShown[] = {{"Time, s", 1.0},
+                            {"Altitude, km", 1e-3, 5e-4},
+                            {"Speed, m/s", 1.0, 5e-3},
+                            {"q, kPa", 1e-3, 5e-4},
+                            {"Mass, kg", 1.0}};
 
 std::string Cell(const Summary& over, const SeenEvent* nominal, double SeenEvent::*value, const Shown& as) {
   const auto text = [&](double number) {
@@ -31,6 +34,8 @@ std::string Cell(const Summary& over, const SeenEvent* nominal, double SeenEvent
     cell += "–";
   else if (over.min == over.max || std::fabs(over.max) * as.per_unit < as.least)
     cell += text(over.max);
+  else if (text(over.p01) == text(over.p99))
+    cell += text(over.p50);
   else
     cell += text(over.p01) + " · " + text(over.p50) + " · " + text(over.p99);
   return cell + "</span>";

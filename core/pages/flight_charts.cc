@@ -6,6 +6,7 @@
 #include <cmath>
 #include <functional>
 #include <string_view>
+#include <tuple>
 #include <vector>
 
 #include "core/math/assertion.h"
@@ -222,16 +223,18 @@ std::string EnvelopeFigures(const FlightHistories& histories, const CampaignSumm
   const std::vector<double> time_s = Column(histories.nominal_history, "time_s");
   const double air_end_s = AtmosphereEnd(time_s, Column(histories.nominal_history, "qbar_pa"));
   const double pitch_over_end_s = 5.0 * std::ceil(0.2 * (kick_end_s + 5.0));
-  const std::size_t ascending = burns.Ascending();
   std::string figures = "<div class=\"figures\">\n";
   const auto add = [&](const BandView& view, const std::string& caption) {
     figures += BandFigure(view, histories, summary, caption);
   };
   // The burns of the ascent on one axis.
-  const auto ascent = [&](BandView view, const std::string& caption) {
+  const std::string stages = burns.AscentEnd() ? fmt::format(", until stage {} has burnt out",
+                                                             burns.burns[burns.Ascending() - 1].stage)
+                                               : "";
+  const auto ascent = [&](BandView view, const std::string& what, const std::string& to_see = "") {
     view.from_s = 0.0;
     view.to_s = burns.AscentEnd();
-    add(view, caption);
+    add(view, what + stages + "." + to_see);
   };
   const bool is_bound =
       std::any_of(summary.requirements.begin(), summary.requirements.end(),
@@ -241,35 +244,37 @@ std::string EnvelopeFigures(const FlightHistories& histories, const CampaignSumm
           .peak = "pitch_error_peak_deg",
           .width = 1060,
           .style = "wide"},
-         is_bound ? "Pitch error in powered flight. The band shall stay inside the limits."
-                  : "Pitch error in powered flight.");
+         "Pitch error in powered flight", is_bound ? " The band shall stay inside the limits." : "");
   add({.column = "pitch_error_powered_deg",
        .label = "pitch error, °",
        .from_s = 0.0,
        .to_s = pitch_over_end_s,
        .style = "screen"},
       "Pitch error during lift-off and the initial pitch-over.");
-  for (std::size_t i = std::max<std::size_t>(1, std::min(ascending, burns.burns.size() - 1));
-       i < burns.burns.size(); ++i) {
+  for (std::size_t i = burns.Ascending(); i < burns.burns.size(); ++i) {
     const Burns::Burn& burn = burns.burns[i];
-    add({.column = "pitch_error_powered_deg",
-         .label = "pitch error, °",
-         .from_s = 10.0 * std::floor(0.1 * (burn.from_s - 5.0)),
-         .to_s = 10.0 * std::ceil(0.1 * burn.to_s),
-         .style = "screen"},
-        fmt::format("Pitch error while stage {} burns.", burn.stage));
+    for (const auto& [column, label, title] :
+         {std::tuple{"pitch_error_powered_deg", "pitch error, °", "Pitch"},
+          {"yaw_error_powered_deg", "yaw error, °", "Yaw"},
+          {"roll_error_powered_deg", "roll error, °", "Roll"}})
+      add({.column = column,
+           .label = label,
+           .from_s = 10.0 * std::floor(0.1 * (burn.from_s - 5.0)),
+           .to_s = 10.0 * std::ceil(0.1 * burn.to_s),
+           .style = "screen"},
+          fmt::format("{} error while stage {} burns.", title, burn.stage));
   }
   ascent({.column = "yaw_error_powered_deg", .label = "yaw error, °", .peak = "yaw_error_peak_deg"},
-         "Yaw error in powered flight.");
+         "Yaw error in powered flight");
   ascent({.column = "roll_error_powered_deg",
           .label = "roll error, °",
           .peak = "roll_error_peak_deg",
           .style = "screen"},
-         "Roll error in powered flight.");
-  ascent({.column = "deflection_pitch_deg", .label = "pitch deflection, °"},
-         "Gimbal deflection in pitch. Its distance to the stop is what is left to steer with.");
+         "Roll error in powered flight");
+  ascent({.column = "deflection_pitch_deg", .label = "pitch deflection, °"}, "Gimbal deflection in pitch",
+         " Its distance to the stop is what is left to steer with.");
   ascent({.column = "deflection_yaw_deg", .label = "yaw deflection, °", .style = "screen"},
-         "Gimbal deflection in yaw.");
+         "Gimbal deflection in yaw");
   add({.column = "qbar_pa",
        .label = "dynamic pressure, kPa",
        .factor = 1e-3,
@@ -284,15 +289,15 @@ std::string EnvelopeFigures(const FlightHistories& histories, const CampaignSumm
       "Angle of attack against the air, wind included, where the median dynamic pressure is at least 1 kPa.");
   add({.column = "q_alpha_pa_rad", .label = "q·α, kPa rad", .factor = 1e-3, .from_s = 0.0, .to_s = air_end_s},
       "Dynamic pressure times total incidence of each flight, wind included: what bends the vehicle.");
-  ascent({.column = "axial_load_g", .label = "axial load, g"},
-         "Axial load: thrust and drag over mass. It is largest before a burnout.");
-  ascent({.column = "mass_kg", .label = "mass, t", .factor = 1e-3, .style = "screen"},
-         "Mass of the vehicle. Where the band is wide, burnouts and separations differ in time.");
+  ascent({.column = "axial_load_g", .label = "axial load, g"}, "Axial load, thrust and drag over mass",
+         " It is largest before a burnout.");
+  ascent({.column = "mass_kg", .label = "mass, t", .factor = 1e-3, .style = "screen"}, "Mass of the vehicle",
+         " Where the band is wide, burnouts and separations differ in time.");
   for (const auto& [column, label] :
        {std::pair{"p_deg_s", "roll rate, °/s"}, std::pair{"q_deg_s", "pitch rate, °/s"},
         std::pair{"r_deg_s", "yaw rate, °/s"}})
     ascent({.column = column, .label = label, .style = "screen"},
-           "Inertial rate about the body’s axis: what the gyros measure.");
+           "Inertial rate about the body’s axis, which the gyros measure");
   add({.column = "altitude_m",
        .label = "altitude minus that of the nominal, km",
        .factor = 1e-3,
@@ -324,7 +329,7 @@ const std::vector<WorstView>& WorstViews() {
       {"pitch_error", {{"pitch_error_powered_deg", "pitch error, °"}}},
       {"yaw_error", {{"yaw_error_powered_deg", "yaw error, °"}}},
       {"roll_error", {{"roll_error_powered_deg", "roll error, °"}}},
-      {"deflection",
+      {"deflection_peak",
        {{"deflection_pitch_deg", "pitch deflection, °"},
         {"deflection_yaw_deg", "yaw deflection, °"},
         {"deflection_roll_deg", "roll deflection, °"}}},
@@ -398,12 +403,15 @@ std::vector<std::uint64_t> WorstWritten(const WorstView& view, const FlightHisto
 
 std::string WorstQuantity(const std::string& metric, std::uint64_t case_index,
                           const FlightHistories& histories) {
-  if (!std::binary_search(histories.written_cases.begin(), histories.written_cases.end(), case_index))
+  const bool is_peak = metric.find("_peak_") != metric.npos || metric.find("_max_") != metric.npos;
+  if (!is_peak ||
+      !std::binary_search(histories.written_cases.begin(), histories.written_cases.end(), case_index))
     return "";
   for (const WorstView& view : WorstViews()) {
     if (!metric.starts_with(view.metrics)) continue;
-    const std::string label = view.columns[WrittenFlight(histories, case_index).PeakOf(view).column].label;
-    return label.substr(0, label.find(','));
+    const WrittenFlight::Peak peak = WrittenFlight(histories, case_index).PeakOf(view);
+    const std::string label = view.columns[peak.column].label;
+    return fmt::format("{} at {:.0f} s", label.substr(0, label.find(',')), peak.time_s);
   }
   return "";
 }

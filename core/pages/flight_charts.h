@@ -36,7 +36,8 @@ std::string BandFigure(const BandView& view, const FlightHistories& histories, c
 std::string EnvelopeFigures(const FlightHistories& histories, const CampaignSummary& summary,
                             double kick_end_s);
 
-/// The quantity whose peak the metric has in a flight with a history: "yaw deflection". Empty: unknown.
+/// The quantity whose peak the metric is in a flight with a history, and when: "yaw deflection at 38 s".
+/// Empty: unknown, or no peak.
 std::string WorstQuantity(const std::string& metric, std::uint64_t case_index,
                           const FlightHistories& histories);
 

@@ -105,12 +105,15 @@ std::string WholePercent(double share) {
 
 std::string DriverWords(const CampaignSummary& summary, const std::string& metric) {
   constexpr std::size_t kMost = 3;
+  constexpr double kLeast = 0.05;
   for (const MetricDrivers& of : summary.drivers) {
     if (of.metric != metric || of.drivers.empty()) continue;
     std::string words;
-    for (std::size_t i = 0; i < std::min(kMost, of.drivers.size()); ++i)
+    for (std::size_t i = 0; i < std::min(kMost, of.drivers.size()); ++i) {
+      if (i > 0 && of.drivers[i].index < kLeast) break;
       words += fmt::format("{}{} ({})", i == 0 ? "" : ", ", Code(of.drivers[i].input),
                            WholePercent(of.drivers[i].index));
+    }
     return "Its scatter comes from " + words + ". A share is of the variance.";
   }
   return "No input is shown to drive its scatter.";

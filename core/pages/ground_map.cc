@@ -166,12 +166,16 @@ class Map {
     }
     return svg;
   }
-  /// Meridians and parallels. Their labels stand where they leave the picture: below, and to the left.
-  std::string Graticule() const {
+  double GridStep_deg() const {
     const double height_deg = window_.height_px() / window_.px_per_km() / 111.2;
     double step_deg = 30.0;
     for (const double one : {15.0, 10.0, 5.0, 2.0, 1.0, 0.5, 0.2, 0.1})
       if (height_deg / one <= 6.0) step_deg = one;
+    return step_deg;
+  }
+  /// Meridians and parallels. Their labels stand where they leave the picture: below, and to the left.
+  std::string Graticule() const {
+    const double step_deg = GridStep_deg();
     std::string path, labels;
     std::vector<MapPoint> labelled;
     const auto add = [&](const std::vector<MapPlace>& line, const std::string& name, bool parallel) {
@@ -185,7 +189,8 @@ class Map {
           const bool has_room = std::all_of(labelled.begin(), labelled.end(), [&](const MapPoint& other) {
             return std::fabs(other[0] - end[0]) > 46.0 || std::fabs(other[1] - end[1]) > 16.0;
           });
-          if (!leaves || !has_room || end[1] < 14.0) continue;
+          const bool is_inside = end[1] > 14.0 && end[0] < window_.width_px() - 50.0;
+          if (!leaves || !has_room || !is_inside) continue;
           labelled.push_back(end);
           labels += fmt::format("<text class=\"tick\" x=\"{:.0f}\" y=\"{:.0f}\">{}</text>", end[0] + 4.0,
                                 end[1] - 4.0, name);
@@ -223,8 +228,8 @@ class Map {
     return fmt::format(
         "<path class=\"axis\" d=\"M{0:.1f} {2:.1f}v5H{1:.1f}v-5\"/><text class=\"tick\" x=\"{1:.0f}\" "
         "y=\"{3:.0f}\" "
-        "text-anchor=\"end\">{4} km</text>",
-        left, right, y - 5.0, y - 8.0, ReadableText(bar_km));
+        "text-anchor=\"end\">{4} km; lines every {5}°</text>",
+        left, right, y - 5.0, y - 8.0, ReadableText(bar_km), ReadableText(GridStep_deg()));
   }
 
   const std::vector<Footprint>& footprints_;

@@ -104,7 +104,8 @@ std::string ReportPage(const Campaign& campaign, const CampaignSummary& summary,
     page += fmt::format(
         "<p>Pointwise percentiles over {}, flown again and sampled every {} s; a lost flight counts until it "
         "is "
-        "lost.{} S1 to S{} mark ignitions. Peaks between the samples are in the metrics, not here. Numbers: "
+        "lost.{} S1 to S{} mark ignitions. Peaks between the samples are in the metrics, not here. Attitude "
+        "errors count while a flight has thrust. Numbers: "
         "<code>histories/bands.csv.gz</code>.</p>\n",
         sample, ReadableText(bands.step_s), extremes, campaign.vehicle.stages.size());
     if (bands.flights < 371) page += "<p>Curves of 0.27 % and 99.73 % need 371 flights or more.</p>\n";
@@ -130,7 +131,7 @@ std::string ReportPage(const Campaign& campaign, const CampaignSummary& summary,
             ? "Guidance is closed loop: it steers the last stages by a navigated state to the orbit."
             : "Guidance is open loop: the autopilot follows the pitch program, and nothing corrects what "
               "dispersed thrust, flow and drag do to speed and altitude. No requirement should rest on it.";
-    page += "</p>\n<div class=\"figures small\">\n" + InjectionFigures(summary, cases) + "</div>\n";
+    page += "</p>\n<div class=\"figures trio\">\n" + InjectionFigures(summary, cases) + "</div>\n";
     if (summary.injection) page += InjectionSection(*summary.injection);
     page += PropellantFigures(summary, cases);
   }

@@ -29,7 +29,7 @@ std::string OutcomeWords(Outcome outcome) {
   return words;
 }
 
-/// The axis that has the peak, of metrics over several.
+/// The axis that has the peak, and when.
 std::string WorstWhere(const std::string& metric, const WorstCase& worst, const FlightHistories& histories) {
   const std::string quantity = WorstQuantity(metric, worst.case_index, histories);
   return quantity.empty() ? "" : "<span class=\"definition\">in " + HtmlText(quantity) + "</span>";

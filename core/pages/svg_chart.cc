@@ -335,13 +335,17 @@ std::vector<SvgChart::Picture::LegendEntry> SvgChart::Picture::PlacedLegend() co
   double x = kLeft;
   int rows = 0;
   for (std::size_t i = 0; i < chart_.series_.size(); ++i) {
-    if (legends_[i].empty()) continue;
+    const Series& series = chart_.series_[i];
+    const bool is_known = std::any_of(entries.begin(), entries.end(), [&](const LegendEntry& entry) {
+      return *entry.text == legends_[i] && entry.series->style == series.style;
+    });
+    if (legends_[i].empty() || is_known) continue;
     const double width = 32.0 + kCharacter * static_cast<double>(legends_[i].size());
     if (rows == 0 || x + width > chart_.width_ - kRight) {
       ++rows;
       x = kLeft;
     }
-    entries.push_back({&chart_.series_[i], &legends_[i], x, rows - 1});
+    entries.push_back({&series, &legends_[i], x, rows - 1});
     x += width;
   }
   return entries;
@@ -449,7 +453,8 @@ std::string SvgChart::Picture::Ticks() const {
   for (const Tick& tick : xs_.ticks()) {
     const double x = xs_.At(tick.value);
     svg += Segment(x, bottom_, x, bottom_ + 4.0, "axis");
-    svg += Text(x, bottom_ + 17.0, "tick", "middle", tick.label);
+    const double half = 0.5 * kMarkCharacter * static_cast<double>(tick.label.size());
+    svg += Text(std::min(x, chart_.width_ - half), bottom_ + 17.0, "tick", "middle", tick.label);
   }
   return svg + "</g>";
 }

@@ -120,11 +120,23 @@ TEST(ScatterFigures, ShowTargetAndLimits) {
   EXPECT_EQ(CountOf(html, "class=\"ellipse\" data-s"), 3u);
   EXPECT_EQ(CountOf(html, "class=\"limit\" data-s"), 3u) << "a range has two";
   EXPECT_THAT(html, Not(HasSubstr("dot-target"))) << "no error of it is measured";
-  // On a circle of the radius of the equator and 450 km.
-  summary.reference_orbit.radius_m = Wgs84().equatorial_radius_m + 450e3;
-  summary.reference_orbit.velocity_m_s = std::sqrt(Wgs84().mu_m3_s2 / summary.reference_orbit.radius_m);
-  EXPECT_THAT(InjectionFigures(summary, Pairs({{"apogee_km", apogee}, {"perigee_km", perigee}})),
-              HasSubstr(">reference</text>"));
+  // The nominal flight is on an orbit of 20 km less than the reference's, a circle of 330 km, where it shall
+  // be.
+  summary.nominal.emplace().metrics.assign(summary.metric_list.size(), 0.0);
+  for (const auto& [metric, value] :
+       {std::pair{"apogee_km", 320.0}, {"perigee_km", 300.0}, {"semi_major_axis_error_km", -20.0}})
+    summary.nominal->metrics[summary.metric_list.PositionOf(metric)] = value;
+  summary.reference_orbit.velocity_m_s = std::sqrt(Wgs84().mu_m3_s2 / (Wgs84().equatorial_radius_m + 330e3));
+  const std::string aimed =
+      InjectionFigures(summary, Pairs({{"apogee_km", {330, 340}}, {"perigee_km", {330, 340}}}));
+  EXPECT_THAT(aimed, HasSubstr(">reference</text>"));
+  static const std::regex first_dot(
+      "class=\"(?:dots|dot-target)\" data-s=\"(?:cases|reference)\" d=\"M([^mh]+)h0");
+  std::vector<std::string> places;
+  for (std::sregex_iterator at(aimed.begin(), aimed.end(), first_dot), end; at != end; ++at)
+    places.push_back((*at)[1]);
+  ASSERT_EQ(places.size(), 2u);
+  EXPECT_EQ(places[0], places[1]) << "the first case is where it shall be";
   EXPECT_THAT(InjectionFigures({}, Pairs({{"injection_velocity_error_m_s", {1, 2}},
                                           {"injection_altitude_error_km", {-1, 2}}})),
               HasSubstr(">target</text>"));
@@ -253,9 +265,9 @@ TEST(WorstFigures, DrawTheChannelThatHasThePeak) {
   const std::string yaw = WorstFigures(histories, WorstOf("deflection_peak_deg", {0, 2}));
   EXPECT_THAT(yaw, Not(HasSubstr("pitch deflection")));
   EXPECT_EQ(CountOf(yaw, "data-case="), 2u);
-  EXPECT_EQ(WorstQuantity("deflection_peak_deg", 1, histories), "pitch deflection");
-  EXPECT_EQ(WorstQuantity("deflection_peak_deg", 2, histories), "yaw deflection");
-  EXPECT_EQ(WorstQuantity("q_alpha_max_pa_rad", 2, histories), "angle of sideslip");
+  EXPECT_EQ(WorstQuantity("deflection_peak_deg", 1, histories), "pitch deflection at 30 s");
+  EXPECT_EQ(WorstQuantity("deflection_peak_deg", 2, histories), "yaw deflection at 40 s");
+  EXPECT_EQ(WorstQuantity("q_alpha_max_pa_rad", 2, histories), "angle of sideslip at 50 s");
   EXPECT_EQ(WorstQuantity("deflection_peak_deg", 3, histories), "") << "it has no history";
   // Of the incidence in air the sideslip is the larger one, and at rest nothing counts.
   const std::string incidence = WorstFigures(histories, WorstOf("q_alpha_max_pa_rad", {0}));

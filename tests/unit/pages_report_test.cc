@@ -480,6 +480,18 @@ TEST_F(ReportPageTest, EveryTableHasHeadsForReadersWhoListen) {
   EXPECT_THAT(page_, HasSubstr("<main>"));
 }
 
+TEST_F(ReportPageTest, FlightsNearestToSeveralLimitsAreToldOnce) {
+  FailureDrivers nearest{.metric = "yaw_error_peak_deg", .nearest = true, .flights = 10, .drivers = {}, .pairs = {}};
+  nearest.drivers.push_back({.input = "wind_azimuth_deg", .key = "wind.azimuth", .feature = "x"});
+  FailureDrivers other = nearest;
+  other.drivers[0].p = 0.01;
+  summary_.failure_drivers = {nearest, nearest, other};
+  const std::string html = CausesSection(summary_);
+  const std::string title = "Nearest to failing of Yaw error, peak: 10 flights";
+  EXPECT_NE(html.find(title), html.rfind(title));
+  EXPECT_EQ(html.find(title, html.find(title) + 1), html.rfind(title)) << "two, not three";
+}
+
 TEST_F(ReportPageTest, AMetricOfOneValueIsSaidAndNotDrawn) {
   Build(40, 40);
   campaign_.requirements[0].metric = "deflection_saturated_fraction";

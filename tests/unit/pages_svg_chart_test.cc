@@ -57,6 +57,11 @@ TEST(ChartScale, CountsDecades) {
   EXPECT_NEAR(scale.At(std::sqrt(0.0005)), 0.5, 1e-12);  // half-way in decades
 }
 
+TEST(ChartScale, DividesTheDecadesIfTheyAreFew) {
+  const ChartScale scale({.label = "n", .logarithmic = true}, 230.0, 5500.0, 0.0, 1.0, 4);
+  EXPECT_THAT(Labels(scale), ElementsAre("500", "1000", "2000", "5000"));
+}
+
 TEST(ChartScale, SkipsDecadesWhoseLabelsWouldRunTogether) {
   const ChartScale scale({.label = "p", .low = 1e-9, .high = 1e6, .logarithmic = true}, 0.0, 0.0, 0.0, 1.0,
                          4);
@@ -157,6 +162,20 @@ TEST(SvgChart, NamesALimitThatLiesTooFarToBeDrawnBesideTheData) {
   EXPECT_THAT(svg, HasSubstr(">tall (far above)<"));
   EXPECT_THAT(svg, Not(HasSubstr(">10<")));      // the axis ends before it
   EXPECT_EQ(Count(svg, "class=\"limit\""), 5u);  // four in the legend, one drawn
+}
+
+// Several requirements of one metric have a limit each.
+TEST(SvgChart, NamesLinesOfOneKindOnceAndCutsNoLabelOfTheAxis) {
+  SvgChart chart({.label = "x"}, {.label = "y"});
+  chart.Line({0.0001, 0.0008}, {0.0, 1.0}, "line-0", "");
+  for (const double limit : {0.2, 0.4, 0.6}) chart.HorizontalLimit(limit, "limit");
+  chart.HorizontalLimit(0.8, "limit", "allowed");
+  const std::string svg = chart.Svg("limits");
+  EXPECT_EQ(Count(svg, ">limit</text>"), 2u);
+  EXPECT_EQ(Count(svg, "data-s=\"limit\""), 4u);
+  const std::size_t last = svg.find(">0.0008</text>");
+  ASSERT_NE(last, std::string::npos);
+  EXPECT_LE(std::stod(svg.substr(svg.rfind("x=\"", last) + 3)) + 3.1 * 6.0, 520.0);
 }
 
 TEST(SvgChart, DrawsWithoutData) {
