@@ -189,8 +189,8 @@ class Results:
         return frame
 
     def bands(self):
-        """histories/bands.csv.gz: percentiles over time as a History with columns NAME_min, _p01, _p05, _p50, _p95, _p99
-        and _max beside time_s. Raises BadInput when the report was made without histories."""
+        """histories/bands.csv.gz: percentiles over time as a History with columns NAME_min, _p00_27, _p01, _p50,
+        _p99, _p99_73 and _max beside time_s. Raises BadInput when the report was made without histories."""
         return self._csv("bands.csv")
 
     def history(self, case=None):
