@@ -43,18 +43,24 @@ void AddSearchCommand(CLI::App& app, Invocation& invocation) {
       "search", "find the smallest dispersion that fails a requirement, by a bounded local search");
   command->add_option("campaign", options->campaign, "campaign file")->required()->type_name(kYamlType);
   command
-      ->add_option("--metric", options->request.metric, "metric of the requirement; default: the first requirement")
+      ->add_option("--metric", options->request.metric,
+                   "metric of the requirement; default: the first requirement")
       ->type_name(kMetricType);
   auto* below = command->add_option("--below", options->request.below,
                                     "limit instead of the campaign's; a flight above it fails");
-  command->add_option("--above", options->request.above, "limit instead of the campaign's; a flight below it fails")
+  command
+      ->add_option("--above", options->request.above,
+                   "limit instead of the campaign's; a flight below it fails")
       ->excludes(below);
-  command->add_option("--flights", options->request.options.max_flights, "largest number of flights, default 1000")
+  command
+      ->add_option("--flights", options->request.options.max_flights,
+                   "largest number of flights, default 1000")
       ->transform(WholeNumber(20, 1000000));
   command->add_option("--starts", options->request.options.starts, "number of starting points, default 4")
       ->transform(WholeNumber(1, 100));
   command
-      ->add_option("--reach", options->request.options.reach, "farthest distance in standard deviations, default 6")
+      ->add_option("--reach", options->request.options.reach,
+                   "farthest distance in standard deviations, default 6")
       ->check(CLI::Range(0.1, 8.0));
   command->add_option("--seed", options->request.seed,
                       "seed of the random flights and of the starting points; default: the campaign's");

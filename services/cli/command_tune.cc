@@ -111,7 +111,8 @@ ExitCode RunTuning(const TuneOptions& options, const GlobalOptions& global) {
 void AddTuneCommand(CLI::App& app, Invocation& invocation) {
   auto options = std::make_shared<TuneOptions>();
   CLI::App* command = app.add_subcommand("tune", "find the gains of an autopilot with any control law");
-  command->add_option("campaign", options->request.campaign, "campaign file: vehicle, reference and dispersions")
+  command
+      ->add_option("campaign", options->request.campaign, "campaign file: vehicle, reference and dispersions")
       ->required()
       ->type_name(kYamlType);
   command

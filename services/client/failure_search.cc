@@ -10,8 +10,8 @@
 #include "core/analysis/requirement_summary.h"
 #include "core/campaign/case_result.h"
 #include "core/cases/campaign_flights.h"
-#include "core/flight/flight.h"
 #include "core/containment/interrupted.h"
+#include "core/flight/flight.h"
 #include "core/input/input_error.h"
 #include "core/optimization/parallel_for.h"
 #include "core/results/json_number.h"
@@ -62,7 +62,8 @@ Requirement WantedRequirement(const FailureSearchRequest& request, const Campaig
 
 class Searcher {
  public:
-  Searcher(const Campaign& campaign, const Requirement& requirement, std::size_t max_flights, Observer& observer)
+  Searcher(const Campaign& campaign, const Requirement& requirement, std::size_t max_flights,
+           Observer& observer)
       : flights_(campaign),
         space_(campaign),
         limits_(LimitsOf(requirement)),

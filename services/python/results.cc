@@ -146,9 +146,8 @@ std::string Search(const std::string& name, const std::string& text, const std::
   request.options.max_flights = flights;
   request.options.starts = starts;
   request.options.reach = reach;
-  return observer.Watch([&] {
-    return SearchForFailure(LoadCampaign(InputSource(name, text)), request, observer).json.dump();
-  });
+  return observer.Watch(
+      [&] { return SearchForFailure(LoadCampaign(InputSource(name, text)), request, observer).json.dump(); });
 }
 
 /// (what `dispersa tune --json` prints, the autopilot file). `autopilot`: a file, or "".

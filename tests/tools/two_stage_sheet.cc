@@ -72,8 +72,11 @@ FigureSheet TwoStageSheet(const std::string& campaigns, const std::string& data)
   pitch.Points(recorded.time_s, recorded.pitch_deg, "public", "simulator 06");
   altitude.Points({193.0, 200.0}, {230.00, 251.4}, "shipped", "04 and 05, second hand");
   return {"Check case 17 of NASA/TM-2015-218675: a two-stage rocket to orbit, without control",
-          {{altitude, "Altitude. Data that differ by 1 % of area and by half the rate of inertia end 14 km apart."},
-           {pitch, "Pitch. The air lets go of the body above 60 km: from there it turns as it turned, until stage 2 burns out."}}};
+          {{altitude,
+            "Altitude. Data that differ by 1 % of area and by half the rate of inertia end 14 km apart."},
+           {pitch,
+            "Pitch. The air lets go of the body above 60 km: from there it turns as it turned, until stage 2 "
+            "burns out."}}};
 }
 
 }  // namespace dispersa

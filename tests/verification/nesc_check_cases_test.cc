@@ -285,15 +285,16 @@ double At(const Columns& flight, const std::string& column, double time_s) {
   throw std::runtime_error("no such instant");
 }
 
-// With that simulator's data. An implementation that shares nothing with ours departs from it by these feet, too: a
-// difference that two independent programs have is the simulator's own.
+// With that simulator's data. An implementation that shares nothing with ours departs from it by these feet,
+// too: a difference that two independent programs have is the simulator's own.
 TEST(NescTwoStage, DepartsFromASimulatorAsAnotherProgramDoes) {
   const Columns ours = FlyTwoStage(7.068583470577035, 0.5, true);
   const Columns theirs = ReadSimulator(DISPERSA_TEST_DATA "/nesc/Atmos_17_sim_06.csv");
   const auto altitude_less_theirs_ft = [&](int second) {
     return At(ours, "altitude_m", second) / kFoot - theirs.at("altitudeMsl_ft")[second];
   };
-  // The tolerance is half of the last digit that is known of the other program; at the end it has other air above 86 km.
+  // The tolerance is half of the last digit that is known of the other program; at the end it has other air
+  // above 86 km.
   EXPECT_NEAR(altitude_less_theirs_ft(20), -5.4, 0.15);
   EXPECT_NEAR(altitude_less_theirs_ft(37), -7.8, 0.15);
   EXPECT_NEAR(altitude_less_theirs_ft(60), -12.0, 0.5);
@@ -302,7 +303,8 @@ TEST(NescTwoStage, DepartsFromASimulatorAsAnotherProgramDoes) {
   EXPECT_NEAR(altitude_less_theirs_ft(200), -713.0, 10.0);
   for (int second = 0; second <= 134; ++second) {
     EXPECT_NEAR(At(ours, "pitch_deg", second), theirs.at("eulerAngle_deg_Pitch")[second], 0.045) << second;
-    EXPECT_NEAR(At(ours, "ned_v_d_m_s", second) / kFoot, theirs.at("feVelocity_ft_s_Z")[second], 0.75) << second;
+    EXPECT_NEAR(At(ours, "ned_v_d_m_s", second) / kFoot, theirs.at("feVelocity_ft_s_Z")[second], 0.75)
+        << second;
     EXPECT_NEAR(At(ours, "yaw_deg", second), 90.0, 1e-6);
   }
 }
