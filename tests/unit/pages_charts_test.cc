@@ -122,7 +122,8 @@ TEST(ScatterFigures, ShowTargetAndLimits) {
   EXPECT_THAT(html, Not(HasSubstr("dot-target"))) << "no error of it is measured";
   // The nominal flight is on an orbit of 20 km less than the reference's, a circle of 330 km, where it shall
   // be.
-  summary.nominal.emplace().metrics.assign(summary.metric_list.size(), 0.0);
+  summary.nominal.emplace().outcome = Outcome::kCompleted;
+  summary.nominal->metrics.assign(summary.metric_list.size(), 0.0);
   for (const auto& [metric, value] :
        {std::pair{"apogee_km", 320.0}, {"perigee_km", 300.0}, {"semi_major_axis_error_km", -20.0}})
     summary.nominal->metrics[summary.metric_list.PositionOf(metric)] = value;

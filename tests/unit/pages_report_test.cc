@@ -481,7 +481,8 @@ TEST_F(ReportPageTest, EveryTableHasHeadsForReadersWhoListen) {
 }
 
 TEST_F(ReportPageTest, FlightsNearestToSeveralLimitsAreToldOnce) {
-  FailureDrivers nearest{.metric = "yaw_error_peak_deg", .nearest = true, .flights = 10, .drivers = {}, .pairs = {}};
+  FailureDrivers nearest{
+      .metric = "yaw_error_peak_deg", .nearest = true, .flights = 10, .drivers = {}, .pairs = {}};
   nearest.drivers.push_back({.input = "wind_azimuth_deg", .key = "wind.azimuth", .feature = "x"});
   FailureDrivers other = nearest;
   other.drivers[0].p = 0.01;
