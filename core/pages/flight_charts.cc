@@ -59,11 +59,11 @@ struct Burns {
     }
   }
 
-  /// The number of burns before the first coast that is longer than the flight before it. On the time axis
-  /// of the whole flight they would have no room.
+  /// The number of burns before the first coast that is longer than a minute and than the flight before it.
+  /// On the time axis of the whole flight they would have no room.
   std::size_t Ascending() const {
     std::size_t i = 1;
-    while (i < burns.size() && burns[i].from_s - burns[i - 1].to_s <= burns[i - 1].to_s) ++i;
+    while (i < burns.size() && burns[i].from_s - burns[i - 1].to_s <= std::max(60.0, burns[i - 1].to_s)) ++i;
     return std::min(i, burns.size());
   }
   /// None: the whole flight has room on one axis.

@@ -58,7 +58,7 @@ std::string MapSection(const Campaign& campaign, const CampaignSummary& summary,
 std::string PropellantFigures(const CampaignSummary& summary, const CaseColumns& cases) {
   std::string figures;
   for (const MetricSummary& metric : summary.metrics)
-    if (metric.name.starts_with("propellant_left") && metric.statistics.n > 0)
+    if (metric.name.starts_with("propellant_left_stage") && metric.statistics.n > 0)
       figures += DistributionFigures(metric.name, summary, cases);
   return figures.empty()
              ? ""

@@ -239,6 +239,21 @@ TEST(EnvelopeFigures, BeginWithPoweredFlight) {
   EXPECT_THAT(html, Not(HasSubstr("Pitch error while stage 2 burns")));
 }
 
+// As of a sounding rocket, whose first motor burns 3 s.
+TEST(EnvelopeFigures, ShowTheBurnAfterAShortCoast) {
+  History history;
+  for (int k = 0; k <= 30; ++k) {
+    std::vector<double> row(HistoryColumns().size(), 0.0);
+    row[0] = k;
+    row[static_cast<std::size_t>(FindHistoryColumn("stage"))] = k < 20 ? 1 : 2;
+    row[static_cast<std::size_t>(FindHistoryColumn("thrust_n"))] =
+        k <= 3 || (k >= 20 && k <= 26) ? 1000.0 : 0.0;
+    history.values.insert(history.values.end(), row.begin(), row.end());
+  }
+  const std::string html = EnvelopeFigures(HistoriesOf({history}), CampaignSummary{}, 10.0);
+  EXPECT_GE(AxisOf(html, "Axial load", "x").second, 26.0);
+}
+
 TEST(EnvelopeFigures, DrawTheOuterPercentilesOfEnoughFlights) {
   FlightHistories histories = HistoriesOf({Flown(1.0, 1.0)});
   for (const auto& [flights, curves] : {std::pair<std::size_t, bool>{370, false}, {371, true}}) {
