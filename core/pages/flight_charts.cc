@@ -37,11 +37,13 @@ struct Burns {
     double to_s;
   };
   std::vector<Burn> burns;
+  double end_s = 0.0;  ///< of the flight
 
   explicit Burns(const History& history) {
     const std::vector<double> time_s = Column(history, "time_s");
     const std::vector<double> stage = Column(history, "stage");
     const std::vector<double> thrust_n = Column(history, "thrust_n");
+    if (!time_s.empty()) end_s = time_s.back();
     for (std::size_t row = 0; row < time_s.size(); ++row) {
       if (thrust_n[row] <= 0.0) continue;
       const int now = static_cast<int>(stage[row]);
@@ -66,10 +68,10 @@ struct Burns {
     while (i < burns.size() && burns[i].from_s - burns[i - 1].to_s <= std::max(60.0, burns[i - 1].to_s)) ++i;
     return std::min(i, burns.size());
   }
-  /// None: the whole flight has room on one axis.
+  /// None: the whole flight has room on one axis. It has none if most of it follows the last burn.
   std::optional<double> AscentEnd() const {
     const std::size_t ascending = Ascending();
-    if (ascending == burns.size()) return std::nullopt;
+    if (burns.empty() || (ascending == burns.size() && end_s < 2.0 * burns.back().to_s)) return std::nullopt;
     return 10.0 * std::ceil(0.1 * burns[ascending - 1].to_s);
   }
 };
