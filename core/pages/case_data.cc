@@ -26,7 +26,8 @@ std::vector<std::string> ShownMetrics(const CampaignSummary& summary) {
   for (const char* name : {"impact_crossrange_km", "impact_downrange_km"})
     if (is_measured(name)) more.push_back(name);
   for (const MetricSummary& metric : summary.metrics)
-    if (metric.name.starts_with("propellant_left") && metric.statistics.n > 0) more.push_back(metric.name);
+    if (metric.name.starts_with("propellant_left_stage") && metric.statistics.n > 0)
+      more.push_back(metric.name);
   for (const std::string& name : more) {
     if (std::find(names.begin(), names.end(), name) == names.end()) names.push_back(name);
   }

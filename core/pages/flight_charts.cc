@@ -37,11 +37,13 @@ struct Burns {
     double to_s;
   };
   std::vector<Burn> burns;
+  double end_s = 0.0;  ///< of the flight
 
   explicit Burns(const History& history) {
     const std::vector<double> time_s = Column(history, "time_s");
     const std::vector<double> stage = Column(history, "stage");
     const std::vector<double> thrust_n = Column(history, "thrust_n");
+    if (!time_s.empty()) end_s = time_s.back();
     for (std::size_t row = 0; row < time_s.size(); ++row) {
       if (thrust_n[row] <= 0.0) continue;
       const int now = static_cast<int>(stage[row]);
@@ -59,17 +61,17 @@ struct Burns {
     }
   }
 
-  /// The number of burns before the first coast that is longer than the flight before it. On the time axis
-  /// of the whole flight they would have no room.
+  /// The number of burns before the first coast that is longer than a minute and than the flight before it.
+  /// On the time axis of the whole flight they would have no room.
   std::size_t Ascending() const {
     std::size_t i = 1;
-    while (i < burns.size() && burns[i].from_s - burns[i - 1].to_s <= burns[i - 1].to_s) ++i;
+    while (i < burns.size() && burns[i].from_s - burns[i - 1].to_s <= std::max(60.0, burns[i - 1].to_s)) ++i;
     return std::min(i, burns.size());
   }
-  /// None: the whole flight has room on one axis.
+  /// None: the whole flight has room on one axis. It has none if most of it follows the last burn.
   std::optional<double> AscentEnd() const {
     const std::size_t ascending = Ascending();
-    if (ascending == burns.size()) return std::nullopt;
+    if (burns.empty() || (ascending == burns.size() && end_s < 2.0 * burns.back().to_s)) return std::nullopt;
     return 10.0 * std::ceil(0.1 * burns[ascending - 1].to_s);
   }
 };
@@ -162,58 +164,26 @@ std::string BandFigure(const BandView& view, const FlightHistories& histories, c
 std::string NominalFigures(const History& nominal) {
   const Burns burns(nominal);
   const std::vector<double> time_s = Column(nominal, "time_s");
-  const std::vector<double> qbar_pa = Column(nominal, "qbar_pa");
-  const double air_end_s = AtmosphereEnd(time_s, qbar_pa);
   std::string figures = "<div class=\"figures\">\n";
   const auto add = [&](SvgChart chart, const std::string& caption) {
     burns.AddTo(&chart);
     figures += Figure(chart.Svg(caption), HtmlText(caption));
   };
   const bool is_controlled = IsDefined(Column(nominal, "pitch_error_deg"));
-
   SvgChart pitch({.label = kTimeAxis}, {.label = "pitch from the launch horizon, °"});
   pitch.Line(time_s, Column(nominal, "pitch_launch_deg"), "line-0", is_controlled ? "flown" : "");
   if (is_controlled) pitch.Line(time_s, Column(nominal, "pitch_program_deg"), "program", "program");
   add(pitch, is_controlled ? "Pitch program and pitch in the launch-inertial frame."
                            : "Pitch in the launch-inertial frame.");
-
-  if (is_controlled) {
-    SvgChart error({.label = kTimeAxis}, {.label = "pitch error, °"});
-    error.Line(time_s, Column(nominal, "pitch_error_deg"), "line-0", "");
-    add(error, "Pitch error: true minus reference attitude about body y, the coast included.");
-  } else {
-    SvgChart spin({.label = kTimeAxis}, {.label = "roll rate, °/s"});
-    spin.Line(time_s, Column(nominal, "p_deg_s"), "line-0", "");
-    add(spin, "Roll rate about the body axis.");
+  for (const auto& [column, label, factor, caption] :
+       {std::tuple{"altitude_m", "altitude, km", 1e-3, "Geodetic altitude."},
+        {"inertial_velocity_m_s", "inertial velocity, m/s", 1.0,
+         "Inertial speed; at lift-off it is that of the Earth's rotation."},
+        {"flight_path_angle_deg", "flight path angle, °", 1.0, "Inertial flight path angle."}}) {
+    SvgChart chart({.label = kTimeAxis}, {.label = label});
+    chart.Line(time_s, Column(nominal, column, factor), "line-0", "");
+    add(chart, caption);
   }
-
-  SvgChart altitude({.label = kTimeAxis}, {.label = "altitude, km"});
-  altitude.Line(time_s, Column(nominal, "altitude_m", 1e-3), "line-0", "");
-  add(altitude, "Geodetic altitude.");
-
-  SvgChart velocity({.label = kTimeAxis}, {.label = "inertial velocity, m/s"});
-  velocity.Line(time_s, Column(nominal, "inertial_velocity_m_s"), "line-0", "");
-  add(velocity, "Inertial speed; at lift-off it is that of the Earth's rotation.");
-
-  SvgChart angle({.label = kTimeAxis}, {.label = "flight path angle, °"});
-  angle.Line(time_s, Column(nominal, "flight_path_angle_deg"), "line-0", "");
-  add(angle, "Inertial flight path angle.");
-
-  if (is_controlled) {
-    SvgChart deflection({.label = kTimeAxis}, {.label = "deflection, °"});
-    deflection.Line(time_s, Column(nominal, "deflection_pitch_deg"), "line-0", "pitch");
-    deflection.Line(time_s, Column(nominal, "deflection_yaw_deg"), "line-1", "yaw");
-    deflection.Line(time_s, Column(nominal, "deflection_roll_deg"), "line-2", "roll");
-    add(deflection, "Gimbal deflection of each channel.");
-  }
-
-  SvgChart pressure({.label = kTimeAxis, .low = 0.0, .high = air_end_s}, {.label = "dynamic pressure, kPa"});
-  pressure.Line(time_s, Scaled(qbar_pa, 1e-3), "line-0", "");
-  add(pressure, "Dynamic pressure.");
-
-  SvgChart incidence({.label = kTimeAxis, .low = 0.0, .high = air_end_s}, {.label = "angle of attack, °"});
-  incidence.Line(time_s, InAir(Column(nominal, "alpha_deg"), qbar_pa), "line-0", "");
-  add(incidence, "Angle of attack against the air, where the dynamic pressure is at least 1 kPa.");
   return figures + "</div>\n";
 }
 
@@ -251,6 +221,13 @@ std::string EnvelopeFigures(const FlightHistories& histories, const CampaignSumm
        .to_s = pitch_over_end_s,
        .style = "screen"},
       "Pitch error during lift-off and the initial pitch-over.");
+  ascent({.column = "yaw_error_powered_deg", .label = "yaw error, °", .peak = "yaw_error_peak_deg"},
+         "Yaw error in powered flight");
+  ascent({.column = "roll_error_powered_deg",
+          .label = "roll error, °",
+          .peak = "roll_error_peak_deg",
+          .style = "screen"},
+         "Roll error in powered flight");
   for (std::size_t i = burns.Ascending(); i < burns.burns.size(); ++i) {
     const Burns::Burn& burn = burns.burns[i];
     for (const auto& [column, label, title] :
@@ -264,13 +241,6 @@ std::string EnvelopeFigures(const FlightHistories& histories, const CampaignSumm
            .style = "screen"},
           fmt::format("{} error while stage {} burns.", title, burn.stage));
   }
-  ascent({.column = "yaw_error_powered_deg", .label = "yaw error, °", .peak = "yaw_error_peak_deg"},
-         "Yaw error in powered flight");
-  ascent({.column = "roll_error_powered_deg",
-          .label = "roll error, °",
-          .peak = "roll_error_peak_deg",
-          .style = "screen"},
-         "Roll error in powered flight");
   ascent({.column = "deflection_pitch_deg", .label = "pitch deflection, °"}, "Gimbal deflection in pitch",
          " Its distance to the stop is what is left to steer with.");
   ascent({.column = "deflection_yaw_deg", .label = "yaw deflection, °", .style = "screen"},

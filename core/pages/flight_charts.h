@@ -10,7 +10,7 @@
 
 namespace dispersa {
 
-/// Figures of the nominal flight, with its stages marked.
+/// Figures of the nominal flight, with its stages marked: of what the envelope does not show.
 std::string NominalFigures(const History& nominal);
 
 /// The bands of one quantity as a figure.

@@ -48,7 +48,7 @@ std::string AscentFigure(const Campaign& campaign, const FlightHistories& histor
   std::vector<double> x, y;
   std::string listed;
   for (const SeenEvent& event : histories.nominal.events) {
-    if (event.time_s > time_s.back() + 1e-6) continue;  // it falls as a point
+    if (event.time_s > time_s.back() + nominal.step_s) continue;  // it falls as a point
     const std::size_t row = RowAt(time_s, event.time_s);
     x.push_back(along_km[row]);
     y.push_back(altitude_km[row]);

@@ -58,7 +58,7 @@ std::string MapSection(const Campaign& campaign, const CampaignSummary& summary,
 std::string PropellantFigures(const CampaignSummary& summary, const CaseColumns& cases) {
   std::string figures;
   for (const MetricSummary& metric : summary.metrics)
-    if (metric.name.starts_with("propellant_left") && metric.statistics.n > 0)
+    if (metric.name.starts_with("propellant_left_stage") && metric.statistics.n > 0)
       figures += DistributionFigures(metric.name, summary, cases);
   return figures.empty()
              ? ""
@@ -141,7 +141,9 @@ std::string ReportPage(const Campaign& campaign, const CampaignSummary& summary,
   if (flown_again && histories.bands.flights > 0) page += WorstFigures(histories, summary);
   page += "<div class=\"screen\">\n<h2 id=\"nominal\">Nominal flight</h2>\n<p>The flight without dispersions";
   page += campaign.course.is_controlled ? ", through the same closed loop." : ".";
-  page += " It is not one of the cases. Numbers: <code>histories/nominal.csv.gz</code>.";
+  page +=
+      " It is not one of the cases. The charts of the envelope have more of it. Numbers: "
+      "<code>histories/nominal.csv.gz</code>.";
   if (campaign.course.ends != FlightEnd::kInjection)
     page +=
         " The curves end where the flight goes on as a point mass: at the end of the last burn above the "

@@ -122,7 +122,8 @@ TEST(ScatterFigures, ShowTargetAndLimits) {
   EXPECT_THAT(html, Not(HasSubstr("dot-target"))) << "no error of it is measured";
   // The nominal flight is on an orbit of 20 km less than the reference's, a circle of 330 km, where it shall
   // be.
-  summary.nominal.emplace().metrics.assign(summary.metric_list.size(), 0.0);
+  summary.nominal.emplace().outcome = Outcome::kCompleted;
+  summary.nominal->metrics.assign(summary.metric_list.size(), 0.0);
   for (const auto& [metric, value] :
        {std::pair{"apogee_km", 320.0}, {"perigee_km", 300.0}, {"semi_major_axis_error_km", -20.0}})
     summary.nominal->metrics[summary.metric_list.PositionOf(metric)] = value;
@@ -236,6 +237,21 @@ TEST(EnvelopeFigures, BeginWithPoweredFlight) {
   EXPECT_GE(AxisOf(html, "Pitch error over the whole flight", "x").second, 1350.0);
   EXPECT_EQ(AxisOf(html, "Pitch error while stage 3 burns", "x"), std::pair(1240.0, 1350.0));
   EXPECT_THAT(html, Not(HasSubstr("Pitch error while stage 2 burns")));
+}
+
+// As of a sounding rocket, whose first motor burns 3 s, and which then flies on to its apogee.
+TEST(EnvelopeFigures, ShowTheBurnAfterAShortCoastAndNoLongCoastAfterIt) {
+  History history;
+  for (int k = 0; k <= 240; ++k) {
+    std::vector<double> row(HistoryColumns().size(), 0.0);
+    row[0] = k;
+    row[static_cast<std::size_t>(FindHistoryColumn("stage"))] = k < 20 ? 1 : 2;
+    row[static_cast<std::size_t>(FindHistoryColumn("thrust_n"))] =
+        k <= 3 || (k >= 20 && k <= 26) ? 1000.0 : 0.0;
+    history.values.insert(history.values.end(), row.begin(), row.end());
+  }
+  const std::string html = EnvelopeFigures(HistoriesOf({history}), CampaignSummary{}, 10.0);
+  EXPECT_EQ(AxisOf(html, "Axial load", "x").second, 30.0);
 }
 
 TEST(EnvelopeFigures, DrawTheOuterPercentilesOfEnoughFlights) {
