@@ -1,5 +1,5 @@
 # shellcheck shell=bash
-# Sourced by campaigns/run and tests/run: what turns a bare Debian 12 into one with a built dispersa.
+# Sourced by campaigns/run and tests/run: what turns a bare Debian 12 or 13 into one with a built dispersa.
 # Everything here writes to stderr only, because stdout belongs to the program that runs afterwards.
 
 repository=$(cd "$(dirname "${BASH_SOURCE[0]}")/.." && pwd)
@@ -11,11 +11,14 @@ say() { printf 'dispersa: %s\n' "$*" >&2; }
 
 is_installed() { [[ $(dpkg-query --show --showformat='${db:Status-Status}' "$1" 2>/dev/null) == installed ]]; }
 
-# The packages of the given lists that are not installed, one a line.
+# What the given lists name and the machine lacks, one a line: a package, or `one|other` where systems name it differently.
 missing_packages() {
-  local package
-  sed --regexp-extended 's/#.*//; s/[[:space:]]+//g; /^$/d' "$@" | while read -r package; do
-    is_installed "$package" || printf '%s\n' "$package"
+  local line package
+  sed --regexp-extended 's/#.*//; s/[[:space:]]+//g; /^$/d' "$@" | while read -r line; do
+    for package in ${line//|/ }; do
+      is_installed "$package" && continue 2
+    done
+    printf '%s\n' "$line"
   done
 }
 
@@ -45,7 +48,7 @@ install_packages() {
 
   say "installing ${missing[*]}"
   log=$(mktemp)
-  if { apt update; apt install --yes --no-install-recommends "${missing[@]}"; } >"$log" 2>&1; then
+  if { apt update; apt satisfy --yes --no-install-recommends "${missing[@]}"; } >"$log" 2>&1; then
     rm -f "$log"
     return 0
   fi
@@ -54,7 +57,7 @@ install_packages() {
   mapfile -t missing < <(missing_packages "$@")
   say "not installed: ${missing[*]}"
   for package in "${missing[@]}"; do
-    reason=$(apt install --simulate "$package" 2>&1 | grep -m 1 '^E:') && say "could not install $package: $reason"
+    reason=$(apt satisfy --simulate "$package" 2>&1 | grep -m 1 -o 'Depends: .*') && say "could not install $package: $reason"
   done
   return 1
 }

@@ -94,8 +94,9 @@ void Complete(Vehicle& vehicle) {
 void CheckHeader(const std::string& motor, double propellant_kg, double whole_kg, const InputNode& node,
                  const std::string& path, ProblemList& problems) {
   const auto check = [&](const char* key, const auto& fits, const std::string& what, const char* allowed) {
+    const std::string wanted = motor + ".thrust_curve.table." + key;
     std::string found;
-    const InputNode& at = FindField(node, motor + ".thrust_curve.table." + key, &found);
+    const InputNode& at = FindField(node, wanted, &found);
     if (!found.ends_with(key) || fits(*ParseNumber(at.text))) return;
     AddProblem(problems, at, path.empty() ? found : path + "." + found,
                "the motor's header states " + at.text + what, allowed);

@@ -1,14 +1,10 @@
 #include "core/dynamics/integrator.h"
 
-#include <arkode/arkode_erkstep.h>
-#include <cvode/cvode.h>
-#include <nvector/nvector_serial.h>
-#include <sundials/sundials_context.h>
-#include <sunnonlinsol/sunnonlinsol_fixedpoint.h>
-
 #include <cmath>
 #include <stdexcept>
 #include <vector>
+
+#include "core/dynamics/sundials.h"
 
 namespace dispersa {
 
@@ -16,20 +12,18 @@ namespace {
 
 // The classical Runge-Kutta method of order 4.
 ARKodeButcherTable ClassicalTable() {
-  realtype c[] = {0.0, 0.5, 0.5, 1.0};
-  realtype a[] = {0.0, 0.0, 0.0, 0.0,  //
-                  0.5, 0.0, 0.0, 0.0,  //
-                  0.0, 0.5, 0.0, 0.0,  //
-                  0.0, 0.0, 1.0, 0.0};
-  realtype b[] = {1.0 / 6.0, 1.0 / 3.0, 1.0 / 3.0, 1.0 / 6.0};
+  sunrealtype c[] = {0.0, 0.5, 0.5, 1.0};
+  sunrealtype a[] = {0.0, 0.0, 0.0, 0.0,  //
+                     0.5, 0.0, 0.0, 0.0,  //
+                     0.0, 0.5, 0.0, 0.0,  //
+                     0.0, 0.0, 1.0, 0.0};
+  sunrealtype b[] = {1.0 / 6.0, 1.0 / 3.0, 1.0 / 3.0, 1.0 / 6.0};
   return ARKodeButcherTable_Create(4, 4, 0, c, a, b, nullptr);
 }
 
 void Require(bool ok, const char* call) {
   if (!ok) throw std::runtime_error(std::string("SUNDIALS: ") + call + " failed");
 }
-
-void DropMessage(int, const char*, const char*, char*, void*) {}
 
 }  // namespace
 
@@ -64,13 +58,13 @@ struct Integrator::Solver {
   std::vector<double> start = {};  // CVODE: the state at the restart, and
   std::vector<double> whole = {};  // that plus its change since
 
-  static int Call(realtype t, N_Vector y, N_Vector dydt, void* user) {
+  static int Call(sunrealtype t, N_Vector y, N_Vector dydt, void* user) {
     const auto* self = static_cast<const Solver*>(user);
     self->rhs(t, N_VGetArrayPointer(y), N_VGetArrayPointer(dydt), self->context);
     return 0;
   }
 
-  static int CallWithChange(realtype t, N_Vector change, N_Vector dydt, void* user) {
+  static int CallWithChange(sunrealtype t, N_Vector change, N_Vector dydt, void* user) {
     auto* self = static_cast<Solver*>(user);
     const double* moved = N_VGetArrayPointer(change);
     for (std::size_t i = 0; i < self->start.size(); ++i) self->whole[i] = self->start[i] + moved[i];
@@ -83,9 +77,9 @@ struct Integrator::Solver {
     Require(memory != nullptr, "ERKStepCreate");
     table = ClassicalTable();
     Require(ERKStepSetTable(memory, table) == ARK_SUCCESS, "ERKStepSetTable");
-    ERKStepSetUserData(memory, this);
-    ERKStepSetMaxNumSteps(memory, -1);
-    ERKStepSetErrHandlerFn(memory, &DropMessage, nullptr);
+    ARKodeSetUserData(memory, this);
+    ARKodeSetMaxNumSteps(memory, -1);
+    SilenceErkStep(memory);
   }
 
   void CreateCvode(const double* absolute_tolerance) {
@@ -101,12 +95,12 @@ struct Integrator::Solver {
     Require(CVodeSetNonlinearSolver(memory, fixed_point) == CV_SUCCESS, "CVodeSetNonlinearSolver");
     CVodeSetUserData(memory, this);
     CVodeSetMaxNumSteps(memory, 1000000);
-    CVodeSetErrHandlerFn(memory, &DropMessage, nullptr);
+    SilenceCvode(memory);
   }
 
   ~Solver() {
     if (table) ARKodeButcherTable_Free(table);
-    if (memory && scheme == Scheme::kRungeKutta4) ERKStepFree(&memory);
+    if (memory && scheme == Scheme::kRungeKutta4) ARKodeFree(&memory);
     if (memory && scheme == Scheme::kCvode) CVodeFree(&memory);
     if (fixed_point) SUNNonlinSolFree(fixed_point);
     if (tolerance) N_VDestroy(tolerance);
@@ -124,7 +118,7 @@ Integrator::Integrator(Scheme scheme, int size, RightHandSide rhs, void* context
   s.size = size;
   s.rhs = rhs;
   s.context = context;
-  Require(SUNContext_Create(nullptr, &s.sun) == 0, "SUNContext_Create");
+  Require(MakeQuietContext(&s.sun), "SUNContext_Create");
   s.y = N_VNew_Serial(size, s.sun);
   Require(s.y != nullptr, "N_VNew_Serial");
   N_VConst(0.0, s.y);
@@ -155,10 +149,10 @@ bool Integrator::Advance(double from_s, double to_s, int steps, double* y) {
     for (int i = 0; i < steps; ++i) {
       const double begin_s = i == 0 ? from_s : from_s + (to_s - from_s) * i / steps;
       const double end_s = i + 1 == steps ? to_s : from_s + (to_s - from_s) * (i + 1) / steps;
-      if (ERKStepReset(s.memory, begin_s, s.y) != ARK_SUCCESS) return false;
-      ERKStepSetFixedStep(s.memory, end_s - begin_s);
-      ERKStepSetStopTime(s.memory, end_s);
-      if (ERKStepEvolve(s.memory, end_s, s.y, &reached, ARK_NORMAL) < 0) return false;
+      if (ARKodeReset(s.memory, begin_s, s.y) != ARK_SUCCESS) return false;
+      ARKodeSetFixedStep(s.memory, end_s - begin_s);
+      ARKodeSetStopTime(s.memory, end_s);
+      if (ARKodeEvolve(s.memory, end_s, s.y, &reached, ARK_NORMAL) < 0) return false;
     }
   }
   for (int i = 0; i < s.size; ++i) {

@@ -85,16 +85,17 @@ ModalPassage FlownModes::Passage(unsigned before, unsigned after, double propell
   std::size_t first = 0;
   for (const auto& source : sources_) {
     const ModalPassage one = source->Passage(before, after, propellant_kg);
-    const std::size_t modes = static_cast<std::size_t>(source->Without(before)->modes);
+    const int modes = source->Without(before)->modes;
     for (std::size_t plane = 0; plane < kPlanes; ++plane) {
-      for (std::size_t mode = 0; mode < modes; ++mode) {
+      for (int i = 0; i < modes; ++i) {
+        const auto mode = static_cast<std::size_t>(i);
         all.shift[plane][first + mode] = one.shift[plane][mode];
         all.turn_1_m[plane][first + mode] = one.turn_1_m[plane][mode];
         std::copy_n(one.onto[plane][mode].begin(), modes,
                     all.onto[plane][first + mode].begin() + static_cast<std::ptrdiff_t>(first));
       }
     }
-    first += modes;
+    first += static_cast<std::size_t>(modes);
   }
   return all;
 }

@@ -1,6 +1,7 @@
 """The Debian package made by CPack: its files, its metadata, and its use when unpacked."""
 import gzip
 import pathlib
+import re
 import shutil
 import tempfile
 import unittest
@@ -32,11 +33,11 @@ class Package(unittest.TestCase):
         self.assertTrue(self.field("Description").startswith("Monte Carlo dispersion service for launch vehicles\n"))
 
     def test_it_depends_on_what_the_programs_load(self):
-        names = {word.split()[0] for word in self.field("Depends").split(",")}
-        listed = {line for line in (SOURCE / "docker/runtime-packages.txt").read_text().splitlines()
-                  if line and not line.startswith("#")}
         # spdlog's says besides which fmt it was built with.
-        self.assertEqual({one for one in listed if one not in names and f"{one}-fmt9" not in names}, set())
+        names = {re.sub(r"-fmt\d+$", "", word.split()[0]) for word in self.field("Depends").split(",")}
+        listed = [line for line in (SOURCE / "docker/runtime-packages.txt").read_text().splitlines()
+                  if line and not line.startswith("#")]
+        self.assertEqual([line for line in listed if names.isdisjoint(line.split(" | "))], [])
 
     def test_files_of_root_where_debian_has_them(self):
         lines = run("dpkg-deb", "--contents", self.package).stdout.splitlines()
