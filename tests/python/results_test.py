@@ -99,7 +99,7 @@ class Runs(unittest.TestCase):
 
     def test_a_sweep_over_two_keys(self):
         keys = ("dispersions.thrust.three_sigma_percent", "sampling.seed")
-        flown = dispersa.sweep(SMOKE, keys, [(1, 7), (4, 8)], self.folder / "both", workers=0, histories=False)
+        flown = dispersa.sweep(SMOKE, keys, [(1, 7), (4, 8)], self.folder / "two_keys", workers=0, histories=False)
         self.assertEqual({pair: (results.directory.name, results.campaign.seed) for pair, results in flown.items()},
                          {(1, 7): ("three_sigma_percent=1,seed=7", 7), (4, 8): ("three_sigma_percent=4,seed=8", 8)})
         self.assertLess(numpy.std(flown[1, 7].inputs["thrust_factor_stage1"]), numpy.std(flown[4, 8].inputs["thrust_factor_stage1"]))

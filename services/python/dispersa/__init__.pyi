@@ -204,7 +204,7 @@ def sweep(what: _Path | Mapping[str, Any], key: str | Sequence[str], values: Ite
 def margins(what: _Source, *, cases: int | None = ..., autopilot: _Path | None = ..., base: _Path | None = ...,
             frequency_band_percent: float = ..., drift: bool = ...) -> dict[str, Any]: ...
 def search(what: _Source, metric: str | None = ..., *, below: float | None = ..., above: float | None = ..., flights: int = ...,
-           starts: int = ..., reach: float = ..., seed: int | None = ..., base: _Path | None = ...,
+           starts: int = ..., reach_sigma: float = ..., seed: int | None = ..., base: _Path | None = ...,
            progress: _Progress = ...) -> dict[str, Any]: ...
 def tune(what: _Source, out: _Path = ..., *, autopilot: _Path = ..., seed: int = ..., cases: int = ..., evaluations: int = ...,
          dispersed: int = ..., lqr: bool = ..., threads: int = ..., base: _Path | None = ...,

@@ -472,12 +472,12 @@ def _loaded(what, autopilot=None, base=None):
     return what if isinstance(what, Campaign) and autopilot is None else load(what, autopilot=autopilot, base=base)
 
 
-def search(what, metric=None, *, below=None, above=None, flights=1000, starts=4, reach=6.0, seed=None, base=None, progress=None):
+def search(what, metric=None, *, below=None, above=None, flights=1000, starts=4, reach_sigma=6.0, seed=None, base=None, progress=None):
     """The smallest dispersion found that fails a requirement, as the dict that `dispersa search --json` prints: `found`,
     `distance` in standard deviations, `dispersions`, `inputs`, and a `sentence` that says what this shows.
 
     `metric`: of the requirement; default: the campaign's first. `below`, `above`: a limit instead of the campaign's. `flights`:
-    20 to 1,000,000. `starts`: 1 to 100. `reach`: the farthest distance, 0.1 to 8. Raises BadInput.
+    20 to 1,000,000. `starts`: 1 to 100. `reach_sigma`: the farthest distance in standard deviations, 0.1 to 8. Raises BadInput.
     """
     campaign = _loaded(what, base=base)
     if metric is None and (below is not None or above is not None):
@@ -489,7 +489,7 @@ def search(what, metric=None, *, below=None, above=None, flights=1000, starts=4,
     limits = tuple(None if each is None else finite(name, each) for name, each in (("below", below), ("above", above)))
     return json.loads(_core.search(campaign.name, campaign.canonical_yaml, metric or "", limits,
                                    whole("flights", flights, 20, 1000000), whole("starts", starts, 1, 100),
-                                   finite("reach", reach, 0.1, 8.0), whole_if_given("seed", seed), progress_of(progress)))
+                                   finite("reach_sigma", reach_sigma, 0.1, 8.0), whole_if_given("seed", seed), progress_of(progress)))
 
 
 class Tuning(dict):
