@@ -157,7 +157,7 @@ class ServiceTest(ServiceCase):
 
     def test_a_higher_priority_goes_first_and_the_standings_show(self):
         self.start_coordinator()
-        low = self.dispersa("launch", CAMPAIGN, "--cases", 2000).strip()
+        low = self.dispersa("launch", CAMPAIGN, "--cases", 20000).strip()
         high = self.dispersa("launch", self.tiny, "--cases", 300, "--priority", 3).strip()
         self.start_worker("--slots", 2)
         self.dispersa("watch", high, code=self.tiny_reference.code)
@@ -174,7 +174,7 @@ class ServiceTest(ServiceCase):
             self.assertIn(standing["so_far"], ("pass", "fail", "inconclusive", "study"))
         self.assertEqual({r["metric"] for r in campaign["requirements"]},
                          {r["metric"] for r in json.loads((self.reference.out / "summary.json").read_text())["requirements"]})
-        self.assertRegex(self.dispersa("status", low), rf"(?m)^{low[:12]}  flying +\d+/2000 +20\d\d-\d\d-\d\d \d\d:\d\dZ  smoke\b")
+        self.assertRegex(self.dispersa("status", low), rf"(?m)^{low[:12]}  flying +\d+/20000 +20\d\d-\d\d-\d\d \d\d:\d\dZ  smoke\b")
         self.dispersa("cancel", low)
         out = self.root / "cancelled"
         self.dispersa("fetch", low, "--out", out)
