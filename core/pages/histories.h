@@ -16,7 +16,7 @@
 namespace dispersa {
 
 /// Flights whose parts are followed to the ground. More dots than these are one spot.
-inline constexpr std::size_t kMostFallen = 500;
+inline constexpr std::size_t kMostFallen = 100;
 
 struct FlightHistories {
   CaseResult nominal;
