@@ -28,7 +28,6 @@ ExitCode SearchFor(const SearchCommand& command, const GlobalOptions& global) {
   RequireWritableFile("--out", command.out);
   TerminalObserver observer(global.quiet);
   const FailureSearch found = SearchForFailure(campaign, command.request, observer);
-  observer.EndPhase();
   const std::string written = found.json.dump(2) + "\n";
   if (!command.out.empty()) WriteFile(command.out, written);
   fmt::print(stream, "{}", global.json ? written : found.text);

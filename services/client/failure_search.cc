@@ -196,6 +196,7 @@ FailureSearch SearchForFailure(const Campaign& campaign, const FailureSearchRequ
   const DispersionSpace& space = searcher.space();
   const FailureSearchResult result = FindSmallestFailure(
       space.coordinates(), [&](const auto& points) { return searcher.Margins(points); }, options);
+  observer.EndPhase();
   const std::string sentence = Sentence(result, random, options.seed, requirement, options.reach,
                                         NominalLoss(CampaignFlights(campaign).FlyNominal()));
 

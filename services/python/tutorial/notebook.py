@@ -7,28 +7,20 @@ python3-ipykernel.
 """
 import os
 import pathlib
-import re
 import sys
 
 import nbclient
 import nbformat
 
+from cells import cells
+
 TUTORIAL = pathlib.Path(__file__).with_name("tutorial.py")
-
-
-def cells(text):
-    """The cells of a script in the percent format."""
-    for kind, body in re.findall(r"^# %%( \[markdown\])?\n(.*?)(?=^# %%|\Z)", text, flags=re.DOTALL | re.MULTILINE):
-        body = body.strip("\n")
-        if kind:
-            yield nbformat.v4.new_markdown_cell(re.sub(r"^# ?", "", body, flags=re.MULTILINE))
-        else:
-            yield nbformat.v4.new_code_cell(body)
 
 
 def notebook():
     """The notebook, not yet executed. Names of cells are their numbers, so that two are equal."""
-    made = nbformat.v4.new_notebook(cells=list(cells(TUTORIAL.read_text(encoding="utf-8"))))
+    new = {True: nbformat.v4.new_markdown_cell, False: nbformat.v4.new_code_cell}
+    made = nbformat.v4.new_notebook(cells=[new[is_text](body) for is_text, body in cells(TUTORIAL.read_text(encoding="utf-8"))])
     made.metadata.kernelspec = {"name": "python3", "display_name": "Python 3", "language": "python"}
     for number, cell in enumerate(made.cells):
         cell.id = f"cell-{number}"
