@@ -187,7 +187,8 @@ bool IsMedianWorse(const MetricComparison& metric, double sign) {
 
 /// The finding is that of the largest difference that is certain and matters, with its p. The tails of a
 /// metric are several families of tests, so each has its part of the risk.
-void Judge(MetricComparison& metric) {
+void Judge(double practical_share, MetricComparison& metric) {
+  const double least = practical_share * metric.scale;
   const double risk = 1.0 - kComparisonConfidence;
   const double sign = metric.info.worse == Worse::kSmaller ? -1.0 : 1.0;
   bool is_certain = false, is_worse = false;
@@ -207,12 +208,12 @@ void Judge(MetricComparison& metric) {
   };
   if (metric.p_holm <= risk)
     consider("median", metric.difference, metric.p_holm, IsMedianWorse(metric, sign),
-             metric.lost_a != metric.lost_b || !(std::fabs(metric.difference) < metric.least));
+             metric.lost_a != metric.lost_b || !(std::fabs(metric.difference) < least));
   for (const PercentileComparison& tail : metric.tails)
     if (tail.p_holm <= risk / static_cast<double>(metric.tails.size()) && std::isfinite(tail.difference) &&
         tail.difference != 0.0)
       consider(tail.name, tail.difference, tail.p_holm, sign * tail.difference > 0.0,
-               std::fabs(tail.difference) >= metric.least);
+               std::fabs(tail.difference) >= least);
   metric.finding = !is_certain                            ? "not shown"
                    : metric.effect_in.empty()             ? kTooSmall
                    : metric.info.worse == Worse::kNeither ? "differs"
@@ -220,9 +221,9 @@ void Judge(MetricComparison& metric) {
                                                           : "better";
 }
 
-/// The share of what the metric's requirements allow, or of how it spreads in A.
-void SetLeast(const ComparedCampaign& a, const ComparedCampaign& b, const std::vector<double>& values_a,
-              double share, MetricComparison& result) {
+/// What the metric's requirements allow, or how it spreads in A; if that is nothing, how far it reaches in
+/// both.
+void SetScale(const ComparedCampaign& a, const ComparedCampaign& b, MetricComparison& result) {
   double allowed = kInfinity;
   for (const Campaign* campaign : {&a.campaign, &b.campaign}) {
     for (const Requirement& requirement : campaign->requirements) {
@@ -235,12 +236,20 @@ void SetLeast(const ComparedCampaign& a, const ComparedCampaign& b, const std::v
       if (allows > 0.0) allowed = std::min(allowed, allows);
     }
   }
-  result.scale_is_limit = std::isfinite(allowed);
-  const std::vector<double> sorted = SortedFinite(values_a);
-  if (!result.scale_is_limit)
-    allowed = sorted.empty() ? 0.0 : Quantile(sorted, 0.95) - Quantile(sorted, 0.05);
-  result.scale = allowed;
-  result.least = share * allowed;
+  if (std::isfinite(allowed)) {
+    result.scale = allowed;
+    result.scale_of = "limit";
+    return;
+  }
+  ComparedValues values = ValuesToCompare(a.cases, b.cases, result.metric);
+  const std::vector<double> of_a = SortedFinite(values.a);
+  result.scale_of = "spread of A";
+  result.scale = of_a.empty() ? 0.0 : Quantile(of_a, 0.95) - Quantile(of_a, 0.05);
+  if (result.scale > 0.0) return;
+  values.a.insert(values.a.end(), values.b.begin(), values.b.end());
+  const std::vector<double> of_both = SortedFinite(values.a);
+  result.scale_of = "range of A and B";
+  result.scale = of_both.empty() ? 0.0 : of_both.back() - of_both.front();
 }
 
 MetricComparison CompareMetric(const std::string& metric, const CaseColumns& a, const CaseColumns& b,
@@ -315,7 +324,7 @@ MetricComparison CompareMetric(const std::string& metric, const CaseColumns& a, 
 }
 
 /// One family of tests for the medians, and one for each percentile.
-void AdjustMetrics(std::vector<MetricComparison>& metrics) {
+void AdjustMetrics(double practical_share, std::vector<MetricComparison>& metrics) {
   std::vector<double> p;
   for (const MetricComparison& metric : metrics) p.push_back(metric.p);
   const std::vector<double> adjusted = HolmAdjusted(p);
@@ -333,7 +342,7 @@ void AdjustMetrics(std::vector<MetricComparison>& metrics) {
     const std::vector<double> tail_adjusted = HolmAdjusted(tail_p);
     for (std::size_t i = 0; i < family.size(); ++i) family[i]->p_holm = tail_adjusted[i];
   }
-  for (MetricComparison& metric : metrics) Judge(metric);
+  for (MetricComparison& metric : metrics) Judge(practical_share, metric);
 }
 
 /// Whether each row fails a limit: lost, undefined or outside.
@@ -680,9 +689,8 @@ std::vector<const MetricComparison*> ByEffect(const Comparison& comparison) {
 }
 
 std::string ShareOfScale(const MetricComparison& metric) {
-  const char* const scale = metric.scale_is_limit ? "limit" : "spread of A";
-  return metric.effect < 1.0 ? fmt::format("{:.2g} % of the {}", 100.0 * metric.effect, scale)
-                             : fmt::format("{} times the {}", RoundedText(metric.effect), scale);
+  return metric.effect < 1.0 ? fmt::format("{:.2g} % of the {}", 100.0 * metric.effect, metric.scale_of)
+                             : fmt::format("{} times the {}", RoundedText(metric.effect), metric.scale_of);
 }
 
 std::string EffectWords(const MetricComparison& metric) {
@@ -730,13 +738,13 @@ Comparison Compare(const ComparedCampaign& a, const ComparedCampaign& b,
     if (!WhyNotMeasured(a.campaign, metric).empty() || !WhyNotMeasured(b.campaign, metric).empty()) continue;
     MetricComparison result =
         CompareMetric(metric, a.cases, b.cases, rows, comparison.pairing.paired, comparison.independent);
-    SetLeast(a, b, ValuesToCompare(a.cases, b.cases, metric).a, practical_share, result);
+    SetScale(a, b, result);
     const bool defined =
         std::isfinite(result.median_a) || std::isfinite(result.median_b) || result.lost_a + result.lost_b > 0;
     if (!metrics.empty() || (result.n_a > 0 && result.n_b > 0 && defined))
       comparison.metrics.push_back(std::move(result));
   }
-  AdjustMetrics(comparison.metrics);
+  AdjustMetrics(practical_share, comparison.metrics);
   CompareRequirements(a, b, rows, comparison);
   Conclude(comparison);
   return comparison;

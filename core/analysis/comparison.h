@@ -93,10 +93,10 @@ struct MetricComparison {
   std::vector<PercentileComparison> tails;
   /// What a difference is measured by, in the metric's unit: the smallest limit of a requirement (of a range:
   /// its width; of a metric that is neither good nor bad a range alone), or without one the spread from 5 to
-  /// 95 % of A.
+  /// 95 % of A; if A does not spread, from the least to the greatest value of both. A difference matters from
+  /// practical_share of it on.
   double scale = 0.0;
-  bool scale_is_limit = false;
-  double least = 0.0;  ///< the smallest difference that matters: practical_share of the scale. 0: any
+  std::string scale_of = {};  ///< "limit", "spread of A", "range of A and B"
   /// The largest difference that is certain and matters, of the median or of a tail, as a share of the scale.
   /// Infinite: the median is that of a lost flight. 0: none.
   double effect = 0.0;

@@ -72,7 +72,8 @@ Json MetricJson(const MetricComparison& metric, const Comparison& comparison) {
                     {"p", Number(metric.p)},
                     {"p_holm", Number(metric.p_holm)}};
   if (!paired) json["median"]["tendency"] = Number(metric.tendency);
-  json["least"] = {{"difference", Number(metric.least)}, {"of", metric.scale_is_limit ? "limit" : "spread"}};
+  json["least"] = {{"difference", Number(comparison.practical_share * metric.scale)},
+                   {"of", metric.scale_of}};
   json["effect"] = {{"share", Number(metric.effect)}, {"in", TextOrNull(metric.effect_in)}};
   json["tails"] = Json::array();
   for (const PercentileComparison& tail : metric.tails) {

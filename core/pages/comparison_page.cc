@@ -311,7 +311,8 @@ std::string MetricsSection(const Comparison& c) {
       "tail "
       "above its part of 5 %. This does not show that the campaigns are equal. A difference matters from {} "
       "of a "
-      "requirement’s limit on, or without one of the spread of A from 5 to 95 %.</p>\n",
+      "requirement’s limit on, or without one of the spread of A from 5 to 95 %; if A does not spread, of "
+      "the range of both.</p>\n",
       c.pairing.paired ? "The difference is the median of B minus A over the pairs."
                        : "The difference is that of the medians.",
       PercentText(c.practical_share));

@@ -180,7 +180,8 @@ class Map {
     std::vector<MapPoint> labelled;
     const auto add = [&](const std::vector<MapPlace>& line, const std::string& name, bool parallel) {
       path += MapPath(plane_, window_, line);
-      for (std::size_t i = 1; i < line.size(); ++i) {
+      bool is_named = false;  // a bent line can leave twice
+      for (std::size_t i = 1; i < line.size() && !is_named; ++i) {
         const auto from = plane_.At(line[i - 1]), to = plane_.At(line[i]);
         const auto part = from && to ? window_.Inside(*from, *to) : std::nullopt;
         for (const MapPoint& end :
@@ -190,7 +191,8 @@ class Map {
             return std::fabs(other[0] - end[0]) > 46.0 || std::fabs(other[1] - end[1]) > 16.0;
           });
           const bool is_inside = end[1] > 14.0 && end[0] < window_.width_px() - 50.0;
-          if (!leaves || !has_room || !is_inside) continue;
+          if (!leaves || !has_room || !is_inside || is_named) continue;
+          is_named = true;
           labelled.push_back(end);
           labels += fmt::format("<text class=\"tick\" x=\"{:.0f}\" y=\"{:.0f}\">{}</text>", end[0] + 4.0,
                                 end[1] - 4.0, name);

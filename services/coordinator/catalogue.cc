@@ -39,7 +39,9 @@ Json ToJson(const RequirementOutcome& one) {
           {"failures", one.failures},
           {"success_lower", bound(one.success_lower)},
           {"success_upper", bound(one.success_upper)},
-          {"verdict", one.verdict}};
+          {"verdict", one.verdict},
+          {"bound", bound(one.bound)},
+          {"limits", one.limits}};
 }
 
 RequirementOutcome ToOutcome(const Json& json) {
@@ -53,7 +55,9 @@ RequirementOutcome ToOutcome(const Json& json) {
           json.at("failures"),
           bound(json.at("success_lower")),
           bound(json.at("success_upper")),
-          json.at("verdict")};
+          json.at("verdict"),
+          bound(json.value("bound", Json(nullptr))),  // states of older releases have none
+          json.value("limits", std::vector<double>())};
 }
 
 CatalogueEntry ParseState(const std::string& text) {

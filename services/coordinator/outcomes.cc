@@ -18,7 +18,8 @@ std::vector<RequirementOutcome> OutcomesOf(const CampaignSummary& summary) {
     const RequirementSummary& one = summary.requirements[i];
     outcomes.push_back({one.metric, RequirementWords(one), one.probability, one.n, one.failures,
                         one.success_lower, one.success_upper,
-                        i < standing.size() ? standing[i].verdict : one.verdict});
+                        i < standing.size() ? standing[i].verdict : one.verdict, one.bound,
+                        one.low_limit ? std::vector{*one.low_limit, one.limit} : std::vector{one.limit}});
   }
   for (const LoadCheck& check : summary.load_checks)
     if (check.failures > 0)

@@ -2,9 +2,13 @@
 
 #include <algorithm>
 #include <cctype>
+#include <cmath>
+#include <limits>
 #include <map>
+#include <optional>
 
 #include "core/pages/html_parts.h"
+#include "core/results/metric_catalogue.h"
 #include "core/results/text.h"
 #include "services/web/pages.h"
 #include "services/web/web_parts.h"
@@ -15,21 +19,13 @@ namespace {
 constexpr std::size_t kMostPoints = 60;
 /// On the page of all requirements.
 constexpr std::size_t kMostInAll = 20, kMostCharts = 30;
-constexpr char kChartWords[] =
-    "Share of flights that meet the requirement, with its confidence bounds, by campaign in the order of "
-    "launching. The dashed line is the share that is required. The letter is the verdict’s first: P pass, "
-    "F fail, I inconclusive, N not evidence, S study. The version is the label <code>commit</code>.";
+constexpr char kLetters[] =
+    "The letter is the verdict’s first: P pass, F fail, I inconclusive, N not evidence, S study. The version "
+    "is the label <code>commit</code>.";
 
 struct Point {
   const CampaignRow* row;
   const RequirementOutcome* outcome;
-  double met() const {
-    return outcome->n == 0 ? 0.0
-                           : 1.0 - static_cast<double>(outcome->failures) / static_cast<double>(outcome->n);
-  }
-  double low() const {
-    return std::min({outcome->success_lower.value_or(met()), met(), outcome->probability});
-  }
 };
 
 /// The label by which a reader knows the version, or the first digits of the id.
@@ -60,39 +56,105 @@ std::vector<Point> PointsOf(const std::vector<const CampaignRow*>& rows, const s
   return points;
 }
 
-std::string TrendChart(const std::vector<Point>& points) {
-  constexpr double kLeft = 62.0, kRight = 990.0, kTop = 14.0, kBottom = 230.0, kHeight = 320.0;
-  double least = 1.0;
-  for (const Point& point : points) least = std::min(least, point.low());
-  least = std::max(0.0, least - 0.05 * (1.0 - least) - 1e-6);
-  const auto y = [&](double share) { return kBottom - (share - least) / (1.0 - least) * (kBottom - kTop); };
+/// Of a campaign in a chart: NaN without a value.
+struct Mark {
+  double value = std::nan("");
+  std::optional<double> low, high;  ///< what is sure of it
+  std::vector<double> limits;
+};
+
+struct Trend {
+  const char* title;
+  const char* words;
+  double low, high;  ///< of the scale
+  double factor;     ///< of what its labels show
+  std::string unit;
+  std::vector<Mark> marks;
+};
+
+/// The share of flights that meet the requirement.
+Trend TrendOfShares(const std::vector<Point>& points) {
+  Trend trend{
+      "Share of flights that meet the requirement",
+      "Share of flights that meet the requirement, with its confidence bounds, by campaign in the order "
+      "of launching. The dashed line is the share that is required. ",
+      1.0,
+      1.0,
+      100.0,
+      " %",
+      {}};
+  for (const auto& [row, one] : points) {
+    const double met =
+        one->n == 0 ? 0.0 : 1.0 - static_cast<double>(one->failures) / static_cast<double>(one->n);
+    trend.low = std::min({trend.low, one->success_lower.value_or(met), met, one->probability});
+    trend.marks.push_back({met, one->success_lower, one->success_upper, {one->probability}});
+  }
+  trend.low = std::max(0.0, trend.low - 0.05 * (1.0 - trend.low) - 1e-6);
+  return trend;
+}
+
+/// The metric's bound; no marks if no campaign has one.
+Trend TrendOfBounds(const std::vector<Point>& points) {
+  const std::string unit = DescribeMetric(points.front().outcome->metric).unit;
+  Trend trend{
+      "Bound against limit",
+      "The bound that the required share of flights keeps, in the metric’s unit, by campaign in the "
+      "order of launching. The dashed line is the limit. A letter on the lower edge has no bound: the "
+      "cases were too few, or too many flights were lost. ",
+      std::numeric_limits<double>::infinity(),
+      -std::numeric_limits<double>::infinity(),
+      1.0,
+      unit.empty() ? "" : " " + unit,
+      {}};
+  bool has_bound = false;
+  for (const auto& [row, one] : points) {
+    has_bound |= one->bound.has_value();
+    trend.marks.push_back({one->bound.value_or(std::nan("")), {}, {}, one->limits});
+    for (const double value : one->limits) {
+      trend.low = std::min({trend.low, value, one->bound.value_or(value)});
+      trend.high = std::max({trend.high, value, one->bound.value_or(value)});
+    }
+  }
+  if (!has_bound) return {};
+  const double around = trend.high > trend.low ? 0.05 * (trend.high - trend.low) : 1.0;
+  trend.low -= around;
+  trend.high += around;
+  return trend;
+}
+
+std::string TrendChart(const std::vector<Point>& points, const Trend& trend) {
+  constexpr double kLeft = 92.0, kRight = 990.0, kTop = 14.0, kBottom = 230.0, kHeight = 320.0;
+  const double span = trend.high - trend.low;
+  const auto y = [&](double value) { return kBottom - (value - trend.low) / span * (kBottom - kTop); };
   const double step = (kRight - kLeft) / static_cast<double>(points.size());
   std::string svg = fmt::format(
-      "<svg class=\"chart trend\" viewBox=\"0 0 1000 {:.0f}\" role=\"group\" "
-      "aria-label=\"Share of flights that meet the requirement, by campaign\">\n",
-      kHeight);
+      "<svg class=\"chart trend\" viewBox=\"0 0 1000 {:.0f}\" role=\"group\" aria-label=\"{}, by "
+      "campaign\">\n",
+      kHeight, trend.title);
   for (int i = 0; i <= 4; ++i) {
-    const double share = least + (1.0 - least) * i / 4.0;
+    const double value = trend.low + span * i / 4.0;
     svg += fmt::format(
         "<path class=\"grid\" d=\"M{} {:.1f}H{}\"/><text class=\"tick\" text-anchor=\"end\" x=\"{}\" "
-        "y=\"{:.1f}\">{:.4g} %</text>\n",
-        kLeft, y(share), kRight, kLeft - 6.0, y(share) + 4.0, 100.0 * share);
+        "y=\"{:.1f}\">{:.4g}{}</text>\n",
+        kLeft, y(value), kRight, kLeft - 6.0, y(value) + 4.0, trend.factor * value, HtmlText(trend.unit));
   }
   for (std::size_t i = 0; i < points.size(); ++i) {
     const Point& point = points[i];
     const RequirementOutcome& one = *point.outcome;
+    const Mark& mark = trend.marks[i];
     const double x = kLeft + step * (static_cast<double>(i) + 0.5), half = std::min(14.0, 0.45 * step);
-    svg += fmt::format("<path class=\"limit\" d=\"M{:.1f} {:.1f}H{:.1f}\"/>", x - half, y(one.probability),
-                       x + half);
+    for (const double limit : mark.limits)
+      svg += fmt::format("<path class=\"limit\" d=\"M{:.1f} {:.1f}H{:.1f}\"/>", x - half, y(limit), x + half);
     svg += fmt::format("<a href=\"{}\"><title>{}: {} of {} fail, {}</title>", LinkTo(*point.row),
                        HtmlText(VersionOf(*point.row)), one.failures, one.n, HtmlText(one.verdict));
-    if (one.success_lower && one.success_upper)
-      svg += fmt::format("<path class=\"range\" d=\"M{:.1f} {:.1f}V{:.1f}\"/>", x, y(*one.success_lower),
-                         y(*one.success_upper));
+    if (mark.low && mark.high)
+      svg +=
+          fmt::format("<path class=\"range\" d=\"M{:.1f} {:.1f}V{:.1f}\"/>", x, y(*mark.low), y(*mark.high));
+    const double at = std::isfinite(mark.value) ? y(mark.value) : kBottom;
     svg += fmt::format(
         "<circle class=\"{}\" cx=\"{:.1f}\" cy=\"{:.1f}\" r=\"8\"/><text class=\"letter\" "
         "text-anchor=\"middle\" x=\"{:.1f}\" y=\"{:.1f}\">{}</text></a>",
-        HtmlText(one.verdict), x, y(point.met()), x, y(point.met()) + 4.0, LetterOf(one.verdict));
+        HtmlText(one.verdict), x, at, x, at + 4.0, LetterOf(one.verdict));
     if (points.size() <= 30 || i % 2 == 0)
       svg += fmt::format(
           "<text class=\"tick\" text-anchor=\"end\" transform=\"translate({:.1f} {:.1f}) "
@@ -100,6 +162,16 @@ std::string TrendChart(const std::vector<Point>& points) {
           x + 4.0, kBottom + 14.0, HtmlText(VersionOf(*point.row)));
   }
   return svg + "</svg>\n";
+}
+
+/// Figures: the bound's, if there is one, and the share's.
+std::vector<std::string> TrendsOf(const std::vector<Point>& points) {
+  std::vector<std::string> figures;
+  for (const Trend& trend : {TrendOfBounds(points), TrendOfShares(points)})
+    if (!trend.marks.empty())
+      figures.push_back(fmt::format("<figure class=\"wide\">{}<figcaption>{}{}</figcaption></figure>\n",
+                                    TrendChart(points, trend), trend.words, kLetters));
+  return figures;
 }
 
 std::string Metrics(const CampaignIndex& index) {
@@ -119,9 +191,9 @@ std::string Metrics(const CampaignIndex& index) {
     if (++drawn > kMostCharts) continue;
     std::size_t all = 0;
     const std::vector<Point> points = PointsOf(rows, metric, kMostInAll, all);
-    html += TrendChart({points.rbegin(), points.rend()});
+    html += TrendsOf({points.rbegin(), points.rend()}).front();
   }
-  return html + "<p class=\"soft\">" + kChartWords + "</p>\n";
+  return html;
 }
 
 }  // namespace
@@ -155,10 +227,8 @@ std::string TrendPage(const CampaignIndex& index, const std::string& metric, con
                                  points[i + 1].row->id, points[i].row->id)
                    : ""});
   }
-  std::vector<Point> by_age(points.rbegin(), points.rend());
-  main += fmt::format(
-      "<figure class=\"wide\">{}<figcaption>{}{}</figcaption></figure>\n", TrendChart(by_age), kChartWords,
-      all > points.size() ? fmt::format(" The last {} of {} campaigns.", points.size(), all) : "");
+  for (const std::string& figure : TrendsOf({points.rbegin(), points.rend()})) main += figure;
+  if (all > points.size()) main += fmt::format("<p>The last {} of {} campaigns.</p>\n", points.size(), all);
   return Frame("Trend", main + table.Html());
 }
 

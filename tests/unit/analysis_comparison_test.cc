@@ -307,6 +307,27 @@ Requirement RmsBelow(double limit) {
   return {.metric = kMetric, .below = limit, .above = {}, .probability = 0.9, .consumer_risk = 0.1};
 }
 
+// Such a metric would come before all others if any change of it were infinitely large.
+TEST(ReportComparison, AMetricThatDoesNotSpreadInAIsMeasuredByTheRangeOfBoth) {
+  const std::vector<double> zeros(100, 0.0);
+  std::vector<double> sometimes = zeros;
+  for (std::size_t i = 90; i < 100; ++i) sometimes[i] = 1.0 + static_cast<double>(i - 90);
+  const CaseColumns a = Columns(Indices(100), Ramp(100, 0.0, 1.0), zeros);
+  const CaseColumns b = Columns(Indices(100), Ramp(100, 0.0, 1.0), sometimes);
+  const Campaign campaign = MakeCampaign(100);
+  for (const bool turned : {false, true}) {
+    const Comparison comparison = Compare({"A", "engine", campaign, turned ? b : a},
+                                          {"B", "engine", campaign, turned ? a : b}, {kMetric}, {}, 0.01);
+    const MetricComparison& metric = comparison.metrics[0];
+    EXPECT_EQ(metric.finding, turned ? "better" : "worse");
+    EXPECT_EQ(metric.scale_of, turned ? "spread of A" : "range of A and B");
+    if (turned) continue;
+    EXPECT_EQ(metric.scale, 10.0);
+    EXPECT_GT(metric.effect, 0.4);
+    EXPECT_LE(metric.effect, 1.0);
+  }
+}
+
 // Certain, since all pairs agree; whether it matters is another question.
 TEST(ReportComparison, ADifferenceCanBeTooSmallToMatter) {
   const CaseColumns a = Columns(Indices(100), Ramp(100, 0.0, 1.0), Ramp(100, 0.2, 0.001));
@@ -335,8 +356,8 @@ TEST(ReportComparison, ADifferenceCanBeTooSmallToMatter) {
     const Comparison comparison =
         Compare({"A", "engine", of_a, a}, {"B", "engine", of_b, b}, {kMetric}, {}, one.share);
     EXPECT_EQ(comparison.metrics[0].finding, one.finding);
-    EXPECT_NEAR(comparison.metrics[0].least, one.least, 1e-12);
-    EXPECT_EQ(comparison.metrics[0].scale_is_limit, !one.requirements.empty());
+    EXPECT_NEAR(comparison.practical_share * comparison.metrics[0].scale, one.least, 1e-12);
+    EXPECT_EQ(comparison.metrics[0].scale_of, one.requirements.empty() ? "spread of A" : "limit");
     EXPECT_EQ(nlohmann::json::parse(ComparisonJson(comparison))["practical_share"], one.share);
     const bool small = one.finding == std::string(kTooSmall);
     EXPECT_EQ(comparison.sentence.find("In 1 the difference is certain but too small to matter: less than") !=

@@ -146,7 +146,7 @@ CatalogueEntry Passed(char letter) {
   entry.verdict = "pass";
   entry.engine = EngineVersion();
   entry.attempts = 4;
-  entry.requirements = {{"q_max_pa", "words", 0.9, 97, 1, {}, {}, "pass"}};
+  entry.requirements = {{"q_max_pa", "words", 0.9, 97, 1, {}, {}, "pass", 91.5, {80.0, 95.25}}};
   return entry;
 }
 
@@ -162,6 +162,7 @@ TEST_F(ServiceRules, ARepairedCampaignHasNoVerdictAndTheOthersKeepTheirs) {
     EXPECT_THAT(At('a').distrusted, ElementsAre("node1"));
     EXPECT_EQ(At('b').verdict, "pass");
     EXPECT_EQ(At('b').conflicts, 2u);
+    EXPECT_EQ(At('b').requirements, Passed('b').requirements);
     Start();
   }
   service_->Repair(Id('a'), "node2");

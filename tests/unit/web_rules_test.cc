@@ -89,25 +89,50 @@ TEST(Trend, EachPointHasItsOwnShareAndItsOwnLimit) {
     std::snprintf(text, sizeof text, "%.1f", 230.0 - (share - least) / (1.0 - least) * 216.0);
     return std::string(text);
   };
-  EXPECT_THAT(page, HasSubstr("<circle class=\"pass\" cx=\"294.0\" cy=\"" + y(0.9) + "\""));
-  EXPECT_THAT(page, HasSubstr("<circle class=\"fail\" cx=\"758.0\" cy=\"" + y(0.6) + "\""));
+  EXPECT_THAT(page, HasSubstr("<circle class=\"pass\" cx=\"316.5\" cy=\"" + y(0.9) + "\""));
+  EXPECT_THAT(page, HasSubstr("<circle class=\"fail\" cx=\"765.5\" cy=\"" + y(0.6) + "\""));
   EXPECT_THAT(page, AllOf(HasSubstr(">P</text></a>"), HasSubstr(">F</text></a>")));
-  EXPECT_THAT(page, HasSubstr("<path class=\"limit\" d=\"M280.0 " + y(0.5)));
-  EXPECT_THAT(page, HasSubstr("<path class=\"limit\" d=\"M744.0 " + y(0.95)));
-  EXPECT_THAT(page, HasSubstr("d=\"M294.0 " + y(0.8) + "V" + y(0.95)));
+  EXPECT_THAT(page, HasSubstr("<path class=\"limit\" d=\"M302.5 " + y(0.5)));
+  EXPECT_THAT(page, HasSubstr("<path class=\"limit\" d=\"M751.5 " + y(0.95)));
+  EXPECT_THAT(page, HasSubstr("d=\"M316.5 " + y(0.8) + "V" + y(0.95)));
   for (const double share : {0.475, 0.60625, 0.7375, 0.86875, 1.0})
-    EXPECT_THAT(page, HasSubstr("<path class=\"grid\" d=\"M62 " + y(share) + "H990\"/>")) << share;
+    EXPECT_THAT(page, HasSubstr("<path class=\"grid\" d=\"M92 " + y(share) + "H990\"/>")) << share;
   EXPECT_THAT(page, HasSubstr("id=" + first.id + "&amp;id=" + second.id + "\">to the one before"));
+}
+
+// Its scale reaches 5 % beyond the least and the greatest bound or limit.
+TEST(Trend, ABoundStandsAgainstItsOwnLimits) {
+  CampaignRow rows[] = {Row(1), Row(2), Row(3)};
+  rows[0].requirements = {{"q_max_pa", "words", 0.5, 10, 1, {}, {}, "pass", 110.0, {120.0}}};
+  rows[1].requirements = {{"q_max_pa", "words", 0.5, 10, 4, {}, {}, "fail", 105.0, {90.0, 104.0}}};
+  rows[2].requirements = {{"q_max_pa", "words", 0.5, 10, 4, {}, {}, "inconclusive", {}, {100.0}}};
+  const std::string page = TrendPage(IndexOf({rows[0], rows[1], rows[2]}), "q_max_pa", "");
+  const std::string chart = page.substr(0, page.find("Share of flights that meet"));
+  const auto y = [](double value) {
+    char text[16];
+    std::snprintf(text, sizeof text, "%.1f", 230.0 - (value - 88.5) / 33.0 * 216.0);
+    return std::string(text);
+  };
+  EXPECT_THAT(chart, HasSubstr("<circle class=\"pass\" cx=\"241.7\" cy=\"" + y(110.0) + "\""));
+  EXPECT_THAT(chart, HasSubstr("<circle class=\"fail\" cx=\"541.0\" cy=\"" + y(105.0) + "\""));
+  EXPECT_THAT(chart, HasSubstr("<circle class=\"inconclusive\" cx=\"840.3\" cy=\"230.0\""));
+  for (const std::string& limit :
+       {"M227.7 " + y(120.0), "M527.0 " + y(90.0), "M527.0 " + y(104.0), "M826.3 " + y(100.0)})
+    EXPECT_THAT(chart, HasSubstr("<path class=\"limit\" d=\"" + limit)) << limit;
+  EXPECT_THAT(chart, HasSubstr(">121.5 Pa</text>"));
+  rows[0].requirements[0].bound = rows[1].requirements[0].bound = {};
+  const std::string without = TrendPage(IndexOf({rows[0], rows[1], rows[2]}), "q_max_pa", "");
+  EXPECT_THAT(without, Not(HasSubstr("Bound against limit"))) << "where none is known";
 }
 
 TEST(Trend, MetricsAreCountedOfCampaignsThatHaveEnded) {
   CampaignRow flying = Row(3), other = Row(4, "alpha");
   flying.has_ended = false;
   const std::string page = TrendPage(IndexOf({Row(1), Row(2), flying, other}), "", "");
-  EXPECT_THAT(page,
-              HasSubstr(">q_max_pa</a></h2>\n<p class=\"soft\">2 campaigns</p>\n<svg class=\"chart trend\""));
-  EXPECT_THAT(page,
-              HasSubstr(">alpha</a></h2>\n<p class=\"soft\">1 campaign</p>\n<svg class=\"chart trend\""));
+  EXPECT_THAT(page, HasSubstr(">q_max_pa</a></h2>\n<p class=\"soft\">2 campaigns</p>\n<figure "
+                              "class=\"wide\"><svg class=\"chart trend\""));
+  EXPECT_THAT(page, HasSubstr(">alpha</a></h2>\n<p class=\"soft\">1 campaign</p>\n<figure "
+                              "class=\"wide\"><svg class=\"chart trend\""));
 }
 
 TEST(Search, LooksAtEachLabelAtTheOwnerAndAtTheState) {
