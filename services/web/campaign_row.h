@@ -19,8 +19,8 @@ struct RequirementOutcome {
   std::int64_t failures = 0;
   std::optional<double> success_lower, success_upper;  ///< of the probability to meet it
   std::string verdict;                                 ///< that stands
-  std::optional<double> bound;                         ///< in the metric's unit, see RequirementSummary
-  std::vector<double> limits;                          ///< one, or of a range both
+  std::optional<double> bound = {};                    ///< in the metric's unit, see RequirementSummary
+  std::vector<double> limits = {};                     ///< one, or of a range both
 
   bool operator==(const RequirementOutcome&) const = default;
 };
