@@ -3,10 +3,10 @@
 #include <algorithm>
 #include <cctype>
 #include <cmath>
-#include <limits>
 #include <map>
 #include <optional>
 
+#include "core/pages/chart_scale.h"
 #include "core/pages/html_parts.h"
 #include "core/results/metric_catalogue.h"
 #include "core/results/text.h"
@@ -66,10 +66,17 @@ struct Mark {
 struct Trend {
   const char* title;
   const char* words;
-  double low, high;  ///< of the scale
-  double factor;     ///< of what its labels show
+  ChartAxis axis;
   std::string unit;
-  std::vector<Mark> marks;
+  ChartRange range = {};
+  std::vector<Mark> marks = {};
+
+  void Add(const Mark& mark) {
+    marks.push_back(mark);
+    range.Add(mark.limits, false);
+    for (const double value : {mark.value, mark.low.value_or(mark.value), mark.high.value_or(mark.value)})
+      range.Add(value, false);
+  }
 };
 
 /// The share of flights that meet the requirement.
@@ -78,18 +85,13 @@ Trend TrendOfShares(const std::vector<Point>& points) {
       "Share of flights that meet the requirement",
       "Share of flights that meet the requirement, with its confidence bounds, by campaign in the order "
       "of launching. The dashed line is the share that is required. ",
-      1.0,
-      1.0,
-      100.0,
-      " %",
-      {}};
+      {.label = "", .high = 1.0, .percent = true},
+      ""};
   for (const auto& [row, one] : points) {
     const double met =
         one->n == 0 ? 0.0 : 1.0 - static_cast<double>(one->failures) / static_cast<double>(one->n);
-    trend.low = std::min({trend.low, one->success_lower.value_or(met), met, one->probability});
-    trend.marks.push_back({met, one->success_lower, one->success_upper, {one->probability}});
+    trend.Add({met, one->success_lower, one->success_upper, {one->probability}});
   }
-  trend.low = std::max(0.0, trend.low - 0.05 * (1.0 - trend.low) - 1e-6);
   return trend;
 }
 
@@ -101,43 +103,31 @@ Trend TrendOfBounds(const std::vector<Point>& points) {
       "The bound that the required share of flights keeps, in the metric’s unit, by campaign in the "
       "order of launching. The dashed line is the limit. A letter on the lower edge has no bound: the "
       "cases were too few, or too many flights were lost. ",
-      std::numeric_limits<double>::infinity(),
-      -std::numeric_limits<double>::infinity(),
-      1.0,
-      unit.empty() ? "" : " " + unit,
-      {}};
+      {.label = ""},
+      unit.empty() ? "" : " " + unit};
   bool has_bound = false;
   for (const auto& [row, one] : points) {
     has_bound |= one->bound.has_value();
-    trend.marks.push_back({one->bound.value_or(std::nan("")), {}, {}, one->limits});
-    for (const double value : one->limits) {
-      trend.low = std::min({trend.low, value, one->bound.value_or(value)});
-      trend.high = std::max({trend.high, value, one->bound.value_or(value)});
-    }
+    trend.Add({one->bound.value_or(std::nan("")), {}, {}, one->limits});
   }
-  if (!has_bound) return {};
-  const double around = trend.high > trend.low ? 0.05 * (trend.high - trend.low) : 1.0;
-  trend.low -= around;
-  trend.high += around;
+  if (!has_bound) trend.marks.clear();
   return trend;
 }
 
 std::string TrendChart(const std::vector<Point>& points, const Trend& trend) {
   constexpr double kLeft = 92.0, kRight = 990.0, kTop = 14.0, kBottom = 230.0, kHeight = 320.0;
-  const double span = trend.high - trend.low;
-  const auto y = [&](double value) { return kBottom - (value - trend.low) / span * (kBottom - kTop); };
+  const ChartScale scale(trend.axis, trend.range.low, trend.range.high, kBottom, kTop, 4);
+  const auto y = [&](double value) { return scale.At(value); };
   const double step = (kRight - kLeft) / static_cast<double>(points.size());
   std::string svg = fmt::format(
       "<svg class=\"chart trend\" viewBox=\"0 0 1000 {:.0f}\" role=\"group\" aria-label=\"{}, by "
       "campaign\">\n",
       kHeight, trend.title);
-  for (int i = 0; i <= 4; ++i) {
-    const double value = trend.low + span * i / 4.0;
+  for (const Tick& tick : scale.ticks())
     svg += fmt::format(
         "<path class=\"grid\" d=\"M{} {:.1f}H{}\"/><text class=\"tick\" text-anchor=\"end\" x=\"{}\" "
-        "y=\"{:.1f}\">{:.4g}{}</text>\n",
-        kLeft, y(value), kRight, kLeft - 6.0, y(value) + 4.0, trend.factor * value, HtmlText(trend.unit));
-  }
+        "y=\"{:.1f}\">{}{}</text>\n",
+        kLeft, y(tick.value), kRight, kLeft - 6.0, y(tick.value) + 4.0, tick.label, HtmlText(trend.unit));
   for (std::size_t i = 0; i < points.size(); ++i) {
     const Point& point = points[i];
     const RequirementOutcome& one = *point.outcome;
