@@ -27,9 +27,10 @@ int MonthOf(const std::string& time);
 /// Precondition: all have a month.
 void WeighByMonth(std::vector<DatedWeather>& soundings);
 
-/// What a flight meets that names none of them: every 100 m from the lowest level to the highest, the weighted
-/// means of both winds and of the logarithms of pressure and density. Below and above its levels each is
-/// continued as a flight meets it. Without air in any of them the mean has none. Two or more soundings.
+/// What a flight meets that names none of them: every 100 m from the lowest level to the highest, the
+/// weighted means of both winds and of the logarithms of pressure and density. Below and above its levels
+/// each is continued as a flight meets it. Without air in any of them the mean has none. Two or more
+/// soundings.
 WeatherTable MeanWeather(const std::vector<DatedWeather>& soundings);
 
 }  // namespace dispersa

@@ -57,15 +57,16 @@ std::vector<int> Counts(const Campaign& campaign) {
 }
 
 TEST(Ensemble, IsDrawnByEveryMethod) {
-  for (const auto& [draw, expected] :
-       {std::pair("uniform", std::vector<int>{0, 300, 300, 300, 300}), {"by_month", {0, 300, 300, 300, 300}}}) {
+  for (const auto& [draw, expected] : {std::pair("uniform", std::vector<int>{0, 300, 300, 300, 300}),
+                                       {"by_month", {0, 300, 300, 300, 300}}}) {
     for (const char* method : {"monte_carlo", "latin_hypercube", "sobol"}) {
       const Ensemble files(draw);
       files.Edit("campaign.yaml", "method: monte_carlo, cases: 100",
                  std::string("method: ") + method + ", cases: 1200");
       const std::vector<int> counts = Counts(files.Load());
       for (std::size_t i = 0; i < counts.size(); ++i)
-        EXPECT_NEAR(counts[i], expected[i], method == std::string("monte_carlo") ? 60 : 3) << draw << method << i;
+        EXPECT_NEAR(counts[i], expected[i], method == std::string("monte_carlo") ? 60 : 3)
+            << draw << method << i;
     }
   }
   // Three of one month and one of another.

@@ -17,8 +17,8 @@ DatedWeather Member(const std::string& time, double north_m_s, double east_m_s, 
 TEST(MonthOf, OfDaysAndHours) {
   EXPECT_EQ(MonthOf("2020-01-15"), 1);
   EXPECT_EQ(MonthOf("1999-12-31T24"), 12);
-  for (const char* text : {"", "2020-13-01", "2020-00-01", "2020-01-00", "2020-01-32", "2020-1-15", "2020-01-15T25",
-                           "2020-01-15T1", "2020/01/15", "2020-01-15 12", "2o20-01-15"})
+  for (const char* text : {"", "2020-13-01", "2020-00-01", "2020-01-00", "2020-01-32", "2020-1-15",
+                           "2020-01-15T25", "2020-01-15T1", "2020/01/15", "2020-01-15 12", "2o20-01-15"})
     EXPECT_EQ(MonthOf(text), 0) << text;
 }
 
@@ -33,7 +33,8 @@ TEST(WeighByMonth, MonthsAreEquallyLikely) {
 }
 
 TEST(MeanWeather, IsOfWindsByWeight) {
-  std::vector<DatedWeather> all = {Member("2020-01-15", 8.0, -2.0, 20e3), Member("2020-07-15", -4.0, 10.0, 20e3),
+  std::vector<DatedWeather> all = {Member("2020-01-15", 8.0, -2.0, 20e3),
+                                   Member("2020-07-15", -4.0, 10.0, 20e3),
                                    Member("2020-07-16", -4.0, 10.0, 10050.0)};
   const WeatherTable mean = MeanWeather(all);
   EXPECT_FALSE(mean.has_air());
@@ -51,7 +52,8 @@ TEST(MeanWeather, IsOfWindsByWeight) {
 }
 
 TEST(MeanWeather, IsOfTheLogarithmsOfTheAir) {
-  std::vector<DatedWeather> all = {Member("2020-01-15", 0.0, 0.0, 20e3), Member("2020-07-15", 0.0, 0.0, 20e3)};
+  std::vector<DatedWeather> all = {Member("2020-01-15", 0.0, 0.0, 20e3),
+                                   Member("2020-07-15", 0.0, 0.0, 20e3)};
   all[0].table.pressure_pa = {100e3, 5e3};
   all[0].table.density_kg_m3 = {1.3, 0.08};
   WeatherTable mean = MeanWeather(all);  // the second flies the standard
