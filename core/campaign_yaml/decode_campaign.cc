@@ -318,10 +318,10 @@ class CampaignDescription {
   void WarnOfShortWeather(const Part& whole) {
     if (!flies() || (!campaign_.wind_table && campaign_.soundings.empty())) return;
     const double of_max_q_m = AltitudeOfMaxQ(campaign_);
-    if (campaign_.wind_table && campaign_.wind_table->altitude_m.back() < of_max_q_m)
-      WarnOfShort(whole, "wind_profile", campaign_.wind_table->altitude_m.back(), of_max_q_m);
+    if (campaign_.wind_table && WindTop(*campaign_.wind_table) < of_max_q_m)
+      WarnOfShort(whole, "wind_profile", WindTop(*campaign_.wind_table), of_max_q_m);
     for (std::size_t i = 0; i < campaign_.soundings.size(); ++i)
-      if (const double top_m = campaign_.soundings[i].table.altitude_m.back(); top_m < of_max_q_m)
+      if (const double top_m = WindTop(campaign_.soundings[i].table); top_m < of_max_q_m)
         WarnOfShort(whole, "weather.ensemble[" + std::to_string(i) + "]", top_m, of_max_q_m);
   }
   void WarnOfShort(const Part& whole, const std::string& key, double top_m, double of_max_q_m) {

@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <array>
+#include <cmath>
 
 #include "core/environment/surroundings.h"
 #include "core/input/fields.h"
@@ -76,6 +77,24 @@ WeatherTable MeanWeather(const std::vector<DatedWeather>& soundings) {
     mean.density_kg_m3.push_back(Exp(log_density));
   }
   return mean;
+}
+
+double WindTop(const WeatherTable& table) {
+  constexpr double kRounding_m_s = 2e-3, kCalm_m_s = 0.1;
+  const std::vector<double>& z = table.altitude_m;
+  for (std::size_t top = 0; top < z.size(); ++top) {
+    const double north = table.north_m_s[top], east = table.east_m_s[top];
+    if (std::max(std::fabs(north), std::fabs(east)) < kCalm_m_s) continue;
+    std::size_t i = top + 1;
+    const auto fades = [&] {
+      const double left = std::max(0.0, 1.0 - (z[i] - z[top]) / kWindFade_m);
+      return std::fabs(table.north_m_s[i] - left * north) < kRounding_m_s &&
+             std::fabs(table.east_m_s[i] - left * east) < kRounding_m_s;
+    };
+    while (i < z.size() && fades()) ++i;
+    if (i == z.size()) return z[top];
+  }
+  return z.back();
 }
 
 }  // namespace dispersa

@@ -33,4 +33,8 @@ void WeighByMonth(std::vector<DatedWeather>& soundings);
 /// soundings.
 WeatherTable MeanWeather(const std::vector<DatedWeather>& soundings);
 
+/// Where a table's wind ends: its last altitude, or the one above which it only fades, as a sounding's does
+/// whose air goes on.
+double WindTop(const WeatherTable& table);
+
 }  // namespace dispersa

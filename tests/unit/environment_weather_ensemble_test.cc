@@ -67,4 +67,18 @@ TEST(MeanWeather, IsOfTheLogarithmsOfTheAir) {
   EXPECT_NEAR(mean.density_kg_m3[0] / Sqrt(1.3 * 1.1), 1.0, 1e-10);
 }
 
+TEST(WindTop, IsWhereTheWindOnlyFades) {
+  WeatherTable table;
+  table.altitude_m = {0.0, 2000.0, 5000.0, 7000.0, 18000.0};
+  table.north_m_s = {1.0, -4.0, -10.0, -8.0, 0.0};
+  table.east_m_s = {0.0, 0.0, 5.0, 4.0, 0.0};
+  EXPECT_EQ(WindTop(table), 5000.0);
+  table.east_m_s[3] = 4.1;
+  EXPECT_EQ(WindTop(table), 7000.0);
+  table.east_m_s[4] = 1.0;
+  EXPECT_EQ(WindTop(table), 18000.0);
+  table.north_m_s = table.east_m_s = {0.0, 0.0, 0.0, 0.0, 0.0};
+  EXPECT_EQ(WindTop(table), 18000.0);
+}
+
 }  // namespace dispersa::environment_weather_ensemble_test
