@@ -17,6 +17,9 @@
 namespace dispersa {
 namespace {
 
+/// Longer lists of values are told by their number.
+constexpr std::size_t kListedValues = 20;
+
 /// Mean, standard deviation and kurtosis (fourth central moment over the squared variance).
 struct Moments {
   double mean = 0.0;
@@ -176,9 +179,15 @@ std::string Words(const Dispersion& dispersion, double unit, const std::string& 
       break;
     case Distribution::kValues:
       words = "one of";
-      for (const double value : d.values) words += " " + text(value);
+      if (d.values.size() > kListedValues)
+        words += fmt::format(" {} values, {} to {}", d.values.size(), text(d.values.front()),
+                             text(d.values.back()));
+      else
+        for (const double value : d.values) words += " " + text(value);
       words += suffix;
-      if (!d.weights.empty()) {
+      if (!d.weights.empty() && d.values.size() > kListedValues) {
+        words += " by weight";
+      } else if (!d.weights.empty()) {
         words += " with weights";
         for (const double weight : d.weights) words += " " + ReadableText(weight);
       }

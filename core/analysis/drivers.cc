@@ -44,6 +44,9 @@ struct Feature {
   std::vector<std::string> same_as = {};
 };
 
+/// Of one number with an order: neither a pair, nor the number of something.
+bool HasOrder(const Feature& feature) { return !feature.name.starts_with("m ") && feature.name != "which"; }
+
 /// Equal ranks or mirrored ones.
 bool RankAlike(const Ranked& a, const Ranked& b) {
   const double mirror = static_cast<double>(a.size()) + 1.0;
@@ -96,6 +99,10 @@ std::vector<Feature> Features(const Campaign& campaign, const CaseColumns& cases
         Unwrapped(Pick(cases.inputs[static_cast<std::size_t>(input)], rows), circle);
     if (!Varies(x)) continue;
     Ranked ranked(x);
+    if (column.allowed.is_whole) {
+      features.push_back({name, key, "which", std::move(ranked)});
+      continue;
+    }
     const auto same = std::find_if(features.begin(), features.end(), [&](const Feature& other) {
       return other.name == "x" && RankAlike(other.values, ranked);
     });
@@ -218,15 +225,13 @@ MetricDrivers DriversOf(const std::string& metric, const CaseColumns& cases, Fea
                    [](const Candidate& a, const Candidate& b) { return a.index > b.index; });
   std::vector<const Ranked*> named;
   for (const Candidate& candidate : candidates) {
-    if (!features[candidate.indexed].name.starts_with("m "))
-      named.push_back(&features[candidate.named].values);
+    if (HasOrder(features[candidate.indexed])) named.push_back(&features[candidate.named].values);
   }
   const std::vector<double> partial = PartialRankCorrelations(named, ranked_y);
   std::size_t regressed = 0;
   std::vector<double> correlations;
   for (const Candidate& candidate : candidates)
-    correlations.push_back(features[candidate.indexed].name.starts_with("m ") ? kUndefined
-                                                                              : partial[regressed++]);
+    correlations.push_back(HasOrder(features[candidate.indexed]) ? partial[regressed++] : kUndefined);
   // What explains most is taken first, and the others only explain what it leaves.
   std::vector<double> rest = y;
   double left = 1.0;
@@ -297,7 +302,7 @@ std::vector<FailurePair> PairsOf(const std::vector<Feature>& features, const std
   std::vector<const Feature*> single;
   std::vector<std::vector<double>> inside, outside;
   for (const Feature& feature : features) {
-    if (feature.name.starts_with("m ")) continue;
+    if (!HasOrder(feature)) continue;
     single.push_back(&feature);
     inside.push_back(ScoresOf(feature.values, marked, true));
     outside.push_back(ScoresOf(feature.values, marked, false));
@@ -389,7 +394,8 @@ std::vector<FailureDrivers> FindFailureDrivers(const Campaign& campaign, const C
     static const std::vector<Feature> kNone;
     const std::vector<Feature>& features = rows.size() < kLeastFlights ? kNone : known.Of(rows);
     std::vector<double> p;
-    for (const Feature& feature : features) p.push_back(RankSumP(feature.values, marked));
+    for (const Feature& feature : features)
+      p.push_back(feature.name == "which" ? 1.0 : RankSumP(feature.values, marked));
     const std::vector<double> rates = FalseDiscoveryRates(p);
     for (std::size_t i = 0; i < features.size(); ++i) {
       if (rates[i] > kFalseDiscoveryRate) continue;

@@ -18,14 +18,16 @@ struct Driver {
   /// Inputs that rank the flights in the same or in reverse order, so they cannot be told apart. One
   /// dispersion may feed two inputs.
   std::vector<std::string> same_as = {};
-  std::string feature;  ///< the form with the largest share: "x", "|x|" (about the nominal), "sin x", "cos x"
+  /// The form with the largest share: "x", "|x|" (about the nominal), "sin x", "cos x"; "which" of an input
+  /// that is a number of something, whose order means nothing.
+  std::string feature;
   /// Share of the metric's variance that the family explains when the families before it are known. `low` and
   /// `high` are its 95 % interval. For independent inputs it is the first-order Sobol index. All shares sum
   /// to 1 at most.
   double index = 0.0;
   double low = 0.0;
   double high = 0.0;
-  double partial = 0.0;  ///< partial rank correlation of the feature; undefined of a pair
+  double partial = 0.0;  ///< partial rank correlation of the feature; undefined of a pair, and of "which"
   /// Other inputs that are drawn with it, so that either may stand for the other.
   std::vector<std::string> correlated_with = {};
 };
@@ -60,7 +62,8 @@ struct FailurePair {
   double false_discovery_rate = 1.0;
 };
 
-/// Inputs that distinguish the failing flights of a requirement from the others of the first 50,000. If fewer
+/// Inputs with an order that distinguish the failing flights of a requirement from the others of the first
+/// 50,000. If fewer
 /// than ten fail, the tenth of the flights nearest to the limit stands for them, failing ones included.
 struct FailureDrivers {
   std::string metric;

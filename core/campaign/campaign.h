@@ -11,7 +11,7 @@
 
 #include "core/campaign/derived_input.h"
 #include "core/control/autopilot_config.h"
-#include "core/environment/weather_table.h"
+#include "core/environment/weather_ensemble.h"
 #include "core/environment/wind.h"
 #include "core/environment/wind_statistics.h"
 #include "core/flight/flight_course.h"
@@ -124,6 +124,7 @@ struct Campaign {
   std::vector<DerivedInput> derived;              ///< set after all draws of a case
   std::optional<WindStatistics> wind_statistics;  ///< climatology of the profile draws
   std::optional<WeatherTable> wind_table;         ///< a profile that every flight meets, the nominal too
+  std::vector<DatedWeather> soundings;            ///< or those of which each flight draws one
   std::vector<OwnMetric> own_metrics;
   std::vector<Requirement> requirements;
   Verdicts verdicts;

@@ -58,6 +58,7 @@ class DispersionFields {
       case Draws::kWind:
       case Draws::kGust:
       case Draws::kWindProfile:
+      case Draws::kWeather:
       case Draws::kTurbulence:
       case Draws::kStuckNozzle:
       case Draws::kAeroUncertainty:
@@ -68,6 +69,7 @@ class DispersionFields {
       if (row.draws == Draws::kPayloadMass) PayloadMass(map, row);
       if (row.draws == Draws::kWind) WindSpeed(map, row);
       if (row.draws == Draws::kWindProfile) WindProfile(map, row);
+      if (row.draws == Draws::kWeather) Weather(map, row);
       if (row.draws == Draws::kTurbulence) Turbulence(map, row);
       if (row.draws == Draws::kStuckNozzle) StuckNozzle(map, row);
       if (row.draws == Draws::kAeroUncertainty) AeroUncertainties(map, row);
@@ -459,6 +461,31 @@ class DispersionFields {
                  "either table: FILE.csv or statistics: FILE.csv");
   }
 
+  void Weather(Fields& map, const DispersionRow& row) {
+    std::vector<DatedWeather>& soundings = campaign_.soundings;
+    map.ListOrFolder("ensemble", 2, kMostSoundings, soundings, "soundings, or the folder of their files");
+    bool by_month = false;
+    map.Choice<bool>("draw", {{"uniform", false}, {"by_month", true}}, by_month,
+                     "each sounding is equally likely, or each month", false);
+    bool has_dates = by_month;
+    for (std::size_t i = 0; by_month && i < soundings.size(); ++i) {
+      if (MonthOf(soundings[i].time) > 0) continue;
+      has_dates = false;
+      if (soundings[i].time.empty())
+        map.Refuse("ensemble[" + std::to_string(i) + "]", "the sounding has no date, which by_month needs",
+                   "a date in the file, or in its name as YYYY-MM-DD or YYYYMMDD; or draw: uniform");
+    }
+    if (has_dates) WeighByMonth(soundings);
+    ScalarDistribution number = Constant(0.0);
+    number.kind = Distribution::kValues;
+    number.values.clear();
+    for (const DatedWeather& one : soundings) {
+      number.values.push_back(static_cast<double>(number.values.size() + 1));
+      if (has_dates) number.weights.push_back(one.weight);
+    }
+    if (!soundings.empty()) Add("weather", number, row.columns);
+  }
+
   // Correlated normals: the winds of the levels themselves. Their altitudes go with them, so that a row of
   // inputs is a profile.
   void DrawProfile(const WindStatistics& statistics, const DispersionRow& row) {
@@ -542,7 +569,20 @@ class DispersionFields {
 
 void DescribeDispersions(Fields& fields, bool is_sound, Campaign& campaign) {
   DispersionFields dispersions(is_sound, campaign);
-  for (const DispersionRow& row : DispersionRows()) dispersions.Describe(fields, row, row.key);
+  for (const DispersionRow& row : DispersionRows()) {
+    const auto describe = [&] { dispersions.Describe(fields, row, row.key); };
+    // Measured winds have jet streams of their own.
+    if (row.draws != Draws::kWind && row.draws != Draws::kWindProfile)
+      describe();
+    else
+      fields.Either({{Has("weather"),
+                      [&] {
+                        fields.Misplaced(
+                            row.key, {}, "'{}' is given beside 'weather', which is the whole wind",
+                            "one of them; a gust, turbulence and density may stand beside 'weather'");
+                      }},
+                     {Else(), describe}});
+  }
 }
 
 }  // namespace dispersa

@@ -138,6 +138,8 @@ std::vector<DispersionRow> MakeRows() {
            "clockwise, of the vehicle and the inertial unit; not measured"));
   add(BodyAxes("initial_attitude_error", Draws::kOnce, kAngle, "initial_{body}_error_deg",
                "of the body from the program at lift-off; the inertial unit measures it"));
+  add(Row("weather", "a measured wind and air for each flight, of several", Draws::kWeather, Any({}),
+          {"weather_sounding"}));
   add({"wind",
        "jet stream",
        Draws::kWind,

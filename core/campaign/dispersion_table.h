@@ -29,6 +29,7 @@ enum class Draws {
   kWind,
   kGust,
   kWindProfile,
+  kWeather,
   kTurbulence,
   kStuckNozzle,
   kBoosters,             ///< `per: booster`, or `vehicle`: one value for all

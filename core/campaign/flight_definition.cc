@@ -128,6 +128,8 @@ FlightDefinition DefinitionOf(const Campaign& campaign) {
   definition.guidance = campaign.guidance;
   definition.velocity_reserve_m_s = problem.velocity_reserve_m_s;
   definition.wind_table = campaign.wind_table;
+  if (!campaign.soundings.empty()) definition.wind_table = MeanWeather(campaign.soundings);
+  for (const DatedWeather& sounding : campaign.soundings) definition.soundings.push_back(sounding.table);
   definition.wind_statistics = campaign.wind_statistics;
   definition.noise_seed = campaign.sampling.seed;
   definition.own_metrics = campaign.own_metrics;

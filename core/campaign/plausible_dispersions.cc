@@ -32,7 +32,7 @@ constexpr double kLowestTop_m = 5000.0;
 
 // Of a profile of wind: its greatest speed, and where it ends.
 template <typename Add>
-void CheckWind(const char* key, double speed_m_s, double top_m, const Add& add) {
+void CheckWind(const std::string& key, double speed_m_s, double top_m, const Add& add) {
   if (speed_m_s > kStrongestWind_m_s)
     add({key, fmt::format("has a wind of {:.4g} m/s", speed_m_s),
          fmt::format("up to {:g} m/s (the strongest jet streams have 100 to 120 m/s)", kStrongestWind_m_s)});
@@ -47,11 +47,11 @@ constexpr double kOfThin_m = 60000.0;
 
 // Of a measured air: whether its columns agree, and with any air of the Earth.
 template <typename Add>
-void CheckAir(const WeatherTable& table, const Add& add) {
+void CheckAir(const std::string& key, const WeatherTable& table, const Add& add) {
   if (!table.has_air()) return;
   const GasLawMiss miss = MissOfGasLaw(table);
   if (std::fabs(miss.part) > kGasLawPart)
-    add({"dispersions.wind_profile",
+    add({key,
          fmt::format("has at {:.6g} m a pressure {:.3g} times that of its density and temperature",
                      table.altitude_m[miss.level], 1.0 + miss.part),
          fmt::format("within {:g} % (the gas law of dry air; vapour makes up to 1.5 %)",
@@ -64,12 +64,22 @@ void CheckAir(const WeatherTable& table, const Add& add) {
     if (part > worst) worst = part, level = i;
   }
   if (worst > kAirPart)
-    add({"dispersions.wind_profile",
+    add({key,
          fmt::format("has at {:.6g} m a density of {:.4g} kg/m3", table.altitude_m[level],
                      AirOfLevel(table, level).density_kg_m3),
          fmt::format("within a factor of {:.2g} of the standard's, {:.4g} kg/m3 (to 60 km seasons and "
                      "latitudes change it by up to 40 %)",
                      std::exp(kAirPart), StandardAtmosphere1976(table.altitude_m[level]).density_kg_m3)});
+}
+
+template <typename Add>
+void CheckWeather(const std::string& key, const WeatherTable& table, const Add& add) {
+  double fastest_m_s = 0.0;
+  for (std::size_t i = 0; i < table.altitude_m.size(); ++i)
+    fastest_m_s = std::max(fastest_m_s, std::sqrt(table.north_m_s[i] * table.north_m_s[i] +
+                                                  table.east_m_s[i] * table.east_m_s[i]));
+  CheckWind(key, fastest_m_s, table.altitude_m.back(), add);
+  CheckAir(key, table, add);
 }
 
 std::string PathOf(const Dispersion& dispersion, int input) {
@@ -116,7 +126,9 @@ void FindUnread(const Campaign& campaign, const Add& add) {
 
 std::vector<SetInput> SetInputs(const Campaign& campaign) {
   const FlightInputs set = FarthestInputs(campaign);
-  const FlightParts parts{campaign.vehicle, campaign.autopilot, campaign.guidance, campaign.course, set};
+  const FlightParts parts{
+      campaign.vehicle,         campaign.autopilot, campaign.guidance, campaign.course, set,
+      campaign.soundings.size()};
   std::vector<SetInput> found;
   const auto add = [&](const std::string& key, int input, bool varies) {
     const Readers& readers = InputColumns()[static_cast<std::size_t>(input)].readers;
@@ -162,14 +174,9 @@ std::vector<UnusualDispersion> UnusualDispersions(const Campaign& campaign) {
       std::none_of(campaign.dispersions.begin(), campaign.dispersions.end(), draws_tables))
     add({"dispersions", "do not draw the uncertainty that the vehicle's aerodynamic tables state",
          "aerodynamic_uncertainty: {of: [ca, cn, xcp, damping]}"});
-  if (const auto& table = campaign.wind_table) {
-    double fastest_m_s = 0.0;
-    for (std::size_t i = 0; i < table->altitude_m.size(); ++i)
-      fastest_m_s = std::max(fastest_m_s, std::sqrt(table->north_m_s[i] * table->north_m_s[i] +
-                                                    table->east_m_s[i] * table->east_m_s[i]));
-    CheckWind("dispersions.wind_profile", fastest_m_s, table->altitude_m.back(), add);
-    CheckAir(*table, add);
-  }
+  if (campaign.wind_table) CheckWeather("dispersions.wind_profile", *campaign.wind_table, add);
+  for (std::size_t k = 0; k < campaign.soundings.size(); ++k)
+    CheckWeather(fmt::format("dispersions.weather.ensemble[{}]", k), campaign.soundings[k].table, add);
   if (const auto& statistics = campaign.wind_statistics) {
     double fastest_m_s = 0.0;
     for (std::size_t i = 0; i < statistics->altitude_m.size(); ++i)

@@ -100,6 +100,11 @@ void DescribeListTable(Fields& fields, const InputNode& table, bool is_sound, Ca
     ScalarDistribution values;
     values.kind = Distribution::kValues;
     ReadListed(fields, key, input, vehicle, values.values);
+    for (std::size_t i = 0; member.key == "weather_sounding" && i < values.values.size(); ++i)
+      if (values.values[i] > static_cast<double>(campaign.soundings.size()))
+        fields.Refuse(member.key + "[" + std::to_string(i) + "]",
+                      "the campaign has no sounding " + FormatNumber(values.values[i]),
+                      "0, their mean, to " + std::to_string(campaign.soundings.size()));
     campaign.dispersions.push_back({"list/" + member.key, std::move(values), {input}, false, {}, true});
   }
 }
@@ -311,10 +316,16 @@ class CampaignDescription {
   // A launch due east has the inclination of its latitude.
   // A balloon that burst too early.
   void WarnOfShortWeather(const Part& whole) {
-    if (!campaign_.wind_table || !flies()) return;
-    const double top_m = campaign_.wind_table->altitude_m.back(), of_max_q_m = AltitudeOfMaxQ(campaign_);
-    if (top_m >= of_max_q_m) return;
-    WarnOf(whole, "dispersions.wind_profile",
+    if (!flies() || (!campaign_.wind_table && campaign_.soundings.empty())) return;
+    const double of_max_q_m = AltitudeOfMaxQ(campaign_);
+    if (campaign_.wind_table && WindTop(*campaign_.wind_table) < of_max_q_m)
+      WarnOfShort(whole, "wind_profile", WindTop(*campaign_.wind_table), of_max_q_m);
+    for (std::size_t i = 0; i < campaign_.soundings.size(); ++i)
+      if (const double top_m = WindTop(campaign_.soundings[i].table); top_m < of_max_q_m)
+        WarnOfShort(whole, "weather.ensemble[" + std::to_string(i) + "]", top_m, of_max_q_m);
+  }
+  void WarnOfShort(const Part& whole, const std::string& key, double top_m, double of_max_q_m) {
+    WarnOf(whole, "dispersions." + key,
            "ends at " + FormatRounded(top_m) + " m, below the reference's greatest dynamic pressure",
            FormatRounded(of_max_q_m) + " m or more; above its end the wind fades within " +
                FormatRounded(kWindFade_m) + " m");

@@ -1,5 +1,6 @@
 #include "core/campaign_yaml/named_files.h"
 
+#include <algorithm>
 #include <cerrno>
 #include <cstring>
 #include <filesystem>
@@ -23,11 +24,14 @@ constexpr std::size_t kLargestFileOfBytes = std::size_t{32} << 20;
 
 // A thrust curve may be what hobby motors have, by the end of its name; a wind profile what weather services
 // give.
-InputNode ParseTable(const std::string& text, const std::string& file, std::vector<InputProblem>& problems) {
+// `time`: of the sounding that is wanted of several, "" if there is one; it receives its time.
+InputNode ParseTable(const std::string& text, const std::string& file, std::string& time,
+                     std::vector<InputProblem>& problems) {
   const std::size_t before = problems.size();
   if (IsSoundingText(text)) {
     if (!CheckUtf8(text, file, problems)) return {};
-    const Sounding sounding = ReadSounding(text, file, "", problems);
+    const Sounding sounding = ReadSounding(text, file, time, problems);
+    time = sounding.time;
     return problems.size() > before ? InputNode() : TableOf(sounding, file, problems);
   }
   if (WithoutByteOrderMark(text).starts_with('<')) {
@@ -41,7 +45,48 @@ InputNode ParseTable(const std::string& text, const std::string& file, std::vect
   InputNode table = ParseCsv(text, file, problems);
   if (problems.size() > before || !IsSoundingTable(table)) return table;
   const Sounding sounding = ReadSounding(table, problems);
+  time = sounding.time;
   return problems.size() > before ? InputNode() : TableOf(sounding, file, problems);
+}
+
+// Each file of a folder, but those whose names begin with '.'.
+InputNode Folder(const std::string& folder, const InputNode& place, const std::string& path,
+                 std::vector<InputProblem>& problems) {
+  std::vector<std::string> names;
+  std::error_code error;
+  for (const auto& entry : std::filesystem::directory_iterator(folder, error))
+    if (entry.is_regular_file() && !entry.path().filename().string().starts_with('.'))
+      names.push_back(entry.path().filename().string());
+  if (error || names.empty())
+    return AddProblem(problems, place, path,
+                      error ? "cannot read the folder '" + folder + "': " + error.message()
+                            : "the folder '" + folder + "' has no files",
+                      "a folder of soundings, named relative to this file"),
+           InputNode();
+  std::sort(names.begin(), names.end());
+  InputNode list = ListAt(place);
+  for (const std::string& name : names) {
+    const std::string file = (std::filesystem::path(folder) / name).string();
+    InputNode top = MapAt(place);
+    top.file = std::make_shared<const std::string>(file);
+    top.line = top.column = 1;
+    std::string text, reason;
+    if (!ReadFile(file, &text, &reason)) {
+      AddProblem(problems, top, "", "cannot be read: " + reason, "a readable file");
+      continue;
+    }
+    std::vector<std::string> times = TimesOf(text);
+    if (times.empty()) times.emplace_back();
+    for (std::string& time : times) {
+      InputNode sounding = top, table = ParseTable(text, file, time, problems);
+      if (time.empty()) time = TimeInName(name);
+      SetMember(sounding, "file", TextAt(top, name));
+      if (!time.empty()) SetMember(sounding, "time", TextAt(top, time));
+      SetMember(sounding, "table", std::move(table));
+      list.items.push_back(std::move(sounding));
+    }
+  }
+  return list;
 }
 
 /// Whether a file could not be read because there is none.
@@ -74,8 +119,10 @@ void NamedFiles::Read(InputNode& name, const std::string& path, Holds holds,
     return AddProblem(problems, place, path, "the file name is empty", "a file name, relative to this file");
   const std::string file =
       (std::filesystem::path(*place.file).parent_path() / place.text).lexically_normal().string();
-  std::string text, reason;
-  if (!ReadFile(file, &text, &reason))
+  std::string text, reason, time;
+  if (holds == Holds::kFolder)
+    name = Folder(file, place, path, problems);
+  else if (!ReadFile(file, &text, &reason))
     AddProblem(problems, place, path,
                IsMissing(reason) ? "file '" + file + "' not found" : "cannot read '" + file + "': " + reason,
                IsMissing(reason) ? "a file, named relative to this one"
@@ -83,7 +130,7 @@ void NamedFiles::Read(InputNode& name, const std::string& path, Holds holds,
   else if (holds == Holds::kDocument)
     name = ParseYaml(text, file, problems);
   else if (holds == Holds::kTable)
-    name = ParseTable(text, file, problems);
+    name = ParseTable(text, file, time, problems);
   else
     name = Bytes(text, file, place, path, problems);
 }

@@ -18,7 +18,8 @@ inline constexpr char kScenarioSchema[] = "dispersa/scenario/1";
 enum class FileNames { kAllowed, kRefused };
 
 /// Reads the files that a tree names. Names are relative to the file in which they stand. A table is a CSV
-/// file, RASP's format if its name ends so, or a sounding. Bytes become {sha256, base64}.
+/// file, RASP's format if its name ends so, or a sounding. Bytes become {sha256, base64}. A folder becomes a
+/// list of {file, time, table}, for each sounding of its files in the order of their names.
 class NamedFiles : public FileSource {
  public:
   explicit NamedFiles(FileNames names = FileNames::kAllowed) : names_(names) {}

@@ -87,6 +87,10 @@ class DecimalMarks {
 
 InputNode ParseCsv(const std::string& text, const std::string& file, std::vector<InputProblem>& problems) {
   if (!CheckUtf8(text, file, problems)) return {};
+  if (WithoutByteOrderMark(text).starts_with('{')) {
+    problems.push_back({file, 1, 1, "", "the file is JSON", "a table with a line of names"});
+    return {};
+  }
   const std::size_t before = problems.size();
   InputNode place;
   place.file = std::make_shared<const std::string>(file);

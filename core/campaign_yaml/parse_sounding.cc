@@ -6,11 +6,13 @@
 #include <algorithm>
 #include <array>
 #include <cmath>
+#include <sstream>
 #include <string_view>
 
 #include "core/campaign_yaml/named_files.h"
 #include "core/campaign_yaml/parse_csv.h"
 #include "core/campaign_yaml/text_problems.h"
+#include "core/environment/weather_ensemble.h"
 #include "core/input/number_text.h"
 #include "core/math/constants.h"
 
@@ -319,6 +321,19 @@ bool IsWyomingHeader(std::string_view line) {
                      [&](std::string_view name) { return line.find(name) != std::string_view::npos; });
 }
 
+// "12Z 15 Jan 2020" as a DatedWeather's time.
+std::string WyomingTime(const std::string& title) {
+  constexpr std::string_view kMonths = "JanFebMarAprMayJunJulAugSepOctNovDec";
+  constexpr std::string_view kBefore = "Observations at ";
+  const std::size_t at = title.find(kBefore);
+  std::istringstream words(at == std::string::npos ? "" : title.substr(at + kBefore.size()));
+  std::string hour, day, month, year;
+  words >> hour >> day >> month >> year;
+  const std::size_t place = month.size() == 3 ? kMonths.find(month) : std::string_view::npos;
+  if (place == std::string_view::npos || place % 3 != 0 || hour.size() != 3 || day.empty()) return "";
+  return fmt::format("{}-{:02}-{:0>2}T{}", year, place / 3 + 1, day, hour.substr(0, 2));
+}
+
 std::string WithoutTags(std::string_view line) {
   std::string text;
   bool in_tag = false;
@@ -344,6 +359,7 @@ Sounding ReadWyoming(const std::vector<std::string_view>& lines, const std::stri
       sounding.title = Trimmed(WithoutTags(lines[header]));
     ++header;
   }
+  sounding.time = WyomingTime(sounding.title);
   const std::string_view names = lines[header];
   const std::string_view units = header + 1 < lines.size() ? lines[header + 1] : std::string_view();
   for (std::size_t begin = 0, at = names.find_first_not_of(' '); at != std::string_view::npos;) {
@@ -437,8 +453,17 @@ Sounding ReadIgra(const std::vector<std::string_view>& lines, const std::string&
     return sounding;
   }
   const std::string_view header = lines[headers.front()];
+  constexpr std::size_t kLongestHeader = 75;
+  if (header.size() > kLongestHeader) {
+    problems.push_back({file, static_cast<int>(headers.front()) + 1, 1, "",
+                        "the file has IGRA's derived parameters, in other columns",
+                        "IGRA's soundings, whose file is STATION-data.txt"});
+    return sounding;
+  }
   const std::string station = Trimmed(header.substr(1, 11));
-  sounding.title = fmt::format("IGRA 2 station {}, {} UTC", station, IgraDate(header));
+  sounding.time = IgraDate(header);
+  sounding.title = fmt::format("IGRA 2 station {}, {} UTC", station, sounding.time);
+  if (MonthOf(sounding.time) == 0) sounding.time.resize(10);  // an hour of 99 is not known
   if (const auto latitude = ParseNumber(FieldOf(header, 55, 62).text);
       latitude && std::fabs(*latitude) <= 900000.0)
     sounding.latitude_rad = *latitude * 1e-4 * kRadPerDeg;
@@ -468,6 +493,34 @@ bool IsSoundingText(const std::string& text) {
   const std::vector<std::string_view> lines = LinesOf(WithoutByteOrderMark(text), kHeadLines);
   return !lines.empty() &&
          (IsIgraHeader(lines.front()) || std::any_of(lines.begin(), lines.end(), IsWyomingHeader));
+}
+
+std::vector<std::string> TimesOf(const std::string& text) {
+  std::vector<std::string> times;
+  for (const std::string_view line : LinesOf(WithoutByteOrderMark(text)))
+    if (IsIgraHeader(line)) times.push_back(IgraDate(line));
+  return times;
+}
+
+std::string TimeInName(const std::string& file) {
+  const auto is_digit = [&](std::size_t i) { return i < file.size() && file[i] >= '0' && file[i] <= '9'; };
+  for (std::size_t begin = 0; begin < file.size(); ++begin) {
+    if (begin > 0 && is_digit(begin - 1)) continue;
+    std::string digits;
+    for (std::size_t i = begin; i < file.size() && digits.size() < 10; ++i) {
+      const bool is_between = digits.size() == 4 || digits.size() == 6 || digits.size() == 8;
+      if (is_digit(i))
+        digits += file[i];
+      else if (!is_between || std::string_view("-_T ").find(file[i]) == std::string_view::npos)
+        break;
+    }
+    if (digits.size() < 8) continue;
+    const std::string day = digits.substr(0, 4) + "-" + digits.substr(4, 2) + "-" + digits.substr(6, 2);
+    if (MonthOf(day) == 0) continue;
+    const std::string hour = digits.size() == 10 ? day + "T" + digits.substr(8) : day;
+    return MonthOf(hour) > 0 ? hour : day;
+  }
+  return "";
 }
 
 bool IsSoundingTable(const InputNode& table) {
@@ -501,7 +554,14 @@ Sounding ReadSounding(const InputNode& table, std::vector<InputProblem>& problem
   for (const InputMember& column : table.members) {
     const Meaning& meaning = meanings.emplace_back(MeaningOf(column.key));
     if (meaning.quantity == kQuantities) {
-      sounding.not_read.push_back(column.key);
+      const std::string first_cell = column.value.items.empty() ? "" : column.value.items.front().text;
+      const std::optional<double> number = ParseNumber(first_cell);
+      if (column.key == "time")
+        sounding.time = TimeInName(first_cell);
+      else if (column.key == "latitude" && number && std::fabs(*number) <= 90.0)
+        sounding.latitude_rad = *number * kRadPerDeg;
+      else
+        sounding.not_read.push_back(column.key);
       continue;
     }
     if (meaning.unit.name.empty())
@@ -607,6 +667,8 @@ std::string ConvertSounding(const std::string& path, const std::string& date) {
                      profile.levels, profile.table.altitude_m.size(), profile.with_heights_by_pressure);
   csv += fmt::format("# {} without wind are linear between their neighbours; {} without air exponential.\n",
                      profile.without_wind, profile.without_air);
+  if (profile.wind_top_m < profile.table.altitude_m.back())
+    csv += fmt::format("# The last wind is at {:.0f} m. Above, it fades.\n", profile.wind_top_m);
   csv += fmt::format("# Geometric altitudes in m, by normal gravity at {}.\n",
                      sounding.latitude_rad
                          ? fmt::format("{:.2f} degrees of latitude", *sounding.latitude_rad * kDegPerRad)

@@ -14,6 +14,7 @@ namespace dispersa {
 /// A sounding as its file gives it. `source` of a level is its line.
 struct Sounding {
   std::string title;                   ///< the station and the time, as far as the file names them
+  std::string time;                    ///< DatedWeather's; empty: the file names none
   std::optional<double> latitude_rad;  ///< of the station
   std::vector<SoundingLevel> levels;
   std::vector<std::string> not_read;  ///< names of further columns
@@ -25,6 +26,11 @@ bool IsSoundingText(const std::string& text);
 /// that our own tables do not have.
 bool IsSoundingTable(const InputNode& table);
 
+/// The times of the soundings of an IGRA 2 file, as `date` below. Of any other text none.
+std::vector<std::string> TimesOf(const std::string& text);
+/// YYYYMMDD in a file's name, with or without '-' or '_' between and an hour after, as a DatedWeather's time.
+/// Empty: there is none.
+std::string TimeInName(const std::string& file);
 /// One sounding. Of an IGRA 2 file with several, `date` (YYYY-MM-DDTHH) chooses. Columns and their units come
 /// from the file. Values for "missing" are missing. A text of another form is a problem and gives no levels.
 Sounding ReadSounding(const std::string& text, const std::string& file, const std::string& date,

@@ -20,8 +20,6 @@ struct Environment {
   DensityFactor density;
   std::shared_ptr<const TurbulenceField> turbulence = {};  ///< added to the wind (null: none)
   std::shared_ptr<const AirTable> air = {};                ///< measured (null: the standard's)
-
-  const AirTable& Air() const { return air ? *air : StandardAir(); }
 };
 
 struct AirData {

@@ -14,7 +14,7 @@ namespace dispersa {
 struct LauncherModel::Prepared {
   explicit Prepared(const LauncherPlant& of)
       : plant(of),
-        weather(PrepareWeather(plant.environment.wind, plant.environment.density,
+        weather(PrepareWeather(plant.environment.wind, plant.environment.density, plant.environment.air,
                                plant.environment.turbulence.get())) {
     for (LauncherStack& stack : plant.stacks)
       if (!stack.aero_grid)
@@ -63,7 +63,7 @@ struct OneLane {
               now.boosting(),       now.ignition_s,
               now.expelled_mass_kg, ToLanes(now.control_torque_n_m)},
         motion{{y[0], y[1], y[2]}, {y[3], y[4], y[5]}, {y[6], y[7], y[8], y[9]}, {y[10], y[11], y[12]}},
-        around(lanes::SurroundingsAt(earth, from.environment.Air(), plant.weather, motion.p)),
+        around(lanes::SurroundingsAt(earth, plant.weather, motion.p)),
         masses(lanes::MassesAt(plant, phase, time_s)) {
     const Gimbal& gimbal = from.stacks[static_cast<std::size_t>(now.stack)].gimbal;
     for (int bank = 0; bank < plant.banks; ++bank) {

@@ -202,6 +202,7 @@ SoundingProfile ProfileOf(std::vector<SoundingLevel> levels, std::optional<doubl
   for (const SoundingLevel& level : apart) {
     with_air += HasAir(level) ? 1 : 0;
     profile.without_wind += level.has_wind() ? 0 : 1;
+    if (level.has_wind()) profile.wind_top_m = level.height_m;
   }
   profile.without_air = apart.size() - with_air;
   for (const SoundingLevel& level : apart) {

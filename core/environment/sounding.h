@@ -45,6 +45,7 @@ struct SoundingProfile {
   std::vector<int> sources;  ///< of each altitude of the table
   std::size_t levels = 0;    ///< as measured
   std::size_t without_wind = 0, without_air = 0, with_heights_by_pressure = 0, dropped = 0;
+  double wind_top_m = 0.0;  ///< the last level with a wind
 };
 
 /// The table of a sounding, in order of altitude.

@@ -66,16 +66,22 @@ struct AirPressure {
 template <class T>
 using AirRows = RowMemory<T, AirTable::kRowSize>;
 
+/// A table for each lane; null: the standard's.
+template <class T>
+struct AirTables {
+  const AirTable* of[kWidth<T>];
+};
+
 /// Finds the rows of the lanes at `z` that `found` does not name.
 template <class T>
-DISPERSA_OUT_OF_LINE void FindAir(const AirTable& table, T z, MaskOf<T> found, AirRows<T>& rows) {
-  const double* edges = table.edges.data();
+DISPERSA_OUT_OF_LINE void FindAir(const AirTables<T>& tables, T z, MaskOf<T> found, AirRows<T>& rows) {
   const unsigned known = Bits(found);
-  int at[kWidth<T>];
-  Truncate((z - T(kAtmosphereBottom_m)) * T(table.buckets_per_m), at);
   for (int lane = 0; lane < kWidth<T>; ++lane) {
     if (known >> lane & 1u) continue;
-    unsigned cell = table.bucket.data()[at[lane]];
+    const AirTable& table = tables.of[lane] == nullptr ? StandardAir() : *tables.of[lane];
+    const double* edges = table.edges.data();
+    const double bucket = (Lane(z, lane) - kAtmosphereBottom_m) * table.buckets_per_m;
+    unsigned cell = table.bucket.data()[static_cast<int>(bucket)];
     while (Lane(z, lane) >= edges[cell + 1]) ++cell;
     while (cell > 0 && Lane(z, lane) < edges[cell]) --cell;  // rounding had put it into the next bucket
     rows.range.Set(lane, edges[cell], edges[cell + 1]);
@@ -83,12 +89,12 @@ DISPERSA_OUT_OF_LINE void FindAir(const AirTable& table, T z, MaskOf<T> found, A
   }
 }
 
-/// The standard's air is within kAirTableTolerance of StandardAtmosphere1976. `rows` belong to this table.
+/// The standard's air is within kAirTableTolerance of StandardAtmosphere1976. `rows` belong to these tables.
 template <class T>
-DISPERSA_INLINE AirPressure<T> AirAt(const AirTable& table, T altitude_m, AirRows<T>& rows) {
+DISPERSA_INLINE AirPressure<T> AirAt(const AirTables<T>& tables, T altitude_m, AirRows<T>& rows) {
   const T z = Clamp(altitude_m, T(kAtmosphereBottom_m), T(kAtmosphereTop_m));
   const auto found = rows.range.Contains(z);
-  if (!All(found)) FindAir(table, z, found, rows);
+  if (!All(found)) FindAir(tables, z, found, rows);
   const T* c = rows.c;
   const T u = (z - c[0]) * c[1];
   AirPressure<T> air;
@@ -99,15 +105,20 @@ DISPERSA_INLINE AirPressure<T> AirAt(const AirTable& table, T altitude_m, AirRow
 }
 template <class T>
 DISPERSA_INLINE AirPressure<T> AirAt(const AirTable& table, T altitude_m) {
+  AirTables<T> tables;
   AirRows<T> rows;
-  for (int lane = 0; lane < kWidth<T>; ++lane) rows.range.Forget(lane);
-  return AirAt(table, altitude_m, rows);
+  for (int lane = 0; lane < kWidth<T>; ++lane) {
+    tables.of[lane] = &table;
+    rows.range.Forget(lane);
+  }
+  return AirAt(tables, altitude_m, rows);
 }
 
-/// Wind and density of one flight each.
+/// Wind and air of one flight each.
 template <class T>
 struct FlownWeather : WeatherNumbers<T> {
   const WeatherProfile* profile[kWidth<T>];  ///< null: calm
+  AirTables<T> air;
   bool has_profiles, has_updrafts;
   mutable AirRows<T> air_rows;  ///< of the flight's air, and
   mutable RowMemory<T, WeatherProfile::kRowSize> profile_rows;
@@ -118,6 +129,7 @@ template <class T>
 DISPERSA_INLINE void SetWeather(FlownWeather<T>& w, int lane, const FlightWeather& from) {
   SetLane<WeatherNumbers>(w, lane, from);
   w.profile[lane] = from.profile.is_calm() ? nullptr : &from.profile;
+  w.air.of[lane] = from.air.get();
   w.air_rows.range.Forget(lane);
   w.profile_rows.range.Forget(lane);
   w.has_profiles = w.has_updrafts = false;
@@ -182,13 +194,13 @@ struct Surroundings {
 
 /// At p_EoP_I. ComputeAirData explains the frames.
 template <class T>
-DISPERSA_INLINE Surroundings<T> SurroundingsAt(const Earth& earth, const AirTable& air_table,
-                                               const FlownWeather<T>& weather, Vector<T> p) {
+DISPERSA_INLINE Surroundings<T> SurroundingsAt(const Earth& earth, const FlownWeather<T>& weather,
+                                               Vector<T> p) {
   const Place<T> at = PlaceAt(earth, p);
   Surroundings<T> o;
   o.altitude_m = at.altitude_m;
   o.gravitation_m_s2 = GravitationAt(earth, p, at);
-  const AirPressure<T> air = AirAt(air_table, at.altitude_m, weather.air_rows);
+  const AirPressure<T> air = AirAt(weather.air, at.altitude_m, weather.air_rows);
   const T inverse_energy = T(1.0) / air.energy_j_kg;
   T factor = weather.density_factor;
   T north(0.0), east(0.0), up(0.0);

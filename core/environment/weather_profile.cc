@@ -68,9 +68,10 @@ WeatherProfile BuildWeatherProfile(const Wind& wind, const DensityFactor& densit
 }
 
 FlightWeather PrepareWeather(const Wind& wind, const DensityFactor& density,
-                             const TurbulenceField* turbulence) {
+                             std::shared_ptr<const AirTable> air, const TurbulenceField* turbulence) {
   DISPERSA_ASSERT(wind.jets.size() <= 1 && wind.gusts.size() <= 1, wind.jets.size(), wind.gusts.size());
   FlightWeather w;
+  w.air = std::move(air);
   w.density_factor = density.scale;
   if (!wind.jets.empty()) {
     const JetStream& jet = wind.jets.front();

@@ -1,8 +1,10 @@
 // A flight's tables of wind and density over altitude, as one table of straight pieces.
 #pragma once
 
+#include <memory>
 #include <vector>
 
+#include "core/environment/air_table.h"
 #include "core/environment/density_factor.h"
 #include "core/environment/turbulence.h"
 #include "core/environment/wind.h"
@@ -29,7 +31,7 @@ struct WeatherProfile {
 WeatherProfile BuildWeatherProfile(const Wind& wind, const DensityFactor& density,
                                    const TurbulenceField* turbulence = nullptr);
 
-/// One flight's wind and density in the form of its equations: plain numbers and the profile. Directions are
+/// One flight's wind and air in the form of its equations: plain numbers and the profile. Directions are
 /// unit components of the direction in which the air moves. A speed of 0 means none.
 template <class T>
 struct WeatherNumbers {
@@ -42,10 +44,12 @@ struct WeatherNumbers {
   T gust_north = T(0.0), gust_east = T(0.0);
 };
 struct FlightWeather : WeatherNumbers<double> {
-  WeatherProfile profile;  ///< of everything else
+  WeatherProfile profile;                    ///< of everything else
+  std::shared_ptr<const AirTable> air = {};  ///< measured (null: the standard's)
 };
 /// Prepares a wind with at most one jet stream and one gust, as a flight draws it.
 FlightWeather PrepareWeather(const Wind& wind, const DensityFactor& density,
+                             std::shared_ptr<const AirTable> air = {},
                              const TurbulenceField* turbulence = nullptr);
 
 }  // namespace dispersa

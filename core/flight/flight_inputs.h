@@ -101,6 +101,8 @@ struct AirInputs {
   double turbulence_wind_20ft_m_s = 0.0;  ///< mean wind near the ground, which makes the turbulence there
   double turbulence_scale = 1.0;          ///< of all intensities
   double density_factor = 1.0;
+  double weather_sounding =
+      0.0;  ///< number of the campaign's sounding, from 1; 0: the campaign's table or mean
 };
 struct SensorInputs {
   double gyro_bias_roll_rad_s = 0.0, gyro_bias_pitch_rad_s = 0.0, gyro_bias_yaw_rad_s = 0.0;

@@ -517,11 +517,14 @@ FlightModel::FlightModel(FlightDefinition definition)
     has_fins_ |= !stage.fins.empty();
   }
   AddBending(definition_.vehicle, definition_.autopilot.tick_s, nominal_);
+  const auto air_of = [](const WeatherTable& table) {
+    return table.has_air() ? std::make_shared<const AirTable>(MeasuredAir(table)) : nullptr;
+  };
   if (definition_.wind_table) {
     nominal_.environment.wind.tables.push_back(*definition_.wind_table);
-    if (definition_.wind_table->has_air())
-      nominal_.environment.air = std::make_shared<const AirTable>(MeasuredAir(*definition_.wind_table));
+    nominal_.environment.air = air_of(*definition_.wind_table);
   }
+  for (const WeatherTable& sounding : definition_.soundings) airs_.push_back(air_of(sounding));
   LauncherPlant planned = nominal_;
   for (std::size_t i = 0; i < planned.stacks.size(); ++i)
     if (EndsInFlight(definition_.vehicle.stages[i].motor)) {
@@ -677,6 +680,11 @@ LauncherPlant FlightModel::PlantFor(const FlightInputs& inputs,
   plant.environment.density.scale *= in.air.density_factor;
 
   Wind& wind = plant.environment.wind;
+  if (const auto number = static_cast<std::size_t>(in.air.weather_sounding);
+      number > 0 && number <= airs_.size()) {
+    wind.tables.assign(1, definition_.soundings[number - 1]);
+    plant.environment.air = airs_[number - 1];
+  }
   if (in.air.wind_max_speed_m_s != 0.0)
     wind.jets.push_back(
         {in.air.wind_max_speed_m_s, in.air.wind_altitude_m, in.air.wind_width_m, in.air.wind_azimuth_rad});

@@ -46,6 +46,7 @@ struct FlightDefinition {
   double kick_end_s = 0.0;
   InjectionTarget target;
   std::optional<WeatherTable> wind_table;
+  std::vector<WeatherTable> soundings = {};  ///< by FlightInputs' number; flights without one meet wind_table
   std::optional<WindStatistics> wind_statistics;  ///< flights whose inputs have no profile meet its means
   std::uint64_t noise_seed = 0;                   ///< of the sensors and of turbulence
   /// Along which turbulence is laid. Null: no flight meets any, whatever its inputs ask.
@@ -112,6 +113,7 @@ class FlightModel {
 
  private:
   FlightDefinition definition_;
+  std::vector<std::shared_ptr<const AirTable>> airs_;  ///< of the soundings; null: the standard's
   LaunchFrame frame_;
   LauncherPlant nominal_;
   AutopilotModel autopilot_;

@@ -180,7 +180,7 @@ FlightRecord::FlightRecord(const FlightModel& model, const FlightOrder& order)
     : inputs(model.AsApplied(order.inputs)),
       options(order.options),
       plant(model.PlantFor(order.inputs, order.options.case_index)),
-      weather(PrepareWeather(plant.environment.wind, plant.environment.density,
+      weather(PrepareWeather(plant.environment.wind, plant.environment.density, plant.environment.air,
                              plant.environment.turbulence.get())),
       events(EventsOf(model, plant, inputs, model.definition().last_ignition_s, -1.0)),
       lift_off{},
@@ -196,7 +196,8 @@ FlightRecord::FlightRecord(const FlightModel& model, const FlightOrder& order)
   const double tick_s = model.definition().autopilot.tick_s;
   sums.step_limit_fraction = GreatestStepUse(plant, tick_s).fraction;
   const FlightDefinition& of = model.definition();
-  refusal_ = RefusalOf({of.vehicle, of.autopilot, of.guidance, of.course, inputs}, plant, tick_s);
+  refusal_ = RefusalOf({of.vehicle, of.autopilot, of.guidance, of.course, inputs, of.soundings.size()}, plant,
+                       tick_s);
   if (!refusal_.empty()) refusal = refusal_.c_str();
   WriteState(LiftOffState(model, inputs), lift_off);
   const Quaternion believed = BelievedAttitude(model, inputs, ReadState(lift_off).q_IB);

@@ -1,4 +1,5 @@
 // Every input of a flight: one declaration each, by what carries it.
+#include "core/environment/weather_ensemble.h"
 #include "core/flight/flight_inputs.h"
 
 namespace dispersa {
@@ -209,6 +210,9 @@ void DeclareAir(InputDeclarations& inputs, const AirInputs& air) {
       .Usually({0.6, 1.4, "5 to 30 % by altitude and season"});
   inputs.EachLevel(106, air.wind_profile_altitude_m, "wind_profile_altitude", "_m")
       .Within({Between(0.0, 100e3)});
+  inputs.One(107, air.weather_sounding, "weather_sounding")
+      .Within({Between(0.0, static_cast<double>(kMostSoundings)), true})
+      .ReadBy(kBySoundings);
 }
 
 void DeclareSensors(InputDeclarations& inputs, const SensorInputs& sensors) {

@@ -234,6 +234,10 @@ const Readers kByUncertainTables = {[](const FlightParts& parts, const InputPlac
                                     "the vehicle has no aerodynamic table that states an uncertainty",
                                     "tables with an uncertainty"};
 
+const Readers kBySoundings = {[](const FlightParts& parts, const InputPlace&) { return parts.soundings > 0; },
+                              "the campaign has no soundings to choose from",
+                              "dispersions: {weather: {ensemble: FOLDER}}"};
+
 const Readers kWithThrustMisalignment = {IsSet<ThrustMisalignment>, kNoMagnitude, kMagnitude};
 const Readers kWithThrustOffset = {IsSet<ThrustOffset>, kNoMagnitude, kMagnitude};
 const Readers kWithCgOffset = {IsSet<CgOffset>, kNoMagnitude, kMagnitude};

@@ -32,6 +32,7 @@ struct FlightParts {
   const GuidanceConfig& guidance;
   const FlightCourse& course;
   const FlightInputs& set;
+  std::size_t soundings = 0;  ///< of the campaign
 };
 
 /// In internal units. The nominal value is allowed where nothing reads it.
@@ -89,7 +90,7 @@ inline constexpr AllowedValues kProfileWind = {Between(-300.0, 300.0)};  ///< tw
 // Readers of several inputs.
 extern const Readers kByAutopilot, kByAdaptation, kByNavigation, kByDrives, kByModes, kByModeSensors, kByFins,
     kByTailOff, kByMixture, kByBoosterMixture, kByBoosters, kByFirstBurn, kByIgnition, kBySeparation,
-    kByNozzle, kByFurtherNozzle, kByUncertainTables;
+    kByNozzle, kByFurtherNozzle, kByUncertainTables, kBySoundings;
 // Inputs that have a meaning only beside another.
 extern const Readers kWithThrustMisalignment, kWithThrustOffset, kWithCgOffset, kWithNozzleMisalignment,
     kWithNozzleOffset, kWithWind, kWithGust, kWithProfile, kWithTurbulence, kWithStuckNozzle, kWithLoop,

@@ -63,7 +63,6 @@ class StepState {
   /// Of an object of zeros. No lane flies. Each computes with finite numbers that nothing reads.
   void Configure(const LauncherPlant& nominal, double tick_s) {
     earth_ = nominal.environment.earth;
-    air_ = &nominal.environment.Air();
     tick_s_ = tick_s;
     most_banks_ = nominal.nozzle_banks();
     if (nominal.boosters.get() != nullptr) plant_.apart = &apart_;
@@ -157,6 +156,7 @@ class StepState {
   /// Lets go of what belongs to the flight. The lane computes on, and nothing reads its values.
   void EndFlight(int lane) {
     plant_.weather.profile[lane] = nullptr;
+    plant_.weather.air.of[lane] = nullptr;
     plant_.burn.curve[lane] = nullptr;
     for (ApartBooster<T>& one : apart_.each) one.burn.curve[lane] = nullptr;
     SetTable(bending_, lane, nullptr);
@@ -359,7 +359,7 @@ class StepState {
   // start's. Inlined into each of them and each kind of vehicle, they would take three quarters of the
   // compile time and run no faster.
   DISPERSA_OUT_OF_LINE void SetAir(const Vector<T>& position_m, Surroundings<T>& around) const {
-    around = SurroundingsAt(earth_, *air_, plant_.weather, position_m);
+    around = SurroundingsAt(earth_, plant_.weather, position_m);
   }
   DISPERSA_OUT_OF_LINE void SetMasses(T time_s, TimedMasses<T>& masses) const {
     masses = MassesAt(plant_, phase_, time_s);
@@ -525,7 +525,6 @@ class StepState {
   static_assert(kModalState + kValues<T, BendingState<T>> == kBentLauncherSize);
 
   Earth earth_;
-  const AirTable* air_;
   double tick_s_;
   Point points_[3];
   Point *start_, *middle_, *end_;

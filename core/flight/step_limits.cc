@@ -115,6 +115,8 @@ std::string RefusalOf(const FlightParts& parts, const LauncherPlant& plant, doub
   const auto stuck = static_cast<std::size_t>(in.stuck_nozzle_stage);
   if (stuck > 0 && in.stuck_nozzle > NozzleCount(vehicle.stages[stuck - 1].gimbal))
     return "stage " + std::to_string(stuck) + " has no nozzle " + Text(in.stuck_nozzle);
+  if (in.air.weather_sounding > static_cast<double>(parts.soundings))
+    return "the campaign has no sounding " + Text(in.air.weather_sounding);
   if (!IsProfile(in.air.wind_profile_altitude_m)) return "the altitudes of the wind profile do not grow";
   if (plant.boosters && plant.boosters->burn.duration_s >= plant.stacks[0].burn.duration_s)
     return "the boosters burn as long as their stage, or longer";

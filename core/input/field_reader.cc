@@ -355,10 +355,13 @@ class FieldReader : public Fields {
     InputNode* list = Find(key, CountText(low_count, high_count));
     if (list == nullptr) return;
     items.resize(0);
+    if (items.or_folder) Load(*list, PathOf(key.name), FileSource::Holds::kFolder);
+    if (list->file == nullptr) return;
     std::size_t count = 0;
     Items(*list, PathOf(key.name), low_count, high_count, [&](InputNode& item, const std::string& path) {
       items.resize(count + 1);
-      ReadFields(item, path, problems_, files_, [&](Fields& fields) { items.describe(fields, count); });
+      ReadFields(item, item.file == list->file ? path : "", problems_, files_,
+                 [&](Fields& fields) { items.describe(fields, count); });
       ++count;
     });
   }

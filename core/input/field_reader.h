@@ -14,11 +14,11 @@ namespace dispersa {
 /// The files that a tree names.
 class FileSource {
  public:
-  enum class Holds { kDocument, kTable, kBytes };
+  enum class Holds { kDocument, kTable, kBytes, kFolder };
 
   virtual ~FileSource() = default;
-  /// Replaces a scalar, a file's name, by the file's content; after a problem, by an absent node. `path` is
-  /// the scalar's own.
+  /// Replaces a scalar, a file's or a folder's name, by what it holds; after a problem, by an absent node.
+  /// `path` is the scalar's own.
   void Load(InputNode& name, const std::string& path, Holds holds, std::vector<InputProblem>& problems) {
     const std::size_t before = problems.size();
     Read(name, path, holds, problems);

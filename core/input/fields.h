@@ -348,6 +348,15 @@ class Fields {
             const char* meaning) {
     List(key, low_count, high_count, items, meaning, [](Fields& fields, T& item) { Describe(fields, item); });
   }
+  /// A list that is there in full, or a folder of files that make its items.
+  template <class T>
+  void ListOrFolder(const char* key, std::size_t low_count, std::size_t high_count, std::vector<T>& items,
+                    const char* meaning) {
+    const auto describe = [](Fields& fields, T& item) { Describe(fields, item); };
+    Items all = ItemsOf(items, describe);
+    all.or_folder = true;
+    VisitMaps({key, meaning}, low_count, high_count, all);
+  }
   /// An optional key. A list that is there has this number of items.
   template <class T, class F>
   void OptionalList(const char* key, std::size_t low_count, std::size_t high_count, std::vector<T>& items,
@@ -419,6 +428,7 @@ class Fields {
     std::size_t count;
     std::function<void(std::size_t)> resize;
     std::function<void(Fields&, std::size_t)> describe;
+    bool or_folder = false;  ///< of which the list may be made
   };
 
   // Each visit gets the value, and leaves the read value in it.

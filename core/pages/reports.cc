@@ -44,7 +44,7 @@ CampaignSummary WriteReports(const ResultFolder& folder, const Campaign& campaig
         "--no-histories; with them dispersa.report(DIR, law=...) in Python");
   }
   const std::filesystem::path cases_csv = folder.directory() / "cases.csv";
-  CasesCsv csv(cases_csv, folder, StoredColumns(folder));
+  CasesCsv csv(cases_csv, folder, StoredColumns(folder, campaign.soundings));
   const CaseColumns cases =
       ReadColumns(folder, DispersedInputs(campaign), [&csv](const CaseResult& result) { csv.Write(result); });
   RefuseFewer(cases_csv, csv.rows());

@@ -15,14 +15,18 @@
 
 namespace dispersa {
 
-CsvColumns StoredColumns(const ResultFolder& folder) {
+CsvColumns StoredColumns(const ResultFolder& folder, const std::vector<DatedWeather>& soundings) {
   CsvColumns columns{std::vector<std::size_t>(folder.inputs().positions().size()), folder.metrics()};
   std::iota(columns.inputs.begin(), columns.inputs.end(), std::size_t{0});
+  if (soundings.empty()) return columns;
+  columns.sounding = folder.inputs().PlaceOf(static_cast<std::size_t>(FindInput("weather_sounding")));
+  columns.soundings = {"mean,"};
+  for (const DatedWeather& one : soundings) columns.soundings.push_back(CsvField(one.file) + "," + one.time);
   return columns;
 }
 
-CsvColumns VaryingColumns(const ResultFolder& folder) {
-  const CsvColumns stored = StoredColumns(folder);
+CsvColumns VaryingColumns(const ResultFolder& folder, const std::vector<DatedWeather>& soundings) {
+  const CsvColumns stored = StoredColumns(folder, soundings);
   std::optional<CaseResult> first;
   std::vector<bool> inputs(stored.inputs.size()), metrics(folder.metric_list().size());
   // Undefined equals undefined here: neither has a text.
@@ -44,6 +48,7 @@ std::string CasesCsvHeader(const RowInputs& inputs, const MetricList& list, cons
   std::string line = "case_index,outcome,end_time_s,end_stage,reason";
   for (const std::size_t i : columns.inputs) line += ",input_" + InputColumns()[inputs.positions()[i]].name;
   for (const std::size_t i : columns.metrics) line += ",metric_" + list.NameAt(i);
+  if (columns.sounding) line += ",sounding_file,sounding_time";
   return line + ",digest\n";
 }
 
@@ -52,6 +57,8 @@ std::string CasesCsvLine(const CaseResult& result, const CsvColumns& columns) {
                                  ShortestText(result.end_time_s), result.end_stage, CsvField(result.reason));
   for (const std::size_t i : columns.inputs) line += "," + ShortestText(result.inputs[i]);
   for (const std::size_t i : columns.metrics) line += "," + ShortestText(result.metrics[i]);
+  if (columns.sounding)
+    line += "," + columns.soundings.at(static_cast<std::size_t>(result.inputs[*columns.sounding]));
   return line + "," + result.digest.Hex() + "\n";
 }
 

@@ -4,6 +4,7 @@
 #include <cstddef>
 #include <cstdint>
 #include <filesystem>
+#include <optional>
 #include <string>
 #include <vector>
 
@@ -16,11 +17,14 @@ namespace dispersa {
 struct CsvColumns {
   std::vector<std::size_t> inputs;   ///< places in a row's inputs
   std::vector<std::size_t> metrics;  ///< positions in the folder's list
+  /// Place of the sounding's number, and by this number what it is: two cells, its file and its time.
+  std::optional<std::size_t> sounding = {};
+  std::vector<std::string> soundings = {};
 };
-/// All that a folder stores.
-CsvColumns StoredColumns(const ResultFolder& folder);
+/// All that a folder stores. `soundings`: of the campaign.
+CsvColumns StoredColumns(const ResultFolder& folder, const std::vector<DatedWeather>& soundings = {});
 /// Those of them that differ between cases.
-CsvColumns VaryingColumns(const ResultFolder& folder);
+CsvColumns VaryingColumns(const ResultFolder& folder, const std::vector<DatedWeather>& soundings = {});
 
 /// Both with their line break. Doubles in the shortest text that reads back to the same bits.
 std::string CasesCsvHeader(const RowInputs& inputs, const MetricList& list, const CsvColumns& columns);

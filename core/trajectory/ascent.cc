@@ -36,8 +36,7 @@ using LaneVector = lanes::Vector<double>;
 
 lanes::Ground GroundOf(const AscentModel& model) {
   const Earth& earth = model.plant.environment.earth;
-  return {earth, &model.plant.environment.Air(),
-          ToLanes(-BuildLaunchFrame(earth, model.vehicle.site, 0.0).R_IL.col(2))};
+  return {earth, ToLanes(-BuildLaunchFrame(earth, model.vehicle.site, 0.0).R_IL.col(2))};
 }
 
 // The events and steps of one flight. Its motion is a lane of the fleet.
@@ -289,7 +288,7 @@ template <class T>
 unsigned Fleet<T>::DueAt(int lane, double time_s, const LaneVector& p, const LaneVector& v) const {
   const Flight& flight = flights_[lane];
   const lanes::Surroundings<double> around =
-      lanes::SurroundingsAt(ground_.earth, *ground_.air, PointOf(lane).leg.weather, p);
+      lanes::SurroundingsAt(ground_.earth, PointOf(lane).leg.weather, p);
   const LaneVector ground = lanes::VelocityOverGround(ground_, p, v);
   return DueJettisons(
       model_.plant, flight.stack, flight.jettisoned,
@@ -591,7 +590,8 @@ double ProgrammedIncidence(const FlightProgram& program, double time_s) {
 
 AscentModel BuildAscentModel(const Vehicle& vehicle, double tick_s) {
   AscentModel model{vehicle, BuildNominalPlant(vehicle), {}, tick_s, 0.0};
-  model.weather = PrepareWeather(model.plant.environment.wind, model.plant.environment.density);
+  model.weather = PrepareWeather(model.plant.environment.wind, model.plant.environment.density,
+                                 model.plant.environment.air);
   return model;
 }
 

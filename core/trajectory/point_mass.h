@@ -11,10 +11,9 @@
 namespace dispersa::lanes {
 inline namespace DISPERSA_ISA {
 
-/// Values that all lanes share: the Earth, its air, and the site's vertical at lift-off in I.
+/// Values that all lanes share: the Earth, and the site's vertical at lift-off in I.
 struct Ground {
   Earth earth;
-  const AirTable* air;
   Vector<double> up_I;
 };
 
@@ -138,7 +137,7 @@ struct AscentInstant {
 template <class T>
 DISPERSA_OUT_OF_LINE AscentInstant<T> InstantAt(const Ground& ground, const Leg<T>& leg, T time_s,
                                                 const Vector<T>& p, const Vector<T>& v) {
-  const Surroundings<T> around = SurroundingsAt(ground.earth, *ground.air, leg.weather, p);
+  const Surroundings<T> around = SurroundingsAt(ground.earth, leg.weather, p);
   const BurnState<T> burn = BurnAt(leg.burn, time_s - leg.ignition_s);
   const T unlit = Select(leg.burnt, leg.burn.left_kg, leg.burn.propellant_mass_kg);
   MassPropertiesOf<T> masses = MassesAt(leg.stack, Select(leg.burning, burn.propellant_kg, unlit));

@@ -68,7 +68,8 @@ ExitCode Export(const ExportOptions& options, const GlobalOptions& global) {
   switch (options.format) {
     case ExportFormat::kCsv:
       WriteCasesCsv(stored.folder,
-                    options.only_varying ? VaryingColumns(stored.folder) : StoredColumns(stored.folder),
+                    options.only_varying ? VaryingColumns(stored.folder, stored.campaign.soundings)
+                                         : StoredColumns(stored.folder, stored.campaign.soundings),
                     options.out);
       break;
     case ExportFormat::kJsonLines:

@@ -55,7 +55,7 @@ class PlanTable {
     std::string text = fmt::format("{}: {} cases, seed {}, {} dispersed inputs\n", campaign_.name,
                                    campaign_.sampling.cases, campaign_.sampling.seed, inputs_.size());
     if (inputs_.empty()) return text;
-    text += DrawnTable();
+    text += DrawnTable() + Soundings();
     const std::size_t blocks = all_ ? (cases_.rows() + across_ - 1) / across_ : 1;
     for (std::size_t block = 0; block < blocks; ++block) text += CasesTable(block * across_);
     return text + Rest();
@@ -93,6 +93,19 @@ class PlanTable {
       text += Row(one.input) + Number(drawn.mean) + Number(drawn.std) + Number(drawn.min) + Number(drawn.max);
       text += IsDoubtful(one) ? "  THE DRAWS DO NOT AGREE\n" : "\n";
     }
+    return text;
+  }
+
+  /// What the numbers of soundings mean.
+  std::string Soundings() const {
+    const std::vector<DatedWeather>& soundings = campaign_.soundings;
+    if (soundings.empty()) return "";
+    std::string text = fmt::format("\n{:<{}}file\n", "sounding", name_width_);
+    const std::size_t shown = all_ ? soundings.size() : std::min(soundings.size(), kShownInputs);
+    for (std::size_t i = 0; i < shown; ++i)
+      text += fmt::format("{:<{}}{}  {}\n", "  " + std::to_string(i + 1), name_width_, soundings[i].file,
+                          soundings[i].time);
+    if (shown < soundings.size()) text += fmt::format("  ... of {}; --all shows them\n", soundings.size());
     return text;
   }
 

@@ -136,7 +136,8 @@ class KeyRows : public Fields {
   }
   void VisitMaps(const Key& key, std::size_t low, std::size_t high, const Items& items) override {
     items.resize(1);
-    AddMap(key, CountText(low, high) + " of maps", [&](Fields& fields) { items.describe(fields, 0); });
+    AddMap(key, (items.or_folder ? "folder, or " : "") + CountText(low, high) + " of maps",
+           [&](Fields& fields) { items.describe(fields, 0); });
     items.resize(0);
   }
 

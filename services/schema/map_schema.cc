@@ -316,7 +316,8 @@ void MapSchema::VisitMaps(const Key& key, std::size_t low_count, std::size_t hig
   items.resize(1);
   Json item = MapOf([&](Fields& fields) { items.describe(fields, 0); });
   items.resize(0);  // how many there are decides nothing
-  Add(key, ListOf(std::move(item), low_count, high_count));
+  Json list = ListOf(std::move(item), low_count, high_count);
+  Add(key, items.or_folder ? Or(AText(), std::move(list)) : std::move(list));
 }
 void MapSchema::VisitNode(const NodeKey& key, const ReadNode&) {
   const Json columns = {{"type", "object"},

@@ -44,7 +44,7 @@ void DISPERSA_INSTANCE(Evaluate, DISPERSA_LANES)(const StepSetting& setting, lon
   lanes::Rates<Value> rates;
   for (long i = 0; i < evaluations; ++i) {
     const lanes::Surroundings<Value> around =
-        lanes::SurroundingsAt(earth, StandardAir(), at->plant().weather, at->motion().p);
+        lanes::SurroundingsAt(earth, at->plant().weather, at->motion().p);
     const lanes::TimedMasses<Value> masses = lanes::MassesAt(at->plant(), at->phase(), Value(setting.from_s));
     const lanes::Nozzles<Value> nozzles = lanes::NozzlesAt(at->drives(0).first.angle_rad);
     rates = lanes::RatesOf<Value>(earth.rotation_rate_rad_s, at->plant(), at->phase(), setting.burning,

@@ -358,7 +358,11 @@ FlightDefinition DefinitionOf(const Launcher& launcher) {
   FlightDefinition definition =
       launcher.course.is_controlled ? GuidedDefinitionOf(launcher) : FreeDefinitionOf(launcher);
   definition.noise_seed = 7;
-  if (launcher.has_weather) definition.wind_table = Weather();
+  if (launcher.has_weather) {
+    definition.wind_table = Weather();
+    definition.soundings = {Weather()};
+    for (double& pressure_pa : definition.soundings[0].pressure_pa) pressure_pa *= 0.98;
+  }
   if (launcher.is_turbulent)
     definition.turbulence_path =
         std::make_shared<const TurbulencePath>(ClimbPath{{0.0, 1000.0, 40e3}, {1.0, 1.0, 0.5}, 3.0});
@@ -373,6 +377,7 @@ FlightInputs InputsOf(const Launcher& launcher, std::uint64_t index) {
   // What is left of the wind after a rail was set for it.
   in.air.wind_max_speed_m_s = (launcher.course.is_controlled ? 30.0 : 3.0) * draws.Uniform();
   if (launcher.is_turbulent) in.air.turbulence_exceedance = 1e-1;
+  if (launcher.has_weather) in.air.weather_sounding = static_cast<double>(index % 2);
   if (launcher.vehicle.sensors.rate_gyros.empty()) in.sensors.gyro_noise_rad_s = 0.002 * kRadPerDeg;
   if (!launcher.draws_masses) return in;
   for (std::size_t stage = 0; stage < 4; ++stage) {

@@ -164,6 +164,12 @@ FlightDefinition Definition(const std::string& law, bool with_winds, bool guided
                      {},
                      {100e3, 55e3, 20e3},
                      {1.2, 0.75, 0.32}};
+    // Flights of four, side by side: the table above, its wind without its air, another air, and none.
+    WeatherTable thick = *definition.wind_table;
+    thick.north_m_s = {-5.0, 20.0, 3.0};
+    for (double& density : thick.density_kg_m3) density *= 1.1;
+    definition.soundings = {{*definition.wind_table}, thick, {{{0.0, 9000.0}, {0.0, 0.0}, {0.0, 0.0}}}};
+    definition.soundings[0].pressure_pa = definition.soundings[0].density_kg_m3 = {};
     definition.wind_statistics = WindStatistics{{0.0, 6000.0, 14000.0},
                                                 {0.0, 5.0, 20.0},
                                                 {1.0, 2.0, 3.0},
@@ -308,6 +314,8 @@ class Queue : public FlightQueue {
     Flown& one = flown[flight];
     FlightOrder order{DrawnInputs(flight), {}};
     order.options.case_index = flight;
+    if (!model_.definition().soundings.empty())
+      order.inputs.air.weather_sounding = static_cast<double>(flight % 7 % 4);
     one.history.step_s = 0.5;
     if (flight % 4 == 1) order.options.history = &one.history;
     one.record = std::make_unique<FlightRecord>(model_, order);

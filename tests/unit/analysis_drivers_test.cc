@@ -82,6 +82,27 @@ TEST_F(Planted, ASizeIsTakenAboutTheNominalValue) {
   EXPECT_EQ(drivers[0].feature, "|x|");
 }
 
+// Three of six soundings are windy, in no order of their numbers: all the variance is between them.
+TEST_F(Planted, ANumberOfSomethingHasNoOrder) {
+  constexpr char kNumber[] = "weather_sounding";
+  campaign_.dispersions.push_back({kNumber, {}, {FindInput(kNumber)}});
+  CaseColumn& numbers = cases_.inputs[static_cast<std::size_t>(FindInput(kNumber))];
+  for (std::uint64_t k = 0; k < cases_.rows(); ++k)
+    numbers.push_back(1.0 + std::floor(6.0 * Stream(2, k, kNumber).Uniform()));
+  constexpr double kWind[] = {0.0, 1.0, 1.0, 0.0, 0.0, 1.0};
+  const auto windy = [&](std::size_t k) { return kWind[static_cast<std::size_t>(numbers[k]) - 1]; };
+  const auto drivers = DriversWhen([&](std::size_t k) { return windy(k) + 0.1 * noise_[k]; });
+  EXPECT_EQ(drivers[0].input, kNumber);
+  EXPECT_EQ(drivers[0].feature, "which");
+  EXPECT_GT(drivers[0].index, 0.95);
+  EXPECT_TRUE(std::isnan(drivers[0].partial));
+  // Of failures, where the last sounding always fails, it is not told as larger.
+  campaign_.requirements = {{.metric = kPeak, .below = 0.9, .above = std::nullopt}};
+  DriversWhen([&](std::size_t k) { return numbers[k] > 5.5 ? 1.0 : 0.1 * noise_[k]; });
+  for (const FailureDriver& driver : FindFailureDrivers(campaign_, cases_).at(0).drivers)
+    EXPECT_NE(driver.input, kNumber);
+}
+
 // A gust's azimuth gives a direction to the gust's speed, and not to the wind's.
 TEST_F(Planted, AGustIsPairedWithItsOwnSpeed) {
   for (const char* name : {"gust_azimuth_deg", "gust_speed_m_s", "wind_max_speed_m_s"}) {

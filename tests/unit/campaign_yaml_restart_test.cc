@@ -113,7 +113,7 @@ TEST(RestartFile, KnowsWhatATimedBurnLeaves) {
 TEST(RestartFile, MayFollowARestart) {
   const std::string once_more = "  - {name: once more, restarts: true, ignition: {trigger: timer}}\n";
   const Vega file;
-  file.Edit("\n# Axial: (from memory", "\n" + once_more + "\n# Axial: (from memory");
+  file.Edit("\n# Axial: (assumed", "\n" + once_more + "\n# Axial: (assumed");
   const std::string nozzle = "  - {mass_kg: 16, cg_aft_of_pivot_m: 0.25, inertia_about_hinge_kg_m2: 1.6}\n";
   file.Edit(nozzle + nozzle, nozzle + nozzle + nozzle);
   const Vehicle vehicle = file.Load();

@@ -1,6 +1,7 @@
 #include "core/campaign_yaml/parse_sounding.h"
 
 #include "core/campaign_yaml/parse_csv.h"
+#include "core/environment/atmosphere.h"
 #include "core/math/constants.h"
 #include "tests/temporary_folder.h"
 #include "tests/test.h"
@@ -129,6 +130,32 @@ TEST(ConvertSounding, OfUnitsInAHeader) {
   EXPECT_NEAR(table.At(4, "density_kg_m3") * kAirGasConstant_j_kg_k * 217.45 / 20000.0, 1.0, 1e-7);
   EXPECT_THAT(table.comments, HasSubstr("45 degrees of latitude, for the file names none"));
   EXPECT_THAT(table.comments, HasSubstr("Columns not read: ascent_rate_m_s"));
+}
+
+// In the shape of the University of Wyoming's CSV, whose levels each have time and place. Made up.
+TEST(ConvertSounding, OfWyomingsCsv) {
+  TemporaryFolder folder;
+  const std::string file = (folder.path() / "s.csv").string();
+  const std::string header =
+      "time,longitude,latitude,pressure_hPa,geopotential height_m,temperature_C,dew point temperature_C,"
+      "relative humidity_%,mixing ratio_g/kg,wind direction_degree,wind speed_m/s\n";
+  const auto write = [&](const std::string& latitude) {
+    std::ofstream(file)
+        << header << "2020-01-15 11:06:00,-80.5500," << latitude
+        << ", 919.0,  874, -0.1, -0.2, 99, 4.10,240, 1.5\n2020-01-15 11:10:00,-80.5500,10.0,  "
+           "5.8,34988,-27.7,-73.7,  0, 0.32,   ,    \n";
+  };
+  write("60.0");
+  const Converted table = Convert(file);
+  ASSERT_EQ(table.rows.size(), 2u);
+  EXPECT_THAT(table.comments, HasSubstr("60.00 degrees of latitude"));
+  EXPECT_THAT(table.comments, HasSubstr("Columns not read: longitude, mixing ratio_g/kg\n"));
+  EXPECT_THAT(table.comments, HasSubstr("The last wind is at 873 m. Above, it fades."));
+  EXPECT_NEAR(table.At(1, "altitude_m"), GeometricHeight(34988.0, 60.0 * kRadPerDeg), 1e-3);
+  ExpectWind(table, 0, 1.5, 240.0);
+  EXPECT_EQ(table.At(1, "east_m_s"), 0.0);
+  write("-99.9900");
+  EXPECT_THAT(Convert(file).comments, HasSubstr("45 degrees of latitude, for the file names none"));
 }
 
 // Every unit of every quantity against its definition.

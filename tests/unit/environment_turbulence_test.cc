@@ -173,7 +173,7 @@ TEST(Turbulence, TheFieldIsWhatTheFlightsEquationsSee) {
   environment.wind.steady = {3.0, -2.0};
   environment.turbulence = std::make_shared<const TurbulenceField>(Drawn(3, 0.8));
   const FlightWeather weather =
-      PrepareWeather(environment.wind, environment.density, environment.turbulence.get());
+      PrepareWeather(environment.wind, environment.density, {}, environment.turbulence.get());
   lanes::FlownWeather<double> lane{};
   lane.density_factor = 1.0;
   lane.jet_inverse_width = lane.gust_inverse_length = 1.0;
@@ -182,7 +182,7 @@ TEST(Turbulence, TheFieldIsWhatTheFlightsEquationsSee) {
   for (const double altitude_m : {-10.0, 0.5, 77.0, 1234.5, 8000.0, 9500.0}) {
     const Vector3 p = (6378137.0 + altitude_m) * Vector3(std::cos(0.4), std::sin(0.4), 0.0);
     const AirData air = ComputeAirData(environment, p, Vector3::Zero());
-    const auto seen = lanes::SurroundingsAt(environment.earth, StandardAir(), lane, {p.x(), p.y(), p.z()});
+    const auto seen = lanes::SurroundingsAt(environment.earth, lane, {p.x(), p.y(), p.z()});
     const double omega = environment.earth.rotation_rate_rad_s;
     // 1e-9: slopes are kept as constant and slope, at altitudes of 1e4 m with slopes of 0.1 1/s.
     EXPECT_NEAR(air.v_AP_I.x(), omega * p.y() - seen.wind_m_s.x, 1e-9) << altitude_m;

@@ -28,7 +28,10 @@ class InputFiles {
 
   std::string Path(const std::string& file) const { return (folder_ / file).string(); }
 
-  void Write(const std::string& file, const std::string& text) const { std::ofstream(Path(file)) << text; }
+  void Write(const std::string& file, const std::string& text) const {
+    std::filesystem::create_directories(std::filesystem::path(Path(file)).parent_path());
+    std::ofstream(Path(file)) << text;
+  }
 
   /// Replaces the first occurrence, which must exist.
   void Edit(const std::string& file, const std::string& from, const std::string& to) const {

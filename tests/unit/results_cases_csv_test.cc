@@ -87,6 +87,20 @@ TEST(CasesCsv, WritesOneLineACase) {
   EXPECT_EQ(CasesCsvLine(result, AllColumns()), expected + ",000000000000000d0000000000abcdef\n");
 }
 
+TEST(CasesCsv, NamesTheSoundingOfItsNumber) {
+  CsvColumns columns = AllColumns();
+  columns.sounding = 0;
+  columns.soundings = {"mean,", "a.txt,2020-01-15", "b.txt,"};
+  EXPECT_THAT(CasesCsvHeader(RowInputs(MakeLimitedCampaign(1)), MetricList(kUsualStages), columns),
+              EndsWith(",sounding_file,sounding_time,digest\n"));
+  CaseResult result = MakeCase(12);
+  for (const auto& [number, cells] :
+       {std::pair(0.0, ",mean,,"), {1.0, ",a.txt,2020-01-15,"}, {2.0, ",b.txt,,"}}) {
+    result.inputs[0] = number;
+    EXPECT_THAT(CasesCsvLine(result, columns), HasSubstr(cells)) << number;
+  }
+}
+
 TEST(CasesCsv, DoesNotDependOnTheOrderOfArrival) {
   TemporaryFolder temporary;
   ResultFolder ascending = ResultFolder::Create(temporary / "ascending", MakeLimitedCampaign(50));

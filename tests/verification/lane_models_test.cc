@@ -39,7 +39,7 @@ TEST(AirTable, AKeptRowChangesNoBit) {
   const std::vector<double> up = altitudes;
   altitudes.insert(altitudes.end(), up.rbegin(), up.rend());
   for (const double z : altitudes) {
-    const lanes::AirPressure<double> air = lanes::AirAt(StandardAir(), z, kept);
+    const lanes::AirPressure<double> air = lanes::AirAt(lanes::AirTables<double>{}, z, kept);
     const lanes::AirPressure<double> anew = lanes::AirAt(StandardAir(), z);
     EXPECT_EQ(air.pressure_pa, anew.pressure_pa) << z;
     EXPECT_EQ(air.energy_j_kg, anew.energy_j_kg) << z;
@@ -62,7 +62,7 @@ TEST(Surroundings, AreThoseOfTheDefinitions) {
   environment.wind.steady = {0.3, -0.2};
   environment.density = {1.05, {{0.0, 10000.0, 40000.0}, {0.9, 1.1, 1.0}}};
   const FlightWeather prepared =
-      PrepareWeather(environment.wind, environment.density, environment.turbulence.get());
+      PrepareWeather(environment.wind, environment.density, {}, environment.turbulence.get());
   lanes::FlownWeather<double> weather;
   lanes::SetWeather(weather, 0, prepared);
   Stream draws(3, 0, "places");
@@ -76,8 +76,7 @@ TEST(Surroundings, AreThoseOfTheDefinitions) {
       still.wind = {};
       return ComputeAirData(still, p, Vector3::Zero());
     }();
-    const auto here =
-        lanes::SurroundingsAt<double>(environment.earth, StandardAir(), weather, {p.x(), p.y(), p.z()});
+    const auto here = lanes::SurroundingsAt<double>(environment.earth, weather, {p.x(), p.y(), p.z()});
     // Rounding of coordinates of 6e6 m, which is 1e-9 m, and 1e-13 of the air at that.
     ASSERT_NEAR(here.altitude_m, place.altitude_m, 1e-8);
     ASSERT_NEAR(here.pressure_pa, air.pressure_pa, 3e-12 * air.pressure_pa);
