@@ -6,9 +6,8 @@
 #include <memory>
 #include <optional>
 
-#include <fastdds/rtps/transport/TransportDescriptorInterface.h>
-
 #include "services/transport/doors.h"
+#include "services/transport/fast_dds.h"
 
 namespace dispersa {
 
@@ -34,8 +33,11 @@ struct Door {
 /// `inner` behind the sieve. Dropped datagrams are counted and logged with their sender, at most once a
 /// second. At a door greetings pass as the doors want it. Elsewhere only a coordinator's pass: the port may
 /// have been that of a coordinator before, to which all workers go on to greet.
-std::shared_ptr<eprosima::fastdds::rtps::TransportDescriptorInterface> Sieved(
-    std::shared_ptr<eprosima::fastdds::rtps::TransportDescriptorInterface> inner, bool with_keys,
-    const Door& door);
+std::shared_ptr<rtps::TransportDescriptorInterface> Sieved(
+    std::shared_ptr<rtps::TransportDescriptorInterface> inner, bool with_keys, const Door& door);
+
+/// The last greeting that passed on this thread. The middleware tells of a new participant on the thread that
+/// reads its greeting, and not all releases tell whether it has keys.
+const Greeting& LastGreeting();
 
 }  // namespace dispersa

@@ -78,7 +78,7 @@ def wait_for(condition, what):
 
 
 def shared_memory_segments():
-    return {p.name for p in pathlib.Path("/dev/shm").iterdir() if p.name.startswith("fastrtps")}
+    return {p.name for p in pathlib.Path("/dev/shm").iterdir() if p.name.startswith(("fastrtps", "fastdds"))}
 
 
 def stored(out):
