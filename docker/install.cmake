@@ -15,9 +15,9 @@ install(FILES core/analysis/summary.schema.json DESTINATION "${data}/schemas")
 
 # Each README.md in its folder, so that their links lead somewhere.
 file(GLOB_RECURSE documents RELATIVE "${PROJECT_SOURCE_DIR}" CONFIGURE_DEPENDS
-  core/*.md services/*.md idl/*.md docker/*.md core/images/* campaigns/*.md services/docs/pages/images/*.png)
+  core/*.md services/*.md idl/*.md docker/*.md core/images/* campaigns/*.md services/docs/pages/images/*)
 list(FILTER documents EXCLUDE REGEX "services/cli/starter/")  # what `init` writes
-foreach(document IN LISTS documents ITEMS README.md CONTRIBUTING.md CHANGELOG.md LICENSE)
+foreach(document IN LISTS documents ITEMS README.md CONTRIBUTING.md CHANGELOG.md CITATION.cff SECURITY.md LICENSE)
   get_filename_component(folder "${document}" DIRECTORY)
   install(FILES "${document}" DESTINATION "${CMAKE_INSTALL_DOCDIR}/${folder}")
 endforeach()

@@ -113,16 +113,15 @@ FlightBands BandCounter::CountedBands() const {
   for (std::size_t step = 0; step < flying_.size(); ++step)
     bands.time_s.push_back(static_cast<double>(step) * step_s_);
   for (std::size_t i = 0; i < columns_.size(); ++i) {
-    Band band{.column = HistoryColumns()[static_cast<std::size_t>(columns_[i])]};
+    Band band{.column = BandColumnNames()[static_cast<std::size_t>(columns_[i])]};
     for (const Cell& cell : cells_[i]) {
       const bool any = cell.min <= cell.max;
-      band.min.push_back(any ? cell.min + 0.0 : kUndefined);
-      band.p01.push_back(any ? cell.Quantile(0.01) : kUndefined);
-      band.p05.push_back(any ? cell.Quantile(0.05) : kUndefined);
-      band.p50.push_back(any ? cell.Quantile(0.50) : kUndefined);
-      band.p95.push_back(any ? cell.Quantile(0.95) : kUndefined);
-      band.p99.push_back(any ? cell.Quantile(0.99) : kUndefined);
-      band.max.push_back(any ? cell.max + 0.0 : kUndefined);
+      for (const BandStatistic& one : kBandStatistics)
+        (band.*one.values)
+            .push_back(!any                     ? kUndefined
+                       : one.probability == 0.0 ? cell.min + 0.0
+                       : one.probability == 1.0 ? cell.max + 0.0
+                                                : cell.Quantile(one.probability));
     }
     bands.bands.push_back(std::move(band));
   }
@@ -141,9 +140,8 @@ FlightBands BandCounter::Bands() const {
       bands.time_s.push_back(static_cast<double>(step) * step_s_);
       bands.flying.push_back(0);
     }
-    for (std::vector<double>* values :
-         {&band.min, &band.p01, &band.p05, &band.p50, &band.p95, &band.p99, &band.max})
-      values->resize(bands.time_s.size(), kUndefined);
+    for (const BandStatistic& one : kBandStatistics)
+      (band.*one.values).resize(bands.time_s.size(), kUndefined);
     for (std::size_t step = 0; step < extremes.min.size(); ++step) {
       if (extremes.min[step] > extremes.max[step]) continue;
       band.min[step] = std::fmin(band.min[step], extremes.min[step]);

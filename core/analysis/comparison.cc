@@ -185,29 +185,33 @@ bool IsMedianWorse(const MetricComparison& metric, double sign) {
   return sign * metric.tendency >= 0.0;
 }
 
-/// The finding is that of the largest difference that is certain and matters. The tails of a metric are
-/// several families of tests, so each has its part of the risk.
+/// The finding is that of the largest difference that is certain and matters, with its p. The tails of a
+/// metric are several families of tests, so each has its part of the risk.
 void Judge(MetricComparison& metric) {
   const double risk = 1.0 - kComparisonConfidence;
   const double sign = metric.info.worse == Worse::kSmaller ? -1.0 : 1.0;
   bool is_certain = false, is_worse = false;
-  const auto consider = [&](const std::string& name, double difference, bool worse, bool matters) {
-    is_certain = true;
-    if (!matters) return;
+  metric.found_p = metric.p_holm;
+  const auto consider = [&](const std::string& name, double difference, double p, bool worse, bool matters) {
     const double effect =
         std::isfinite(difference) && metric.scale > 0.0 ? std::fabs(difference) / metric.scale : kInfinity;
-    if (!metric.effect_in.empty() && effect <= metric.effect) return;
+    const bool is_first = !is_certain || (matters && metric.effect_in.empty());
+    is_certain = true;
+    if (!is_first && (!matters || effect <= metric.effect)) return;
+    metric.found_in = name;
+    metric.found_p = p;
+    if (!matters) return;
     metric.effect = effect;
     metric.effect_in = name;
     is_worse = worse;
   };
   if (metric.p_holm <= risk)
-    consider("median", metric.difference, IsMedianWorse(metric, sign),
+    consider("median", metric.difference, metric.p_holm, IsMedianWorse(metric, sign),
              metric.lost_a != metric.lost_b || !(std::fabs(metric.difference) < metric.least));
   for (const PercentileComparison& tail : metric.tails)
     if (tail.p_holm <= risk / static_cast<double>(metric.tails.size()) && std::isfinite(tail.difference) &&
         tail.difference != 0.0)
-      consider(tail.name, tail.difference, sign * tail.difference > 0.0,
+      consider(tail.name, tail.difference, tail.p_holm, sign * tail.difference > 0.0,
                std::fabs(tail.difference) >= metric.least);
   metric.finding = !is_certain                            ? "not shown"
                    : metric.effect_in.empty()             ? kTooSmall

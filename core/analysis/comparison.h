@@ -100,8 +100,10 @@ struct MetricComparison {
   /// The largest difference that is certain and matters, of the median or of a tail, as a share of the scale.
   /// Infinite: the median is that of a lost flight. 0: none.
   double effect = 0.0;
-  std::string effect_in = {};  ///< "median", "p99"; empty: none
-  std::string finding;         ///< "better", "worse" (of b), "differs", kTooSmall, "not shown"
+  std::string effect_in = {};       ///< "median", "p99"; empty: none
+  std::string finding;              ///< "better", "worse" (of b), "differs", kTooSmall, "not shown"
+  std::string found_in = "median";  ///< what the finding is about: the largest difference that is certain
+  double found_p = kUndefined;      ///< its p_holm
   /// Counted in the sentence: neither a part of another metric (a stage's), nor a value whose error is
   /// compared.
   bool is_counted = true;

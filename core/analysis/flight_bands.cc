@@ -3,13 +3,55 @@
 #include <algorithm>
 #include <cmath>
 
+#include "core/math/circle.h"
+#include "core/math/constants.h"
 #include "core/results/text.h"
 #include "core/statistics/summary.h"
 
 namespace dispersa {
 
+const std::vector<std::string>& BandColumnNames() {
+  static const std::vector<std::string> names = [] {
+    std::vector<std::string> all = HistoryColumns();
+    all.insert(all.end(), {"q_alpha_pa_rad", "pitch_error_powered_deg", "yaw_error_powered_deg",
+                           "roll_error_powered_deg"});
+    return all;
+  }();
+  return names;
+}
+
+int FindBandColumn(std::string_view name) {
+  const auto& names = BandColumnNames();
+  const auto found = std::find(names.begin(), names.end(), name);
+  return found == names.end() ? -1 : static_cast<int>(found - names.begin());
+}
+
+namespace {
+
+/// Reads band columns out of the rows of a history.
+class BandRow {
+ public:
+  double At(const History& history, std::size_t row, int column) const {
+    if (column < q_alpha_) return history.at(row, column);
+    if (column == q_alpha_) return history.at(row, qbar_pa_) * history.at(row, incidence_deg_) / kDegPerRad;
+    return history.at(row, thrust_n_) > 0.0 ? history.at(row, pitch_error_ + column - q_alpha_ - 1)
+                                            : kUndefined;
+  }
+
+ private:
+  const int qbar_pa_ = FindHistoryColumn("qbar_pa"), incidence_deg_ = FindHistoryColumn("incidence_deg"),
+            thrust_n_ = FindHistoryColumn("thrust_n");
+  const int pitch_error_ = FindHistoryColumn("pitch_error_deg");  // yaw and roll follow it
+  const int q_alpha_ = FindBandColumn("q_alpha_pa_rad");
+};
+
+}  // namespace
+
 SampledFlight SampleFlight(const History& history, const std::vector<int>& columns, double step_s) {
+  static const int longitude_deg = FindHistoryColumn("longitude_deg");
+  static const BandRow band_row;
   SampledFlight samples(columns.size());
+  double last_longitude_deg = 0.0;
   for (std::size_t row = 0; row < history.rows(); ++row) {
     const double time_s = history.at(row, 0);
     const double multiple = std::round(time_s / step_s);
@@ -17,7 +59,10 @@ SampledFlight SampleFlight(const History& history, const std::vector<int>& colum
     const auto step = static_cast<std::size_t>(multiple);
     for (std::size_t i = 0; i < columns.size(); ++i) {
       samples[i].resize(std::max(samples[i].size(), step + 1), kUndefined);
-      samples[i][step] = history.at(row, columns[i]);
+      double& value = samples[i][step];
+      value = band_row.At(history, row, columns[i]);
+      if (columns[i] == longitude_deg && std::isfinite(value))
+        value = last_longitude_deg = NearTo(last_longitude_deg, value, kCutAt180Deg);
     }
   }
   return samples;
@@ -39,20 +84,15 @@ FlightBands ComputeBands(const std::vector<SampledFlight>& flights, const std::v
                       [&](const SampledFlight& flight) { return flight[0].size() > step; })));
   }
   for (std::size_t i = 0; i < columns.size(); ++i) {
-    Band band{.column = HistoryColumns()[static_cast<std::size_t>(columns[i])]};
+    Band band{.column = BandColumnNames()[static_cast<std::size_t>(columns[i])]};
     for (std::size_t step = 0; step < steps; ++step) {
       std::vector<double> values;
       for (const SampledFlight& flight : flights) {
         if (step < flight[i].size()) values.push_back(flight[i][step]);
       }
       const std::vector<double> sorted = SortedFinite(std::move(values));
-      band.min.push_back(Quantile(sorted, 0.0));
-      band.p01.push_back(Quantile(sorted, 0.01));
-      band.p05.push_back(Quantile(sorted, 0.05));
-      band.p50.push_back(Quantile(sorted, 0.50));
-      band.p95.push_back(Quantile(sorted, 0.95));
-      band.p99.push_back(Quantile(sorted, 0.99));
-      band.max.push_back(Quantile(sorted, 1.0));
+      for (const BandStatistic& one : kBandStatistics)
+        (band.*one.values).push_back(Quantile(sorted, one.probability));
     }
     bands.bands.push_back(std::move(band));
   }
@@ -65,18 +105,13 @@ std::string BandsCsv(const FlightBands& bands, int digits) {
   };
   std::string csv = "time_s,flights";
   for (const Band& band : bands.bands) {
-    for (const char* statistic : {"min", "p01", "p05", "p50", "p95", "p99", "max"}) {
-      csv += "," + band.column + "_" + statistic;
-    }
+    for (const BandStatistic& one : kBandStatistics) csv += "," + band.column + "_" + one.name;
   }
   csv += "\n";
   for (std::size_t step = 0; step < bands.time_s.size(); ++step) {
     csv += text(bands.time_s[step]) + "," + std::to_string(bands.flying[step]);
     for (const Band& band : bands.bands) {
-      for (const auto* values :
-           {&band.min, &band.p01, &band.p05, &band.p50, &band.p95, &band.p99, &band.max}) {
-        csv += "," + text((*values)[step]);
-      }
+      for (const BandStatistic& one : kBandStatistics) csv += "," + text((band.*one.values)[step]);
     }
     csv += "\n";
   }

@@ -105,7 +105,7 @@ void SetConvergence(const CaseTally& tally, const CaseColumns& cases, Requiremen
 std::string PlanSentence(const RequirementSummary& summary) {
   switch (summary.plan.kind) {
     case PlanKind::kFixed:
-      return fmt::format("judged once, after {} flights", summary.planned);
+      return fmt::format("judged once, after {}", Plural(summary.planned, "flight"));
     case PlanKind::kGroupSequential:
       return fmt::format("judged {} times up to {} flights", summary.plan.looks, summary.planned);
     case PlanKind::kAnytime:
@@ -160,8 +160,9 @@ std::string IndependentSentence(const RequirementSummary& summary, std::int64_t 
     sentence += fmt::format(" One look met the requirement and another one did not; {}", required);
   } else {
     sentence += fmt::format(" Between {} and {} of flights meet it, each bound with {} confidence; {}",
-                            ShareText(*summary.success_lower, Rounding::kDown),
-                            ShareText(*summary.success_upper, Rounding::kUp), confidence, required);
+                            ShareText(*summary.success_lower, Rounding::kDown, summary.probability),
+                            ShareText(*summary.success_upper, Rounding::kUp, summary.probability), confidence,
+                            required);
   }
   if (summary.verdict != "inconclusive" && summary.looks.back().verdict != Verdict::kInconclusive) {
     const auto first = std::find_if(summary.looks.begin(), summary.looks.end(),

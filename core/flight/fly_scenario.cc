@@ -79,7 +79,7 @@ void SetMass(const ScenarioStage& stage, const Phase& phase, double time_s, Body
   loads.mass_kg = mass.mass_kg.front() + propellant;
   loads.inertia_kg_m2 += fraction * change;
   cg_station_m += fraction * (mass.cg_station_m[phase.row + 1] - mass.cg_station_m[phase.row]);
-  if (phase.burning && stage.motor->inertia_rate) loads.inertia_rate_kg_m2_s = (-flow / step_kg) * change;
+  if (phase.burning) loads.inertia_rate_kg_m2_s = (-flow / step_kg * stage.motor->inertia_rate) * change;
 }
 
 void AddThrust(const ScenarioMotor& motor, double pressure_pa, const Vector3& w_IB_B, double cg_station_m,

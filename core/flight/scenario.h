@@ -33,8 +33,8 @@ struct ScenarioMotor {
   double nozzle_station_m = 0.0;
   double nozzle_y_m = 0.0;
   double nozzle_z_m = 0.0;
-  bool jet_damping = false;  ///< moment -m_dot r x (w x r), r from CG to nozzle
-  bool inertia_rate = true;  ///< the term -(dI/dt) w of Euler's equations
+  bool jet_damping = false;   ///< moment -m_dot r x (w x r), r from CG to nozzle
+  double inertia_rate = 1.0;  ///< share of the term -(dI/dt) w of Euler's equations
 };
 
 /// The whole vehicle between two separations.

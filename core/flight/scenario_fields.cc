@@ -209,7 +209,8 @@ void Describe(Fields& fields, ScenarioMotor& motor, double propellant_kg) {
   fields.Quantity("nozzle_y", kLength, kAnyNumber, motor.nozzle_y_m, "off the axis to the right", 0.0);
   fields.Quantity("nozzle_z", kLength, kAnyNumber, motor.nozzle_z_m, "off the axis downwards", 0.0);
   fields.Flag("jet_damping", motor.jet_damping, false, "moment of the flow through a turning vehicle");
-  fields.Flag("inertia_rate", motor.inertia_rate, true, "the term -(dI/dt) w of Euler's equations");
+  fields.Number("inertia_rate", Between(0.0, 1.0), motor.inertia_rate,
+                "share of the term -(dI/dt) w of Euler's equations", 1.0);
 }
 
 template <class T>

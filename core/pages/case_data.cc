@@ -21,11 +21,14 @@ std::vector<std::string> ShownMetrics(const CampaignSummary& summary) {
   };
   const std::initializer_list<const char*> of_orbit = {
       "injection_velocity_error_m_s", "injection_altitude_error_km", "perigee_km", "apogee_km"};
-  std::vector<const char*> more(of_orbit);
+  std::vector<std::string> more(of_orbit.begin(), of_orbit.end());
   if (!summary.is_controlled) more.clear();
   for (const char* name : {"impact_crossrange_km", "impact_downrange_km"})
     if (is_measured(name)) more.push_back(name);
-  for (const char* name : more) {
+  for (const MetricSummary& metric : summary.metrics)
+    if (metric.name.starts_with("propellant_left_stage") && metric.statistics.n > 0)
+      more.push_back(metric.name);
+  for (const std::string& name : more) {
     if (std::find(names.begin(), names.end(), name) == names.end()) names.push_back(name);
   }
   return names;

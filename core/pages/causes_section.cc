@@ -3,6 +3,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <set>
 
 #include "core/pages/glossary.h"
 #include "core/pages/html_parts.h"
@@ -37,6 +38,42 @@ std::string Bar(const Driver& driver) {
       1000.0 * driver.low, 1000.0 * driver.high);
 }
 
+/// Empty if nothing tells failing flights from the others.
+std::string FailurePart(const FailureDrivers& requirement) {
+  if (requirement.drivers.empty() && requirement.pairs.empty()) return "";
+  std::string html =
+      fmt::format("<h3>{} of {}: {} {}</h3>\n", requirement.nearest ? "Nearest to failing" : "Failing",
+                  HtmlText(DescribeMetric(requirement.metric).title), requirement.flights,
+                  requirement.flights == 1 ? "flight" : "flights");
+  HtmlTable table("!Input|Feature|Among them|#p|#" +
+                  Term("expected false alarms", "Expected false alarms in the list so far"));
+  constexpr std::size_t kShown = 5;
+  for (std::size_t i = 0; i < std::min(kShown, requirement.drivers.size()); ++i) {
+    const FailureDriver& driver = requirement.drivers[i];
+    table.Row({InputNames(driver.key, driver.input), HtmlText(driver.feature),
+               driver.larger ? "larger" : "smaller", HtmlText(PValueText(driver.p)),
+               Share(driver.false_discovery_rate)});
+  }
+  html += table.Html("causes");
+  if (requirement.drivers.size() > kShown)
+    html += fmt::format("<p class=\"soft\">The first {} of {}; <code>summary.json</code> has all.</p>\n",
+                        kShown, requirement.drivers.size());
+  if (requirement.pairs.empty()) return html;
+  html +=
+      "<p>Combinations: two inputs that belong together among the failing flights and not among the "
+      "others.</p>\n";
+  HtmlTable pairs("!Inputs|Among the failing flights|#Rank correlation|#p|#" +
+                  Term("expected false alarms", "Expected false alarms in the list so far"));
+  for (const FailurePair& pair : requirement.pairs) {
+    pairs.Row({InputNames(pair.first_key, pair.first) + " by " + HtmlText(pair.first_feature) + " and " +
+                   InputNames(pair.second_key, pair.second) + " by " + HtmlText(pair.second_feature),
+               pair.correlation > 0.0 ? "large together" : "one is large where the other is small",
+               FixedText(pair.correlation, 2), HtmlText(PValueText(pair.p)),
+               Share(pair.false_discovery_rate)});
+  }
+  return html + pairs.Html("causes");
+}
+
 }  // namespace
 
 std::string CausesSection(const CampaignSummary& summary) {
@@ -60,38 +97,10 @@ std::string CausesSection(const CampaignSummary& summary) {
   }
   html += "</div>\n";
   if (!any) html += "<p>Fewer than 30 completed flights, or nothing that varies: no cause can be told.</p>\n";
+  std::set<std::string> seen;  // several limits of a metric have the same flights nearest to them
   for (const FailureDrivers& requirement : summary.failure_drivers) {
-    if (requirement.drivers.empty() && requirement.pairs.empty()) continue;
-    html += fmt::format("<h3>{} of {}: {} {}</h3>\n", requirement.nearest ? "Nearest to failing" : "Failing",
-                        HtmlText(DescribeMetric(requirement.metric).title), requirement.flights,
-                        requirement.flights == 1 ? "flight" : "flights");
-    HtmlTable table("!Input|Feature|Among them|#p|#" +
-                    Term("expected false alarms", "Expected false alarms in the list so far"));
-    constexpr std::size_t kShown = 5;
-    for (std::size_t i = 0; i < std::min(kShown, requirement.drivers.size()); ++i) {
-      const FailureDriver& driver = requirement.drivers[i];
-      table.Row({InputNames(driver.key, driver.input), HtmlText(driver.feature),
-                 driver.larger ? "larger" : "smaller", HtmlText(PValueText(driver.p)),
-                 Share(driver.false_discovery_rate)});
-    }
-    html += table.Html("causes");
-    if (requirement.drivers.size() > kShown)
-      html += fmt::format("<p class=\"soft\">The first {} of {}; <code>summary.json</code> has all.</p>\n",
-                          kShown, requirement.drivers.size());
-    if (requirement.pairs.empty()) continue;
-    html +=
-        "<p>Combinations: two inputs that belong together among the failing flights and not among the "
-        "others.</p>\n";
-    HtmlTable pairs("!Inputs|Among the failing flights|#Rank correlation|#p|#" +
-                    Term("expected false alarms", "Expected false alarms in the list so far"));
-    for (const FailurePair& pair : requirement.pairs) {
-      pairs.Row({InputNames(pair.first_key, pair.first) + " by " + HtmlText(pair.first_feature) + " and " +
-                     InputNames(pair.second_key, pair.second) + " by " + HtmlText(pair.second_feature),
-                 pair.correlation > 0.0 ? "large together" : "one is large where the other is small",
-                 FixedText(pair.correlation, 2), HtmlText(PValueText(pair.p)),
-                 Share(pair.false_discovery_rate)});
-    }
-    html += pairs.Html("causes");
+    const std::string part = FailurePart(requirement);
+    if (seen.insert(part).second) html += part;
   }
   return html;
 }

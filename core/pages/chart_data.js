@@ -37,7 +37,11 @@ function ChartPoints(path) {
         if (name) add(name, "limit", [{x, y, say: upright ? `${name}: ${labels[0]} ${number(xs.value(x), xs)}`
                                                           : `${name}: ${labels[1]} ${number(ys.value(y), ys)}`}]);
       } else if (d.includes("h0")) {
-        add(name, "dots", [...d.matchAll(/M(\S+) (\S+?)h0/g)].map(([, x, y]) => ({x: +x, y: +y})));
+        let x = 0, y = 0;  // steps from dot to dot
+        add(name, "dots", d.split("h0").slice(0, -1).map(step => {
+          const [dx, dy] = step.match(/-?[\d.]+/g).map(Number);
+          return {x: x = Math.round(10 * (x + dx)) / 10, y: y = Math.round(10 * (y + dy)) / 10};
+        }));
       } else if (d.endsWith("Z")) {
         // There along the upper edge, back along the lower one.
         const points = ChartPoints(d), far = Math.max(...points.map(p => p[0]));

@@ -56,14 +56,17 @@ void ChartScale::LinearTicks(const ChartAxis& axis, int about_ticks) {
 }
 
 void ChartScale::LogarithmicTicks(const ChartAxis& axis, int about_ticks) {
-  // Every decade, unless the labels would overlap.
+  // Every decade, unless the labels would overlap. Of few decades 2 and 5 too.
   const double decades = std::log10(high_ / low_);
   const double stride = decades > 2.0 * about_ticks ? std::ceil(decades / about_ticks) : 1.0;
-  const double first = stride * std::ceil(std::log10(low_) / stride - 1e-9);
-  for (double k = first; std::pow(10.0, k) <= high_ * (1.0 + 1e-9); k += stride) {
-    const double value = std::pow(10.0, k);
-    ticks_.push_back({value, axis.percent ? PercentText(value) : fmt::format("{:g}", value)});
-  }
+  for (double k = stride * std::floor(std::log10(low_) / stride); std::pow(10.0, k) <= high_ * (1.0 + 1e-9);
+       k += stride)
+    for (const double times : {1.0, 2.0, 5.0}) {
+      const double value = times * std::pow(10.0, k);
+      if (times > 1.0 && decades > 2.0) break;
+      if (value < low_ * (1.0 - 1e-9) || value > high_ * (1.0 + 1e-9)) continue;
+      ticks_.push_back({value, axis.percent ? PercentText(value) : fmt::format("{:g}", value)});
+    }
 }
 
 }  // namespace dispersa

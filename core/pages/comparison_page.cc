@@ -305,8 +305,12 @@ std::string MetricsSection(const Comparison& c) {
       "<h2 id=\"metrics\">Metrics</h2>\n"
       "<p>First those whose change is certain and matters, the largest first. {} Its 95 % limits stand below "
       "it. The tails are on the bad side: 95 and 99 %, or 5 and 1 % if "
-      "less is worse. <code>compare.json</code> has the other percentiles. “Not shown”: Holm’s adjusted p is "
-      "above 5 %. This does not show that the campaigns are equal. A difference matters from {} of a "
+      "less is worse. <code>compare.json</code> has the other percentiles. The p is that of the median, or "
+      "of the tail that "
+      "the finding is about. “Not shown”: Holm’s adjusted p of the median is above 5 %, and that of each "
+      "tail "
+      "above its part of 5 %. This does not show that the campaigns are equal. A difference matters from {} "
+      "of a "
       "requirement’s limit on, or without one of the spread of A from 5 to 95 %.</p>\n",
       c.pairing.paired ? "The difference is the median of B minus A over the pairs."
                        : "The difference is that of the medians.",
@@ -340,7 +344,7 @@ std::string MetricsSection(const Comparison& c) {
                                 ? fmt::format("{} smaller<br>{} larger", metric.b_better, metric.a_better)
                                 : fmt::format("{} : {}", metric.b_better, metric.a_better)
                           : fmt::format("{}, {}", metric.n_a, metric.n_b),
-         PText(metric.p_holm),
+         PText(metric.found_p) + (metric.found_in == "median" ? "" : Definition("of " + metric.found_in)),
          FindingBadge(metric.finding) + (metric.effect_in.empty() || !std::isfinite(metric.effect)
                                              ? ""
                                              : Definition(metric.effect_in + ": " + ShareOfScale(metric)))},

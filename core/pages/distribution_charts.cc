@@ -7,6 +7,9 @@
 #include <optional>
 #include <vector>
 
+#include "core/environment/earth.h"
+#include "core/flight/orbit.h"
+#include "core/math/functions.h"
 #include "core/pages/html_parts.h"
 #include "core/pages/svg_chart.h"
 #include "core/results/metric_catalogue.h"
@@ -70,7 +73,8 @@ std::string AxisLabel(const std::string& metric) {
 /// The nominal flight's dot over those of the cases.
 void AddCases(const std::string& x, const std::string& y, const CampaignSummary& summary,
               const CaseColumns& cases, SvgChart* chart) {
-  chart->ShowsCases(x, y);
+  // The page holds no values of the others: they would make it too large to send.
+  if (x != "semi_major_axis_error_km") chart->ShowsCases(x, y);
   chart->Points(CompletedValues(cases, x), CompletedValues(cases, y), "dots", "cases");
   if (!summary.nominal) return;
   chart->Points({summary.nominal->metrics[summary.metric_list.PositionOf(x)]},
@@ -90,14 +94,57 @@ PointScatter PairsOf(const std::vector<double>& x, const std::vector<double>& y)
 
 namespace {
 
-// A scatter of the completed cases with the ellipses of its covariance.
+void AddLimits(const std::string& metric, bool horizontal, const CampaignSummary& summary, SvgChart* chart) {
+  for (const RequirementSummary& requirement : summary.requirements) {
+    if (requirement.metric != metric) continue;
+    const std::string unit = DescribeMetric(metric).unit;
+    const auto add = [&](double value, const std::string& legend) {
+      horizontal ? chart->HorizontalLimit(value, legend) : chart->VerticalLimit(value, legend);
+    };
+    add(requirement.limit, LimitWords(requirement, unit));
+    if (requirement.low_limit) add(*requirement.low_limit, "");
+  }
+}
+
+struct Aim {
+  double x = 0.0, y = 0.0;
+  const char* legend = "target";
+};
+
+/// Apsides of the reference's orbit. Its file states speed, angle and geodetic altitude; the radius follows
+/// from the nominal flight, whose semi-major axis and its error are measured.
+std::optional<Aim> ReferenceApsides(const CampaignSummary& summary) {
+  if (!summary.nominal || summary.nominal->outcome != Outcome::kCompleted) return std::nullopt;
+  const auto nominal_m = [&](const char* metric) {
+    return 1e3 * summary.nominal->metrics[summary.metric_list.PositionOf(metric)];
+  };
+  const Earth earth = Wgs84();
+  const Orbit& orbit = summary.reference_orbit;
+  const double axis_m = earth.equatorial_radius_m + 0.5 * (nominal_m("apogee_km") + nominal_m("perigee_km")) -
+                        nominal_m("semi_major_axis_error_km");
+  const double radius_m = 2.0 / (Square(orbit.velocity_m_s) / earth.mu_m3_s2 + 1.0 / axis_m);
+  const SinCos path = SineCosine(orbit.flight_path_angle_rad);
+  const OrbitElements elements =
+      ElementsOf(earth, {radius_m, 0.0, 0.0}, Vector3(path.sin, path.cos, 0.0) * orbit.velocity_m_s);
+  return Aim{elements.perigee_altitude_m * 1e-3, elements.apogee_altitude_m * 1e-3, "reference"};
+}
+
+/// The completed cases with the ellipses of their covariance. Empty if no case has both values.
 std::string ScatterFigure(const std::string& x, const std::string& y, const std::string& what,
-                          const CampaignSummary& summary, const CaseColumns& cases) {
+                          const std::optional<Aim>& aim, const CampaignSummary& summary,
+                          const CaseColumns& cases) {
+  const PointScatter scatter = PairsOf(CompletedValues(cases, x), CompletedValues(cases, y));
+  if (scatter.n == 0) return "";
   SvgChart chart({.label = AxisLabel(x)}, {.label = AxisLabel(y)}, 520, 300);
   AddCases(x, y, summary, cases, &chart);
+  if (aim && std::isfinite(aim->x) && std::isfinite(aim->y))
+    chart.Points({aim->x}, {aim->y}, "dot-target", aim->legend);
+  AddLimits(x, false, summary, &chart);
+  AddLimits(y, true, summary, &chart);
   std::string caption = what;
-  const PointScatter scatter = PairsOf(CompletedValues(cases, x), CompletedValues(cases, y));
-  if (scatter.n >= kFewestForEllipses) {
+  const bool has_spread =
+      scatter.n >= kFewestForEllipses && scatter.covariance[0][0] > 0.0 && scatter.covariance[1][1] > 0.0;
+  if (has_spread) {
     std::string drawn;
     for (const double containment : {0.5, 0.95, 0.9973}) {
       // Two coordinates: the quantile of chi squared in closed form.
@@ -121,20 +168,21 @@ std::string ScatterFigure(const std::string& x, const std::string& y, const std:
 std::string ImpactFigures(const CampaignSummary& summary, const CaseColumns& cases) {
   return ScatterFigure("impact_crossrange_km", "impact_downrange_km",
                        "Impact of each completed case, from the launch site along and across its azimuth.",
-                       summary, cases) +
+                       {}, summary, cases) +
          ScatterFigure("impact_downrange_km", "apogee_altitude_km",
-                       "Apogee and range of each completed case.", summary, cases);
+                       "Apogee and range of each completed case.", {}, summary, cases);
 }
 
 std::string InjectionFigures(const CampaignSummary& summary, const CaseColumns& cases) {
-  const std::string injection =
-      ScatterFigure("injection_velocity_error_m_s", "injection_altitude_error_km",
-                    "Injection of each completed case against the target.", summary, cases);
-  SvgChart orbits({.label = AxisLabel("perigee_km")}, {.label = AxisLabel("apogee_km")}, 520, 300);
-  AddCases("perigee_km", "apogee_km", summary, cases, &orbits);
-  const std::string orbit_caption =
-      "The orbits that follow from it; far from a normal law, so no ellipse is drawn.";
-  return injection + Figure(orbits.Svg(orbit_caption), HtmlText(orbit_caption));
+  return ScatterFigure("injection_velocity_error_m_s", "injection_altitude_error_km",
+                       "Injection of each completed case against the target.", Aim{}, summary, cases) +
+         ScatterFigure(
+             "perigee_km", "apogee_km",
+             "The orbits that follow from it. Near a circle they crowd on its line, far from a normal law.",
+             ReferenceApsides(summary), summary, cases) +
+         ScatterFigure("semi_major_axis_error_km", "inclination_error_deg",
+                       "Size and plane of the orbit of each completed case against the target.", Aim{},
+                       summary, cases);
 }
 
 namespace {

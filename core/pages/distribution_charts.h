@@ -19,7 +19,9 @@ inline std::string DistributionId(const std::string& metric) { return "of-" + me
 /// Where the completed cases come down: down-range against cross-range.
 std::string ImpactFigures(const CampaignSummary& summary, const CaseColumns& cases);
 
-/// The injection of the completed cases: altitude error against velocity error, and apogee against perigee.
+/// The injection of the completed cases: altitude error against velocity error, apogee against perigee, and
+/// the errors of inclination and semi-major axis. Errors have their target, and all have limits and
+/// ellipses of covariance. A pair that no flight defines is left out.
 std::string InjectionFigures(const CampaignSummary& summary, const CaseColumns& cases);
 
 }  // namespace dispersa

@@ -17,6 +17,9 @@ std::string_view ChartScript();
 /// that SvgChart writes.
 std::string_view ReportScript();
 
+/// coast_lines.txt: tests/tools/coast_lines.py makes it.
+std::string_view CoastLineData();
+
 /// glossary.md of the docs site.
 std::string_view GlossarySource();
 

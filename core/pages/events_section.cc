@@ -17,11 +17,33 @@ struct Shown {
   double least = 0.0;  ///< what is smaller is shown as 0
 };
 // As kEventValueNames.
-constexpr Shown kShown[] = {
-    {"Time, s", 1.0}, {"Altitude, km", 1e-3}, {"Speed, m/s", 1.0}, {"q, kPa", 1e-3, 5e-4}, {"Mass, kg", 1.0}};
+constexpr Shown kShown[] = {{"Time, s", 1.0},
+                            {"Altitude, km", 1e-3, 5e-4},
+                            {"Speed, m/s", 1.0, 5e-3},
+                            {"q, kPa", 1e-3, 5e-4},
+                            {"Mass, kg", 1.0}};
 
-/// "stage 1 burnout", "jettison of the fairing".
-std::string Words(const std::string& name, const Vehicle& vehicle) {
+std::string Cell(const Summary& over, const SeenEvent* nominal, double SeenEvent::*value, const Shown& as) {
+  const auto text = [&](double number) {
+    const double shown = number * as.per_unit;
+    return ScatterText(std::fabs(shown) < as.least ? 0.0 : shown, over.std * as.per_unit);
+  };
+  std::string cell = nominal == nullptr ? "–" : text(nominal->*value);
+  cell += "<span class=\"definition\">";
+  if (over.n == 0)
+    cell += "–";
+  else if (over.min == over.max || std::fabs(over.max) * as.per_unit < as.least)
+    cell += text(over.max);
+  else if (text(over.p01) == text(over.p99))
+    cell += text(over.p50);
+  else
+    cell += text(over.p01) + " · " + text(over.p50) + " · " + text(over.p99);
+  return cell + "</span>";
+}
+
+}  // namespace
+
+std::string EventWords(const std::string& name, const Vehicle& vehicle) {
   constexpr std::string_view kJettison = "jettison_";
   if (name.starts_with(kJettison)) {
     std::size_t number = 0;
@@ -35,24 +57,6 @@ std::string Words(const std::string& name, const Vehicle& vehicle) {
   return HtmlText(words);
 }
 
-std::string Cell(const Summary& over, const SeenEvent* nominal, double SeenEvent::*value, const Shown& as) {
-  const auto text = [&](double number) {
-    const double shown = number * as.per_unit;
-    return ScatterText(std::fabs(shown) < as.least ? 0.0 : shown, over.std * as.per_unit);
-  };
-  std::string cell = nominal == nullptr ? "–" : text(nominal->*value);
-  cell += "<span class=\"definition\">";
-  if (over.n == 0)
-    cell += "–";
-  else if (over.min == over.max || std::fabs(over.max) * as.per_unit < as.least)
-    cell += text(over.max);
-  else
-    cell += text(over.p01) + " · " + text(over.p50) + " · " + text(over.p99);
-  return cell + "</span>";
-}
-
-}  // namespace
-
 std::string EventsSection(const Campaign& campaign, const CampaignSummary& summary) {
   if (summary.events.empty()) return "";
   std::string titles = "!Event|#Flights";
@@ -61,7 +65,8 @@ std::string EventsSection(const Campaign& campaign, const CampaignSummary& summa
   for (const EventSummary& event : summary.events) {
     const SeenEvent* const nominal =
         summary.nominal ? FindEvent(summary.nominal->events, event.name) : nullptr;
-    std::vector<std::string> row = {Words(event.name, campaign.vehicle), std::to_string(event.flights())};
+    std::vector<std::string> row = {EventWords(event.name, campaign.vehicle),
+                                    std::to_string(event.flights())};
     for (std::size_t i = 0; i < event.values.size(); ++i)
       row.push_back(Cell(event.values[i], nominal, SeenEvent::kValues[i], kShown[i]));
     table.Row(row);

@@ -43,8 +43,9 @@ std::string HeadSentence(const CampaignSummary& summary) {
       return "No requirement failed, but these flights are no evidence that all are met: the reasons stand "
              "below.";
     case StandingVerdict::kInconclusive:
-      return fmt::format("{} of {} requirements cannot be decided with {} flights; none has failed.",
-                         CountOf(standing, "inconclusive"), all, summary.flown);
+      return fmt::format("{} of {} requirements cannot be decided with {} flight{}; none has failed.",
+                         CountOf(standing, "inconclusive"), all, summary.flown,
+                         summary.flown == 1 ? "" : "s");
     case StandingVerdict::kNothingJudged:
       return all == 0
                  ? "The campaign states no requirement: nothing is judged."
@@ -71,11 +72,12 @@ std::string DrawnBy(const std::string& engine) {
 std::string Facts(const CampaignSummary& summary) {
   const RunInfo& run = summary.standing.run;
   const std::string file = run.vehicle_file.empty() ? "" : " (" + HtmlText(run.vehicle_file) + ")";
-  std::string line = fmt::format("vehicle {}{} · {} · {}, {} cases, seed {}", HtmlText(summary.vehicle), file,
-                                 summary.is_controlled ? "reference " + HtmlText(summary.reference) +
-                                                             " · autopilot " + HtmlText(summary.autopilot)
-                                                       : "without control",
-                                 SamplingMethodTitle(summary.sampling), summary.cases, summary.seed);
+  std::string line = fmt::format(
+      "vehicle {}{} · {} · {}, {} case{}, seed {}", HtmlText(summary.vehicle), file,
+      summary.is_controlled
+          ? "reference " + HtmlText(summary.reference) + " · autopilot " + HtmlText(summary.autopilot)
+          : "without control",
+      SamplingMethodTitle(summary.sampling), summary.cases, summary.cases == 1 ? "" : "s", summary.seed);
   if (!run.started_utc.empty()) {
     std::string date = run.started_utc.substr(0, 16);
     std::replace(date.begin(), date.end(), 'T', ' ');
@@ -244,8 +246,7 @@ std::string List(const char* list_class, const std::vector<std::string>& items) 
 std::string FirstPage(const Campaign& campaign, const CampaignSummary& summary) {
   const Standing& standing = summary.standing;
   const bool certain_fail = standing.verdict == StandingVerdict::kIncomplete && CountOf(standing, "fail") > 0;
-  std::string html =
-      fmt::format("<!-- run:begin -->\n<header>\n<h1>Dispersion campaign {}</h1>\n", HtmlText(summary.name));
+  std::string html = fmt::format("<header>\n<h1>Dispersion campaign {}</h1>\n", HtmlText(summary.name));
   html += Facts(summary);
   html += fmt::format(
       "<div class=\"headline{}\">{}{}{}{}<p>{}</p></div>\n", summary.beyond_limits == 0 ? "" : " exceeded",
@@ -271,7 +272,7 @@ std::string FirstPage(const Campaign& campaign, const CampaignSummary& summary) 
     html += "<p class=\"soft small\">" + Term("attempt", "Attempts") +
             " made in other folders are not known here.</p>\n";
   html += "<p class=\"sign\">Reviewed by: <span></span> Date: <span></span></p>\n";
-  return html + "</header>\n<!-- run:end -->\n";
+  return html + "</header>\n";
 }
 
 }  // namespace dispersa

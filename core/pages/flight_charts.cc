@@ -4,7 +4,9 @@
 
 #include <algorithm>
 #include <cmath>
+#include <functional>
 #include <string_view>
+#include <tuple>
 #include <vector>
 
 #include "core/math/assertion.h"
@@ -35,11 +37,13 @@ struct Burns {
     double to_s;
   };
   std::vector<Burn> burns;
+  double end_s = 0.0;  ///< of the flight
 
   explicit Burns(const History& history) {
     const std::vector<double> time_s = Column(history, "time_s");
     const std::vector<double> stage = Column(history, "stage");
     const std::vector<double> thrust_n = Column(history, "thrust_n");
+    if (!time_s.empty()) end_s = time_s.back();
     for (std::size_t row = 0; row < time_s.size(); ++row) {
       if (thrust_n[row] <= 0.0) continue;
       const int now = static_cast<int>(stage[row]);
@@ -55,6 +59,20 @@ struct Burns {
         chart->Shade(burns[i - 1].to_s, burns[i].from_s, "coast");
       chart->Mark(burns[i].from_s, fmt::format("S{}", burns[i].stage));
     }
+  }
+
+  /// The number of burns before the first coast that is longer than a minute and than the flight before it.
+  /// On the time axis of the whole flight they would have no room.
+  std::size_t Ascending() const {
+    std::size_t i = 1;
+    while (i < burns.size() && burns[i].from_s - burns[i - 1].to_s <= std::max(60.0, burns[i - 1].to_s)) ++i;
+    return std::min(i, burns.size());
+  }
+  /// None: the whole flight has room on one axis. It has none if most of it follows the last burn.
+  std::optional<double> AscentEnd() const {
+    const std::size_t ascending = Ascending();
+    if (burns.empty() || (ascending == burns.size() && end_s < 2.0 * burns.back().to_s)) return std::nullopt;
+    return 10.0 * std::ceil(0.1 * burns[ascending - 1].to_s);
   }
 };
 
@@ -81,9 +99,22 @@ std::vector<double> Scaled(std::vector<double> values, double factor) {
   return values;
 }
 
+/// With fewer flights the outer percentiles lie between the extreme flight and its neighbour.
+constexpr std::size_t kForOuterPercentiles = 371;  // 1 / 0.0027
+
+void AddBands(const FlightBands& bands, const Band& band,
+              const std::function<std::vector<double>(std::vector<double>)>& shown, SvgChart* chart) {
+  chart->Band(bands.time_s, shown(band.min), shown(band.max), "band-outer", "min–max");
+  chart->Band(bands.time_s, shown(band.p01), shown(band.p99), "band-inner", "1–99 %");
+  if (bands.flights >= kForOuterPercentiles) {
+    chart->Line(bands.time_s, shown(band.p00_27), "band-edge", "0.27 and 99.73 %");
+    chart->Line(bands.time_s, shown(band.p99_73), "band-edge", "");
+  }
+}
+
 /// The nominal flight at the steps of the bands. Undefined after the end of the nominal flight.
 std::vector<double> AtSteps(const History& nominal, const char* column, const FlightBands& bands) {
-  std::vector<double> values = SampleFlight(nominal, {FindHistoryColumn(column)}, bands.step_s)[0];
+  std::vector<double> values = SampleFlight(nominal, {FindBandColumn(column)}, bands.step_s)[0];
   values.resize(bands.time_s.size(), std::nan(""));
   return values;
 }
@@ -108,88 +139,51 @@ std::string BandFigure(const BandView& view, const FlightHistories& histories, c
   if (!IsDefined(view.in_air ? InAir(band.p50, qbar_pa) : band.p50)) return "";
   SvgChart chart({.label = kTimeAxis, .low = view.from_s, .high = view.to_s}, {.label = view.label},
                  view.width, 280);
-  Burns(histories.nominal_history).AddTo(&chart);
-  const std::vector<double> nominal =
-      view.deviation ? AtSteps(histories.nominal_history, view.column, bands) : std::vector<double>();
+  const Burns burns(histories.nominal_history);
+  burns.AddTo(&chart);
+  const std::vector<double> nominal = AtSteps(histories.nominal_history, view.column, bands);
   const auto shown = [&](std::vector<double> values) {
-    for (std::size_t i = 0; i < nominal.size(); ++i) values[i] -= nominal[i];
+    for (std::size_t i = 0; i < nominal.size() && view.deviation; ++i) values[i] -= nominal[i];
     if (view.in_air) values = InAir(std::move(values), qbar_pa);
     return Scaled(std::move(values), view.factor);
   };
-  chart.Band(bands.time_s, shown(band.min), shown(band.max), "band-outer", "min–max");
-  chart.Band(bands.time_s, shown(band.p05), shown(band.p95), "band-inner", "5–95 %");
+  AddBands(bands, band, shown, &chart);
   chart.Line(bands.time_s, shown(band.p50), "line-0", "median");
-  if (view.nominal && !view.deviation) {
-    std::vector<double> flown = Column(histories.nominal_history, view.column, view.factor);
-    if (view.in_air) flown = InAir(std::move(flown), Column(histories.nominal_history, "qbar_pa"));
-    chart.Line(Column(histories.nominal_history, "time_s"), flown, "line-1", "nominal");
-  }
+  if (!view.deviation) chart.Line(bands.time_s, shown(nominal), "line-1", "nominal");
   if (view.program)
-    chart.Line(Column(histories.nominal_history, "time_s"),
-               Column(histories.nominal_history, "pitch_program_deg"), "program", "program");
+    chart.Line(bands.time_s, AtSteps(histories.nominal_history, "pitch_program_deg", bands), "program",
+               "program");
   for (const RequirementSummary& requirement : summary.requirements) {
     if (view.peak == nullptr || requirement.metric != view.peak) continue;
     chart.HorizontalLimit(requirement.limit, "limit of the peak");
     chart.HorizontalLimit(-requirement.limit, "");
   }
-  return Figure(chart.Svg(caption), HtmlText(caption), view.width > 600 ? "wide" : "");
+  return Figure(chart.Svg(caption), HtmlText(caption), view.style);
 }
 
 std::string NominalFigures(const History& nominal) {
   const Burns burns(nominal);
   const std::vector<double> time_s = Column(nominal, "time_s");
-  const std::vector<double> qbar_pa = Column(nominal, "qbar_pa");
-  const double air_end_s = AtmosphereEnd(time_s, qbar_pa);
   std::string figures = "<div class=\"figures\">\n";
   const auto add = [&](SvgChart chart, const std::string& caption) {
     burns.AddTo(&chart);
     figures += Figure(chart.Svg(caption), HtmlText(caption));
   };
   const bool is_controlled = IsDefined(Column(nominal, "pitch_error_deg"));
-
   SvgChart pitch({.label = kTimeAxis}, {.label = "pitch from the launch horizon, °"});
   pitch.Line(time_s, Column(nominal, "pitch_launch_deg"), "line-0", is_controlled ? "flown" : "");
   if (is_controlled) pitch.Line(time_s, Column(nominal, "pitch_program_deg"), "program", "program");
   add(pitch, is_controlled ? "Pitch program and pitch in the launch-inertial frame."
                            : "Pitch in the launch-inertial frame.");
-
-  if (is_controlled) {
-    SvgChart error({.label = kTimeAxis}, {.label = "pitch error, °"});
-    error.Line(time_s, Column(nominal, "pitch_error_deg"), "line-0", "");
-    add(error, "Pitch error: true minus reference attitude about body y, the coast included.");
-  } else {
-    SvgChart spin({.label = kTimeAxis}, {.label = "roll rate, °/s"});
-    spin.Line(time_s, Column(nominal, "p_deg_s"), "line-0", "");
-    add(spin, "Roll rate about the body axis.");
+  for (const auto& [column, label, factor, caption] :
+       {std::tuple{"altitude_m", "altitude, km", 1e-3, "Geodetic altitude."},
+        {"inertial_velocity_m_s", "inertial velocity, m/s", 1.0,
+         "Inertial speed; at lift-off it is that of the Earth's rotation."},
+        {"flight_path_angle_deg", "flight path angle, °", 1.0, "Inertial flight path angle."}}) {
+    SvgChart chart({.label = kTimeAxis}, {.label = label});
+    chart.Line(time_s, Column(nominal, column, factor), "line-0", "");
+    add(chart, caption);
   }
-
-  SvgChart altitude({.label = kTimeAxis}, {.label = "altitude, km"});
-  altitude.Line(time_s, Column(nominal, "altitude_m", 1e-3), "line-0", "");
-  add(altitude, "Geodetic altitude.");
-
-  SvgChart velocity({.label = kTimeAxis}, {.label = "inertial velocity, m/s"});
-  velocity.Line(time_s, Column(nominal, "inertial_velocity_m_s"), "line-0", "");
-  add(velocity, "Inertial speed; at lift-off it is that of the Earth's rotation.");
-
-  SvgChart angle({.label = kTimeAxis}, {.label = "flight path angle, °"});
-  angle.Line(time_s, Column(nominal, "flight_path_angle_deg"), "line-0", "");
-  add(angle, "Inertial flight path angle.");
-
-  if (is_controlled) {
-    SvgChart deflection({.label = kTimeAxis}, {.label = "deflection, °"});
-    deflection.Line(time_s, Column(nominal, "deflection_pitch_deg"), "line-0", "pitch");
-    deflection.Line(time_s, Column(nominal, "deflection_yaw_deg"), "line-1", "yaw");
-    deflection.Line(time_s, Column(nominal, "deflection_roll_deg"), "line-2", "roll");
-    add(deflection, "Gimbal deflection of each channel.");
-  }
-
-  SvgChart pressure({.label = kTimeAxis, .low = 0.0, .high = air_end_s}, {.label = "dynamic pressure, kPa"});
-  pressure.Line(time_s, Scaled(qbar_pa, 1e-3), "line-0", "");
-  add(pressure, "Dynamic pressure.");
-
-  SvgChart incidence({.label = kTimeAxis, .low = 0.0, .high = air_end_s}, {.label = "angle of attack, °"});
-  incidence.Line(time_s, InAir(Column(nominal, "alpha_deg"), qbar_pa), "line-0", "");
-  add(incidence, "Angle of attack against the air, where the dynamic pressure is at least 1 kPa.");
   return figures + "</div>\n";
 }
 
@@ -203,42 +197,86 @@ std::string EnvelopeFigures(const FlightHistories& histories, const CampaignSumm
   const auto add = [&](const BandView& view, const std::string& caption) {
     figures += BandFigure(view, histories, summary, caption);
   };
-  add({.column = "pitch_error_deg", .label = "pitch error, °", .peak = "pitch_error_peak_deg", .width = 1060},
-      "Pitch error over the whole flight. The requirement binds powered flight; in the coast the reaction "
-      "control's "
-      "dead band shows.");
-  add({.column = "pitch_error_deg", .label = "pitch error, °", .from_s = 0.0, .to_s = pitch_over_end_s},
+  // The burns of the ascent on one axis.
+  const std::string stages = burns.AscentEnd() ? fmt::format(", until stage {} has burnt out",
+                                                             burns.burns[burns.Ascending() - 1].stage)
+                                               : "";
+  const auto ascent = [&](BandView view, const std::string& what, const std::string& to_see = "") {
+    view.from_s = 0.0;
+    view.to_s = burns.AscentEnd();
+    add(view, what + stages + "." + to_see);
+  };
+  const bool is_bound =
+      std::any_of(summary.requirements.begin(), summary.requirements.end(),
+                  [](const RequirementSummary& one) { return one.metric == "pitch_error_peak_deg"; });
+  ascent({.column = "pitch_error_powered_deg",
+          .label = "pitch error, °",
+          .peak = "pitch_error_peak_deg",
+          .width = 1060,
+          .style = "wide"},
+         "Pitch error in powered flight", is_bound ? " The band shall stay inside the limits." : "");
+  add({.column = "pitch_error_powered_deg",
+       .label = "pitch error, °",
+       .from_s = 0.0,
+       .to_s = pitch_over_end_s,
+       .style = "screen"},
       "Pitch error during lift-off and the initial pitch-over.");
-  if (!burns.burns.empty() && burns.burns.size() > 1) {
-    const Burns::Burn& last = burns.burns.back();
-    add({.column = "pitch_error_deg",
-         .label = "pitch error, °",
-         .from_s = 10.0 * std::floor(0.1 * (last.from_s - 5.0)),
-         .to_s = 10.0 * std::ceil(0.1 * last.to_s)},
-        fmt::format("Pitch error while stage {} burns.", last.stage));
+  ascent({.column = "yaw_error_powered_deg", .label = "yaw error, °", .peak = "yaw_error_peak_deg"},
+         "Yaw error in powered flight");
+  ascent({.column = "roll_error_powered_deg",
+          .label = "roll error, °",
+          .peak = "roll_error_peak_deg",
+          .style = "screen"},
+         "Roll error in powered flight");
+  for (std::size_t i = burns.Ascending(); i < burns.burns.size(); ++i) {
+    const Burns::Burn& burn = burns.burns[i];
+    for (const auto& [column, label, title] :
+         {std::tuple{"pitch_error_powered_deg", "pitch error, °", "Pitch"},
+          {"yaw_error_powered_deg", "yaw error, °", "Yaw"},
+          {"roll_error_powered_deg", "roll error, °", "Roll"}})
+      add({.column = column,
+           .label = label,
+           .from_s = 10.0 * std::floor(0.1 * (burn.from_s - 5.0)),
+           .to_s = 10.0 * std::ceil(0.1 * burn.to_s),
+           .style = "screen"},
+          fmt::format("{} error while stage {} burns.", title, burn.stage));
   }
-  add({.column = "altitude_m",
-       .label = "altitude minus that of the nominal, km",
-       .factor = 1e-3,
-       .deviation = true},
-      "Altitude of the flights above the nominal flight at the same time.");
-  add({.column = "deflection_pitch_deg", .label = "pitch deflection, °"}, "Deflection of the pitch channel.");
-  add({.column = "yaw_error_deg", .label = "yaw error, °", .nominal = false, .peak = "yaw_error_peak_deg"},
-      "Yaw error.");
-  add({.column = "roll_error_deg", .label = "roll error, °", .nominal = false, .peak = "roll_error_peak_deg"},
-      "Roll error.");
+  ascent({.column = "deflection_pitch_deg", .label = "pitch deflection, °"}, "Gimbal deflection in pitch",
+         " Its distance to the stop is what is left to steer with.");
+  ascent({.column = "deflection_yaw_deg", .label = "yaw deflection, °", .style = "screen"},
+         "Gimbal deflection in yaw");
   add({.column = "qbar_pa",
        .label = "dynamic pressure, kPa",
        .factor = 1e-3,
        .from_s = 0.0,
        .to_s = air_end_s},
-      "Dynamic pressure.");
+      "Dynamic pressure: the spread of its peak is that of thrust and density.");
   add({.column = "alpha_deg",
        .label = "angle of attack, °",
        .from_s = 0.0,
        .to_s = air_end_s,
        .in_air = true},
       "Angle of attack against the air, wind included, where the median dynamic pressure is at least 1 kPa.");
+  add({.column = "q_alpha_pa_rad", .label = "q·α, kPa rad", .factor = 1e-3, .from_s = 0.0, .to_s = air_end_s},
+      "Dynamic pressure times total incidence of each flight, wind included: what bends the vehicle.");
+  ascent({.column = "axial_load_g", .label = "axial load, g"}, "Axial load, thrust and drag over mass",
+         " It is largest before a burnout.");
+  ascent({.column = "mass_kg", .label = "mass, t", .factor = 1e-3, .style = "screen"}, "Mass of the vehicle",
+         " Where the band is wide, burnouts and separations differ in time.");
+  for (const auto& [column, label] :
+       {std::pair{"p_deg_s", "roll rate, °/s"}, std::pair{"q_deg_s", "pitch rate, °/s"},
+        std::pair{"r_deg_s", "yaw rate, °/s"}})
+    ascent({.column = column, .label = label, .style = "screen"},
+           "Inertial rate about the body’s axis, which the gyros measure");
+  add({.column = "altitude_m",
+       .label = "altitude minus that of the nominal, km",
+       .factor = 1e-3,
+       .deviation = true,
+       .style = "screen"},
+      "Altitude of the flights above the nominal flight at the same time.");
+  if (burns.burns.size() > 1)
+    add({.column = "pitch_error_deg", .label = "pitch error, °", .style = "screen"},
+        "Pitch error over the whole flight. In a coast the dead band of the reaction control shows.");
   return figures + "</div>\n";
 }
 
@@ -258,15 +296,16 @@ struct WorstView {
 
 const std::vector<WorstView>& WorstViews() {
   static const std::vector<WorstView> views = {
-      {"pitch_error", {{"pitch_error_deg", "pitch error, °"}}},
-      {"yaw_error", {{"yaw_error_deg", "yaw error, °"}}},
-      {"roll_error", {{"roll_error_deg", "roll error, °"}}},
-      {"deflection",
+      {"pitch_error", {{"pitch_error_powered_deg", "pitch error, °"}}},
+      {"yaw_error", {{"yaw_error_powered_deg", "yaw error, °"}}},
+      {"roll_error", {{"roll_error_powered_deg", "roll error, °"}}},
+      {"deflection_peak",
        {{"deflection_pitch_deg", "pitch deflection, °"},
         {"deflection_yaw_deg", "yaw deflection, °"},
         {"deflection_roll_deg", "roll deflection, °"}}},
       {"q_alpha", {{"alpha_deg", "angle of attack, °"}, {"beta_deg", "angle of sideslip, °"}}, true},
-      {"alpha_max", {{"alpha_deg", "angle of attack, °"}, {"beta_deg", "angle of sideslip, °"}}, true}};
+      {"alpha_max", {{"alpha_deg", "angle of attack, °"}, {"beta_deg", "angle of sideslip, °"}}, true},
+      {"axial_load", {{"axial_load_g", "axial load, g"}}}};
   return views;
 }
 
@@ -282,9 +321,12 @@ class WrittenFlight {
   std::vector<double> Values(const char* column, bool in_air) const {
     return in_air ? InAir(At(column), At("qbar_pa")) : At(column);
   }
-  /// The column of a view that has the peak.
-  std::size_t PeakColumn(const WorstView& view) const {
-    std::size_t best = 0;
+  struct Peak {
+    std::size_t column = 0;  ///< of the view
+    double time_s = 0.0;
+  };
+  Peak PeakOf(const WorstView& view) const {
+    Peak peak;
     double most = -1.0;
     for (std::size_t i = 0; i < view.columns.size(); ++i) {
       const std::vector<double> values = Values(view.columns[i].name, view.in_air);
@@ -294,10 +336,10 @@ class WrittenFlight {
         const double size = std::fabs(values[k]) * (is_product ? qbar_pa[k] : 1.0);
         if (!(size > most)) continue;
         most = size;
-        best = i;
+        peak = {i, bands_.time_s[k]};
       }
     }
-    return best;
+    return peak;
   }
 
  private:
@@ -329,6 +371,21 @@ std::vector<std::uint64_t> WorstWritten(const WorstView& view, const FlightHisto
 
 }  // namespace
 
+std::string WorstQuantity(const std::string& metric, std::uint64_t case_index,
+                          const FlightHistories& histories) {
+  const bool is_peak = metric.find("_peak_") != metric.npos || metric.find("_max_") != metric.npos;
+  if (!is_peak ||
+      !std::binary_search(histories.written_cases.begin(), histories.written_cases.end(), case_index))
+    return "";
+  for (const WorstView& view : WorstViews()) {
+    if (!metric.starts_with(view.metrics)) continue;
+    const WrittenFlight::Peak peak = WrittenFlight(histories, case_index).PeakOf(view);
+    const std::string label = view.columns[peak.column].label;
+    return fmt::format("{} at {:.0f} s", label.substr(0, label.find(',')), peak.time_s);
+  }
+  return "";
+}
+
 std::string WorstFigures(const FlightHistories& histories, const CampaignSummary& summary) {
   const Burns burns(histories.nominal_history);
   const FlightBands& bands = histories.bands;
@@ -340,19 +397,28 @@ std::string WorstFigures(const FlightHistories& histories, const CampaignSummary
     for (std::size_t i = 0; i < view.columns.size(); ++i) {
       const auto& [name, label] = view.columns[i];
       std::vector<std::uint64_t> shown;
-      for (const std::uint64_t one : worst)
-        if (WrittenFlight(histories, one).PeakColumn(view) == i) shown.push_back(one);
+      double last_peak_s = 0.0;
+      for (const std::uint64_t one : worst) {
+        const WrittenFlight::Peak peak = WrittenFlight(histories, one).PeakOf(view);
+        if (peak.column != i) continue;
+        shown.push_back(one);
+        last_peak_s = std::max(last_peak_s, peak.time_s);
+      }
       if (shown.empty()) continue;
-      ChartAxis time{.label = kTimeAxis};
-      if (view.in_air) time.low = 0.0, time.high = air_end_s;
+      ChartAxis time{.label = kTimeAxis, .low = 0.0};
+      const std::optional<double> ascent_end_s = burns.AscentEnd();
+      if (view.in_air) {
+        time.high = air_end_s;
+      } else if (ascent_end_s && last_peak_s <= *ascent_end_s) {
+        time.high = ascent_end_s;
+      }
       SvgChart chart(time, {.label = label}, 1060, 280);
       burns.AddTo(&chart);
       const Band& band = BandOf(bands, name);
       const auto in_view = [&](const std::vector<double>& values) {
         return view.in_air ? InAir(values, BandOf(bands, "qbar_pa").p50) : values;
       };
-      chart.Band(bands.time_s, in_view(band.min), in_view(band.max), "band-outer", "min–max");
-      chart.Band(bands.time_s, in_view(band.p05), in_view(band.p95), "band-inner", "5–95 %");
+      AddBands(bands, band, in_view, &chart);
       for (std::size_t k = 0; k < shown.size(); ++k) {
         const std::vector<double> values = WrittenFlight(histories, shown[k]).Values(name, view.in_air);
         const std::vector<double> time_s(bands.time_s.begin(), bands.time_s.begin() + std::ssize(values));

@@ -12,6 +12,7 @@
 #include "core/analysis/band_counter.h"
 #include "core/flight/engine_version.h"
 #include "core/math/assertion.h"
+#include "core/optimization/parallel_for.h"
 #include "core/pages/kept_histories.h"
 #include "core/results/file_system.h"
 #include "core/results/gzip.h"
@@ -30,6 +31,8 @@ constexpr int kHistoryDigits = 9;
 constexpr std::size_t kWithEveryTick = 2;
 /// Short compared with the transients of an ignition (about 1 s), and a multiple of kHistoryStep_s.
 constexpr double kBandStep_s = 0.2;
+/// Of a flight's history the rows of events.
+constexpr double kEventsOnly_s = 1e6;
 /// Worst cases of each key metric that get a history.
 constexpr std::size_t kWorstWritten = 2;
 
@@ -45,12 +48,23 @@ const char* const kBandColumns[] = {"altitude_m",
                                     "deflection_roll_deg",
                                     "alpha_deg",
                                     "beta_deg",
-                                    "qbar_pa"};
+                                    "qbar_pa",
+                                    "axial_load_g",
+                                    "mass_kg",
+                                    "p_deg_s",
+                                    "q_deg_s",
+                                    "r_deg_s",
+                                    "latitude_deg",
+                                    "longitude_deg",
+                                    "q_alpha_pa_rad",
+                                    "pitch_error_powered_deg",
+                                    "yaw_error_powered_deg",
+                                    "roll_error_powered_deg"};
 
 std::vector<int> BandColumns() {
   std::vector<int> columns;
   for (const char* name : kBandColumns) {
-    const int column = FindHistoryColumn(name);
+    const int column = FindBandColumn(name);
     DISPERSA_ASSERT(column >= 0, column);
     columns.push_back(column);
   }
@@ -95,8 +109,9 @@ HistoryFlights ChooseFlights(const CampaignSummary& summary, const CaseColumns& 
 
 /// What the rows and columns of the files are.
 std::string LayoutOfFiles(const std::vector<int>& band_columns) {
-  std::string layout = fmt::format("gzip {} {} {}", kHistoryDigits, kHistoryStep_s, kBandStep_s);
-  for (const int column : band_columns) layout += " " + HistoryColumns()[static_cast<std::size_t>(column)];
+  std::string layout = fmt::format("gzip impacts {} {} {}", kHistoryDigits, kHistoryStep_s, kBandStep_s);
+  for (const int column : band_columns) layout += " " + BandColumnNames()[static_cast<std::size_t>(column)];
+  for (const BandStatistic& one : kBandStatistics) layout += fmt::format(" {}", one.name);
   return layout;
 }
 
@@ -228,9 +243,13 @@ FlightHistories WriteHistories(const ResultFolder& folder, const Campaign& campa
   const auto fly = [&](std::size_t from, std::size_t to) {
     std::vector<CaseOrder> orders;
     for (std::size_t i = from; i < to; ++i) orders.push_back({indices[i], kBandStep_s});
+    std::vector<std::pair<CaseResult, History>> to_fall(
+        std::min(to, std::max(from, std::min(wanted.sampled, kMostFallen))) - from);
     flights.FlyCases(orders, options.threads,
                      [&](std::size_t i, const CaseResult& result, const History& history) {
                        CheckReproduced(folder, indices[from + i], result.digest);
+                       if (i < to_fall.size())
+                         to_fall[i] = {result, Thinned(history, kBandStep_s, kEventsOnly_s)};
                        SampledFlight samples = SampleFlight(history, columns, kBandStep_s);
                        if (from + i < wanted.sampled) {
                          counter.Add(std::move(samples));
@@ -239,6 +258,12 @@ FlightHistories WriteHistories(const ResultFolder& folder, const Campaign& campa
                        }
                        progress("time histories", ++flown, indices.size() + written.size());
                      });
+    std::vector<std::vector<ImpactPoint>> fallen(to_fall.size());
+    ParallelFor(to_fall.size(), static_cast<std::size_t>(std::max(1, options.threads)), [&](std::size_t i) {
+      fallen[i] = ImpactPoints(flights, to_fall[i].first, to_fall[i].second);
+    });
+    for (const auto& of_case : fallen)
+      histories.impacts.insert(histories.impacts.end(), of_case.begin(), of_case.end());
   };
   // The flights that the counter keeps are flown first. They may end in any order.
   const std::size_t first = std::min(wanted.sampled, BandCounter::kKept);
@@ -248,6 +273,9 @@ FlightHistories WriteHistories(const ResultFolder& folder, const Campaign& campa
   const std::string bands = BandsCsv(counter.Bands(), kHistoryDigits);
   WriteFile(directory / kBandsName, Gzip(bands));
   histories.bands = BandsIn(bands, columns, kBandStep_s, wanted);
+  const std::string impacts = ImpactsCsv(histories.impacts);
+  WriteFile(directory / kImpactsName, Gzip(impacts));
+  histories.impacts = ImpactsIn(impacts);
 
   histories.written_cases = written;
   histories.written_flights.resize(written.size());

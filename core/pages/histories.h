@@ -10,14 +10,20 @@
 #include "core/analysis/flight_bands.h"
 #include "core/cases/campaign_flights.h"
 #include "core/flight/history.h"
+#include "core/impact/impact_points.h"
 #include "core/pages/reports.h"
 
 namespace dispersa {
+
+/// Flights whose parts are followed to the ground. More dots than these are one spot.
+inline constexpr std::size_t kMostFallen = 100;
 
 struct FlightHistories {
   CaseResult nominal;
   History nominal_history;
   FlightBands bands;
+  /// Where parts of the flights in all percentiles come down, by case.
+  std::vector<ImpactPoint> impacts;
   std::vector<std::uint64_t> written_cases;  ///< cases with a file histories/case_<index>.csv.gz, ascending
   std::vector<SampledFlight>
       written_flights;  ///< the same cases at the steps of the bands: one column for each band

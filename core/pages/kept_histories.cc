@@ -4,16 +4,19 @@
 
 #include <algorithm>
 #include <charconv>
+#include <cmath>
 #include <map>
 #include <nlohmann/json.hpp>
 #include <string_view>
 
 #include "core/flight/engine_version.h"
 #include "core/math/assertion.h"
+#include "core/math/constants.h"
 #include "core/results/fingerprint.h"
 #include "core/results/gzip.h"
 #include "core/results/number_csv.h"
 #include "core/results/output_file.h"
+#include "core/results/text.h"
 #include "core/statistics/summary.h"
 
 namespace dispersa {
@@ -25,7 +28,7 @@ using Json = nlohmann::json;
 constexpr char kMadeOf[] = "made_of.json";
 
 std::vector<std::string> FilesOf(const HistoryFlights& flights) {
-  std::vector<std::string> files = {kNominalHistoryName, kBandsName};
+  std::vector<std::string> files = {kNominalHistoryName, kBandsName, kImpactsName};
   for (const std::uint64_t index : flights.written) files.push_back(CaseHistoryName(index));
   return files;
 }
@@ -88,11 +91,15 @@ FlightHistories HistoriesIn(const std::map<std::string, std::string>& texts, con
         SampleFlight(HistoryIn(texts.at(CaseHistoryName(index))), columns, step_s));
   kept.nominal_history = HistoryIn(texts.at(kNominalHistoryName));
   kept.bands = BandsIn(texts.at(kBandsName), columns, step_s, flights);
+  // Another engine may have written none.
+  if (const auto impacts = texts.find(kImpactsName); impacts != texts.end())
+    kept.impacts = ImpactsIn(impacts->second);
   return kept;
 }
 
 }  // namespace
 
+// By their names: another engine may have written other columns.
 FlightBands BandsIn(std::string_view csv, const std::vector<int>& columns, double step_s,
                     const HistoryFlights& flights) {
   FlightBands bands;
@@ -100,19 +107,22 @@ FlightBands BandsIn(std::string_view csv, const std::vector<int>& columns, doubl
   bands.extreme_flights = flights.indices.size() - flights.sampled;
   bands.step_s = step_s;
   for (const int column : columns)
-    bands.bands.push_back({.column = HistoryColumns()[static_cast<std::size_t>(column)]});
-  for (const std::vector<double>& row : TableOf(csv).rows) {
-    std::size_t at = 0;
-    bands.time_s.push_back(row[at++]);
-    bands.flying.push_back(static_cast<std::size_t>(row[at++]));
-    for (Band& band : bands.bands)
-      for (auto* values : {&band.min, &band.p01, &band.p05, &band.p50, &band.p95, &band.p99, &band.max})
-        values->push_back(row[at++]);
+    bands.bands.push_back({.column = BandColumnNames()[static_cast<std::size_t>(column)]});
+  const NumberCsv table = TableOf(csv);
+  for (const std::vector<double>& row : table.rows) {
+    bands.time_s.push_back(row[0]);
+    bands.flying.push_back(static_cast<std::size_t>(row[1]));
   }
+  for (Band& band : bands.bands)
+    for (const BandStatistic& one : kBandStatistics) {
+      const auto name = std::find(table.columns.begin(), table.columns.end(), band.column + "_" + one.name);
+      const auto at = static_cast<std::size_t>(name - table.columns.begin());
+      for (const std::vector<double>& row : table.rows)
+        (band.*one.values).push_back(at < row.size() ? row[at] : kUndefined);
+    }
   return bands;
 }
 
-// By their names: another engine may have written other columns.
 History HistoryIn(std::string_view csv) {
   const NumberCsv table = TableOf(csv);
   std::vector<int> columns;
@@ -125,6 +135,34 @@ History HistoryIn(std::string_view csv) {
       if (columns[i] >= 0) history.values[begin + static_cast<std::size_t>(columns[i])] = row[i];
   }
   return history;
+}
+
+std::string ImpactsCsv(const std::vector<ImpactPoint>& impacts) {
+  constexpr int kDigits = 9;  // 1e-6 degree is 0.1 m
+  std::string csv = "case,stage,lost,latitude_deg,longitude_deg\n";
+  for (const ImpactPoint& point : impacts) {
+    csv += fmt::format("{},{},{},", point.case_index, point.stage, point.lost ? 1 : 0);
+    if (point.impact)
+      csv += DigitsText(point.impact->place.latitude_rad * kDegPerRad, kDigits) + "," +
+             DigitsText(point.impact->place.longitude_rad * kDegPerRad, kDigits);
+    else
+      csv += ",";
+    csv += "\n";
+  }
+  return csv;
+}
+
+std::vector<ImpactPoint> ImpactsIn(std::string_view csv) {
+  std::vector<ImpactPoint> impacts;
+  for (const std::vector<double>& row : TableOf(csv).rows) {
+    ImpactPoint& point = impacts.emplace_back();
+    point.case_index = static_cast<std::uint64_t>(row[0]);
+    point.stage = static_cast<int>(row[1]);
+    point.lost = row[2] > 0.0;
+    if (std::isfinite(row[3]))
+      point.impact = Impact{.place = {row[3] / kDegPerRad, row[4] / kDegPerRad, 0.0}};
+  }
+  return impacts;
 }
 
 std::string CaseHistoryName(std::uint64_t case_index) { return fmt::format("case_{}.csv.gz", case_index); }
@@ -173,11 +211,6 @@ std::optional<FlightHistories> ReadForeignHistories(const fs::path& directory,
   std::sort(flights.written.begin(), flights.written.end());
   const auto texts = TextsOf(directory, files, names);
   if (!texts || !texts->contains(kBandsName) || !texts->contains(kNominalHistoryName)) return std::nullopt;
-  FlightBands none;
-  for (const int column : columns)
-    none.bands.push_back({.column = HistoryColumns()[static_cast<std::size_t>(column)]});
-  const std::string& bands = texts->at(kBandsName);
-  if (!bands.starts_with(BandsCsv(none, 0))) return std::nullopt;  // other columns
   const auto count = [&](const char* name, std::size_t otherwise) {
     const Json member = Member(made_of, name);
     return member.is_number_unsigned() ? member.get<std::size_t>() : otherwise;

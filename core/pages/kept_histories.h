@@ -22,12 +22,19 @@ struct HistoryFlights {
 // Names of files in histories/.
 inline constexpr char kNominalHistoryName[] = "nominal.csv.gz";
 inline constexpr char kBandsName[] = "bands.csv.gz";
+inline constexpr char kImpactsName[] = "impacts.csv.gz";
 std::string CaseHistoryName(std::uint64_t case_index);
 
 /// What HistoryCsv() and BandsCsv() have written.
 History HistoryIn(std::string_view csv);
 FlightBands BandsIn(std::string_view csv, const std::vector<int>& columns, double step_s,
                     const HistoryFlights& flights);
+
+/// A row for each part that falls: case, stage (0: a booster), whether it is a lost stack, and latitude and
+/// longitude of its impact, which are empty if it stays up.
+std::string ImpactsCsv(const std::vector<ImpactPoint>& impacts);
+/// Without the other values of a point.
+std::vector<ImpactPoint> ImpactsIn(std::string_view csv);
 
 /// A text that is the same if, and only if, the histories would have the same bytes: engine, flight id, and
 /// the flights with their digests, and the layout of the files, which the engine version does not cover.
@@ -45,7 +52,7 @@ std::optional<FlightHistories> ReadKeptHistories(const std::filesystem::path& di
                                                  const std::vector<int>& columns, double step_s);
 
 /// The histories that another engine has written. Its flights cannot be repeated, so whatever flights they
-/// are of, these are drawn. None if a file has changed, or the bands have other columns.
+/// are of, these are drawn. Undefined is what it did not write. None if a file has changed.
 std::optional<FlightHistories> ReadForeignHistories(const std::filesystem::path& directory,
                                                     const std::vector<int>& columns, double step_s);
 

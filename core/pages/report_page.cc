@@ -2,11 +2,15 @@
 
 #include <fmt/format.h>
 
+#include <algorithm>
+
+#include "core/analysis/footprints.h"
 #include "core/pages/case_data.h"
 #include "core/pages/distribution_charts.h"
 #include "core/pages/embedded.h"
 #include "core/pages/flight_charts.h"
 #include "core/pages/glossary.h"
+#include "core/pages/ground_map.h"
 #include "core/pages/html_parts.h"
 #include "core/pages/report_sections.h"
 #include "core/results/text.h"
@@ -16,7 +20,7 @@ namespace {
 
 constexpr char kNavigation[] =
     "<nav><a href=\"#requirements\">Requirements</a><a href=\"#outcomes\">Outcomes</a><a "
-    "href=\"#events\">Events</a><a href=\"#envelope\">Envelope</a>"
+    "href=\"#events\">Events</a><a href=\"#envelope\">Envelope</a><a href=\"#map\">Map</a>"
     "<a href=\"#distributions\">Distributions</a><a href=\"#causes\">Causes</a><a href=\"#worst\">Worst "
     "cases</a><a "
     "href=\"#nominal\">Nominal flight</a>"
@@ -35,13 +39,40 @@ std::string WithId(std::string html, const std::string& id) {
   return html;
 }
 
+std::string MapSection(const Campaign& campaign, const CampaignSummary& summary,
+                       const FlightHistories& histories) {
+  std::string html = "<h2 id=\"map\">Map</h2>\n";
+  const std::vector<Footprint> footprints = GatherFootprints(histories.impacts);
+  const std::string figure = MapFigure(campaign, histories, footprints);
+  if (figure.empty()) return html + "<p>A map needs time histories.</p>\n";
+  if (!footprints.empty())
+    html += fmt::format(
+        "<p>What falls from the first {} flights of the envelope is followed to the ground as a tumbling "
+        "body. "
+        "<code>dispersa export --format geojson</code> does so for all {} flights.</p>\n",
+        std::min(histories.bands.flights, kMostFallen), summary.flown);
+  return html + figure;
+}
+
+/// Of each cut-off, where a command ends a burn.
+std::string PropellantFigures(const CampaignSummary& summary, const CaseColumns& cases) {
+  std::string figures;
+  for (const MetricSummary& metric : summary.metrics)
+    if (metric.name.starts_with("propellant_left_stage") && metric.statistics.n > 0)
+      figures += DistributionFigures(metric.name, summary, cases);
+  return figures.empty()
+             ? ""
+             : "<h3>Propellant left at cut-off</h3>\n<div class=\"figures\">\n" + figures + "</div>\n";
+}
+
 }  // namespace
 
 std::string ReportPage(const Campaign& campaign, const CampaignSummary& summary, const CaseColumns& cases,
                        const FlightHistories& histories) {
   std::string page = PageHead(
       summary.name, fmt::format("Dispersion campaign {} · {}", summary.name, summary.id.substr(0, 16)));
-  page += "<main>\n" + FirstPage(campaign, summary);
+  page += "<main>\n<!-- run:begin -->\n" + FirstPage(campaign, summary) +
+          GlanceSection(campaign, summary, histories) + "<!-- run:end -->\n";
   page += kNavigation;
   page += RequirementsSection(summary);
   page += OutcomesSection(summary);
@@ -73,11 +104,14 @@ std::string ReportPage(const Campaign& campaign, const CampaignSummary& summary,
     page += fmt::format(
         "<p>Pointwise percentiles over {}, flown again and sampled every {} s; a lost flight counts until it "
         "is "
-        "lost.{} S1 to S{} mark ignitions. Peaks between the samples are in the metrics, not here. Numbers: "
+        "lost.{} S1 to S{} mark ignitions. Peaks between the samples are in the metrics, not here. Attitude "
+        "errors count while a flight has thrust. Numbers: "
         "<code>histories/bands.csv.gz</code>.</p>\n",
         sample, ReadableText(bands.step_s), extremes, campaign.vehicle.stages.size());
+    if (bands.flights < 371) page += "<p>Curves of 0.27 % and 99.73 % need 371 flights or more.</p>\n";
     page += EnvelopeFigures(histories, summary, campaign.reference.program.t2_s);
   }
+  page += MapSection(campaign, summary, histories);
 
   page +=
       "<h2 id=\"distributions\">Distribution of key metrics</h2>\n<p>Each curve of shares has its exact "
@@ -97,8 +131,9 @@ std::string ReportPage(const Campaign& campaign, const CampaignSummary& summary,
             ? "Guidance is closed loop: it steers the last stages by a navigated state to the orbit."
             : "Guidance is open loop: the autopilot follows the pitch program, and nothing corrects what "
               "dispersed thrust, flow and drag do to speed and altitude. No requirement should rest on it.";
-    page += "</p>\n<div class=\"figures\">\n" + InjectionFigures(summary, cases) + "</div>\n";
+    page += "</p>\n<div class=\"figures trio\">\n" + InjectionFigures(summary, cases) + "</div>\n";
     if (summary.injection) page += InjectionSection(*summary.injection);
+    page += PropellantFigures(summary, cases);
   }
 
   page += CausesSection(summary);
@@ -106,7 +141,9 @@ std::string ReportPage(const Campaign& campaign, const CampaignSummary& summary,
   if (flown_again && histories.bands.flights > 0) page += WorstFigures(histories, summary);
   page += "<div class=\"screen\">\n<h2 id=\"nominal\">Nominal flight</h2>\n<p>The flight without dispersions";
   page += campaign.course.is_controlled ? ", through the same closed loop." : ".";
-  page += " It is not one of the cases. Numbers: <code>histories/nominal.csv.gz</code>.";
+  page +=
+      " It is not one of the cases. The charts of the envelope have more of it. Numbers: "
+      "<code>histories/nominal.csv.gz</code>.";
   if (campaign.course.ends != FlightEnd::kInjection)
     page +=
         " The curves end where the flight goes on as a point mass: at the end of the last burn above the "

@@ -7,6 +7,7 @@
 
 #include "core/flight/engine_version.h"
 #include "core/math/constants.h"
+#include "core/pages/flight_charts.h"
 #include "core/pages/glossary.h"
 #include "core/pages/html_parts.h"
 #include "core/results/metric_catalogue.h"
@@ -26,6 +27,12 @@ std::string OutcomeWords(Outcome outcome) {
   std::string words = OutcomeName(outcome);
   std::replace(words.begin(), words.end(), '_', ' ');
   return words;
+}
+
+/// The axis that has the peak, and when.
+std::string WorstWhere(const std::string& metric, const WorstCase& worst, const FlightHistories& histories) {
+  const std::string quantity = WorstQuantity(metric, worst.case_index, histories);
+  return quantity.empty() ? "" : "<span class=\"definition\">in " + HtmlText(quantity) + "</span>";
 }
 
 /// An estimate with its limits below it, or the bound that is all the sample gives.
@@ -170,8 +177,8 @@ std::string WorstCasesSection(const CampaignSummary& summary, const FlightHistor
       const bool written =
           std::binary_search(histories.written_cases.begin(), histories.written_cases.end(), one.case_index);
       table.Row({i == 0 ? HtmlText(info.title) : "", std::to_string(one.case_index),
-                 one.value ? value_text(*one.value) + unit : "–", OutcomeWords(one.outcome),
-                 ReplayCell(summary, one.case_index),
+                 one.value ? value_text(*one.value) + unit + WorstWhere(worst.metric, one, histories) : "–",
+                 OutcomeWords(one.outcome), ReplayCell(summary, one.case_index),
                  written ? Code(fmt::format("histories/case_{}.csv.gz", one.case_index)) : ""},
                 i < kPrinted ? "" : "screen");
     }

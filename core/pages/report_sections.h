@@ -9,11 +9,16 @@
 
 namespace dispersa {
 
-/// The verdict that stands, for each requirement. All of it is between the marks `run:begin` and `run:end`,
-/// because it depends on the run.
+/// The verdict that stands, for each requirement. This and GlanceSection() are between the marks `run:begin`
+/// and `run:end`, because they depend on the run.
 std::string FirstPage(const Campaign& campaign, const CampaignSummary& summary);
 std::string RequirementsSection(const CampaignSummary& summary);
 std::string OutcomesSection(const CampaignSummary& summary);
+/// "stage 1 burnout", "jettison: fairing", as HTML.
+std::string EventWords(const std::string& name, const Vehicle& vehicle);
+/// The vehicle, the nominal ascent, and the requirement with the least margin with what drives it.
+std::string GlanceSection(const Campaign& campaign, const CampaignSummary& summary,
+                          const FlightHistories& histories);
 /// Nothing for results without events, which are of an older release.
 std::string EventsSection(const Campaign& campaign, const CampaignSummary& summary);
 std::string WorstCasesSection(const CampaignSummary& summary, const FlightHistories& histories);

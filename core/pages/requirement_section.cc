@@ -27,7 +27,8 @@ const char* LookName(Verdict verdict) {
 std::string PlanWords(const RequirementSummary& requirement) {
   switch (requirement.plan.kind) {
     case PlanKind::kFixed:
-      return fmt::format("judged once, after {} flights", requirement.planned);
+      return fmt::format("judged once, after {} flight{}", requirement.planned,
+                         requirement.planned == 1 ? "" : "s");
     case PlanKind::kGroupSequential:
       return fmt::format("judged at {} {} up to {} flights, {} spending", requirement.plan.looks,
                          Term("look", "looks"), requirement.planned,
@@ -210,12 +211,14 @@ std::string Card(const RequirementSummary& requirement) {
   html += Fact("not measured", std::to_string(requirement.not_measured));
   html += Fact("observed", ShareText(observed));
   html += Fact("worst completed flight", HtmlText(WorstWords(requirement, info.unit)));
-  html += Fact("confidence bounds",
-               requirement.success_lower
-                   ? fmt::format("≥ {}, ≤ {}", ShareText(*requirement.success_lower, Rounding::kDown),
-                                 ShareText(*requirement.success_upper, Rounding::kUp))
-               : requirement.verdict == "study" ? "none: design study"
-                                                : "none: no evidence");
+  html +=
+      Fact("confidence bounds",
+           requirement.success_lower
+               ? fmt::format("≥ {}, ≤ {}",
+                             ShareText(*requirement.success_lower, Rounding::kDown, requirement.probability),
+                             ShareText(*requirement.success_upper, Rounding::kUp, requirement.probability))
+           : requirement.verdict == "study" ? "none: design study"
+                                            : "none: no evidence");
   // A probability that doubles round to 0 is small, not 0.
   if (requirement.attained_risk)
     html += Fact(Term("attained risk"), HtmlText(ShareText(std::max(*requirement.attained_risk, 1e-300))));

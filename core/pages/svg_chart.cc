@@ -5,7 +5,6 @@
 #include <algorithm>
 #include <cmath>
 #include <cstdint>
-#include <set>
 #include <utility>
 
 #include "core/pages/chart_scale.h"
@@ -21,7 +20,8 @@ constexpr double kTitleRow = 20.0;  ///< the y axis's label
 constexpr double kLegendRow = 17.0;
 constexpr double kMarkRow = 13.0;  ///< labels of events
 constexpr std::size_t kManyPoints = 5000;
-constexpr double kCharacter = 6.9;  ///< mean width of a letter of the legend
+constexpr double kCharacter = 6.9;                      ///< mean width of a letter of the legend
+constexpr double kMarkCharacter = 6.2, kMarkGap = 4.0;  ///< the same of a mark's label, and beside it
 
 std::string Coordinate(double value) {
   std::string text = fmt::format("{:.1f}", value);
@@ -227,6 +227,11 @@ class SvgChart::Picture {
     std::string labels;  ///< above the plot
     std::string shapes;  ///< inside it
   };
+  struct MarkLabel {
+    double from, to;
+    std::string text;
+    std::string first;  ///< event of several
+  };
 
   // Stages of the layout, in their order.
   std::vector<std::string> Legends() const;
@@ -237,6 +242,7 @@ class SvgChart::Picture {
 
   std::string Opening(const std::string& description) const;
   SpanParts Spans() const;
+  std::vector<MarkLabel> MarkLabels() const;
   std::string Ticks() const;
   std::string PlotOpening() const;
   std::string Drawn(const Series& series) const;
@@ -329,13 +335,17 @@ std::vector<SvgChart::Picture::LegendEntry> SvgChart::Picture::PlacedLegend() co
   double x = kLeft;
   int rows = 0;
   for (std::size_t i = 0; i < chart_.series_.size(); ++i) {
-    if (legends_[i].empty()) continue;
+    const Series& series = chart_.series_[i];
+    const bool is_known = std::any_of(entries.begin(), entries.end(), [&](const LegendEntry& entry) {
+      return *entry.text == legends_[i] && entry.series->style == series.style;
+    });
+    if (legends_[i].empty() || is_known) continue;
     const double width = 32.0 + kCharacter * static_cast<double>(legends_[i].size());
     if (rows == 0 || x + width > chart_.width_ - kRight) {
       ++rows;
       x = kLeft;
     }
-    entries.push_back({&chart_.series_[i], &legends_[i], x, rows - 1});
+    entries.push_back({&series, &legends_[i], x, rows - 1});
     x += width;
   }
   return entries;
@@ -374,6 +384,8 @@ std::string SvgChart::Picture::Opening(const std::string& description) const {
 
 SvgChart::Picture::SpanParts SvgChart::Picture::Spans() const {
   SpanParts parts;
+  for (const MarkLabel& label : MarkLabels())
+    parts.labels += Text(label.from, top_ - 3.0, "mark-label", "start", label.text);
   for (const Span& span : chart_.spans_) {
     if (span.to < xs_.low() || span.from > xs_.high()) continue;
     const double from = xs_.At(std::max(span.from, xs_.low()));
@@ -382,15 +394,53 @@ SvgChart::Picture::SpanParts SvgChart::Picture::Spans() const {
       parts.shapes +=
           fmt::format("<rect class=\"shade\" x=\"{}\" y=\"{}\" width=\"{}\" height=\"{}\"/>",
                       Coordinate(from), Coordinate(top_), Coordinate(to - from), Coordinate(bottom_ - top_));
-      parts.labels += Text(0.5 * (from + to), top_ - 3.0, "mark-label", "middle", span.label);
     } else {
       parts.shapes += Segment(from, top_, from, bottom_, "mark");
-      const bool inside = from + kCharacter * static_cast<double>(span.label.size()) < chart_.width_;
-      parts.labels +=
-          Text(from + (inside ? 1.0 : -1.0), top_ - 3.0, "mark-label", inside ? "start" : "end", span.label);
     }
   }
   return parts;
+}
+
+std::vector<SvgChart::Picture::MarkLabel> SvgChart::Picture::MarkLabels() const {
+  const auto width = [](const std::string& text) {
+    return kMarkCharacter * static_cast<double>(text.size());
+  };
+  std::vector<Span> events, wide;
+  for (const Span& span : chart_.spans_)
+    if (!(span.to < xs_.low() || span.from > xs_.high()))
+      (span.to > span.from ? wide : events).push_back(span);
+  std::stable_sort(events.begin(), events.end(),
+                   [](const Span& a, const Span& b) { return a.from < b.from; });
+  std::vector<MarkLabel> labels;
+  for (const Span& event : events) {
+    const double x = xs_.At(event.from) + 1.0;
+    if (!labels.empty() && x < labels.back().to + kMarkGap) {
+      const bool is_second = labels.back().text == labels.back().first;
+      labels.back().text = labels.back().first + (is_second ? ", " : "–") + event.label;
+      labels.back().to = labels.back().from + width(labels.back().text);
+    } else {
+      labels.push_back({x, x + width(event.label), event.label, event.label});
+    }
+  }
+  // Those at the right edge move to the left as far as they must, and join what they meet there.
+  for (std::size_t i = labels.size(); i-- > 0;) {
+    const double end = i + 1 < labels.size() ? labels[i + 1].from - kMarkGap : chart_.width_ - 2.0;
+    const double over = labels[i].to - end;
+    if (over <= 0.0) break;
+    labels[i].from -= over;
+    labels[i].to -= over;
+  }
+  const auto is_free = [&](double from, double to) {
+    return std::none_of(labels.begin(), labels.end(), [&](const MarkLabel& label) {
+      return from < label.to + kMarkGap && to > label.from - kMarkGap;
+    });
+  };
+  for (const Span& span : wide) {
+    const double from = xs_.At(std::max(span.from, xs_.low())), to = xs_.At(std::min(span.to, xs_.high()));
+    const double left = 0.5 * (from + to - width(span.label)), right = left + width(span.label);
+    if (left >= from && is_free(left, right)) labels.push_back({left, right, span.label, span.label});
+  }
+  return labels;
 }
 
 std::string SvgChart::Picture::Ticks() const {
@@ -403,7 +453,8 @@ std::string SvgChart::Picture::Ticks() const {
   for (const Tick& tick : xs_.ticks()) {
     const double x = xs_.At(tick.value);
     svg += Segment(x, bottom_, x, bottom_ + 4.0, "axis");
-    svg += Text(x, bottom_ + 17.0, "tick", "middle", tick.label);
+    const double half = 0.5 * kMarkCharacter * static_cast<double>(tick.label.size());
+    svg += Text(std::min(x, chart_.width_ - half), bottom_ + 17.0, "tick", "middle", tick.label);
   }
   return svg + "</g>";
 }
@@ -454,17 +505,27 @@ std::string SvgChart::Picture::Lines(const Series& series, const std::string& na
   return svg;
 }
 
-/// One path of strokes without length, whose round ends are the dots: an element a case would be heavy.
+/// One path of strokes without length, whose round ends are the dots: an element a case would be heavy. From
+/// left to right the steps are short.
 std::string SvgChart::Picture::Dots(const Series& series, const std::string& named) const {
-  std::string dots;
-  std::set<std::pair<long, long>> taken;
+  const bool is_many = series.x.size() > kManyPoints;  // of many dots one a pixel is seen
+  std::vector<std::pair<std::int64_t, std::int64_t>> tenths;
   for (std::size_t i = 0; i < series.x.size(); ++i) {
     if (!std::isfinite(series.x[i]) || !std::isfinite(series.low[i])) continue;
-    const double x = xs_.At(series.x[i]);
-    const double y = ys_.At(series.low[i]);
-    // Of many dots one a pixel is seen.
-    if (series.x.size() > kManyPoints && !taken.insert({std::lround(x), std::lround(y)}).second) continue;
-    dots += "M" + Coordinate(x) + " " + Coordinate(y) + "h0";
+    const double x = xs_.At(series.x[i]), y = ys_.At(series.low[i]);
+    if (is_many)
+      tenths.emplace_back(10 * std::llround(x), 10 * std::llround(y));
+    else
+      tenths.emplace_back(std::llround(10.0 * x), std::llround(10.0 * y));
+  }
+  std::sort(tenths.begin(), tenths.end());
+  tenths.erase(std::unique(tenths.begin(), tenths.end()), tenths.end());
+  std::string dots;
+  std::pair<std::int64_t, std::int64_t> at = {0, 0};
+  for (const auto& next : tenths) {
+    const std::string dy = Step(next.second - at.second);
+    dots += (dots.empty() ? "M" : "m") + Step(next.first - at.first) + (dy[0] == '-' ? "" : " ") + dy + "h0";
+    at = next;
   }
   return fmt::format("<path class=\"{}\"{} d=\"{}\"/>", series.style, named, dots);
 }

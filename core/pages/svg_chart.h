@@ -41,7 +41,8 @@ class SvgChart {
   /// data is not drawn; the legend then gives its value.
   void VerticalLimit(double x, const std::string& legend, const std::string& style = "limit");
   void HorizontalLimit(double y, const std::string& legend, const std::string& style = "limit");
-  /// A labelled event, and a labelled span of time.
+  /// A labelled event, and a labelled span of time. Events that are too near share one label; a span without
+  /// room has none.
   void Mark(double x, const std::string& label);
   void Shade(double from, double to, const std::string& label);
 

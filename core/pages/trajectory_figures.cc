@@ -81,7 +81,7 @@ std::vector<std::pair<std::size_t, std::string>> EventsIn(const std::vector<Asce
       std::max_element(history.begin(), history.end(),
                        [](const AscentSample& a, const AscentSample& b) { return a.qbar_pa < b.qbar_pa; });
   events.emplace_back(hardest - history.begin(), "largest dynamic pressure");
-  events.emplace_back(history.size() - 1, "injection");
+  events.emplace_back(history.size() - 1, AscentEndWords(history));
   std::stable_sort(events.begin(), events.end(),
                    [](const auto& a, const auto& b) { return a.first < b.first; });
   return events;
@@ -149,6 +149,10 @@ std::string ReferenceFigures(const std::vector<AscentSample>& history) {
       std::move(apsides),
       "Apogee and perigee of the two-body orbit at each instant; a perigee below −2000 km is not drawn.");
   return figures;
+}
+
+const char* AscentEndWords(const std::vector<AscentSample>& history) {
+  return history.empty() || ApsidesOf(history.back()).perigee_km > 0.0 ? "injection" : "end of the ascent";
 }
 
 std::string AscentEventsTable(const std::vector<AscentSample>& history) {

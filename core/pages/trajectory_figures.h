@@ -17,7 +17,11 @@ std::string FlightProgramFigures(const FlightProgram& program, const std::vector
 /// perigee over time.
 std::string ReferenceFigures(const std::vector<AscentSample>& history);
 
-/// Begin and end of each burn, the largest dynamic pressure and the injection, with the state there. A burn
+/// What the end of an ascent is: "injection" if its perigee is above the ground or no history tells,
+/// otherwise "end of the ascent".
+const char* AscentEndWords(const std::vector<AscentSample>& history);
+
+/// Begin and end of each burn, the largest dynamic pressure and the end, with the state there. A burn
 /// has thrust: at least 0.5 g along the axis. Times are those of samples. Empty without a history.
 std::string AscentEventsTable(const std::vector<AscentSample>& history);
 

@@ -2,6 +2,7 @@
 
 #include <fmt/format.h>
 
+#include <cctype>
 #include <limits>
 
 #include "core/math/constants.h"
@@ -15,11 +16,18 @@ namespace dispersa {
 namespace {
 
 double Deg(double radians) { return radians / kRadPerDeg; }
+std::string Capital(std::string words) {
+  words[0] = static_cast<char>(std::toupper(words[0]));
+  return words;
+}
 std::string Signed(double value) { return fmt::format("{:+.2g}", value + 0.0); }
 
 std::string InjectionTable(const OptimizationResult& result, const std::optional<CheckFlight>& check) {
-  std::vector<HtmlTable::Column> columns = {
-      {"Injection"}, {"desired", true}, {"reached", true}, {"error", true}, {"with half the steps", true}};
+  std::vector<HtmlTable::Column> columns = {{Capital(AscentEndWords(result.history))},
+                                            {"desired", true},
+                                            {"reached", true},
+                                            {"error", true},
+                                            {"with half the steps", true}};
   const bool flown = check && check->completed();
   if (flown) columns.push_back({"flown closed loop", true});
   HtmlTable table(columns);
@@ -242,7 +250,7 @@ std::string TrajectoryPage(const OptimizationResult& result, const std::optional
   if (!result.reached)
     page += "<p>" + VerdictBadge("fail") + " The target is missed: " + HtmlText(result.statement) + "</p>\n";
   page += CheckFlightParagraph(check);
-  page += "<h2>Injection</h2>\n" + InjectionTable(result, check);
+  page += "<h2>" + Capital(AscentEndWords(result.history)) + "</h2>\n" + InjectionTable(result, check);
   page +=
       fmt::format("<p>The orbit reached: {}.{}</p>\n", HtmlText(OrbitSentence(reference)),
                   check && check->completed()

@@ -32,7 +32,7 @@ constexpr char kStyle[] =
 
 class Drawing {
  public:
-  explicit Drawing(const Vehicle& vehicle) : vehicle_(vehicle) {
+  Drawing(const Vehicle& vehicle, bool has_words) : vehicle_(vehicle), has_words_(has_words) {
     length_m_ = vehicle.stages[0].bottom_station_m;
     scale_ = kLength_px / length_m_;
     for (const Stage& stage : vehicle.stages) widest_m_ = std::max(widest_m_, stage.diameter_m);
@@ -49,6 +49,18 @@ class Drawing {
       if (!vehicle_.stages[i].restarts) DrawStage(i);  // one body, however often it burns
     DrawBoosters();
     DrawSensors();
+    if (!has_words_) {
+      const Boosters& b = vehicle_.boosters;
+      const double reach_m =
+          b.count == 0 ? 0.0 : std::max(0.0, b.radius_m + 0.5 * b.diameter_m - 0.5 * widest_m_);
+      const double room_px = reach_m * scale_ + 36.0;  // dimensions stand below
+      return fmt::format(
+          "<svg class=\"vehicle\" viewBox=\"0 {:.0f} {:.0f} {:.0f}\" role=\"img\" aria-label=\"{}, {} m "
+          "long, to "
+          "scale\">{}</svg>\n",
+          2.0 * axis_px_ - bottom_px_ - room_px, kLength_px + 2.0 * kMargin_px,
+          2.0 * (bottom_px_ - axis_px_ + room_px), HtmlText(vehicle_.name), ReadableText(length_m_), svg_);
+    }
     DrawScale();
     const double width = kLength_px + 2.0 * kMargin_px;
     const double height = bottom_px_ + kBelow_px;
@@ -73,6 +85,7 @@ class Drawing {
                     style, X(top_m), Y(0.5 * diameter_m), (bottom_m - top_m) * scale_, diameter_m * scale_);
   }
   void Text(const char* style, double x, double y, const std::string& text, const char* anchor = "middle") {
+    if (!has_words_) return;
     svg_ += fmt::format("<text class=\"{}\" x=\"{:.2f}\" y=\"{:.2f}\" text-anchor=\"{}\">{}</text>\n", style,
                         x, y, anchor, HtmlText(text));
   }
@@ -210,6 +223,7 @@ class Drawing {
   }
 
   const Vehicle& vehicle_;
+  const bool has_words_;
   std::vector<MouldSection> body_;
   double length_m_ = 0.0;
   double widest_m_ = 0.0;
@@ -223,7 +237,12 @@ class Drawing {
 
 std::string VehicleDrawing(const Vehicle& vehicle) {
   DISPERSA_ASSERT(!vehicle.stages.empty() && vehicle.stages.front().bottom_station_m > 0.0);
-  return Drawing(vehicle).Svg();
+  return Drawing(vehicle, true).Svg();
+}
+
+std::string VehicleSketch(const Vehicle& vehicle) {
+  DISPERSA_ASSERT(!vehicle.stages.empty() && vehicle.stages.front().bottom_station_m > 0.0);
+  return Drawing(vehicle, false).Svg();
 }
 
 }  // namespace dispersa

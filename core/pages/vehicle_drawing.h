@@ -11,5 +11,7 @@ namespace dispersa {
 /// stages, grains with their bores, masses of the structure, hinges of the nozzles and sensors. It also shows
 /// the centres of gravity of each stack, full and empty. Precondition: no Problems().
 std::string VehicleDrawing(const Vehicle& vehicle);
+/// The same without words and scale, for a page that has its style.
+std::string VehicleSketch(const Vehicle& vehicle);
 
 }  // namespace dispersa

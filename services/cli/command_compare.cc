@@ -56,7 +56,8 @@ void PrintText(const Comparison& comparison) {
     fmt::print("{:<37} {:>10} {:>10} {:>11} {:>26} {:>11} {:>11}  {}\n", metric.metric,
                NumberText(metric.median_a), NumberText(metric.median_b), NumberText(metric.difference),
                IntervalText(metric.interval), tail == metric.tails.end() ? "–" : NumberText(tail->difference),
-               PValueText(metric.p_holm), metric.finding);
+               PValueText(metric.found_p),
+               metric.finding + (metric.found_in == "median" ? "" : " in " + metric.found_in));
   }
   for (const Comparison::LoadCheck& check : comparison.load_checks)
     fmt::print("\n{}, a limit of the vehicle: exceeded in {} flights of A, in {} of B\n", check.metric,

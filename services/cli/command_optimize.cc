@@ -9,6 +9,7 @@
 
 #include "core/campaign_yaml/load.h"
 #include "core/math/constants.h"
+#include "core/pages/trajectory_figures.h"
 #include "core/pages/trajectory_page.h"
 #include "services/cli/command.h"
 #include "services/cli/terminal_observer.h"
@@ -30,7 +31,8 @@ struct OptimizeOptions {
 
 void PrintInjection(const OptimizationResult& result, const std::optional<CheckFlight>& check) {
   const bool flown = check && check->completed();
-  fmt::print("{:<26}{:>12}{:>16}{:>12}{:>14}", "injection", "desired", "reached", "error", "half the step");
+  fmt::print("{:<26}{:>12}{:>16}{:>12}{:>14}", AscentEndWords(result.history), "desired", "reached", "error",
+             "half the step");
   fmt::print("{}\n", flown ? fmt::format("{:>14}", "closed loop") : "");
   for (const InjectionRow& row : InjectionRows(result, check)) {
     // Rounded to what is shown, and never a negative zero.

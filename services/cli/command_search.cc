@@ -1,272 +1,36 @@
 // dispersa search: the smallest dispersion of a campaign that fails a requirement.
 #include <fmt/format.h>
 
-#include <algorithm>
-#include <cmath>
 #include <memory>
-#include <nlohmann/json.hpp>
-#include <optional>
 #include <string>
-#include <vector>
 
-#include "core/analysis/requirement_summary.h"
-#include "core/campaign/case_result.h"
-#include "core/cases/campaign_flights.h"
-#include "core/flight/flight.h"
-#include "core/input/input_error.h"
-#include "core/optimization/parallel_for.h"
-#include "core/results/json_number.h"
 #include "core/results/output_file.h"
-#include "core/results/requirement_text.h"
-#include "core/results/text.h"
-#include "core/search/smallest_failure.h"
-#include "core/statistics/intervals.h"
 #include "services/cli/command.h"
-#include "services/cli/progress.h"
 #include "services/cli/stream_beside.h"
+#include "services/cli/terminal_observer.h"
 #include "services/cli/warn.h"
-#include "services/client/flight_json.h"
+#include "services/client/failure_search.h"
 #include "services/client/writable.h"
 #include "services/program/option_values.h"
-#include "services/program/threads.h"
 
 namespace dispersa {
 namespace {
 
-/// Flights that go side by side on one thread.
-constexpr std::size_t kTogether = 8;
-/// Of all flights one in so many is a random one.
-constexpr std::size_t kRandomShare = 4;
-/// Shares of the distance that are printed.
-constexpr double kPrintedShare = 0.001;
-
 struct SearchCommand {
   std::string campaign;
-  std::string metric;
-  std::optional<double> below, above;
-  FailureSearchOptions options;
-  std::optional<std::uint64_t> seed;
+  FailureSearchRequest request;
   std::string out;
 };
-
-/// As the campaign draws them, each with its own gusts and noise: what the search must not contradict.
-struct RandomFlights {
-  std::size_t flown = 0;
-  std::size_t failures = 0;
-  std::uint64_t first = 0;  ///< case that fails
-};
-
-/// A limit of the command line, or the campaign's own.
-Requirement WantedRequirement(const SearchCommand& command, const Campaign& campaign) {
-  if (!command.metric.empty()) {
-    if (const std::string why = WhyNotMeasured(campaign, command.metric); !why.empty())
-      throw InputError("--metric: '" + command.metric + "' " + why,
-                       "a name in cases.csv without its prefix 'metric_'");
-  }
-  if (command.below || command.above) {
-    if (command.metric.empty()) throw InputError("--below and --above need --metric");
-    Requirement requirement;
-    requirement.metric = command.metric;
-    requirement.below = command.below;
-    requirement.above = command.above;
-    return requirement;
-  }
-  for (const Requirement& requirement : campaign.requirements)
-    if (command.metric.empty() || requirement.metric == command.metric) return requirement;
-  throw InputError(command.metric.empty() ? command.campaign + ": states no requirement"
-                                          : command.campaign + ": states no requirement of " + command.metric,
-                   "--metric with --below or --above");
-}
-
-class Searcher {
- public:
-  Searcher(const Campaign& campaign, const Requirement& requirement, std::size_t max_flights, bool quiet)
-      : flights_(campaign),
-        space_(campaign),
-        limits_(LimitsOf(requirement)),
-        metric_(MetricsOf(campaign).PositionOf(requirement.metric)),
-        max_flights_(max_flights),
-        progress_("flights", quiet) {}
-
-  const DispersionSpace& space() const { return space_; }
-
-  std::vector<double> Margins(const std::vector<std::vector<double>>& points) {
-    const std::vector<FlightInputs> inputs = space_.Inputs(points);
-    std::vector<double> margins(points.size());
-    const std::size_t groups = (points.size() + kTogether - 1) / kTogether;
-    ParallelFor(groups, static_cast<std::size_t>(UsableCores()), [&](std::size_t group) {
-      const std::size_t first = group * kTogether;
-      std::vector<FlightOrder> orders;
-      for (std::size_t i = first; i < std::min(points.size(), first + kTogether); ++i)
-        orders.push_back({inputs[i], {}});
-      const std::vector<FlightResult> flown = FlyAll(flights_.model(), orders);
-      for (std::size_t i = 0; i < flown.size(); ++i) {
-        const double value = flown[i].metrics[metric_];
-        margins[first + i] = flown[i].outcome == Outcome::kCompleted && std::isfinite(value)
-                                 ? limits_.Margin(value)
-                                 : std::nan("");
-      }
-    });
-    done_ += points.size();
-    progress_.Show(done_, max_flights_);
-    return margins;
-  }
-  /// The flight of a point, with the noise of case 0 as all of the search.
-  CaseResult Fly(const std::vector<double>& point) const {
-    return flights_.Fly(space_.Inputs({point}).front(), 0, nullptr);
-  }
-
- private:
-  CampaignFlights flights_;
-  DispersionSpace space_;
-  Limits limits_;
-  std::size_t metric_;
-  std::size_t max_flights_;
-  std::size_t done_ = 0;
-  Progress progress_;
-};
-
-/// The first cases of a Monte Carlo campaign with this seed.
-RandomFlights FlyAtRandom(Campaign campaign, const Requirement& requirement, std::uint64_t seed,
-                          std::size_t count) {
-  campaign.sampling = {SamplingMethod::kMonteCarlo, count, seed};
-  const CampaignFlights flights(campaign);
-  const Limits limits = LimitsOf(requirement);
-  const std::size_t metric = MetricsOf(campaign).PositionOf(requirement.metric);
-  RandomFlights random;
-  random.first = count;
-  std::vector<CaseOrder> orders(count);
-  for (std::size_t i = 0; i < count; ++i) orders[i].case_index = i;
-  flights.FlyCases(orders, UsableCores(), [&](std::size_t, const CaseResult& result, const auto&...) {
-    ++random.flown;
-    if (result.outcome == Outcome::kCompleted && limits.Meets(result.metrics[metric])) return;
-    ++random.failures;
-    random.first = std::min(random.first, result.case_index);
-  });
-  return random;
-}
-
-/// The share of a coordinate in the squared distance.
-double ShareOf(const FailureSearchResult& result, const DispersionSpace& space, std::size_t i) {
-  if (space.coordinates()[i].kind != CoordinateKind::kNormal || result.distance == 0.0) return 0.0;
-  return result.point[i] * result.point[i] / (result.distance * result.distance);
-}
-
-const char* KindName(CoordinateKind kind) {
-  return kind == CoordinateKind::kNormal      ? "normal"
-         : kind == CoordinateKind::kDirection ? "direction"
-                                              : "held";
-}
-
-std::string RandomSentence(const RandomFlights& random, std::uint64_t seed) {
-  if (random.failures > 0)
-    return fmt::format("Of {} random flights (seed {}) {} failed, the first is case {}.", random.flown, seed,
-                       random.failures, random.first);
-  const double most = 1.0 - ClopperPearsonLower(static_cast<std::int64_t>(random.flown),
-                                                static_cast<std::int64_t>(random.flown), 0.9);
-  return fmt::format(
-      "None of {} random flights (seed {}) failed: with 90 % confidence at most {} of flights do.",
-      random.flown, seed, PercentText(most));
-}
-
-std::string Sentence(const FailureSearchResult& result, const RandomFlights& random, std::uint64_t seed,
-                     const Requirement& requirement, double reach, const std::string& nominal_loss) {
-  const std::string told = " " + RandomSentence(random, seed);
-  if (!nominal_loss.empty()) return nominal_loss + told;
-  if (result.found && result.distance == 0.0)
-    return fmt::format("The flight without dispersions fails {}.", LimitText(requirement)) + told;
-  if (result.found) {
-    return fmt::format(
-               "Fails {} at a distance of {} standard deviations from the nominal, the smallest found by a "
-               "local "
-               "search of {} flights. A smaller one may exist.",
-               LimitText(requirement), ReadableText(result.distance), result.flights) +
-           told;
-  }
-  if (random.failures > 0)
-    return RandomSentence(random, seed) +
-           fmt::format(
-               " They fail {} by many dispersions together, or by gusts and noise of their own: a local "
-               "search of "
-               "{} flights found no few dispersions within {} standard deviations that fail it.",
-               LimitText(requirement), result.flights, ReadableText(reach));
-  return fmt::format(
-             "No flight within {} standard deviations was found to fail {} in a local search of {} flights. "
-             "This "
-             "does not show that there is none.",
-             ReadableText(reach), LimitText(requirement), result.flights) +
-         told;
-}
 
 ExitCode SearchFor(const SearchCommand& command, const GlobalOptions& global) {
   const Campaign campaign = LoadAndWarn(command.campaign);
   std::FILE* const stream = StreamBeside("--out", command.out, global);
   RequireWritableFile("--out", command.out);
-  const Requirement requirement = WantedRequirement(command, campaign);
-  FailureSearchOptions options = command.options;
-  options.seed = command.seed.value_or(campaign.sampling.seed);
-  const RandomFlights random =
-      FlyAtRandom(campaign, requirement, options.seed, options.max_flights / kRandomShare);
-  options.max_flights -= random.flown;
-  Searcher searcher(campaign, requirement, options.max_flights, global.quiet);
-  const DispersionSpace& space = searcher.space();
-  const FailureSearchResult result = FindSmallestFailure(
-      space.coordinates(), [&](const auto& points) { return searcher.Margins(points); }, options);
-  const std::string sentence = Sentence(result, random, options.seed, requirement, options.reach,
-                                        NominalLoss(CampaignFlights(campaign).FlyNominal()));
-
-  nlohmann::ordered_json json = {
-      {"schema", "dispersa/search/1"},
-      {"campaign", campaign.name},
-      {"flight_id", campaign.flight_id},
-      {"requirement", LimitText(requirement)},
-      {"metric", requirement.metric},
-      {"sentence", sentence},
-      {"random_flights", random.flown},
-      {"random_failures", random.failures},
-      {"first_random_failure", random.failures > 0 ? nlohmann::ordered_json(random.first) : nullptr},
-      {"local_search", true},
-      {"found", result.found},
-      {"flights", result.flights},
-      {"max_flights", command.options.max_flights},
-      {"reach", command.options.reach},
-      {"seed", options.seed},
-      {"least_margin", Number(result.least_margin)}};
-  std::string text = sentence + "\n";
-  if (result.found) {
-    const CaseResult flown = searcher.Fly(result.point);
-    const double value = flown.metrics[MetricsOf(campaign).PositionOf(requirement.metric)];
-    json["distance"] = Number(result.distance);
-    json["outcome"] = OutcomeName(flown.outcome);
-    json["value"] = Number(value);
-    json["dispersions"] = nlohmann::ordered_json::array();
-    text += fmt::format(
-        "outcome {}, {} {}\n\n{:<44}{:>12}{:>10}\n", OutcomeName(flown.outcome), requirement.metric,
-        std::isfinite(value) ? RoundedText(value, Rounding::kNearest, LimitsOf(requirement).Beside(value))
-                             : "undefined",
-        "dispersion", "std devs", "share");
-    std::vector<std::size_t> order(space.coordinates().size());
-    for (std::size_t i = 0; i < order.size(); ++i) order[i] = i;
-    std::stable_sort(order.begin(), order.end(), [&](std::size_t a, std::size_t b) {
-      return ShareOf(result, space, a) > ShareOf(result, space, b);
-    });
-    for (const std::size_t i : order) {
-      const Coordinate& coordinate = space.coordinates()[i];
-      const double share = ShareOf(result, space, i);
-      json["dispersions"].push_back({{"name", coordinate.name},
-                                     {"kind", KindName(coordinate.kind)},
-                                     {"standard_normal", Number(result.point[i])},
-                                     {"share", Number(share)}});
-      if (share >= kPrintedShare)
-        text += fmt::format("{:<44}{:>12.3f}{:>10}\n", coordinate.name, result.point[i],
-                            PercentText(std::round(share * 1e3) / 1e3));
-    }
-    json["inputs"] = InputsJson(RowInputs(campaign), flown);
-    json["digest"] = flown.digest.Hex();
-  }
-  const std::string written = json.dump(2) + "\n";
+  TerminalObserver observer(global.quiet);
+  const FailureSearch found = SearchForFailure(campaign, command.request, observer);
+  const std::string written = found.json.dump(2) + "\n";
   if (!command.out.empty()) WriteFile(command.out, written);
-  fmt::print(stream, "{}", global.json ? written : text);
+  fmt::print(stream, "{}", global.json ? written : found.text);
   return kExitDone;
 }
 
@@ -278,20 +42,26 @@ void AddSearchCommand(CLI::App& app, Invocation& invocation) {
       "search", "find the smallest dispersion that fails a requirement, by a bounded local search");
   command->add_option("campaign", options->campaign, "campaign file")->required()->type_name(kYamlType);
   command
-      ->add_option("--metric", options->metric, "metric of the requirement; default: the first requirement")
+      ->add_option("--metric", options->request.metric,
+                   "metric of the requirement; default: the first requirement")
       ->type_name(kMetricType);
-  auto* below = command->add_option("--below", options->below,
+  auto* below = command->add_option("--below", options->request.below,
                                     "limit instead of the campaign's; a flight above it fails");
-  command->add_option("--above", options->above, "limit instead of the campaign's; a flight below it fails")
+  command
+      ->add_option("--above", options->request.above,
+                   "limit instead of the campaign's; a flight below it fails")
       ->excludes(below);
-  command->add_option("--flights", options->options.max_flights, "largest number of flights, default 1000")
+  command
+      ->add_option("--flights", options->request.options.max_flights,
+                   "largest number of flights, default 1000")
       ->transform(WholeNumber(20, 1000000));
-  command->add_option("--starts", options->options.starts, "number of starting points, default 4")
+  command->add_option("--starts", options->request.options.starts, "number of starting points, default 4")
       ->transform(WholeNumber(1, 100));
   command
-      ->add_option("--reach", options->options.reach, "farthest distance in standard deviations, default 6")
+      ->add_option("--reach", options->request.options.reach,
+                   "farthest distance in standard deviations, default 6")
       ->check(CLI::Range(0.1, 8.0));
-  command->add_option("--seed", options->seed,
+  command->add_option("--seed", options->request.seed,
                       "seed of the random flights and of the starting points; default: the campaign's");
   command->add_option("--out", options->out, "file for the object that --json prints")->type_name(kFileType);
   command->footer(

@@ -3,6 +3,7 @@
 
 #include <memory>
 #include <nlohmann/json.hpp>
+#include <set>
 #include <string>
 #include <vector>
 
@@ -40,16 +41,22 @@ ExitCode Validate(const ValidateOptions& options, const GlobalOptions& global) {
   auto errors = nlohmann::ordered_json::array();
   auto warnings = nlohmann::ordered_json::array();
   auto vehicles = nlohmann::ordered_json::array();
+  std::set<std::string> told;  // several campaigns may name a file with a problem
   for (const std::string& file : options.files) {
     const FileCheck check = CheckFile(file);
-    for (const InputProblem& problem : check.errors) {
-      errors.push_back(ProblemJson(problem));
-      if (!global.json) fmt::print(stream, "{}\n", problem.Text());
-    }
-    for (const InputProblem& problem : check.warnings) {
-      warnings.push_back(ProblemJson(problem));
-      if (!global.json) fmt::print(stream, "warning: {}\n", problem.Text());
-    }
+    const auto tell = [&](const std::vector<InputProblem>& problems, const char* kind,
+                          nlohmann::ordered_json& all) {
+      for (const InputProblem& problem : problems) {
+        if (!told.insert(kind + problem.Text()).second) continue;
+        all.push_back(ProblemJson(problem));
+        if (!global.json) fmt::print(stream, "{}{}\n", kind, problem.Text());
+      }
+    };
+    const std::size_t told_before = errors.size();
+    tell(check.errors, "", errors);
+    if (!check.errors.empty() && errors.size() == told_before && !global.json)
+      fmt::print(stream, "{}: not valid, for the reasons above\n", file);
+    tell(check.warnings, "warning: ", warnings);
     const bool valid = check.errors.empty() && !(options.strict && !check.warnings.empty());
     if (valid && !global.json && !global.quiet)
       fmt::print(stream, "{}: valid\n", file == kStandardInput ? kStandardInputName : file);

@@ -50,7 +50,7 @@ void AddAbsentCommands(CLI::App& app, Invocation& invocation) {
   for (const char* name : {"launch", "list", "status", "watch", "cancel", "delete", "give", "repair",
                            "readmit", "fetch", "backup", "keys"}) {
     CLI::App* command = app.add_subcommand(name, kNoService)->group("");
-    command->fallthrough(false)->allow_extras()->prefix_command();
+    command->fallthrough(false)->allow_extras()->prefix_command()->set_help_flag();
     command->callback([&invocation, name] {
       invocation.command = [name](const GlobalOptions&) -> ExitCode {
         throw InputError(std::string(name) + ": " + kNoService,

@@ -21,6 +21,9 @@ import tempfile
 
 HERE = pathlib.Path(__file__).resolve().parent
 REPOSITORY = HERE.parent.parent
+sys.path.insert(0, str(REPOSITORY / "services" / "python" / "tutorial"))
+from cells import cells  # noqa: E402
+
 LINK = re.compile(r"(!?)\[((?:[^\[\]]|\[[^\[\]]*\])*)\]\(([^)\s]+)\)")
 TABLE = re.compile(r"<!-- table: (.+?) -->")
 CHANGES = "<!-- changes -->"
@@ -127,13 +130,7 @@ def linked(text, source, known):
 
 def cells_page(script):
     """A Python script of cells (`# %%`) as a page: text cells as they are, the others as code."""
-    page = []
-    for kind, cell in re.findall(r"^# %%(.*)\n((?:(?!# %%).*\n?)*)", script, re.M):
-        if kind.strip() == "[markdown]":
-            page.append(re.sub(r"^# ?", "", cell.strip(), flags=re.M))
-        else:
-            page.append(f"```python\n{cell.strip()}\n```")
-    return "\n\n".join(page) + "\n"
+    return "\n\n".join(body if is_text else f"```python\n{body}\n```" for is_text, body in cells(script)) + "\n"
 
 
 def collect(programs, folder, python_reference):

@@ -13,10 +13,13 @@
 #include "core/campaign_yaml/load.h"
 #include "core/flight/flight_inputs.h"
 #include "core/flight/metrics.h"
+#include "core/results/output_file.h"
 #include "core/results/result_folder.h"
+#include "services/client/autopilot_tuning.h"
 #include "services/client/campaign_reports.h"
 #include "services/client/campaign_run.h"
 #include "services/client/case_replay.h"
+#include "services/client/failure_search.h"
 #include "services/client/folder_comparison.h"
 #include "services/client/margins_of.h"
 #include "services/client/reference_search.h"
@@ -134,6 +137,39 @@ std::string Margins(const std::string& name, const std::string& text, std::optio
   return MarginsJson(MarginsOf(campaign, {cases, frequency_band_percent, drift})).dump(2);
 }
 
+/// What `dispersa search --json` prints. `limits`: below, above.
+std::string Search(const std::string& name, const std::string& text, const std::string& metric,
+                   std::pair<std::optional<double>, std::optional<double>> limits, std::size_t flights,
+                   int starts, double reach, std::optional<std::uint64_t> seed, const py::object& progress) {
+  PythonObserver observer(progress);
+  FailureSearchRequest request = {metric, limits.first, limits.second, {}, seed};
+  request.options.max_flights = flights;
+  request.options.starts = starts;
+  request.options.reach = reach;
+  return observer.Watch(
+      [&] { return SearchForFailure(LoadCampaign(InputSource(name, text)), request, observer).json.dump(); });
+}
+
+/// (what `dispersa tune --json` prints, the autopilot file). `autopilot`: a file, or "".
+py::tuple TuneGains(const std::string& name, const std::string& text, const std::string& autopilot,
+                    const std::string& out, std::uint64_t seed, int cases, int evaluations, int dispersed,
+                    bool regulator, int threads, const py::object& progress) {
+  PythonObserver observer(progress);
+  const TuningRequest request = {
+      name, out, autopilot, {seed, cases, evaluations, ThreadsOrAll(threads), dispersed, regulator}};
+  const auto found = observer.Watch([&] {
+    if (!out.empty()) RequireWritableFile("out", out);
+    const Campaign campaign = LoadCampaign(InputSource(name, text));
+    const TunedAutopilot tuned =
+        TuneAutopilot(campaign, autopilot.empty() ? campaign.autopilot : LoadAutopilot(autopilot),
+                      request.tuning, observer);
+    std::pair both = {TuningJson(request, tuned).dump(), TunedFile(request, tuned)};
+    if (!out.empty()) WriteFile(out, both.second);
+    return both;
+  });
+  return py::make_tuple(found.first, found.second);
+}
+
 /// (what `dispersa optimize --json` prints, the reference as YAML, how far it got if it misses its target).
 py::tuple Optimize(const std::string& name, const std::optional<std::string>& text,
                    std::optional<std::uint64_t> seed, int threads, const std::string& out,
@@ -170,6 +206,8 @@ void AddResults(py::module_& module) {
   module.def("compare", &CompareResults);
   module.def("margins", &Margins);
   module.def("optimize", &Optimize);
+  module.def("search", &Search);
+  module.def("tune", &TuneGains);
   module.def("replay", &Replay);
 }
 

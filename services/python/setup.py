@@ -13,4 +13,4 @@ PROJECT = re.search(r'^project\(dispersa VERSION (\S+).*?DESCRIPTION "(.*?)"', (
 setup(name="dispersa", version=PROJECT[1], description=PROJECT[2], packages=["dispersa"], python_requires=">=3.11",
       install_requires=["numpy"], extras_require={"tables": ["pandas"], "plots": ["matplotlib"]},
       cmake_source_dir=os.path.relpath(SOURCE),
-      cmake_args=["-DDISPERSA_BUILD_TESTS=OFF", f"-DDISPERSA_PYTHON={sys.executable}", "-DDISPERSA_PYTHON_FOLDER=."])
+      cmake_args=["-DDISPERSA_SERVICE=OFF", f"-DDISPERSA_PYTHON={sys.executable}", "-DDISPERSA_PYTHON_FOLDER=."])

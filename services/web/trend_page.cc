@@ -68,7 +68,7 @@ std::string TrendChart(const std::vector<Point>& points) {
   const auto y = [&](double share) { return kBottom - (share - least) / (1.0 - least) * (kBottom - kTop); };
   const double step = (kRight - kLeft) / static_cast<double>(points.size());
   std::string svg = fmt::format(
-      "<svg class=\"chart trend\" viewBox=\"0 0 1000 {:.0f}\" role=\"img\" "
+      "<svg class=\"chart trend\" viewBox=\"0 0 1000 {:.0f}\" role=\"group\" "
       "aria-label=\"Share of flights that meet the requirement, by campaign\">\n",
       kHeight);
   for (int i = 0; i <= 4; ++i) {

@@ -136,6 +136,34 @@ class ReportInABrowser(BrowserCase):
             self.assertEqual(badges, 0)
         self.browser.devtools("Emulation.clearDeviceMetricsOverride")
 
+    def test_no_text_of_a_picture_is_cut_or_lies_on_another(self):
+        for width in (1400, 420):
+            self.browser.devtools("Emulation.setDeviceMetricsOverride", width=width, height=900, deviceScaleFactor=1,
+                                  mobile=False)
+            pictures, bad = self.browser.run("""
+                const bad = [], shown = [...document.querySelectorAll('svg.chart, svg.map')].filter(s => s.getClientRects().length);
+                const beyond = (a, b) => a.left < b.left - 2 || a.right > b.right + 2 || a.top < b.top - 2 || a.bottom > b.bottom + 2;
+                const over = (a, b) => Math.min(a.right, b.right) - Math.max(a.left, b.left) > 2 &&
+                                       Math.min(a.bottom, b.bottom) - Math.max(a.top, b.top) > 4;
+                for (const svg of shown) {
+                  const frame = svg.getBoundingClientRect();
+                  const texts = [...svg.querySelectorAll('text')].map(t => [t.textContent, t.getBoundingClientRect()]);
+                  texts.forEach(([name, at], i) => {
+                    if (beyond(at, frame)) bad.push([svg.getAttribute('aria-label'), name, 'cut']);
+                    for (const [other, there] of texts.slice(0, i))
+                      if (over(at, there)) bad.push([svg.getAttribute('aria-label'), name, other]);
+                  });
+                }
+                return [shown.length, bad]""")
+            self.assertGreater(pictures, 20)
+            self.assertEqual(bad, [])
+        self.browser.devtools("Emulation.clearDeviceMetricsOverride")
+        # Beside the first table: the vehicle, the ascent and the least margin; the map has a track and coasts.
+        parts = ["svg.vehicle .grain", "svg.chart .line-0", "a[href='#of-pitch_error_peak_deg']"]
+        self.assertEqual(self.browser.run("return arguments[0].filter(p => !document.querySelector('.glance ' + p))", parts), [])
+        self.assertEqual(self.browser.run("return ['.coast', '.line-1', '.cover', '.place'].filter("
+                                          "p => !document.querySelector('svg.map ' + p))"), [])
+
     def test_it_is_whole_without_script(self):
         text = "return [document.body.innerText, document.querySelectorAll('svg.chart path').length]"
         # What the script adds is taken away again; what is left must be the page as it came.

@@ -157,15 +157,16 @@ class ServiceTest(ServiceCase):
 
     def test_a_higher_priority_goes_first_and_the_standings_show(self):
         self.start_coordinator()
-        low = self.dispersa("launch", CAMPAIGN, "--cases", 2000).strip()
+        low = self.dispersa("launch", CAMPAIGN, "--cases", 20000).strip()
         high = self.dispersa("launch", self.tiny, "--cases", 300, "--priority", 3).strip()
         self.start_worker("--slots", 2)
+        # When the last case of the one is stored, little was flown of the other; while the first gets its report, more is.
+        wait_for(lambda: self.status(high)["done"] == 300, "all cases of the first")
+        self.assertLess(self.status(low)["done"], 2000)
         self.dispersa("watch", high, code=self.tiny_reference.code)
         campaigns = {c["id"]: c for c in json.loads(self.dispersa("list", "--json"))["campaigns"]}
         self.assertEqual((campaigns[high]["priority"], campaigns[low]["priority"]), (3, 0))
         self.assertEqual((campaigns[high]["state"], campaigns[low]["state"]), ("done", "flying"))
-        # What was flown of the other before is little.
-        self.assertLess(campaigns[low]["done"], 2000)
         wait_for(lambda: self.status(low)["done"] > 0, "first results")
         campaign = self.status(low)
         for standing in campaign["requirements"]:
@@ -174,7 +175,7 @@ class ServiceTest(ServiceCase):
             self.assertIn(standing["so_far"], ("pass", "fail", "inconclusive", "study"))
         self.assertEqual({r["metric"] for r in campaign["requirements"]},
                          {r["metric"] for r in json.loads((self.reference.out / "summary.json").read_text())["requirements"]})
-        self.assertRegex(self.dispersa("status", low), rf"(?m)^{low[:12]}  flying +\d+/2000 +20\d\d-\d\d-\d\d \d\d:\d\dZ  smoke\b")
+        self.assertRegex(self.dispersa("status", low), rf"(?m)^{low[:12]}  flying +\d+/20000 +20\d\d-\d\d-\d\d \d\d:\d\dZ  smoke\b")
         self.dispersa("cancel", low)
         out = self.root / "cancelled"
         self.dispersa("fetch", low, "--out", out)

@@ -57,7 +57,7 @@ class EngineHalf(unittest.TestCase):
         self.assertEqual((done.returncode, done.stderr),
                          (2, f"--workers: {NO_SERVICE}, allowed: --workers 0 and --threads N\n"))
         self.assertFalse((self.folder / "results").exists())
-        for words in (("launch", smoke, "--peer", "nowhere"), ("status",), ("keys", "issue", "a", "--role", "client")):
+        for words in (("launch", smoke, "--peer", "nowhere"), ("status",), ("keys", "--help"), ("keys", "issue", "a", "--role", "client")):
             done = self.dispersa(*words)
             self.assertEqual((done.returncode, done.stderr),
                              (2, f"{words[0]}: {NO_SERVICE}, allowed: the package dispersa-cluster beside it, or a build with "

@@ -163,8 +163,9 @@ class Many(unittest.TestCase):
             self.assertIs(owner(history["altitude_m"]), owner(flights.histories))
         # Views alone; reading the array's pages makes none.
         self.assertLess(resident_bytes() - before_reading, 0.25 * size)
-        # The array, what the flights returned besides, and the engine's tables; not the array twice.
-        self.assertLess(grown, size + 30e6, f"{grown / 1e6:.0f} MB for {size / 1e6:.0f} MB of histories")
+        # The array, what the flights returned besides, and the engine's tables; not the array twice. Besides it were 16 MB on an
+        # idle machine and 33 MB on a busy one, where more flights wait for an earlier one.
+        self.assertLess(grown, size + 40e6, f"{grown / 1e6:.0f} MB for {size / 1e6:.0f} MB of histories")
 
     def test_other_threads_run_meanwhile(self):
         campaign = dispersa.load(CAMPAIGNS / "table3.yaml", cases=60)

@@ -14,7 +14,7 @@ SOURCES = pathlib.Path(os.environ["DISPERSA_PYTHON_SOURCES"])
 SPEC = importlib.util.spec_from_file_location("python_reference", SOURCES.parent / "docs" / "python_reference.py")
 REFERENCE = importlib.util.module_from_spec(SPEC)
 SPEC.loader.exec_module(REFERENCE)
-UNIT = re.compile(r"_(s|ms|deg|rad|m|km|percent|kg|n|pa|1_s2|1_s|rad_s2|rad_s)$")
+UNIT = re.compile(r"_(s|ms|deg|rad|m|km|percent|kg|n|pa|1_s2|1_s|rad_s2|rad_s|sigma)$")
 # Neither takes anything that could be wrong.
 HARMLESS = {"dispersa.worker_program", "dispersa.plot.style", "dispersa.plot.label", "dispersa.validate"}
 

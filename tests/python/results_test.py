@@ -1,6 +1,8 @@
 """Runs and result folders from Python: the bytes, numbers and verdicts of the program, and its exit codes as exceptions."""
+import contextlib
 import csv
 import fcntl
+import io
 import json
 import math
 import os
@@ -95,7 +97,27 @@ class Runs(unittest.TestCase):
         self.assertEqual(str(caught.exception), "key: the campaign has no 'dispersions.thrst', allowed: a key that it has, such as "
                                                 "sampling.seed")
 
+    def test_a_sweep_over_two_keys(self):
+        keys = ("dispersions.thrust.three_sigma_percent", "sampling.seed")
+        flown = dispersa.sweep(SMOKE, keys, [(1, 7), (4, 8)], self.folder / "two_keys", workers=0, histories=False)
+        self.assertEqual({pair: (results.directory.name, results.campaign.seed) for pair, results in flown.items()},
+                         {(1, 7): ("three_sigma_percent=1,seed=7", 7), (4, 8): ("three_sigma_percent=4,seed=8", 8)})
+        self.assertLess(numpy.std(flown[1, 7].inputs["thrust_factor_stage1"]), numpy.std(flown[4, 8].inputs["thrust_factor_stage1"]))
+        with self.assertRaises(dispersa.BadInput) as caught:
+            dispersa.sweep(SMOKE, keys, [(1, 2, 3)], self.folder / "none")
+        self.assertEqual(str(caught.exception), "values: (1, 2, 3) has 3 values, allowed: one for each of 2 keys")
+
+    def test_progress_is_a_bar_for_each_phase(self):
+        with contextlib.redirect_stderr(io.StringIO()) as shown:
+            dispersa.run(SMOKE, self.folder / "bar", workers=0, progress=True)
+        self.assertRegex(shown.getvalue(), r"smoke: 100%\|.*\| 12/12 ")
+        self.assertRegex(shown.getvalue(), r"time histories: 100%\|")
+
     def test_notebooks_show_requirements_and_differences(self):
+        page = dispersa.load(SMOKE)._repr_html_()
+        self.assertIn("12 cases, seed ", page)
+        self.assertIn("<td>wind.azimuth</td><td>wind_azimuth_deg</td>", page)
+        self.assertIn("<td>thrust</td><td>thrust_factor_stage1, thrust_factor_stage2, ", page)
         self.assertIn("<td>pitch_error_peak_deg below 1</td><td>0 of 12</td><td>pass</td>", self.ours._repr_html_())
         self.assertIn("metrics, each counted once, ", dispersa.compare(self.ours, self.theirs)._repr_html_())
 
@@ -307,6 +329,32 @@ class Studies(unittest.TestCase):
         said = json.loads(program("margins", SMOKE, "--json", "--cases", "3"))
         self.assertEqual(dispersa.margins(dispersa.load(SMOKE), cases=3), said)
         self.assertTrue(said["passed"])
+
+    def test_search(self):
+        theirs = printed("search", SMOKE, "--metric", "pitch_error_peak_deg", "--below", "0.12", "--flights", "60", "--seed", "3")
+        ours = dispersa.search(SMOKE, "pitch_error_peak_deg", below=0.12, flights=60, seed=3)
+        self.assertEqual(ours, theirs)
+        self.assertNotEqual(ours["random_flights"], 0)
+        for arguments, options, message in (
+                ((), {"below": 1.0}, "metric: below and above need one, allowed: a name of metric_names"),
+                (("pitch_error_peek_deg",), {}, "metric: 'pitch_error_peek_deg' is not a metric (did you mean 'pitch_error_peak_deg'?), "
+                                                "allowed: a name of metric_names"),
+                (("q_max_pa",), {"below": 1.0, "above": 2.0}, "below, above: both are given, allowed: one of them"),
+                (("q_max_pa",), {"below": 1.0, "flights": 19}, "flights: 19 is out of range, allowed: a whole number from 20 to 1000000")):
+            with self.assertRaises(dispersa.BadInput) as caught:
+                dispersa.search(SMOKE, *arguments, **options)
+            self.assertEqual(str(caught.exception), message)
+
+    def test_tune(self):
+        file = folder_of(type(self)) / "tuned.yaml"
+        arguments = ("tune", SMOKE, "--seed", "5", "--cases", "1", "--evaluations", "64", "--out", file)
+        theirs = printed(*arguments)
+        written = file.read_text()
+        ours = dispersa.tune(SMOKE, file, seed=5, cases=1, evaluations=64)
+        self.assertEqual(ours, theirs)
+        self.assertEqual(file.read_text().split("# which tried")[1], written.split("# which tried")[1])
+        self.assertEqual(ours.yaml, file.read_text())
+        self.assertEqual(ours.exit_code, 0 if ours["feasible"] else 3)
 
     def test_optimize(self):
         folder = folder_of(type(self))

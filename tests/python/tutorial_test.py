@@ -58,7 +58,7 @@ class Plots(unittest.TestCase):
         median, = (line for line in ax.get_lines() if line.get_label() == "median")
         numpy.testing.assert_array_equal(median.get_ydata(), bands["pitch_error_deg_p50"])
         self.assertEqual((ax.get_xlabel(), ax.get_ylabel()), ("time since lift-off, s", "pitch error, °"))
-        self.assertEqual([text.get_text() for text in ax.get_legend().get_texts()], ["min–max", "5–95 %", "median", "nominal"])
+        self.assertEqual([text.get_text() for text in ax.get_legend().get_texts()], ["min–max", "1–99 %", "median", "nominal"])
         self.assertEqual([text.get_text() for text in ax.texts], ["S1", "S2", "S3", "coast", "S4"])
 
     def test_bands_of_flights(self):

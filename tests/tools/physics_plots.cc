@@ -1,5 +1,6 @@
-// Draws the figures of the models' pages into core/images/, rewrites the tables of atmosphere and
-// aerodynamics in those pages, and writes a page with all of it, work and precision too:
+// Draws the figures of the models' pages into core/images/ and services/docs/pages/images/, rewrites the
+// tables of atmosphere and aerodynamics in those pages, and writes a page with all of it, work and precision
+// too:
 //   physics_plots PAGE.html
 #include <fmt/format.h>
 
@@ -40,12 +41,13 @@ void Draw(const std::string& page_path) {
       "aerodynamics, "
       "work and precision</h1>\n",
       StyleSheet(), FigureStyle());
-  const auto add = [&](const char* name, const FigureSheet& sheet) {
-    WriteFile(source + "/core/images/" + name + ".svg", StandaloneSvg(sheet));
+  const auto add = [&](const char* name, const FigureSheet& sheet, const char* folder = "/core/images/") {
+    WriteFile(source + folder + name + ".svg", StandaloneSvg(sheet));
     page += PageSection(sheet);
   };
   add("atmosphere", AtmosphereSheet(data));
   add("aerodynamics", AerodynamicsSheet(campaigns, data));
+  add("check_case_17", TwoStageSheet(campaigns, data), "/services/docs/pages/images/");
   const std::vector<WorkPoint> points = MeasureWorkPrecision(campaigns);
   add("work_precision", WorkPrecisionSheet(points));
   page += "<pre>" + HtmlText(WorkPrecisionCsv(points)) + "</pre>\n</body>\n</html>\n";

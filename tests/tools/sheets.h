@@ -21,6 +21,9 @@ FigureSheet AerodynamicsSheet(const std::string& campaigns, const std::string& d
 /// The build-up on the rebuilt public launcher against that launcher's own table, in Markdown.
 std::string AerodynamicsTable(const std::string& data);
 
+/// NASA's check case 17 with two sets of data, beside one of NASA's simulators.
+FigureSheet TwoStageSheet(const std::string& campaigns, const std::string& data);
+
 FigureSheet WorkPrecisionSheet(const std::vector<WorkPoint>& points);
 
 }  // namespace dispersa

@@ -1,5 +1,10 @@
 #include "core/analysis/flight_bands.h"
 
+#include <fmt/format.h>
+
+#include <cmath>
+#include <numbers>
+
 #include "core/analysis/band_counter.h"
 #include "core/random/draws.h"
 #include "tests/test.h"
@@ -32,6 +37,51 @@ TEST(SampleFlight, TakesTheLastRowOfAnInstantAndNoEventBetween) {
   EXPECT_THAT(samples[0], ElementsAre(1.0, 3.0, 4.0));
 }
 
+// Dynamic pressure times incidence of each flight by itself: no product of two percentiles.
+TEST(SampleFlight, MakesQAlphaAndLetsLongitudesRunOn) {
+  for (const double sign : {1.0, -1.0}) {
+    History history = MakeHistory({{0.0, 0.0}, {0.2, 0.0}, {0.4, 0.0}});
+    const auto set = [&](std::size_t row, const char* name, double value) {
+      history.values[row * HistoryColumns().size() + static_cast<std::size_t>(FindHistoryColumn(name))] =
+          value;
+    };
+    const double crossing_deg[] = {179.0, 180.0, -179.0};
+    for (std::size_t row = 0; row < 3; ++row) {
+      set(row, "longitude_deg", sign * crossing_deg[row]);
+      set(row, "qbar_pa", 1000.0);
+      set(row, "incidence_deg", 18.0 * static_cast<double>(row));
+    }
+    const SampledFlight samples = SampleFlight(
+        history, {FindHistoryColumn("longitude_deg"), FindBandColumn("q_alpha_pa_rad")}, kStep_s);
+    EXPECT_THAT(samples[0], ElementsAre(sign * 179.0, sign * 180.0, sign * 181.0));
+    EXPECT_DOUBLE_EQ(samples[1][2], 1000.0 * std::numbers::pi / 5.0);
+  }
+}
+
+// Each axis by its own error, and by the thrust of its own flight: another coasts at another time.
+TEST(SampleFlight, LeavesAttitudeErrorsWithoutThrustOut) {
+  History history = MakeHistory({{0.0, 0.0}, {0.2, 0.0}, {0.4, 0.0}});
+  const char* const axes[] = {"pitch", "yaw", "roll"};
+  std::vector<int> columns;
+  for (std::size_t row = 0; row < 3; ++row) {
+    const auto set = [&](const std::string& name, double value) {
+      history.values[row * HistoryColumns().size() + static_cast<std::size_t>(FindHistoryColumn(name))] =
+          value;
+    };
+    set("thrust_n", row == 1 ? 0.0 : 10.0);
+    for (int axis = 0; axis < 3; ++axis) set(fmt::format("{}_error_deg", axes[axis]), axis + 1.0);
+  }
+  for (const char* axis : axes) columns.push_back(FindBandColumn(fmt::format("{}_error_powered_deg", axis)));
+  const SampledFlight samples = SampleFlight(history, columns, kStep_s);
+  for (std::size_t axis = 0; axis < 3; ++axis) {
+    EXPECT_EQ(samples[axis][0], static_cast<double>(axis) + 1.0);
+    EXPECT_TRUE(std::isnan(samples[axis][1]));
+    EXPECT_EQ(samples[axis][2], static_cast<double>(axis) + 1.0);
+  }
+  EXPECT_EQ(FindBandColumn("pitch_error_deg"), FindHistoryColumn("pitch_error_deg"));
+  EXPECT_EQ(FindBandColumn("none"), -1);
+}
+
 TEST(ComputeBands, AreOrderStatisticsOfThoseStillFlying) {
   const std::vector<SampledFlight> flights = {{{1.0, 10.0}}, {{3.0}}, {{2.0, 30.0}}, {{kNaN, 20.0}}};
   const FlightBands bands = ComputeBands(flights, {1}, kStep_s);
@@ -43,7 +93,10 @@ TEST(ComputeBands, AreOrderStatisticsOfThoseStillFlying) {
   EXPECT_THAT(bands.bands[0].min, ElementsAre(1.0, 10.0));
   EXPECT_THAT(bands.bands[0].p50, ElementsAre(2.0, 20.0));
   EXPECT_THAT(bands.bands[0].max, ElementsAre(3.0, 30.0));
-  EXPECT_DOUBLE_EQ(bands.bands[0].p95[0], 2.9);  // 95 % of the way through ranks 0, 1, 2: 2 + 0.9
+  // 0.27, 99 and 99.73 % of the way through ranks 0, 1, 2.
+  EXPECT_DOUBLE_EQ(bands.bands[0].p00_27[0], 1.0054);
+  EXPECT_DOUBLE_EQ(bands.bands[0].p99[0], 2.98);
+  EXPECT_DOUBLE_EQ(bands.bands[0].p99_73[0], 2.9946);
 }
 
 TEST(ComputeBands, DoNotDependOnTheOrderOfFlights) {
@@ -56,8 +109,8 @@ TEST(ComputeBands, DoNotDependOnTheOrderOfFlights) {
 TEST(BandsCsv, NamesItsColumns) {
   const std::string name = HistoryColumns()[1];
   const FlightBands bands = ComputeBands({{{1.0}}, {{1.0}}}, {1}, kStep_s);
-  EXPECT_EQ(BandsCsv(bands), "time_s,flights," + name + "_min," + name + "_p01," + name + "_p05," + name +
-                                 "_p50," + name + "_p95," + name + "_p99," + name +
+  EXPECT_EQ(BandsCsv(bands), "time_s,flights," + name + "_min," + name + "_p00_27," + name + "_p01," + name +
+                                 "_p50," + name + "_p99," + name + "_p99_73," + name +
                                  "_max\n0,2,1,1,1,1,1,1,1\n");
 }
 
@@ -98,9 +151,9 @@ TEST(BandCounter, IsRightToAClassBeyondThat) {
     EXPECT_EQ(a.min[step], b.min[step]);
     EXPECT_EQ(a.max[step], b.max[step]);
     for (const auto& [counted_value, exact_value] :
-         {std::pair{a.p01[step], b.p01[step]}, std::pair{a.p05[step], b.p05[step]},
-          std::pair{a.p50[step], b.p50[step]}, std::pair{a.p95[step], b.p95[step]},
-          std::pair{a.p99[step], b.p99[step]}}) {
+         {std::pair{a.p00_27[step], b.p00_27[step]}, std::pair{a.p01[step], b.p01[step]},
+          std::pair{a.p50[step], b.p50[step]}, std::pair{a.p99[step], b.p99[step]},
+          std::pair{a.p99_73[step], b.p99_73[step]}}) {
       EXPECT_NEAR(counted_value, exact_value, one_class) << step;
       EXPECT_NE(counted_value, exact_value) << "were they kept after all?";
     }
@@ -122,9 +175,9 @@ TEST(BandCounter, FindsAPercentileWithinItsClass) {
   // A class is 1/128 and holds 156 values: 2 of them.
   const double tolerance = 2.0 / kFlights;
   EXPECT_NEAR(counted.p01[0], exact.p01[0], tolerance);
-  EXPECT_NEAR(counted.p05[0], exact.p05[0], tolerance);
+  EXPECT_NEAR(counted.p00_27[0], exact.p00_27[0], tolerance);
   EXPECT_NEAR(counted.p50[0], exact.p50[0], tolerance);
-  EXPECT_NEAR(counted.p95[0], exact.p95[0], tolerance);
+  EXPECT_NEAR(counted.p99_73[0], exact.p99_73[0], tolerance);
   EXPECT_NEAR(counted.p99[0], exact.p99[0], tolerance);
 }
 

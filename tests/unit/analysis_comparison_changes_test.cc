@@ -90,8 +90,13 @@ TEST(ComparisonFinding, ATailThatMovesAloneIsFound) {
   EXPECT_EQ(worse.metrics[0].finding, "worse");
   EXPECT_EQ(better.metrics[0].finding, "better");
   EXPECT_NE(worse.metrics[0].effect_in, "median");
+  EXPECT_EQ(worse.metrics[0].found_in, worse.metrics[0].effect_in);
+  EXPECT_LE(worse.metrics[0].found_p, 0.05);
+  EXPECT_GT(worse.metrics[0].p_holm, 0.05) << "the median is the same";
   EXPECT_THAT(EffectWords(worse.metrics[0]), HasSubstr(worse.metrics[0].effect_in + " 0."));
-  EXPECT_EQ(EffectWords(OfFourHundred(narrow, narrow, true).metrics[0]), "");
+  const MetricComparison same = OfFourHundred(narrow, narrow, true).metrics[0];
+  EXPECT_EQ(EffectWords(same), "");
+  EXPECT_EQ(same.found_in, "median");
 }
 
 // The first row of the page is the largest effect; what does not matter is counted and folded.

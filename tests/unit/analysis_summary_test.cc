@@ -70,7 +70,7 @@ TEST(Judge, SaysWhyNothingIsDecided) {
   // 200 cases without a failure: 0.1^(1/200) = 0.98855.
   const RequirementSummary open = Judged(PeakBelow(0.5, 0.9973, 0.10), Columns(200, 0));
   EXPECT_EQ(open.sentence,
-            "0 of 200 flights broke the limit. Between 98.8 % and 100 % of flights meet it, each bound with "
+            "0 of 200 flights broke the limit. Between 98.85 % and 100 % of flights meet it, each bound with "
             "90 % confidence; 99.73 % required.");
   EXPECT_EQ(
       AdviceSentence(open),

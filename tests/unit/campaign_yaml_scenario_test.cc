@@ -55,7 +55,7 @@ TEST(CampaignYamlScenario, IsReadCompletely) {
   EXPECT_EQ(booster.motor->nozzle_exit_area_m2, 0.05);
   EXPECT_EQ(booster.motor->nozzle_y_m, 0.01);
   EXPECT_TRUE(booster.motor->jet_damping);
-  EXPECT_TRUE(booster.motor->inertia_rate);
+  EXPECT_EQ(booster.motor->inertia_rate, 1.0);
   EXPECT_EQ(BurnTime(booster), 20.0);
   const BodyAerodynamics& body = booster.aerodynamics;
   EXPECT_EQ(body.area_m2, 0.5);

@@ -61,6 +61,19 @@ class Errors(unittest.TestCase):
         self.error("status", "--json", "--peer", "no such host:1", code=2)
         self.error("plan", "--json", SMOKE, env={**os.environ, "DISPERSA_LANES": "3"})
 
+    def test_a_shared_files_problem_is_told_once(self):
+        with tempfile.TemporaryDirectory() as folder:
+            shutil.copytree(CAMPAIGNS, pathlib.Path(folder) / "c")
+            vehicle = pathlib.Path(folder) / "c/vehicles/slv4.yaml"
+            vehicle.write_text(vehicle.read_text().replace("schema:", "shape: 1\nschema:", 1))
+            done = dispersa("validate", "table3.yaml", "nominal.yaml", cwd=vehicle.parent.parent)
+            self.assertEqual(done.returncode, 2)
+            first, second = done.stdout.splitlines()
+            self.assertRegex(first, r"^vehicles/slv4\.yaml:\d+:1: shape: unknown key")
+            self.assertEqual(second, "nominal.yaml: not valid, for the reasons above")
+            answer = json.loads(dispersa("validate", "--json", "table3.yaml", "nominal.yaml", cwd=vehicle.parent.parent).stdout)
+            self.assertEqual(len(answer["errors"]), 1)
+
     def test_no_object_without_json_and_validate_keeps_its_own(self):
         self.assertEqual(dispersa("plan", "/nowhere").stdout, "")
         answer = json.loads(dispersa("validate", "--json", "/nowhere").stdout)

@@ -8,6 +8,7 @@
 #include "core/results/text.h"
 #include "tests/test.h"
 #include "tests/unit/made_up_results.h"
+#include "tests/unit/sample_vehicle.h"
 
 namespace dispersa::pages_report_test {
 namespace {
@@ -67,12 +68,13 @@ class ReportPageTest : public testing::Test {
     histories_.nominal = *summary_.nominal;
     histories_.nominal_history = MakeHistory();
     std::vector<int> columns;
-    for (int i = 0; i < static_cast<int>(HistoryColumns().size()); ++i) columns.push_back(i);
+    for (int i = 0; i < std::ssize(BandColumnNames()); ++i) columns.push_back(i);
     std::vector<SampledFlight> flights;
     if (flown > 0) flights.push_back(SampleFlight(histories_.nominal_history, columns, 1.0));
     histories_.bands = ComputeBands(flights, columns, 1.0);
     histories_.written_cases = {3};
     histories_.written_flights = {SampleFlight(histories_.nominal_history, columns, 1.0)};
+    campaign_.vehicle = SampleVehicle();
     page_ = ReportPage(campaign_, summary_, cases_, histories_);
   }
 
@@ -476,6 +478,19 @@ TEST_F(ReportPageTest, EveryTableHasHeadsForReadersWhoListen) {
   EXPECT_FALSE(std::regex_search(page_, bare));
   EXPECT_FALSE(std::regex_search(page_, empty_head)) << "a head without a word";
   EXPECT_THAT(page_, HasSubstr("<main>"));
+}
+
+TEST_F(ReportPageTest, FlightsNearestToSeveralLimitsAreToldOnce) {
+  FailureDrivers nearest{
+      .metric = "yaw_error_peak_deg", .nearest = true, .flights = 10, .drivers = {}, .pairs = {}};
+  nearest.drivers.push_back({.input = "wind_azimuth_deg", .key = "wind.azimuth", .feature = "x"});
+  FailureDrivers other = nearest;
+  other.drivers[0].p = 0.01;
+  summary_.failure_drivers = {nearest, nearest, other};
+  const std::string html = CausesSection(summary_);
+  const std::string title = "Nearest to failing of Yaw error, peak: 10 flights";
+  EXPECT_NE(html.find(title), html.rfind(title));
+  EXPECT_EQ(html.find(title, html.find(title) + 1), html.rfind(title)) << "two, not three";
 }
 
 TEST_F(ReportPageTest, AMetricOfOneValueIsSaidAndNotDrawn) {

@@ -57,6 +57,11 @@ TEST(ChartScale, CountsDecades) {
   EXPECT_NEAR(scale.At(std::sqrt(0.0005)), 0.5, 1e-12);  // half-way in decades
 }
 
+TEST(ChartScale, DividesTheDecadesIfTheyAreFew) {
+  const ChartScale scale({.label = "n", .logarithmic = true}, 230.0, 5500.0, 0.0, 1.0, 4);
+  EXPECT_THAT(Labels(scale), ElementsAre("500", "1000", "2000", "5000"));
+}
+
 TEST(ChartScale, SkipsDecadesWhoseLabelsWouldRunTogether) {
   const ChartScale scale({.label = "p", .low = 1e-9, .high = 1e6, .logarithmic = true}, 0.0, 0.0, 0.0, 1.0,
                          4);
@@ -67,6 +72,24 @@ TEST(ChartScale, LivesWithConstantAndMissingData) {
   EXPECT_NEAR(ChartScale({.label = "x"}, 5.0, 5.0, 0.0, 100.0, 4).At(5.0), 50.0,
               1e-9);  // rounding of the ends
   EXPECT_EQ(ChartScale({.label = "x"}, INFINITY, -INFINITY, 0.0, 100.0, 4).low(), 0.0);
+}
+
+// "S2, S3" where two ignitions are a pixel apart, "S4–S6" of more; a coast without room has no label.
+TEST(SvgChart, JoinsTheLabelsThatWouldLieOverEachOther) {
+  SvgChart chart({.label = "t", .low = 0.0, .high = 1000.0}, {.label = "y"});
+  chart.Line({0.0, 1000.0}, {0.0, 1.0}, "line-0", "");
+  chart.Shade(105.0, 110.0, "narrow");
+  chart.Shade(400.0, 800.0, "coast");
+  for (const auto& [time_s, name] :
+       {std::pair{0.0, "S1"}, {100.0, "S2"}, {104.0, "S3"}, {996.0, "S4"}, {997.0, "S5"}, {999.0, "S6"}})
+    chart.Mark(time_s, name);
+  const std::string svg = chart.Svg("marks");
+  EXPECT_EQ(Count(svg, "class=\"mark-label\""), 4u);
+  for (const char* label : {">S1<", ">S2, S3<", ">S4–S6<", ">coast<"}) EXPECT_THAT(svg, HasSubstr(label));
+  EXPECT_EQ(Count(svg, "class=\"mark\""), 6u);
+  const std::size_t last = svg.find(">S4–S6<");
+  const double x = std::stod(svg.substr(svg.rfind("x=\"", last) + 3));
+  EXPECT_LT(x, 495.0) << "it is cut by the frame";
 }
 
 TEST(SvgChart, InterruptsALineWhereItIsUndefined) {
@@ -139,6 +162,20 @@ TEST(SvgChart, NamesALimitThatLiesTooFarToBeDrawnBesideTheData) {
   EXPECT_THAT(svg, HasSubstr(">tall (far above)<"));
   EXPECT_THAT(svg, Not(HasSubstr(">10<")));      // the axis ends before it
   EXPECT_EQ(Count(svg, "class=\"limit\""), 5u);  // four in the legend, one drawn
+}
+
+// Several requirements of one metric have a limit each.
+TEST(SvgChart, NamesLinesOfOneKindOnceAndCutsNoLabelOfTheAxis) {
+  SvgChart chart({.label = "x"}, {.label = "y"});
+  chart.Line({0.0001, 0.0008}, {0.0, 1.0}, "line-0", "");
+  for (const double limit : {0.2, 0.4, 0.6}) chart.HorizontalLimit(limit, "limit");
+  chart.HorizontalLimit(0.8, "limit", "allowed");
+  const std::string svg = chart.Svg("limits");
+  EXPECT_EQ(Count(svg, ">limit</text>"), 2u);
+  EXPECT_EQ(Count(svg, "data-s=\"limit\""), 4u);
+  const std::size_t last = svg.find(">0.0008</text>");
+  ASSERT_NE(last, std::string::npos);
+  EXPECT_LE(std::stod(svg.substr(svg.rfind("x=\"", last) + 3)) + 3.1 * 6.0, 520.0);
 }
 
 TEST(SvgChart, DrawsWithoutData) {

@@ -102,7 +102,7 @@ TEST(TrajectoryPage, HasEventsApsidesAndTheCheckFlight) {
   EXPECT_THAT(page.substr(at, 400), HasSubstr("<td class=\"n\">150.0</td><td class=\"n\">150.0</td></tr>"));
   EXPECT_THAT(page, AllOf(HasSubstr("dynamic pressure, kPa"), HasSubstr(">apogee</text>"),
                           HasSubstr(">perigee</text>")));
-  EXPECT_THAT(page, HasSubstr("No check flight was flown"));
+  EXPECT_THAT(page, AllOf(HasSubstr("No check flight was flown"), HasSubstr("<h2>Injection</h2>")));
   CheckFlight check;
   check.end_time_s = 140.0;
   EXPECT_THAT(TrajectoryPage(result, check), HasSubstr("check flight: completed at 140 s."));
@@ -110,6 +110,12 @@ TEST(TrajectoryPage, HasEventsApsidesAndTheCheckFlight) {
   const std::string lost = TrajectoryPage(result, check);
   EXPECT_THAT(lost, HasSubstr("check flight: lost at 140 s"));
   EXPECT_LT(lost.find("<span class=\"badge fail\""), lost.find("check flight: lost"));
+
+  result.history.back().v_IC_I *= 0.9;
+  const std::string suborbital = TrajectoryPage(result, std::nullopt);
+  EXPECT_THAT(suborbital,
+              AllOf(HasSubstr("<h2>End of the ascent</h2>"), HasSubstr("<td>end of the ascent</td>")));
+  EXPECT_THAT(suborbital, Not(HasSubstr("njection</")));
 }
 
 }  // namespace

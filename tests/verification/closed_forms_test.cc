@@ -283,7 +283,7 @@ TEST_F(BurningBody, JetDampingAcrossTheAxis) {
 
 // With the term switched off a body that spins about a principal axis keeps its rate.
 TEST_F(BurningBody, KeepsItsRateWithoutTheInertiaRateTerm) {
-  motor().inertia_rate = false;
+  motor().inertia_rate = 0.0;
   scenario_.rates_rad_s = {0.7, 0.0, 0.0};
   EXPECT_EQ(Fly(scenario_, kBurn_s, 100.0).w_IB_B, Vector3(0.7, 0.0, 0.0));
 }

@@ -26,8 +26,8 @@ from ._campaign import Campaign, Validation, load, validate  # noqa: E402
 from .errors import (BadInput, Error, ExitCode, Incomplete, InputWarning, InternalError, Problem,  # noqa: E402
                      ReplayMismatch)
 from ._flight import Flight, Flights, History  # noqa: E402
-from ._results import (Comparison, Optimization, Results, compare, margins, optimize, report, results, run,  # noqa: E402
-                      sweep, worker_program)
+from ._results import (Comparison, Optimization, Results, Tuning, compare, margins, optimize, report, results,  # noqa: E402
+                      run, search, sweep, tune, worker_program)
 
 __version__ = _engine_version()
 """The engine's version: results of different ones are never mixed."""
@@ -50,5 +50,6 @@ def fly(what, case=None, *, inputs=None, history=True, step_s=0.1, integrator="s
 
 
 __all__ = ["BadInput", "Campaign", "Comparison", "Error", "ExitCode", "Flight", "Flights", "History", "Incomplete", "InputWarning",
-           "InternalError", "Optimization", "Problem", "ReplayMismatch", "Results", "Tree", "Validation", "compare", "fly",
-           "load", "margins", "optimize", "plan", "read", "report", "results", "run", "sweep", "validate", "worker_program", "write"]
+           "InternalError", "Optimization", "Problem", "ReplayMismatch", "Results", "Tree", "Tuning", "Validation", "compare", "fly",
+           "load", "margins", "optimize", "plan", "read", "report", "results", "run", "search", "sweep", "tune", "validate", "worker_program",
+           "write"]

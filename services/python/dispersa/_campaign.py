@@ -2,12 +2,14 @@
 import collections.abc
 import dataclasses
 import functools
+import html
 import os
 import warnings
 
 from . import _core
 from ._arguments import MOST_CASES, MOST_THREADS, as_whole, finite, refuse, whole, whole_if_given
 from ._law import identity
+from ._shown import html_table, progress_of
 from ._source import placed, source, without_place
 from ._tables import structured
 from .errors import BadInput, ExitCode, InputWarning, Problem
@@ -78,6 +80,15 @@ class Campaign:
 
     def __repr__(self):
         return f"<dispersa.Campaign {self.name} {self.id[:8]}: {self.cases} cases, seed {self.seed}>"
+
+    def _repr_html_(self):
+        """For notebooks: what flies, and what varies."""
+        inputs = {}
+        for name in self.dispersed:
+            inputs.setdefault(self.input_keys.get(name, name), []).append(name)
+        return (f"<p><b>{html.escape(self.name)}</b> {self.id[:8]}: {self.cases} cases, seed {self.seed}; "
+                f"{html.escape(self.vehicle)} under {html.escape(self.autopilot)}</p>"
+                + html_table(("dispersion", "inputs"), [(key, ", ".join(names)) for key, names in inputs.items()]))
 
     def __eq__(self, other):
         return isinstance(other, Campaign) and self.id == other.id
@@ -214,7 +225,7 @@ class Campaign:
 
         `cases`: the number of cases, beginning with the first, or their indices; default: all. `histories`: whether to keep
         the time histories, all in one array. `columns`: names of the columns to keep; default: all, half a kilobyte a row.
-        `step_s`: as in fly. `progress(phase, done, total, note)` is called now and then.
+        `step_s`: as in fly. `progress(phase, done, total, note)` is called now and then; True shows a bar (tqdm).
 
         `law`, `axes`: as in fly. Calls for one flight alternate with calls for others, so a law keeps its state in
         `tick.memory`. The call releases the interpreter's lock; Ctrl-C stops it. Raises BadInput for an unknown case or
@@ -228,7 +239,7 @@ class Campaign:
             indices = [self._index(case) for case in cases]
         values = _core.fly_many(self._core, indices, _step(step_s) if histories else 0.0,
                                 None if columns is None else list(columns),
-                                whole("threads", threads, 0, MOST_THREADS), progress,
+                                whole("threads", threads, 0, MOST_THREADS), progress_of(progress),
                                 _law(law), _axis_bits(axes))
         return Flights(self, values)
 

@@ -13,6 +13,7 @@ import numpy
 
 from . import _core
 from ._arguments import MOST_CASES, MOST_THREADS, did_you_mean, finite, refuse, truth, whole, whole_if_given
+from ._shown import html_table, progress_of
 from ._source import _in_folder, placed, read, source, text_of
 from ._tables import structured
 from ._campaign import Campaign, _from_canonical, load, under_law
@@ -59,7 +60,7 @@ class Results:
         rows = [(_limits(each), f"{each['failures']} of {each['n']}", each["verdict"]) for each in self.requirements]
         return (f"<p><b>{html.escape(self.campaign.name)}</b>: {len(self)} cases, <b>{html.escape(self.verdict)}</b>, "
                 f"<code>{html.escape(str(self.directory))}</code></p>"
-                + _html_table(("requirement", "failures", "verdict"), rows))
+                + html_table(("requirement", "failures", "verdict"), rows))
 
     def __len__(self):
         return len(self.case_index)
@@ -188,8 +189,8 @@ class Results:
         return frame
 
     def bands(self):
-        """histories/bands.csv.gz: percentiles over time as a History with columns NAME_min, _p01, _p05, _p50, _p95, _p99
-        and _max beside time_s. Raises BadInput when the report was made without histories."""
+        """histories/bands.csv.gz: percentiles over time as a History with columns NAME_min, _p00_27, _p01, _p50,
+        _p99, _p99_73 and _max beside time_s. Raises BadInput when the report was made without histories."""
         return self._csv("bands.csv")
 
     def history(self, case=None):
@@ -258,7 +259,7 @@ def run(what, out="", *, cases=None, seed=None, autopilot=None, base=None, worke
     `what`: a Campaign, a path, or a dict. `out`: the folder, new or empty unless `resume`; default: results/NAME-ID.
     `workers`: the number of worker processes (default: the usable cores); 0 flies on `threads` threads of this process.
     `histories`: whether the report flies cases again for time histories. `envelope`: the number of these cases.
-    `progress(phase, done, total, note)` is called now and then.
+    `progress(phase, done, total, note)` is called now and then; True shows a bar (tqdm).
 
     `peer` ("HOST[:PORT]"): the coordinator there flies the campaign, in DDS domain `domain`, and the folder is fetched.
     `keys`: the folder of the client's keys. `insecure`: work without keys. `priority`: -1000 to 1000, as in `dispersa launch`.
@@ -303,14 +304,15 @@ def run(what, out="", *, cases=None, seed=None, autopilot=None, base=None, worke
         folder = _folder_of(campaign, out)
         code = _core.run_remotely(campaign.name, campaign.canonical_yaml, folder, whole("domain", domain, 0, 99),
                                   os.fspath(peer), os.fspath(address), os.fspath(keys), truth("insecure", insecure),
-                                  whole("priority", priority, -1000, 1000), progress)
+                                  whole("priority", priority, -1000, 1000), progress_of(progress))
         problem = None
     else:
         program = "" if workers == 0 else worker_program() or "dispersa-worker"
         folder, code, problem = _core.run(campaign.name, campaign.canonical_yaml, os.fspath(out), truth("resume", resume),
                                           -1 if workers is None else whole("workers", workers, 0, MOST_THREADS),
                                           whole("threads", threads, 0, MOST_THREADS), program,
-                                          whole("envelope", envelope, 1) if histories else None, progress, law, sha256)
+                                          whole("envelope", envelope, 1) if histories else None, progress_of(progress), law,
+                                          sha256)
     return _judge(folder, code, problem)
 
 
@@ -346,7 +348,7 @@ def report(directory, *, histories=True, envelope=ENVELOPE, progress=None, law=N
     if isinstance(directory, Results):
         directory = directory.directory
     sha256 = "" if law is None else _law_of(_campaign_in(directory), law)
-    _core.report(os.fspath(directory), whole("envelope", envelope, 1) if histories else None, progress, law, sha256)
+    _core.report(os.fspath(directory), whole("envelope", envelope, 1) if histories else None, progress_of(progress), law, sha256)
     return Results(directory)
 
 
@@ -364,13 +366,6 @@ def _limits(requirement):
     if requirement["side"] == "within":
         return f"{requirement['metric']} between {requirement['low_limit']:g} and {requirement['limit']:g}"
     return f"{requirement['metric']} {requirement['side']} {requirement['limit']:g}"
-
-
-def _html_table(heads, rows):
-    """The text of each cell as it is."""
-    def line(tag, cells):
-        return "<tr>" + "".join(f"<{tag}>{html.escape(str(cell))}</{tag}>" for cell in cells) + "</tr>"
-    return "<table>" + line("th", heads) + "".join(line("td", row) for row in rows) + "</table>"
 
 
 def _flat(value, prefix=""):
@@ -406,32 +401,42 @@ class Comparison(dict):
     def _repr_html_(self):
         """For notebooks: what is better or worse in B."""
         rows = [(each["metric"], each["finding"]) for each in self["metrics"] if each["finding"] in ("better", "worse", "differs")]
-        return f"<p>{html.escape(self['sentence'])}</p>" + _html_table(("metric", "B is"), rows)
+        return f"<p>{html.escape(self['sentence'])}</p>" + html_table(("metric", "B is"), rows)
 
 
 def sweep(what, key, values, out, *, base=None, **options):
-    """Flies a campaign once for each of several values of one key. Returns {value: Results} in their order.
+    """Flies a campaign once for each of several values of one key, or of several keys. Returns {value: Results} in their order.
 
     `what`: a path or a dict. `key`: path of the key, such as "sampling.seed" or "requirements[0].below"; a path to a campaign
-    is read with its files inlined, so that "autopilot.tick_s" or "vehicle.stages[0].motor.thrust_n" work too. `out`: a folder,
-    in which each value has its own. Other arguments are those of run. Raises BadInput for a key that is not there, and what run
-    raises.
+    is read with its files inlined, so that "autopilot.tick_s" or "vehicle.stages[0].motor.thrust_n" work too. With a tuple of
+    paths each of `values` is a tuple too, for instance of itertools.product. `out`: a folder, in which each value has its own.
+    Other arguments are those of run. Raises BadInput for a key that is not there, and what run raises.
     """
     tree = _read_for(what)
-    parts = [int(part) if part.isdigit() else part for part in key.replace("[", ".").replace("]", "").split(".")]
+    is_one = isinstance(key, str)
+    keys = (key,) if is_one else tuple(key)
     flown = {}
     for value in values:
+        own = (value,) if is_one else tuple(value)
+        if len(own) != len(keys):
+            raise refuse(f"values: {value!r} has {len(own)} values", f"one for each of {len(keys)} keys")
         changed = _in_folder(json.loads(text_of(tree)), base if base is not None else getattr(tree, "folder", "."))
-        at = changed
-        try:
-            for part in parts[:-1]:
-                at = at[part]
-            at[parts[-1]]
-        except (KeyError, IndexError, TypeError):
-            raise refuse(f"key: the campaign has no '{key}'", "a key that it has, such as sampling.seed") from None
-        at[parts[-1]] = value
-        flown[value] = run(changed, os.path.join(os.fspath(out), f"{parts[-1]}={value}"), **options)
+        names = [f"{_set(changed, *pair)}={pair[1]}" for pair in zip(keys, own)]
+        flown[value if is_one else own] = run(changed, os.path.join(os.fspath(out), ",".join(names)), **options)
     return flown
+
+
+def _set(tree, key, value):
+    """Sets a key of a campaign, and returns its last name."""
+    *parts, last = [int(part) if part.isdigit() else part for part in key.replace("[", ".").replace("]", "").split(".")]
+    try:
+        for part in parts:
+            tree = tree[part]
+        tree[last]
+    except (KeyError, IndexError, TypeError):
+        raise refuse(f"key: the campaign has no '{key}'", "a key that it has, such as sampling.seed") from None
+    tree[last] = value
+    return last
 
 
 def _read_for(what):
@@ -458,9 +463,63 @@ def margins(what, *, cases=None, autopilot=None, base=None, frequency_band_perce
     `cases`: number of dispersed cases whose margins are computed too. `frequency_band_percent`: error of the bending
     frequencies. `drift`: linearise with the lateral velocity. Raises BadInput.
     """
-    campaign = what if isinstance(what, Campaign) and autopilot is None else load(what, autopilot=autopilot, base=base)
+    campaign = _loaded(what, autopilot, base)
     return json.loads(_core.margins(campaign.name, campaign.canonical_yaml, whole_if_given("cases", cases, 1, MOST_CASES),
                                     finite("frequency_band_percent", frequency_band_percent, 0.0, 50.0), drift))
+
+
+def _loaded(what, autopilot=None, base=None):
+    return what if isinstance(what, Campaign) and autopilot is None else load(what, autopilot=autopilot, base=base)
+
+
+def search(what, metric=None, *, below=None, above=None, flights=1000, starts=4, reach_sigma=6.0, seed=None, base=None, progress=None):
+    """The smallest dispersion found that fails a requirement, as the dict that `dispersa search --json` prints: `found`,
+    `distance` in standard deviations, `dispersions`, `inputs`, and a `sentence` that says what this shows.
+
+    `metric`: of the requirement; default: the campaign's first. `below`, `above`: a limit instead of the campaign's. `flights`:
+    20 to 1,000,000. `starts`: 1 to 100. `reach_sigma`: the farthest distance in standard deviations, 0.1 to 8. Raises BadInput.
+    """
+    campaign = _loaded(what, base=base)
+    if metric is None and (below is not None or above is not None):
+        raise refuse("metric: below and above need one", "a name of metric_names")
+    if below is not None and above is not None:
+        raise refuse("below, above: both are given", "one of them")
+    if metric is not None and metric not in campaign.metric_names:
+        raise refuse(f"metric: {metric!r} is not a metric{did_you_mean(metric, campaign.metric_names)}", "a name of metric_names")
+    limits = tuple(None if each is None else finite(name, each) for name, each in (("below", below), ("above", above)))
+    return json.loads(_core.search(campaign.name, campaign.canonical_yaml, metric or "", limits,
+                                   whole("flights", flights, 20, 1000000), whole("starts", starts, 1, 100),
+                                   finite("reach_sigma", reach_sigma, 0.1, 8.0), whole_if_given("seed", seed), progress_of(progress)))
+
+
+class Tuning(dict):
+    """The object that `dispersa tune --json` prints, as a dict. `yaml`: the text of the autopilot file."""
+
+    yaml = ""
+
+    @property
+    def exit_code(self):
+        """An ExitCode: 0 if a design meets every constraint, 3 if none does: the file has the best one found."""
+        return ExitCode.DONE if self["feasible"] else ExitCode.REQUIREMENT_FAILED
+
+
+def tune(what, out="", *, autopilot="", seed=1, cases=4, evaluations=160, dispersed=0, lqr=False, threads=0, base=None,
+         progress=None):
+    """Finds the gains of an autopilot with any control law, as `dispersa tune` does. Returns a Tuning.
+
+    `out`: a file for the autopilot. `autopilot`: a file with the law and the fixed parameters, instead of the campaign's.
+    `seed`: of the search and of its cases. `cases`: flown for each design. `evaluations`: designs to try. `dispersed`: cases in
+    which every design must meet the gates of dispersed flights. `lqr`: search the weights of a linear-quadratic regulator. The
+    result does not depend on `threads` (0: the usable cores). Raises BadInput.
+    """
+    campaign = _loaded(what, base=base)
+    printed, yaml = _core.tune(campaign.name, campaign.canonical_yaml, os.fspath(autopilot), os.fspath(out), whole("seed", seed),
+                               whole("cases", cases, 1, 10000), whole("evaluations", evaluations, 1, 1000000),
+                               whole("dispersed", dispersed, 0, 1000), truth("lqr", lqr), whole("threads", threads, 0, MOST_THREADS),
+                               progress_of(progress))
+    tuning = Tuning(json.loads(printed))
+    tuning.yaml = yaml
+    return tuning
 
 
 class Optimization(dict):
@@ -490,7 +549,7 @@ def optimize(what, out="", *, seed=None, threads=0, base=None, progress=None):
     name, text = source(what, base)
     with placed(name, text):
         printed, yaml, statement = _core.optimize(name, text, whole_if_given("seed", seed), whole("threads", threads, 0, MOST_THREADS),
-                                                  os.fspath(out), progress)
+                                                  os.fspath(out), progress_of(progress))
     optimization = Optimization(json.loads(printed))
     optimization.yaml, optimization.statement = yaml, statement
     return optimization

@@ -38,6 +38,7 @@ COAST_S = 10.0  # a gap between burns that is shown as one
 @contextlib.contextmanager
 def style():
     """The report's style for figures of your own: `with dispersa.plot.style(): ...`."""
+    pyplot.draw_if_interactive()  # loads the backend: what a notebook's one sets then must outlive the context
     with matplotlib.rc_context(STYLE):
         yield
 
@@ -82,7 +83,7 @@ def history(flights, columns, *, labels=None, axes=None):
 
 
 def bands(what, column, *, nominal=True, ax=None):
-    """The spread of a history column over the cases: least to largest, 5 to 95 % and median of the flights still flying.
+    """The spread of a history column over the cases: least to largest, 1 to 99 % and median of the flights still flying.
 
     `what`: Results, whose report has made the bands, or Flights with histories of `time_s` and the column. `nominal`:
     of Results, with the nominal flight. Raises BadInput for a column that there are no bands or histories of.
@@ -99,14 +100,14 @@ def bands(what, column, *, nominal=True, ax=None):
                 known = [name.removesuffix("_p50") for name in table.columns if name.endswith("_p50")]
                 raise BadInput([("", 0, 0, "", f"bands: the report has none of '{column}'", ", ".join(known))])
             times = table["time_s"]
-            least, low, median, high, largest = (table[f"{column}_{part}"] for part in ("min", "p05", "p50", "p95", "max"))
+            least, low, median, high, largest = (table[f"{column}_{part}"] for part in ("min", "p01", "p50", "p99", "max"))
         else:
             end_s = max(float(what.history(i)["time_s"][-1]) for i in range(len(what)))
             times = numpy.arange(0.0, max(end_s, 0.2), 0.2)
             values = what.sample(column, times)
-            least, low, median, high, largest = numpy.nanpercentile(values, [0, 5, 50, 95, 100], axis=0)
+            least, low, median, high, largest = numpy.nanpercentile(values, [0, 1, 50, 99, 100], axis=0)
         ax.fill_between(times, least, largest, facecolor=OUTER, edgecolor=INNER, linewidth=0.5, label="min–max")
-        ax.fill_between(times, low, high, facecolor=INNER, linewidth=0, label="5–95 %")
+        ax.fill_between(times, low, high, facecolor=INNER, linewidth=0, label="1–99 %")
         ax.plot(times, median, label="median")
         if isinstance(what, Results):
             flown = what.history()
