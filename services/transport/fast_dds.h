@@ -58,6 +58,10 @@ inline constexpr dds::ReturnCode_t kDdsOk = dds::RETCODE_OK;
 namespace rtps {
 using namespace eprosima::fastdds::rtps;
 using namespace eprosima::fastrtps::rtps;
+// Names of both, which clang takes for hidden ones.
+using eprosima::fastdds::rtps::LocatorsIterator;
+using eprosima::fastdds::rtps::TransportDescriptorInterface;
+using eprosima::fastdds::rtps::TransportInterface;
 }  // namespace rtps
 using DdsDuration = eprosima::fastrtps::Duration_t;
 inline constexpr auto kDdsOk = eprosima::fastrtps::types::ReturnCode_t::RETCODE_OK;
