@@ -12,7 +12,8 @@ namespace {
 constexpr std::chrono::seconds kHandshakePatience(5);
 constexpr std::size_t kMostHandshakes = 1024;  // strangers may make up participants without end
 constexpr char kBadKeys[] =
-    "its keys are of another authority, expired or damaged, or the first contact with it was interrupted";
+    "its keys are of another authority, expired or damaged, its Debian is another one, or the first contact "
+    "with it was interrupted";
 
 std::string WhoIs(const rtps::GUID_t& participant, const rtps::RemoteLocatorList& addresses) {
   const auto& unicast = addresses.unicast;
@@ -46,7 +47,7 @@ void Neighbours::OnFound(const rtps::GUID_t& participant, const rtps::RemoteLoca
   const Greeting& greeting = LastGreeting();
   const bool it_has_keys = greeting.from == PrefixOf(participant) ? greeting.has_keys : we_have_keys_;
   if (we_have_keys_ && it_has_keys) {
-    if (handshakes_.size() < kMostHandshakes) {
+    if (kIsFoundFirst && handshakes_.size() < kMostHandshakes) {
       handshakes_[participant] = {std::chrono::steady_clock::now() + kHandshakePatience,
                                   WhoIs(participant, addresses)};
     }
