@@ -14,7 +14,7 @@ namespace dispersa {
 /// The harm of a datagram to the middleware, judged without it; nullptr if it is harmless, else why it is
 /// dropped.
 ///
-/// Fast DDS 2.9 reserves the size that a fragment claims for the whole sample. It walks through every
+/// Fast DDS reserves the size that a fragment claims for the whole sample. It walks through every
 /// sequence number that a GAP or a HEARTBEAT names: a range of 10^9 stops it for minutes (CVE-2025-64438). It
 /// trusts the lengths in a datagram, encrypted or not. It also accepts plain data for an endpoint whose
 /// messages are all encrypted. With keys, the only plain samples are a participant's greeting and the
