@@ -425,7 +425,7 @@ TEST(StrangerBesideARun, HasNoWordInIt) {
   orders.coordinator_epoch = 99;
   orders.leave = true;
   int reached = 0;
-  for (const auto deadline = Clock::now() + kPatience; Clock::now() < deadline && run.IsRunning();) {
+  for (const auto deadline = Clock::now() + 4 * kPatience; Clock::now() < deadline && run.IsRunning();) {
     reached = std::max(reached, writer.matched());
     writer.Write(ToIdl(orders));
     std::this_thread::sleep_for(milliseconds(50));
