@@ -2,6 +2,7 @@
 
 DISPERSA_BINARIES and DISPERSA_CAMPAIGNS name the folders of the programs and of the campaigns.
 """
+import contextlib
 import fcntl
 import json
 import os
@@ -84,7 +85,7 @@ def shared_memory_segments():
 def stored(out):
     """Number of cases in the database of a result folder; 0 while there is none."""
     try:
-        with sqlite3.connect(f"file:{out}/results.sqlite?mode=ro", uri=True) as database:
+        with contextlib.closing(sqlite3.connect(f"file:{out}/results.sqlite?mode=ro", uri=True)) as database:
             return database.execute("SELECT count(*) FROM cases").fetchone()[0]
     except sqlite3.OperationalError:
         return 0
