@@ -43,7 +43,8 @@ class TwoSystems(unittest.TestCase):
         (self.folder / suite).mkdir()
         root = BareRoot(self.folder / suite, suite)
         copy_sources(root.path / "src")
-        self.inside(root, "apt-get update; apt-get install --yes --no-install-recommends git; cd /src; campaigns/run smoke --quiet")
+        self.inside(root, "apt-get update; apt-get install --yes --no-install-recommends git; cd /src; "
+                          "campaigns/run smoke --quiet --out /smoke/results")
         self.inside(root, "cd /src; tests/run -R '^(unit|distributed.run)'")
         found = {}
         for name in CAMPAIGNS:
@@ -57,9 +58,9 @@ class TwoSystems(unittest.TestCase):
         user = BareRoot(self.folder / f"{suite}-user", suite)
         package, = (root.path / "out").glob("*.deb")
         shutil.copy(package, user.path / "tmp/dispersa.deb")
-        self.inside(user, "apt-get update; apt-get install --yes --no-install-recommends /tmp/dispersa.deb; cd; "
-                          "dispersa run /usr/share/dispersa/campaigns/smoke.yaml --workers 2 --quiet")
-        self.assertEqual(digest(user.path / "root/results"), digest(root.path / "src/results"))
+        self.inside(user, "apt-get update; apt-get install --yes --no-install-recommends /tmp/dispersa.deb; "
+                          "dispersa run /usr/share/dispersa/campaigns/smoke.yaml --workers 2 --quiet --out /smoke/results")
+        self.assertEqual(digest(user.path / "smoke/results"), digest(root.path / "smoke/results"))
         return found
 
     def test_both_commands_and_the_same_bytes(self):
