@@ -14,6 +14,7 @@ constexpr std::size_t kMostHandshakes = 1024;  // strangers may make up particip
 constexpr char kBadKeys[] =
     "its keys are of another authority, expired or damaged, its Debian is another one, or the first contact "
     "with it was interrupted";
+constexpr char kNoKeys[] = "it has no keys";
 
 std::string WhoIs(const rtps::GUID_t& participant, const rtps::RemoteLocatorList& addresses) {
   const auto& unicast = addresses.unicast;
@@ -44,8 +45,7 @@ void Neighbours::OnFound(const rtps::GUID_t& participant, const rtps::RemoteLoca
   const Lock lock(mutex_);
   ++found_;
   if (doors_) doors_->Found(PrefixOf(participant));
-  const Greeting& greeting = LastGreeting();
-  const bool it_has_keys = greeting.from == PrefixOf(participant) ? greeting.has_keys : we_have_keys_;
+  const bool it_has_keys = HasKeys(participant);
   if (we_have_keys_ && it_has_keys) {
     if (kIsFoundFirst && handshakes_.size() < kMostHandshakes) {
       handshakes_[participant] = {std::chrono::steady_clock::now() + kHandshakePatience,
@@ -54,7 +54,7 @@ void Neighbours::OnFound(const rtps::GUID_t& participant, const rtps::RemoteLoca
   } else if (we_have_keys_ != it_has_keys) {
     TellJoined(participant);  // it never will
     Complain("participant", WhoIs(participant, addresses),
-             we_have_keys_ ? "it has no keys" : "it has keys, and we have none to show (--keys)");
+             we_have_keys_ ? kNoKeys : "it has keys, and we have none to show (--keys)");
   }
 }
 
@@ -69,7 +69,12 @@ void Neighbours::OnAuthenticated(const rtps::GUID_t& participant, bool is_author
   handshakes_.erase(participant);
   if (is_authorized) return;
   TellJoined(participant);  // it never will
-  Complain("participant", ParticipantOf(participant), kBadKeys);
+  Complain("participant", ParticipantOf(participant), HasKeys(participant) ? kBadKeys : kNoKeys);
+}
+
+bool Neighbours::HasKeys(const rtps::GUID_t& participant) const {
+  const Greeting& greeting = LastGreeting();
+  return greeting.from == PrefixOf(participant) ? greeting.has_keys : we_have_keys_;
 }
 
 void Neighbours::LogSilent() {

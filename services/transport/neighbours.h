@@ -39,6 +39,8 @@ class Neighbours : public Discovery {
   void OnWriterGone(const rtps::GUID_t& writer) override;
   void OnReader(const rtps::GUID_t& reader) override;
   void TellJoined(const rtps::GUID_t& endpoint) const;
+  /// As its greeting said, if it was the last one; else as we have.
+  bool HasKeys(const rtps::GUID_t& participant) const;
 
   struct Handshake {
     std::chrono::steady_clock::time_point due;
