@@ -29,7 +29,7 @@ constexpr char kIdentityAuthorityKeyFile[] = "identity_ca.key";
 constexpr char kPermissionsAuthorityKeyFile[] = "permissions_ca.key";
 constexpr char kMaker[] = "dispersa keys init";
 constexpr char kSerialsFile[] = "serials.txt";
-/// Fast DDS 2.9 lets participants meet only if the first certificates of their permissions_ca.pem have the
+/// Fast DDS lets participants meet only if the first certificates of their permissions_ca.pem have the
 /// same name. So this is the name of the first one for ever, and later signers have other names.
 constexpr char kFirstPermissions[] = "dispersa permissions";
 constexpr std::time_t kDay_s = 86400;

@@ -15,12 +15,6 @@
 
 namespace dispersa {
 
-namespace {
-
-namespace dds = eprosima::fastdds::dds;
-
-}  // namespace
-
 struct CoordinatorLink::Impl {
   /// Messages to one participant have writers of their own, so that a stopped reader blocks no other.
   struct Channel {

@@ -26,6 +26,7 @@ struct Greeting {
   ParticipantPrefix from{};
   std::string name;  ///< as the sender wants it; of our programs that of the program
   bool is_farewell = false;
+  bool has_keys = false;
 };
 
 /// A coordinator has one participant of Fast DDS for each kPlaces peers, a door. All peers greet at the first

@@ -5,13 +5,8 @@
 #include <array>
 #include <cstdio>
 
-#include <fastrtps/utils/IPLocator.h>
-
 namespace dispersa {
 namespace {
-
-namespace dds = eprosima::fastdds::dds;
-namespace rtps = eprosima::fastrtps::rtps;
 
 template <typename Qos>
 void SetCommonQos(Qos& qos, int depth) {
@@ -34,8 +29,8 @@ dds::DataWriterQos MakeWriterQos(int depth) {
   dds::DataWriterQos qos = dds::DATAWRITER_QOS_DEFAULT;
   SetCommonQos(qos, depth);
   // Lost messages are sent again after this time, and not after 3 s.
-  qos.reliable_writer_qos().times.heartbeatPeriod = eprosima::fastrtps::Duration_t(0, 200000000);
-  qos.reliability().max_blocking_time = eprosima::fastrtps::Duration_t(0, 100000000);
+  SetHeartbeat(qos, DdsDuration(0, 200000000));
+  qos.reliability().max_blocking_time = DdsDuration(0, 100000000);
   return qos;
 }
 

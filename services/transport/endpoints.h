@@ -9,17 +9,10 @@
 #include <string>
 #include <utility>
 
-#include <fastdds/dds/publisher/DataWriter.hpp>
-#include <fastdds/dds/publisher/DataWriterListener.hpp>
-#include <fastdds/dds/publisher/qos/DataWriterQos.hpp>
-#include <fastdds/dds/subscriber/DataReader.hpp>
-#include <fastdds/dds/subscriber/DataReaderListener.hpp>
-#include <fastdds/dds/subscriber/SampleInfo.hpp>
-#include <fastdds/dds/subscriber/qos/DataReaderQos.hpp>
-
 #include "services/program/mutex.h"
 #include "services/transport/complaints.h"
 #include "services/transport/convert.h"
+#include "services/transport/fast_dds.h"
 #include "services/transport/participant.h"
 #include "services/transport/seal.h"
 #include "services/transport/validity.h"
@@ -40,30 +33,30 @@ inline NetworkError NotCreated(const char* end, const std::string& topic) {
                       "; if the keys are of an older release, issue them again");
 }
 
-eprosima::fastdds::dds::DataWriterQos MakeWriterQos(int depth);
+dds::DataWriterQos MakeWriterQos(int depth);
 /// With a socket of its own on `port`, if that is not 0.
-eprosima::fastdds::dds::DataReaderQos MakeReaderQos(const std::string& address, std::uint16_t port);
+dds::DataReaderQos MakeReaderQos(const std::string& address, std::uint16_t port);
 
 /// Reports a mismatch of quality of service, which would otherwise be silent.
-void LogIncompatibleQos(const std::string& topic, eprosima::fastdds::dds::QosPolicyId_t policy);
+void LogIncompatibleQos(const std::string& topic, dds::QosPolicyId_t policy);
 
 /// The participant that an endpoint belongs to: the same for all topics of one sender.
-std::string ParticipantOf(const eprosima::fastrtps::rtps::InstanceHandle_t& endpoint);
+std::string ParticipantOf(const rtps::InstanceHandle_t& endpoint);
 
 /// A seal, and the bytes before it that fill the content to a multiple of 4. The middleware would add them
 /// after it.
 inline constexpr std::uint32_t kRoomForSeal = Seal::kSize + 3;
 /// False: there is no room.
 bool PutSeal(const Seal& seal, const std::string& topic, const Seal::Origin& origin,
-             eprosima::fastrtps::rtps::SerializedPayload_t& payload);
+             rtps::SerializedPayload_t& payload);
 /// The name of a writer in a seal.
-Seal::Writer NameOfWriter(const eprosima::fastrtps::rtps::GUID_t& writer);
+Seal::Writer NameOfWriter(const rtps::GUID_t& writer);
 
 /// The numbers of seals grow. A repeated number is not believed.
 class HeardSeals {
  public:
   /// Whether the sample of this writer was sealed by it, and comes for the first time.
-  bool IsNew(const eprosima::fastrtps::rtps::InstanceHandle_t& writer, const Seal::Origin& origin);
+  bool IsNew(const rtps::InstanceHandle_t& writer, const Seal::Origin& origin);
 
  private:
   std::map<Seal::Writer, std::uint64_t> last_;  ///< of writers that have the secret
@@ -75,38 +68,36 @@ class HeardSeals {
 /// With a seal (made from a secret that both sides have) a sample ends with it. A sample whose seal does not
 /// fit is refused before its content is read.
 template <typename PubSubType>
-class GuardedType : public PubSubType {
+class GuardedType : public CodedType<PubSubType> {
  public:
   explicit GuardedType(std::shared_ptr<const Seal> seal = nullptr, std::string topic = "")
       : seal_(std::move(seal)), topic_(std::move(topic)) {}
 
-  bool serialize(void* data, eprosima::fastrtps::rtps::SerializedPayload_t* payload) override {
-    if (!PubSubType::serialize(data, payload)) return false;
-    return seal_ == nullptr || PutSeal(*seal_, topic_, writing, *payload);
+  bool Encode(const void* data, rtps::SerializedPayload_t& payload) override {
+    return this->EncodePlain(data, payload) &&
+           (seal_ == nullptr || PutSeal(*seal_, topic_, writing, payload));
   }
-  std::function<std::uint32_t()> getSerializedSizeProvider(void* data) override {
-    auto size = PubSubType::getSerializedSizeProvider(data);
-    if (seal_ == nullptr) return size;
-    return [size = std::move(size)] { return size() + kRoomForSeal; };
+  std::uint32_t SizeOf(const void* data) override {
+    return this->PlainSizeOf(data) + (seal_ == nullptr ? 0 : kRoomForSeal);
   }
-  bool deserialize(eprosima::fastrtps::rtps::SerializedPayload_t* payload, void* data) override {
+  bool Decode(rtps::SerializedPayload_t& payload, void* data) override {
     using Message = typename PubSubType::type;
-    const std::uint32_t whole = payload->length;
-    is_foreign = seal_ != nullptr && !seal_->Fits(topic_, payload->data, payload->length, &read);
+    const std::uint32_t whole = payload.length;
+    is_foreign = seal_ != nullptr && !seal_->Fits(topic_, payload.data, payload.length, &read);
     if (is_foreign) {
       refused = true;
       *static_cast<Message*>(data) = Message();
       return true;
     }
-    if (seal_ != nullptr) payload->length -= static_cast<std::uint32_t>(Seal::kSize);
+    if (seal_ != nullptr) payload.length -= static_cast<std::uint32_t>(Seal::kSize);
     try {
-      refused = !HasShape(WireShape<PubSubType>::value, payload->data, payload->length) ||
-                !PubSubType::deserialize(payload, data);
+      refused = !HasShape(WireShape<PubSubType>::value, payload.data, payload.length) ||
+                !this->DecodePlain(payload, data);
     } catch (const std::exception&) {
       refused = true;
     }
     if (refused) *static_cast<Message*>(data) = Message();
-    payload->length = whole;
+    payload.length = whole;
     return true;
   }
   /// Whether the last sample decoded by this thread was refused.
@@ -133,12 +124,11 @@ const std::string& NameIn(const Plain& message) {
 
 /// Thread-safe.
 template <typename PubSubType>
-class Writer : private eprosima::fastdds::dds::DataWriterListener {
+class Writer : private dds::DataWriterListener {
  public:
   using Message = typename PubSubType::type;
 
-  Writer(Participant& participant, eprosima::fastdds::dds::Publisher* publisher, const std::string& topic,
-         int depth = kDepth)
+  Writer(Participant& participant, dds::Publisher* publisher, const std::string& topic, int depth = kDepth)
       : name_(topic),
         topic_(participant.TopicOf<GuardedType<PubSubType>>(topic)),
         depth_(depth),
@@ -162,7 +152,7 @@ class Writer : private eprosima::fastdds::dds::DataWriterListener {
   }
   int matched() const {
     const Lock lock(mutex_);
-    eprosima::fastdds::dds::PublicationMatchedStatus status;
+    dds::PublicationMatchedStatus status;
     writer_->get_publication_matched_status(status);
     return status.current_count;
   }
@@ -174,9 +164,8 @@ class Writer : private eprosima::fastdds::dds::DataWriterListener {
   }
 
  private:
-  void on_offered_incompatible_qos(
-      eprosima::fastdds::dds::DataWriter*,
-      const eprosima::fastdds::dds::OfferedIncompatibleQosStatus& status) override {
+  void on_offered_incompatible_qos(dds::DataWriter*,
+                                   const dds::OfferedIncompatibleQosStatus& status) override {
     LogIncompatibleQos(name_, status.last_policy_id);
   }
   void Open() DISPERSA_PROVED(requires_capability(mutex_)) {
@@ -190,11 +179,11 @@ class Writer : private eprosima::fastdds::dds::DataWriterListener {
   }
 
   std::string name_;
-  eprosima::fastdds::dds::Topic* topic_;
+  dds::Topic* topic_;
   int depth_;
-  eprosima::fastdds::dds::Publisher* publisher_;
+  dds::Publisher* publisher_;
   mutable Mutex mutex_;
-  eprosima::fastdds::dds::DataWriter* writer_ DISPERSA_GUARDED_BY(mutex_) = nullptr;
+  dds::DataWriter* writer_ DISPERSA_GUARDED_BY(mutex_) = nullptr;
   std::uint64_t written_ DISPERSA_GUARDED_BY(mutex_) = 0;
   std::uint64_t number_ DISPERSA_GUARDED_BY(mutex_) = 0;  ///< of the last seal
 };
@@ -202,7 +191,7 @@ class Writer : private eprosima::fastdds::dds::DataWriterListener {
 /// Hands over well-formed and valid samples (validity.h), on a thread of the middleware. The others are
 /// refused with their sender.
 template <typename PubSubType>
-class Reader : private eprosima::fastdds::dds::DataReaderListener {
+class Reader : private dds::DataReaderListener {
  public:
   using Message = typename PubSubType::type;
   using Plain = typename decltype(FromIdl(std::declval<const Message&>()))::value_type;
@@ -210,9 +199,8 @@ class Reader : private eprosima::fastdds::dds::DataReaderListener {
   using OnGone = std::function<void(const std::string& sender)>;
 
   /// `on_gone`: a writer of this topic left, or its participant is gone.
-  Reader(Participant& participant, eprosima::fastdds::dds::Subscriber* subscriber, const std::string& topic,
-         OnMessage on_message, OnGone on_gone = {},
-         const eprosima::fastdds::dds::DataReaderQos& qos = MakeReaderQos("", 0))
+  Reader(Participant& participant, dds::Subscriber* subscriber, const std::string& topic,
+         OnMessage on_message, OnGone on_gone = {}, const dds::DataReaderQos& qos = MakeReaderQos("", 0))
       : topic_(topic),
         on_message_(std::move(on_message)),
         on_gone_(std::move(on_gone)),
@@ -229,12 +217,12 @@ class Reader : private eprosima::fastdds::dds::DataReaderListener {
   Reader& operator=(const Reader&) = delete;
 
  private:
-  void on_data_available(eprosima::fastdds::dds::DataReader* reader) override {
+  void on_data_available(dds::DataReader* reader) override {
     Message message;
-    eprosima::fastdds::dds::SampleInfo info;
+    dds::SampleInfo info;
     // Two threads of the middleware come here one after the other: numbers of seals grow.
     const Lock lock(mutex_);
-    while (reader->take_next_sample(&message, &info) == ReturnCode_t::RETCODE_OK) {
+    while (reader->take_next_sample(&message, &info) == kDdsOk) {
       if (!info.valid_data) continue;
       using Type = GuardedType<PubSubType>;
       const std::string sender = ParticipantOf(info.publication_handle);
@@ -259,15 +247,13 @@ class Reader : private eprosima::fastdds::dds::DataReaderListener {
       }
     }
   }
-  void on_subscription_matched(eprosima::fastdds::dds::DataReader*,
-                               const eprosima::fastdds::dds::SubscriptionMatchedStatus& status) override {
+  void on_subscription_matched(dds::DataReader*, const dds::SubscriptionMatchedStatus& status) override {
     if (status.current_count_change < 0 && on_gone_) {
-      on_gone_(ParticipantOf(eprosima::fastrtps::rtps::InstanceHandle_t(status.last_publication_handle)));
+      on_gone_(ParticipantOf(rtps::InstanceHandle_t(status.last_publication_handle)));
     }
   }
-  void on_requested_incompatible_qos(
-      eprosima::fastdds::dds::DataReader*,
-      const eprosima::fastdds::dds::RequestedIncompatibleQosStatus& status) override {
+  void on_requested_incompatible_qos(dds::DataReader*,
+                                     const dds::RequestedIncompatibleQosStatus& status) override {
     LogIncompatibleQos(topic_, status.last_policy_id);
   }
 
@@ -275,8 +261,8 @@ class Reader : private eprosima::fastdds::dds::DataReaderListener {
   OnMessage on_message_;
   OnGone on_gone_;
   Participant& participant_;
-  eprosima::fastdds::dds::Subscriber* subscriber_;
-  eprosima::fastdds::dds::DataReader* reader_ = nullptr;
+  dds::Subscriber* subscriber_;
+  dds::DataReader* reader_ = nullptr;
   Mutex mutex_;
   HeardSeals heard_ DISPERSA_GUARDED_BY(mutex_);
 };

@@ -2,30 +2,24 @@
 
 #include <algorithm>
 
-#include <fastdds/rtps/builtin/data/ParticipantProxyData.h>
-#include <fastdds/rtps/participant/ParticipantDiscoveryInfo.h>
-#include <fastdds/rtps/reader/ReaderDiscoveryInfo.h>
-#include <fastdds/rtps/writer/WriterDiscoveryInfo.h>
-#include <fastrtps/utils/IPLocator.h>
-
 #include "services/transport/complaints.h"
 #include "services/transport/endpoints.h"
+#include "services/transport/sieve.h"
 
 namespace dispersa {
 namespace {
 
-namespace dds = eprosima::fastdds::dds;
-namespace rtps = eprosima::fastrtps::rtps;
-
 constexpr std::chrono::seconds kHandshakePatience(5);
 constexpr std::size_t kMostHandshakes = 1024;  // strangers may make up participants without end
 constexpr char kBadKeys[] =
-    "its keys are of another authority, expired or damaged, or the first contact with it was interrupted";
+    "its keys are of another authority, expired or damaged, its Debian is another one, or the first contact "
+    "with it was interrupted";
+constexpr char kNoKeys[] = "it has no keys";
 
-std::string WhoIs(const rtps::ParticipantProxyData& participant) {
-  const auto& addresses = participant.metatraffic_locators.unicast;
-  return ParticipantOf(participant.m_guid) +
-         (addresses.empty() ? "" : " at " + rtps::IPLocator::ip_to_string(addresses.front()));
+std::string WhoIs(const rtps::GUID_t& participant, const rtps::RemoteLocatorList& addresses) {
+  const auto& unicast = addresses.unicast;
+  return ParticipantOf(participant) +
+         (unicast.empty() ? "" : " at " + rtps::IPLocator::ip_to_string(unicast.front()));
 }
 
 ParticipantPrefix PrefixOf(const rtps::GUID_t& guid) {
@@ -47,38 +41,40 @@ bool Neighbours::IsIn(const rtps::GUID_t& writer, const std::string& partition) 
   return known != partitions_.end() && known->second == std::vector<std::string>{partition};
 }
 
-void Neighbours::on_participant_discovery(dds::DomainParticipant*, rtps::ParticipantDiscoveryInfo&& found) {
-  using Found = rtps::ParticipantDiscoveryInfo;
-  if (found.status == Found::CHANGED_QOS_PARTICIPANT) return;
+void Neighbours::OnFound(const rtps::GUID_t& participant, const rtps::RemoteLocatorList& addresses) {
   const Lock lock(mutex_);
-  if (found.status != Found::DISCOVERED_PARTICIPANT) {
-    handshakes_.erase(found.info.m_guid);
-    if (doors_) doors_->Gone(PrefixOf(found.info.m_guid));
-    return;
-  }
   ++found_;
-  if (doors_) doors_->Found(PrefixOf(found.info.m_guid));
-  const bool it_has_keys = !found.info.identity_token_.class_id().empty();
+  if (doors_) doors_->Found(PrefixOf(participant));
+  const bool it_has_keys = HasKeys(participant);
   if (we_have_keys_ && it_has_keys) {
-    if (handshakes_.size() < kMostHandshakes) {
-      handshakes_[found.info.m_guid] = {std::chrono::steady_clock::now() + kHandshakePatience,
-                                        WhoIs(found.info)};
+    if (kIsFoundFirst && handshakes_.size() < kMostHandshakes) {
+      handshakes_[participant] = {std::chrono::steady_clock::now() + kHandshakePatience,
+                                  WhoIs(participant, addresses)};
     }
   } else if (we_have_keys_ != it_has_keys) {
-    TellJoined(found.info.m_guid);  // it never will
-    Complain("participant", WhoIs(found.info),
-             we_have_keys_ ? "it has no keys" : "it has keys, and we have none to show (--keys)");
+    TellJoined(participant);  // it never will
+    Complain("participant", WhoIs(participant, addresses),
+             we_have_keys_ ? kNoKeys : "it has keys, and we have none to show (--keys)");
   }
 }
 
-void Neighbours::onParticipantAuthentication(dds::DomainParticipant*,
-                                             rtps::ParticipantAuthenticationInfo&& who) {
+void Neighbours::OnGone(const rtps::GUID_t& participant) {
   const Lock lock(mutex_);
-  handshakes_.erase(who.guid);
-  if (who.status == rtps::ParticipantAuthenticationInfo::UNAUTHORIZED_PARTICIPANT) {
-    TellJoined(who.guid);  // it never will
-    Complain("participant", ParticipantOf(who.guid), kBadKeys);
-  }
+  handshakes_.erase(participant);
+  if (doors_) doors_->Gone(PrefixOf(participant));
+}
+
+void Neighbours::OnAuthenticated(const rtps::GUID_t& participant, bool is_authorized) {
+  const Lock lock(mutex_);
+  handshakes_.erase(participant);
+  if (is_authorized) return;
+  TellJoined(participant);  // it never will
+  Complain("participant", ParticipantOf(participant), HasKeys(participant) ? kBadKeys : kNoKeys);
+}
+
+bool Neighbours::HasKeys(const rtps::GUID_t& participant) const {
+  const Greeting& greeting = LastGreeting();
+  return greeting.from == PrefixOf(participant) ? greeting.has_keys : we_have_keys_;
 }
 
 void Neighbours::LogSilent() {
@@ -93,20 +89,18 @@ void Neighbours::LogSilent() {
 
 // A participant that changes partitions could use its permission for one partition in another. It is not
 // heard any more.
-void Neighbours::on_publisher_discovery(dds::DomainParticipant*, rtps::WriterDiscoveryInfo&& found) {
+void Neighbours::OnWriter(const rtps::GUID_t& writer, const std::vector<std::string>& partitions) {
   const Lock lock(mutex_);
-  if (found.status == rtps::WriterDiscoveryInfo::REMOVED_WRITER) {
-    partitions_.erase(found.info.guid());
-    return;
-  }
-  TellJoined(found.info.guid());
-  std::vector<std::string> now = found.info.m_qos.m_partition.getNames();
-  const auto [known, is_new] = partitions_.try_emplace(found.info.guid(), now);
-  if (!is_new && known->second != now) known->second.clear();
+  TellJoined(writer);
+  const auto [known, is_new] = partitions_.try_emplace(writer, partitions);
+  if (!is_new && known->second != partitions) known->second.clear();
 }
 
-void Neighbours::on_subscriber_discovery(dds::DomainParticipant*, rtps::ReaderDiscoveryInfo&& found) {
-  if (found.status == rtps::ReaderDiscoveryInfo::DISCOVERED_READER) TellJoined(found.info.guid());
+void Neighbours::OnWriterGone(const rtps::GUID_t& writer) {
+  const Lock lock(mutex_);
+  partitions_.erase(writer);
 }
+
+void Neighbours::OnReader(const rtps::GUID_t& reader) { TellJoined(reader); }
 
 }  // namespace dispersa

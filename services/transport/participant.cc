@@ -7,14 +7,6 @@
 #include <algorithm>
 #include <mutex>
 
-#include <fastdds/rtps/transport/UDPv4TransportDescriptor.h>
-#include <fastrtps/utils/IPLocator.h>
-#include <fastrtps/xmlparser/XMLProfileManager.h>
-#include <fastdds/dds/domain/qos/DomainParticipantQos.hpp>
-#include <fastdds/dds/log/Log.hpp>
-#include <fastdds/dds/publisher/qos/PublisherQos.hpp>
-#include <fastdds/dds/subscriber/qos/SubscriberQos.hpp>
-
 #include "services/transport/complaints.h"
 #include "services/transport/sieve.h"
 #include "services/transport/topics.h"
@@ -22,9 +14,6 @@
 
 namespace dispersa {
 namespace {
-
-namespace dds = eprosima::fastdds::dds;
-namespace rtps = eprosima::fastrtps::rtps;
 
 constexpr std::uint32_t kReceiveBuffer = 4 << 20;
 constexpr std::uint32_t kSendBuffer = 1 << 20;
@@ -46,10 +35,7 @@ void ConfigureLibraryOnce() {
   std::call_once(once, [] {
     dds::Log::ClearConsumers();
     dds::Log::RegisterConsumer(std::make_unique<LogToSpdlog>());
-    // Coordinator and worker in one process (tests) talk as two processes do.
-    eprosima::fastrtps::LibrarySettingsAttributes settings;
-    settings.intraprocess_delivery = eprosima::fastrtps::INTRAPROCESS_OFF;
-    eprosima::fastrtps::xmlparser::XMLProfileManager::library_settings(settings);
+    TalkBetweenProcessesOnly();
   });
 }
 
@@ -61,7 +47,7 @@ rtps::Locator_t MakeLocator(const std::string& address, std::uint16_t port) {
   return locator;
 }
 
-void AddKeys(const KeyFolder& keys, eprosima::fastrtps::rtps::PropertyPolicy& properties) {
+void AddKeys(const KeyFolder& keys, rtps::PropertyPolicy& properties) {
   const auto add = [&](const std::string& name, const std::string& value) {
     properties.properties().emplace_back("dds.sec." + name, value);
   };
@@ -137,7 +123,7 @@ dds::DomainParticipantQos MakeQos(const ParticipantOptions& options) {
 
   // No shared memory: after a SIGKILL it leaves segments behind and then fails to match.
   qos.transport().use_builtin_transports = false;
-  auto udp = std::make_shared<eprosima::fastdds::rtps::UDPv4TransportDescriptor>();
+  auto udp = std::make_shared<rtps::UDPv4TransportDescriptor>();
   const std::string& address = options.network.address;
   if (!address.empty()) udp->interfaceWhiteList.push_back(address);
   // The kernel's default of 212 kB holds 160 results: what 50 workers send while this thread waits for its
@@ -149,8 +135,8 @@ dds::DomainParticipantQos MakeQos(const ParticipantOptions& options) {
   auto& builtin = qos.wire_protocol().builtin;
   // Who is silent is known sooner from its messages. To find a participant again costs a message to and from
   // every other one, so a host that is busy for some seconds does not lose its own.
-  builtin.discovery_config.leaseDuration = eprosima::fastrtps::Duration_t(20, 0);
-  builtin.discovery_config.leaseDuration_announcementperiod = eprosima::fastrtps::Duration_t(1, 0);
+  builtin.discovery_config.leaseDuration = DdsDuration(20, 0);
+  builtin.discovery_config.leaseDuration_announcementperiod = DdsDuration(1, 0);
   // Own locators replace the default ones, which include multicast. Discovery is then by peers alone, and
   // nothing leaves the chosen interface. The ports are explicit. By itself Fast DDS tries a hundred ports and
   // then receives nothing, which limits the number of participants on a host.

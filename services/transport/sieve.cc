@@ -5,19 +5,12 @@
 #include <limits>
 #include <utility>
 
-#include <fastdds/rtps/transport/ChainingTransport.h>
-#include <fastdds/rtps/transport/ChainingTransportDescriptor.h>
-#include <fastrtps/utils/IPLocator.h>
-
 #include "services/transport/complaints.h"
 #include "services/transport/endpoints.h"
 #include "services/transport/wire_shape.h"
 
 namespace dispersa {
 namespace {
-
-namespace rtps = eprosima::fastrtps::rtps;
-namespace transport = eprosima::fastdds::rtps;
 
 // Sizes of the RTPS protocol, version 2.
 constexpr std::size_t kMessageHeader = 20;
@@ -162,59 +155,57 @@ const char* HarmOfPlain(std::uint8_t kind, const Submessage& what) {
   }
 }
 
-/// The first parameter of this kind in a list, behind its head; after the list's end: where it ends. Past the
-/// bytes: none.
-std::size_t FindParameter(const Submessage& list, std::size_t at, std::uint16_t kind) {
-  constexpr std::uint16_t kEnd = 0x0001;
+constexpr std::uint16_t kEndOfList = 0x0001, kEntityName = 0x0062, kIdentityToken = 0x1001;
+
+/// The first parameter of this kind in a list, behind its head.
+std::optional<std::size_t> FindParameter(const Submessage& list, std::size_t at, std::uint16_t kind) {
   while (at + 4 <= list.size()) {
     const std::uint16_t found = list.U16(at);
     at += 4;
-    if (found == kind || found == kEnd) return at;
+    if (found == kind) return at;
+    if (found == kEndOfList) break;
     at += list.U16(at - 2);
   }
-  return list.size();
+  return std::nullopt;
 }
 
-/// The participant's name in the DATA of its announcement; empty without one.
-std::string NameIn(const std::uint8_t* body, std::size_t size, std::uint8_t flags) {
+/// What the DATA of a participant's announcement says of it.
+void ReadAnnouncement(const std::uint8_t* body, std::size_t size, std::uint8_t flags, Greeting& greeting) {
   constexpr std::uint8_t kHasQos = 0x02;
   constexpr std::size_t kDataHead = 20, kEncapsulation = 4;
-  constexpr std::uint16_t kEnd = 0x0001, kEntityName = 0x0062;
-  std::size_t at = kDataHead;
-  if ((flags & kHasQos) != 0) at = FindParameter({body, size, (flags & 1) != 0}, at, kEnd);
-  if (at + kEncapsulation > size) return "";
-  const Submessage announcement(body, size, (body[at + 1] & 1) != 0);
-  at = FindParameter(announcement, at + kEncapsulation, kEntityName);
-  if (announcement.size() < at + 4 || announcement.U16(at - 4) != kEntityName) return "";
-  const std::size_t with_zero = announcement.U32(at);
-  if (with_zero == 0 || with_zero > size - at - 4) return "";
-  return {reinterpret_cast<const char*>(body) + at + 4, with_zero - 1};
+  std::optional<std::size_t> at = kDataHead;
+  if ((flags & kHasQos) != 0) at = FindParameter({body, size, (flags & 1) != 0}, *at, kEndOfList);
+  if (!at || *at + kEncapsulation > size) return;
+  const Submessage announcement(body, size, (body[*at + 1] & 1) != 0);
+  const std::size_t list = *at + kEncapsulation;
+  greeting.has_keys = FindParameter(announcement, list, kIdentityToken).has_value();
+  at = FindParameter(announcement, list, kEntityName);
+  if (!at || size < *at + 4) return;
+  const std::size_t with_zero = announcement.U32(*at);
+  if (with_zero == 0 || with_zero > size - *at - 4) return;
+  greeting.name = {reinterpret_cast<const char*>(body) + *at + 4, with_zero - 1};
 }
 
-class Sieve : public transport::ChainingTransport {
+thread_local Greeting last_greeting;
+
+class Sieve : public ReceivingTransport {
  public:
-  Sieve(const transport::ChainingTransportDescriptor& descriptor, bool with_keys, Door door)
-      : ChainingTransport(descriptor),
+  Sieve(const rtps::ChainingTransportDescriptor& descriptor, bool with_keys, Door door)
+      : ReceivingTransport(descriptor),
         descriptor_(descriptor, with_keys, std::move(door)),
         with_keys_(with_keys) {}
 
-  transport::TransportDescriptorInterface* get_configuration() override { return &descriptor_; }
-
-  bool send(rtps::SenderResource* inner, const rtps::octet* data, uint32_t size,
-            rtps::LocatorsIterator* begin, rtps::LocatorsIterator* end,
-            const std::chrono::steady_clock::time_point& timeout) override {
-    return inner->send(data, size, begin, end, timeout);
-  }
+  rtps::TransportDescriptorInterface* get_configuration() override { return &descriptor_; }
 
   // A port that another program took meanwhile, Fast DDS only logs.
-  bool OpenInputChannel(const rtps::Locator_t& local, transport::TransportReceiverInterface* receiver,
+  bool OpenInputChannel(const rtps::Locator_t& local, rtps::TransportReceiverInterface* receiver,
                         uint32_t max_size) override {
     if (ChainingTransport::OpenInputChannel(local, receiver, max_size)) return true;
     if (const auto& doors = descriptor_.door.doors) doors->Refuse(rtps::IPLocator::getPhysicalPort(local));
     return false;
   }
 
-  void receive(transport::TransportReceiverInterface* next, const rtps::octet* data, uint32_t size,
+  void receive(rtps::TransportReceiverInterface* next, const rtps::octet* data, uint32_t size,
                const rtps::Locator_t& local, const rtps::Locator_t& remote) override {
     if (const char* harm = HarmOf(data, size, with_keys_)) {
       Complain("datagram", rtps::IPLocator::ip_to_string(remote), harm);
@@ -225,19 +216,18 @@ class Sieve : public transport::ChainingTransport {
       if (doors ? !doors->Admits(number, *greeting, data, size, rtps::IPLocator::ip_to_string(remote))
                 : !greeting->is_farewell && greeting->name != kCoordinatorParticipant)
         return;
+      last_greeting = *greeting;
     }
     next->OnDataReceived(data, size, local, remote);
   }
 
  private:
-  struct Descriptor : transport::ChainingTransportDescriptor {
+  struct Descriptor : rtps::ChainingTransportDescriptor {
     Descriptor(std::shared_ptr<TransportDescriptorInterface> inner, bool keys, Door which)
         : ChainingTransportDescriptor(std::move(inner)), with_keys(keys), door(std::move(which)) {}
     Descriptor(const ChainingTransportDescriptor& other, bool keys, Door which)
         : ChainingTransportDescriptor(other), with_keys(keys), door(std::move(which)) {}
-    transport::TransportInterface* create_transport() const override {
-      return new Sieve(*this, with_keys, door);
-    }
+    rtps::TransportInterface* create_transport() const override { return new Sieve(*this, with_keys, door); }
     // Fast DDS 2.9 takes it for the bytes after which a writer asks all its readers what they lack, and
     // counts the bytes that its sending thread has sent since it began. So from the first megabyte on, each
     // endpoint told to one new participant was followed by a question to all: 300 workers never came to rest.
@@ -246,8 +236,8 @@ class Sieve : public transport::ChainingTransport {
     bool with_keys;
     Door door;
   };
-  friend std::shared_ptr<transport::TransportDescriptorInterface> dispersa::Sieved(
-      std::shared_ptr<transport::TransportDescriptorInterface>, bool, const Door&);
+  friend std::shared_ptr<rtps::TransportDescriptorInterface> dispersa::Sieved(
+      std::shared_ptr<rtps::TransportDescriptorInterface>, bool, const Door&);
 
   Descriptor descriptor_;
   bool with_keys_;
@@ -292,7 +282,7 @@ std::optional<Greeting> GreetingIn(const std::uint8_t* datagram, std::size_t siz
       Greeting greeting;
       std::copy_n(datagram + kPrefixAt, greeting.from.size(), greeting.from.begin());
       greeting.is_farewell = (flags & kHasData) == 0;
-      if (!greeting.is_farewell) greeting.name = NameIn(body, length, flags);
+      if (!greeting.is_farewell) ReadAnnouncement(body, length, flags, greeting);
       return greeting;
     }
     at += 4 + length;
@@ -300,9 +290,11 @@ std::optional<Greeting> GreetingIn(const std::uint8_t* datagram, std::size_t siz
   return std::nullopt;
 }
 
-std::shared_ptr<transport::TransportDescriptorInterface> Sieved(
-    std::shared_ptr<transport::TransportDescriptorInterface> inner, bool with_keys, const Door& door) {
+std::shared_ptr<rtps::TransportDescriptorInterface> Sieved(
+    std::shared_ptr<rtps::TransportDescriptorInterface> inner, bool with_keys, const Door& door) {
   return std::make_shared<Sieve::Descriptor>(std::move(inner), with_keys, door);
 }
+
+const Greeting& LastGreeting() { return last_greeting; }
 
 }  // namespace dispersa

@@ -6,16 +6,15 @@
 #include <memory>
 #include <optional>
 
-#include <fastdds/rtps/transport/TransportDescriptorInterface.h>
-
 #include "services/transport/doors.h"
+#include "services/transport/fast_dds.h"
 
 namespace dispersa {
 
 /// The harm of a datagram to the middleware, judged without it; nullptr if it is harmless, else why it is
 /// dropped.
 ///
-/// Fast DDS 2.9 reserves the size that a fragment claims for the whole sample. It walks through every
+/// Fast DDS reserves the size that a fragment claims for the whole sample. It walks through every
 /// sequence number that a GAP or a HEARTBEAT names: a range of 10^9 stops it for minutes (CVE-2025-64438). It
 /// trusts the lengths in a datagram, encrypted or not. It also accepts plain data for an endpoint whose
 /// messages are all encrypted. With keys, the only plain samples are a participant's greeting and the
@@ -34,8 +33,11 @@ struct Door {
 /// `inner` behind the sieve. Dropped datagrams are counted and logged with their sender, at most once a
 /// second. At a door greetings pass as the doors want it. Elsewhere only a coordinator's pass: the port may
 /// have been that of a coordinator before, to which all workers go on to greet.
-std::shared_ptr<eprosima::fastdds::rtps::TransportDescriptorInterface> Sieved(
-    std::shared_ptr<eprosima::fastdds::rtps::TransportDescriptorInterface> inner, bool with_keys,
-    const Door& door);
+std::shared_ptr<rtps::TransportDescriptorInterface> Sieved(
+    std::shared_ptr<rtps::TransportDescriptorInterface> inner, bool with_keys, const Door& door);
+
+/// The last greeting that passed on this thread. The middleware tells of a new participant on the thread that
+/// reads its greeting, and not all releases tell whether it has keys.
+const Greeting& LastGreeting();
 
 }  // namespace dispersa

@@ -10,11 +10,6 @@
 #include "services/transport/topics.h"
 
 namespace dispersa {
-namespace {
-
-namespace dds = eprosima::fastdds::dds;
-}  // namespace
-
 struct WorkerLink::Impl {
   struct Heard {
     std::string sender;

@@ -16,9 +16,8 @@ using fuzz::Inputs;
 template <typename PubSubType>
 Bytes Encode(typename PubSubType::type message) {
   GuardedType<PubSubType> type;
-  const auto size = type.getSerializedSizeProvider(&message)();
-  eprosima::fastrtps::rtps::SerializedPayload_t payload(size);
-  EXPECT_TRUE(type.serialize(&message, &payload));
+  rtps::SerializedPayload_t payload(type.SizeOf(&message));
+  EXPECT_TRUE(type.Encode(&message, payload));
   return Bytes(payload.data, payload.data + payload.length);
 }
 
@@ -26,11 +25,10 @@ Bytes Encode(typename PubSubType::type message) {
 template <typename PubSubType>
 bool Decode(const Bytes& bytes, typename PubSubType::type* message) {
   GuardedType<PubSubType> type;
-  eprosima::fastrtps::rtps::SerializedPayload_t payload(
-      static_cast<std::uint32_t>(std::max<std::size_t>(bytes.size(), 1)));
+  rtps::SerializedPayload_t payload(static_cast<std::uint32_t>(std::max<std::size_t>(bytes.size(), 1)));
   payload.length = static_cast<std::uint32_t>(bytes.size());
   if (!bytes.empty()) std::memcpy(payload.data, bytes.data(), bytes.size());
-  EXPECT_TRUE(type.deserialize(&payload, message));
+  EXPECT_TRUE(type.Decode(payload, message));
   return !GuardedType<PubSubType>::refused;
 }
 

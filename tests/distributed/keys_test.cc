@@ -9,6 +9,7 @@
 #include "services/transport/complaints.h"
 #include "services/transport/convert.h"
 #include "services/transport/coordinator_link.h"
+#include "services/transport/fast_dds.h"
 #include "services/transport/private_domain.h"
 #include "services/transport/topics.h"
 #include "services/transport/worker_link.h"
@@ -93,10 +94,10 @@ TEST_F(Keys, ATopicOfAnotherRoleCannotBeOpened) {
 /// A DATA message in plain, in the name of a writer of `participant`, as whoever has seen a packet can make.
 Bytes Forge(const std::string& participant, std::uint8_t writer, std::uint32_t number,
             const WorkerStatus& status) {
-  idl::WorkerStatusV2PubSubType type;
+  CodedType<idl::WorkerStatusV2PubSubType> type;
   idl::WorkerStatusV2 sample = ToIdl(status);
-  eprosima::fastrtps::rtps::SerializedPayload_t payload(4096);
-  type.serialize(&sample, &payload);
+  rtps::SerializedPayload_t payload(4096);
+  type.Encode(&sample, payload);
   Bytes bytes = {'R', 'T', 'P', 'S', 2, 3, 1, 15};
   for (std::size_t i = 0; i < participant.size(); i += 2)
     bytes.push_back(static_cast<std::uint8_t>(std::stoi(participant.substr(i, 2), nullptr, 16)));

@@ -2,6 +2,7 @@
 
 DISPERSA_BINARIES and DISPERSA_CAMPAIGNS name the folders of the programs and of the campaigns.
 """
+import contextlib
 import fcntl
 import json
 import os
@@ -78,13 +79,13 @@ def wait_for(condition, what):
 
 
 def shared_memory_segments():
-    return {p.name for p in pathlib.Path("/dev/shm").iterdir() if p.name.startswith("fastrtps")}
+    return {p.name for p in pathlib.Path("/dev/shm").iterdir() if p.name.startswith(("fastrtps", "fastdds"))}
 
 
 def stored(out):
     """Number of cases in the database of a result folder; 0 while there is none."""
     try:
-        with sqlite3.connect(f"file:{out}/results.sqlite?mode=ro", uri=True) as database:
+        with contextlib.closing(sqlite3.connect(f"file:{out}/results.sqlite?mode=ro", uri=True)) as database:
             return database.execute("SELECT count(*) FROM cases").fetchone()[0]
     except sqlite3.OperationalError:
         return 0

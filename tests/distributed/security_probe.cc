@@ -40,8 +40,6 @@ extern "C" __attribute__((visibility("default"))) std::time_t time(std::time_t* 
 namespace dispersa {
 namespace {
 
-namespace dds = eprosima::fastdds::dds;
-
 struct Options {
   bool publish = false;
   std::string topic, partition, name = "stranger";
@@ -95,7 +93,7 @@ void Subscribe(Participant& participant, const Options& options, Outcome& outcom
     outcome.SeeMatched(status.current_count);
     typename PubSubType::type message;
     dds::SampleInfo info;
-    while (reader->take_next_sample(&message, &info) == ReturnCode_t::RETCODE_OK) ++outcome.samples;
+    while (reader->take_next_sample(&message, &info) == kDdsOk) ++outcome.samples;
   } while (GoOn());
 }
 

@@ -194,7 +194,7 @@ class SecurityTest(ServiceCase):
         self.start_coordinator()
         self.assert_let_in(*self.publish("WorkerStatusV2", "one_good", "--keys", self.folder("worker")),
                            logged="worker one_good joined")
-        self.assert_refused("participant from [0-9a-f]{24} at 127.0.0.1 is refused: it has no keys",
+        self.assert_refused("participant from [0-9a-f]{24}( at 127.0.0.1)? is refused: it has no keys",
                             *self.publish("WorkerStatusV2", "one_unsigned"))
         # The foreign authority has the same names.
         self.assert_refused("participant from [0-9a-f]{24}.* is refused: its keys are of another authority, expired or damaged",
@@ -445,10 +445,11 @@ class SecurityTest(ServiceCase):
         self.run_without_address("dispersa-coordinator", "--data", self.data, "--keys", self.folder("coordinator"))
         self.run_without_address("dispersa-worker", "--peer", "127.0.0.1", "--keys", self.folder("worker"))
         self.assert_worker_is_listed("--keys", self.folder("client"))
-        # Who forgot his keys is told so.
+        # Who forgot his keys is told so: by the coordinator's greeting, which Fast DDS 3 does not send him, or by its absence.
         forgot = subprocess.run([BINARIES / "dispersa", "list", "--insecure", "--domain", self.DOMAIN], capture_output=True, text=True, timeout=PATIENCE_S)
         self.assertEqual(forgot.returncode, 5)
-        self.assertIn("is refused: it has keys, and we have none to show (--keys)", forgot.stderr)
+        self.assertRegex(forgot.stderr, r"is refused: it has keys, and we have none to show \(--keys\)|"
+                                        r"a coordinator with keys answers only clients with keys \(--keys\)")
 
 
 if __name__ == "__main__":

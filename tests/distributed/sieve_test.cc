@@ -151,8 +151,10 @@ TEST(SieveLimits, AnAckNackHasAtMost256Bits) {
 
 constexpr std::uint8_t kQos = 2, kPayload = 4;
 
-/// An announcement with a name of `length` bytes, its end included, of which it has those of "worker".
-Part Announcement(bool little_endian, std::uint8_t flags, std::uint32_t length = 7) {
+/// An announcement with a name of `length` bytes, its end included, of which it has those of "worker", and a
+/// token of its keys or another parameter.
+Part Announcement(bool little_endian, std::uint8_t flags, std::uint32_t length = 7,
+                  std::uint16_t token = 0x1002) {
   Body body(little_endian);
   body.U16(0).U16(16).U32(0).U32(0).Number(1);
   const std::uint32_t writer = 0xc2000100;  // in the order of this machine
@@ -160,7 +162,7 @@ Part Announcement(bool little_endian, std::uint8_t flags, std::uint32_t length =
   if ((flags & kQos) != 0) body.U16(0x800f).U16(4).U32(0x62).U16(1).U16(0);
   const std::uint8_t encapsulation[] = {0, static_cast<std::uint8_t>(2 + little_endian), 0, 0};
   body.bytes.insert(body.bytes.end(), std::begin(encapsulation), std::end(encapsulation));
-  body.U16(0x15).U16(4).U32(2).U16(0x62).U16(12).U32(length);
+  body.U16(0x15).U16(4).U32(2).U16(token).U16(4).U32(0).U16(0x62).U16(12).U32(length);
   for (const char letter : {'w', 'o', 'r', 'k', 'e', 'r', '\0', '\0'}) body.bytes.push_back(letter);
   return {kData, body.U16(1).U16(0), little_endian, false, flags};
 }
@@ -179,6 +181,8 @@ TEST(Greetings, AreThoseOfParticipantsWithTheirNames) {
       EXPECT_EQ(greeting->name, "worker") << int{qos};
       EXPECT_EQ(greeting->from[11], 11);
       EXPECT_FALSE(greeting->is_farewell);
+      EXPECT_FALSE(greeting->has_keys);
+      EXPECT_TRUE(GreetingOf({Announcement(little_endian, flags, 7, 0x1001)})->has_keys);
       EXPECT_EQ(GreetingOf({Announcement(little_endian, flags, 13)})->name, "") << "longer than its datagram";
       EXPECT_EQ(GreetingOf({Announcement(little_endian, flags, 0)})->name, "");
     }

@@ -300,7 +300,7 @@ TEST(SharedMemory, IsNotUsed) {
   const auto segments = [] {
     std::size_t count = 0;
     for (const auto& entry : std::filesystem::directory_iterator("/dev/shm"))
-      count += entry.path().filename().string().starts_with("fastrtps");
+      count += entry.path().filename().string().starts_with("fast");  // fastrtps, fastdds
     return count;
   };
   const std::size_t before = segments();

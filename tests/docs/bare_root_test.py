@@ -1,4 +1,4 @@
-"""The docs' pages followed word for word by a new user: on a bare Debian 12 with the Debian package and the packages
+"""The docs' pages followed word for word by a new user: on a bare Debian with the Debian package and the packages
 that a page asks for (`apt-get install …`), in a home folder, without a network.
 """
 import pathlib
@@ -26,6 +26,7 @@ class NewUser(unittest.TestCase):
         cls.folder = pathlib.Path(tempfile.mkdtemp(prefix="dispersa-root-"))
         cls.addClassCleanup(shutil.rmtree, cls.folder)
         cls.root = BareRoot(cls.folder)
+        cls.root.take_package()
         # Python is for follow.py.
         done = cls.root.inside("apt-get update; apt-get install --yes /tmp/dispersa.deb; "
                                "apt-get install --yes --no-install-recommends python3; useradd --create-home ann")

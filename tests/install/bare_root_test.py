@@ -1,4 +1,4 @@
-"""The Debian package on a bare Debian 12: installed by apt, used, removed."""
+"""The Debian package on a bare Debian: installed by apt, used, removed."""
 import pathlib
 import shutil
 import tempfile
@@ -15,6 +15,7 @@ class Package(unittest.TestCase):
         cls.folder = pathlib.Path(tempfile.mkdtemp(prefix="dispersa-root-"))
         cls.addClassCleanup(shutil.rmtree, cls.folder)
         cls.root = BareRoot(cls.folder)
+        cls.root.take_package()
 
     def inside(self, script):
         done = self.root.inside(script)

@@ -117,7 +117,7 @@ class EngineHalf(unittest.TestCase):
         self.assertEqual(engine["files"] & cluster["files"], set())
         self.assertNotRegex(engine["Depends"], "fastrtps|fastcdr|fastdds|seccomp")  # libssl3 has libcrypto
         self.assertIn(f"dispersa-engine (= {engine['Version']})", cluster["Depends"])
-        self.assertIn("libfastrtps2.9", cluster["Depends"])
+        self.assertRegex(cluster["Depends"], r"libfast(rtps2\.9|dds3\.1)\b")
         self.assertEqual((engine["Conflicts"], cluster["Conflicts"]), ("dispersa", "dispersa"))
         self.assertEqual({file for file in cluster["files"] if "/bin/" in file},
                          {f"./usr/bin/dispersa-{name}" for name in ("coordinator", "worker", "foreign", "fleet")})

@@ -4,6 +4,7 @@ DISPERSA_BUILD, DISPERSA_SOURCE, CMAKE and CPACK name the build folder, the repo
 """
 import os
 import pathlib
+import shutil
 import subprocess
 
 BUILD = pathlib.Path(os.environ["DISPERSA_BUILD"])
@@ -17,6 +18,14 @@ def run(*command, **options):
     """The finished process; its output as text."""
     options.setdefault("timeout", TIMEOUT_S)
     return subprocess.run([str(word) for word in command], capture_output=True, text=True, **options)
+
+
+def copy_sources(folder):
+    """The repository's files as git lists them, without git's own."""
+    listed = run("git", "-c", "safe.directory=*", "-C", SOURCE, "ls-files", "-z").stdout
+    for file in listed.split("\0")[:-1]:
+        (folder / file).parent.mkdir(parents=True, exist_ok=True)
+        shutil.copy(SOURCE / file, folder / file)
 
 
 def install(prefix):
