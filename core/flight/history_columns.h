@@ -37,7 +37,7 @@ struct ColumnGroup {
 };
 inline constexpr ColumnGroup kLocalVelocity{7, 9}, kPlaceColumns{10, 12}, kLocalAttitude{13, 15},
     kFlowAngles{21, 22}, kOrbitColumns{26, 27}, kProgramPitch{28, 28}, kLaunchPitch{29, 29}, kSteered{30, 40},
-    kLawColumns{41, 49}, kLearntColumns{46, 48}, kThrusters{50, 52}, kLoads{54, 55}, kIncidence{56, 56},
+    kLawColumns{41, 49}, kLearntColumns{46, 48}, kThrusters{50, 52}, kLoadColumns{54, 55}, kIncidence{56, 56},
     kToldByLaw{57, 60};
 
 /// Appends a row of a body, one value a name of KinematicColumnNames(). `v_AB_B` is the velocity through the

@@ -160,7 +160,7 @@ DISPERSA_OUT_OF_LINE void FillLauncher(const Earth& earth, const LauncherSeen<T>
     o[28] = s.thruster_yaw;
   }
   o[29] = s.expelled_kg;
-  if (kLoads.IsRead(read)) {
+  if (kLoadColumns.IsRead(read)) {
     const T weight = s.mass_kg * T(kStandardGravity);
     o[30] = s.force_n.x / weight;
     o[31] = Sqrt(Fma(s.force_n.y, s.force_n.y, s.force_n.z * s.force_n.z)) / weight;
