@@ -48,7 +48,7 @@ constexpr int kMostReports = 8;  // at once: each takes memory of its campaign
 constexpr std::chrono::seconds kHealthPatience(8);
 constexpr double kFarewell_s = 2.0;  // until the answer to the last request has arrived
 constexpr std::chrono::seconds kDrainPeriod(1), kDrainPatience(2);
-constexpr std::chrono::seconds kLockPatience(30);
+constexpr std::chrono::seconds kSilence(30);  ///< of a coordinator that has not ended: it hangs
 
 /// From the signal to the end, whatever still reads, parses or reports: the disk has all that is promised.
 constexpr std::chrono::milliseconds kLongestEnd(3500);
@@ -207,17 +207,13 @@ Failure DoesNotAnswer(const NetworkOptions& network) {
 }
 
 /// A coordinator has ended when another process can have its folder.
-void AwaitLock(const std::string& data) {
-  const auto latest = std::chrono::steady_clock::now() + kLockPatience;
-  while (std::chrono::steady_clock::now() < latest) {
-    try {
-      const FolderLock lock(data);
-      return;
-    } catch (const InputError&) {
-      std::this_thread::sleep_for(kRound);
-    }
+bool HasEnded(const std::string& data) {
+  try {
+    const FolderLock lock(data);
+    return true;
+  } catch (const InputError&) {
+    return false;
   }
-  throw Failure{kExitIncomplete, data + ": the coordinator does not answer any more, but has not ended"};
 }
 
 }  // namespace
@@ -233,14 +229,21 @@ int AskDrain(const NetworkOptions& network, const std::string& host, const std::
   ClientLink client(network, {host, CoordinatorPort(network.domain)});
   std::string said;
   nlohmann::json epoch;
-  for (;;) {
+  for (auto answered = std::chrono::steady_clock::now();;) {
+    if (StopRequested()) throw Failure{kExitInterrupted, "interrupted; the coordinator goes on draining"};
     const nlohmann::json arguments =
         epoch.is_null() ? nlohmann::json::object() : nlohmann::json{{"epoch", epoch}};
     // Who knows the folder asks it whether the coordinator has ended.
     const auto patience = epoch.is_null() || data.empty() ? kHealthPatience : kDrainPatience;
     const auto reply = client.Call("drain", arguments.dump(), "", patience);
     if (!reply && epoch.is_null()) throw DoesNotAnswer(network);
-    if (!reply) break;
+    if (!reply) {
+      if (data.empty() || HasEnded(data)) break;
+      // It may write its reports, or end.
+      if (std::chrono::steady_clock::now() - answered < kSilence) continue;
+      throw Failure{kExitIncomplete, data + ": the coordinator does not answer any more, but has not ended"};
+    }
+    answered = std::chrono::steady_clock::now();
     if (reply->code != 0) throw Failure{static_cast<ExitCode>(reply->code), reply->text};
     const auto answer = nlohmann::json::parse(reply->text);
     if (!epoch.is_null() && answer.at("epoch") != epoch) break;  // its successor
@@ -251,9 +254,7 @@ int AskDrain(const NetworkOptions& network, const std::string& host, const std::
     if (now != said) LogInfo("draining: {}", now);
     said = now;
     std::this_thread::sleep_for(kDrainPeriod);
-    if (StopRequested()) throw Failure{kExitInterrupted, "interrupted; the coordinator goes on draining"};
   }
-  if (!data.empty()) AwaitLock(data);
   LogInfo("drained: the coordinator has ended");
   return 0;
 }
