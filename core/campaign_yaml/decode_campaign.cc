@@ -583,7 +583,9 @@ class CampaignDescription {
                         [&](Fields& map, Requirement& requirement) {
                           requirement.plan = plan;
                           dispersa::Describe(map, requirement, metrics);
-                          CheckMeasured(map, requirement.metric);
+                          // Of another name the list of names has said so.
+                          if (std::find(metrics.begin(), metrics.end(), requirement.metric) != metrics.end())
+                            CheckMeasured(map, requirement.metric);
                           requirement.own_expression = ExpressionOf(requirement.metric);
                           if (!requirement.every_case) return;
                           requirement.plan = {};
