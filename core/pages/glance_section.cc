@@ -122,9 +122,9 @@ std::string DriverWords(const CampaignSummary& summary, const std::string& metri
 std::string LeastMarginText(const CampaignSummary& summary) {
   const Nearest least = LeastMargin(summary);
   if (least.of == nullptr)
-    return summary.requirements.empty()
-               ? ""
-               : "<h3>Least margin</h3>\n<p>No completed flight has a value of a requirement’s metric.</p>\n";
+    return summary.requirements.empty() ? ""
+                                        : "<p><b class=\"title\">Least margin</b></p>\n<p>No completed "
+                                          "flight has a value of a requirement’s metric.</p>\n";
   const RequirementSummary& one = *least.of;
   const MetricInfo info = DescribeMetric(one.metric);
   const std::string from = one.margin ? "The bound" : "The worst completed flight";
@@ -137,7 +137,7 @@ std::string LeastMarginText(const CampaignSummary& summary) {
                                               one.low_limit ? "half the range" : "the limit")
                                 : "";
   return fmt::format(
-      "<h3>Least margin</h3>\n<p>{} <a href=\"#{}\">{}</a> {}. {} is {}{}{} {}{}. {} <a "
+      "<p><b class=\"title\">Least margin</b></p>\n<p>{} <a href=\"#{}\">{}</a> {}. {} is {}{}{} {}{}. {} <a "
       "href=\"#causes\">Causes</a></p>\n",
       VerdictBadge(least.verdict), DistributionId(one.metric), HtmlText(info.title),
       HtmlText(LimitWords(one, info.unit)), from, distance, info.unit.empty() ? "" : " ", HtmlText(info.unit),

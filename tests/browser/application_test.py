@@ -73,7 +73,7 @@ class ApplicationInABrowser(ServiceCase):
         self.assertIn("Dispersion campaign smoke", self.text())
         self.assertGreater(self.browser.run("return document.querySelectorAll('svg.chart').length"), 3)
         self.open("/trend?metric=pitch_error_peak_deg")
-        self.assertEqual(self.browser.run("return document.querySelectorAll('svg.trend circle').length"), 2)
+        self.assertEqual(self.browser.run("return document.querySelectorAll('svg.trend circle').length"), 4)  # two charts
         self.assertIn("5d6e7f8", self.text())
 
 
