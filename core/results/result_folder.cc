@@ -284,6 +284,13 @@ std::optional<Digest> ParseDigest(const std::string& hex) {
   return digest;
 }
 
+/// The inputs that rows of this version know.
+std::vector<double> InputsAsOf(const RowShape& shape, std::vector<double> all) {
+  std::size_t i = 0;
+  std::erase_if(all, [&](double) { return InputColumns()[i++].number > LastInputOf(shape.version); });
+  return all;
+}
+
 /// With the metrics that rows of this version know.
 CaseResult AsOf(const RowShape& shape, CaseResult result) {
   const std::size_t of_vehicle = MetricCount(shape.list.stages());
@@ -325,7 +332,7 @@ std::optional<CaseResult> ReadRow(const Statement& row, const RowShape& shape, E
   int column = kFirstInput;
   for (std::size_t i = 0; i < shape.inputs.positions().size(); ++i)
     result.inputs.push_back(row.Real(column++));
-  result.inputs_digest = InputsDigest(shape.inputs.AllOf(result.inputs));
+  result.inputs_digest = InputsDigest(InputsAsOf(shape, shape.inputs.AllOf(result.inputs)));
   result.metrics.assign(shape.list.size(), kUndefined);
   for (const std::size_t i : shape.metrics) result.metrics[i] = row.Real(column++);
   const std::optional<Digest> digest = ParseDigest(row.Text(column));

@@ -27,8 +27,10 @@ class Database;
 /// Of the tables, as SQLite's user_version. 1 (stored as 0): without `audits`. 2: with it; rows hold all
 /// inputs. 3: rows hold those that the campaign sets, and the table `nominal` the others. 4: a row digest
 /// covers the metrics that the version knows (Metric::since), so that later ones damage no row. 5: with
-/// `events`, which the row digest covers.
-inline constexpr int kRowVersion = 5;
+/// `events`, which the row digest covers. 6: with the input weather_sounding.
+inline constexpr int kRowVersion = 6;
+/// Numbers of the last inputs that the rows of a version know: a row digest covers no later ones.
+constexpr int LastInputOf(int version) { return version < 6 ? 106 : 107; }
 
 /// What a table of cases holds beside outcomes and digests.
 struct RowShape {

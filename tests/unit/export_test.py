@@ -105,6 +105,25 @@ class OfAnOlderRelease(ExportTest):
         self.assertEqual(done.returncode, 2, done.stderr)
 
 
+class BeforeTheLastInput(ExportTest):
+    """tests/data/folder_of_version_5: three cases of the gallery's nike_apache, before the input weather_sounding."""
+
+    def test_is_reported_and_exported_as_it_was(self):
+        old, file = self.folder / "version_5", self.folder / "version_5.csv"
+        shutil.copytree(pathlib.Path(__file__).parents[1] / "data/folder_of_version_5", old)
+        stored = (old / "cases.csv").read_bytes()
+        done = dispersa("export", old, "--format", "csv", "--out", file)
+        self.assertEqual((done.returncode, done.stderr, file.read_bytes()), (0, "", stored))
+        done = dispersa("report", old, "--no-histories", "--quiet")
+        self.assertEqual(done.returncode, 4, done.stderr)
+        self.assertEqual((old / "cases.csv").read_bytes(), stored)
+        database = sqlite3.connect(old / "results.sqlite")
+        database.executescript("UPDATE nominal SET value = 1.01 WHERE input = 'cg_factor'")
+        database.close()
+        done = dispersa("export", old, "--format", "csv", "--out", file)
+        self.assertEqual((done.returncode, "the row of case 0 is damaged" in done.stderr), (1, True), done.stderr)
+
+
 class Compared(ExportTest):
     def test_the_tail_of_each_metric_is_that_on_its_worse_side(self):
         sides = [self.folder / seed for seed in ("5", "6")]

@@ -41,6 +41,13 @@ TEST_F(ResultFolders, HoldsTheCampaignAndWhereItComesFrom) {
   EXPECT_EQ(folder.Provenance("sampling"), "monte_carlo");
 }
 
+TEST(RowVersions, TheVersionOfTodayKnowsTheLastInput) {
+  int last = 0;
+  for (const InputColumn& column : InputColumns()) last = std::max(last, column.number);
+  EXPECT_EQ(LastInputOf(kRowVersion), last)
+      << "a new input needs a new kRowVersion: without it all stored rows are damaged";
+}
+
 TEST_F(ResultFolders, ReturnsAResultToTheLastBit) {
   ResultFolder folder = ResultFolder::Create(temporary / "out", MakeLimitedCampaign(3));
   CaseResult stored = MakeCase(2);
@@ -390,10 +397,10 @@ TEST_F(ResultFolders, RefusesAFlightThatAppliedOtherConstants) {
 TEST_F(ResultFolders, AFolderOfALaterVersionIsLeftAlone) {
   ResultFolder::Create(temporary / "out", MakeLimitedCampaign(3));
   Database(temporary / "out" / "results.sqlite", Database::Mode::kExisting)
-      .Execute("PRAGMA user_version = 6");
+      .Execute("PRAGMA user_version = 7");
   const std::string error =
       (temporary / "out").string() +
-      ": written by a newer dispersa: its results.sqlite has version 6, this one reads 5";
+      ": written by a newer dispersa: its results.sqlite has version 7, this one reads 6";
   EXPECT_EQ(ErrorOf<InputError>([&] { ResultFolder::Open(temporary / "out"); }), error);
   EXPECT_EQ(ErrorOf<InputError>([&] { ResultFolder::Resume(temporary / "out", MakeLimitedCampaign(3)); }),
             error);
