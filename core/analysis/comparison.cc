@@ -223,7 +223,8 @@ void Judge(double practical_share, MetricComparison& metric) {
 
 /// What the metric's requirements allow, or how it spreads in A; if that is nothing, how far it reaches in
 /// both.
-void SetScale(const ComparedCampaign& a, const ComparedCampaign& b, MetricComparison& result) {
+void SetScale(const ComparedCampaign& a, const ComparedCampaign& b, ComparedValues values,
+              MetricComparison& result) {
   double allowed = kInfinity;
   for (const Campaign* campaign : {&a.campaign, &b.campaign}) {
     for (const Requirement& requirement : campaign->requirements) {
@@ -241,25 +242,27 @@ void SetScale(const ComparedCampaign& a, const ComparedCampaign& b, MetricCompar
     result.scale_of = "limit";
     return;
   }
-  ComparedValues values = ValuesToCompare(a.cases, b.cases, result.metric);
   const std::vector<double> of_a = SortedFinite(values.a);
-  result.scale_of = "spread of A";
+  result.scale_of = "spread";
   result.scale = of_a.empty() ? 0.0 : Quantile(of_a, 0.95) - Quantile(of_a, 0.05);
   if (result.scale > 0.0) return;
   values.a.insert(values.a.end(), values.b.begin(), values.b.end());
   const std::vector<double> of_both = SortedFinite(values.a);
-  result.scale_of = "range of A and B";
+  result.scale_of = "range";
   result.scale = of_both.empty() ? 0.0 : of_both.back() - of_both.front();
 }
 
-MetricComparison CompareMetric(const std::string& metric, const CaseColumns& a, const CaseColumns& b,
-                               const SharedRows& rows, bool paired, bool independent) {
+MetricComparison CompareMetric(const std::string& metric, const ComparedCampaign& a_side,
+                               const ComparedCampaign& b_side, const SharedRows& rows, bool paired,
+                               bool independent) {
+  const CaseColumns &a = a_side.cases, &b = b_side.cases;
   MetricComparison result;
   result.metric = metric;
   result.info = DescribeMetric(metric);
   const Worse worse = result.info.worse;
   const Circle circle = worse == Worse::kFartherFromZero ? Circle{} : result.info.circle;
   const ComparedValues compared = ValuesToCompare(a, b, metric);
+  SetScale(a_side, b_side, compared, result);
   MetricValues of_a = ValuesOf(a, rows.a, compared.a, worse);
   MetricValues of_b = ValuesOf(b, rows.b, compared.b, worse);
   result.lost_a = of_a.lost;
@@ -689,8 +692,11 @@ std::vector<const MetricComparison*> ByEffect(const Comparison& comparison) {
 }
 
 std::string ShareOfScale(const MetricComparison& metric) {
-  return metric.effect < 1.0 ? fmt::format("{:.2g} % of the {}", 100.0 * metric.effect, metric.scale_of)
-                             : fmt::format("{} times the {}", RoundedText(metric.effect), metric.scale_of);
+  const std::string scale = metric.scale_of + (metric.scale_of == "spread"  ? " of A"
+                                               : metric.scale_of == "range" ? " of A and B"
+                                                                            : "");
+  return metric.effect < 1.0 ? fmt::format("{:.2g} % of the {}", 100.0 * metric.effect, scale)
+                             : fmt::format("{} times the {}", RoundedText(metric.effect), scale);
 }
 
 std::string EffectWords(const MetricComparison& metric) {
@@ -737,8 +743,7 @@ Comparison Compare(const ComparedCampaign& a, const ComparedCampaign& b,
   for (const std::string& metric : candidates) {
     if (!WhyNotMeasured(a.campaign, metric).empty() || !WhyNotMeasured(b.campaign, metric).empty()) continue;
     MetricComparison result =
-        CompareMetric(metric, a.cases, b.cases, rows, comparison.pairing.paired, comparison.independent);
-    SetScale(a, b, result);
+        CompareMetric(metric, a, b, rows, comparison.pairing.paired, comparison.independent);
     const bool defined =
         std::isfinite(result.median_a) || std::isfinite(result.median_b) || result.lost_a + result.lost_b > 0;
     if (!metrics.empty() || (result.n_a > 0 && result.n_b > 0 && defined))

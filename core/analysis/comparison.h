@@ -96,7 +96,7 @@ struct MetricComparison {
   /// 95 % of A; if A does not spread, from the least to the greatest value of both. A difference matters from
   /// practical_share of it on.
   double scale = 0.0;
-  std::string scale_of = {};  ///< "limit", "spread of A", "range of A and B"
+  std::string scale_of = {};  ///< "limit", "spread" (of A), "range" (of both)
   /// The largest difference that is certain and matters, of the median or of a tail, as a share of the scale.
   /// Infinite: the median is that of a lost flight. 0: none.
   double effect = 0.0;

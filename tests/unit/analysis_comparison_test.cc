@@ -320,7 +320,7 @@ TEST(ReportComparison, AMetricThatDoesNotSpreadInAIsMeasuredByTheRangeOfBoth) {
                                           {"B", "engine", campaign, turned ? a : b}, {kMetric}, {}, 0.01);
     const MetricComparison& metric = comparison.metrics[0];
     EXPECT_EQ(metric.finding, turned ? "better" : "worse");
-    EXPECT_EQ(metric.scale_of, turned ? "spread of A" : "range of A and B");
+    EXPECT_EQ(metric.scale_of, turned ? "spread" : "range");
     if (turned) continue;
     EXPECT_EQ(metric.scale, 10.0);
     EXPECT_GT(metric.effect, 0.4);
@@ -357,7 +357,7 @@ TEST(ReportComparison, ADifferenceCanBeTooSmallToMatter) {
         Compare({"A", "engine", of_a, a}, {"B", "engine", of_b, b}, {kMetric}, {}, one.share);
     EXPECT_EQ(comparison.metrics[0].finding, one.finding);
     EXPECT_NEAR(comparison.practical_share * comparison.metrics[0].scale, one.least, 1e-12);
-    EXPECT_EQ(comparison.metrics[0].scale_of, one.requirements.empty() ? "spread of A" : "limit");
+    EXPECT_EQ(comparison.metrics[0].scale_of, one.requirements.empty() ? "spread" : "limit");
     EXPECT_EQ(nlohmann::json::parse(ComparisonJson(comparison))["practical_share"], one.share);
     const bool small = one.finding == std::string(kTooSmall);
     EXPECT_EQ(comparison.sentence.find("In 1 the difference is certain but too small to matter: less than") !=
