@@ -20,8 +20,8 @@ constexpr std::size_t kMostPoints = 60;
 /// On the page of all requirements.
 constexpr std::size_t kMostInAll = 20, kMostCharts = 30;
 constexpr char kLetters[] =
-    "The letter is the verdict’s first: P pass, F fail, I inconclusive, N not evidence, S study. The version "
-    "is the label <code>commit</code>.";
+    "<p class=\"soft\">The letter is the verdict’s first: P pass, F fail, I inconclusive, N not evidence, S "
+    "study. The version is the label <code>commit</code>.</p>\n";
 
 struct Point {
   const CampaignRow* row;
@@ -84,7 +84,7 @@ Trend TrendOfShares(const std::vector<Point>& points) {
   Trend trend{
       "Share of flights that meet the requirement",
       "Share of flights that meet the requirement, with its confidence bounds, by campaign in the order "
-      "of launching. The dashed line is the share that is required. ",
+      "of launching. The dashed line is the share that is required.",
       {.label = "", .high = 1.0, .percent = true},
       ""};
   for (const auto& [row, one] : points) {
@@ -102,7 +102,7 @@ Trend TrendOfBounds(const std::vector<Point>& points) {
       "Bound against limit",
       "The bound that the required share of flights keeps, in the metric’s unit, by campaign in the "
       "order of launching. The dashed line is the limit. A letter on the lower edge has no bound: the "
-      "cases were too few, or too many flights were lost. ",
+      "cases were too few, or too many flights were lost.",
       {.label = ""},
       unit.empty() ? "" : " " + unit};
   bool has_bound = false;
@@ -154,14 +154,16 @@ std::string TrendChart(const std::vector<Point>& points, const Trend& trend) {
   return svg + "</svg>\n";
 }
 
-/// Figures: the bound's, if there is one, and the share's.
-std::vector<std::string> TrendsOf(const std::vector<Point>& points) {
-  std::vector<std::string> figures;
-  for (const Trend& trend : {TrendOfBounds(points), TrendOfShares(points)})
-    if (!trend.marks.empty())
-      figures.push_back(fmt::format("<figure class=\"wide\">{}<figcaption>{}{}</figcaption></figure>\n",
-                                    TrendChart(points, trend), trend.words, kLetters));
-  return figures;
+/// The bound's, if there is one, and the share's.
+std::vector<Trend> TrendsOf(const std::vector<Point>& points) {
+  std::vector<Trend> trends = {TrendOfBounds(points), TrendOfShares(points)};
+  std::erase_if(trends, [](const Trend& trend) { return trend.marks.empty(); });
+  return trends;
+}
+
+std::string TrendFigure(const std::vector<Point>& points, const Trend& trend) {
+  return fmt::format("<figure class=\"wide\">{}<figcaption>{}</figcaption></figure>\n",
+                     TrendChart(points, trend), trend.words);
 }
 
 std::string Metrics(const CampaignIndex& index) {
@@ -180,10 +182,11 @@ std::string Metrics(const CampaignIndex& index) {
                     count > kMostInAll ? fmt::format(", the last {} are shown", kMostInAll) : "");
     if (++drawn > kMostCharts) continue;
     std::size_t all = 0;
-    const std::vector<Point> points = PointsOf(rows, metric, kMostInAll, all);
-    html += TrendsOf({points.rbegin(), points.rend()}).front();
+    std::vector<Point> points = PointsOf(rows, metric, kMostInAll, all);
+    std::reverse(points.begin(), points.end());
+    html += TrendFigure(points, TrendsOf(points).front());
   }
-  return html;
+  return html + kLetters;
 }
 
 }  // namespace
@@ -217,7 +220,9 @@ std::string TrendPage(const CampaignIndex& index, const std::string& metric, con
                                  points[i + 1].row->id, points[i].row->id)
                    : ""});
   }
-  for (const std::string& figure : TrendsOf({points.rbegin(), points.rend()})) main += figure;
+  const std::vector<Point> by_age(points.rbegin(), points.rend());
+  for (const Trend& trend : TrendsOf(by_age)) main += TrendFigure(by_age, trend);
+  main += kLetters;
   if (all > points.size()) main += fmt::format("<p>The last {} of {} campaigns.</p>\n", points.size(), all);
   return Frame("Trend", main + table.Html());
 }
