@@ -63,8 +63,8 @@ struct FailurePair {
 };
 
 /// Inputs with an order that distinguish the failing flights of a requirement from the others of the first
-/// 50,000. If fewer
-/// than ten fail, the tenth of the flights nearest to the limit stands for them, failing ones included.
+/// 50,000. If fewer than ten fail, the tenth of the flights nearest to the limit stands for them, failing
+/// ones included.
 struct FailureDrivers {
   std::string metric;
   bool nearest = false;  ///< true: flights near the limit stand for failing ones

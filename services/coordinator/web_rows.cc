@@ -60,16 +60,9 @@ CampaignRow RowOf(const CampaignView& view, const RunningTally* tally) {
   row.requirements.clear();
   for (std::size_t i = 0; tally != nullptr && i < std::min(view.standings.size(), kMaxOutcomes); ++i) {
     const RequirementStanding& standing = view.standings[i];
-    row.requirements.push_back({standing.metric,
-                                WordsOf(tally->requirements()[i]),
-                                tally->requirements()[i].probability,
-                                standing.n,
-                                standing.failures,
-                                {},
-                                {},
-                                standing.so_far,
-                                {},
-                                {}});
+    row.requirements.push_back({standing.metric, WordsOf(tally->requirements()[i]),
+                                tally->requirements()[i].probability, standing.n, standing.failures,
+                                std::nullopt, std::nullopt, standing.so_far});
   }
   if (tally != nullptr)
     for (const MetricHistogram& histogram : tally->histograms()) row.histograms.push_back(LiveOf(histogram));
