@@ -101,7 +101,7 @@ function ChartPoints(path) {
       if (event.key === "Escape" || !series.length) { Clear(); return; }
       if (event.key === "Enter" && at >= 0) {
         const place = Show();
-        svg.dispatchEvent(new MouseEvent("click", {clientX: place.x, clientY: place.y}));
+        svg.dispatchEvent(new PointerEvent("pick", {clientX: place.x, clientY: place.y}));
         return;
       }
       if (step === undefined && turn === undefined) return;

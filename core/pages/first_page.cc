@@ -36,9 +36,18 @@ std::string HeadSentence(const CampaignSummary& summary) {
                          summary.quarantined.empty()
                              ? "; the campaign can be resumed"
                              : fmt::format("; {} are quarantined", summary.quarantined.size()));
-    case StandingVerdict::kFail:
-      return fmt::format("{} of {} requirements {} not met.", CountOf(standing, "fail"), all,
-                         CountOf(standing, "fail") == 1 ? "is" : "are");
+    case StandingVerdict::kFail: {
+      const std::int64_t failed = CountOf(standing, "fail");
+      if (failed > 0 && all == 1) return "The one requirement is not met.";
+      if (failed > 0)
+        return fmt::format("{} of {} requirements {} not met.", failed, all, failed == 1 ? "is" : "are");
+      const std::int64_t open = CountOf(standing, "inconclusive");
+      return std::string("Flights went beyond a limit of the vehicle. ") +
+             (all == 0 ? "The campaign states no requirement." : "No requirement failed") +
+             (all == 0    ? ""
+              : open == 0 ? "."
+                          : fmt::format("; {} of {} cannot be decided.", open, all));
+    }
     case StandingVerdict::kNotEvidence:
       return "No requirement failed, but these flights are no evidence that all are met: the reasons stand "
              "below.";

@@ -192,8 +192,9 @@
       drag = null;
     });
     svg.addEventListener("dblclick", () => { chart.view = {...chart.box}; Ticks(chart); });
-    svg.addEventListener("click", async event => {
-      if (dragged || !answers) return;
+    // "pick" is the keyboard's click: a click's place is rounded to whole pixels, where another case may be nearer.
+    for (const kind of ["click", "pick"]) svg.addEventListener(kind, async event => {
+      if (!answers || kind === "click" && dragged) return;
       const index = Nearest(chart, Place(chart, event));
       pinned = index;
       Mark(index);

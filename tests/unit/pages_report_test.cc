@@ -289,6 +289,24 @@ TEST_F(ReportPageTest, AFlightBeyondALimitIsInTheHeadAndAmongTheOutcomes) {
                 "limit and flew on</span></th><td class=\"n\">0</td>"));
 }
 
+TEST_F(ReportPageTest, TheFirstSentenceSaysWhatFailed) {
+  Build(40, 40);
+  summary_.standing.verdict = StandingVerdict::kFail;
+  const auto head = [&](std::vector<std::string> verdicts) {
+    summary_.standing.requirements.resize(verdicts.size());
+    for (std::size_t i = 0; i < verdicts.size(); ++i) summary_.standing.requirements[i].verdict = verdicts[i];
+    summary_.requirements.resize(verdicts.size());
+    return ReportPage(campaign_, summary_, cases_, histories_);
+  };
+  EXPECT_THAT(head({"fail"}), HasSubstr("<p>The one requirement is not met.</p>"));
+  EXPECT_THAT(head({"inconclusive"}), HasSubstr("<p>Flights went beyond a limit of the vehicle. No "
+                                                "requirement failed; 1 of 1 cannot be decided.</p>"));
+  EXPECT_THAT(head({"pass"}),
+              HasSubstr("<p>Flights went beyond a limit of the vehicle. No requirement failed.</p>"));
+  EXPECT_THAT(head({}), HasSubstr("<p>Flights went beyond a limit of the vehicle. The campaign states no "
+                                  "requirement.</p>"));
+}
+
 TEST_F(ReportPageTest, GroupsMetricsAsTheyAreDeclaredAndNamesInputsAsTheFileDoes) {
   Build(40, 40);
   const auto in_group = [&](const char* title, const char* from, const char* to) {
