@@ -142,6 +142,8 @@ std::string HowItEnded(int status, const ContainmentLimits& limits) {
   const char* const name = sigabbrev_np(signal);
   const std::string text =
       "ended by signal " + std::to_string(signal) + (name ? " (SIG" + std::string(name) + ")" : "");
+  // A C library that forks with all signals blocked lets no handler name the call.
+  if (signal == SIGSYS) return text + ", after a system call that it may not make";
   // Ends that a lack of memory may cause.
   const bool is_of_memory = signal == SIGABRT || signal == SIGSEGV || signal == SIGKILL;
   return is_of_memory
