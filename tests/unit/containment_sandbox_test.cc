@@ -77,8 +77,15 @@ TEST(Sandbox, SeccompAloneRefusesWhatIsNoComputation) {
          return setrlimit(RLIMIT_CORE, &none);
        }},
   };
-  for (const auto& [name, call] : calls)
-    EXPECT_EQ(OutcomeOf(call), "was refused the system call '" + name + "'");
+  for (const auto& [name, call] : calls) {
+    const std::string refused = "was refused the system call '" + name + "'";
+    if (name == "clone")  // glibc of Debian 13 forks with all signals blocked: then nothing names the call
+      EXPECT_THAT(OutcomeOf(call), testing::AnyOf(refused,
+                                                  "ended by signal 31 (SIGSYS), after a system call "
+                                                  "that it may not make"));
+    else
+      EXPECT_EQ(OutcomeOf(call), refused);
+  }
 }
 
 TEST(Sandbox, WhoCatchesTheSignalHasGainedNothing) {
