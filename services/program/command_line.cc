@@ -3,6 +3,7 @@
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <cstdlib>
 #include <sstream>
 #include <stdexcept>
 #include <string>
@@ -79,6 +80,18 @@ ExitCode PrintVersionJson() {
   }
 }
 
+/// CLI11 from 2.4 on passes over a variable of the environment whose value its option refuses.
+void TakeEnvironment(CLI::App& app) {
+  for (CLI::Option* option : app.get_options()) {
+    const std::string name = option->get_envname();
+    const char* const text = name.empty() ? nullptr : std::getenv(name.c_str());
+    if (text == nullptr || *text == '\0' || option->count() > 0) continue;
+    option->add_result(text);
+    option->run_callback();  // throws
+  }
+  for (CLI::App* command : app.get_subcommands()) TakeEnvironment(*command);
+}
+
 }  // namespace
 
 bool AsksForJson(int argc, char** argv) { return Has(Words(argv + 1, argv + argc), "--json"); }
@@ -107,6 +120,7 @@ std::optional<ExitCode> ParseCommandLine(CLI::App& app, int argc, char** argv) {
   if (json && Has(words, "--version")) return PrintVersionJson();
   try {
     app.parse(Spelled(words));
+    TakeEnvironment(app);
   } catch (const CLI::ParseError& error) {
     // CLI11 says of an unknown command only that one is required.
     const bool is_required = dynamic_cast<const CLI::RequiredError*>(&error) != nullptr;
