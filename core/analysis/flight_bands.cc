@@ -31,11 +31,10 @@ namespace {
 /// Reads band columns out of the rows of a history.
 class BandRow {
  public:
-  double At(const History& history, std::size_t row, int column) const {
-    if (column < q_alpha_) return history.at(row, column);
-    if (column == q_alpha_) return history.at(row, qbar_pa_) * history.at(row, incidence_deg_) / kDegPerRad;
-    return history.at(row, thrust_n_) > 0.0 ? history.at(row, pitch_error_ + column - q_alpha_ - 1)
-                                            : kUndefined;
+  double At(const double* row, int column) const {
+    if (column < q_alpha_) return row[column];
+    if (column == q_alpha_) return row[qbar_pa_] * row[incidence_deg_] / kDegPerRad;
+    return row[thrust_n_] > 0.0 ? row[pitch_error_ + column - q_alpha_ - 1] : kUndefined;
   }
 
  private:
@@ -51,16 +50,19 @@ SampledFlight SampleFlight(const History& history, const std::vector<int>& colum
   static const int longitude_deg = FindHistoryColumn("longitude_deg");
   static const BandRow band_row;
   SampledFlight samples(columns.size());
+  for (std::vector<double>& column : samples) column.reserve(history.rows());
   double last_longitude_deg = 0.0;
-  for (std::size_t row = 0; row < history.rows(); ++row) {
-    const double time_s = history.at(row, 0);
+  const std::size_t width = HistoryColumns().size();
+  for (std::size_t at = 0; at < history.values.size(); at += width) {
+    const double* const row = history.values.data() + at;
+    const double time_s = row[0];
     const double multiple = std::round(time_s / step_s);
     if (time_s < 0.0 || std::fabs(time_s - multiple * step_s) > 1e-6) continue;
     const auto step = static_cast<std::size_t>(multiple);
     for (std::size_t i = 0; i < columns.size(); ++i) {
-      samples[i].resize(std::max(samples[i].size(), step + 1), kUndefined);
+      if (samples[i].size() <= step) samples[i].resize(step + 1, kUndefined);
       double& value = samples[i][step];
-      value = band_row.At(history, row, columns[i]);
+      value = band_row.At(row, columns[i]);
       if (columns[i] == longitude_deg && std::isfinite(value))
         value = last_longitude_deg = NearTo(last_longitude_deg, value, kCutAt180Deg);
     }

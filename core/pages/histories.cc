@@ -170,6 +170,7 @@ History Thinned(const History& ticks, double tick_s, double step_s) {
   }
   History thinned;
   thinned.step_s = step_s;
+  thinned.values.reserve(static_cast<std::size_t>(std::count(kept.begin(), kept.end(), true)) * columns);
   for (std::size_t row = 0; row < rows; ++row)
     if (kept[row])
       thinned.values.insert(thinned.values.end(),
