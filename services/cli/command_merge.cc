@@ -52,6 +52,11 @@ ExitCode Merge(const MergeCommand& options, const GlobalOptions& global) {
     Tell("interrupted; to continue: the same command with --resume\n");
     if (global.json) PrintErrorJson(kExitInterrupted, "interrupted");
     return kExitInterrupted;
+  } catch (const ResultError& error) {
+    observer.EndPhase();
+    if (error.kind() == ResultError::Kind::kDiskFull)
+      Tell("to continue when the disk has space: the same command with --resume\n");
+    throw;
   }
 }
 

@@ -157,6 +157,14 @@ class Shares(unittest.TestCase):
         self.assertEqual(done.returncode, 0, done.stderr)
         self.assert_same(folder / "merged", folder / "one" / "whole")
 
+    def test_a_merge_goes_on_when_the_disk_has_space(self):
+        out = self.folder / self.id() / "merged"
+        done = merge(out, *self.shares, preexec_fn=lambda: resource.setrlimit(resource.RLIMIT_FSIZE, (120_000, 120_000)))
+        self.assertEqual(done.returncode, 5, done.stderr)
+        self.assertEqual(done.stderr.splitlines()[0], "to continue when the disk has space: the same command with --resume")
+        self.assertEqual(merge(out, *self.shares, more=("--no-histories", "--quiet", "--resume")).returncode, 0)
+        self.assert_same(out)
+
     def test_a_merge_goes_on(self):
         out = self.folder / self.id() / "merged"
         self.assertEqual(merge(out, *self.shares).returncode, 0)
