@@ -74,13 +74,15 @@ CaseRange RoundOf(const Campaign& campaign, const std::string& after) {
     return {0, StoppingRule(campaign, static_cast<std::int64_t>(campaign.sampling.cases), {}).target()};
   const ResultFolder folder = ResultFolder::Open(after);
   if (const std::string id = folder.Provenance("campaign_id"); id != campaign.id)
-    throw InputError(fmt::format("--after {}: holds campaign {}, this one is {}", after, id, campaign.id));
+    throw InputError(fmt::format("--after {}: holds campaign {}, this one is {}", after, id, campaign.id),
+                     "a merged folder of this campaign");
   const CaseColumns cases = ReadColumns(folder, {});
   const CaseRange round{cases.rows() + folder.QuarantinedCases().size(), CasesToFly(folder, campaign, cases)};
   if (folder.ItsShare() || (cases.rows() > 0 && cases.index.back() >= round.first))
     throw InputError(fmt::format("--after {}: cases are missing in it", after), "a folder that merge wrote");
   if (round.first < round.end) return round;
-  throw InputError(fmt::format("--after {}: its campaign needs no further cases", after));
+  throw InputError(fmt::format("--after {}: its campaign needs no further cases", after),
+                   "the verdict in its report");
 }
 
 std::string RangeText(const std::optional<CaseShare>& share) {

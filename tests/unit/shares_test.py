@@ -193,6 +193,8 @@ class Shares(unittest.TestCase):
         ids = [self.read(folder, "SELECT value FROM provenance WHERE key = 'flight_id'")[0][0] for folder in (out, other)]
         self.assertEqual((done.returncode, done.stderr), (
             2, f"{out}: holds results of flight id {ids[0]}, the campaign's is {ids[1]}\n"))
+        done = merge(out, out, more=resumed)
+        self.assertEqual((done.returncode, done.stderr), (2, f"{out}: nothing to merge with it, allowed: shares beside it\n"))
         share_folder, = self.copied(0)
         done = merge(share_folder, *self.shares, more=resumed)
         self.assertEqual((done.returncode, done.stderr), (
@@ -268,6 +270,14 @@ class Shares(unittest.TestCase):
         self.assert_refused(merge(out, self.shares[0], forged, self.shares[2]), out,
                             f"{forged}/results.sqlite: the row of case 0 is damaged; --resume flies it again, allowed: shares as they "
                             "were flown: of this one by its own command with --resume, or into a new folder")
+        other = self.folder / self.id() / "other"  # whole rows, of another seed
+        self.assertEqual(share(SMOKE, "1/3", other, *self.campaign, "--seed", "5").returncode, 0)
+        shutil.copy(self.shares[1] / "campaign.yaml", other)
+        identity, = self.read(self.shares[1], "SELECT value FROM provenance WHERE key = 'campaign_id'")
+        self.change(other, f"UPDATE provenance SET value = '{identity[0]}' WHERE key = 'campaign_id'")
+        self.assert_refused(merge(out, self.shares[0], other, self.shares[2]), out,
+                            f"{other}: 10 of its 10 results are not those of the campaign that it holds, allowed: the share flown again, "
+                            "into a new folder")
 
     def test_damaged_folders_are_refused(self):
         out = self.folder / self.id() / "merged"
@@ -393,6 +403,10 @@ class Rounds(unittest.TestCase):
     def flown(self, *more):
         return ("--cases", "120", "--workers", "0", *more)
 
+    def identity(self, folder):
+        with sqlite3.connect(f"file:{folder}/results.sqlite?mode=ro", uri=True) as database:
+            return database.execute("SELECT value FROM provenance WHERE key = 'campaign_id'").fetchone()[0]
+
     def assert_a_share_is_none(self, folder):
         told = dispersa("export", folder, "--format", "csv", "--out", self.folder / "table.csv", "--quiet")
         self.assertEqual((told.returncode, told.stderr), (
@@ -426,8 +440,15 @@ class Rounds(unittest.TestCase):
         self.assertEqual(code, done.returncode)
         self.assertEqual((out / "cases.csv").read_bytes(), (whole / "cases.csv").read_bytes())
         self.assertEqual((out / "summary.json").read_bytes(), (whole / "summary.json").read_bytes())
+        identity = self.identity(out)
+        told = share(SMOKE, "0/2", self.folder / "more", *self.flown("--after", out))
+        self.assertRegex(told.stderr, rf"^--after {out}: holds campaign {identity}, this one is [0-9a-f]{{64}}, allowed: a merged folder "
+                         r"of this campaign\n$")
+        told = share(self.campaign, "0/2", self.folder / "more", *self.flown("--after", self.folder / "round1" / "0"))
+        self.assertEqual((told.returncode, told.stderr), (
+            2, f"--after {self.folder}/round1/0: cases are missing in it, allowed: a folder that merge wrote\n"))
         told = share(self.campaign, "0/2", self.folder / "more", *self.flown("--after", out))
-        self.assertEqual((told.returncode, told.stderr), (2, f"--after {out}: its campaign needs no further cases\n"))
+        self.assertEqual((told.returncode, told.stderr), (2, f"--after {out}: its campaign needs no further cases, allowed: the verdict in its report\n"))
 
 
 if __name__ == "__main__":
