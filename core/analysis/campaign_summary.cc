@@ -12,6 +12,7 @@
 #include "core/campaign/case_result.h"
 #include "core/flight/step_limits.h"
 #include "core/flight/structural_limits.h"
+#include "core/input/input_error.h"
 #include "core/results/metric_catalogue.h"
 #include "core/results/sampling_text.h"
 #include "core/results/text.h"
@@ -161,6 +162,12 @@ std::uint64_t CasesToFly(const ResultFolder& folder, const Campaign& campaign, c
   return rule.target();
 }
 
+void RequireWhole(const ResultFolder& folder) {
+  if (!folder.ItsShare()) return;
+  throw InputError(folder.directory().string() + ": is a share of a campaign, which is judged as a whole",
+                   "the folder that `dispersa merge` makes of all shares");
+}
+
 std::string MissingWords(std::uint64_t flown, std::uint64_t cases) {
   return fmt::format("{} of {} cases have a result", flown, cases);
 }
@@ -307,6 +314,7 @@ CampaignSummary BuildSummary(const ResultFolder& folder, const Campaign& campaig
 }
 
 CampaignSummary BuildSummary(const ResultFolder& folder, const Campaign& campaign, const CaseColumns& cases) {
+  RequireWhole(folder);
   CampaignSummary summary;
   summary.name = campaign.name;
   summary.id = campaign.id;

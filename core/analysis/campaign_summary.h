@@ -129,6 +129,9 @@ struct CampaignSummary {
 /// Cases that the campaign flies: where it stops, if it stops by itself. `cases` are its results.
 std::uint64_t CasesToFly(const ResultFolder& folder, const Campaign& campaign, const CaseColumns& cases);
 
+/// InputError if the folder is a share: nothing is judged of one. Reports and summaries begin with it.
+void RequireWhole(const ResultFolder& folder);
+
 /// "160 of 3000 cases have a result".
 std::string MissingWords(std::uint64_t flown, std::uint64_t cases);
 

@@ -2,6 +2,7 @@
 #pragma once
 
 #include <cstdint>
+#include <string>
 
 namespace dispersa {
 
@@ -14,6 +15,13 @@ struct CaseRange {
   bool Contains(std::uint64_t case_index) const { return case_index >= first && case_index < end; }
   bool operator==(const CaseRange&) const = default;
 };
+
+/// "case 5", "cases 10 to 19".
+inline std::string CasesText(const CaseRange& cases) {
+  if (cases.size() == 0) return "no case";
+  const std::string first = std::to_string(cases.first);
+  return cases.size() == 1 ? "case " + first : "cases " + first + " to " + std::to_string(cases.end - 1);
+}
 
 /// What one of several folders holds of a round of cases.
 struct CaseShare {

@@ -35,6 +35,7 @@ void RefuseFewer(const std::filesystem::path& file, std::uint64_t cases) {
 
 CampaignSummary WriteReports(const ResultFolder& folder, const Campaign& campaign,
                              const ReportOptions& options) {
+  RequireWhole(folder);
   const std::string engine = folder.Provenance("engine");
   const bool is_ours = engine == EngineVersion();
   if (const auto& law = campaign.autopilot.plugin; options.histories && is_ours && law && IsAbsent(*law)) {

@@ -594,6 +594,15 @@ void ResultFolder::RecordLook(const LookRecord& look) const {
       .Run(look.requirements_id, look.requirement, look.n, look.failures, look.verdict);
 }
 
+void ResultFolder::TakePlanOf(const ResultFolder& from, const Campaign& campaign) {
+  for (const LookRecord& look : from.Looks()) RecordLook(look);
+  if (from.Provenance("requirements_id") == campaign.requirements_id &&
+      from.PlannedCases() == static_cast<std::int64_t>(campaign.sampling.cases))
+    return;
+  for (const char* key : {"planned_cases", "requirements_id", "requirements"})
+    WriteProvenance(*database_, key, from.Provenance(key));
+}
+
 std::vector<LookRecord> ResultFolder::Looks() const {
   std::vector<LookRecord> looks;
   Statement select =

@@ -98,6 +98,9 @@ class ResultFolder : public ResultStore {
   /// Records once that verdicts were read from the first n cases. The record is about reading, not about
   /// flights. So a report of a folder that nobody flies may add one.
   void RecordLook(const LookRecord& look) const;
+  /// What was required and planned before the first case of a folder whose results this one took, if it is
+  /// not what the campaign requires and plans, and the verdicts that were read of it.
+  void TakePlanOf(const ResultFolder& from, const Campaign& campaign);
   /// All of them, by number of cases.
   std::vector<LookRecord> Looks() const;
   /// Numbers of cases at which any verdict was read, ascending.

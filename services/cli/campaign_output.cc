@@ -92,7 +92,8 @@ void OpenInBrowser(std::string page) {
   if (error != 0) LogWarning("{}: {}; open {} yourself", program, std::strerror(error), page);
 }
 
-void PrintSummary(const CampaignSummary& summary, const std::filesystem::path& directory, bool json) {
+void PrintSummary(const CampaignSummary& summary, const std::filesystem::path& directory, bool json,
+                  const std::string& if_incomplete) {
   if (json) {
     auto object = nlohmann::ordered_json::parse(SummaryJson(summary));
     object["directory"] = directory.string();
@@ -119,7 +120,9 @@ void PrintSummary(const CampaignSummary& summary, const std::filesystem::path& d
   }
   for (const LoadCheck& check : summary.load_checks) fmt::print("{}\n", LoadCheckSentence(check));
   if (const std::string advice = AdviceTogether(summary); !advice.empty()) fmt::print("{}\n", advice);
-  fmt::print("VERDICT {}, next: {}\n", StandingBadge(summary.standing), NextStep(summary));
+  const bool is_told = summary.standing.verdict == StandingVerdict::kIncomplete && !if_incomplete.empty();
+  fmt::print("VERDICT {}, next: {}\n", StandingBadge(summary.standing),
+             is_told ? if_incomplete : NextStep(summary));
   fmt::print("report: {}\nresult: {}\n", (directory / "report.html").string(), directory.string());
 }
 

@@ -25,7 +25,8 @@ void AddOpenOption(CLI::App& command, bool& open);
 void OpenInBrowser(std::string page);
 
 /// Prints the verdicts, the report's place, and as the last line "result: DIR". With `json`: summary.json
-/// plus `directory`.
-void PrintSummary(const CampaignSummary& summary, const std::filesystem::path& directory, bool json);
+/// plus `directory`. `if_incomplete`: what to do next then; empty: what is to be done after a run.
+void PrintSummary(const CampaignSummary& summary, const std::filesystem::path& directory, bool json,
+                  const std::string& if_incomplete = "");
 
 }  // namespace dispersa

@@ -25,9 +25,6 @@ struct ReportCommand {
 
 ExitCode ReportAgain(const ReportCommand& options, const GlobalOptions& global) {
   StoredCampaign stored = OpenStored(options.directory);
-  if (stored.folder.ItsShare())
-    throw InputError(options.directory + ": is a share of a campaign, which is judged as a whole",
-                     "the folder that `dispersa merge` makes of all shares");
   RequireWritableFile("the report", stored.folder.directory() / "report.html");
   stored.folder.Lock();
   const std::string engine = stored.folder.Provenance("engine");

@@ -56,6 +56,29 @@ void PrintShare(const RunResult& result, const std::filesystem::path& directory,
                      directory.string()));
 }
 
+/// A share is flown in this process and judged when it is merged: options of both are refused.
+void CheckShare(const RunCommand& options) {
+  if (!options.request.shard) {
+    if (!options.request.after.empty())
+      throw InputError("--after: only shards are flown in rounds", "--after with --shard");
+    return;
+  }
+  if (options.run.workers > 0)
+    throw InputError("--workers: a share is flown in this process, without workers",
+                     "--threads N, or --workers 0");
+  const ReflownFlights usual;
+  const std::pair<const char*, bool> of_reports[] = {
+      {"--gate", options.run.gate},
+      {"--open", options.open},
+      {"--fresh", !options.request.fresh.empty()},
+      {"--no-histories", options.run.reflown.none},
+      {"--envelope", options.run.reflown.envelope != usual.envelope}};
+  for (const auto& [option, is_given] : of_reports)
+    if (is_given)
+      throw InputError(fmt::format("{}: a share has no verdict and no report", option),
+                       fmt::format("`dispersa merge` with {}", option));
+}
+
 /// "2/7".
 CLI::Validator ShardText(std::optional<Shard>& shard) {
   return CLI::Validator(
@@ -103,9 +126,9 @@ ExitCode Fly(const RunCommand& options, const RunOptions& run, PreparedRun prepa
 }
 
 ExitCode Run(const RunCommand& options, const GlobalOptions& global) {
-  if (!options.request.after.empty() && !options.request.shard)
-    throw InputError("--after: only shards are flown in rounds", "--after with --shard");
+  CheckShare(options);
   RunOptions run = options.run;
+  if (options.request.shard) run.workers = 0;
   if (global.service != nullptr) run.fly_with_workers = global.service->fly_with_workers;
   WorkersOf(run);
   CatchStopSignals();
@@ -147,9 +170,10 @@ void AddRunCommand(CLI::App& app, Invocation& invocation) {
   AddOpenOption(*command, options->open);
   AddFreshOption(*command, request.fresh);
   command
-      ->add_option("--shard", options->shard_text,
-                   "fly one of N blocks of the cases, counted from 0, and judge nothing; 'merge' makes one "
-                   "folder of all")
+      ->add_option(
+          "--shard", options->shard_text,
+          "fly one of N blocks of the cases, counted from 0, in this process, and judge nothing; 'merge' "
+          "makes one folder of all")
       ->type_name("i/N")
       ->check(ShardText(request.shard));
   command

@@ -4,15 +4,21 @@
 #include <string>
 #include <vector>
 
+#include "core/containment/contained.h"
 #include "services/ledger/prepare_run.h"
 
 namespace dispersa {
 
-/// A new folder with the results of `folders`, in any order: shares, and what was merged of earlier rounds.
-/// InputError with every reason why they are not one campaign, each case once and none left out; then there
-/// is no new folder. The campaign enters the ledger of attempts beside it; `fresh` as in RunRequest. Throws
-/// ResultError.
-PreparedRun MergedRun(const std::vector<std::string>& folders, const std::string& out,
-                      const std::string& fresh);
+struct MergeRequest {
+  std::vector<std::string> folders;  ///< shares, and what was merged of earlier rounds, in any order
+  std::string out;
+  bool resume = false;  ///< as in RunRequest; cases that `out` holds may be in none of the folders
+  std::string fresh = {};
+};
+
+/// A folder with the results of all folders. InputError with every reason why they are not one campaign, each
+/// case once and none left out; then nothing is made. The campaign enters the ledger of attempts beside it.
+/// Throws ResultError if `out` cannot be written, and Interrupted.
+PreparedRun MergedRun(const MergeRequest& request, const StopCheck& should_stop);
 
 }  // namespace dispersa

@@ -20,11 +20,16 @@ StoredCampaign OpenStored(const std::string& directory, bool may_be_empty) {
     throw InputError(directory + ": the metrics of its campaign.yaml are not those that were measured",
                      "`dispersa run CAMPAIGN --out " + directory + " --resume`, which flies the cases again");
   const std::uint64_t flown = folder.CaseCount();
-  // The rows decide where a campaign stops by itself.
-  const std::uint64_t cases = campaign.verdicts.stop_when_decided && flown > 0
+  const std::optional<CaseShare> share = folder.ItsShare();
+  // The rows decide where a campaign stops by itself, those of a share do not.
+  const std::uint64_t cases = campaign.verdicts.stop_when_decided && flown > 0 && !share
                                   ? CasesToFly(folder, campaign, ReadColumns(folder, {}))
                                   : campaign.sampling.cases;
-  std::string incomplete = flown < cases ? "incomplete: " + MissingWords(flown, cases) : "";
+  std::string incomplete;
+  if (share || flown < cases)
+    incomplete = fmt::format("incomplete: {}{}",
+                             share ? "it is the share of " + CasesText(share->cases) + ", and " : "",
+                             MissingWords(flown, cases));
   if (flown == 0 && !may_be_empty)
     throw ResultError(ResultError::Kind::kFewer,
                       fmt::format("{}: {}; copy results.sqlite-wal too if this is a copy, or fly the cases: "

@@ -74,18 +74,19 @@ CaseRange RoundOf(const Campaign& campaign, const std::string& after) {
     return {0, StoppingRule(campaign, static_cast<std::int64_t>(campaign.sampling.cases), {}).target()};
   const ResultFolder folder = ResultFolder::Open(after);
   if (const std::string id = folder.Provenance("campaign_id"); id != campaign.id)
-    throw InputError(fmt::format("--after {}: holds campaign {}, this one is {}", after, id, campaign.id));
+    throw InputError(fmt::format("--after {}: holds campaign {}, this one is {}", after, id, campaign.id),
+                     "a merged folder of this campaign");
   const CaseColumns cases = ReadColumns(folder, {});
   const CaseRange round{cases.rows() + folder.QuarantinedCases().size(), CasesToFly(folder, campaign, cases)};
   if (folder.ItsShare() || (cases.rows() > 0 && cases.index.back() >= round.first))
     throw InputError(fmt::format("--after {}: cases are missing in it", after), "a folder that merge wrote");
   if (round.first < round.end) return round;
-  throw InputError(fmt::format("--after {}: its campaign needs no further cases", after));
+  throw InputError(fmt::format("--after {}: its campaign needs no further cases", after),
+                   "the verdict in its report");
 }
 
 std::string RangeText(const std::optional<CaseShare>& share) {
-  if (!share) return "all cases";
-  return fmt::format("the {} cases from {} on", share->cases.size(), share->cases.first);
+  return share ? CasesText(share->cases) : "all cases";
 }
 
 PreparedRun PrepareUnrecorded(const RunRequest& request, const StopCheck& should_stop) {
@@ -100,34 +101,40 @@ PreparedRun PrepareUnrecorded(const RunRequest& request, const StopCheck& should
     const CaseRange round = RoundOf(campaign, request.after);
     share = {BlockOf(round, request.shard->index, request.shard->count), round.end};
   }
+  ResultFolder folder = OpenFolder(directory, request.resume, share, campaign, [&](std::uint64_t cases) {
+    CampaignOverrides extended = request.overrides;
+    extended.cases = cases;
+    return LoadCampaign(request.campaign, extended);
+  });
+  return {std::move(campaign), std::move(folder), std::move(flown)};
+}
 
+}  // namespace
+
+ResultFolder OpenFolder(const fs::path& directory, bool resume, const std::optional<CaseShare>& share,
+                        Campaign& campaign, const WithCases& with_cases) {
   // Before looking into it: of several that start at once, one finds the folder as it is.
   std::error_code error;
   fs::create_directories(directory, error);
   std::optional<FolderLock> lock;
   if (!error) lock.emplace(directory);
-  if (!request.resume || !HasContent(directory)) {
-    ResultFolder folder = ResultFolder::Create(directory, campaign, std::move(lock), share);
-    return {std::move(campaign), std::move(folder), std::move(flown)};
-  }
-  if (IsStillborn(directory)) {
+  if (resume && HasContent(directory) && IsStillborn(directory)) {
     const std::vector<fs::path> leftovers(fs::directory_iterator{directory}, fs::directory_iterator{});
     for (const fs::path& leftover : leftovers) fs::remove(leftover);
-    ResultFolder folder = ResultFolder::Create(directory, campaign, std::move(lock), share);
-    return {std::move(campaign), std::move(folder), std::move(flown)};
   }
+  if (!resume || !HasContent(directory))
+    return ResultFolder::Create(directory, campaign, std::move(lock), share);
   std::optional<std::uint64_t> last;
   {
     const ResultFolder present = ResultFolder::Open(directory);
     if (const auto kept = present.ItsShare(); kept != share)
       throw InputError(fmt::format("{}: is for {}, this run for {}", directory.string(), RangeText(kept),
-                                   RangeText(share)));
+                                   RangeText(share)),
+                       "a folder of its own");
     last = present.LastCase();
   }
-  if (last && *last >= campaign.sampling.cases) {
-    CampaignOverrides extended = request.overrides;
-    extended.cases = *last + 1;
-    Campaign larger = LoadCampaign(request.campaign, extended);
+  if (with_cases && last && *last >= campaign.sampling.cases) {
+    Campaign larger = with_cases(*last + 1);
     if (larger.flight_id == campaign.flight_id) {
       LogWarning("{} holds more cases than the {} asked for: the campaign is extended to {}",
                  directory.string(), campaign.sampling.cases, larger.sampling.cases);
@@ -140,10 +147,8 @@ PreparedRun PrepareUnrecorded(const RunRequest& request, const StopCheck& should
   }
   if (const std::uint64_t unmeasured = folder.UnmeasuredCount(); unmeasured > 0)
     LogInfo("{}: {} cases are flown again for the campaign's own metrics", directory.string(), unmeasured);
-  return {std::move(campaign), std::move(folder), std::move(flown)};
+  return folder;
 }
-
-}  // namespace
 
 PreparedRun PrepareRun(const RunRequest& request, const StopCheck& should_stop) {
   PreparedRun prepared = PrepareUnrecorded(request, should_stop);

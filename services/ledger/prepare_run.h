@@ -3,6 +3,7 @@
 
 #include <cstdint>
 #include <filesystem>
+#include <functional>
 #include <optional>
 #include <string>
 #include <vector>
@@ -38,6 +39,15 @@ struct PreparedRun {
 
 /// The parent of a result folder. Its campaigns share a ledger of attempts.
 std::filesystem::path ResultRoot(const std::filesystem::path& directory);
+
+/// What a folder that is continued holds besides: the campaign with so many cases.
+using WithCases = std::function<Campaign(std::uint64_t cases)>;
+
+/// The folder of a run, or of a share of one, opened as PrepareRun says. Without `with_cases` a folder with
+/// more cases is refused.
+ResultFolder OpenFolder(const std::filesystem::path& directory, bool resume,
+                        const std::optional<CaseShare>& share, Campaign& campaign,
+                        const WithCases& with_cases = nullptr);
 
 /// Without `resume` the folder must be new or empty. With `resume` a folder of the same flight id is
 /// continued, and a new or empty folder is started. Without `out` the last of the default folders is used.

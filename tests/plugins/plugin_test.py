@@ -208,7 +208,9 @@ class PluginTest(unittest.TestCase):
         self.quarantined("CRASHES", r"ended by signal 11 \(SIGSEGV\)", workers=2)
 
     def test_a_share_that_lacks_a_case_says_so(self):
-        out, ended = self.campaign_run("share", self.law("CRASHES"), "--shard", "0/1", "--quiet")
+        out = self.folder / "out" / "share"
+        ended = self.dispersa("run", CAMPAIGNS / "table3.yaml", "--autopilot", self.law("CRASHES"), "--cases", CASES, "--shard", "0/1",
+                              "--out", out, "--quiet")
         self.assertEqual(ended.returncode, 5, ended.stderr)
         self.assertRegex(ended.stdout, rf"^share: \d+ of {CASES} cases flown, next: the same command with --resume\n")
         merged = self.dispersa("merge", out, "--out", self.folder / "out" / "merged", "--no-histories", "--quiet")
