@@ -194,10 +194,6 @@ FlightRecord::FlightRecord(const FlightModel& model, const FlightOrder& order)
       model_(model),
       gyro_noise_(model.definition().noise_seed, options.case_index, "gyro_noise") {
   const double tick_s = model.definition().autopilot.tick_s;
-  if (options.history) {
-    const auto rows = static_cast<std::size_t>(model.reference_rows().last_tick) / history_ticks;
-    options.history->values.reserve((rows + rows / 8) * (kBodyColumns + kLauncherColumns));
-  }
   sums.step_limit_fraction = GreatestStepUse(plant, tick_s).fraction;
   const FlightDefinition& of = model.definition();
   refusal_ = RefusalOf({of.vehicle, of.autopilot, of.guidance, of.course, inputs, of.soundings.size()}, plant,
