@@ -70,11 +70,6 @@ void BandCounter::Add(SampledFlight flight) {
 
 void BandCounter::StartCounting() {
   cells_.resize(columns_.size());
-  for (std::size_t i = 0; i < columns_.size(); ++i)
-    for (const SampledFlight& flight : kept_)
-      if (cells_[i].size() < flight[i].size()) cells_[i].resize(flight[i].size());
-  for (std::vector<Cell>& column : cells_)
-    for (Cell& cell : column) cell.values.reserve(kKept);
   for (const SampledFlight& flight : kept_) Count(flight);
   kept_.clear();
   kept_.shrink_to_fit();

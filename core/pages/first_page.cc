@@ -41,12 +41,11 @@ std::string HeadSentence(const CampaignSummary& summary) {
       if (failed > 0 && all == 1) return "The one requirement is not met.";
       if (failed > 0)
         return fmt::format("{} of {} requirements {} not met.", failed, all, failed == 1 ? "is" : "are");
+      const std::string limit = "Flights went beyond a limit of the vehicle. ";
+      if (all == 0) return limit + "The campaign states no requirement.";
       const std::int64_t open = CountOf(standing, "inconclusive");
-      return std::string("Flights went beyond a limit of the vehicle. ") +
-             (all == 0 ? "The campaign states no requirement." : "No requirement failed") +
-             (all == 0    ? ""
-              : open == 0 ? "."
-                          : fmt::format("; {} of {} cannot be decided.", open, all));
+      if (open == 0) return limit + "No requirement failed.";
+      return limit + fmt::format("No requirement failed; {} of {} cannot be decided.", open, all);
     }
     case StandingVerdict::kNotEvidence:
       return "No requirement failed, but these flights are no evidence that all are met: the reasons stand "
