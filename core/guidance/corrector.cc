@@ -1,7 +1,6 @@
 #include "core/guidance/corrector.h"
 
 #include <cmath>
-#include <type_traits>
 
 #include "core/guidance/bounded_step.h"
 #include "core/math/constants.h"
@@ -13,15 +12,12 @@ namespace {
 
 // Energy, path, path, plane, m/s. A degree of plane, 130 m/s, then asks for less than 0.1 degree of a thrust
 // that lacks 10 m/s of energy. Then node and place.
-constexpr double kTolerance[kAllMisses] = {1e-2, 3e-2, 3e-2, 1.0, 1.0, 10.0};
+constexpr double kTolerance[] = {1e-2, 3e-2, 3e-2, 1.0, 1.0, 10.0};
 // Of a way that falls into the air, m: 1 km weighs as 33 m/s of energy. Where energy is missing, a low way
 // leaves several m/s more for each kilometre.
 constexpr double kDiveTolerance_m = 0.3;
 // By how much a way may fall into it and still arrive.
 constexpr double kArrivesDive_m = 1e3;
-// Whether misses have node and place, and whether they have the air.
-constexpr bool HasPlace(int misses) { return misses >= kAllMisses; }
-constexpr bool HasAir(int misses) { return misses == kMissesAndAir || misses == kAllMissesAndAir; }
 // Differences for derivatives: small against the curvature, large against the rounding of a prediction.
 constexpr double kDifference = 3e-4;  // of a scale
 // A step that moves no miss by more, in tolerances, needs no further one. Nor does a short one, in scales,
@@ -43,16 +39,21 @@ Arrival Less(const Arrival& a, const Arrival& b) {
           a.flight_path_angle_rad - b.flight_path_angle_rad, a.inclination_rad - b.inclination_rad};
 }
 
+// How misses are taken.
+struct MissForm {
+  bool turns = true;     ///< the perigee may turn in the plane, where the target lets it
+  bool has_air = false;  ///< a fall into the air is a miss
+};
+
 // In tolerances. If the perigee `turns`, a step should turn it little, for the misses are straight lines only
 // then: in place of the second miss, the turn since the injection before, whose miss is `before` (null:
 // none).
-template <int misses>
-Misses<misses> Scaled(const GuidanceMission& mission, const Injection& reached, const OrbitMiss* before,
-                      const CorrectorTask& task, bool turns) {
+Misses Scaled(const GuidanceMission& mission, const Injection& reached, const OrbitMiss* before,
+              const CorrectorTask& task, const MissForm& form) {
   const OrbitMiss miss = OrbitMissOf(mission, reached);
-  Misses<misses> m;
+  Misses m;
   m(0) = miss.energy_m_s / kTolerance[0];
-  if (turns && task.meets_altitude && miss.size_m_s) {
+  if (form.turns && task.meets_altitude && miss.size_m_s) {
     m(1) = before != nullptr
                ? (miss.across * before->along - miss.along * before->across) /
                      (Sqrt(Square(before->along) + Square(before->across)) * mission.orbit->eccentricity) /
@@ -64,11 +65,9 @@ Misses<misses> Scaled(const GuidanceMission& mission, const Injection& reached, 
     m(2) = task.meets_altitude ? miss.shape_m_s / kTolerance[2] : 0.0;
   }
   m(3) = task.meets_plane ? miss.plane_m_s / kTolerance[3] : 0.0;
-  if constexpr (HasPlace(misses)) {
-    m(4) = task.meets_plane ? miss.node_m_s / kTolerance[4] : 0.0;
-    m(5) = task.meets_altitude ? miss.place_m_s / kTolerance[5] : 0.0;
-  }
-  if constexpr (HasAir(misses)) m(misses - 1) = reached.dive_m / kDiveTolerance_m;
+  m(4) = task.meets_plane ? miss.node_m_s / kTolerance[4] : 0.0;
+  m(5) = task.meets_altitude ? miss.place_m_s / kTolerance[5] : 0.0;
+  m(6) = form.has_air ? reached.dive_m / kDiveTolerance_m : 0.0;
   return m;
 }
 
@@ -76,28 +75,24 @@ Misses<misses> Scaled(const GuidanceMission& mission, const Injection& reached, 
 // has in the angles, in units of scales. Only what would be missing of the energy if no more were wasted, or
 // if the engine burnt on, holds a step back, and what energy costs the reserve. `spent`: departures of waste
 // and cut-off that could be had back.
-template <int count, int misses>
-Unknowns<count> CurvatureOf(const GuidanceMission& mission, const Knowledge& known, const PlanPrior& prior,
-                            const StepModel<count, misses>& model, double spent, double unburnt) {
-  Unknowns<count> curvature = Unknowns<count>::Zero();
-  double missing = -(model.miss(0) - spent * model.jacobian(0, kWaste));
-  if constexpr (count > kCutOff) {
-    missing -= unburnt * model.jacobian(0, kCutOff);
-    // What energy costs the reserve, as a miss of energy with the same slope.
-    if (model.departure(kCutOff) > 0.0 && model.dearer(kCutOff) > 0.0 && model.jacobian(0, kCutOff) > 0.0)
-      missing = std::fmax(
-          missing, (1.0 + model.dearer(kCutOff)) * model.departure(kCutOff) / model.jacobian(0, kCutOff));
-  }
+Unknowns CurvatureOf(const GuidanceMission& mission, const Knowledge& known, const PlanPrior& prior,
+                     const StepModel& model, double spent, double unburnt) {
+  Unknowns curvature = Unknowns::Zero();
+  double missing =
+      -(model.miss(0) - spent * model.jacobian(0, kWaste)) - unburnt * model.jacobian(0, kCutOff);
+  // What energy costs the reserve, as a miss of energy with the same slope.
+  if (model.departure(kCutOff) > 0.0 && model.dearer(kCutOff) > 0.0 && model.jacobian(0, kCutOff) > 0.0)
+    missing = std::fmax(
+        missing, (1.0 + model.dearer(kCutOff)) * model.departure(kCutOff) / model.jacobian(0, kCutOff));
   if (!(missing > 0.0)) return curvature;
   const double last = missing * IdealVelocity(mission.last) / kTolerance[0];
   curvature(kPitchMiddle) = curvature(kYawMiddle) = last;
-  curvature(kPitchHalf) = last / 3.0;
-  if constexpr (count > kYawHalf) curvature(kYawHalf) = last / 3.0;
+  curvature(kPitchHalf) = curvature(kYawHalf) = last / 3.0;
   if (known.phase == GuidancePhase::kBelowBurns || known.phase == GuidancePhase::kEarlierBurns)
     curvature(kBelowPitch) = curvature(kBelowYaw) = missing * IdealVelocity(mission.below) / kTolerance[0];
-  if constexpr (count > kEarlierYaw)
+  if (known.phase == GuidancePhase::kEarlierBurns)
     curvature(kEarlierPitch) = curvature(kEarlierYaw) = missing * IdealVelocity(known.below) / kTolerance[0];
-  for (int i = 0; i < count; ++i) curvature(i) *= Square(prior.scale[static_cast<std::size_t>(i)]);
+  for (int i = 0; i < kPlanUnknowns; ++i) curvature(i) *= Square(prior.scale[static_cast<std::size_t>(i)]);
   return curvature;
 }
 
@@ -133,10 +128,9 @@ double AfterStep(double value, double step, double scale, double low, double hig
   return Clamp(value + step * scale, low, high);
 }
 
-template <int count, int misses>
 Correction CorrectFirst(const GuidanceMission& mission, const PlanPrior& prior, const Knowledge& known,
                         const NavigatedState& from, const Plan& start, const CorrectorTask& task,
-                        bool turns) {
+                        const MissForm& form) {
   Correction best;
   best.plan = start;
   // The way of the last plan that was predicted; derivatives by values of the last burn share the best one's.
@@ -149,23 +143,23 @@ Correction CorrectFirst(const GuidanceMission& mission, const PlanPrior& prior, 
     has_way = has_way || keeps_way;
     return reached;
   };
-  const auto keep = [&](const Plan& plan, const Injection& reached, const Misses<misses>& miss) {
+  const auto keep = [&](const Plan& plan, const Injection& reached, const Misses& miss) {
     best.plan = plan;
     best.miss = Less(reached.at, mission.target);
     best.reached = reached;
     best.prioritised_miss = miss.norm();
   };
   const Injection at_start = predict(start, true);
-  StepModel<count, misses> model;
+  StepModel model;
   model.free = task.free;
-  model.miss = Scaled<misses>(mission, at_start, nullptr, task, turns);
+  model.miss = Scaled(mission, at_start, nullptr, task, form);
   keep(start, at_start, model.miss);
   best.start_prioritised_miss = best.prioritised_miss;
   double damping = 0.0;
   const bool is_kept = task.keeps_solved && best.prioritised_miss <= kSolvedMiss;
   for (int iteration = 0; iteration < task.iterations && !is_kept; ++iteration) {
     const OrbitMiss before_step = OrbitMissOf(mission, best.reached);
-    for (int i = 0; i < count; ++i) {
+    for (int i = 0; i < kPlanUnknowns; ++i) {
       const auto k = static_cast<std::size_t>(i);
       if (!task.free[k]) continue;
       const double scale = prior.scale[k], value = best.plan.value[k];
@@ -177,37 +171,36 @@ Correction CorrectFirst(const GuidanceMission& mission, const PlanPrior& prior, 
       const double difference = model.high(i) > kDifference ? kDifference : -kDifference;
       moved.value[k] += difference * scale;
       model.jacobian.col(i) =
-          (Scaled<misses>(mission, predict(moved, false), &before_step, task, turns) - model.miss) /
-          difference;
+          (Scaled(mission, predict(moved, false), &before_step, task, form) - model.miss) / difference;
     }
-    const Unknowns<count> curvature = CurvatureOf(
+    const Unknowns curvature = CurvatureOf(
         mission, known, prior, model,
         task.free[kWaste] ? (best.plan.value[kWaste] - task.low[kWaste]) / prior.scale[kWaste] : 0.0,
         task.free[kCutOff] ? (task.high[kCutOff] - best.plan.value[kCutOff]) / prior.scale[kCutOff] : 0.0);
-    const double sum = model.At(Unknowns<count>::Zero());
+    const double sum = model.At(Unknowns::Zero());
     const double highest = std::fmax(best.prioritised_miss, kSolvedMiss);
     best.iterations = iteration + 1;
     bool taken = false, is_still = false, is_found = false;
     for (int trial = 0; trial < kTrials && !taken && !is_still; ++trial) {
-      const Unknowns<count> weight = Unknowns<count>::Constant(1.0 + damping) + curvature;
+      const Unknowns weight = Unknowns::Constant(1.0 + damping) + curvature;
       const bool is_damped = damping > 0.0;
       // Misses are curved: the same Jacobian corrects the rest that a step leaves, before the step is
       // dropped.
-      StepModel<count, misses> bent = model;
+      StepModel bent = model;
       double before = 1e300;
       for (int turn = 0; turn < kBends && !taken && !is_still; ++turn) {
-        const Unknowns<count> step = BoundedStep(bent, weight);
+        const Unknowns step = BoundedStep(bent, weight);
         Plan next = best.plan;
-        for (int i = 0; i < count; ++i) {
+        for (int i = 0; i < kPlanUnknowns; ++i) {
           const auto k = static_cast<std::size_t>(i);
           if (task.free[k])
             next.value[k] = AfterStep(next.value[k], step(i), prior.scale[k], task.low[k], task.high[k]);
         }
         const Injection reached = predict(next, true);
-        const Misses<misses> miss = Scaled<misses>(mission, reached, nullptr, task, turns);
+        const Misses miss = Scaled(mission, reached, nullptr, task, form);
         const double next_sum = miss.squaredNorm() + model.CostOf(model.departure + step);
-        is_still = (miss - model.miss).template lpNorm<Eigen::Infinity>() < kStill &&
-                   step.template lpNorm<Eigen::Infinity>() < kDifference;
+        is_still = (miss - model.miss).lpNorm<Eigen::Infinity>() < kStill &&
+                   step.lpNorm<Eigen::Infinity>() < kDifference;
         // A prediction that is no number is no decrease.
         taken = miss.norm() <= highest &&
                 (sum - next_sum >= kEnoughDecrease * std::fmax(sum - model.At(step), 0.0) ||
@@ -215,12 +208,13 @@ Correction CorrectFirst(const GuidanceMission& mission, const PlanPrior& prior, 
         if (taken) {
           keep(next, reached, miss);
           model.miss = miss;
-          is_found = !is_damped && (is_still || (miss.norm() <= kFoundMiss &&
-                                                 step.template lpNorm<Eigen::Infinity>() <= kShortStep));
+          is_found =
+              !is_damped &&
+              (is_still || (miss.norm() <= kFoundMiss && step.lpNorm<Eigen::Infinity>() <= kShortStep));
         }
         if (!(miss.norm() < before)) break;
         before = miss.norm();
-        bent.miss = miss - model.jacobian * step;
+        bent.miss = miss - model.ChangeBy(step);
       }
       if (taken)
         damping = damping > kFirstDamping ? damping / kMoreDamping : 0.0;
@@ -230,10 +224,9 @@ Correction CorrectFirst(const GuidanceMission& mission, const PlanPrior& prior, 
     if (!taken || is_found) break;
   }
   const double speed_m_s = mission.target.velocity_m_s;
-  bool is_in_place = best.reached.dive_m <= kArrivesDive_m;
-  if constexpr (HasPlace(misses))
-    is_in_place = is_in_place && ArrivesInPlace(OrbitMissOf(mission, best.reached), speed_m_s,
-                                                task.meets_altitude, task.meets_plane);
+  const bool is_in_place =
+      best.reached.dive_m <= kArrivesDive_m &&
+      ArrivesInPlace(OrbitMissOf(mission, best.reached), speed_m_s, task.meets_altitude, task.meets_plane);
   if (mission.orbit) {
     best.arrives = is_in_place && ArrivesInOrbit(OrbitMissOf(mission, best.reached), speed_m_s,
                                                  task.meets_altitude, task.meets_plane);
@@ -250,36 +243,24 @@ Correction CorrectFirst(const GuidanceMission& mission, const PlanPrior& prior, 
 
 Correction Correct(const GuidanceMission& mission, const PlanPrior& prior, const Knowledge& known,
                    const NavigatedState& from, const Plan& start, const CorrectorTask& task) {
-  const auto correct = [&]<int count>(std::integral_constant<int, count>) {
-    const auto with = [&]<int misses>(std::integral_constant<int, misses>) {
-      const auto by = [&](bool turns) {
-        return CorrectFirst<count, misses>(mission, prior, known, from, start, task, turns);
-      };
-      Correction found = by(true);
-      if (found.arrives || !task.meets_altitude || !OrbitMissOf(mission, found.reached).size_m_s)
-        return found;
-      // Each way arrives from where the other one does not.
-      const int predictions = found.predictions;
-      if (const Correction held = by(false); held.prioritised_miss < found.prioritised_miss) found = held;
-      found.predictions += predictions;
-      return found;
-    };
-    const bool has_place = NamesNodeOrPlace(mission);
-    Correction found = has_place ? with(std::integral_constant<int, kAllMisses>{})
-                                 : with(std::integral_constant<int, kMisses>{});
-    if (!(found.reached.dive_m > 0.0)) return found;
-    // Through the air, of which predictions know nothing: sought again, with that as a miss.
+  const auto with = [&](bool has_air) {
+    Correction found = CorrectFirst(mission, prior, known, from, start, task, {true, has_air});
+    if (found.arrives || !task.meets_altitude || !OrbitMissOf(mission, found.reached).size_m_s) return found;
+    // Each way arrives from where the other one does not.
     const int predictions = found.predictions;
-    found = has_place ? with(std::integral_constant<int, kAllMissesAndAir>{})
-                      : with(std::integral_constant<int, kMissesAndAir>{});
+    if (const Correction held = CorrectFirst(mission, prior, known, from, start, task, {false, has_air});
+        held.prioritised_miss < found.prioritised_miss)
+      found = held;
     found.predictions += predictions;
     return found;
   };
-  if (known.phase == GuidancePhase::kEarlierBurns)
-    return correct(std::integral_constant<int, kPlanUnknowns>{});
-  return mission.below.is_cut_off() || mission.last.is_cut_off()
-             ? correct(std::integral_constant<int, kTwoBurnUnknowns>{})
-             : correct(std::integral_constant<int, kUncutUnknowns>{});
+  Correction found = with(false);
+  if (!(found.reached.dive_m > 0.0)) return found;
+  // Through the air, of which predictions know nothing: sought again, with that as a miss.
+  const int predictions = found.predictions;
+  found = with(true);
+  found.predictions += predictions;
+  return found;
 }
 
 }  // namespace dispersa

@@ -84,10 +84,6 @@ OrbitMiss MissOfOrbit(const GuidanceMission& mission, const Injection& reached) 
 
 }  // namespace
 
-bool NamesNodeOrPlace(const GuidanceMission& mission) {
-  return mission.node_rad || (mission.orbit && mission.orbit->true_anomaly_rad);
-}
-
 OrbitMiss OrbitMissOf(const GuidanceMission& mission, const Injection& reached) {
   if (mission.orbit) return MissOfOrbit(mission, reached);
   const Arrival &at = reached.at, &target = mission.target;

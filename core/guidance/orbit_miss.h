@@ -16,12 +16,10 @@ struct OrbitMiss {
   std::optional<double> size_m_s = {};
   double along = 0.0, across = 0.0;  ///< the vector that is reached
   double plane_m_s = 0.0;            ///< inclination
-  // Of targets that name a node or a true anomaly.
+  // Of targets that name a node or a true anomaly, else 0.
   double node_m_s = 0.0;   ///< the plane's turn about the Earth's axis, times sine of inclination
   double place_m_s = 0.0;  ///< along the orbit
 };
-/// Whether a target has one of the last two misses.
-bool NamesNodeOrPlace(const GuidanceMission& mission);
 
 /// The wanted shape is the target's if the orbit has the target's energy. Else it is that of the orbit with
 /// the target's perigee. Near a circular target no lower orbit has this perigee: then it is the circle. About

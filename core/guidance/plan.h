@@ -17,14 +17,12 @@ enum PlanUnknown {
   kPitchHalf,    ///< by how much pitch is greater at its nominal end, rad
   kYawMiddle,
   kWaste,  ///< part of the last burn's ideal velocity that turning in yaw takes away
-  kUncutUnknowns,
   // Of engines that guidance cuts off.
-  kBelowCutOff = kUncutUnknowns,  ///< duration of the burn of the stage before the last, s
-  kCutOff,                        ///< the same of the last stage
-  kYawHalf,                       ///< as kPitchHalf, of a last burn that guidance cuts off
-  kTwoBurnUnknowns,
+  kBelowCutOff,  ///< duration of the burn of the stage before the last, s
+  kCutOff,       ///< the same of the last stage
+  kYawHalf,      ///< as kPitchHalf, of a last burn that guidance cuts off
   // Of the present burn, if it is before the last two.
-  kEarlierPitch = kTwoBurnUnknowns,  ///< offset to the reference's attitude, rad
+  kEarlierPitch,  ///< offset to the reference's attitude, rad
   kEarlierYaw,
   kEarlierCutOff,  ///< its duration, s
   kPlanUnknowns

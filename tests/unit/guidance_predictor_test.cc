@@ -138,7 +138,7 @@ TEST(Predictor, AKnownWayChangesNoBit) {
     WayToLastBurn way;
     const Injection first = Predict(mission, prior, known, CoastState(), plan, {}, nullptr, &way);
     EXPECT_EQ(first.p_EoC_I, Predict(mission, prior, known, CoastState(), plan).p_EoC_I);
-    for (int unknown = 0; unknown < kUncutUnknowns; ++unknown) {
+    for (int unknown = 0; unknown <= kWaste; ++unknown) {
       Plan moved = plan;
       moved.value[static_cast<std::size_t>(unknown)] += unknown == kIgnition ? 5.0 : 0.01;
       const Injection anew = Predict(mission, prior, known, CoastState(), moved);
