@@ -60,7 +60,7 @@ def commands_page(programs):
 
 def changes():
     """The snippets of changes since the last release, one after the other."""
-    return "\n\n".join(path.read_text().strip() for path in sorted((HERE / "changes").glob("*.md")))
+    return "\n\n".join(path.read_text().strip() for path in sorted((HERE / "changes").glob("*.md"))) or "None."
 
 
 def csv_table(path):
