@@ -1,8 +1,9 @@
 #include "core/flight/lane_engine.h"
 
-#include <algorithm>
 #include <cstdlib>
 #include <stdexcept>
+#include <string_view>
+#include <tuple>
 
 namespace dispersa {
 
@@ -20,27 +21,44 @@ bool HasV4() {
          __builtin_cpu_supports("avx512vl");
 }
 
+// The fastest that the environment allows: of the newest level, with the lanes of one register. More lanes
+// lack registers and are slower.
 LaneEngine Choose() {
   const char* isa = std::getenv("DISPERSA_ISA");
   const char* lanes = std::getenv("DISPERSA_LANES");
+  const auto speed = [](const LaneEngine& engine) {
+    const bool is_v4 = std::string_view(engine.isa) == "v4", fills_register = engine.lanes == (is_v4 ? 8 : 4);
+    return std::tuple(is_v4, fills_register, engine.lanes);
+  };
   const std::vector<LaneEngine> usable = UsableEngines();
-  const bool any_v4 = std::any_of(usable.begin(), usable.end(),
-                                  [](const LaneEngine& engine) { return std::string(engine.isa) == "v4"; });
-  const std::string level = isa ? isa : any_v4 ? "v4" : "v3";
-  // One register of the level: more lanes lack registers and are slower. A build may lack that width.
-  const std::string width = lanes ? lanes : level == "v4" ? "8" : "4";
-  const LaneEngine* widest = nullptr;
+  const LaneEngine* best = nullptr;
+  std::string allowed;
   for (const LaneEngine& engine : usable) {
-    if (level != engine.isa) continue;
-    if (width == std::to_string(engine.lanes)) return engine;
-    if (widest == nullptr || engine.lanes > widest->lanes) widest = &engine;
+    allowed += (allowed.empty() ? "" : ", ") + std::string(engine.isa) + " " + std::to_string(engine.lanes);
+    if (isa != nullptr && std::string_view(isa) != engine.isa) continue;
+    if (lanes != nullptr && lanes != std::to_string(engine.lanes)) continue;
+    if (best == nullptr || speed(*best) < speed(engine)) best = &engine;
   }
-  if (widest != nullptr && !lanes) return *widest;
+  if (best != nullptr) return *best;
   std::string asked;
-  if (isa) asked += "DISPERSA_ISA=" + std::string(isa);
-  if (lanes) asked += (asked.empty() ? "" : " ") + ("DISPERSA_LANES=" + std::string(lanes));
-  throw std::invalid_argument(asked + ": this processor flies with DISPERSA_ISA=" +
-                              (HasV4() ? "v3 or v4" : "v3") + " and DISPERSA_LANES=1, 4 or 8");
+  if (isa != nullptr) asked += "DISPERSA_ISA=" + std::string(isa);
+  if (lanes != nullptr) asked += (asked.empty() ? "" : " ") + ("DISPERSA_LANES=" + std::string(lanes));
+  throw std::invalid_argument(asked + ": no engine of this build on this processor, allowed: " + allowed);
+}
+
+// Of the chosen level; or of v3, whose bits are the same, where a build leaves that width out.
+const LaneEngine& Narrowest(std::size_t flights) {
+  static const std::vector<LaneEngine> usable = UsableEngines();
+  const LaneEngine* found = &ChosenEngine();
+  const std::string_view level = found->isa;
+  for (const LaneEngine& engine : usable) {
+    const bool is_of_level = level == engine.isa;
+    if ((!is_of_level && std::string_view(engine.isa) != "v3") ||
+        flights > static_cast<std::size_t>(engine.lanes))
+      continue;
+    if (engine.lanes < found->lanes || (engine.lanes == found->lanes && is_of_level)) found = &engine;
+  }
+  return *found;
 }
 
 }  // namespace
@@ -59,30 +77,10 @@ const LaneEngine& ChosenEngine() {
   return engine;
 }
 
-const LaneEngine& OneLaneEngine() {
-  static const LaneEngine engine = [] {
-    const std::vector<LaneEngine> usable = UsableEngines();
-    return *std::find_if(usable.begin(), usable.end(), [](const LaneEngine& e) {
-      return e.lanes == 1 && std::string(e.isa) == ChosenEngine().isa;
-    });
-  }();
-  return engine;
-}
+const LaneEngine& OneLaneEngine() { return Narrowest(1); }
 
 const LaneEngine& EngineFor(std::size_t flights) {
-  static const std::vector<LaneEngine> narrower = [] {
-    std::vector<LaneEngine> engines =
-        std::getenv("DISPERSA_LANES") ? std::vector<LaneEngine>() : UsableEngines();
-    std::erase_if(engines, [](const LaneEngine& e) {
-      return std::string(e.isa) != ChosenEngine().isa || e.lanes >= ChosenEngine().lanes;
-    });
-    std::sort(engines.begin(), engines.end(),
-              [](const LaneEngine& a, const LaneEngine& b) { return a.lanes < b.lanes; });
-    return engines;
-  }();
-  for (const LaneEngine& engine : narrower)
-    if (flights <= static_cast<std::size_t>(engine.lanes)) return engine;
-  return ChosenEngine();
+  return std::getenv("DISPERSA_LANES") != nullptr ? ChosenEngine() : Narrowest(flights);
 }
 
 }  // namespace dispersa

@@ -23,10 +23,10 @@ std::vector<LaneEngine> UsableEngines();
 /// the first call. Throws std::invalid_argument if the engine asked for does not exist or the processor
 /// cannot run it.
 const LaneEngine& ChosenEngine();
-/// The instance of one lane on the same level.
+/// The instance of one lane on the same level; of v3 where the build has none.
 const LaneEngine& OneLaneEngine();
-/// The narrowest engine of the chosen level with lanes for this number of flights. An empty lane costs as
-/// much as a flying one. If DISPERSA_LANES is set, the chosen engine.
+/// The narrowest engine of the chosen level (or of v3) with lanes for this number of flights. An empty lane
+/// costs as much as a flying one. If DISPERSA_LANES is set, the chosen engine.
 const LaneEngine& EngineFor(std::size_t flights);
 
 }  // namespace dispersa

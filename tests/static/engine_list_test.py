@@ -17,18 +17,13 @@ class EngineListTest(unittest.TestCase):
         return " ".join(line.strip() for line in done.stdout.splitlines()
                         if line.strip() and not line.startswith(("CMake Error", "Call Stack"))).strip()
 
-    def missing(self, engine, engines):
-        return (f"DISPERSA_ENGINES: '{engine}' is missing in '{engines}'; needed: 'v3 1', and 'v4 1' beside other "
-                "engines of v4")
-
-    def test_takes_what_has_one_lane_on_each_level(self):
-        for engines in ("v3 1;v3 4;v3 8;v4 1;v4 4;v4 8", "v3 1;v3 4", "v3 1", "v3 4;v3 1", "v3 1;v4 8;v4 1"):
+    def test_takes_what_has_one_lane_for_every_processor(self):
+        for engines in ("v3 1;v3 4;v3 8;v4 1;v4 4;v4 8", "v3 1;v3 4;v4 8", "v3 1", "v3 4;v3 1"):
             self.assertEqual(self.problem(engines), "", engines)
 
-    def test_refuses_what_lacks_a_one_lane_engine(self):
-        for engine, engines in (("v3 1", "v3 4"), ("v3 1", "v3 4;v3 8"), ("v4 1", "v3 1;v4 8"), ("v3 1", ""),
-                                ("v3 1", "v4 1;v4 8"), ("v3 1", "v3 4;v4 1")):
-            self.assertEqual(self.problem(engines), self.missing(engine, engines), engines)
+    def test_refuses_what_lacks_it(self):
+        for engines in ("v3 4", "v3 4;v3 8", "v4 1;v4 8", ""):
+            self.assertEqual(self.problem(engines), f"DISPERSA_ENGINES: 'v3 1' is missing in '{engines}'")
 
     def test_refuses_what_is_no_engine(self):
         for engine in ("v2 1", "v3 2", "v3", "v3 18"):
