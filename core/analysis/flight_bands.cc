@@ -50,23 +50,29 @@ SampledFlight SampleFlight(const History& history, const std::vector<int>& colum
   static const int longitude_deg = FindHistoryColumn("longitude_deg");
   static const BandRow band_row;
   SampledFlight samples(columns.size());
-  for (std::vector<double>& column : samples) column.reserve(history.rows());
-  double last_longitude_deg = 0.0;
   const std::size_t width = HistoryColumns().size();
+  double end_s = 0.0;
+  for (std::size_t at = 0; at < history.values.size(); at += width)
+    end_s = std::fmax(end_s, history.values[at]);
+  const auto most = static_cast<std::size_t>(std::round(end_s / step_s)) + 1;
+  for (std::vector<double>& column : samples) column.assign(most, kUndefined);
+  std::size_t steps = 0;
+  double last_longitude_deg = 0.0;
   for (std::size_t at = 0; at < history.values.size(); at += width) {
     const double* const row = history.values.data() + at;
     const double time_s = row[0];
     const double multiple = std::round(time_s / step_s);
-    if (time_s < 0.0 || std::fabs(time_s - multiple * step_s) > 1e-6) continue;
+    if (time_s < 0.0 || !(std::fabs(time_s - multiple * step_s) <= 1e-6)) continue;
     const auto step = static_cast<std::size_t>(multiple);
+    steps = std::max(steps, step + 1);
     for (std::size_t i = 0; i < columns.size(); ++i) {
-      if (samples[i].size() <= step) samples[i].resize(step + 1, kUndefined);
       double& value = samples[i][step];
       value = band_row.At(row, columns[i]);
       if (columns[i] == longitude_deg && std::isfinite(value))
         value = last_longitude_deg = NearTo(last_longitude_deg, value, kCutAt180Deg);
     }
   }
+  for (std::vector<double>& column : samples) column.resize(steps);
   return samples;
 }
 

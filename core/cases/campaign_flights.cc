@@ -91,6 +91,10 @@ class FlyingOrders : public FlightQueue {
     FlightOrder to_fly{shared_.flights.Draw(wanted.case_index), {}};
     to_fly.options.case_index = wanted.case_index;
     if (wanted.history_step_s > 0.0) {
+      if (!rooms_.empty()) {
+        flight->history.values = std::move(rooms_.back());
+        rooms_.pop_back();
+      }
       flight->history.step_s = wanted.history_step_s;
       to_fly.options.history = &flight->history;
     }
@@ -100,10 +104,11 @@ class FlyingOrders : public FlightQueue {
     return record;
   }
   void Done(FlightRecord* record) override {
-    const auto ended = flying_.extract(record);
+    auto ended = flying_.extract(record);
     CaseResult result =
         ResultOf(shared_.flights.rows(), record->options.case_index, record->inputs, record->Result());
     shared_.Done(ended.mapped()->order, std::move(result), ended.mapped()->history);
+    if (record->options.history != nullptr) rooms_.push_back(std::move(ended.mapped()->history.values));
   }
 
  private:
@@ -114,6 +119,8 @@ class FlyingOrders : public FlightQueue {
   };
   SharedOrders& shared_;
   std::map<FlightRecord*, std::unique_ptr<InFlight>> flying_;
+  /// Memory of histories that have been observed. Growing it anew for each flight costs more than filling it.
+  std::vector<std::vector<double>> rooms_;
 };
 
 // The same where every flight has a process of its own.

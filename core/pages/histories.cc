@@ -159,15 +159,27 @@ History Thinned(const History& ticks, double tick_s, double step_s) {
                            (row + 1 < rows && time_s(row + 1) - time_s(row) < kSame_s);
     kept[row] = !is_tick || is_double || tick % in_step == 0 || row + 1 == rows;
   }
-  for (std::size_t column = 1; column < columns; ++column) {
-    std::optional<std::size_t> least, largest;
-    for (std::size_t row = 0; row < rows; ++row) {
-      if (!std::isfinite(value(row, column))) continue;
-      if (!least || value(row, column) < value(*least, column)) least = row;
-      if (!largest || value(row, column) > value(*largest, column)) largest = row;
+  struct Extremes {
+    double min = HUGE_VAL, max = -HUGE_VAL;
+    std::size_t least = 0, largest = 0;
+  };
+  std::vector<Extremes> extremes(columns);
+  for (std::size_t row = 0; row < rows; ++row) {
+    for (std::size_t column = 1; column < columns; ++column) {
+      const double here = value(row, column);
+      Extremes& of_column = extremes[column];
+      if (here < of_column.min && std::isfinite(here)) {
+        of_column.min = here;
+        of_column.least = row;
+      }
+      if (here > of_column.max && std::isfinite(here)) {
+        of_column.max = here;
+        of_column.largest = row;
+      }
     }
-    if (least) kept[*least] = kept[*largest] = true;
   }
+  for (const Extremes& of_column : extremes)
+    if (of_column.min <= of_column.max) kept[of_column.least] = kept[of_column.largest] = true;
   History thinned;
   thinned.step_s = step_s;
   thinned.values.reserve(static_cast<std::size_t>(std::count(kept.begin(), kept.end(), true)) * columns);
