@@ -7,14 +7,19 @@
 
 namespace dispersa {
 
-/// Velocity gained from rest along the axis, m/s, in steps of `step_s`. Steps also end on the corners of the
-/// burn if `stops_at_corners`.
-inline double SpeedGained(const Vehicle& vehicle, double thrust_factor, double flow_factor, double step_s,
-                          bool stops_at_corners = true) {
+/// To be built once for all burns of a vehicle: its aerodynamics take longer than a burn.
+inline LauncherPlant PlantInEmptySpace(const Vehicle& vehicle) {
   LauncherPlant plant = BuildNominalPlant(vehicle);
-  plant.stacks[0].burn = BuildBurn(vehicle.stages[0], thrust_factor, flow_factor);
   plant.environment.earth = SphericalEarth(6371000.0, false);
   plant.environment.earth.mu_m3_s2 = 0.0;
+  return plant;
+}
+
+/// Velocity gained from rest along the axis by the burn of `stage`, which is the first of the plant's
+/// vehicle, m/s, in steps of `step_s`. Steps also end on the corners of the burn if `stops_at_corners`.
+inline double SpeedGained(LauncherPlant plant, const Stage& stage, double thrust_factor, double flow_factor,
+                          double step_s, bool stops_at_corners = true) {
+  plant.stacks[0].burn = BuildBurn(stage, thrust_factor, flow_factor);
   const MotorBurn& burn = plant.stacks[0].burn;
   std::vector<double> stops_s;
   if (stops_at_corners) stops_s = burn.Kinks(0.0);

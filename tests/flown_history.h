@@ -6,6 +6,8 @@
 
 #include "core/flight/flight.h"
 #include "core/flight/history.h"
+#include "core/flight/tick_sample.h"
+#include "tests/test.h"
 
 namespace dispersa {
 
@@ -24,6 +26,26 @@ inline Flown FlyWith(const FlightModel& model, const FlightInputs& inputs, Schem
   options.steps_per_tick = steps_per_tick;
   options.history = &flown.history;
   flown.result = Fly(model, inputs, options);
+  return flown;
+}
+
+/// Up to a time, which the flight must reach, and no farther: without a result.
+inline Flown FlyUntil(const FlightModel& model, const FlightInputs& inputs, Scheme scheme, double until_s,
+                      int steps_per_tick = 1) {
+  struct Reached {};
+  Flown flown;
+  flown.history.step_s = 0.1;
+  FlightOptions options;
+  options.scheme = scheme;
+  options.steps_per_tick = steps_per_tick;
+  options.history = &flown.history;
+  options.observe = [&](const TickSample& sample) {
+    if (sample.time_s > until_s) throw Reached();
+  };
+  try {
+    ADD_FAILURE() << "ended before " << until_s << " s: " << Fly(model, inputs, options).reason;
+  } catch (const Reached&) {
+  }
   return flown;
 }
 

@@ -16,6 +16,7 @@
 #include "core/vehicle/aerodynamics_build_up.h"
 #include "core/vehicle/mass.h"
 #include "tests/liquid_stage.h"
+#include "tests/long.h"
 #include "tests/same_events.h"
 #include "tests/slv4_flight.h"
 #include "tests/tabulated_masses.h"
@@ -29,16 +30,29 @@ namespace {
 constexpr char kPairs[] = DISPERSA_CAMPAIGNS "/../services/docs/pairs.csv";
 constexpr char kRefused[] = DISPERSA_CAMPAIGNS "/../services/docs/refused_pairs.csv";
 
+// The files, each read once: there are hundreds of pairs.
+const Vehicle& Rigid() {
+  static const Vehicle vehicle = LoadVehicle(DISPERSA_CAMPAIGNS "/vehicles/slv4.yaml");
+  return vehicle;
+}
+const Vehicle& Flexible() {
+  static const Vehicle vehicle = LoadVehicle(DISPERSA_CAMPAIGNS "/vehicles/slv4_flexible.yaml");
+  return vehicle;
+}
+const FlightProgram& Program() {
+  static const FlightProgram program =
+      LoadReference(DISPERSA_CAMPAIGNS "/references/slv4_500km_reserve.yaml").program;
+  return program;
+}
+
 // SLV-4 with capabilities. What it flies follows from the vehicle, by an ascent of its own.
 struct Launcher {
-  Vehicle vehicle = LoadVehicle(DISPERSA_CAMPAIGNS "/vehicles/slv4.yaml");
-  FlightProgram program = LoadReference(DISPERSA_CAMPAIGNS "/references/slv4_500km_reserve.yaml").program;
+  Vehicle vehicle = Rigid();
+  FlightProgram program = Program();
   std::string autopilot = "adaptive_fuzzy";
   bool is_guided = false, is_turbulent = false, draws_masses = false, has_weather = false;
   FlightCourse course;
 };
-
-Vehicle Flexible() { return LoadVehicle(DISPERSA_CAMPAIGNS "/vehicles/slv4_flexible.yaml"); }
 
 void AddBoosters(Launcher& launcher) {
   Boosters& b = launcher.vehicle.boosters;
@@ -72,9 +86,8 @@ void AddFairing(Launcher& launcher) {
 }
 void AddBending(Launcher& launcher) {
   Vehicle& vehicle = launcher.vehicle;
-  const Vehicle flexible = Flexible();
-  vehicle.structure_beam = flexible.structure_beam;
-  vehicle.sensors = flexible.sensors;
+  vehicle.structure_beam = Flexible().structure_beam;
+  vehicle.sensors = Flexible().sensors;
   launcher.autopilot = "flexible";  // which blends the gyros
   StructureBeam& beam = *vehicle.structure_beam;
   vehicle.boosters.attachment_station_m = 23.0;
@@ -264,10 +277,7 @@ void Land(Launcher& launcher) {
   vehicle.descent.parachute_altitude_m = 4000.0;
   launcher.course.ends = FlightEnd::kImpact;
 }
-void AddGyros(Launcher& launcher) {
-  const Vehicle flexible = Flexible();
-  launcher.vehicle.sensors = flexible.sensors;
-}
+void AddGyros(Launcher& launcher) { launcher.vehicle.sensors = Flexible().sensors; }
 
 struct Capability {
   std::string name;
@@ -331,7 +341,11 @@ FlightDefinition GuidedDefinitionOf(const Launcher& launcher) {
   AscentOptions options;
   options.record = true;
   const AscentResult ascent = FlyAscent(BuildAscentModel(launcher.vehicle, 0.01), launcher.program, options);
-  FlightDefinition definition = Slv4Definition(DISPERSA_CAMPAIGNS, launcher.autopilot, "slv4_500km_reserve");
+  static std::map<std::string, FlightDefinition> definitions;  // by autopilot: three files each
+  auto& [name, of_slv4] = *definitions.try_emplace(launcher.autopilot).first;
+  if (of_slv4.vehicle.stages.empty())
+    of_slv4 = Slv4Definition(DISPERSA_CAMPAIGNS, name, "slv4_500km_reserve");
+  FlightDefinition definition = of_slv4;
   definition.vehicle = launcher.vehicle;
   definition.program = ascent.attitude;
   definition.last_ignition_s = ascent.last_ignition_s;
@@ -495,35 +509,30 @@ std::string Refusal(const Launcher& launcher) {
   return problems.empty() ? "" : problems[0].path + ": " + problems[0].message;
 }
 
-std::uint64_t Cases() {
-  const char* cases = std::getenv("DISPERSA_PAIR_CASES");
-  return cases == nullptr ? 2 : std::stoull(cases);
-}
+// The first is also flown alone, each of them in the long test.
+std::uint64_t Cases() { return IsLong() ? 20 : 2; }
 
-// Those that fly several cases side by side on the level that campaigns use; with DISPERSA_PAIR_CASES, all.
-// That levels give the same bits is the subject of flight_lanes_test.cc.
+// The one that campaigns use; in the long test all. That levels and numbers of lanes give the same bits is
+// the subject of flight_lanes_test.cc.
 std::vector<LaneEngine> EnginesToCompare() {
-  std::vector<LaneEngine> engines = UsableEngines();
-  if (std::getenv("DISPERSA_PAIR_CASES") == nullptr)
-    std::erase_if(engines, [](const LaneEngine& engine) {
-      return engine.lanes == 1 || std::string_view(engine.isa) != ChosenEngine().isa;
-    });
-  return engines;
+  return IsLong() ? UsableEngines() : std::vector{ChosenEngine()};
 }
 
 void ExpectFlies(const Launcher& launcher) {
   const FlightModel model(DefinitionOf(launcher));
   std::vector<FlightOrder> orders;
-  std::vector<FlightResult> alone;
   for (std::uint64_t index = 0; index < Cases(); ++index) {
     FlightOrder order{InputsOf(launcher, index), {}};
     order.options.case_index = index;
     orders.push_back(order);
+  }
+  std::vector<FlightResult> alone;
+  for (std::size_t i = 0; i < (IsLong() ? orders.size() : 1); ++i) {
+    FlightOptions options = orders[i].options;
     Bookkeeper books(model.nominal_plant().environment.earth);
     if (launcher.vehicle.rail) books.held_until_s = 3.0;
-    order.options.observe = [&](const TickSample& now) { books.See(now); };
-    alone.push_back(Fly(model, order.inputs, order.options));
-    EXPECT_EQ(alone.back().outcome, Outcome::kCompleted) << alone.back().reason;
+    options.observe = [&](const TickSample& now) { books.See(now); };
+    alone.push_back(Fly(model, orders[i].inputs, options));
     // Of the trapezium rule over a tick, with the jumps of wind and thrust inside it.
     EXPECT_LT(books.largest_tick_m_s, 2e-3);
     // Nothing pushes where a body leaves. Bending passes some of its motion on.
@@ -533,7 +542,9 @@ void ExpectFlies(const Launcher& launcher) {
   for (const LaneEngine& engine : EnginesToCompare()) {
     Queue together(model, orders);
     engine.fly(model, together);
-    for (std::size_t i = 0; i < orders.size(); ++i) {
+    for (const FlightResult& flown : together.results)
+      EXPECT_EQ(flown.outcome, Outcome::kCompleted) << flown.reason;
+    for (std::size_t i = 0; i < alone.size(); ++i) {
       EXPECT_EQ(together.results[i].digest, alone[i].digest)
           << engine.isa << ", " << engine.lanes << " lanes, case " << i;
       EXPECT_TRUE(AreSame(together.results[i].events, alone[i].events)) << engine.isa << ", case " << i;
@@ -599,16 +610,19 @@ struct PairTables {
 PairTables Tables() {
   const std::vector<Capability>& all = Capabilities();
   PairTables tables;
+  std::vector<std::vector<std::string>> refusals(all.size(), std::vector<std::string>(all.size()));
+  for (std::size_t row = 0; row < all.size(); ++row)
+    for (std::size_t column = row + 1; column < all.size(); ++column) {
+      const std::string refusal = refusals[row][column] = refusals[column][row] =
+          Refusal(With({row, column}));
+      if (!refusal.empty())
+        tables.refused += all[row].name + "," + all[column].name + ",\"" + refusal + "\"\n";
+    }
   for (const Capability& one : all) tables.pairs += "," + one.name;
   for (std::size_t row = 0; row < all.size(); ++row) {
     tables.pairs += "\n" + all[row].name;
-    for (std::size_t column = 0; column < all.size(); ++column) {
-      const std::string refusal =
-          row == column ? "" : Refusal(With({std::min(row, column), std::max(row, column)}));
-      tables.pairs += row == column ? "," : refusal.empty() ? ",flies" : ",refused";
-      if (!refusal.empty() && row < column)
-        tables.refused += all[row].name + "," + all[column].name + ",\"" + refusal + "\"\n";
-    }
+    for (std::size_t column = 0; column < all.size(); ++column)
+      tables.pairs += row == column ? "," : refusals[row][column].empty() ? ",flies" : ",refused";
   }
   tables.pairs += "\n";
   return tables;

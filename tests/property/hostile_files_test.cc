@@ -156,7 +156,7 @@ TEST_F(HostileFiles, NoWrongNumberComesOutOfADamagedDatabase) {
   const fs::path database = root_ / "out/results.sqlite";
   const std::string good = TextOfFile(database);
   std::uint64_t rows = 0, refused = 0;
-  for (std::uint64_t i = 0; i < Inputs() / 2; ++i) {
+  for (std::uint64_t i = 0; i < Inputs() / 10; ++i) {
     std::string bytes = good;
     for (std::size_t changes = 1 + Below(4); changes > 0; --changes) {
       const std::size_t at = Below(Below(3) == 0 ? std::min<std::size_t>(bytes.size(), 200)
@@ -200,8 +200,8 @@ TEST_F(HostileFiles, NoWrongNumberComesOutOfADamagedDatabase) {
     for (const char* beside : {"out/results.sqlite-wal", "out/results.sqlite-shm"})
       fs::remove(root_ / beside);
   }
-  EXPECT_GT(rows, Inputs() / 10) << "most damage leaves rows";
-  EXPECT_GT(refused, Inputs() / 100);
+  EXPECT_GT(rows, Inputs() / 50) << "most damage leaves rows";
+  EXPECT_GT(refused, Inputs() / 500);
 }
 
 }  // namespace

@@ -357,11 +357,12 @@ TEST(BendingFlight, ABentBodyTurnsAndMovesItsThrustAndIsCompressedByIt) {
 
 // By how much, as a logarithm, a stage's loop lets a disturbance grow while it is unstable with so many
 // further ticks of delay: the linearised growth over its burn.
-double GrowthWithDelay(const FlightModel& model, int stage, int ticks) {
+double GrowthWithDelay(const FlightModel& model, const std::vector<MarginInstant>& instants, int stage,
+                       int ticks) {
   const LauncherPlant& plant = model.nominal_plant();
   const double tick_s = model.autopilot().config.tick_s;
   double growth = 0.0, before_s = -1.0;
-  for (const MarginInstant& instant : MarginInstants(model)) {
+  for (const MarginInstant& instant : instants) {
     const TickSample& s = instant.sample;
     if (s.stack != stage) continue;
     const SampledLoop loop(LineariseAxis(plant, s, kPitch, model.sensors()),
@@ -384,6 +385,7 @@ TEST(BendingFlight, MarginsMeasuredInFlightAreTheComputedOnes) {
     definition.vehicle = LoadVehicle(DISPERSA_CAMPAIGNS "/vehicles/slv4_flexible.yaml");
     const FlightModel model(definition);
     const std::vector<ComputedMargins> computed = ComputeDispersedMargins(model, {}).margins;
+    const std::vector<MarginInstant> instants = MarginInstants(model);
     for (const MeasuredMargins& m : MeasureMargins(model)) {
       double up_db = 1e9, delay_s = 1e9;
       for (const ComputedMargins& c : computed) {
@@ -392,7 +394,8 @@ TEST(BendingFlight, MarginsMeasuredInFlightAreTheComputedOnes) {
         delay_s = std::min(delay_s, c.adapting.delay_s);
       }
       int noticed_ticks = 1;
-      while (noticed_ticks < 25 && GrowthWithDelay(model, m.stage, noticed_ticks) < kNoticed) ++noticed_ticks;
+      while (noticed_ticks < 25 && GrowthWithDelay(model, instants, m.stage, noticed_ticks) < kNoticed)
+        ++noticed_ticks;
       const double noticed_s = noticed_ticks * definition.autopilot.tick_s;
       // Lost counts an oscillation of 0.2 deg, which excitation reaches before the loop is unstable: 1 dB
       // below its margin a loop amplifies ninefold, 1 / (1 - 10^(-1/20)).

@@ -3,6 +3,7 @@
 #include "core/flight/tick_sample.h"
 #include "core/guidance/predictor.h"
 #include "core/math/rotation.h"
+#include "tests/long.h"
 #include "tests/slv4_flight.h"
 #include "tests/test.h"
 
@@ -82,7 +83,7 @@ TEST(GuidedSpin, IsNoWorseThanOpenLoop) {
   open.guidance.closed_loop = false;
   const Orbit nominal = OrbitOf(open, {});
   for (std::size_t stage = 0; stage < 4; ++stage)
-    for (const double percent : {-1.0, -0.3, 0.3, 1.0}) {
+    for (const double percent : IsLong() ? std::vector{-1.0, -0.3, 0.3, 1.0} : std::vector{-1.0, 0.3}) {
       SCOPED_TRACE(testing::Message() << "stage " << stage + 1 << " " << percent << " %");
       FlightInputs inputs;
       inputs.stages[stage].specific_impulse_factor = 1.0 + 0.01 * percent;

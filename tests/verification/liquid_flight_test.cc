@@ -21,6 +21,7 @@ TEST(LiquidFlight, GainsTheRocketEquationsSpeedWhateverTheThrottle) {
   Stage& stage = vehicle.stages[0];
   stage.motor.residual_mass_kg = 0.015 * stage.propellant_mass_kg;
   const double exhaust_m_s = stage.motor.thrust_n * stage.motor.burning_time_s / stage.propellant_mass_kg;
+  const LauncherPlant plant = PlantInEmptySpace(vehicle);
   const Throttle throttles[] = {{}, {{0.0, 1.3, 30.0, 33.3, 60.0}, {0.2, 1.0, 1.0, 0.55, 0.7}}};
   for (const Throttle& throttle : throttles) {
     for (const auto& [cut, tail_off_s] : {std::pair{false, 0.0}, {true, 0.0}, {true, 1.9}}) {
@@ -34,8 +35,8 @@ TEST(LiquidFlight, GainsTheRocketEquationsSpeedWhateverTheThrottle) {
         const double exact_m_s =
             exhaust_m_s * thrust / flow *
             std::log(stage.liftoff_mass_kg / (stage.liftoff_mass_kg - stage.propellant_mass_kg + left_kg));
-        const double coarse = std::fabs(SpeedGained(vehicle, thrust, flow, 0.4) - exact_m_s);
-        const double fine = std::fabs(SpeedGained(vehicle, thrust, flow, 0.2) - exact_m_s);
+        const double coarse = std::fabs(SpeedGained(plant, stage, thrust, flow, 0.4) - exact_m_s);
+        const double fine = std::fabs(SpeedGained(plant, stage, thrust, flow, 0.2) - exact_m_s);
         EXPECT_LT(fine, std::max(coarse / 12.0, 1e-8))
             << throttle.time_s.size() << " corners, " << (cut ? "cut off" : "to depletion");
         EXPECT_LT(fine, 1e-5);

@@ -15,9 +15,10 @@ namespace {
 constexpr std::size_t kFirstBurn = 3, kSecondBurn = 4;
 constexpr double kPause_s = 100.0;
 
+// The coast before the first burn is shorter than the reference's, which takes most of a flight.
 FlightProgram Program() {
   FlightProgram program = LoadReference(DISPERSA_CAMPAIGNS "/references/slv4_500km.yaml").program;
-  program.earlier_coast_s[kFirstBurn] = program.coast_s;
+  program.earlier_coast_s[kFirstBurn] = 60.0;
   program.coast_s = kPause_s;
   return program;
 }
