@@ -201,14 +201,18 @@ class Map {
     };
     // A line that bends more than the eye sees has a part for each degree or less.
     const double part_deg = std::min(1.0, step_deg);
+    // A map of a short flight has a fine grid, of which nearly all lines are elsewhere.
+    const double farthest_km = window_.farthest_km();
     for (int k = static_cast<int>(-90.0 / step_deg) + 1; k * step_deg < 90.0; ++k) {
       const double at_deg = k * step_deg;
+      if (!plane_.MeetsParallel(at_deg, farthest_km)) continue;
       std::vector<MapPlace> line;
       for (double lon = -180.0; lon <= 180.0 + 1e-9; lon += part_deg) line.push_back({at_deg, lon});
       add(line, Degrees(at_deg, "N", "S"), true);
     }
     for (int k = static_cast<int>(-180.0 / step_deg) + 1; k * step_deg <= 180.0; ++k) {
       const double at_deg = k * step_deg;
+      if (!plane_.MeetsMeridian(at_deg, farthest_km)) continue;
       std::vector<MapPlace> line;
       for (double lat = -90.0; lat <= 90.0 + 1e-9; lat += part_deg) line.push_back({lat, at_deg});
       add(line, Degrees(at_deg, "E", "W"), false);

@@ -50,6 +50,18 @@ std::optional<MapPoint> MapPlane::At(const MapPlace& place) const {
   return MapPoint{km * east, km * north};
 }
 
+bool MapPlane::MeetsParallel(double latitude_deg, double radius_km) const {
+  const double middle_rad = Atan2(up_.z(), std::hypot(up_.x(), up_.y()));
+  return std::fabs(latitude_deg / kDegPerRad - middle_rad) <= radius_km / kEarth_km;
+}
+
+bool MapPlane::MeetsMeridian(double longitude_deg, double radius_km) const {
+  const double radius_rad = radius_km / kEarth_km;
+  const SinCos longitude = SineCosine(longitude_deg / kDegPerRad);
+  const double off_its_plane = std::fabs(up_.y() * longitude.cos - up_.x() * longitude.sin);
+  return radius_rad > 0.5 * kPi || off_its_plane <= SineCosine(radius_rad).sin;
+}
+
 MapWindow::MapWindow(const std::vector<MapPoint>& points, double width_px, double most_px)
     : width_px_(width_px) {
   constexpr double kLeastSize_km = 60.0, kMargin = 1.16, kLeastHeight = 0.34;
@@ -66,6 +78,11 @@ MapWindow::MapWindow(const std::vector<MapPoint>& points, double width_px, doubl
   }
   height_px_ = std::clamp(width_px * size_km[1] / size_km[0], kLeastHeight * width_px, most_px);
   px_per_km_ = std::min(width_px / size_km[0], height_px_ / size_km[1]);
+}
+
+double MapWindow::farthest_km() const {
+  return std::hypot(std::fabs(middle_[0]) + 0.5 * width_px_ / px_per_km_,
+                    std::fabs(middle_[1]) + 0.5 * height_px_ / px_per_km_);
 }
 
 MapPoint MapWindow::Pixel(const MapPoint& point) const {

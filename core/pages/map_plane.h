@@ -26,6 +26,11 @@ class MapPlane {
   /// None near the antipode of the middle, which lies in all directions.
   std::optional<MapPoint> At(const MapPlace& place) const;
 
+  /// Whether a parallel may come so near to the middle.
+  bool MeetsParallel(double latitude_deg, double radius_km) const;
+  /// The same of a meridian, or of the one that goes on beyond the pole.
+  bool MeetsMeridian(double longitude_deg, double radius_km) const;
+
  private:
   Vector3 east_ = Vector3::Zero(), north_ = Vector3::Zero(), up_ = Vector3::Zero();
 };
@@ -39,6 +44,8 @@ class MapWindow {
   double width_px() const { return width_px_; }
   double height_px() const { return height_px_; }
   double px_per_km() const { return px_per_km_; }
+  /// Of the picture's farthest corner from the middle of the plane.
+  double farthest_km() const;
   MapPoint Pixel(const MapPoint& point) const;
   /// The part of a segment inside the picture, in pixels (Y.-D. Liang and B. A. Barsky, ACM Trans. Graphics 3
   /// (1984) 1).

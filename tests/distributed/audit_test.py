@@ -9,7 +9,7 @@ import sqlite3
 import subprocess
 import time
 
-from processes import CAMPAIGN, PATIENCE_S, main, wait_for
+from processes import CAMPAIGN, PATIENCE_S, SMOKE, main, wait_for
 from security_test import keys
 from service_case import ServiceCase
 
@@ -55,7 +55,7 @@ class AuditTest(ServiceCase):
         def state():
             return json.loads(ask("status", identity, "--json"))["campaigns"][0]
         self.start("dispersa-coordinator", "--data", self.data / "data", "--keys", folders["coordinator"], "--audit", 0.02)
-        identity = ask("launch", CAMPAIGN, "--cases", 100000).strip()
+        identity = ask("launch", SMOKE, "--cases", 100000).strip()
         honest = [self.start_worker("--keys", folders["worker"]) for _ in range(2)]
         wait_for(lambda: state()["done"] > 500, "results of the honest ones")
         liars = [forger("rack7")]

@@ -21,7 +21,7 @@ from processes import (BINARIES, CAMPAIGN, HALF_WAY_CASES, PATIENCE_S, Run, cont
 
 TROUBLES = int(os.environ.get("DISPERSA_TROUBLES", "3"))
 SEED = int(os.environ.get("DISPERSA_SEED", random.SystemRandom().randrange(10**6)))
-CASES = 800
+CASES = 4000
 OPEN = 2           # campaigns at once, at least
 LONGEST_S = 6.0    # a freeze, a cut: beyond the silence after which a worker is lost
 STALL_S = 30       # after a trouble something must be stored within

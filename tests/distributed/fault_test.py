@@ -7,7 +7,7 @@ import os
 import shutil
 import subprocess
 
-from processes import BINARIES, PATIENCE_S, Run, main, smoke_text
+from processes import BINARIES, PATIENCE_S, Run, lost_text, main
 from service_case import ServiceCase
 
 FAULT = "tests/tools/faulty_worker.cc:"
@@ -21,7 +21,7 @@ class FaultTest(ServiceCase):
     def campaign(self, name):
         """A file of the campaign under another name."""
         file = self.root / f"{name}.yaml"
-        file.write_text(smoke_text(name))
+        file.write_text(lost_text(name))
         return file
 
     def test_the_cases_of_the_first_one_are_flown_by_others(self):

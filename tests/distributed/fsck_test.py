@@ -8,7 +8,7 @@ import signal
 import sqlite3
 import subprocess
 
-from processes import BINARIES, BRIEF, CAMPAIGN, PATIENCE_S, Run, content, main, stored, wait_for
+from processes import BINARIES, BRIEF, CAMPAIGN, LOST_CODE, PATIENCE_S, Run, content, main, stored, wait_for
 from service_case import ServiceCase
 
 CASES = 12
@@ -51,7 +51,7 @@ class DataFolder(FsckCase):
         self.start_coordinator()
         self.start_worker("--slots", 2)
         self.identity = self.dispersa("launch", CAMPAIGN, "--cases", CASES).strip()
-        self.dispersa("watch", self.identity)
+        self.dispersa("watch", self.identity, code=LOST_CODE)
         self.whole = self.fetch(self.identity)
         self.folder = self.data / self.identity
 
@@ -69,7 +69,7 @@ class DataFolder(FsckCase):
 
     def test_a_verdict_that_was_edited_is_none(self):
         self.stop()
-        change(self.folder / "state.json", b'"verdict": "pass"', b'"verdict": "fail"')
+        change(self.folder / "state.json", b'"verdict": "fail"', b'"verdict": "pass"')
         problem = [(f"{self.identity}/state.json", "does not fit its checksum")]
         self.assertEqual(self.fsck(self.data, code=1), problem)
         self.start_coordinator()
@@ -89,13 +89,13 @@ class DataFolder(FsckCase):
                           "results; owner, labels and priority are lost"])
         self.assertEqual(self.fsck(self.data), [])
         self.start_coordinator()
-        self.dispersa("watch", self.identity)
+        self.dispersa("watch", self.identity, code=LOST_CODE)
         again = self.fetch(self.identity)
         for name in REPORTS:
             self.assertEqual(content(again, name), content(self.whole, name), name)
 
     def test_what_flew_half_is_made_anew_as_cancelled(self):
-        many = self.dispersa("launch", CAMPAIGN, "--cases", 5000).strip()
+        many = self.dispersa("launch", BRIEF, "--cases", 5000).strip()
         wait_for(lambda: stored(self.data / many / "results") > 0, "results")
         self.stop()
         count = stored(self.data / many / "results")
@@ -210,13 +210,13 @@ class Drain(FsckCase):
         self.assertIn("does not answer", nobody.communicate(timeout=PATIENCE_S)[1])
         self.assertEqual(nobody.returncode, 5)
         coordinator = self.start_coordinator()
-        flying = [self.dispersa("launch", BRIEF, "--cases", 300, "--seed", seed).strip() for seed in range(1, 9)]
-        waiting = self.dispersa("launch", BRIEF, "--cases", 10, "--seed", 9).strip()
+        flying = [self.dispersa("launch", CAMPAIGN, "--cases", 300, "--seed", seed).strip() for seed in range(1, 9)]
+        waiting = self.dispersa("launch", CAMPAIGN, "--cases", 10, "--seed", 9).strip()
         wait_for(lambda: all(self.status(each)["state"] == "flying" for each in flying), "eight of them")
         drained = self.drain("--data", self.data)
         said = drained.stderr.readline()  # the coordinator has answered: what is launched before it still would be taken
         self.assertIn("draining: 8 campaigns fly or get their reports, 1 wait for the next coordinator", said)
-        self.assertEqual(self.dispersa_code("launch", BRIEF, "--seed", 10), 5)
+        self.assertEqual(self.dispersa_code("launch", CAMPAIGN, "--seed", 10), 5)
         self.assertIn("the coordinator is drained and takes no campaign, ask again when the next one has started", self.error)
         self.assertIsNone(coordinator.poll(), "it waits for its campaigns")
         self.assertEqual(self.status(waiting)["state"], "waiting")
@@ -228,7 +228,7 @@ class Drain(FsckCase):
         self.assertEqual(states, {"done"})
         self.assertEqual(json.loads((self.data / waiting / "state.json").read_text())["state"], "waiting")
         self.start_coordinator()
-        self.dispersa("watch", waiting)
+        self.dispersa("watch", waiting, code=LOST_CODE)
 
     def dispersa_code(self, *arguments):
         done = subprocess.run([BINARIES / "dispersa", *map(str, arguments), *self.NETWORK], capture_output=True, text=True,

@@ -28,7 +28,7 @@ import unittest
 
 import aged
 from hosts import Hosts
-from processes import BINARIES, CAMPAIGN, PATIENCE_S, Run, content, end, main, stored, wait_for
+from processes import BINARIES, PATIENCE_S, SMOKE, Run, content, end, main, stored, wait_for
 
 OLDER = pathlib.Path(os.environ.get("DISPERSA_OLDER", BINARIES))
 SOURCE = pathlib.Path(os.environ["DISPERSA_SOURCE"])
@@ -142,7 +142,7 @@ class GameDay(unittest.TestCase):
         autopilot = self.root / "law.yaml"
         autopilot.write_text((SOURCE / "tests/data/brief/pd.yaml").read_text().replace("law: pd", "law: plugin").replace(
             "tick_s:", "plugin: {library: law.so}\ntick_s:"))
-        run = Run(self.root / "law", "--workers", 0, "--cases", 1, "--no-histories", "--autopilot", autopilot).finish()
+        run = Run(self.root / "law", "--workers", 0, "--cases", 1, "--no-histories", "--autopilot", autopilot, campaign=SMOKE).finish()
         return run.out / "campaign.yaml"
 
     def make_disk(self, name):
@@ -225,7 +225,7 @@ class GameDay(unittest.TestCase):
         while len(open_ones) < OPEN:
             self.seeds += 1
             mine = {"owner": OWNERS[self.seeds % len(OWNERS)], "seed": self.seeds, "cases": CASES,
-                    "file": CAMPAIGN if self.seeds % 4 else self.with_law}
+                    "file": SMOKE if self.seeds % 4 else self.with_law}
             open_ones.append(self.launch(mine))
 
     def launch(self, mine):
@@ -347,7 +347,7 @@ class GameDay(unittest.TestCase):
         wait_for(self.is_any_done, "a campaign that is done")
         before = self.listed()
         cases = {identity: self.fetched_cases(identity) for identity, each in before.items() if each["state"] == "done"}
-        flying = self.launch({"owner": "ann", "seed": 0, "cases": LONG_CASES, "file": CAMPAIGN})
+        flying = self.launch({"owner": "ann", "seed": 0, "cases": LONG_CASES, "file": SMOKE})
         wait_for(lambda: stored(self.data / flying / "results") > 0, "its first results")
         self.restart_with_today()
         after = self.listed()
@@ -450,7 +450,7 @@ class GameDay(unittest.TestCase):
             self.renew_the_authority()
         elif kind == "more than the quota":
             owner = self.draws.choice(OWNERS)
-            code, _, error = self.client(owner, "launch", CAMPAIGN, "--cases", TOO_MANY, "--seed", 999)
+            code, _, error = self.client(owner, "launch", SMOKE, "--cases", TOO_MANY, "--seed", 999)
             self.assertIn(code, (2, 5))
             if code == 2:
                 self.assertIn(f"allowed: at most {TOO_MANY - 1}; wait, or launch fewer", error)

@@ -2,7 +2,7 @@
 
 Environment as of processes.py.
 """
-from processes import Run, main, smoke_text
+from processes import Run, lost_text, main
 from service_case import ServiceCase
 
 OWN = {"q_burn1_max_kpa": "max(qbar_pa while burn1) / 1000", "high_q_time_s": "time(qbar_pa > 30000)"}
@@ -13,12 +13,9 @@ class OwnMetricsTest(ServiceCase):
 
     def flown(self, name, metrics):
         """A campaign file and its run without workers."""
-        text = smoke_text()
-        if metrics:
-            items = "".join(f"  - {{name: {key}, expression: '{OWN[key]}'}}\n" for key in metrics)
-            text = text.replace("requirements:\n", f"metrics:\n{items}requirements:\n")
+        items = "".join(f"  - {{name: {key}, expression: '{OWN[key]}'}}\n" for key in metrics)
         campaign = self.root / f"{name}.yaml"
-        campaign.write_text(text)
+        campaign.write_text(lost_text("smoke", f"metrics:\n{items}" if metrics else ""))
         return campaign, Run(self.root / name, "--workers", 0, campaign=campaign).finish()
 
     def test_each_has_its_own_whatever_flew_before(self):

@@ -19,13 +19,16 @@ import unittest
 
 BINARIES = pathlib.Path(os.environ["DISPERSA_BINARIES"])
 CAMPAIGNS = pathlib.Path(os.environ["DISPERSA_CAMPAIGNS"])
-CAMPAIGN = str(CAMPAIGNS / "smoke.yaml")
+SMOKE = str(CAMPAIGNS / "smoke.yaml")
 BRIEF = str(CAMPAIGNS.parent / "tests/data/brief/smoke.yaml")  # its flights take half of the time
+# Of most tests, to which no flight matters: all are lost after seconds, so the campaign's verdict is `fail`.
+CAMPAIGN = str(CAMPAIGNS.parent / "tests/data/brief/lost.yaml")
+LOST_CODE = 3  # its exit code
 ISOLATED = "DISPERSA_TEST_ISOLATED"
 PATIENCE_S = int(os.environ.get("DISPERSA_PATIENCE_S", "180"))  # for what takes seconds on an idle machine
-# Cases of a campaign in which something is to happen half-way: more than a worker of one slot may hold (9 assignments of 64 at
-# most) and fly between two transactions (0.5 s), so that they cannot all be stored at once, however long the disk takes.
-HALF_WAY_CASES = 1200
+# Lost flights of a campaign in which something is to happen half-way: a worker of one slot does not fly them between two
+# transactions (0.5 s).
+HALF_WAY_CASES = 5000
 
 
 def _isolate():
@@ -41,6 +44,11 @@ def _raise_loopback():
         name = struct.pack("16sh", b"lo", 0) + bytes(22)
         flags = struct.unpack("16sh", fcntl.ioctl(s, 0x8913, name)[:18])[1]  # SIOCGIFFLAGS
         fcntl.ioctl(s, 0x8914, struct.pack("16sh", b"lo", flags | 1) + bytes(22))  # SIOCSIFFLAGS, IFF_UP
+
+
+def lost_text(name, more=""):
+    """CAMPAIGN under this name, with what differs, for any folder."""
+    return f"schema: dispersa/campaign/1\nname: {name}\nbased_on: {CAMPAIGN}\n{more}"
 
 
 def smoke_text(name="smoke"):

@@ -14,7 +14,7 @@ import tempfile
 import time
 import unittest
 
-from processes import (BINARIES, BRIEF, ISOLATED, PATIENCE_S, Run, is_running, main, parent_and_name,
+from processes import (BINARIES, CAMPAIGN, HALF_WAY_CASES, ISOLATED, PATIENCE_S, Run, is_running, main, parent_and_name,
                        shared_memory_segments, stored, wait_for)
 
 
@@ -25,8 +25,7 @@ class RunCase(unittest.TestCase):
     def setUpClass(cls):
         cls.segments = shared_memory_segments()
         cls.root = pathlib.Path(tempfile.mkdtemp(prefix="dispersa-run-"))
-        cls.reference = Run(cls.root / "reference", "--workers", 0, "--cases", cls.cases, "--no-histories",
-                            campaign=BRIEF).finish()
+        cls.reference = Run(cls.root / "reference", "--workers", 0, "--cases", cls.cases, "--no-histories").finish()
         if cls.reference.code not in (0, 3, 4):
             raise AssertionError(f"reference: exit code {cls.reference.code}\n{cls.reference.stderr}")
 
@@ -47,9 +46,8 @@ class RunCase(unittest.TestCase):
         self.assertEqual(shared_memory_segments(), self.segments)
 
     def run_dispersa(self, name, *arguments, cases=None, histories=False, **options):
-        """Flying cases again for the report takes twice as long as flying them, and no bytes of it are looked at here."""
-        run = Run(self.root / name, "--cases", cases or self.cases, *arguments,
-                  *([] if histories else ["--no-histories"]), campaign=BRIEF, **options)
+        run = Run(self.root / name, "--cases", cases or self.cases, *arguments, *([] if histories else ["--no-histories"]),
+                  **options)
         self.runs.append(run)
         return run
 
@@ -141,14 +139,14 @@ class Whole(RunCase):
 
 class HalfWay(RunCase):
     """Something happens while the campaign is flown, by one worker in most tests."""
-    cases = 1500  # three slots do not fly them in the 0.5 s between two transactions
+    cases = HALF_WAY_CASES
 
     def test_three_workers_give_the_same_bytes(self):
         rows = self.reference.csv().splitlines()
         self.assertEqual(len(rows), self.cases + 1)
         self.assertEqual([int(row.split(b",")[0]) for row in rows[1:]], list(range(self.cases)))
         run = self.run_dispersa("workers3", "--workers", 3)
-        wait_for(lambda: run.stored() > 0, "first results")
+        wait_for(lambda: (run.out / "execution.json").exists() and len(run.workers()) == 3, "three workers")
         for pid in run.workers():
             self.assertEqual(parent_and_name(pid), (run.process.pid, "dispersa-worker"))
         self.assert_same(run.finish())
@@ -176,23 +174,23 @@ class HalfWay(RunCase):
         self.assertEqual(self.end_worker("stop", signal.SIGSTOP), "signal 9 (Killed)")
 
     def test_the_whole_run_killed_and_resumed(self):
-        run = self.run_dispersa("killed", "--workers", 2)
+        run = self.run_dispersa("killed", "--workers", 1)
         run.wait_half_way(self.cases)
         pids = run.execution()["pids"]
-        self.assertEqual(len(pids), 3)
+        self.assertEqual(len(pids), 2)
         run.process.kill()
         run.finish()
         wait_for(lambda: not any(map(is_running, pids)), "end of the workers")
         stored = run.stored()
         self.assertGreater(stored, 0)
         self.assertLess(stored, self.cases)
-        resumed = self.run_dispersa("killed", "--workers", 2, "--resume").finish()
+        resumed = self.run_dispersa("killed", "--workers", 1, "--resume").finish()
         self.assert_same(resumed)
         self.assertEqual(resumed.execution()["cases_before"], stored)
         self.assertEqual(resumed.execution()["cases_flown"], self.cases - stored)
 
     def test_an_interrupted_run_tells_how_to_go_on(self):
-        for number, workers in ((signal.SIGINT, 2), (signal.SIGTERM, 0)):
+        for number, workers in ((signal.SIGINT, 1), (signal.SIGTERM, 0)):
             run = self.run_dispersa(f"interrupted{number}", "--workers", workers)
             run.wait_half_way(self.cases)
             run.process.send_signal(number)
@@ -201,7 +199,7 @@ class HalfWay(RunCase):
             self.assertLess(time.monotonic() - asked, 10.0)
             self.assertEqual(run.code, 130, run.stderr)
             self.assertEqual(run.stdout, "")
-            command = (f"dispersa run {shlex.quote(BRIEF)} --cases {self.cases} --workers {workers} "
+            command = (f"dispersa run {shlex.quote(CAMPAIGN)} --cases {self.cases} --workers {workers} "
                        f"--out {run.out} --resume")
             self.assertEqual(run.stderr.splitlines()[-1], f"interrupted; to continue: {command}")
             self.assertTrue(0 < run.stored() < self.cases)

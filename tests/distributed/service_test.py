@@ -8,11 +8,11 @@ import signal
 import socket
 import subprocess
 
-from restart_test import write_tiny_campaign
-from processes import BINARIES, CAMPAIGN, PATIENCE_S, Run, main, stored, wait_for
+from processes import BINARIES, CAMPAIGN, LOST_CODE, PATIENCE_S, SMOKE, Run, main, stored, wait_for
 from service_case import ServiceCase
 
 CASES = 60
+MORE = 300
 
 
 class ServiceTest(ServiceCase):
@@ -22,8 +22,7 @@ class ServiceTest(ServiceCase):
     @classmethod
     def setUpClass(cls):
         super().setUpClass()
-        cls.tiny = write_tiny_campaign(cls.root)
-        cls.tiny_reference = Run(cls.root / "tiny", "--workers", 0, "--cases", 300, campaign=cls.tiny).finish()
+        cls.more_reference = Run(cls.root / "more", "--workers", 0, "--cases", MORE).finish()
 
     def test_launch_watch_fetch(self):
         self.start_coordinator()
@@ -49,7 +48,7 @@ class ServiceTest(ServiceCase):
         self.start_coordinator()
         worker = self.start_worker()
         few = self.dispersa("launch", CAMPAIGN, "--cases", CASES // 2).strip()
-        self.dispersa("watch", few, code=self.code_of(few))
+        self.dispersa("watch", few, code=LOST_CODE)
         many = self.dispersa("launch", CAMPAIGN, "--cases", CASES).strip()
         self.assertNotEqual(few, many)
         self.dispersa("watch", many, code=self.reference.code)
@@ -58,10 +57,6 @@ class ServiceTest(ServiceCase):
         self.assertEqual(flown, CASES, "half of them twice?")
         worker.send_signal(signal.SIGTERM)
         self.assertEqual(worker.wait(timeout=PATIENCE_S), 0)
-
-    def code_of(self, identity):
-        wait_for(lambda: self.status(identity)["code"] is not None, "the end of a campaign")
-        return self.status(identity)["code"]
 
     def test_a_domain_whose_ports_are_all_taken_works_through_others(self):
         first = 7400 + 250 * int(self.DOMAIN)
@@ -72,9 +67,9 @@ class ServiceTest(ServiceCase):
             self.addCleanup(taken[-1].close)
         self.start_coordinator()
         self.start_worker()
-        identity = self.dispersa("launch", self.tiny, "--cases", 300).strip()
+        identity = self.dispersa("launch", CAMPAIGN, "--cases", MORE).strip()
         self.assertIn(f"UDP ports {first + 10} to {first + 217} are all taken; port ", self.error)
-        self.dispersa("watch", identity, code=self.tiny_reference.code)
+        self.dispersa("watch", identity, code=self.more_reference.code)
         self.assertEqual(subprocess.run([BINARIES / "dispersa-coordinator", "--health", *self.NETWORK]).returncode, 0)
 
     def test_cancel_keeps_what_was_flown_and_launch_goes_on(self):
@@ -103,8 +98,8 @@ class ServiceTest(ServiceCase):
         self.assertEqual(lost.returncode, 5)
         self.assertIn("no coordinator has answered at 127.0.0.1:16405 for 1 s; the worker ends", lost.stderr)
         self.start_coordinator()
-        identity = self.dispersa("launch", self.tiny, "--cases", 300).strip()
-        self.dispersa("watch", identity, code=self.tiny_reference.code)
+        identity = self.dispersa("launch", CAMPAIGN, "--cases", MORE).strip()
+        self.dispersa("watch", identity, code=self.more_reference.code)
         self.assertEqual(worker.wait(timeout=PATIENCE_S), 0, "idle")
 
     def test_daemons_that_cannot_go_on_say_so_as_an_object(self):
@@ -137,33 +132,33 @@ class ServiceTest(ServiceCase):
 
     def test_several_clients_at_once_and_one_that_dies(self):
         self.start_coordinator()
-        commands = [[BINARIES / "dispersa", "launch", campaign, "--cases", str(cases), *self.NETWORK]
-                    for campaign, cases in ((CAMPAIGN, CASES), (self.tiny, 300), (CAMPAIGN, CASES), (self.tiny, 200))]
+        commands = [[BINARIES / "dispersa", "launch", CAMPAIGN, "--cases", str(cases), *self.NETWORK]
+                    for cases in (CASES, MORE, CASES, 200)]
         clients = [subprocess.Popen(command, stdout=subprocess.PIPE, text=True) for command in commands]
         ids = [client.communicate(timeout=PATIENCE_S)[0].strip() for client in clients]
         self.assertEqual([client.returncode for client in clients], [0, 0, 0, 0])
         self.assertEqual(ids[0], ids[2], "the same campaign is one campaign")
         self.assertEqual(len(set(ids)), 3)
         watchers = [self.start("dispersa", "watch", identity) for identity in ids]
-        dying = self.start("dispersa", "launch", self.tiny, "--cases", 250)
+        dying = self.start("dispersa", "launch", CAMPAIGN, "--cases", 250)
         for process in (dying, watchers[0]):
             process.kill()
             process.wait()
         self.start_worker("--slots", 2)
         self.assertEqual([watcher.wait(timeout=PATIENCE_S) for watcher in watchers[1:3]],
-                         [self.tiny_reference.code, self.reference.code])
+                         [self.more_reference.code, self.reference.code])
         self.assert_same_folder(ids[0], self.reference)
-        self.assert_same_folder(ids[1], self.tiny_reference)
+        self.assert_same_folder(ids[1], self.more_reference)
 
     def test_a_higher_priority_goes_first_and_the_standings_show(self):
         self.start_coordinator()
-        low = self.dispersa("launch", CAMPAIGN, "--cases", 20000).strip()
-        high = self.dispersa("launch", self.tiny, "--cases", 300, "--priority", 3).strip()
+        low = self.dispersa("launch", SMOKE, "--cases", 20000).strip()
+        high = self.dispersa("launch", CAMPAIGN, "--cases", MORE, "--priority", 3).strip()
         self.start_worker("--slots", 2)
         # When the last case of the one is stored, little was flown of the other; while the first gets its report, more is.
-        wait_for(lambda: self.status(high)["done"] == 300, "all cases of the first")
+        wait_for(lambda: self.status(high)["done"] == MORE, "all cases of the first")
         self.assertLess(self.status(low)["done"], 2000)
-        self.dispersa("watch", high, code=self.tiny_reference.code)
+        self.dispersa("watch", high, code=self.more_reference.code)
         campaigns = {c["id"]: c for c in json.loads(self.dispersa("list", "--json"))["campaigns"]}
         self.assertEqual((campaigns[high]["priority"], campaigns[low]["priority"]), (3, 0))
         self.assertEqual((campaigns[high]["state"], campaigns[low]["state"]), ("done", "flying"))

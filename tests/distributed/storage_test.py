@@ -10,24 +10,17 @@ import sqlite3
 import subprocess
 import unittest
 
-from processes import BINARIES, CAMPAIGN, ISOLATED, PATIENCE_S, Run, main, stored, wait_for
-from restart_test import write_tiny_campaign
+from processes import BINARIES, CAMPAIGN, ISOLATED, LOST_CODE, PATIENCE_S, SMOKE, Run, main, stored, wait_for
 from service_case import ServiceCase
 
-CASES = 60
-SMALL = 300
-DISK = 128 << 20  # histories and page of a campaign take about 20 MB
+CASES = 12
+MANY = 300
+DISK = 128 << 20  # histories and page of smoke.yaml take about 20 MB
 
 
 class StorageTest(ServiceCase):
     DOMAIN = "38"
-    CASES = CASES
-
-    @classmethod
-    def setUpClass(cls):
-        super().setUpClass()
-        cls.tiny = write_tiny_campaign(cls.root)
-        cls.tiny_reference = Run(cls.root / "tiny", "--workers", 0, "--cases", SMALL, campaign=cls.tiny).finish()
+    CASES = MANY
 
     def results(self, identity):
         return self.data / identity / "results"
@@ -54,24 +47,24 @@ class StorageTest(ServiceCase):
         subprocess.run(["mount", "-t", "tmpfs", "-o", f"size={DISK}", "disk", self.data], check=True)
         self.addCleanup(subprocess.run, ["umount", "--lazy", self.data], check=True)
         coordinator = self.start_coordinator()
-        flying = self.dispersa("launch", CAMPAIGN, "--cases", CASES).strip()
+        flying = self.dispersa("launch", SMOKE, "--cases", CASES).strip()
         wait_for(lambda: stored(self.results(flying)) == 0 and (self.results(flying) / "results.sqlite").exists(), "a flying campaign")
         filling = self.fill()
         self.start_worker()
         self.wait_until_it_waits(flying)
         # Nothing is promised to a client that could not be kept.
-        self.dispersa("launch", self.tiny, "--cases", SMALL, code=5)
+        self.dispersa("launch", CAMPAIGN, "--cases", MANY, code=5)
         self.assertRegex(self.error, "no space left on (the disk|device)")
         self.assertEqual([each["id"] for each in json.loads(self.dispersa("list", "--json"))["campaigns"]], [flying])
         self.assertEqual(stored(self.results(flying)), 0)
         filling.unlink()
-        self.dispersa("watch", flying, code=self.reference.code)
+        self.dispersa("watch", flying)
         self.assertIsNone(self.status(flying)["problem"])
-        self.assert_same_folder(flying, self.reference)
+        self.assertEqual(stored(self.fetch(flying)), CASES)
         # All results find space, and the report does not.
-        reference = Run(self.root / "other", "--workers", 0, "--cases", CASES, "--seed", 7).finish()
-        filling = self.fill(leave=12 << 20)
-        other = self.dispersa("launch", CAMPAIGN, "--cases", CASES, "--seed", 7).strip()
+        reference = Run(self.root / "other", "--workers", 0, "--cases", CASES, "--seed", 7, campaign=SMOKE).finish()
+        filling = self.fill(leave=6 << 20)
+        other = self.dispersa("launch", SMOKE, "--cases", CASES, "--seed", 7).strip()
         self.wait_until_it_waits(other)
         self.assertEqual((self.status(other)["state"], stored(self.results(other))), ("reporting", CASES))
         filling.unlink()
@@ -82,41 +75,37 @@ class StorageTest(ServiceCase):
     def test_descriptors_that_run_out_delay_a_campaign(self):
         coordinator = self.start_coordinator()
         self.start_worker()
-        first = self.dispersa("launch", self.tiny, "--cases", 20).strip()
-        self.dispersa("watch", first, code=self.status_code(first))
+        first = self.dispersa("launch", CAMPAIGN, "--cases", 20).strip()
+        self.dispersa("watch", first, code=LOST_CODE)
         usual = resource.prlimit(coordinator.pid, resource.RLIMIT_NOFILE)
         few = len(os.listdir(f"/proc/{coordinator.pid}/fd")) + 3
         resource.prlimit(coordinator.pid, resource.RLIMIT_NOFILE, (few, usual[1]))
-        identity = self.dispersa("launch", self.tiny, "--cases", SMALL).strip()
+        identity = self.dispersa("launch", CAMPAIGN, "--cases", MANY).strip()
         wait_for(lambda: "too many files are open" in (self.status(identity)["problem"] or ""), "the words that say so")
         self.assertEqual(self.status(identity)["state"], "waiting")
         self.assertRegex(self.status(identity)["problem"], "; it continues by itself$")
         resource.prlimit(coordinator.pid, resource.RLIMIT_NOFILE, usual)
-        self.dispersa("watch", identity, code=self.tiny_reference.code)
-        self.assert_same_folder(identity, self.tiny_reference)
+        self.dispersa("watch", identity, code=self.reference.code)
+        self.assert_same_folder(identity, self.reference)
         self.assertIsNone(coordinator.poll())
-
-    def status_code(self, identity):
-        wait_for(lambda: self.status(identity)["code"] is not None, "the end of a campaign")
-        return self.status(identity)["code"]
 
     def test_a_campaign_whose_database_somebody_reads_is_fetched_whole(self):
         self.start_coordinator()
-        identity = self.dispersa("launch", self.tiny, "--cases", SMALL).strip()
+        identity = self.dispersa("launch", CAMPAIGN, "--cases", MANY).strip()
         wait_for((self.results(identity) / "results.sqlite").exists, "a flying campaign")
         reader = sqlite3.connect(f"file:{self.results(identity)}/results.sqlite?mode=ro", uri=True, isolation_level=None)
         self.addCleanup(reader.close)
         reader.execute("BEGIN")
         self.assertEqual(reader.execute("SELECT count(*) FROM cases").fetchone(), (0,))
         self.start_worker()
-        self.dispersa("watch", identity, code=self.tiny_reference.code)
+        self.dispersa("watch", identity, code=self.reference.code)
         self.assertEqual(reader.execute("SELECT count(*) FROM cases").fetchone(), (0,), "what it has begun to read")
         self.assertGreater((self.results(identity) / "results.sqlite-wal").stat().st_size, 0, "the reader holds the log back")
-        out = self.assert_same_folder(identity, self.tiny_reference)
+        out = self.assert_same_folder(identity, self.reference)
         self.assertEqual(stored(out), self.status(identity)["done"])
         # A report from it has all rows, too.
         subprocess.run([BINARIES / "dispersa", "report", out, "--quiet"], stdout=subprocess.DEVNULL)
-        self.assertEqual((out / "cases.csv").read_bytes(), self.tiny_reference.csv())
+        self.assertEqual((out / "cases.csv").read_bytes(), self.reference.csv())
 
     def start_keeping(self, *limits):
         return self.start("dispersa-coordinator", "--data", self.data, *(f"--keep={limit}" for limit in limits))
@@ -125,9 +114,9 @@ class StorageTest(ServiceCase):
         coordinator = self.start_keeping("90d", "1TB")
         ended = []
         for seed in (1, 2):
-            ended.append(self.dispersa("launch", self.tiny, "--cases", 20, "--seed", seed).strip())
+            ended.append(self.dispersa("launch", CAMPAIGN, "--cases", 20, "--seed", seed).strip())
             self.dispersa("cancel", ended[-1])
-        waiting = self.dispersa("launch", self.tiny, "--cases", SMALL).strip()
+        waiting = self.dispersa("launch", CAMPAIGN, "--cases", MANY).strip()
 
         def assert_left_by(limits, expected):
             """Old campaigns go at the start, and perhaps after the first answers."""
@@ -145,8 +134,8 @@ class StorageTest(ServiceCase):
         # A size that one campaign has already: nothing that has not ended goes.
         assert_left_by(["0.001MB"], {waiting})
         self.start_worker()
-        self.dispersa("watch", waiting, code=self.tiny_reference.code)
-        self.assert_same_folder(waiting, self.tiny_reference)
+        self.dispersa("watch", waiting, code=self.reference.code)
+        self.assert_same_folder(waiting, self.reference)
         assert_left_by(["0.001MB"], set())
 
 

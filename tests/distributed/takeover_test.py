@@ -13,9 +13,9 @@ import tempfile
 import unittest
 
 from hosts import Hosts
-from processes import BINARIES, CAMPAIGN, HALF_WAY_CASES, PATIENCE_S, Run, content, end, main, settled, stored, wait_for
+from processes import BINARIES, PATIENCE_S, SMOKE, Run, content, end, main, settled, stored, wait_for
 
-CASES = HALF_WAY_CASES
+CASES = 1200  # more than a worker may hold (9 assignments of 64 at most) and fly between two transactions
 NETWORK = ["--domain", "34", "--insecure"]  # the game day does this with keys
 FIRST, SECOND, WORKERS = 0, 1, 2  # hosts
 
@@ -56,10 +56,10 @@ class TakeOver(unittest.TestCase):
         return json.loads(self.dispersa(host, "status", "--json"))["workers"]
 
     def test_another_host_takes_over_and_the_first_one_comes_back(self):
-        reference = Run(self.root / "reference", "--workers", 0, "--cases", CASES, "--no-histories").finish()
+        reference = Run(self.root / "reference", "--workers", 0, "--cases", CASES, "--no-histories", campaign=SMOKE).finish()
         first = self.start_coordinator(FIRST, "first")
         self.start(WORKERS, "worker", "dispersa-worker", "--peer", f"{self.hosts[FIRST].address},{self.hosts[SECOND].address}")
-        identity = self.dispersa(FIRST, "launch", CAMPAIGN, "--cases", CASES).strip()
+        identity = self.dispersa(FIRST, "launch", SMOKE, "--cases", CASES).strip()
         results, later = self.root / "first" / identity / "results", self.root / "second" / identity / "results"
         wait_for(lambda: stored(results) >= 50, "first results")
         self.dispersa(FIRST, "backup", self.root / "second")

@@ -9,7 +9,7 @@ import subprocess
 import urllib.request
 
 import aged
-from processes import BINARIES, CAMPAIGN, PATIENCE_S, main, stored, wait_for
+from processes import BINARIES, BRIEF, CAMPAIGN, LOST_CODE, PATIENCE_S, main, stored, wait_for
 from service_case import ServiceCase
 
 CASES = 20
@@ -54,9 +54,9 @@ class UpgradeTest(ServiceCase):
     def launched(self, *arguments):
         return self.dispersa("launch", *arguments).strip()
 
-    def launch_and_watch(self):
-        identity = self.launched(CAMPAIGN, "--cases", CASES)
-        self.dispersa("watch", identity)
+    def launch_and_watch(self, campaign=CAMPAIGN, code=LOST_CODE):
+        identity = self.launched(campaign, "--cases", CASES)
+        self.dispersa("watch", identity, code=code)
         return identity
 
     def test_what_is_done_never_needs_its_engine(self):
@@ -73,7 +73,7 @@ class UpgradeTest(ServiceCase):
         self.assertEqual([(c["id"], c["state"], c["done"], c["engine"]) for c in self.listed()],
                          [(identity, "done", CASES, aged.ENGINE)])
         self.assertIn(f"engine {aged.ENGINE}", self.dispersa("list"))
-        self.dispersa("watch", identity)
+        self.dispersa("watch", identity, code=LOST_CODE)
         after = self.fetch(identity)
         for name in ("cases.csv", "summary.json", "report.html"):
             self.assertEqual((before / name).read_bytes(), (after / name).read_bytes(), name)
@@ -86,7 +86,7 @@ class UpgradeTest(ServiceCase):
     def test_folders_of_another_engine(self):
         self.start_coordinator()
         self.start_worker("--slots", 2)
-        identity = self.launch_and_watch()
+        identity = self.launch_and_watch(BRIEF, code=0)  # a page with all its parts
         self.upgrade()
         out, page = self.fetch(identity), "report.html"
         self.local("compare", out, out)
@@ -151,9 +151,9 @@ class UpgradeTest(ServiceCase):
         for name in ("SHA256SUMS", "summary.json", "report.html.gz"):
             (self.data / identity / "results" / name).unlink()
         self.start_coordinator()
-        self.dispersa("watch", identity)
+        self.dispersa("watch", identity, code=LOST_CODE)
         entry = self.status(identity)
-        self.assertEqual((entry["verdict"], entry["engine"], entry["done"]), ("pass", aged.ENGINE, CASES))
+        self.assertEqual((entry["verdict"], entry["engine"], entry["done"]), ("fail", aged.ENGINE, CASES))
         after = json.loads((self.fetch(identity) / "summary.json").read_text())
         self.assertEqual((after["engine"], after["requirements"]), (aged.ENGINE, before["requirements"]))
         attempts = [json.loads(line) for line in (self.data / "dispersa-attempts.jsonl").read_text().splitlines()]
@@ -162,7 +162,7 @@ class UpgradeTest(ServiceCase):
     def test_what_flew_keeps_its_cases_and_says_which_engine_it_needs(self):
         self.start_coordinator()
         self.start_worker("--slots", 1)
-        identity = self.launched(CAMPAIGN, "--cases", MANY)
+        identity = self.launched(BRIEF, "--cases", MANY)
         results = self.data / identity / "results"
         wait_for(lambda: stored(results) > 100, "results")
         flight = json.loads((self.data / identity / "state.json").read_text())["flight_id"]
@@ -184,7 +184,7 @@ class UpgradeTest(ServiceCase):
         # And the new one once more, with which the campaign is launched again.
         self.upgrade()
         self.assertEqual(self.status(identity)["state"], "unfinished")
-        self.assertEqual(self.launched(CAMPAIGN, "--cases", MANY), identity)
+        self.assertEqual(self.launched(BRIEF, "--cases", MANY), identity)
         wait_for(lambda: self.status(identity)["state"] == "flying", "the flight beside")
         states = {c["engine"]: (c["state"], c["done"]) for c in self.listed()}
         self.assertEqual(states[aged.ENGINE], ("unfinished", count))

@@ -12,7 +12,7 @@ import re
 import subprocess
 import urllib.request
 
-from processes import BINARIES, CAMPAIGN, PATIENCE_S, main, stored, wait_for
+from processes import BINARIES, CAMPAIGN, PATIENCE_S, SMOKE, main, stored, wait_for
 from service_case import ServiceCase
 
 CASES = 60
@@ -40,8 +40,8 @@ class WebTest(ServiceCase):
     def start_coordinator(self):
         return self.start("dispersa-coordinator", "--data", self.data, "--web", PORT, *self.DAEMON)
 
-    def launch(self, cases):
-        return self.dispersa("launch", CAMPAIGN, "--cases", cases).strip()
+    def launch(self, cases, campaign=CAMPAIGN):
+        return self.dispersa("launch", campaign, "--cases", cases).strip()
 
     def part(self, identity):
         """What of the campaign's page changes; empty while there is none."""
@@ -81,7 +81,7 @@ class WebTest(ServiceCase):
 
     def test_a_late_reader_and_a_coordinator_that_was_killed_show_the_same(self):
         coordinator = self.start_coordinator()
-        identity = self.launch(LONG)
+        identity = self.launch(LONG, SMOKE)
         worker = self.start_worker()
         wait_for(lambda: self.status(identity)["done"] >= 30, "results")
         worker.kill()

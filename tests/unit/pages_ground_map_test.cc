@@ -41,6 +41,16 @@ TEST(MapPlane, HasNoEdgeAt180DegreesNorAtAPole) {
   EXPECT_NEAR(Away_km(arctic, {89.0, 30.0}, {89.0, -150.0}), 2.0 * kQuarter_km / 90.0, 1e-3);
 }
 
+TEST(MapPlane, KnowsParallelsAndMeridiansThatDoNotComeNear) {
+  const MapPlane plane({{10.0, 179.0}});
+  constexpr double kRadius_km = 112.0;  // a degree is 111.2 km
+  EXPECT_TRUE(plane.MeetsParallel(11.0, kRadius_km));
+  EXPECT_FALSE(plane.MeetsParallel(11.1, kRadius_km));
+  EXPECT_TRUE(plane.MeetsMeridian(-180.0, kRadius_km));
+  EXPECT_FALSE(plane.MeetsMeridian(-178.0, kRadius_km));
+  EXPECT_TRUE(plane.MeetsMeridian(77.0, 12000.0)) << "beyond the pole";
+}
+
 TEST(MapWindow, ShowsAllWithOneScaleAndCutsWhatLeavesIt) {
   const MapWindow window({{-100.0, -20.0}, {300.0, 20.0}}, 1000.0, 600.0);
   const MapPoint west = window.Pixel({-100.0, -20.0}), east = window.Pixel({300.0, 20.0});
