@@ -5,7 +5,6 @@
 
 #include "core/dynamics/jettison.h"
 #include "core/flight/dispersed_vehicle.h"
-#include "core/flight/flight.h"
 #include "core/flight/sequence.h"
 #include "core/math/constants.h"
 #include "core/optimization/parallel_for.h"
@@ -162,20 +161,15 @@ std::vector<ImpactPoint> ImpactPoints(const CampaignFlights& flights, const Case
     points.push_back(point);
   }
 
-  if (result.outcome != Outcome::kCompleted) {
-    History last;
-    FlightOptions options;
-    options.case_index = result.case_index;
-    options.history = &last;
-    const FlightResult again = dispersa::Fly(flights.model(), inputs, options);
-    const RigidBodyState& end = again.end_state;
-    const int lowest = again.end_stage - 1;
-    if (end.p_EoC_I.allFinite() && end.v_IC_I.allFinite() && last.rows() > 0) {
-      const Stage& stage = vehicle.stages[static_cast<std::size_t>(lowest)];
-      fall({.stage = lowest + 1, .lost = true},
-           {HistoryReader(last).At(last.rows() - 1, "mass_kg"),
-            TumblingCylinderDragArea(stage.bottom_station_m, stage.diameter_m)},
-           {again.end_time_s, end.p_EoC_I, end.v_IC_I});
+  if (result.outcome != Outcome::kCompleted && history.rows() > 0) {
+    // The last row is the flight's end.
+    const std::size_t row = history.rows() - 1;
+    const RigidBodyState end = rows.State(environment.earth, row);
+    if (end.p_EoC_I.allFinite() && end.v_IC_I.allFinite()) {
+      const Stage& stage = vehicle.stages[static_cast<std::size_t>(result.end_stage) - 1];
+      fall({.stage = result.end_stage, .lost = true},
+           {rows.At(row, "mass_kg"), TumblingCylinderDragArea(stage.bottom_station_m, stage.diameter_m)},
+           {result.end_time_s, end.p_EoC_I, end.v_IC_I});
     }
   }
   return points;

@@ -4,6 +4,8 @@ theirs is contained and named.
 Environment: DISPERSA_BINARIES, DISPERSA_CAMPAIGNS; DISPERSA_SOURCE: the repository.
 """
 import functools
+import csv
+import gzip
 import hashlib
 import html
 import json
@@ -99,6 +101,14 @@ class PluginTest(unittest.TestCase):
                  (("pd_whole", SOURCE / "tests/data/brief/pd.yaml", 0), ("pd_here", self.autopilot("pd"), 0),
                   ("pd_workers", self.autopilot("pd"), 2))]
         self.assertEqual(flown[1:], flown[:1] * 2)
+
+    def test_the_report_has_where_its_lost_flights_fall(self):
+        self.compile("falls", SOURCE / "campaigns/control_laws/c/pd.c", flags=["-std=c99"])
+        out = self.folder / "out/falls"
+        ended = self.dispersa("run", LOST, "--autopilot", self.autopilot("falls"), "--cases", 2, "--workers", 0, "--quiet", "--out", out)
+        self.assertEqual((ended.returncode, ended.stderr), (3, ""))
+        with gzip.open(out / "histories/impacts.csv.gz", "rt") as points:
+            self.assertEqual([row["lost"] for row in csv.DictReader(points)], ["1", "1"])
 
     def test_own_metrics_are_measured_under_it(self):
         self.compile("measured", SOURCE / "campaigns/control_laws/c/pd.c", flags=["-std=c99"])
