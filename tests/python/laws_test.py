@@ -118,10 +118,14 @@ class Laws(unittest.TestCase):
                     self.campaign.fly(law=lambda tick: None)
             gc.collect()
 
+        def growth():
+            before = resident_bytes()
+            fly(30)
+            return resident_bytes() - before
+
         fly(10)
-        before = resident_bytes()
-        fly(30)
-        self.assertLess(resident_bytes() - before, 30 * 8192)
+        # The heap grows in steps; what is left behind would make it grow each time.
+        self.assertLess(min(growth() for _ in range(3)), 30 * 8192)
 
     def test_what_a_law_may_not_return(self):
         for returned, said in ((None, r"None \(NoneType\)"), ("much", r"'much' \(str\)"), ([1.0, 2.0], r"\[1.0, 2.0\] \(list\)"),
