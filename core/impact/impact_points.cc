@@ -161,15 +161,20 @@ std::vector<ImpactPoint> ImpactPoints(const CampaignFlights& flights, const Case
     points.push_back(point);
   }
 
-  if (result.outcome != Outcome::kCompleted && history.rows() > 0) {
-    // The last row is the flight's end.
-    const std::size_t row = history.rows() - 1;
-    const RigidBodyState end = rows.State(environment.earth, row);
-    if (end.p_EoC_I.allFinite() && end.v_IC_I.allFinite()) {
+  if (result.outcome != Outcome::kCompleted) {
+    // A loss has no row of its own. With a row at every tick the last one is the flight's end.
+    History ticks;
+    ticks.step_s = flights.model().definition().autopilot.tick_s;
+    flights.FlyCase(result.case_index, &ticks);
+    if (ticks.rows() == 0) return points;  // refused before it flew
+    const HistoryReader last(ticks);
+    const std::size_t end = ticks.rows() - 1;
+    const RigidBodyState state = last.State(environment.earth, end);
+    if (state.p_EoC_I.allFinite() && state.v_IC_I.allFinite()) {
       const Stage& stage = vehicle.stages[static_cast<std::size_t>(result.end_stage) - 1];
       fall({.stage = result.end_stage, .lost = true},
-           {rows.At(row, "mass_kg"), TumblingCylinderDragArea(stage.bottom_station_m, stage.diameter_m)},
-           {result.end_time_s, end.p_EoC_I, end.v_IC_I});
+           {last.At(end, "mass_kg"), TumblingCylinderDragArea(stage.bottom_station_m, stage.diameter_m)},
+           {last.At(end, "time_s"), state.p_EoC_I, state.v_IC_I});
     }
   }
   return points;
