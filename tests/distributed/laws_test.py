@@ -16,7 +16,7 @@ import tempfile
 import time
 import unittest.mock
 
-from processes import BINARIES, BRIEF, PATIENCE_S, Run, main, parent_and_name, smoke_text, wait_for
+from processes import BINARIES, CAMPAIGN, PATIENCE_S, Run, main, parent_and_name, smoke_text, wait_for
 from service_case import ServiceCase
 
 SOURCE = pathlib.Path(os.environ["DISPERSA_SOURCE"])
@@ -88,7 +88,7 @@ class LawsTest(ServiceCase):
         """Its run in one process, flown once for all tests, and its file."""
         if behaviour not in self.references:
             self.references[behaviour] = Run(self.root / f"reference{behaviour}", "--workers", 0, "--cases", CASES, "--autopilot",
-                                             self.autopilot(behaviour), campaign=BRIEF).finish()
+                                             self.autopilot(behaviour), campaign=CAMPAIGN).finish()
         reference = self.references[behaviour]
         return reference, reference.out / "campaign.yaml"
 
@@ -187,7 +187,7 @@ class LawsTest(ServiceCase):
 
     def test_a_run_on_local_workers_is_refused_too(self):
         run = Run(self.root / "refused", "--workers", 2, "--cases", 2000, "--autopilot",
-                  self.autopilot(DIFFERS_BY_WORKER), campaign=BRIEF).finish()
+                  self.autopilot(DIFFERS_BY_WORKER), campaign=CAMPAIGN).finish()
         self.assertEqual(run.code, 2, run.stderr)
         self.assertRegex(run.stderr, REFUSAL)
         self.assertNotIn("result:", run.stdout)
@@ -273,7 +273,7 @@ class LawsTest(ServiceCase):
 
     def test_workers_of_a_run_take_what_its_campaign_names(self):
         run = Run(self.root / "named", "--workers", 2, "--cases", CASES, "--autopilot", self.autopilot(0),
-                  campaign=BRIEF).finish()
+                  campaign=CAMPAIGN).finish()
         reference, _ = self.campaign(0)
         self.assertEqual(run.code, reference.code, run.stderr)
         self.assertEqual((run.out / "cases.csv").read_bytes(), (reference.out / "cases.csv").read_bytes())

@@ -137,6 +137,14 @@ TEST(Attempts, AnAnytimePlanGoesOnInThePool) {
   EXPECT_FALSE(Judged({first, {2, needed - 71, needed - 71, 0, anytime, false}}).passed);
 }
 
+/// MaxFailures of the requirement, computed once for each number of cases.
+std::optional<std::int64_t> MostFailures(std::int64_t cases) {
+  static std::map<std::int64_t, std::optional<std::int64_t>> known;
+  const auto [at, is_new] = known.try_emplace(cases);
+  if (is_new) at->second = MaxFailures(kShare, kRisk, cases);
+  return at->second;
+}
+
 /// How often somebody passes a design that just misses (it fails with 5 %) at any of his attempts.
 class Somebody {
  public:
@@ -155,7 +163,7 @@ class Somebody {
   /// A campaign; whether its verdict, alone and with the ledger, is a pass.
   void Fly(std::uint64_t seed, std::int64_t planned, std::int64_t cases) {
     const std::int64_t failures = Failures(seed, cases);
-    const auto most = MaxFailures(kShare, kRisk, planned);
+    const auto most = MostFailures(planned);
     const bool alone = cases == planned && most && failures <= *most;
     attempts_.push_back({seed, planned, cases, failures, {}, alone});
     const AttemptsVerdict verdict = Judged(attempts_);
@@ -193,7 +201,7 @@ Rates RatesOf(int people, const std::function<void(Somebody&)>& misuse) {
 
 int People() {
   const char* many = std::getenv("DISPERSA_ATTEMPTS");
-  return many == nullptr ? 1000 : std::atoi(many);
+  return many == nullptr ? 400 : std::atoi(many);
 }
 
 /// Without the ledger it is a misuse; with it at most the stated risk, and four standard errors of this many.
@@ -220,8 +228,7 @@ TEST(AttemptsMisused, TheSmallestNumberOfCasesThatPasses) {
                      [](Somebody& somebody) {
                        somebody.Fly(1, 400, 400);
                        for (std::int64_t n = 45; n < 400; ++n)
-                         if (const auto most = MaxFailures(kShare, kRisk, n);
-                             most && somebody.Failures(1, n) <= *most)
+                         if (const auto most = MostFailures(n); most && somebody.Failures(1, n) <= *most)
                            return somebody.Fly(1, n, n);
                      }),
              0.2);
