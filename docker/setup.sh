@@ -6,9 +6,6 @@ repository=$(cd "$(dirname "${BASH_SOURCE[0]}")/.." && pwd)
 build_directory="$repository/build/release"
 # What one checkout has compiled serves every other one on the machine.
 export CCACHE_BASEDIR="$repository" CCACHE_NOHASHDIR=1
-# tests/run stops at warnings, campaigns/run does not: what one has compiled serves the other. (A source with warnings that
-# the cache holds shows them and stops nothing.)
-export CCACHE_IGNOREOPTIONS=-Werror
 
 say() { printf 'dispersa: %s\n' "$*" >&2; }
 
