@@ -162,13 +162,14 @@ std::vector<ImpactPoint> ImpactPoints(const CampaignFlights& flights, const Case
   }
 
   if (result.outcome != Outcome::kCompleted) {
-    // A loss has no row of its own. With a row at every tick the last one is the flight's end.
-    History ticks;
-    ticks.step_s = flights.model().definition().autopilot.tick_s;
-    flights.FlyCase(result.case_index, &ticks);
-    if (ticks.rows() == 0) return points;  // refused before it flew
-    const HistoryReader last(ticks);
-    const std::size_t end = ticks.rows() - 1;
+    // A loss has no row of its own. With a row at its tick the last one is the flight's end.
+    const double tick_s = flights.model().definition().autopilot.tick_s;
+    History again;
+    again.step_s = std::max(1.0, std::floor(result.end_time_s / tick_s + 1e-6)) * tick_s;
+    flights.FlyCase(result.case_index, &again);
+    if (again.rows() == 0) return points;  // refused before it flew
+    const HistoryReader last(again);
+    const std::size_t end = again.rows() - 1;
     const RigidBodyState state = last.State(environment.earth, end);
     if (state.p_EoC_I.allFinite() && state.v_IC_I.allFinite()) {
       const Stage& stage = vehicle.stages[static_cast<std::size_t>(result.end_stage) - 1];
