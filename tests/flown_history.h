@@ -16,16 +16,20 @@ struct Flown {
   History history;
 };
 
-/// Sampled each 0.1 s.
-inline Flown FlyWith(const FlightModel& model, const FlightInputs& inputs, Scheme scheme,
-                     int steps_per_tick) {
-  Flown flown;
-  flown.history.step_s = 0.1;
+/// Of a flight whose history is sampled each 0.1 s.
+inline FlightOptions SampledOptions(Scheme scheme, int steps_per_tick, History& history) {
+  history.step_s = 0.1;
   FlightOptions options;
   options.scheme = scheme;
   options.steps_per_tick = steps_per_tick;
-  options.history = &flown.history;
-  flown.result = Fly(model, inputs, options);
+  options.history = &history;
+  return options;
+}
+
+inline Flown FlyWith(const FlightModel& model, const FlightInputs& inputs, Scheme scheme,
+                     int steps_per_tick) {
+  Flown flown;
+  flown.result = Fly(model, inputs, SampledOptions(scheme, steps_per_tick, flown.history));
   return flown;
 }
 
@@ -34,11 +38,7 @@ inline Flown FlyUntil(const FlightModel& model, const FlightInputs& inputs, Sche
                       int steps_per_tick = 1) {
   struct Reached {};
   Flown flown;
-  flown.history.step_s = 0.1;
-  FlightOptions options;
-  options.scheme = scheme;
-  options.steps_per_tick = steps_per_tick;
-  options.history = &flown.history;
+  FlightOptions options = SampledOptions(scheme, steps_per_tick, flown.history);
   options.observe = [&](const TickSample& sample) {
     if (sample.time_s > until_s) throw Reached();
   };
