@@ -107,10 +107,9 @@ std::vector<Moments> ByBoosters(const std::vector<double>& stations, const FreeB
 // Both in any proportion.
 void AddBoth(const Moments& one, const Moments& other, std::vector<Moments>& family) {
   for (int k = 0; k < kProportions; ++k) {
-    const double angle = kPi * k / kProportions;
+    const double angle = kPi * k / kProportions, cosine = Cos(angle), sine = Sin(angle);
     Moments both(one.size());
-    for (std::size_t i = 0; i < both.size(); ++i)
-      both[i] = std::fabs(Cos(angle) * one[i] + Sin(angle) * other[i]);
+    for (std::size_t i = 0; i < both.size(); ++i) both[i] = std::fabs(cosine * one[i] + sine * other[i]);
     ScaleToLargest(both);
     family.push_back(std::move(both));
   }
@@ -121,6 +120,15 @@ void AddFamily(const Vehicle& vehicle, int stage, const std::vector<double>& sta
                double least_kg, double full_kg, std::vector<Moments>& family) {
   const Stage& lowest = vehicle.stages[static_cast<std::size_t>(stage)];
   const LiftDistribution lift = DistributeLift(vehicle, stage);
+  struct Air {
+    double at_m;
+    Moments ahead;
+  };
+  std::vector<Air> air;
+  for (const double aft : kAft) {
+    const double aft_m = aft * lowest.bottom_station_m;
+    air.push_back({lift.slender_station_m + aft_m, LiftAhead(lift, stations, aft_m)});
+  }
   for (const double part : kLevels) {
     const double propellant_kg = least_kg + part * (full_kg - least_kg);
     const FreeBody body(BuildBeamMasses(vehicle, stage, propellant_kg, gone), stations);
@@ -129,10 +137,8 @@ void AddFamily(const Vehicle& vehicle, int stage, const std::vector<double>& sta
       others = ByBoosters(stations, body, vehicle.boosters);
     others.push_back(
         Answer(stations, body, {1.0, lowest.gimbal.pivot_station_m, 0.0}, Moments(stations.size(), 0.0)));
-    for (const double aft : kAft) {
-      const double aft_m = aft * lowest.bottom_station_m;
-      const Moments by_air = Answer(stations, body, {1.0, lift.slender_station_m + aft_m, 0.0},
-                                    LiftAhead(lift, stations, aft_m));
+    for (const Air& each : air) {
+      const Moments by_air = Answer(stations, body, {1.0, each.at_m, 0.0}, each.ahead);
       for (const Moments& other : others) AddBoth(by_air, other, family);
     }
     for (std::size_t i = 0; i + 1 < others.size(); ++i)
@@ -178,17 +184,22 @@ LoadStations ChooseLoadStations(const Vehicle& vehicle, int stage, std::size_t m
   const std::vector<double> stations = Candidates(BuildBeamMasses(vehicle, stage, lowest.propellant_mass_kg),
                                                   lowest.bottom_station_m, lowest.gimbal.pivot_station_m);
   const std::vector<Moments> family = FamilyOf(vehicle, stage, stations);
-  std::vector<Moments> missed = family;
+  std::vector<const Moments*> missed;
+  std::vector<std::size_t> sees(stations.size());  // of the missed ones, at each station
+  const auto is_seen = [](double moment) { return moment >= 1.0 - kMissedMoment; };
+  for (const Moments& moments : family) {
+    missed.push_back(&moments);
+    for (std::size_t i = 0; i < sees.size(); ++i) sees[i] += is_seen(moments[i]);
+  }
   std::vector<std::size_t> chosen;
   // The station that has the largest of most moments, then that of most of the rest.
   while (!missed.empty() && chosen.size() < most) {
-    std::size_t best = 0, of_best = 0;
-    for (std::size_t i = 0; i < stations.size(); ++i) {
-      std::size_t seen = 0;
-      for (const Moments& moments : missed) seen += moments[i] >= 1.0 - kMissedMoment;
-      if (seen > of_best) best = i, of_best = seen;
-    }
-    std::erase_if(missed, [&](const Moments& moments) { return moments[best] >= 1.0 - kMissedMoment; });
+    const auto best = static_cast<std::size_t>(std::max_element(sees.begin(), sees.end()) - sees.begin());
+    std::erase_if(missed, [&](const Moments* moments) {
+      if (!is_seen((*moments)[best])) return false;
+      for (std::size_t i = 0; i < sees.size(); ++i) sees[i] -= is_seen((*moments)[i]);
+      return true;
+    });
     chosen.push_back(best);
   }
   LoadStations all;
