@@ -4,6 +4,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <future>
 #include <sstream>
 
 #include "core/analysis/likeness.h"
@@ -313,8 +314,13 @@ CampaignSummary BuildSummary(const ResultFolder& folder, const Campaign& campaig
   return BuildSummary(folder, campaign, ReadColumns(folder, DispersedInputs(campaign)));
 }
 
-CampaignSummary BuildSummary(const ResultFolder& folder, const Campaign& campaign, const CaseColumns& cases) {
+CampaignSummary BuildSummary(const ResultFolder& folder, const Campaign& campaign, const CaseColumns& cases,
+                             int threads) {
   RequireWhole(folder);
+  // Half of the work.
+  std::future<std::vector<MetricDrivers>> drivers =
+      std::async(threads > 1 ? std::launch::async : std::launch::deferred,
+                 [&] { return FindDrivers(campaign, KeyMetrics(campaign), cases); });
   CampaignSummary summary;
   summary.name = campaign.name;
   summary.id = campaign.id;
@@ -359,9 +365,12 @@ CampaignSummary BuildSummary(const ResultFolder& folder, const Campaign& campaig
     if (std::find(shown.begin(), shown.end(), i) == shown.end()) continue;
     const std::string& name = folder.metric_list().NameAt(i);
     std::vector<double> values = CompletedValues(cases, name);
-    const Summary statistics = Summarize(values, CircleOf(name));
-    if (IsAllAround(statistics)) values.clear();
-    const std::vector<double> sorted = SortedFinite(std::move(values));
+    const bool is_all_around = LiesAllAround(values, CircleOf(name));
+    std::vector<double> sorted = SortedFinite(std::move(values));
+    const std::size_t undefined = cases.rows() - sorted.size();
+    const Summary statistics = is_all_around ? Summary{.n = sorted.size(), .undefined = undefined}
+                                             : SummarizeSorted(sorted, undefined);
+    if (is_all_around) sorted.clear();
     summary.metrics.push_back({name, statistics, Skewness(sorted), Percentiles(sorted)});
   }
   HoldAgainstLimits(campaign.vehicle.limits, cases, &summary);
@@ -380,8 +389,8 @@ CampaignSummary BuildSummary(const ResultFolder& folder, const Campaign& campaig
   summary.events = SummarizeEvents(cases);
   summary.injection = SummarizeInjection(cases);
   summary.dispersions = SummarizeDispersions(campaign, cases);
-  summary.drivers = FindDrivers(campaign, KeyMetrics(campaign), cases);
   summary.failure_drivers = FindFailureDrivers(campaign, cases);
+  summary.drivers = drivers.get();
   summary.verdict = Overall(summary);
   summary.standing = StandingOf(folder, campaign, summary);
   return summary;

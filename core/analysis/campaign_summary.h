@@ -153,8 +153,9 @@ void RecordLooks(const ResultFolder& folder, const Campaign& campaign, const Cam
 
 /// From the stored results. It flies nothing, so `nominal` is empty.
 CampaignSummary BuildSummary(const ResultFolder& folder, const Campaign& campaign);
-/// The same from columns that hold at least the inputs of DispersedInputs(campaign).
-CampaignSummary BuildSummary(const ResultFolder& folder, const Campaign& campaign, const CaseColumns& cases);
+/// The same from columns that hold at least the inputs of DispersedInputs(campaign), on at most two threads.
+CampaignSummary BuildSummary(const ResultFolder& folder, const Campaign& campaign, const CaseColumns& cases,
+                             int threads = 1);
 
 /// Metrics of the requirements first, then those that every report shows in full.
 std::vector<std::string> KeyMetrics(const Campaign& campaign);

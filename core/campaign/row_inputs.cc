@@ -27,12 +27,11 @@ std::vector<int> DispersedInputs(const Campaign& campaign) {
   return inputs;
 }
 
-Digest InputsDigest(const std::vector<double>& all) {
-  std::vector<double> values = all;
-  for (double& value : values)
+Digest InputsDigest(std::vector<double> all) {
+  for (double& value : all)
     value = std::isfinite(value) ? value + 0.0 : std::numeric_limits<double>::quiet_NaN();
   Digester digester;
-  digester.Add(values.data(), values.size());
+  digester.Add(all.data(), all.size());
   return digester.Finish();
 }
 

@@ -15,7 +15,7 @@ namespace dispersa {
 std::vector<int> DispersedInputs(const Campaign& campaign);
 
 /// The digest of everything that a flight applied: undefined values are all alike, -0 is 0.
-Digest InputsDigest(const std::vector<double>& all);
+Digest InputsDigest(std::vector<double> all);
 
 /// The values at these positions.
 std::vector<double> ValuesAt(const std::vector<std::size_t>& positions, const std::vector<double>& values);

@@ -46,14 +46,15 @@ CampaignSummary WriteReports(const ResultFolder& folder, const Campaign& campaig
   }
   const std::filesystem::path cases_csv = folder.directory() / "cases.csv";
   CasesCsv csv(cases_csv, folder, StoredColumns(folder, campaign.soundings));
-  const CaseColumns cases =
-      ReadColumns(folder, DispersedInputs(campaign), [&csv](const CaseResult& result) { csv.Write(result); });
+  const CaseColumns cases = ReadColumns(
+      folder, DispersedInputs(campaign), [&csv](const CaseResult& result) { csv.Write(result); },
+      options.threads);
   RefuseFewer(cases_csv, csv.rows());
   std::error_code ignored;
   std::filesystem::remove(folder.directory() / kSumsName, ignored);  // until all of them are written
   csv.Commit();
   WriteFile(folder.directory() / "nominal.json", NominalJson(folder.inputs()));
-  CampaignSummary summary = BuildSummary(folder, campaign, cases);
+  CampaignSummary summary = BuildSummary(folder, campaign, cases, options.threads);
   FlightHistories histories;
   if (options.histories) {
     histories = WriteHistories(folder, campaign, summary, cases, options);

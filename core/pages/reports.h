@@ -15,7 +15,7 @@ struct ReportOptions {
   /// Number of first cases that are flown again for the percentile bands. The extremes of every metric are
   /// flown again too.
   std::uint64_t history_cases = 500;
-  int threads = 1;        ///< for these flights; the files do not depend on it
+  int threads = 1;        ///< for these flights and the statistics; the files do not depend on it
   bool histories = true;  ///< false: nothing is flown again, and the report has no time histories
   /// Called from the calling thread from time to time ("time histories", 40, 104). It may throw to stop.
   std::function<void(const std::string& what, std::uint64_t done, std::uint64_t total)> progress;

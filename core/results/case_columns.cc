@@ -1,6 +1,7 @@
 #include "core/results/case_columns.h"
 
 #include <algorithm>
+#include <future>
 #include <memory>
 #include <utility>
 
@@ -10,9 +11,43 @@
 #include "core/statistics/summary.h"
 
 namespace dispersa {
+namespace {
+
+/// Takes rows while the next ones are read, on a thread of its own if there is one for it.
+class RowsBeside {
+ public:
+  RowsBeside(std::function<void(const CaseResult&)> take, int threads)
+      : take_(std::move(take)), policy_(threads > 1 ? std::launch::async : std::launch::deferred) {}
+
+  void Add(const CaseResult& result) {
+    rows_.push_back(result);
+    if (rows_.size() == kTogether) HandOver();
+  }
+  void Finish() {
+    HandOver();
+    taking_.get();
+  }
+
+ private:
+  static constexpr std::size_t kTogether = 256;
+
+  void HandOver() {
+    if (taking_.valid()) taking_.get();
+    taking_ = std::async(policy_, [this, rows = std::exchange(rows_, {})] {
+      for (const CaseResult& row : rows) take_(row);
+    });
+  }
+
+  std::function<void(const CaseResult&)> take_;
+  std::launch policy_;
+  std::vector<CaseResult> rows_;
+  std::future<void> taking_;
+};
+
+}  // namespace
 
 CaseColumns ReadColumns(const ResultFolder& folder, const std::vector<int>& wanted_inputs,
-                        const std::function<void(const CaseResult&)>& observe) {
+                        const std::function<void(const CaseResult&)>& observe, int threads) {
   CaseColumns cases;
   const std::size_t metrics = folder.metric_list().size();
   std::vector<std::size_t> places;  // in the rows, of the inputs that they hold
@@ -22,7 +57,7 @@ CaseColumns ReadColumns(const ResultFolder& folder, const std::vector<int>& want
   const auto file = std::make_shared<ColumnFile>(folder.directory(), metrics + places.size());
   std::vector<double> row(metrics + places.size()), seen(SeenEvent::kValues.size());
   Digest first;
-  folder.ForEach([&](const CaseResult& result) {
+  const auto take = [&](const CaseResult& result) {
     if (observe) observe(result);
     if (cases.index.empty()) first = result.digest;
     cases.are_alike = (cases.index.size() == 1 || cases.are_alike) && result.digest == first;
@@ -44,7 +79,10 @@ CaseColumns ReadColumns(const ResultFolder& folder, const std::vector<int>& want
       for (std::size_t i = 0; i < seen.size(); ++i) seen[i] = event.*SeenEvent::kValues[i];
       of->values->Append(seen);
     }
-  });
+  };
+  RowsBeside rows(take, threads);
+  folder.ForEach([&rows](const CaseResult& result) { rows.Add(result); });
+  rows.Finish();
   cases.metrics.resize(metrics);
   for (const std::size_t i : folder.metrics()) cases.metrics[i] = CaseColumn(file, i);
   cases.inputs.resize(InputCount(folder.stages()));

@@ -2,7 +2,7 @@
 
 #include <fmt/format.h>
 
-#include <array>
+#include <algorithm>
 #include <cmath>
 #include <fstream>
 #include <numeric>
@@ -55,8 +55,10 @@ std::string CasesCsvHeader(const RowInputs& inputs, const MetricList& list, cons
 std::string CasesCsvLine(const CaseResult& result, const CsvColumns& columns) {
   std::string line = fmt::format("{},{},{},{},{}", result.case_index, OutcomeName(result.outcome),
                                  ShortestText(result.end_time_s), result.end_stage, CsvField(result.reason));
-  for (const std::size_t i : columns.inputs) line += "," + ShortestText(result.inputs[i]);
-  for (const std::size_t i : columns.metrics) line += "," + ShortestText(result.metrics[i]);
+  line.reserve(20 * (columns.inputs.size() + columns.metrics.size()));
+  const auto add = [&line](double value) { AppendShortest(value, line += ','); };
+  for (const std::size_t i : columns.inputs) add(result.inputs[i]);
+  for (const std::size_t i : columns.metrics) add(result.metrics[i]);
   if (columns.sounding)
     line += "," + columns.soundings.at(static_cast<std::size_t>(result.inputs[*columns.sounding]));
   return line + "," + result.digest.Hex() + "\n";
@@ -71,13 +73,10 @@ std::uint64_t CountCases(const std::filesystem::path& file) {
   std::ifstream stream(file, std::ios::binary);
   std::uint64_t lines = 0;
   bool is_quoted = false;  // a reason may have line breaks
-  std::array<char, 1 << 16> part;
-  while (stream.read(part.data(), part.size()), stream.gcount() > 0) {
-    for (std::streamsize i = 0; i < stream.gcount(); ++i) {
-      const char c = part[static_cast<std::size_t>(i)];
-      if (c == '"') is_quoted = !is_quoted;
-      if (c == '\n' && !is_quoted) ++lines;
-    }
+  for (std::string line; std::getline(stream, line);) {
+    if (line.find('"') != std::string::npos && std::count(line.begin(), line.end(), '"') % 2 == 1)
+      is_quoted = !is_quoted;
+    if (!is_quoted && !stream.eof()) ++lines;
   }
   return lines == 0 ? 0 : lines - 1;  // without the header
 }

@@ -286,6 +286,7 @@ std::optional<Digest> ParseDigest(const std::string& hex) {
 
 /// The inputs that rows of this version know.
 std::vector<double> InputsAsOf(const RowShape& shape, std::vector<double> all) {
+  if (shape.version == kRowVersion) return all;
   std::size_t i = 0;
   std::erase_if(all, [&](double) { return InputColumns()[i++].number > LastInputOf(shape.version); });
   return all;
@@ -330,6 +331,7 @@ std::optional<CaseResult> ReadRow(const Statement& row, const RowShape& shape, E
   result.end_stage = static_cast<int>(row.Integer(3));
   result.reason = row.Text(4);
   int column = kFirstInput;
+  result.inputs.reserve(shape.inputs.positions().size());
   for (std::size_t i = 0; i < shape.inputs.positions().size(); ++i)
     result.inputs.push_back(row.Real(column++));
   result.inputs_digest = InputsDigest(InputsAsOf(shape, shape.inputs.AllOf(result.inputs)));

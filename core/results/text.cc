@@ -9,11 +9,17 @@
 
 namespace dispersa {
 
-std::string ShortestText(double value) {
-  if (!std::isfinite(value)) return "";
+void AppendShortest(double value, std::string& text) {
+  if (!std::isfinite(value)) return;
   std::array<char, 32> buffer;
   const auto result = std::to_chars(buffer.data(), buffer.data() + buffer.size(), value + 0.0);
-  return std::string(buffer.data(), result.ptr);
+  text.append(buffer.data(), result.ptr);
+}
+
+std::string ShortestText(double value) {
+  std::string text;
+  AppendShortest(value, text);
+  return text;
 }
 
 std::string DigitsText(double value, int digits) {

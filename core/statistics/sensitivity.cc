@@ -6,6 +6,7 @@
 #include <random>
 
 #include <boost/math/distributions/normal.hpp>
+#include <boost/sort/pdqsort/pdqsort.hpp>
 
 #include "core/math/assertion.h"
 #include "core/math/matrices.h"
@@ -19,10 +20,18 @@ constexpr int kBootstrapSamples = 200;
 constexpr std::size_t kBootstrapGroups = 1000;
 
 std::vector<std::uint32_t> Order(const std::vector<double>& values) {
-  std::vector<std::uint32_t> order(values.size());
-  std::iota(order.begin(), order.end(), std::uint32_t{0});
-  std::stable_sort(order.begin(), order.end(),
-                   [&](std::uint32_t a, std::uint32_t b) { return values[a] < values[b]; });
+  // Values beside their positions: a comparison reads what lies together.
+  struct Place {
+    double value;
+    std::uint32_t position;
+  };
+  std::vector<Place> places(values.size());
+  for (std::uint32_t i = 0; i < places.size(); ++i) places[i] = {values[i], i};
+  boost::sort::pdqsort_branchless(places.begin(), places.end(), [](const Place& a, const Place& b) {
+    return (a.value < b.value) | ((a.value == b.value) & (a.position < b.position));
+  });
+  std::vector<std::uint32_t> order(places.size());
+  for (std::size_t i = 0; i < order.size(); ++i) order[i] = places[i].position;
   return order;
 }
 
@@ -45,6 +54,12 @@ std::vector<std::uint8_t> Classes(const Ranked& x, std::size_t count) {
 /// Sums over the cases of a class.
 struct ClassSums {
   double n = 0.0, sum = 0.0, squares = 0.0;
+
+  void Add(const ClassSums& more) {
+    n += more.n;
+    sum += more.sum;
+    squares += more.squares;
+  }
 };
 
 double Epsilon(const std::vector<ClassSums>& classes) {
@@ -61,6 +76,47 @@ double Epsilon(const std::vector<ClassSums>& classes) {
   if (!(total > 0.0) || used < 2.0 || n <= used) return 0.0;
   const double within = squares - between;
   return 1.0 - (n - 1.0) / (n - used) * within / total;
+}
+
+/// Values within classes, as what an index is computed from: about their mean, so that the squares lose no
+/// digits.
+class Classified {
+ public:
+  Classified(const Ranked& x, const std::vector<double>& y)
+      : classes_(Classes(x, ClassCount(x.size()))),
+        y_(y),
+        mean_(std::accumulate(y.begin(), y.end(), 0.0) / static_cast<double>(y.size())) {}
+
+  std::size_t ClassOf(std::size_t i) const { return classes_[i]; }
+  ClassSums Of(std::size_t i) const {
+    const double value = y_[i] - mean_;
+    return {1.0, value, value * value};
+  }
+  std::vector<ClassSums> Sums() const {
+    std::vector<ClassSums> sums(ClassCount(classes_.size()));
+    for (std::size_t i = 0; i < classes_.size(); ++i) sums[ClassOf(i)].Add(Of(i));
+    return sums;
+  }
+
+ private:
+  std::vector<std::uint8_t> classes_;
+  const std::vector<double>& y_;
+  double mean_;
+};
+
+/// A group of cases: its sums in each class that it reaches.
+using Group = std::vector<std::pair<std::size_t, ClassSums>>;
+
+std::vector<Group> GroupsOf(const Classified& values, std::size_t n, std::size_t classes) {
+  std::vector<Group> groups(std::min(n, kBootstrapGroups));
+  std::vector<ClassSums> sums(classes);
+  for (std::size_t first = 0; first < groups.size(); ++first) {
+    std::fill(sums.begin(), sums.end(), ClassSums());
+    for (std::size_t i = first; i < n; i += groups.size()) sums[values.ClassOf(i)].Add(values.Of(i));
+    for (std::size_t c = 0; c < classes; ++c)
+      if (sums[c].n > 0.0) groups[first].emplace_back(c, sums[c]);
+  }
+  return groups;
 }
 
 double Correlation(const std::vector<double>& x, const std::vector<double>& y) {
@@ -92,36 +148,16 @@ SensitivityIndex FirstOrderIndex(const Ranked& x, const std::vector<double>& y, 
   DISPERSA_ASSERT(x.size() == y.size(), x.size(), y.size());
   const std::size_t n = x.size();
   if (n < 8) return {};
-  // About the mean, so that the squares lose no digits.
-  const double mean = std::accumulate(y.begin(), y.end(), 0.0) / static_cast<double>(n);
-  const std::size_t count = ClassCount(n);
-  const std::vector<std::uint8_t> classes = Classes(x, count);
-  const std::size_t groups = std::min(n, kBootstrapGroups);
-  std::vector<std::vector<ClassSums>> sums(groups, std::vector<ClassSums>(groups == n ? 1 : count));
-  std::vector<ClassSums> all(count);
-  for (std::size_t i = 0; i < n; ++i) {
-    const double value = y[i] - mean;
-    ClassSums& group = sums[i % groups][groups == n ? 0 : classes[i]];
-    for (ClassSums* each : {&group, &all[classes[i]]}) {
-      each->n += 1.0;
-      each->sum += value;
-      each->squares += value * value;
-    }
-  }
+  const Classified values(x, y);
+  const std::vector<ClassSums> all = values.Sums();
   const double index = Epsilon(all);
+  const std::vector<Group> groups = GroupsOf(values, n, all.size());
   std::mt19937_64 random(seed);
   double sum = 0.0, squares = 0.0;
   for (int sample = 0; sample < kBootstrapSamples; ++sample) {
-    std::vector<ClassSums> drawn(count);
-    for (std::size_t k = 0; k < groups; ++k) {
-      const std::size_t group = random() % groups;
-      for (std::size_t c = 0; c < sums[group].size(); ++c) {
-        ClassSums& into = drawn[groups == n ? classes[group] : c];
-        into.n += sums[group][c].n;
-        into.sum += sums[group][c].sum;
-        into.squares += sums[group][c].squares;
-      }
-    }
+    std::vector<ClassSums> drawn(all.size());
+    for (std::size_t k = 0; k < groups.size(); ++k)
+      for (const auto& [of, sums] : groups[random() % groups.size()]) drawn[of].Add(sums);
     const double value = Epsilon(drawn);
     sum += value;
     squares += value * value;
@@ -147,19 +183,7 @@ std::vector<double> RestOf(const Ranked& x, const std::vector<double>& y) {
 
 double FirstOrderShare(const Ranked& x, const std::vector<double>& y) {
   DISPERSA_ASSERT(x.size() == y.size(), x.size(), y.size());
-  if (x.size() < 8) return 0.0;
-  const double mean = std::accumulate(y.begin(), y.end(), 0.0) / static_cast<double>(y.size());
-  const std::size_t count = ClassCount(x.size());
-  const std::vector<std::uint8_t> classes = Classes(x, count);
-  std::vector<ClassSums> sums(count);
-  for (std::size_t i = 0; i < x.size(); ++i) {
-    const double value = y[i] - mean;
-    ClassSums& each = sums[classes[i]];
-    each.n += 1.0;
-    each.sum += value;
-    each.squares += value * value;
-  }
-  return Epsilon(sums);
+  return x.size() < 8 ? 0.0 : Epsilon(Classified(x, y).Sums());
 }
 
 double RankCorrelation(const Ranked& x, const Ranked& y) {

@@ -1,6 +1,8 @@
 // cases.csv is the same bytes in whatever order and however often results arrive.
 #include "core/results/cases_csv.h"
 
+#include <fstream>
+
 #include "core/results/text.h"
 #include "tests/test.h"
 #include "tests/unit/made_up_results.h"
@@ -152,6 +154,8 @@ TEST(CasesCsv, CountsTheCasesOfAFileHoweverTheyAreQuoted) {
   folder.Append({{MakeCase(0), quoted, MakeCase(2)}});
   WriteCasesCsv(folder, StoredColumns(folder), temporary / "cases.csv");
   EXPECT_EQ(CountCases(temporary / "cases.csv"), 3u);
+  std::ofstream(temporary / "cases.csv", std::ios::app) << "3,compl";
+  EXPECT_EQ(CountCases(temporary / "cases.csv"), 3u) << "a row without its end";
 }
 
 TEST(CasesCsv, ShowsNegativeZeroAsZeroAndUndefinedAsEmpty) {
