@@ -18,7 +18,7 @@ ABSENT = re.compile(r"fastrtps|fastcdr|fastdds|seccomp|libssl")
 class EngineHalf(unittest.TestCase):
     @classmethod
     def setUpClass(cls):
-        cls.build = BUILD / "engine"  # incremental, through ccache
+        cls.build = BUILD.parent / f"{BUILD.name}-engine"  # not in BUILD, whose worker Python would find; incremental
         cls.bin = cls.build / "bin"
         cls.folder = pathlib.Path(tempfile.mkdtemp(prefix="dispersa-engine-"))
         cls.addClassCleanup(shutil.rmtree, cls.folder)
