@@ -364,13 +364,11 @@ CampaignSummary BuildSummary(const ResultFolder& folder, const Campaign& campaig
   for (const std::size_t i : folder.metrics()) {
     if (std::find(shown.begin(), shown.end(), i) == shown.end()) continue;
     const std::string& name = folder.metric_list().NameAt(i);
-    std::vector<double> values = CompletedValues(cases, name);
+    const std::vector<double> values = CompletedValues(cases, name);
     const bool is_all_around = LiesAllAround(values, CircleOf(name));
-    std::vector<double> sorted = SortedFinite(std::move(values));
-    const std::size_t undefined = cases.rows() - sorted.size();
-    const Summary statistics = is_all_around ? Summary{.n = sorted.size(), .undefined = undefined}
-                                             : SummarizeSorted(sorted, undefined);
-    if (is_all_around) sorted.clear();
+    const std::vector<double> sorted = is_all_around ? std::vector<double>() : SortedFinite(values);
+    const Summary statistics = is_all_around ? Summarize(values, CircleOf(name))
+                                             : SummarizeSorted(sorted, values.size() - sorted.size());
     summary.metrics.push_back({name, statistics, Skewness(sorted), Percentiles(sorted)});
   }
   HoldAgainstLimits(campaign.vehicle.limits, cases, &summary);

@@ -13,11 +13,10 @@
 namespace dispersa {
 namespace {
 
-/// Takes rows while the next ones are read, on a thread of its own if there is one for it.
+/// Takes rows on a thread of its own while the next ones are read.
 class RowsBeside {
  public:
-  RowsBeside(std::function<void(const CaseResult&)> take, int threads)
-      : take_(std::move(take)), policy_(threads > 1 ? std::launch::async : std::launch::deferred) {}
+  explicit RowsBeside(std::function<void(const CaseResult&)> take) : take_(std::move(take)) {}
 
   void Add(const CaseResult& result) {
     rows_.push_back(result);
@@ -33,16 +32,22 @@ class RowsBeside {
 
   void HandOver() {
     if (taking_.valid()) taking_.get();
-    taking_ = std::async(policy_, [this, rows = std::exchange(rows_, {})] {
+    taking_ = std::async(std::launch::async, [this, rows = std::exchange(rows_, {})] {
       for (const CaseResult& row : rows) take_(row);
     });
   }
 
   std::function<void(const CaseResult&)> take_;
-  std::launch policy_;
   std::vector<CaseResult> rows_;
   std::future<void> taking_;
 };
+
+void EachOf(const ResultFolder& folder, const std::function<void(const CaseResult&)>& take, int threads) {
+  if (threads <= 1) return folder.ForEach(take);
+  RowsBeside rows(take);
+  folder.ForEach([&rows](const CaseResult& result) { rows.Add(result); });
+  rows.Finish();
+}
 
 }  // namespace
 
@@ -80,9 +85,7 @@ CaseColumns ReadColumns(const ResultFolder& folder, const std::vector<int>& want
       of->values->Append(seen);
     }
   };
-  RowsBeside rows(take, threads);
-  folder.ForEach([&rows](const CaseResult& result) { rows.Add(result); });
-  rows.Finish();
+  EachOf(folder, take, threads);
   cases.metrics.resize(metrics);
   for (const std::size_t i : folder.metrics()) cases.metrics[i] = CaseColumn(file, i);
   cases.inputs.resize(InputCount(folder.stages()));

@@ -10,6 +10,7 @@ namespace dispersa {
 
 /// The shortest decimal that reads back as the same double. Empty if not finite; -0 becomes 0.
 std::string ShortestText(double value);
+/// The same, behind `text`.
 void AppendShortest(double value, std::string& text);
 /// With so many significant digits at most, otherwise as ShortestText().
 std::string DigitsText(double value, int digits);

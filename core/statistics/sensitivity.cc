@@ -4,6 +4,7 @@
 #include <cmath>
 #include <numeric>
 #include <random>
+#include <utility>
 
 #include <boost/math/distributions/normal.hpp>
 #include <boost/sort/pdqsort/pdqsort.hpp>
@@ -87,14 +88,16 @@ class Classified {
         y_(y),
         mean_(std::accumulate(y.begin(), y.end(), 0.0) / static_cast<double>(y.size())) {}
 
+  std::size_t size() const { return classes_.size(); }
+  std::size_t classes() const { return ClassCount(size()); }
   std::size_t ClassOf(std::size_t i) const { return classes_[i]; }
   ClassSums Of(std::size_t i) const {
     const double value = y_[i] - mean_;
     return {1.0, value, value * value};
   }
   std::vector<ClassSums> Sums() const {
-    std::vector<ClassSums> sums(ClassCount(classes_.size()));
-    for (std::size_t i = 0; i < classes_.size(); ++i) sums[ClassOf(i)].Add(Of(i));
+    std::vector<ClassSums> sums(classes());
+    for (std::size_t i = 0; i < size(); ++i) sums[ClassOf(i)].Add(Of(i));
     return sums;
   }
 
@@ -107,13 +110,14 @@ class Classified {
 /// A group of cases: its sums in each class that it reaches.
 using Group = std::vector<std::pair<std::size_t, ClassSums>>;
 
-std::vector<Group> GroupsOf(const Classified& values, std::size_t n, std::size_t classes) {
-  std::vector<Group> groups(std::min(n, kBootstrapGroups));
-  std::vector<ClassSums> sums(classes);
+std::vector<Group> GroupsOf(const Classified& values) {
+  std::vector<Group> groups(std::min(values.size(), kBootstrapGroups));
+  std::vector<ClassSums> sums(values.classes());
   for (std::size_t first = 0; first < groups.size(); ++first) {
     std::fill(sums.begin(), sums.end(), ClassSums());
-    for (std::size_t i = first; i < n; i += groups.size()) sums[values.ClassOf(i)].Add(values.Of(i));
-    for (std::size_t c = 0; c < classes; ++c)
+    for (std::size_t i = first; i < values.size(); i += groups.size())
+      sums[values.ClassOf(i)].Add(values.Of(i));
+    for (std::size_t c = 0; c < sums.size(); ++c)
       if (sums[c].n > 0.0) groups[first].emplace_back(c, sums[c]);
   }
   return groups;
@@ -146,12 +150,11 @@ Ranked::Ranked(const std::vector<double>& values) : order_(Order(values)), ranks
 
 SensitivityIndex FirstOrderIndex(const Ranked& x, const std::vector<double>& y, std::uint64_t seed) {
   DISPERSA_ASSERT(x.size() == y.size(), x.size(), y.size());
-  const std::size_t n = x.size();
-  if (n < 8) return {};
+  if (x.size() < 8) return {};
   const Classified values(x, y);
   const std::vector<ClassSums> all = values.Sums();
   const double index = Epsilon(all);
-  const std::vector<Group> groups = GroupsOf(values, n, all.size());
+  const std::vector<Group> groups = GroupsOf(values);
   std::mt19937_64 random(seed);
   double sum = 0.0, squares = 0.0;
   for (int sample = 0; sample < kBootstrapSamples; ++sample) {

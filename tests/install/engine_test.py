@@ -23,7 +23,7 @@ class EngineHalf(unittest.TestCase):
         cls.folder = pathlib.Path(tempfile.mkdtemp(prefix="dispersa-engine-"))
         cls.addClassCleanup(shutil.rmtree, cls.folder)
         for command in ((CMAKE, "-G", "Ninja", "-S", SOURCE, "-B", cls.build, "-D", "CMAKE_BUILD_TYPE=Release", "-D",
-                         "DISPERSA_SERVICE=OFF"), (CMAKE, "--build", cls.build)):
+                         "DISPERSA_SERVICE=OFF", "-D", "DISPERSA_WARNINGS_AS_ERRORS=ON"), (CMAKE, "--build", cls.build)):
             done = run(*command, timeout=PATIENCE_S)
             assert done.returncode == 0, done.stdout[-3000:] + done.stderr[-3000:]
 

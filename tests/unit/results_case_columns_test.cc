@@ -73,18 +73,25 @@ TEST(ReportCaseColumns, OfManyLostFlightsTheFirstAreListed) {
     results.back().outcome = Outcome::kImpact;
   }
   folder.Append(results);
-  std::uint64_t seen = 0;
-  const CaseColumns cases = ReadColumns(folder, {FindInput("cg_factor"), FindInput("drag_factor")},
-                                        [&seen](const CaseResult& result) { seen += result.case_index; });
-  EXPECT_EQ(cases.lost_flights.size(), kListedLostFlights);
-  EXPECT_EQ(LostCount(cases), kLost);
-  EXPECT_EQ(seen, kLost * (kLost - 1) / 2);
-  const auto input = [&cases](const char* name) {
-    return cases.inputs[static_cast<std::size_t>(FindInput(name))].Values();
-  };
-  EXPECT_EQ(input("drag_factor")[7], results[7].inputs[0]);
-  EXPECT_EQ(input("cg_factor"), std::vector<double>(kLost, 1.0)) << "no row holds it";
-  EXPECT_TRUE(input("cp_factor").empty()) << "not asked for";
+  std::vector<std::uint64_t> all(kLost);
+  std::iota(all.begin(), all.end(), std::uint64_t{0});
+  for (const int threads : {1, 2}) {
+    SCOPED_TRACE(threads);
+    std::vector<std::uint64_t> seen;
+    const CaseColumns cases = ReadColumns(
+        folder, {FindInput("cg_factor"), FindInput("drag_factor")},
+        [&seen](const CaseResult& result) { seen.push_back(result.case_index); }, threads);
+    EXPECT_EQ(cases.lost_flights.size(), kListedLostFlights);
+    EXPECT_EQ(LostCount(cases), kLost);
+    EXPECT_EQ(seen, all);
+    const auto input = [&cases](const char* name) {
+      return cases.inputs[static_cast<std::size_t>(FindInput(name))].Values();
+    };
+    EXPECT_EQ(input("drag_factor")[7], results[7].inputs[0]);
+    EXPECT_EQ(input("drag_factor").back(), results.back().inputs[0]);
+    EXPECT_EQ(input("cg_factor"), std::vector<double>(kLost, 1.0)) << "no row holds it";
+    EXPECT_TRUE(input("cp_factor").empty()) << "not asked for";
+  }
 }
 
 }  // namespace
